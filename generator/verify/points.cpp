@@ -220,8 +220,35 @@ State Points::draw() {
   return s;
 }
 
-/// The least change, measured by the scales, that removes the defect: W A^T (A W A^T)^-1 (-defect).
-std::vector<Real> Points::correction(const State& state, bool rates, const std::vector<bool>* held) const {
+/// How far a coordinate is from the nearer end of its range; its scale, if that is less.
+Real Points::room(const State& state, std::size_t i) const {
+  const Choice& c = choices_[i];
+  Real room = exact(c.scale);
+  if (c.has_lower) room = cln::min(room, state.q[i] - exact(c.lower));
+  if (c.has_upper) room = cln::min(room, exact(c.upper) - state.q[i]);
+  return room;
+}
+
+/// Takes the step, or of it what leaves every coordinate inside its range. False: it was cut.
+bool Points::move_inside(State& s, const std::vector<Real>& step) const {
+  const Real most = cln::cl_RA(9) / 10;  // of the way to the end of the range
+  Real part = 1;
+  for (std::size_t i = 0; i < step.size(); ++i) {
+    const Choice& c = choices_[i];
+    const auto keep = [&](const Real& way) {  // of the sign of the step
+      if (cln::abs(step[i]) > most * cln::abs(way)) part = cln::min(part, most * way / step[i]);
+    };
+    if (c.has_lower && cln::minusp(step[i]) && s.q[i] > exact(c.lower)) keep(exact(c.lower) - s.q[i]);
+    if (c.has_upper && cln::plusp(step[i]) && s.q[i] < exact(c.upper)) keep(exact(c.upper) - s.q[i]);
+  }
+  for (std::size_t i = 0; i < step.size(); ++i) s.q[i] = s.q[i] + part * step[i];
+  return part == 1;
+}
+
+/// The least change that removes the defect, measured by the scales, or by what is left to the ends of the ranges:
+/// W A^T (A W A^T)^-1 (-defect).
+std::vector<Real> Points::correction(const State& state, bool rates, const std::vector<bool>* held,
+                                     bool by_room) const {
   State at = state;
   at.qddot.clear();  // nobody asks for psi_ddot here
   ConstraintValues c = judge_.constraint_values(at);
@@ -237,7 +264,10 @@ std::vector<Real> Points::correction(const State& state, bool rates, const std::
   if (rows == 0) return std::vector<Real>(n, Real(0));
   std::vector<Real> weight;
   for (std::size_t i = 0; i < n; ++i) {
-    const Real scale = exact(held != nullptr && (*held)[i] ? 0.0 : rates ? choices_[i].rate_scale : choices_[i].scale);
+    const Real scale = held != nullptr && (*held)[i] ? Real(0)
+                       : rates                       ? exact(choices_[i].rate_scale)
+                       : by_room                     ? room(state, i)
+                                                     : exact(choices_[i].scale);
     weight.push_back(scale * scale);
   }
   std::vector<Real> gram(rows * rows, Real(0)), right;
@@ -267,13 +297,12 @@ void Points::project_positions(State& s, const std::vector<bool>* held) const {
   const Real own = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() / 2 - 8));
   constexpr int most_settling = 8;
   int settled = 0;
+  bool by_room = false;  // once a step would have left a range: coordinates near an end are moved less then
   for (int iteration = 0; iteration < 40; ++iteration) {
-    const std::vector<Real> step = correction(s, false, held);
+    const std::vector<Real> step = correction(s, false, held, by_room);
     Real size = 0;
-    for (std::size_t i = 0; i < step.size(); ++i) {
-      s.q[i] = s.q[i] + step[i];
-      size = cln::max(size, cln::abs(step[i]) / exact(choices_[i].scale));
-    }
+    for (std::size_t i = 0; i < step.size(); ++i) size = cln::max(size, cln::abs(step[i]) / exact(choices_[i].scale));
+    if (!move_inside(s, step)) by_room = true;
     // The first step may be as long as a prescribed motion is far away: a radius of a planet, where no start gives a
     // scale.
     if (iteration > 0 && size > 1000) break;
@@ -296,7 +325,7 @@ void Points::project_velocities(State& s) const {
   for (std::size_t i = 0; i < choices_.size(); ++i)
     size.push_back(cln::max(cln::abs(s.qdot[i]), exact(choices_[i].rate_scale)) * small);
   for (int round = 0; round < 2; ++round) {
-    const std::vector<Real> change = correction(s, true, nullptr);
+    const std::vector<Real> change = correction(s, true, nullptr, false);
     for (std::size_t i = 0; i < change.size(); ++i) s.qdot[i] = s.qdot[i] + change[i];
   }
   for (std::size_t i = 0; i < size.size(); ++i) {
@@ -384,7 +413,10 @@ State Points::next() {
 
 void Points::reject(const std::string& why) {
   ++rejected_[why];
-  if (++rejections_ % 10 == 0) spread_ *= 0.8;
+  // Of states drawn at random, the fewer close the more loops there are.
+  constexpr std::size_t often = 10, few = 8;
+  const std::size_t rows = std::max(few, judge_.constraints().size());
+  if (++rejections_ % std::max<std::size_t>(1, often * few / rows) == 0) spread_ *= 0.8;
   if (rejections_ <= cap_) return;
   std::string reasons;
   for (const auto& [reason, count] : rejected_)

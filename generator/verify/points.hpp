@@ -60,7 +60,9 @@ class Points {
   /// Those that are `held` stay where they are.
   void project_positions(State& state, const std::vector<bool>* held = nullptr) const;
   void project_velocities(State& state) const;
-  std::vector<Real> correction(const State& state, bool rates, const std::vector<bool>* held) const;
+  std::vector<Real> correction(const State& state, bool rates, const std::vector<bool>* held, bool by_room) const;
+  Real room(const State& state, std::size_t coordinate) const;
+  bool move_inside(State& state, const std::vector<Real>& step) const;
   void require_implied(const State& state) const;
   void require_inside(const State& state) const;
   void require_smooth(const State& state) const;
