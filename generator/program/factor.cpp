@@ -3,9 +3,9 @@
 #include <cln/rational.h>
 
 #include <algorithm>
-#include <map>
 
 #include "program/polynomials.hpp"
+#include "symbolic/small_numbers.hpp"
 
 namespace eomgen::program {
 namespace {
@@ -40,8 +40,8 @@ class Factoring {
       for (Term& term : terms) (has(term, best) ? with : without).push_back(std::move(term));
       const Term front = common(with, best);
       for (Term& term : with) {
-        term.coefficient = term.coefficient / front.coefficient;
-        term.factors = multiply(term.factors, front.factors, -1);
+        term.coefficient = symbolic::over(term.coefficient, front.coefficient);
+        if (!front.factors.empty()) term.factors = multiply(term.factors, front.factors, -1);
       }
       // The bracket in normal form may turn out to be a sum that exists; a new one is factored in turn.
       Term bracket = graph_.normal(std::move(with));
@@ -53,7 +53,7 @@ class Factoring {
   }
 
   static bool has(const Term& term, const Shared& shared) {
-    if (shared.number) return !term.is_constant() && cln::abs(term.coefficient) == shared.size;
+    if (shared.number) return !term.is_constant() && symbolic::same(cln::abs(term.coefficient), shared.size);
     return std::any_of(term.factors.begin(), term.factors.end(), [&shared](const Factor& f) {
       return f.node == shared.node && (f.exponent < 0) == shared.divisor;
     });
@@ -72,30 +72,37 @@ class Factoring {
   }
 
   /// The factor that saves most multiplications: those of all terms but one, and terms that are the factor alone.
-  bool find(const std::vector<Term>& terms, Shared& best) const {
-    std::map<std::pair<NodeId, bool>, int> saved;
+  bool find(const std::vector<Term>& terms, Shared& best) {
+    // Of each factor: a node and whether it is divided by, ascending, and which terms it saves a multiplication in.
+    saved_.clear();
     std::vector<std::pair<Rational, int>> sizes;
     for (const Term& term : terms) {
-      const bool unit = term.coefficient == 1 || term.coefficient == -1;
+      const bool unit = symbolic::is_unit(term.coefficient);
       for (const Factor& f : term.factors) {
         const bool alone = unit && term.factors.size() == 1 && f.exponent == 1;
-        auto& count = saved.try_emplace({f.node, f.exponent < 0}, -1).first->second;
-        count += alone ? 0 : 1;
+        saved_.push_back({2 * std::uint64_t{f.node} + (f.exponent < 0 ? 1 : 0), alone ? 0 : 1});
       }
       if (unit || term.is_constant()) continue;
       const Rational size = cln::abs(term.coefficient);
-      auto found = std::find_if(sizes.begin(), sizes.end(), [&size](const auto& s) { return s.first == size; });
+      auto found =
+          std::find_if(sizes.begin(), sizes.end(), [&size](const auto& s) { return symbolic::same(s.first, size); });
       if (found == sizes.end()) found = sizes.insert(found, {size, -1});
       ++found->second;
     }
+    std::sort(saved_.begin(), saved_.end());
     int most = 0;
     std::uint64_t tie = 0;
-    for (const auto& [key, count] : saved) {
-      const std::uint64_t rank = seed_ == 0 ? key.first : scramble(key.first, seed_);
-      if (count < most || count < 1 || (count == most && rank <= tie)) continue;
+    for (std::size_t i = 0; i < saved_.size();) {
+      const std::uint64_t key = saved_[i].first;
+      int count = -1;
+      for (; i < saved_.size() && saved_[i].first == key; ++i) count += saved_[i].second;
+      if (count < most || count < 1) continue;
+      const auto node = static_cast<NodeId>(key / 2);
+      const std::uint64_t rank = seed_ == 0 ? node : scramble(node, seed_);
+      if (count == most && rank <= tie) continue;
       most = count;
       tie = rank;
-      best = {false, key.first, key.second, 1};
+      best = {false, node, key % 2 == 1, 1};
     }
     for (const auto& [size, count] : sizes) {
       if (count <= most) continue;
@@ -112,6 +119,7 @@ class Factoring {
   Polynomials& graph_;
   std::uint64_t seed_;
   std::vector<bool> done_;
+  std::vector<std::pair<std::uint64_t, int>> saved_;  // of the sum in which a factor is looked for
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "program/polynomials.hpp"
+#include "symbolic/small_numbers.hpp"
 
 namespace eomgen::program {
 namespace {
@@ -52,7 +53,12 @@ class Flattening {
  private:
   Term translate(const Term& term) {
     Term result{term.coefficient, {}};
-    for (const Factor& f : term.factors) result = multiply(result, power_of(value_[f.node], f.exponent));
+    for (const Factor& f : term.factors) {
+      if (f.exponent == 1)
+        result = multiply(result, value_[f.node]);
+      else
+        result = multiply(result, power_of(value_[f.node], f.exponent));
+    }
     while (combine_root(result.factors)) {
     }
     return result;
@@ -64,7 +70,7 @@ class Flattening {
       const Node& node = to_[root.node];
       if (node.kind != Node::Kind::call || node.op != Op::sqrt || node.terms[0].factors.size() != 1) continue;
       const Term& square = node.terms[0];
-      if (square.coefficient != 1 || square.factors[0].exponent != 1) continue;
+      if (!symbolic::is_one(square.coefficient) || square.factors[0].exponent != 1) continue;
       const NodeId s = square.factors[0].node;
       std::int32_t whole = 0;
       for (const Factor& f : factors) whole += f.node == s ? f.exponent : 0;
@@ -81,10 +87,10 @@ class Flattening {
     return false;
   }
   Term power_of(const Term& base, std::int32_t exponent) {
-    if (exponent == 1) return base;
-    const bool unit = base.coefficient == 1 || base.coefficient == -1;
+    const bool unit = symbolic::is_unit(base.coefficient);
     // A divisor that turned out to be 0 stays a division by zero at run time; it must not be one here.
-    if (base.coefficient == 0 && exponent < 0) return {1, {{to_.call(Op::div, {Term{1, {}}, Term{0, {}}}), 1}}};
+    if (symbolic::is_zero(base.coefficient) && exponent < 0)
+      return {1, {{to_.call(Op::div, {Term{1, {}}, Term{0, {}}}), 1}}};
     // Nor may untrusted exponents blow up exact numbers or overflow.
     constexpr std::int64_t largest_number = 64, largest = 1'000'000;
     if (base.is_constant() && !unit && std::abs(exponent) > largest_number) {
@@ -103,7 +109,7 @@ class Flattening {
     terms.reserve(node.terms.size());
     for (const Term& term : node.terms) {
       Term moved = translate(term);
-      if (moved.coefficient == 0) continue;
+      if (symbolic::is_zero(moved.coefficient)) continue;
       if (expand_ && multiply_out(moved, terms)) continue;
       if (node.terms.size() > 1 && may_splice(term, moved)) {
         for (Term inner : to_[moved.factors[0].node].terms) {

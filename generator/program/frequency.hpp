@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <queue>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "program/polynomials.hpp"
@@ -15,30 +15,30 @@ namespace eomgen::program {
 /// Pairs are 64-bit keys that occur in rows. Ties go by `seed`; nothing depends on the order of the hash table.
 class Frequency {
  public:
-  explicit Frequency(std::uint64_t seed) : seed_(seed) {}
+  explicit Frequency(std::uint64_t seed) : seed_(seed), entries_(std::size_t{1} << first_bits) {}
 
   void add(std::uint64_t key, std::uint32_t row, int count = 1) {
-    Entry& entry = entries_[key];
+    Entry& entry = at(key);
     entry.count += count;
     entry.rows.push_back(row);
     if (entry.count >= 2) heap_.push({entry.count, rank(key), key});
   }
-  void remove(std::uint64_t key, int count = 1) { entries_[key].count -= count; }
+  void remove(std::uint64_t key, int count = 1) { at(key).count -= count; }
 
   /// The most frequent pair that occurs at least twice, with the rows where it may still be; false if there is none.
   bool pop(std::uint64_t& key, std::vector<std::uint32_t>& rows) {
     while (!heap_.empty()) {
       const Candidate top = heap_.top();
       heap_.pop();
-      Entry& entry = entries_[top.key];
+      Entry& entry = at(top.key);
       if (entry.count < 2) continue;
       if (entry.count != top.count) {  // out of date: back with what is true now
         heap_.push({entry.count, top.rank, top.key});
         continue;
       }
       key = top.key;
-      rows = std::move(entry.rows);
-      entry.rows.clear();
+      rows.assign(entry.rows.begin(), entry.rows.end());
+      entry.rows.shorten(0);
       std::sort(rows.begin(), rows.end());
       rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
       return true;
@@ -48,8 +48,10 @@ class Frequency {
 
  private:
   struct Entry {
+    std::uint64_t key = 0;
     int count = 0;
-    std::vector<std::uint32_t> rows;
+    bool taken = false;
+    symbolic::ShortList<std::uint32_t, 2> rows;
   };
   struct Candidate {
     int count;
@@ -59,10 +61,34 @@ class Frequency {
       return a.rank != b.rank ? a.rank < b.rank : a.key < b.key;
     }
   };
+  static constexpr int first_bits = 6;
+
   std::uint64_t rank(std::uint64_t key) const { return seed_ == 0 ? ~key : scramble(key, seed_); }
 
+  Entry& place(std::uint64_t key) {
+    const std::size_t mask = entries_.size() - 1;
+    std::size_t i = scramble(key, 0) & mask;
+    while (entries_[i].taken && entries_[i].key != key) i = (i + 1) & mask;
+    return entries_[i];
+  }
+  Entry& at(std::uint64_t key) {
+    Entry* entry = &place(key);
+    if (entry->taken) return *entry;
+    if (2 * ++taken_ > entries_.size()) {
+      std::vector<Entry> old = std::exchange(entries_, std::vector<Entry>(2 * entries_.size()));
+      for (Entry& moved : old) {
+        if (moved.taken) place(moved.key) = std::move(moved);
+      }
+      entry = &place(key);
+    }
+    entry->key = key;
+    entry->taken = true;
+    return *entry;
+  }
+
   std::uint64_t seed_;
-  std::unordered_map<std::uint64_t, Entry> entries_;
+  std::vector<Entry> entries_;  // a power of 2 of them, half of them open
+  std::size_t taken_ = 0;
   std::priority_queue<Candidate> heap_;
 };
 

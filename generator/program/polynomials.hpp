@@ -6,13 +6,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "program/program.hpp"
+#include "symbolic/short_list.hpp"
 
 namespace eomgen::program {
 
@@ -24,7 +23,7 @@ struct Factor {
   std::int32_t exponent = 1;
   friend auto operator<=>(const Factor&, const Factor&) = default;
 };
-using Monomial = std::vector<Factor>;  // ascending by node, no zero exponents
+using Monomial = symbolic::ShortList<Factor, 6>;  // ascending by node, no zero exponents
 
 struct Term {
   Rational coefficient = 1;
@@ -56,6 +55,30 @@ struct Label {
 
 struct PivotPair {
   Term pivot, scale;  // scale 0: the pivot must not be exactly zero
+};
+
+/// Nodes by a hash of what they are; those of one hash in the order in which they came.
+class NodeIndex {
+ public:
+  /// The first of this hash for which `is_it` holds; null if there is none.
+  template <class IsIt>
+  const NodeId* find(std::uint64_t hash, const IsIt& is_it) const {
+    if (slots_.empty()) return nullptr;
+    for (std::size_t at = hash & (slots_.size() - 1); slots_[at].taken; at = (at + 1) & (slots_.size() - 1)) {
+      if (slots_[at].hash == hash && is_it(slots_[at].node)) return &slots_[at].node;
+    }
+    return nullptr;
+  }
+  void add(std::uint64_t hash, NodeId node);
+
+ private:
+  struct Slot {
+    std::uint64_t hash = 0;
+    NodeId node = 0;
+    bool taken = false;
+  };
+  std::vector<Slot> slots_;  // none, or a power of 2 of them
+  std::size_t taken_ = 0;
 };
 
 class Polynomials {
@@ -95,24 +118,58 @@ class Polynomials {
   std::vector<Label> labels;
 
  private:
+  NodeId add(std::uint64_t hash, Node node);
+  bool is_product(NodeId id) const;
   Monomial expanded(const Monomial& monomial) const;
+  bool has_square(const Monomial& monomial) const;
   bool apply_pythagoras(std::vector<Term>& terms);
   std::vector<Node> nodes_;
-  std::unordered_map<std::size_t, std::vector<NodeId>> index_;
+  NodeIndex index_;
 };
 
 /// Visits nodes once each, operands before users, without recursion.
 class Walk {
  public:
   explicit Walk(const Polynomials& graph) : graph_(graph), state_(graph.size(), open) {}
-  void from(NodeId root, const std::function<void(NodeId)>& take);
-  void from(const Term& term, const std::function<void(NodeId)>& take);
-  void from_results(const std::function<void(NodeId)>& take);  // pivots too
+  template <class Take>
+  void from(NodeId root, const Take& take) {
+    stack_.push_back(root);
+    while (!stack_.empty()) {
+      const NodeId id = stack_.back();
+      if (state_[id] != open) stack_.pop_back();
+      if (state_[id] == done) continue;
+      if (state_[id] == operands_taken) {
+        state_[id] = done;
+        take(id);
+        continue;
+      }
+      state_[id] = operands_taken;
+      const auto& terms = graph_[id].terms;
+      for (auto term = terms.rbegin(); term != terms.rend(); ++term) {
+        for (auto f = term->factors.rbegin(); f != term->factors.rend(); ++f) {
+          if (state_[f->node] == open) stack_.push_back(f->node);
+        }
+      }
+    }
+  }
+  template <class Take>
+  void from(const Term& term, const Take& take) {
+    for (const Factor& f : term.factors) from(f.node, take);
+  }
+  template <class Take>
+  void from_results(const Take& take) {  // pivots too
+    for (const PivotPair& pair : graph_.pivots) {
+      from(pair.pivot, take);
+      from(pair.scale, take);
+    }
+    for (const Term& term : graph_.results) from(term, take);
+  }
 
  private:
   enum State : std::uint8_t { open, operands_taken, done };
   const Polynomials& graph_;
   std::vector<State> state_;
+  std::vector<NodeId> stack_;
 };
 
 /// Operations of the straight-line code that `schedule` makes of a graph.

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "program/polynomials.hpp"
+#include "symbolic/small_numbers.hpp"
 
 namespace eomgen::program {
 namespace {
@@ -24,10 +25,8 @@ std::size_t power_cost(std::int32_t e) {  // of the halves that need an instruct
   return e <= written_out ? 0 : power_factors(e / 2) - 1 + power_cost(e / 2);
 }
 
-bool is_unit(const Rational& c) { return c == 1 || c == -1; }
-
 void count_term(const Term& term, const std::vector<std::uint32_t>& divides, Operations& operations) {
-  std::size_t above = is_unit(term.coefficient) ? 0 : 1, below = 0;
+  std::size_t above = symbolic::is_unit(term.coefficient) ? 0 : 1, below = 0;
   for (const Factor& f : term.factors) {
     const std::int32_t e = std::abs(f.exponent);
     operations.mul += power_cost(e);
@@ -210,7 +209,7 @@ class Schedule {
   /// The size of a term as an operand; `negated` tells its sign.
   Operand term(const Term& term, const std::string& name) {
     std::vector<Operand> above, below;
-    if (!is_unit(term.coefficient)) above.push_back(constant(cln::abs(term.coefficient)));
+    if (!symbolic::is_unit(term.coefficient)) above.push_back(constant(cln::abs(term.coefficient)));
     bool negated = cln::minusp(term.coefficient);
     for (const Factor& f : term.factors) {
       const bool multiply_by_reciprocal = f.exponent < 0 && divides_[f.node] > 1;

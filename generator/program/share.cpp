@@ -4,9 +4,9 @@
 #include <cln/rational.h>
 
 #include <algorithm>
-#include <map>
 
 #include "program/frequency.hpp"
+#include "symbolic/small_numbers.hpp"
 
 namespace eomgen::program {
 namespace {
@@ -19,15 +19,18 @@ constexpr Item divisor_bit = 0x40000000u;
 class Numbers {
  public:
   Item index(const Rational& value) {
-    const auto found = std::find(values_.begin(), values_.end(), value);
-    if (found != values_.end()) return static_cast<Item>(found - values_.begin());
+    const std::uint64_t hash = symbolic::hash_of(value);
+    const Item* const known = index_.find(hash, [&](Item i) { return symbolic::same(values_[i], value); });
+    if (known != nullptr) return *known;
     values_.push_back(value);
+    index_.add(hash, static_cast<Item>(values_.size() - 1));
     return static_cast<Item>(values_.size() - 1);
   }
   const Rational& operator[](Item index) const { return values_[index]; }
 
  private:
   std::vector<Rational> values_;
+  NodeIndex index_;
 };
 
 class ProductSharing {
@@ -52,6 +55,11 @@ class ProductSharing {
     std::size_t term;
     std::vector<Item> items;  // ascending, with repetition
   };
+  struct Counted {
+    Item item;
+    int times;
+    bool wanted;
+  };
   static constexpr std::size_t longest = 40;  // pairs are quadratic
 
   void add_row(NodeId id, std::size_t k) {
@@ -69,12 +77,15 @@ class ProductSharing {
     rows_.push_back(std::move(row));
   }
 
-  void count(std::uint32_t index, int sign) {
-    const std::vector<Item>& items = rows_[index].items;
-    std::vector<std::pair<Item, int>> distinct;
-    for (const Item item : items) {
-      if (distinct.empty() || distinct.back().first != item) distinct.emplace_back(item, 0);
-      ++distinct.back().second;
+  /// The pairs of a row, or those with one of `with`.
+  void count(std::uint32_t index, int sign, const std::vector<Item>& with = {}) {
+    distinct_.clear();
+    for (const Item item : rows_[index].items) {
+      if (distinct_.empty() || distinct_.back().item != item) {
+        const bool wanted = with.empty() || std::find(with.begin(), with.end(), item) != with.end();
+        distinct_.push_back({item, 0, wanted});
+      }
+      ++distinct_.back().times;
     }
     const auto change = [&](Item a, Item b, int times) {
       const std::uint64_t key = (std::uint64_t{a} << 32) | b;
@@ -83,10 +94,12 @@ class ProductSharing {
       else
         pairs_.remove(key, times);
     };
-    for (std::size_t i = 0; i < distinct.size(); ++i) {
-      if (distinct[i].second > 1) change(distinct[i].first, distinct[i].first, distinct[i].second / 2);
-      for (std::size_t j = i + 1; j < distinct.size(); ++j) {
-        change(distinct[i].first, distinct[j].first, std::min(distinct[i].second, distinct[j].second));
+    for (std::size_t i = 0; i < distinct_.size(); ++i) {
+      const Counted& a = distinct_[i];
+      if (a.wanted && a.times > 1) change(a.item, a.item, a.times / 2);
+      for (std::size_t j = i + 1; j < distinct_.size(); ++j) {
+        const Counted& b = distinct_[j];
+        if (a.wanted || b.wanted) change(a.item, b.item, std::min(a.times, b.times));
       }
     }
   }
@@ -113,11 +126,11 @@ class ProductSharing {
       int times = 0;
       while (take(items, a, b)) ++times;
       if (times == 0) continue;
-      count(index, -1);
+      count(index, -1, {a, b});
       items.insert(items.end(), static_cast<std::size_t>(times), pair);
       std::sort(items.begin(), items.end());
       rows_[index].items = std::move(items);
-      count(index, +1);
+      count(index, +1, {a, b, pair});
     }
   }
 
@@ -134,6 +147,7 @@ class ProductSharing {
   Frequency pairs_;
   Numbers numbers_;
   std::vector<Row> rows_;
+  std::vector<Counted> distinct_;  // of the row that is counted
 };
 
 class SumSharing {
@@ -169,27 +183,47 @@ class SumSharing {
   static constexpr std::uint64_t item_bits = 24;
 
   Item monomial(const Monomial& factors) {
-    const auto [found, inserted] = index_.try_emplace(factors, static_cast<Item>(monomials_.size()));
-    if (inserted) monomials_.push_back(factors);
-    return found->second;
+    std::uint64_t hash = 0;
+    for (const Factor& f : factors)
+      hash = scramble(hash, (std::uint64_t{f.node} << 32) + static_cast<std::uint32_t>(f.exponent));
+    const Item* const known = index_.find(hash, [&](Item i) { return monomials_[i] == factors; });
+    if (known != nullptr) return *known;
+    monomials_.push_back(factors);
+    index_.add(hash, static_cast<Item>(monomials_.size() - 1));
+    return static_cast<Item>(monomials_.size() - 1);
+  }
+
+  static Rational ratio(const Rational& b, const Rational& a) {
+    if (symbolic::same(a, b)) return 1;
+    return symbolic::is_minus_one(a) ? -b : symbolic::over(b, a);
   }
 
   /// a + ratio b, whatever it is multiplied by.
   std::uint64_t key(const std::pair<Item, Rational>& a, const std::pair<Item, Rational>& b) {
     return (std::uint64_t{a.first} << (64 - item_bits)) | (std::uint64_t{b.first} << (64 - 2 * item_bits)) |
-           numbers_.index(b.second / a.second);
+           numbers_.index(ratio(b.second, a.second));
   }
 
-  void count(std::uint32_t index, int sign) {
+  void change(std::uint32_t index, int sign, std::size_t i, std::size_t j) {
     const auto& items = rows_[index].items;
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      for (std::size_t j = i + 1; j < items.size(); ++j) {
-        if (sign > 0)
-          pairs_.add(key(items[i], items[j]), index);
-        else
-          pairs_.remove(key(items[i], items[j]));
-      }
+    if (sign > 0)
+      pairs_.add(key(items[i], items[j]), index);
+    else
+      pairs_.remove(key(items[i], items[j]));
+  }
+
+  /// The pairs of a row.
+  void count(std::uint32_t index, int sign) {
+    const std::size_t size = rows_[index].items.size();
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t j = i + 1; j < size; ++j) change(index, sign, i, j);
     }
+  }
+  /// Those with item i.
+  void count_with(std::uint32_t index, int sign, std::size_t i) {
+    const std::size_t size = rows_[index].items.size();
+    for (std::size_t j = 0; j < i; ++j) change(index, sign, j, i);
+    for (std::size_t j = i + 1; j < size; ++j) change(index, sign, i, j);
   }
 
   void extract(std::uint64_t pair, const std::vector<std::uint32_t>& where) {
@@ -203,12 +237,14 @@ class SumSharing {
       const auto first = std::find_if(items.begin(), items.end(), [a](const auto& item) { return item.first == a; });
       const auto second = std::find_if(items.begin(), items.end(), [b](const auto& item) { return item.first == b; });
       if (first == items.end() || second == items.end() || second->second != ratio * first->second) continue;
-      count(index, -1);
       const Rational coefficient = first->second;
-      items.erase(second);
+      count_with(index, -1, static_cast<std::size_t>(first - items.begin()));
       items.erase(first);
+      const auto moved = std::find_if(items.begin(), items.end(), [b](const auto& item) { return item.first == b; });
+      count_with(index, -1, static_cast<std::size_t>(moved - items.begin()));
+      items.erase(moved);
       items.emplace_back(node, coefficient);  // the newest monomial: still ascending
-      count(index, +1);
+      count_with(index, +1, items.size() - 1);
     }
   }
 
@@ -216,7 +252,7 @@ class SumSharing {
   Frequency pairs_;
   Numbers numbers_;
   std::vector<Monomial> monomials_;
-  std::map<Monomial, Item> index_;
+  NodeIndex index_;
   std::vector<Row> rows_;
 };
 

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sums in normal form: millions of them for one program, most of one to four terms that are in order already.
+#include <cln/rational.h>
+
+#include <algorithm>
+
+#include "program/polynomials.hpp"
+#include "symbolic/small_numbers.hpp"
+
+namespace eomgen::program {
+namespace {
+
+using symbolic::same;
+
+bool before(const Term& a, const Term& b) { return a.factors < b.factors; }
+
+void sort(std::vector<Term>& terms) {
+  if (!std::is_sorted(terms.begin(), terms.end(), before)) std::stable_sort(terms.begin(), terms.end(), before);
+}
+
+/// Adds up terms of the same monomial; drops zeros.
+void collect(std::vector<Term>& terms) {
+  sort(terms);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < terms.size();) {
+    const std::size_t first = i++;
+    for (; i < terms.size() && terms[i].factors == terms[first].factors; ++i) {
+      terms[first].coefficient = terms[first].coefficient + terms[i].coefficient;
+    }
+    if (symbolic::is_zero(terms[first].coefficient)) continue;
+    if (kept != first) terms[kept] = std::move(terms[first]);
+    ++kept;
+  }
+  terms.resize(kept);
+}
+
+/// What divides both (of divisors: what both divide by), in place of `common`.
+void keep_common(Monomial& common, const Monomial& other) {
+  std::size_t kept = 0;
+  auto g = other.begin();
+  for (const Factor& f : common) {
+    while (g != other.end() && g->node < f.node) ++g;
+    if (g == other.end()) break;
+    if (g->node != f.node || (g->exponent > 0) != (f.exponent > 0)) continue;
+    common[kept++] = std::abs(g->exponent) < std::abs(f.exponent) ? *g : f;
+  }
+  common.shorten(kept);
+}
+
+/// The monomial that divides every term (for divisors: that every term divides by), and the number that all share.
+Term content(const std::vector<Term>& terms) {
+  const Rational& first = terms[0].coefficient;
+  Term result{1, terms[0].factors};
+  const Rational opposite = -first;
+  bool same_size = true;
+  for (const Term& term : terms) {
+    same_size = same_size && (same(term.coefficient, first) || same(term.coefficient, opposite));
+    if (!result.factors.empty()) keep_common(result.factors, term.factors);
+    if (!same_size && result.factors.empty()) break;
+  }
+  if (same_size) {
+    result.coefficient = first;
+  } else if (cln::minusp(first)) {
+    result.coefficient = -1;
+  }
+  return result;
+}
+
+}  // namespace
+
+bool Polynomials::is_product(NodeId id) const {
+  const Node& node = nodes_[id];
+  return node.kind == Node::Kind::sum && node.terms.size() == 1 && symbolic::is_one(node.terms[0].coefficient);
+}
+
+Monomial Polynomials::expanded(const Monomial& monomial) const {
+  Monomial result;
+  for (const Factor& f : monomial) {
+    if (is_product(f.node))
+      result = multiply(result, expanded(nodes_[f.node].terms[0].factors), f.exponent);
+    else if (result.empty() || result.back().node < f.node)
+      result.push_back(f);
+    else
+      result = multiply(result, {f});
+  }
+  return result;
+}
+
+/// Of a sine or cosine; products are looked through.
+bool Polynomials::has_square(const Monomial& monomial) const {
+  for (const Factor& f : monomial) {
+    if (f.exponent >= 2 && is_trig(f.node)) return true;
+  }
+  if (std::none_of(monomial.begin(), monomial.end(), [this](const Factor& f) { return is_product(f.node); }))
+    return false;
+  const Monomial open = expanded(monomial);
+  return std::any_of(open.begin(), open.end(), [this](const Factor& f) { return f.exponent >= 2 && is_trig(f.node); });
+}
+
+// c K sin^2 + c K cos^2 -> c K, and c K - c K cos^2 -> c K sin^2 where that sine is at hand. Products are looked
+// through, for the squares may be hidden in (l cos)^2.
+bool Polynomials::apply_pythagoras(std::vector<Term>& terms) {
+  if (std::none_of(terms.begin(), terms.end(), [this](const Term& term) { return has_square(term.factors); }))
+    return false;
+  std::vector<Monomial> open;
+  open.reserve(terms.size());
+  for (const Term& term : terms) open.push_back(expanded(term.factors));
+  const auto find = [&](const Monomial& wanted, const Rational& coefficient) {
+    for (std::size_t j = 0; j < terms.size(); ++j) {
+      if (same(terms[j].coefficient, coefficient) && open[j] == wanted) return j;
+    }
+    return terms.size();
+  };
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    for (const Factor& f : open[i]) {
+      NodeId other = 0;
+      if (f.exponent < 2 || !partner(f.node, other)) continue;
+      const Monomial rest = multiply(open[i], {{f.node, 1}}, -2);
+      const Monomial swapped = multiply(rest, {{other, 1}}, 2);
+      std::size_t j = find(swapped, terms[i].coefficient);
+      const bool one = j < terms.size();
+      if (!one) j = find(rest, -terms[i].coefficient);
+      if (j == terms.size() || j == i) continue;
+      terms[i] = {terms[j].coefficient, one ? rest : swapped};
+      terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(j));
+      return true;
+    }
+  }
+  return false;
+}
+
+Term Polynomials::normal(std::vector<Term> terms) {
+  collect(terms);
+  constexpr std::size_t longest = 400;  // the search for squares is quadratic
+  while (terms.size() > 1 && terms.size() < longest && apply_pythagoras(terms)) collect(terms);
+  if (terms.empty()) return {0, {}};
+  if (terms.size() == 1) return std::move(terms[0]);
+  Term front = content(terms);
+  for (Term& term : terms) {
+    term.coefficient = symbolic::over(term.coefficient, front.coefficient);
+    if (!front.factors.empty()) term.factors = multiply(term.factors, front.factors, -1);
+  }
+  sort(terms);
+  if (cln::minusp(terms[0].coefficient)) {
+    // Dividing may have changed which term is first; the first one is positive.
+    for (Term& term : terms) term.coefficient = -term.coefficient;
+    front.coefficient = -front.coefficient;
+  }
+  return multiply(front, Term{1, {{sum(std::move(terms)), 1}}});
+}
+
+}  // namespace eomgen::program

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A list of small things of which there are few, mostly: the first ones stand in the list itself, and cost no
+// allocation.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <initializer_list>
+#include <iterator>
+#include <type_traits>
+
+namespace eomgen::symbolic {
+
+template <class T, std::uint32_t inside>
+class ShortList {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
+ public:
+  using value_type = T;
+  using iterator = T*;
+  using const_iterator = const T*;
+  using const_reverse_iterator = std::reverse_iterator<const T*>;
+
+  ShortList() noexcept {}
+  ShortList(std::initializer_list<T> items) {
+    reserve(items.size());
+    for (const T& item : items) new (data() + size_++) T(item);
+  }
+  ShortList(const ShortList& other) : size_(other.size_) {
+    if (size_ > inside) {
+      outside_ = new T[size_];
+      capacity_ = size_;
+    }
+    std::copy_n(other.data(), size_, data());
+  }
+  ShortList(ShortList&& other) noexcept { take(other); }
+  ShortList& operator=(const ShortList& other) {
+    if (this != &other) *this = ShortList(other);
+    return *this;
+  }
+  ShortList& operator=(ShortList&& other) noexcept {
+    if (this == &other) return *this;
+    release();
+    take(other);
+    return *this;
+  }
+  ~ShortList() { release(); }
+
+  iterator begin() noexcept { return data(); }
+  iterator end() noexcept { return data() + size_; }
+  const_iterator begin() const noexcept { return data(); }
+  const_iterator end() const noexcept { return data() + size_; }
+  const_reverse_iterator rbegin() const noexcept { return const_reverse_iterator(end()); }
+  const_reverse_iterator rend() const noexcept { return const_reverse_iterator(begin()); }
+  std::size_t size() const noexcept { return size_; }
+  bool empty() const noexcept { return size_ == 0; }
+  T& operator[](std::size_t i) noexcept { return data()[i]; }
+  const T& operator[](std::size_t i) const noexcept { return data()[i]; }
+  const T& back() const noexcept { return data()[size_ - 1]; }
+
+  void reserve(std::size_t wanted) {
+    if (wanted > capacity_) grow(static_cast<std::uint32_t>(wanted));
+  }
+  void push_back(T item) {
+    if (size_ == capacity_) grow(2 * capacity_);
+    data()[size_++] = item;
+  }
+  /// The first `count` stay.
+  void shorten(std::size_t count) noexcept { size_ = static_cast<std::uint32_t>(count); }
+
+  friend bool operator==(const ShortList& a, const ShortList& b) {
+    return a.size_ == b.size_ && std::equal(a.begin(), a.end(), b.begin());
+  }
+  friend bool operator<(const ShortList& a, const ShortList& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  }
+
+ private:
+  T* data() noexcept { return capacity_ == inside ? inside_ : outside_; }
+  const T* data() const noexcept { return capacity_ == inside ? inside_ : outside_; }
+  void grow(std::uint32_t capacity) {
+    T* const wider = new T[capacity];
+    std::copy_n(data(), size_, wider);
+    release();
+    outside_ = wider;
+    capacity_ = capacity;
+  }
+  void release() noexcept {
+    if (capacity_ != inside) delete[] outside_;
+  }
+  void take(ShortList& other) noexcept {
+    size_ = other.size_;
+    capacity_ = other.capacity_;
+    if (capacity_ == inside)
+      std::copy_n(other.inside_, size_, inside_);
+    else
+      outside_ = other.outside_;
+    other.size_ = 0;
+    other.capacity_ = inside;
+  }
+
+  union {
+    T inside_[inside];
+    T* outside_;
+  };
+  std::uint32_t size_ = 0, capacity_ = inside;
+};
+
+/// a b^power_of_b of lists of powers: ascending by `base`, each base once, no exponent zero.
+template <auto base, class Powers>
+Powers product_of_powers(const Powers& a, const Powers& b, std::int32_t power_of_b = 1) {
+  Powers result;
+  result.reserve(a.size() + b.size());
+  auto i = a.begin(), j = b.begin();
+  const auto end_i = a.end(), end_j = b.end();
+  while (i != end_i && j != end_j) {
+    auto factor = *i;
+    if (factor.*base < (*j).*base) {
+      ++i;
+    } else if ((*j).*base < factor.*base) {
+      factor = *j++;
+      factor.exponent *= power_of_b;
+    } else {
+      factor.exponent += j->exponent * power_of_b;
+      ++i, ++j;
+      if (factor.exponent == 0) continue;
+    }
+    result.push_back(factor);
+  }
+  for (; i != end_i; ++i) result.push_back(*i);
+  for (; j != end_j; ++j) {
+    auto factor = *j;
+    factor.exponent *= power_of_b;
+    result.push_back(factor);
+  }
+  return result;
+}
+
+}  // namespace eomgen::symbolic

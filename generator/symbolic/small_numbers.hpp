@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Exact numbers that are mostly 1, -1 or another small integer: what CLN keeps in the word itself is told apart without
+// a call.
+#pragma once
+
+#include <cln/rational.h>
+
+#include <cstdint>
+
+#include "symbolic/dag.hpp"
+
+namespace eomgen::symbolic {
+
+/// CLN has small integers in the word, all else behind a pointer, and no number in two ways.
+inline bool same(const Rational& a, const Rational& b) {
+  if (a.word == b.word) return true;
+  return a.pointer_p() && b.pointer_p() && cln::equal(a, b);
+}
+inline bool is_one(const Rational& a) { return a.word == cln::cl_combine(cl_FN_tag, 1); }
+inline bool is_minus_one(const Rational& a) { return a.word == cln::cl_combine(cl_FN_tag, -1); }
+inline bool is_unit(const Rational& a) { return is_one(a) || is_minus_one(a); }
+inline bool is_zero(const Rational& a) { return a.word == cln::cl_combine(cl_FN_tag, 0); }
+
+inline Rational times(const Rational& a, const Rational& b) {
+  if (is_one(a)) return b;
+  if (is_one(b)) return a;
+  return a * b;
+}
+inline Rational over(const Rational& a, const Rational& b) { return is_one(b) ? a : a / b; }
+
+/// The same for equal numbers.
+inline std::uint64_t hash_of(const Rational& a) { return a.pointer_p() ? cln::equal_hashcode(a) : a.word; }
+
+}  // namespace eomgen::symbolic
