@@ -214,6 +214,10 @@ void add_contacts(Mechanics& m, EquationSystem& s, Finish& finish) {
       result.slip.push_back(finish(w));
       result.slip_rate.push_back(finish(ddt(w)));
     }
+    for (const mechanics::HeldDirection& held : contact.held) {
+      result.held.push_back({held.by, {}});
+      for (const Ref along : held.along) result.held.back().along.push_back(finish(along));
+    }
     for (const Vec3& t : contact.directions) result.directions.push_back({finish(t[0]), finish(t[1]), finish(t[2])});
     if (contact.width)
       result.width = finish(*contact.width);

@@ -238,6 +238,8 @@ class ContactReader {
               "a model may have three: the number of modes grows with every one");
 }
 
+}  // namespace
+
 const model::Friction& law_of(const Mechanics& m, const Contact& contact) {
   for (const model::Constraint& constraint : m.model->constraints) {
     if (constraint.name == contact.name && constraint.friction) return *constraint.friction;
@@ -245,8 +247,6 @@ const model::Friction& law_of(const Mechanics& m, const Contact& contact) {
   const auto named = [&](const model::Force& force) { return force.name == contact.name; };
   return std::find_if(m.model->forces.begin(), m.model->forces.end(), named)->dry->law;
 }
-
-}  // namespace
 
 namespace {
 
@@ -316,7 +316,7 @@ void check_determinate(const Mechanics& m) {
   std::size_t directions = 0;
   for (const Contact& contact : m.contacts) {
     if (contact.width) continue;
-    directions += contact.dimensions();
+    directions += contact.dimensions() - std::min(contact.dimensions(), contact.held.size());
     if (directions <= freedom) continue;
     throw Error(
         "mechanics", m.model->where(law_of(m, contact).span),

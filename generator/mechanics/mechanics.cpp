@@ -150,6 +150,7 @@ Mechanics build_mechanics(std::shared_ptr<const model::Model> model) {
     drop_dependent_equations(m, lower);
   }
   drop_held_directions(m);
+  find_held_directions(m);
   add_values(m, lower);
   check_coefficients(m);
   require_equations(m);

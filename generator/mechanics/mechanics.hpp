@@ -96,6 +96,13 @@ struct Integral {
 /// Where a law of friction acts: a particle on a surface (one constraint) or a curve (two), a body on a plane or
 /// another body, or one coordinate with a given normal force. The friction force is sum_a phi_a t_a with the symbols
 /// phi_a = {SymbolKind::friction, first + a}. A unilateral constraint is a contact with or without friction.
+/// A unilateral contact that lets nothing slide along sum_a along_a t_a while it touches, as a stop at the end of a
+/// rough guide: there the motion does not determine the friction, which is taken to be 0.
+struct HeldDirection {
+  std::uint32_t by = 0;    // index into Mechanics::contacts
+  std::vector<Ref> along;  // per tangent; of any length
+};
+
 struct Contact {
   std::string name;                        // of the constraint or the force
   std::vector<std::uint32_t> constraints;  // 1 or 2 indices; none: the normal force is given
@@ -109,6 +116,7 @@ struct Contact {
   std::vector<std::vector<Ref>>
       tangents;           // t_a . dr/dq_i per t_a, all coordinates; of a body t_a . dv/dqdot_i of its point there
   std::vector<Ref> slip;  // t_a . (v - v_s)
+  std::vector<HeldDirection> held;
   Ref static_coefficient, dynamic_coefficient;  // may depend on the slip speed; the first none where there is a width
   std::optional<Ref> width;                     // of the smooth law -mu |N| w / sqrt(w^2 + width^2)
   bool unilateral = false;                      // its one constraint can be left

@@ -75,6 +75,17 @@ Formula component(const reading::ReadSpin& spin, std::size_t k) {
   return mark("omega", {reading::number(static_cast<long>(k + 1)), reading::number(static_cast<long>(spin.frame))});
 }
 
+/// Multiplied out; 0 where that goes beyond its budget.
+Sum sum_of_squares(const std::vector<const Sum*>& components) {
+  try {
+    Sum together;
+    for (const Sum* w : components) together += *w * *w;
+    return reading::simplify(together);
+  } catch (const work::OverBudget&) {
+    return {};
+  }
+}
+
 /// w.Jw/2 in as few squares as it has; `named`: of components that are given apart.
 std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named) {
   std::vector<Formula> terms;
@@ -85,16 +96,18 @@ std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named)
   for (std::size_t i = 0; i < 3; ++i) {
     if (done[i] || spin.J[i][i].is_zero()) continue;
     std::vector<Formula> squares;
-    Sum together;
+    std::vector<const Sum*> alike;
     for (std::size_t k = i; k < 3; ++k) {
       if (!(spin.J[k][k] == spin.J[i][i])) continue;
       done[k] = true;
       if (spin.w[k].is_zero()) continue;
       squares.push_back(square(k));
-      together += spin.w[k] * spin.w[k];
+      alike.push_back(&spin.w[k]);
     }
-    together = named ? together : reading::simplify(together);
-    if (!named && together.size() < squares.size()) squares = {arrange(together)};  // sin^2 + cos^2
+    if (!named && alike.size() > 1) {
+      const Sum together = sum_of_squares(alike);
+      if (!together.is_zero() && together.size() < squares.size()) squares = {arrange(together)};  // sin^2 + cos^2
+    }
     if (!squares.empty()) terms.push_back(with_half(spin.J[i][i], reading::sum(std::move(squares))));
   }
   for (std::size_t i = 0; i < 3; ++i) {
@@ -310,22 +323,29 @@ void add_statements(const Mechanics& m, const ReadingForm& form, const std::vect
   const auto wanted = [&](const char* key) {
     return std::any_of(show.begin(), show.end(), [&](const std::string& s) { return s == key || s == "all"; });
   };
-  if (wanted("constraints")) add_constraints(m, form, out);
-  if (wanted("energies")) add_energies(m, form, out);
-  if (wanted("lagrangian")) add_lagrangian(m, form, out);
-  if (wanted("equations")) add_equations(m, form, out);
-  if (wanted("reactions")) {
-    add_reactions(form, out);
-    add_constraint_forces(m, form, out);
-  }
-  if (wanted("friction")) add_contacts(m, out);
+  // What goes beyond its budget drops out, and says why; the others stay.
+  const auto add = [&](const char* key, const auto& statements) {
+    if (!wanted(key)) return;
+    try {
+      statements();
+    } catch (const work::OverBudget& over) {
+      out.push_back(left_out(key, "", "", over.what()));
+    }
+  };
+  add("constraints", [&] { add_constraints(m, form, out); });
+  add("energies", [&] { add_energies(m, form, out); });
+  add("lagrangian", [&] { add_lagrangian(m, form, out); });
+  add("equations", [&] { add_equations(m, form, out); });
+  add("reactions", [&] { add_reactions(form, out); });
+  add("reactions", [&] { add_constraint_forces(m, form, out); });
+  add("friction", [&] { add_contacts(m, out); });
   std::vector<std::string> of_geometry;
   for (const char* key : {"basis", "metric", "line_element", "christoffel"}) {
     if (wanted(key)) of_geometry.emplace_back(key);
   }
   if (!of_geometry.empty()) add_geometry(m, of_geometry, out);
-  if (wanted("frenet")) add_frenet(m, std::find(show.begin(), show.end(), "frenet") != show.end(), out);
-  if (wanted("singular")) add_singular(m, out);
+  add("frenet", [&] { add_frenet(m, std::find(show.begin(), show.end(), "frenet") != show.end(), out); });
+  add("singular", [&] { add_singular(m, out); });
 }
 
 }  // namespace eomgen::print

@@ -128,8 +128,9 @@ class Closure {
   void add_rows(std::uint32_t j) {
     const Contact& c = s_.contacts[j];
     if (c.reactions.size() == 2 && coupled_.empty()) close_curve(j);
+    const std::vector<Affine> sticking = sticking_rows(j);
     for (std::size_t a = 0; a < c.slip.size(); ++a) {
-      const Affine rate = affine(c.slip_rate[a]);
+      const Affine& rate = sticking[a];
       const Affine law = sliding_law(j, a);
       const std::size_t row = c.first + a;
       if (c.reactions.size() == 2 && !coupled_.empty()) {
@@ -143,6 +144,45 @@ class Closure {
       right_[row] = by_touch(j, dag_.zero(), dag_.neg(by_mode(j, rate.value, law.value)));
     }
     if (c.reactions.size() == 1 && !c.slip.empty()) watch_surface(j);
+  }
+
+  /// What vanishes while sticking: the slip's rate; along what another contact holds, phi itself.
+  std::vector<Affine> sticking_rows(std::uint32_t j) {
+    std::vector<Affine> rates;
+    for (const Ref rate : s_.contacts[j].slip_rate) rates.push_back(affine(rate));
+    return sticking_rows(s_.contacts[j], rates, 0, {});
+  }
+  /// Of the contacts that hold a direction, those from `next` on touch or are apart; of those before, `touching` do.
+  std::vector<Affine> sticking_rows(const Contact& c, const std::vector<Affine>& rates, std::size_t next,
+                                    const std::vector<const system::HeldDirection*>& touching) const {
+    if (next == c.held.size()) return held_rows(c, rates, touching);
+    const system::HeldDirection& held = c.held[next];
+    std::vector<Affine> rows = sticking_rows(c, rates, next + 1, touching);
+    std::vector<const system::HeldDirection*> more = touching;
+    more.push_back(&held);
+    const std::vector<Affine> where_it_touches = sticking_rows(c, rates, next + 1, more);
+    for (std::size_t a = 0; a < rows.size(); ++a) {
+      const Affine& other = where_it_touches[a];
+      rows[a].value = by_touch(held.by, rows[a].value, other.value);
+      for (std::size_t b = 0; b < count_; ++b) rows[a].slope[b] = by_touch(held.by, rows[a].slope[b], other.slope[b]);
+    }
+    return rows;
+  }
+  std::vector<Affine> held_rows(const Contact& c, const std::vector<Affine>& rates,
+                                const std::vector<const system::HeldDirection*>& touching) const {
+    if (touching.empty()) return rates;
+    std::vector<Affine> rows(rates.size(), Affine{dag_.zero(), std::vector<Ref>(count_, dag_.zero())});
+    if (rates.size() == 1 || touching.size() > 1) {
+      for (std::size_t a = 0; a < rows.size(); ++a) rows[a].slope[c.first + a] = dag_.one();
+      return rows;
+    }
+    // phi has no part along h, and the rate none across it.
+    const std::vector<Ref>& h = touching[0]->along;
+    const auto across = [&](Ref first, Ref second) { return dag_.sub(dag_.mul(h[0], second), dag_.mul(h[1], first)); };
+    for (std::size_t a = 0; a < 2; ++a) rows[0].slope[c.first + a] = h[a];
+    rows[1].value = across(rates[0].value, rates[1].value);
+    for (std::size_t b = 0; b < count_; ++b) rows[1].slope[b] = across(rates[0].slope[b], rates[1].slope[b]);
+    return rows;
   }
 
   /// What vanishes while sliding: phi_a + mu |N| w_a/|w|.

@@ -65,6 +65,12 @@ struct Event {
 /// A contact with friction or that can be left (docs/theory.md, "Friction"). The friction force sum_a phi_a t_a enters
 /// f and the reactions with the symbols phi_a = {SymbolKind::friction, first + a}; the law that determines them depends
 /// on the mode.
+/// mechanics::HeldDirection: phi has no part along it while contact `by` touches.
+struct HeldDirection {
+  std::uint32_t by = 0;    // index into EquationSystem::contacts
+  std::vector<Ref> along;  // per tangent
+};
+
 struct Contact {
   std::string name;
   std::uint32_t first = 0;               // index of the first phi
@@ -72,6 +78,7 @@ struct Contact {
   std::vector<Ref> gram;                 // |normal force|^2 = lambda^T gram lambda
   Ref normal;                            // the given normal force
   std::vector<Ref> slip, slip_rate;      // per tangent; the rate may use qddot
+  std::vector<HeldDirection> held;
   std::vector<std::array<Ref, 3>> directions;  // t_a; none where a coordinate rubs
   Ref static_coefficient, dynamic_coefficient;
   std::optional<Ref> width;                 // of the smooth law, which has no static coefficient

@@ -44,11 +44,29 @@ std::optional<Slope> slope(const ProgramForm& program, const std::string& functi
                               middle = program.call(function, here, more);
   if (!high || !low || !middle) return std::nullopt;
   Slope result{*high, *high};
+  const Real small = ten_to(-digits / 2);
+  bool any_small = false;
   for (std::size_t r = 0; r < high->size(); ++r) {
     for (std::size_t i = 0; i < (*high)[r].size(); ++i) {
       const Real &a = (*high)[r][i], &b = (*low)[r][i];
-      result.values[r][i] = (a - b) / (2 * h);
+      Real& value = result.values[r][i];
+      value = (a - b) / (2 * h);
       result.errors[r][i] = cln::abs(a + b - 2 * (*middle)[r][i]) / h;
+      any_small = any_small || (!cln::zerop(value) && cln::abs(value) < small);
+    }
+  }
+  // So small a slope may be what the third order leaves of one that is 0, as of x^3 at 0, and the second is 0 there
+  // too.
+  if (!any_small) return result;
+  At beyond = here, before = here;
+  shift(beyond, 2 * h);
+  shift(before, -2 * h);
+  const std::optional<Arrays> far = program.call(function, beyond, more), back = program.call(function, before, more);
+  if (!far || !back) return std::nullopt;
+  for (std::size_t r = 0; r < high->size(); ++r) {
+    for (std::size_t i = 0; i < (*high)[r].size(); ++i) {
+      const Real third = (*far)[r][i] - (*back)[r][i] - 2 * ((*high)[r][i] - (*low)[r][i]);
+      result.errors[r][i] = result.errors[r][i] + cln::abs(third) / (h * h);
     }
   }
   return result;

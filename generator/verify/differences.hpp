@@ -28,7 +28,8 @@ using Shift = std::function<void(At& at, const Real& step)>;
 /// Per entry of each array of a function.
 struct Slope {
   Arrays values;  // [f(at + h) - f(at - h)]/2h
-  Arrays errors;  // h [f(at + h) - 2 f(at) + f(at - h)]/h^2, which is all there is of a body that is held fast
+  Arrays errors;  // h times the second differences, which is all there is of a body that is held fast; where a slope is
+                  // as small as its own third differences, h times these over h^2 too
 };
 
 /// With h = 10^-digits, at three times the digits; nothing where the function has no values.

@@ -27,6 +27,8 @@ class Law {
       roots_.push_back(rough ? contact.dynamic_coefficient : s.dag->zero());
       roots_.push_back(contact.width.value_or(s.dag->zero()));
       for (const std::uint32_t k : contact.reactions) roots_.push_back(s.reactions[k].value);
+      for (const system::HeldDirection& held : contact.held)
+        roots_.insert(roots_.end(), held.along.begin(), held.along.end());
     }
   }
 
@@ -49,10 +51,20 @@ class Law {
       const std::vector<Real> gram = take(c.gram.size()), slip = take(c.slip.size()), rate = take(c.slip.size());
       const Real given = take(1)[0], mu = take(1)[0], width = take(1)[0];
       const std::vector<Real> lambda = take(c.reactions.size());
+      std::vector<std::vector<Real>> held;  // by what touches
+      for (const system::HeldDirection& direction : c.held) {
+        std::vector<Real> along = take(direction.along.size());
+        if (presses(direction.by) >= 0) held.push_back(std::move(along));
+      }
       if (slip.empty()) continue;
+      const bool apart = c.unilateral && presses(j) < 0;
+      if (!held.empty() && !apart && !c.width && slides(j) == 0) {
+        add_held(held, &phi[c.first], rate, result);
+        continue;
+      }
       const Real normal = normal_force(j, gram, given, lambda);
       for (std::size_t a = 0; a < slip.size(); ++a) {
-        if (c.unilateral && presses(j) < 0)
+        if (apart)
           result.push_back(phi[c.first + a]);
         else if (c.width)
           result.push_back(phi[c.first + a] + mu * normal * slip[a] / length(slip, width));
@@ -66,6 +78,17 @@ class Law {
   }
 
  private:
+  /// Friction that sticks has no part along what other contacts hold.
+  static void add_held(const std::vector<std::vector<Real>>& held, const Real* phi, const std::vector<Real>& rate,
+                       std::vector<Real>& result) {
+    if (rate.size() == 2 && held.size() == 1) {
+      const std::vector<Real>& h = held[0];
+      result.push_back(h[0] * phi[0] + h[1] * phi[1]);
+      result.push_back(h[0] * rate[1] - h[1] * rate[0]);
+      return;
+    }
+    for (std::size_t a = 0; a < rate.size(); ++a) result.push_back(phi[a]);
+  }
   int slides(std::size_t j) const { return eom::contact_leaf(state_.mode, 2 * j); }
   int presses(std::size_t j) const { return eom::contact_leaf(state_.mode, 2 * j + 1); }
   Real root(const Real& x) const { return cln::realpart(cln::sqrt(judge_.precision().round(x))); }

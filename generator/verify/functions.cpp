@@ -146,9 +146,12 @@ class Functions {
   void prepared(const Arrays& values) {
     const std::optional<Arrays> rhs = program_.call("rhs", at_, judge_.digits());
     if (!rhs) return;
+    // What is 0 in one of them may be what a sum leaves in the other.
+    const Arrays own = sizes("rhs", *rhs);
+    if (own.empty()) return;
     double largest = 0;
     for (std::size_t i = 0; i < values[0].size(); ++i)
-      largest = std::max(largest, relative(values[0][i] - (*rhs)[0][i], sizes_[0][i]));
+      largest = std::max(largest, relative(values[0][i] - (*rhs)[0][i], sizes_[0][i] + own[0][i]));
     note("rhs_prepared", "its rhs", largest);
   }
 
@@ -338,10 +341,13 @@ class Functions {
     at.t = at.t + h;
     const std::optional<Arrays> rhs = program_.call("rhs", at, more);
     if (!rhs) return;
-    // Where the last coefficients vanish there is what rounding leaves of the others.
+    // Where the last coefficients vanish there is what rounding leaves of the others, and of what is summed in dx.
+    const Arrays summed = sizes("rhs", *rhs);
+    if (summed.empty()) return;
     const Real size = last * order * cln::expt(h, order - 1) + most * ten_to(exponent - more);
     double largest = 0;
-    for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, relative(rate[i] - (*rhs)[0][i], size));
+    for (std::size_t i = 0; i < n; ++i)
+      largest = std::max(largest, relative(rate[i] - (*rhs)[0][i], size + summed[0][i] * ten_to(exponent - more)));
     note("taylor", "dx along the series", largest);
   }
 

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "mechanics/mechanics.hpp"
+#include "symbolic/evaluate.hpp"
 
 using namespace eomgen;
 
@@ -174,11 +175,46 @@ TEST_CASE(
   const std::string plane = "[[constraint]]\nname = \"plane\"\nholonomic = \"y\"\n";
   const model::Model model = model::read_model_text(planar + stop + plane, "stop.toml");
   CHECK(mechanics::build_mechanics(model).freedom() == 1);
-  const Refusal r = refusal(planar + stop + plane + "friction = { static = 0.3, dynamic = 0.2 }\n");
+  const std::string dry = "friction = { static = 0.3, dynamic = 0.2 }\n";
+  CHECK(refusal(planar + stop + plane + dry).message == "accepted");  // the stop holds what the plane does
+  const auto guide = [](const std::string& name, const std::string& coordinate) {
+    return "[[force]]\nname = \"" + name + "\"\ndry = { coordinate = \"" + coordinate +
+           "\", normal = 1, static = 0.2, dynamic = 0.1 }\n";
+  };
+  const std::string slant = "[[constraint]]\nname = \"stop\"\nholonomic = \"x + 2*y\"\nholds = \"unilateral\"\n";
+  CHECK(refusal(planar + guide("a", "x") + guide("b", "y")).message == "accepted");
   CHECK(
-      r.message ==
-      "with 'plane' friction can hold 1 directions, and the system has 0 degrees of freedom while everything touches: "
-      "where all stick, the forces are not determined");
+      refusal(planar + slant + guide("a", "x") + guide("b", "y")).message ==
+      "with 'b' friction can hold 2 directions, and the system has 1 degree of freedom while everything touches: where "
+      "all stick, the forces are not determined");
+}
+
+TEST_CASE("mechanics: friction along a direction that a unilateral contact holds knows which") {
+  const std::string plane =
+      "[[constraint]]\nname = \"plane\"\nholonomic = \"z\"\nfriction = { static = 0.3, dynamic = 0.2 }\n";
+  const std::string wall = "[[constraint]]\nname = \"wall\"\nholonomic = \"3*x + 4*y\"\nholds = \"unilateral\"\n";
+  const std::string aside = "[[constraint]]\nname = \"aside\"\nholonomic = \"u\"\nholds = \"unilateral\"\n";
+  const std::string space =
+      "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
+      "[[particle]]\nname = \"Q\"\nmass = 1\nposition = { cartesian = [\"u\", \"v\"] }\n";
+  const model::Model model = model::read_model_text(space + plane + wall + aside, "wall.toml");
+  const mechanics::Mechanics m = mechanics::build_mechanics(model);
+  REQUIRE(m.contacts.size() == 3);
+  REQUIRE(m.contacts[0].held.size() == 1);
+  CHECK(m.contacts[0].held[0].by == 1);
+  const std::vector<cln::cl_R> along = symbolic::evaluate(
+      *m.dag, m.contacts[0].held[0].along, [](const symbolic::Symbol&) { return cln::cl_R(1); }, 20);
+  CHECK(cln::abs(4 * along[0] - 3 * along[1]) < cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 15)));
+}
+
+TEST_CASE("mechanics refuses: friction where constraints let nothing move") {
+  const Refusal r = refusal(planar +
+                            "[[constraint]]\nname = \"a\"\nholonomic = \"x - y\"\n[[constraint]]\nname = "
+                            "\"b\"\nholonomic = \"x + y^2\"\n[[particle]]\nname = \"R\"\nmass = 1\nposition = "
+                            "{ cartesian = [\"u\", \"v\"] }\n[[force]]\nname = \"rub\"\ndry = { coordinate = "
+                            "\"x\", normal = 1, static = 0.2, dynamic = 0.1 }\n");
+  CHECK(r.message ==
+        "the friction of 'rub' acts along what the constraints hold already: it changes no equation of motion");
 }
 
 TEST_CASE("mechanics refuses: a constraint whose gradient vanishes where it holds, however the power is written") {

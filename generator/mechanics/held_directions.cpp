@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Directions of slip along which constraints let nothing move. Where they do so always, friction changes no equation
+// of motion and is refused; where a unilateral contact does while it touches, as a stop at the end of a rough guide,
+// the motion does not determine the friction along it.
+#include <algorithm>
+
+#include "mechanics/pfaffian.hpp"
+#include "mechanics/stages.hpp"
+#include "numeric/elimination.hpp"
+
+namespace eomgen::mechanics {
+namespace {
+
+using Row = std::vector<Ref>;  // by the free coordinates
+using Real = cln::cl_R;
+
+class Search {
+ public:
+  explicit Search(Mechanics& m, FormSpace::Where where) : m_(m), space_(m, where) {
+    for (const std::uint32_t k : m.active) {
+      const auto leavable = std::find_if(m.contacts.begin(), m.contacts.end(), [k](const Contact& contact) {
+        return contact.unilateral && contact.constraints[0] == k;
+      });
+      if (leavable == m.contacts.end()) always_.push_back(row(m.constraints[k].gradient));
+    }
+  }
+
+  bool sees() const { return space_.points() > 0; }
+
+  void look_at(Contact& contact) {
+    tangents_.clear();
+    for (const std::vector<Ref>& tangent : contact.tangents) tangents_.push_back(row(tangent));
+    base_ = always_;
+    if (contact.unilateral) base_.push_back(row(m_.constraints[contact.constraints[0]].gradient));
+    if (free_directions(base_) < tangents_.size()) refuse(contact);
+    for (std::uint32_t c = 0; c < m_.contacts.size(); ++c) {
+      const Contact& other = m_.contacts[c];
+      if (&other == &contact || !other.unilateral) continue;
+      const Row g = row(m_.constraints[other.constraints[0]].gradient);
+      std::vector<Row> rows = base_;
+      rows.push_back(g);
+      if (free_directions(rows) == tangents_.size()) continue;
+      std::optional<std::vector<Ref>> along =
+          tangents_.size() == 1 ? std::vector<Ref>{m_.dag->one()} : share_of(g, contact);
+      if (along) contact.held.push_back({c, std::move(*along)});
+    }
+  }
+
+ private:
+  Row row(const std::vector<Ref>& by_coordinate) {
+    Row result;
+    for (const std::uint32_t i : m_.free) result.push_back(space_.written(by_coordinate[i]));
+    return result;
+  }
+
+  std::size_t rank(const std::vector<Row>& rows, std::size_t point) const {
+    numeric::Matrix<Real> matrix(rows.size(), m_.free.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const std::vector<Real> values = space_.values(rows[i], point);
+      for (std::size_t j = 0; j < values.size(); ++j) matrix(i, j) = values[j];
+    }
+    const Real small = cln::expt(symbolic::Rational(1) / 10, 30);
+    return numeric::Elimination<Real>(std::move(matrix), small, numeric::Pivots::complete).rank();
+  }
+
+  /// How many directions of slip are left where these rows hold: at the point where most are.
+  std::size_t free_directions(const std::vector<Row>& rows) const {
+    std::vector<Row> all = rows;
+    all.insert(all.end(), tangents_.begin(), tangents_.end());
+    std::size_t most = 0;
+    for (std::size_t point = 0; point < space_.points(); ++point)
+      most = std::max(most, rank(all, point) - rank(rows, point));
+    return most;
+  }
+
+  /// h with g = h_1 t_1 + h_2 t_2, but for a factor and the contact's own normal: minors of these rows. Nothing where
+  /// other constraints have a part in it.
+  std::optional<std::vector<Ref>> share_of(const Row& g, const Contact& contact) {
+    std::vector<Row> rows = tangents_;
+    if (contact.constraints.size() == 1) {
+      const Row normal = row(m_.constraints[contact.constraints[0]].gradient);
+      if (rank({normal}, 0) > 0) rows.push_back(normal);  // else it fixes a coordinate, which is not free
+    }
+    const std::size_t n = rows.size();
+    if (n > m_.free.size()) return std::nullopt;
+    // Columns in which the rows are independent, the first ones that are.
+    std::vector<std::size_t> columns;
+    for (std::size_t j = 0; j < m_.free.size() && columns.size() < n; ++j) {
+      columns.push_back(j);
+      if (rank(of(rows, columns), 0) < columns.size()) columns.pop_back();
+    }
+    if (columns.size() < n) return std::nullopt;
+    std::vector<Ref> share;
+    for (std::size_t a = 0; a < 2; ++a) {
+      std::vector<Row> replaced = rows;
+      replaced[a] = g;
+      share.push_back(symbolic::simpler(*m_.dag, determinant(of(replaced, columns)), 60));
+    }
+    // What is left of g is a part of the normal.
+    const Ref whole = determinant(of(rows, columns));
+    Row rest;
+    for (std::size_t j = 0; j < g.size(); ++j) {
+      Ref sum = m_.dag->mul(whole, g[j]);
+      for (std::size_t a = 0; a < 2; ++a) sum = m_.dag->sub(sum, m_.dag->mul(share[a], rows[a][j]));
+      rest.push_back(sum);
+    }
+    std::vector<Row> normal(rows.begin() + 2, rows.end());
+    const std::size_t before = normal.empty() ? 0 : 1;
+    normal.push_back(rest);
+    for (std::size_t point = 0; point < space_.points(); ++point)
+      if (rank(normal, point) > before) return std::nullopt;
+    return share;
+  }
+  static std::vector<Row> of(const std::vector<Row>& rows, const std::vector<std::size_t>& columns) {
+    std::vector<Row> result;
+    for (const Row& r : rows) {
+      result.emplace_back();
+      for (const std::size_t j : columns) result.back().push_back(r[j]);
+    }
+    return result;
+  }
+  Ref determinant(const std::vector<Row>& a) const {
+    Dag& dag = *m_.dag;
+    const auto minor = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
+      return dag.sub(dag.mul(a[i][k], a[j][l]), dag.mul(a[i][l], a[j][k]));
+    };
+    if (a.size() == 2) return minor(0, 1, 0, 1);
+    return dag.add(dag.sub(dag.mul(a[0][0], minor(1, 2, 1, 2)), dag.mul(a[0][1], minor(1, 2, 0, 2))),
+                   dag.mul(a[0][2], minor(1, 2, 0, 1)));
+  }
+
+  [[noreturn]] void refuse(const Contact& contact) const {
+    throw Error("mechanics", m_.model->where(law_of(m_, contact).span),
+                "the friction of '" + contact.name +
+                    "' acts along what the constraints hold already: it changes no equation of motion",
+                "remove the friction, or free the direction along which it is to act");
+  }
+
+  Mechanics& m_;
+  FormSpace space_;
+  std::vector<Row> always_, base_, tangents_;
+};
+
+}  // namespace
+
+void find_held_directions(Mechanics& m) {
+  const auto sticks = [](const Contact& contact) { return contact.dimensions() > 0 && !contact.width; };
+  if (m.active.empty() || std::none_of(m.contacts.begin(), m.contacts.end(), sticks)) return;
+  Search search(m, FormSpace::Where::anywhere);
+  if (!search.sees()) return;  // it is told where nothing has a value
+  for (Contact& contact : m.contacts)
+    if (sticks(contact)) search.look_at(contact);
+}
+
+}  // namespace eomgen::mechanics

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Friction along a direction that a stop holds while it touches, against closed forms.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "support/folders.hpp"
+#include "support/simulation.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+constexpr double closed_form = 1e-9;  // rtol is 1e-9, over a few steps
+
+test::Finished run_text(const std::string& name, const std::string& text) {
+  const std::string path = test::build_folder() + "/" + name + ".toml";
+  test::write_text(path, text);
+  return test::run_model(path, [](pipeline::SimulationRequest& request) { request.overrides.outputs = {"all"}; });
+}
+
+}  // namespace
+
+TEST_CASE("stops: a slider on a rough guide bounces off its stop and comes to rest where friction lets it") {
+  const test::Finished end = run_text("slider", R"toml(format = 1
+[parameters]
+m = 2
+F = 4
+e = 0.3
+[coordinates]
+x = {}
+[energy]
+kinetic = "1/2*m*x_dot^2"
+potential = "0"
+[[force]]
+name = "guide"
+dry = { coordinate = "x", normal = "F", static = 1, dynamic = 1 }
+[[constraint]]
+name = "stop"
+holonomic = "1 - x"
+holds = "unilateral"
+restitution = "e"
+[scene.default]
+t = [0, 5]
+initial = { x = 0.5, x_dot = 2 }
+)toml");
+  // It is slowed by F/m = 2: 4 - 2*2/2 = 2 is the square of its speed at the stop, e^2*2 that after it.
+  CHECK(std::abs(end.final("x") - (1 - 0.09 * 2 / (2 * 2))) <= closed_form);
+  CHECK(end.final("x_dot") == 0);
+  CHECK(end.final("friction.guide") == 0);  // nothing pulls at it
+}
+
+TEST_CASE("stops: what presses a slider onto its stop is borne by the stop, and released it goes on as friction says") {
+  const test::Finished end = run_text("pressed_slider", R"toml(format = 1
+[parameters]
+m = 2
+F = 4
+[coordinates]
+x = {}
+[energy]
+kinetic = "1/2*m*x_dot^2"
+potential = "0"
+[[force]]
+generalized = { x = "10 - 6*t" }
+[[force]]
+name = "guide"
+dry = { coordinate = "x", normal = "F", static = 1, dynamic = 1 }
+[[constraint]]
+name = "stop"
+holonomic = "1 - x"
+holds = "unilateral"
+[scene.default]
+t = [0, 4]
+initial = { x = 1 }
+)toml");
+  const std::size_t last = end.rows.size() - 1;
+  bool pressed = false, stuck = false;
+  for (std::size_t row = 0; row <= last; ++row) {
+    const double t = end.rows.t[row];
+    CAPTURE(t);
+    if (t < 10.0 / 6 - 1e-6) {  // pressed: the stop takes all of it
+      pressed = true;
+      CHECK(std::abs(end.rows.at(row, "reaction.stop") - (10 - 6 * t)) <= closed_form);
+      CHECK(std::abs(end.rows.at(row, "friction.guide")) <= closed_form);
+    } else if (t > 10.0 / 6 + 1e-6 && t < 14.0 / 6 - 1e-6) {  // pulled by less than the guide can hold
+      stuck = true;
+      CHECK(end.rows.at(row, "reaction.stop") == 0);
+      CHECK(std::abs(end.rows.at(row, "friction.guide") - (6 * t - 10)) <= closed_form);
+    }
+  }
+  CHECK(pressed);
+  CHECK(stuck);
+  // Then 2 x_ddot = 10 - 6 t + 4 from t = 14/6 on.
+  const double s = 4 - 14.0 / 6;
+  CHECK(std::abs(end.final("x") - (1 - s * s * s / 2)) <= closed_form);
+}
+
+TEST_CASE("stops: a block on a rough floor that a wall holds slides along the wall, and sticks across it alone") {
+  const test::Finished end = run_text("block_at_walls", R"toml(format = 1
+[parameters]
+m = 2
+g = 10
+mu = 0.3
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "y", "z"] }
+[[force]]
+gravity = "-g*E3"
+[[force]]
+on = "P"
+force = "50*E1 + 30*E2 + 4*t*(E1 - E2)"
+[[constraint]]
+name = "floor"
+holonomic = "z"
+friction = { static = "mu", dynamic = "mu" }
+[[constraint]]
+name = "wall"
+holonomic = "3 - x - y"
+holds = "unilateral"
+[scene.default]
+t = [0, 2]
+initial = { x = 1, y = 2 }
+)toml");
+  // Along the wall, (E1 - E2)/sqrt(2), it is pulled by (20 + 8 t)/sqrt(2) > mu m g = 6: it slides from the start.
+  const double root = std::sqrt(2.0), along = (10 * 4 + 4.0 * 8 / 3) / root / 2 - 6.0 * 4 / 2 / 2;
+  CHECK(std::abs((end.final("x") - end.final("y") + 1) / root - along) <= 1e-8);
+  CHECK(std::abs(end.final("x") + end.final("y") - 3) <= closed_form);
+  CHECK(std::abs(end.final("reaction.wall") - 40) <= closed_form);  // (50 + 30)/sqrt(2) over |grad psi| = sqrt(2)
+}
+
+TEST_CASE("stops: a block that sticks beside a wall has no friction towards it") {
+  const test::Finished end = run_text("block_at_rest", R"toml(format = 1
+[parameters]
+m = 2
+g = 10
+mu = 0.3
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "y", "z"] }
+[[force]]
+gravity = "-g*E3"
+[[force]]
+on = "P"
+force = "50*E1 + 46*E2"
+[[constraint]]
+name = "floor"
+holonomic = "z - x/10"
+friction = { static = "mu", dynamic = "mu" }
+[[constraint]]
+name = "wall"
+holonomic = "3 - x - y"
+holds = "unilateral"
+[scene.default]
+t = [0, 1]
+initial = { x = 1, y = 2 }
+)toml");
+  CHECK(std::abs(end.final("x") - 1) <= closed_form);
+  CHECK(std::abs(end.final("y") - 2) <= closed_form);
+  // The force F, the weight and the normal forces of floor and wall have no part along (1, -1, 1/10), the line that is
+  // left; the friction f along it balances theirs.
+  const double length = std::sqrt(2.01), pull = (50 - 46 - 20 * 0.1) / length;
+  const double f[3] = {end.final("friction.floor.1"), end.final("friction.floor.2"), end.final("friction.floor.3")};
+  CHECK(std::abs((f[0] - f[1] + f[2] / 10) / length + pull) <= closed_form);
+  const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+  CHECK(std::abs(square - pull * pull) <= closed_form);  // and has no other part
+}
