@@ -306,30 +306,6 @@ void check_restitution(const Mechanics& m, const Contact& contact) {
 
 }  // namespace
 
-namespace {
-
-// More directions that can stick than there are to move in: what friction holds is not determined by the motion.
-void check_determinate(const Mechanics& m) {
-  if (m.free.size() < m.active.size()) return;  // told elsewhere
-  // Everything touches: what can be left may hold too.
-  const std::size_t freedom = m.free.size() - m.active.size();
-  std::size_t directions = 0;
-  for (const Contact& contact : m.contacts) {
-    if (contact.width) continue;
-    directions += contact.dimensions() - std::min(contact.dimensions(), contact.held.size());
-    if (directions <= freedom) continue;
-    throw Error(
-        "mechanics", m.model->where(law_of(m, contact).span),
-        "with '" + contact.name + "' friction can hold " + std::to_string(directions) +
-            " directions, and the system has " + std::to_string(freedom) + (freedom == 1 ? " degree" : " degrees") +
-            " of freedom" + (m.freedom() > static_cast<long>(freedom) ? " while everything touches" : "") +
-            ": where all stick, the forces are not determined",
-        "give fewer contacts friction, or this one the smooth law (law = \"smooth\"), under which nothing sticks");
-  }
-}
-
-}  // namespace
-
 Ref rolling_friction(const Mechanics& m, const Contact& contact, std::uint32_t tangent) {
   const auto found = std::find(contact.numbers.begin(), contact.numbers.end(), tangent);
   if (found == contact.numbers.end()) return m.dag->zero();
@@ -355,7 +331,6 @@ void drop_held_directions(Mechanics& m) {
 }
 
 void check_coefficients(const Mechanics& m) {
-  check_determinate(m);
   for (const Contact& contact : m.contacts) {
     if (contact.dimensions() > 0) check_law(m, contact);
     if (contact.unilateral) check_restitution(m, contact);

@@ -14,6 +14,18 @@ namespace {
 using Row = std::vector<Ref>;  // by the free coordinates
 using Real = cln::cl_R;
 
+bool sticks(const Contact& contact) { return contact.dimensions() > 0 && !contact.width; }
+
+/// A choice of the contacts that touch, of those that can be left.
+using Touching = std::vector<bool>;
+
+std::size_t sticking_directions(const Contact& contact, std::size_t index, const Touching& touching) {
+  if (!sticks(contact) || (contact.unilateral && !touching[index])) return 0;
+  const auto held = std::count_if(contact.held.begin(), contact.held.end(),
+                                  [&](const HeldDirection& direction) { return touching[direction.by]; });
+  return contact.dimensions() - std::min(contact.dimensions(), static_cast<std::size_t>(held));
+}
+
 class Search {
  public:
   explicit Search(Mechanics& m, FormSpace::Where where) : m_(m), space_(m, where) {
@@ -26,6 +38,42 @@ class Search {
   }
 
   bool sees() const { return space_.points() > 0; }
+
+  /// Where more directions can stick than there are to move in, the motion does not determine what friction holds.
+  void require_determinate(const Touching& touching) {
+    std::size_t freedom = m_.free.size() - m_.active.size(), directions = 0, apart = 0;
+    bool any_touches = false;
+    base_ = always_;
+    for (std::size_t j = 0; j < m_.contacts.size(); ++j) {
+      if (!m_.contacts[j].unilateral) continue;
+      apart += touching[j] ? 0 : 1;
+      any_touches = any_touches || touching[j];
+      if (touching[j]) base_.push_back(row(m_.constraints[m_.contacts[j].constraints[0]].gradient));
+    }
+    freedom += apart;
+    tangents_.clear();
+    for (std::size_t j = 0; j < m_.contacts.size(); ++j) {
+      const Contact& contact = m_.contacts[j];
+      const std::size_t own = sticking_directions(contact, j, touching);
+      if (own == 0) continue;
+      directions += own;
+      for (const std::vector<Ref>& tangent : contact.tangents) tangents_.push_back(row(tangent));
+      const std::size_t free = sees() ? free_directions(base_) : directions;
+      if (directions <= freedom && directions <= free) continue;
+      const std::string where = !any_touches ? ""
+                                : apart == 0 ? " while everything touches"
+                                             : " while some contacts touch";
+      const std::string left =
+          directions > freedom ? " directions, and the system has " + std::to_string(freedom) +
+                                     (freedom == 1 ? " degree" : " degrees") + " of freedom"
+                               : " directions, of which the constraints leave " + std::to_string(free) + " to move in";
+      throw Error(
+          "mechanics", m_.model->where(law_of(m_, contact).span),
+          "with '" + contact.name + "' friction can hold " + std::to_string(directions) + left + where +
+              ": where all stick, the forces are not determined",
+          "give fewer contacts friction, or this one the smooth law (law = \"smooth\"), under which nothing sticks");
+    }
+  }
 
   void look_at(Contact& contact) {
     tangents_.clear();
@@ -144,12 +192,22 @@ class Search {
 }  // namespace
 
 void find_held_directions(Mechanics& m) {
-  const auto sticks = [](const Contact& contact) { return contact.dimensions() > 0 && !contact.width; };
-  if (m.active.empty() || std::none_of(m.contacts.begin(), m.contacts.end(), sticks)) return;
+  if (std::none_of(m.contacts.begin(), m.contacts.end(), sticks)) return;
+  if (m.free.size() < m.active.size()) return;  // told elsewhere
   Search search(m, FormSpace::Where::anywhere);
-  if (!search.sees()) return;  // it is told where nothing has a value
-  for (Contact& contact : m.contacts)
-    if (sticks(contact)) search.look_at(contact);
+  if (search.sees()) {
+    for (Contact& contact : m.contacts)
+      if (sticks(contact)) search.look_at(contact);
+  }
+  std::vector<std::size_t> leavable;
+  for (std::size_t j = 0; j < m.contacts.size(); ++j)
+    if (m.contacts[j].unilateral) leavable.push_back(j);
+  // From everything to nothing.
+  for (std::size_t choice = std::size_t{1} << leavable.size(); choice-- > 0;) {
+    Touching touching(m.contacts.size(), false);
+    for (std::size_t i = 0; i < leavable.size(); ++i) touching[leavable[i]] = ((choice >> i) & 1) != 0;
+    search.require_determinate(touching);
+  }
 }
 
 }  // namespace eomgen::mechanics

@@ -39,6 +39,7 @@ int try_seeds(const std::string& program, const std::string& folder, std::uint64
       for (const std::string& feature : m.features) ++features[feature];
     }
     slowest = std::max(slowest, trial.slowest);
+    if (tried % 100 == 0) std::fprintf(stderr, "%zu tried, %zu failed\n", tried, failed);
     if (trial.findings.empty()) continue;
     ++failed;
     for (const Finding& finding : trial.findings)

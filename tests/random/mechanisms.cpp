@@ -8,19 +8,23 @@ namespace eomgen::random_models {
 namespace {
 
 // The models of the seeds before it are what they were when these kinds were added: findings are told by their seeds.
-constexpr std::uint64_t first_with_contacts = 1001, first_with_forces_between_bodies = 2001;
+constexpr std::uint64_t first_with_contacts = 1001, first_with_forces_between_bodies = 2001,
+                        first_small = 10001;  // one or two places, all else as before: many of them in a short time
 
 }  // namespace
 
 Builder::Builder(std::uint64_t seed)
-    : dice_(seed), contacts_(seed >= first_with_contacts), between_(seed >= first_with_forces_between_bodies) {}
+    : dice_(seed),
+      contacts_(seed >= first_with_contacts),
+      between_(seed >= first_with_forces_between_bodies),
+      small_(seed >= first_small) {}
 
 Mechanism Builder::build() {
   planar_ = dice_.chance(35);
   feature(planar_ ? "planar" : "spatial");
   named_parameters_ = static_cast<int>(dice_.below(3)) * 50;
   equal_ = dice_.chance(25);
-  const std::size_t places = 1 + dice_.below(planar_ ? 5 : 4);
+  const std::size_t places = 1 + dice_.below(small_ ? 2 : planar_ ? 5 : 4);
   for (std::size_t i = 0; i < places; ++i) {
     if (dice_.chance(60))
       add_body();
