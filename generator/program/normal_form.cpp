@@ -25,7 +25,7 @@ void collect(std::vector<Term>& terms) {
   for (std::size_t i = 0; i < terms.size();) {
     const std::size_t first = i++;
     for (; i < terms.size() && terms[i].factors == terms[first].factors; ++i) {
-      terms[first].coefficient = terms[first].coefficient + terms[i].coefficient;
+      terms[first].coefficient = symbolic::plus(terms[first].coefficient, terms[i].coefficient);
     }
     if (symbolic::is_zero(terms[first].coefficient)) continue;
     if (kept != first) terms[kept] = std::move(terms[first]);

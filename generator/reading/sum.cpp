@@ -33,6 +33,13 @@ void Sum::add_term(Key&& monomial, const Rational& coefficient) {
 void Sum::add(const Monomial& monomial, const Rational& coefficient) { add_term(monomial, coefficient); }
 void Sum::add(Monomial&& monomial, const Rational& coefficient) { add_term(std::move(monomial), coefficient); }
 
+Sum Sum::ascending(std::vector<std::pair<Monomial, Rational>> terms) {
+  Sum result;
+  for (auto& [monomial, coefficient] : terms)
+    result.terms_.emplace_hint(result.terms_.end(), std::move(monomial), coefficient);
+  return result;
+}
+
 void Sum::scale(const Rational& factor) {
   if (cln::zerop(factor)) terms_.clear();
   work::spend(terms_.size());

@@ -58,6 +58,9 @@ class Sum {
   explicit Sum(AtomPtr atom) { add({{std::move(atom), 1}}, 1); }
   Sum(Monomial monomial, const Rational& coefficient) { add(std::move(monomial), coefficient); }
 
+  /// Of terms that ascend already, none of them 0.
+  static Sum ascending(std::vector<std::pair<Monomial, Rational>> terms);
+
   void add(const Monomial& monomial, const Rational& coefficient);
   void add(Monomial&& monomial, const Rational& coefficient);
   const Terms& terms() const { return terms_; }

@@ -24,16 +24,6 @@ bool is_call(const Factor& factor, Op op) {
 
 Op dual(Op op) { return op == Op::sin ? Op::cos : Op::sin; }
 
-// How long a sum reads: terms first, then factors.
-std::pair<std::size_t, Rational> length(const Sum& sum) {
-  Rational factors = 0;
-  for (const auto& [monomial, coefficient] : sum.terms()) {
-    for (const Factor& factor : monomial) factors = factors + cln::abs(factor.exponent);
-  }
-  return {sum.size(), factors};
-}
-bool shorter(const Sum& a, const Sum& b) { return length(a) < length(b); }
-
 std::vector<Sum> angles(const Sum& sum) {
   std::map<Sum, bool, SumLess> found;
   for (const auto& [monomial, coefficient] : sum.terms()) {
@@ -111,52 +101,6 @@ class Duals {
  private:
   std::unordered_map<AtomPtr, AtomPtr> made_;  // looked up only
 };
-
-// Where f^2 m stands with its partner, k (f^2 + g^2) m -> k m and k m - k f^2 m -> k g^2 m; one term less each time.
-bool merge_term(Sum& sum, const Monomial& self, const Rational& k, const AtomPtr& f, Duals& duals) {
-  const Monomial rest = times(self, f, -2);
-  const Monomial partner = times(rest, duals(f), 2);
-  if (const Rational* other = coefficient_of(sum, partner); other != nullptr && *other == k) {
-    sum.add(self, -k);
-    sum.add(partner, -k);
-    sum.add(rest, k);
-    return true;
-  }
-  if (const Rational* other = coefficient_of(sum, rest); other != nullptr && *other == -k) {
-    sum.add(self, -k);
-    sum.add(rest, k);
-    sum.add(partner, -k);
-    return true;
-  }
-  return false;
-}
-
-bool merge_term(Sum& sum, const Monomial& self, const Rational& k, Duals& duals) {
-  for (const Factor& factor : self) {
-    const bool trig = is_call(factor, Op::sin) || is_call(factor, Op::cos);
-    if (trig && factor.exponent >= 2 && merge_term(sum, self, k, factor.atom, duals)) return true;
-  }
-  return false;
-}
-
-// Passes over the whole sum; the search goes on behind a term that was merged.
-Sum merge_pairs(Sum sum) {
-  Duals duals;
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (auto term = sum.terms().begin(); term != sum.terms().end();) {
-      const Monomial monomial = term->first;
-      const Rational k = term->second;
-      if (merge_term(sum, monomial, k, duals)) {
-        changed = true;
-        term = sum.terms().upper_bound(monomial);
-      } else {
-        ++term;
-      }
-    }
-  }
-  return sum;
-}
 
 // k m f(a) g(b) + l m f'(a) g'(b), |k| = |l|, as one term; `a` and `b` are factors of `monomial`.
 bool recombine_at(Sum& sum, const Monomial& monomial, const Rational& k, const Factor& a, const Factor& b,
@@ -248,22 +192,8 @@ Sum expand_factor(const Factor& factor) {
 
 }  // namespace
 
-Sum reduce_squares(const Sum& sum) {
-  Sum best = merge_pairs(sum);  // mostly that is all
-  for (int round = 0; round < most_rounds; ++round) {
-    const Sum before = best;
-    for (const Sum& angle : angles(before)) {
-      const Sum with_cos = merge_pairs(replace_square(best, Op::sin, angle));
-      const Sum with_sin = merge_pairs(replace_square(best, Op::cos, angle));
-      if (shorter(with_sin, best)) best = with_sin;
-      if (shorter(with_cos, best)) best = with_cos;
-    }
-    if (best == before) break;
-  }
-  return best;
-}
-
 Sum recombine_angles(const Sum& sum) {
+  if (!may_recombine(sum)) return sum;
   Sum result = sum;
   Duals duals;
   while (recombine_all(result, duals)) {

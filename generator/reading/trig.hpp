@@ -15,6 +15,8 @@ Sum reduce_squares(const Sum& sum);
 
 /// cos(a) cos(b) + sin(a) sin(b) -> cos(a - b), sin(a) cos(b) - cos(a) sin(b) -> sin(a - b), and the sums likewise.
 Sum recombine_angles(const Sum& sum);
+/// Whether it finds anything; as many operations as it takes to find nothing.
+bool may_recombine(const Sum& sum);
 
 /// sin and cos of sums and of whole multiples written out by the addition theorems, every sin^2 as 1 - cos^2.
 Sum expand_angles(const Sum& sum);

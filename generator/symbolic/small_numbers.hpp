@@ -21,6 +21,14 @@ inline bool is_minus_one(const Rational& a) { return a.word == cln::cl_combine(c
 inline bool is_unit(const Rational& a) { return is_one(a) || is_minus_one(a); }
 inline bool is_zero(const Rational& a) { return a.word == cln::cl_combine(cl_FN_tag, 0); }
 
+inline Rational plus(const Rational& a, const Rational& b) {
+  if (a.pointer_p() || b.pointer_p()) return a + b;
+  // Value and tag are one integer: those of the sum are the sum without one of the tags.
+  std::int64_t sum = 0;
+  const auto other = static_cast<std::int64_t>(b.word - cl_FN_tag);
+  if (__builtin_add_overflow(static_cast<std::int64_t>(a.word), other, &sum)) return a + b;
+  return Rational(reinterpret_cast<cln::cl_private_thing>(sum));
+}
 inline Rational times(const Rational& a, const Rational& b) {
   if (is_one(a)) return b;
   if (is_one(b)) return a;

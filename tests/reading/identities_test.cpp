@@ -57,6 +57,23 @@ TEST_CASE("trigonometry: the shorter of the two forms is kept, and nothing gets 
   CHECK(same(simplify(mixed), mixed));
 }
 
+TEST_CASE("trigonometry: squares beside roots, divisors and high powers of sines keep their value") {
+  System s = some_symbols();
+  const Sum a = s.symbol("a"), b = s.symbol("b"), m = s.symbol("m"), k = s.symbol("k"), x = s.symbol("x");
+  const Sum third = power(x, reading::Rational(1) / 3), root = power(sin(a), reading::Rational(1) / 2);
+  CHECK(simplify(root * square(sin(b)) * third + root * square(cos(b)) * third) == root * third);
+  CHECK(simplify(root * square(cos(a)) - root) == -(root * square(sin(a))));
+  CHECK(simplify(over(square(cos(a)), sin(b)) * k - over(k, sin(b))) == -(k * over(square(sin(a)), sin(b))));
+  CHECK(simplify(over(Sum(1), sin(a)) - over(square(cos(a)), sin(a))) == sin(a));
+  CHECK(simplify(square(cos(a)) * power(m, -3) - power(m, -3)) == -(square(sin(a)) * power(m, -3)));
+  Sum eighth(1);  // (sin^2 + cos^2)^8 of two angles
+  for (const Sum& angle : {a, b}) eighth = eighth * power(square(sin(angle)) + square(cos(angle)), 4);
+  CHECK(eighth.size() == 25);
+  CHECK(simplify(eighth) == Sum(1));
+  const Sum mixed = power(sin(a), 5) * cos(b) + power(sin(a), 3) * square(cos(a)) * cos(b) + x * square(sin(b));
+  CHECK(simplify(mixed) == power(sin(a), 3) * cos(b) + x * square(sin(b)));
+}
+
 TEST_CASE("roots: sqrt(x^2) is x where x is positive, and |x| where nothing is known") {
   System s = some_symbols();
   const Sum m = s.symbol("m"), x = s.symbol("x"), phi = s.symbol("phi");

@@ -71,13 +71,16 @@ TEST_CASE("products of powers add exponents up and drop what cancels") {
 }
 
 TEST_CASE("numbers are told apart whether CLN has them in the word or behind a pointer") {
-  const Rational large = cln::expt(Rational(7), cln::cl_I(40)), half = Rational(1) / 2;
-  const std::vector<Rational> numbers{0, 1, -1, 2, half, -half, large, -large, large + 1, half / large};
+  const Rational large = cln::expt(Rational(7), cln::cl_I(40)), half = Rational(1) / 2,
+                 wide = cln::expt(Rational(2), cln::cl_I(60));
+  const std::vector<Rational> numbers{0,      1,         -1,           2,        half, -half, large,
+                                      -large, large + 1, half / large, wide - 1, -wide};
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     for (std::size_t j = 0; j < numbers.size(); ++j) {
       const Rational other = numbers[j] + numbers[i] - numbers[i];  // the same value, made anew
       CHECK(same(numbers[i], other) == (i == j));
       if (i == j) CHECK(hash_of(numbers[i]) == hash_of(other));
+      CHECK(same(plus(numbers[i], numbers[j]), numbers[i] + numbers[j]));
       CHECK(times(numbers[i], numbers[j]) == numbers[i] * numbers[j]);
       if (j != 0) CHECK(over(numbers[i], numbers[j]) == numbers[i] / numbers[j]);
     }
