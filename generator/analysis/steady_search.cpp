@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <optional>
 
 #include "derive/imposition.hpp"
@@ -27,28 +28,44 @@ bool is_energy(const conservation::Conserved& c) {
 }
 bool is_leaf(const conservation::Conserved& c) { return c.kind == system::OutputKind::integral; }
 
-/// Conserved at these parameters: its rate vanishes in many digits at points beside the start.
-bool is_kept(const SteadyProblem& p, const Quantity& quantity) {
-  const linear::Tape tape = p.flow->tape({quantity.expression});
-  for (const std::uint64_t seed : {21U, 22U, 23U}) {
+struct Neighbour {
+  linear::State<Precise> z;
+  linear::Setting<Precise> setting;
+  linear::Field<Precise> field;
+};
+
+/// Points beside the start, one for each seed; none where one is not found.
+std::vector<Neighbour> neighbours(const SteadyProblem& p, std::initializer_list<std::uint64_t> seeds) {
+  std::vector<Neighbour> result;
+  for (const std::uint64_t seed : seeds) {
     linear::Setting<Precise> setting = p.setting;
     const auto z = linear::beside(*p.flow, p.z, setting, seed);
-    if (!z) return false;
+    if (!z) return {};
+    linear::Field<Precise> field = p.flow->at(*z, setting);
+    result.push_back({*z, std::move(setting), std::move(field)});
+  }
+  return result;
+}
+
+/// Conserved at these parameters: its rate vanishes in many digits at points beside the start.
+bool is_kept(const SteadyProblem& p, const std::vector<Neighbour>& neighbours, const Quantity& quantity) {
+  const linear::Tape tape = p.flow->tape({quantity.expression});
+  for (const auto& [z, setting, field] : neighbours) {
     linear::Sloped<Precise> s;
     try {
-      s = p.flow->sloped(tape, *z, setting);
+      s = p.flow->sloped(tape, z, setting);
     } catch (const std::domain_error&) {
       return false;  // it has no value everywhere: it can be no invariant
     }
-    const linear::Field<Precise> field = p.flow->at(*z, setting);
-    Precise rate = s.slope(0, z->size() - 1), size(0);
+    Precise rate = s.slope(0, z.size() - 1), size(0);
     for (std::size_t i = 0; i < field.X.rows; ++i) {
+      if (linear::is_zero(s.slope(0, i))) continue;
       rate = rate + s.slope(0, i) * field.X(i, 0);
       size = size + linear::magnitude(s.slope(0, i) * field.X(i, 0));
     }
     if (linear::magnitude(rate) > linear::tiny<Precise>(50) * (Precise(1) + size)) return false;
   }
-  return true;
+  return !neighbours.empty();
 }
 
 /// What the energies and the momenta of the coordinates may be, beside what is conserved for all parameters: a torque
@@ -76,10 +93,16 @@ std::vector<Quantity> candidates(const SteadyProblem& p, bool energies) {
   return result;
 }
 
-std::vector<Quantity> chosen(const SteadyProblem& p, bool energies) {
-  std::vector<Quantity> result = candidates(p, energies);
-  std::erase_if(result, [&p](const Quantity& q) { return !is_kept(p, q); });
-  return result;
+struct Kept {
+  std::vector<Quantity> energies, momenta;
+};
+
+Kept kept_quantities(const SteadyProblem& p) {
+  Kept kept{candidates(p, true), candidates(p, false)};
+  const std::vector<Neighbour> beside = neighbours(p, {21, 22, 23});
+  for (auto* list : {&kept.energies, &kept.momenta})
+    std::erase_if(*list, [&](const Quantity& q) { return !is_kept(p, beside, q); });
+  return kept;
 }
 
 /// Where in z a coordinate of the model is; nothing where it is eliminated.
@@ -120,21 +143,18 @@ void name_attitudes(SteadyProblem& p, linear::SearchRequest& search) {
 }
 
 /// A conserved quantity that none of the coordinates feels which the motion does not feel: it can be held beside them.
-bool can_be_held(const SteadyProblem& p, const linear::Symmetry& symmetry, const Quantity& quantity) {
-  const linear::Flow& flow = *p.flow;
-  const linear::Tape tape = flow.tape({quantity.expression});
-  for (const std::uint64_t seed : {31U, 32U}) {
-    linear::Setting<Precise> setting = p.setting;
-    const auto z = linear::beside(flow, p.z, setting, seed);
-    if (!z) return false;
-    linear::Matrix<Precise> slope = flow.sloped(tape, *z, setting).slope;
-    const linear::Matrix<Precise> along = slope * linear::tangent(flow.at(*z, setting), symmetry.chart);
+bool can_be_held(const SteadyProblem& p, const std::vector<Neighbour>& neighbours, const linear::Symmetry& symmetry,
+                 const Quantity& quantity) {
+  const linear::Tape tape = p.flow->tape({quantity.expression});
+  for (const auto& [z, setting, field] : neighbours) {
+    const linear::Matrix<Precise> slope = p.flow->sloped(tape, z, setting).slope;
+    const linear::Matrix<Precise> along = slope * linear::tangent(field, symmetry.chart);
     for (std::size_t k = 0; k < along.cols; ++k) {
       const bool kept = k < symmetry.retained.size() && symmetry.retained[k];
       if (!kept && linear::magnitude(along(0, k)) > linear::tiny<Precise>(50)) return false;
     }
   }
-  return true;
+  return !neighbours.empty();
 }
 
 /// The start, or a state beside it where the start itself has no slopes: what is looked for is the same around it.
@@ -175,7 +195,8 @@ Quantity output_named(const SteadyProblem& p, const std::string& name) {
               hint.empty() ? "eomgen run --output shows the outputs of a model" : hint);
 }
 
-void hold(SteadyMotions& result, const SteadyRequest& request, linear::SearchRequest& search) {
+void hold(SteadyMotions& result, const SteadyRequest& request, const std::vector<Quantity>& momenta,
+          linear::SearchRequest& search) {
   SteadyProblem& p = result.problem;
   const auto add = [&](const Quantity& quantity, const Precise& value, const char* why) {
     search.held.push_back(quantity);
@@ -185,11 +206,11 @@ void hold(SteadyMotions& result, const SteadyRequest& request, linear::SearchReq
   for (const auto& [name, value] : request.hold)
     add(output_named(p, name), linear::number<Precise>(Precise(value)), "as asked for");
   if (!request.hold.empty()) return;
-  const std::vector<Quantity> momenta = chosen(p, false);
   if (momenta.empty()) return;
   const linear::Symmetry symmetry = linear::find_symmetry(*p.flow, place_with_field(p), p.setting, 1);
+  const std::vector<Neighbour> beside = neighbours(p, {31, 32});
   for (const Quantity& momentum : momenta) {
-    if (!can_be_held(p, symmetry, momentum)) continue;
+    if (!can_be_held(p, beside, symmetry, momentum)) continue;
     add(momentum, p.flow->tape({momentum.expression}).values<Precise>(p.flow->lookup(p.z, p.setting))[0],
         "conserved: its value at the start");
   }
@@ -204,10 +225,10 @@ void require_not_ignored(const SteadyMotions& result, const SteadyRequest& reque
   }
 }
 
-/// Nothing was found, and starts ended where the equations have no value: that is the answer.
+/// Of a search that found nothing: where its starts ended, if the equations have no value there.
 void require_ends(const SteadyMotions& result) {
   const linear::SearchResult& search = result.search;
-  if (!search.points.empty() || search.refused == 0) return;
+  if (search.refused == 0) return;
   const SteadyProblem& p = result.problem;
   linear::State<Precise> z;
   for (const double x : search.refused_at) z.push_back(linear::number<Precise>(numeric::exact(x)));
@@ -219,14 +240,18 @@ void require_ends(const SteadyMotions& result) {
       "put a smooth law in place of the one that has a kink or a root there, or begin the search at another start");
 }
 
-void judge(SteadyMotions& result, const SteadyRequest& request) {
+void judge(SteadyMotions& result, const SteadyRequest& request, const Kept& kept) {
   SteadyProblem& p = result.problem;
-  const linear::StabilityTest test(*p.flow, *p.derived->mechanics.dag, chosen(p, true), chosen(p, false));
+  const linear::StabilityTest test(*p.flow, *p.derived->mechanics.dag, kept.energies, kept.momenta);
   for (const linear::FoundPoint& point : result.search.points) {
-    SteadyMotion motion{linear::linearise(*p.flow, point.z, p.setting, p.neighbours, request.seed), point.family, {}};
-    if (motion.l.kind == linear::Kind::motion) continue;  // in the coordinates there, none after all
-    motion.verdict = test(motion.l);
-    result.points.push_back(std::move(motion));
+    try {
+      SteadyMotion motion{linear::linearise(*p.flow, point.z, p.setting, p.neighbours, request.seed), point.family, {}};
+      if (motion.l.kind == linear::Kind::motion) continue;  // in the coordinates there, none after all
+      motion.verdict = test(motion.l);
+      result.points.push_back(std::move(motion));
+    } catch (const std::domain_error& error) {  // the coordinates fail there
+      result.search.refuse(error.what(), point.z);
+    }
   }
 }
 
@@ -242,7 +267,8 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
                                  request.starts, request.seed, request.progress};
     for (const std::uint32_t i : p.system().free) search.ranges.push_back({p.scene.lower[i], p.scene.upper[i]});
     name_attitudes(p, search);
-    hold(result, request, search);
+    const Kept quantities = kept_quantities(p);
+    hold(result, request, quantities.momenta, search);
     {
       const work::Stage stage("looking for equilibria and steady motions");
       result.search = linear::find_steady_motions(search);
@@ -255,7 +281,7 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
       kept.emplace();
     }
     require_not_ignored(result, request);
-    require_ends(result);
+    if (result.search.points.empty()) require_ends(result);
     if (!result.search.symmetry.autonomous) {
       throw Error(command, Where{model.file, 0, 0, 1, ""}, "the accelerations depend on t: no motion stays what it is",
                   "eomgen linearize gives A(t) along a motion");
@@ -267,7 +293,8 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
       result.held.push_back({p.flow->names()[i], linear::to_double(p.z[i]), why});
     }
     const work::Stage stage("judging stability");
-    judge(result, request);
+    judge(result, request, quantities);
+    if (result.points.empty()) require_ends(result);
   } catch (const std::domain_error& error) {
     const Source source = without_slope(p, p.z);
     throw Error(command, source.where,

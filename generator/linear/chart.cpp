@@ -41,12 +41,19 @@ struct Candidate {
   double quality;
 };
 
+/// n over k; more than `most_charts` where it is more.
+std::size_t subsets_of(std::size_t n, std::size_t k) {
+  std::size_t count = 1;
+  for (std::size_t i = 0; i < std::min(k, n - k) && count <= most_charts; ++i) count = count * (n - i) / (i + 1);
+  return count;
+}
+
 void subsets(std::size_t n, std::size_t size, std::size_t from, Places& chosen, std::vector<Places>& result) {
   if (chosen.size() == size) {
     result.push_back(chosen);
     return;
   }
-  for (std::size_t i = from; i < n && result.size() <= most_charts; ++i) {
+  for (std::size_t i = from; i + size - chosen.size() <= n; ++i) {
     chosen.push_back(i);
     subsets(n, size, i + 1, chosen, result);
     chosen.pop_back();
@@ -59,8 +66,10 @@ std::vector<Candidate> candidates(const Matrix<Precise>& block) {
   std::sort(pivots.begin(), pivots.end());
   std::vector<Places> all;
   Places chosen;
-  subsets(block.cols, pivots.size(), 0, chosen, all);
-  if (all.size() > most_charts) all = {pivots};
+  if (subsets_of(block.cols, pivots.size()) > most_charts)
+    all = {pivots};
+  else
+    subsets(block.cols, pivots.size(), 0, chosen, all);
   Matrix<double> A = rounded(block);
   for (std::size_t i = 0; i < A.rows; ++i) {  // against the whole row, so that what all but vanishes there is no pivot
     double size = 0;
@@ -233,7 +242,7 @@ std::optional<State<Precise>> projected(const Flow& flow, State<Precise> z, cons
                                         const Places& columns) {
   constexpr int most_steps = 60, exact = 120;
   for (int step = 0; step < most_steps; ++step) {
-    const Field<Precise> field = flow.at(z, setting);
+    const Field<Precise> field = flow.constraints_at(z, setting);
     const Matrix<Precise> move =
         Elimination<Precise>(columns_of(field.phi_slope, columns), tiny<Precise>(8), tiny<Precise>(14))
             .solve(field.phi);
@@ -242,7 +251,9 @@ std::optional<State<Precise>> projected(const Flow& flow, State<Precise> z, cons
       z[columns[i]] = z[columns[i]] - move(i, 0);
       done = done && magnitude(move(i, 0)) <= tiny<Precise>(exact) * (Precise(1) + magnitude(z[columns[i]]));
     }
-    if (done) return z;
+    if (!done) continue;
+    flow.at(z, setting);  // throws
+    return z;
   }
   return std::nullopt;
 }

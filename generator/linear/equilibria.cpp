@@ -13,6 +13,12 @@ namespace {
 
 constexpr double same_point = 1e-8;
 
+State<double> rounded(const State<Precise>& z) {
+  State<double> result;
+  for (const Precise& x : z) result.push_back(to_double(x));
+  return result;
+}
+
 class Search {
  public:
   Search(const SearchRequest& request, SearchResult& result)
@@ -26,11 +32,6 @@ class Search {
     find_turns();
     result_.turns = turns_;
     for (const EulerSet& set : r_.euler) regular_.push_back(flow_.tape({set.regular}));
-    const auto rounded = [](const std::vector<Precise>& list) {
-      std::vector<double> numbers;
-      for (const Precise& x : list) numbers.push_back(to_double(x));
-      return numbers;
-    };
     rough_ = {rounded(r_.setting.parameters), rounded(r_.setting.inputs), rounded(r_.setting.integrals),
               rounded(r_.setting.leaf)};
   }
@@ -48,7 +49,7 @@ class Search {
       hold_families(members.front().z);
       const std::size_t before = result_.points.size();
       members_ = 0;
-      result_.converged = result_.refused = 0;
+      result_.converged = result_.refused = result_.further_members = 0;
       all_starts();
       result_.released = result_.points.size() == before && !result_.interrupted;
       if (result_.released) result_.points.push_back(members.front());
@@ -58,7 +59,8 @@ class Search {
   }
 
  private:
-  static constexpr std::size_t enough_members = 3;  // of families, while nothing is held for them
+  // Members of families that are looked at: while nothing is held for them, and afterwards.
+  static constexpr std::size_t first_members = 3, most_members = 20;
 
   void all_starts() {
     std::vector<double> targets;
@@ -76,10 +78,7 @@ class Search {
       if (r_.progress) r_.progress(static_cast<double>(k) / static_cast<double>(r_.starts));
       const RoughEnd rough =
           rough_steady_state(flow_, symmetry_, spread_start(r_, symmetry_, turns_, k), rough_, *held_, targets);
-      if (!rough.reason.empty() && result_.refused++ == 0) {
-        result_.reason = rough.reason;
-        result_.refused_at = rough.z;
-      }
+      if (!rough.reason.empty()) result_.refuse(rough.reason, rough.z);
       if (!rough.found) continue;
       State<Precise> z;
       for (const double x : rough.z) z.push_back(number<Precise>(numeric::exact(x)));
@@ -89,17 +88,12 @@ class Search {
         result_.converged += known->leads ? 1 : 0;
         continue;
       }
-      const bool enough = rough.open && result_.held.empty() && members_ >= enough_members;
-      const bool leads = enough || polish(z);
+      const bool enough = rough.open && members_ >= (result_.held.empty() ? first_members : most_members);
+      result_.further_members += enough ? 1 : 0;
+      const bool leads = enough || is_steady(z);
       result_.converged += leads ? 1 : 0;
       seen.push_back({rounded(z), leads});
     }
-  }
-
-  static State<double> rounded(const State<Precise>& z) {
-    State<double> result;
-    for (const Precise& x : z) result.push_back(to_double(x));
-    return result;
   }
 
   std::optional<Steady> steady(const State<Precise>& z) const {
@@ -124,6 +118,15 @@ class Search {
     for (std::size_t k = 0; k < r_.targets.size(); ++k) {
       value(k, 0) = s.value[k] - r_.targets[k];
       for (std::size_t d = 0; d < s.slope.cols; ++d) slope(k, d) = s.slope(k, d);
+    }
+  }
+
+  bool is_steady(const State<Precise>& rough) {
+    try {
+      return polish(rough);
+    } catch (const std::domain_error& error) {  // the coordinates fail there, as angles at a pole
+      result_.refuse(error.what(), rough);
+      return false;
     }
   }
 
@@ -330,6 +333,14 @@ class Search {
 };
 
 }  // namespace
+
+void SearchResult::refuse(const std::string& why, State<double> at) {
+  if (refused++ > 0) return;
+  reason = why;
+  refused_at = std::move(at);
+}
+
+void SearchResult::refuse(const std::string& why, const State<Precise>& at) { refuse(why, rounded(at)); }
 
 SearchResult find_steady_motions(const SearchRequest& request) {
   SearchResult result;

@@ -42,16 +42,21 @@ struct FoundPoint {
 };
 
 struct SearchResult {
-  Symmetry symmetry;               // at the start
-  std::vector<bool> turns;         // per coordinate of z: an angle, of which a turn more is the same place
-  std::vector<std::size_t> held;   // entries of z that were held at their start values, since families leave them open
-  bool released = false;           // with them held nothing was found; the points are members of their families
-  std::vector<FoundPoint> points;  // in the order of their entries
-  std::size_t converged = 0;       // starts that led to some point
-  std::size_t refused = 0;         // starts whose way ended where the equations have no value or no slope
-  std::string reason;              // of the first of them
-  State<double> refused_at;        // and where
-  bool interrupted = false;        // before all starts were tried: what is here was found by then
+  Symmetry symmetry;                // at the start
+  std::vector<bool> turns;          // per coordinate of z: an angle, of which a turn more is the same place
+  std::vector<std::size_t> held;    // entries of z that were held at their start values, since families leave them open
+  bool released = false;            // with them held nothing was found; the points are members of their families
+  std::vector<FoundPoint> points;   // in the order of their entries
+  std::size_t converged = 0;        // starts that led to some point
+  std::size_t further_members = 0;  // starts that led to members of families beyond those that are among `points`
+  std::size_t refused = 0;          // starts whose way ended where the equations have no value or no slope
+  std::string reason;               // of the first of them
+  State<double> refused_at;         // and where
+  bool interrupted = false;         // before all starts were tried: what is here was found by then
+
+  /// A start whose way ended where the equations have no value or no slope.
+  void refuse(const std::string& why, State<double> at);
+  void refuse(const std::string& why, const State<Precise>& at);
 };
 
 /// Throws std::domain_error where the start has no field.

@@ -21,6 +21,12 @@ Precise singular<Precise>() {
   return tiny<Precise>(60);
 }
 
+/// Most slopes are 0.
+template <class T>
+void subtract(T& sum, const T& slope, const T& by) {
+  if (!is_zero(slope)) sum = sum - slope * by;
+}
+
 std::vector<Symbol> state_symbols(const system::EquationSystem& s) {
   std::vector<Symbol> result;
   for (const std::uint8_t order : {std::uint8_t{0}, std::uint8_t{1}}) {
@@ -62,6 +68,10 @@ Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s)
   uses_integrals_ =
       std::any_of(symbols.begin(), symbols.end(), [](const Symbol& x) { return x.kind == SymbolKind::integral; });
   tape_ = std::make_unique<Tape>(dag, roots, directions_);
+  std::vector<Ref> of_constraints = s.A;
+  of_constraints.insert(of_constraints.end(), s.b.begin(), s.b.end());
+  for (const std::size_t k : holonomic_) of_constraints.push_back(s.psi[k]);
+  constraint_tape_ = std::make_unique<Tape>(dag, of_constraints, directions_);
   leaf_tape_ = std::make_unique<Tape>(dag, leaf_, directions_);
 }
 
@@ -96,7 +106,15 @@ Field<T> Flow::at(const State<T>& z, const Setting<T>& setting) const {
   const Sloped<T> s = sloped(*tape_, z, setting);
   Field<T> field;
   differentiate(s, z, field);
-  constrain(s, z, setting, field);
+  const std::size_t A0 = n_ * n_ + n_, b0 = A0 + m_ * n_ + m_;
+  constrain(s, {A0, b0, b0 + m_}, z, setting, field);
+  return field;
+}
+
+template <class T>
+Field<T> Flow::constraints_at(const State<T>& z, const Setting<T>& setting) const {
+  Field<T> field;
+  constrain(sloped(*constraint_tape_, z, setting), {0, m_ * n_, m_ * n_ + m_}, z, setting, field);
   return field;
 }
 
@@ -121,18 +139,20 @@ void Flow::differentiate(const Sloped<T>& s, const State<T>& z, Field<T>& field)
   const Elimination<T> solver(K, singular<T>());
   require_domain(solver.rank() == n_ + Elimination<T>(A, singular<T>()).rank(), "the accelerations are not determined");
   const Matrix<T> y = solver.solve(right);
+  std::vector<T> force;  // of the constraints, on the side of f
+  for (std::size_t k = 0; k < m_; ++k) force.push_back(-y(n_ + k, 0));
   const std::size_t count = directions_.size();
   Matrix<T> rates(size, count);
   for (std::size_t d = 0; d < count; ++d) {
     for (std::size_t i = 0; i < n_; ++i) {
       T sum = s.slope(f0 + i, d);
-      for (std::size_t j = 0; j < n_; ++j) sum = sum - s.slope(i * n_ + j, d) * y(j, 0);
-      for (std::size_t k = 0; k < m_; ++k) sum = sum + s.slope(A0 + k * n_ + i, d) * y(n_ + k, 0);
+      for (std::size_t j = 0; j < n_; ++j) subtract(sum, s.slope(i * n_ + j, d), y(j, 0));
+      for (std::size_t k = 0; k < m_; ++k) subtract(sum, s.slope(A0 + k * n_ + i, d), force[k]);
       rates(i, d) = sum;
     }
     for (std::size_t k = 0; k < m_; ++k) {
       T sum = -s.slope(gamma0 + k, d);
-      for (std::size_t j = 0; j < n_; ++j) sum = sum - s.slope(A0 + k * n_ + j, d) * y(j, 0);
+      for (std::size_t j = 0; j < n_; ++j) subtract(sum, s.slope(A0 + k * n_ + j, d), y(j, 0));
       rates(n_ + k, d) = sum;
     }
   }
@@ -150,8 +170,10 @@ void Flow::differentiate(const Sloped<T>& s, const State<T>& z, Field<T>& field)
 }
 
 template <class T>
-void Flow::constrain(const Sloped<T>& s, const State<T>& z, const Setting<T>& setting, Field<T>& field) const {
-  const std::size_t A0 = n_ * n_ + n_, b0 = A0 + m_ * n_ + m_, psi0 = b0 + m_, width = 2 * n_ + 1;
+void Flow::constrain(const Sloped<T>& s, const Places& places, const State<T>& z, const Setting<T>& setting,
+                     Field<T>& field) const {
+  const auto [A0, b0, psi0] = places;
+  const std::size_t width = 2 * n_ + 1;
   const std::size_t h = holonomic_.size(), rows = on_positions() + m_;
   field.phi = Matrix<T>(rows, 1);
   field.phi_slope = Matrix<T>(rows, width);
@@ -173,7 +195,8 @@ void Flow::constrain(const Sloped<T>& s, const State<T>& z, const Setting<T>& se
     for (std::size_t i = 0; i < n_; ++i) {
       field.phi(row, 0) = field.phi(row, 0) + s.value[A0 + k * n_ + i] * z[n_ + i];
       for (std::size_t d = 0; d < width; ++d)
-        field.phi_slope(row, d) = field.phi_slope(row, d) + s.slope(A0 + k * n_ + i, d) * z[n_ + i];
+        if (!is_zero(s.slope(A0 + k * n_ + i, d)))
+          field.phi_slope(row, d) = field.phi_slope(row, d) + s.slope(A0 + k * n_ + i, d) * z[n_ + i];
       field.phi_slope(row, n_ + i) = field.phi_slope(row, n_ + i) + s.value[A0 + k * n_ + i];
     }
   }
@@ -181,6 +204,7 @@ void Flow::constrain(const Sloped<T>& s, const State<T>& z, const Setting<T>& se
 
 template Field<double> Flow::at(const State<double>&, const Setting<double>&) const;
 template Field<Precise> Flow::at(const State<Precise>&, const Setting<Precise>&) const;
+template Field<Precise> Flow::constraints_at(const State<Precise>&, const Setting<Precise>&) const;
 template std::vector<double> Flow::leaf(const State<double>&, const Setting<double>&) const;
 template std::vector<Precise> Flow::leaf(const State<Precise>&, const Setting<Precise>&) const;
 template std::function<double(const Symbol&)> Flow::lookup(const State<double>&, const Setting<double>&) const;

@@ -49,6 +49,10 @@ class Flow {
   template <class T>
   Field<T> at(const State<T>& z, const Setting<T>& setting) const;
 
+  /// Of a field the constraints alone.
+  template <class T>
+  Field<T> constraints_at(const State<T>& z, const Setting<T>& setting) const;
+
   /// Values of the integrals that make the leaf of a state.
   template <class T>
   std::vector<T> leaf(const State<T>& z, const Setting<T>& setting) const;
@@ -68,8 +72,12 @@ class Flow {
  private:
   template <class T>
   void differentiate(const Sloped<T>& s, const State<T>& z, Field<T>& field) const;
+  struct Places {
+    std::size_t A, b, psi;
+  };
   template <class T>
-  void constrain(const Sloped<T>& s, const State<T>& z, const Setting<T>& setting, Field<T>& field) const;
+  void constrain(const Sloped<T>& s, const Places& places, const State<T>& z, const Setting<T>& setting,
+                 Field<T>& field) const;
 
   const system::EquationSystem& system_;
   std::size_t n_, m_, inputs_;
@@ -82,7 +90,7 @@ class Flow {
   std::vector<std::size_t> place_;  // of a coordinate of the model in z
   std::vector<Symbol> directions_;  // z, then inputs
   bool uses_integrals_ = false;
-  std::unique_ptr<Tape> tape_, leaf_tape_;
+  std::unique_ptr<Tape> tape_, constraint_tape_, leaf_tape_;
 };
 
 }  // namespace eomgen::linear

@@ -43,9 +43,10 @@ class Elimination {
     Matrix<T> X(a_.cols, B.cols);
     for (std::size_t c = 0; c < B.cols; ++c) {
       std::vector<T> y(rank_);
-      for (std::size_t i = 0; i < rank_; ++i) {
-        y[i] = B(row_[i], c) * row_scale_[row_[i]];
-        for (std::size_t k = 0; k < i; ++k) subtract(y[i], at(i, k), y[k]);
+      for (std::size_t i = 0; i < rank_; ++i) y[i] = B(row_[i], c) * row_scale_[row_[i]];
+      for (std::size_t k = 0; k < rank_; ++k) {
+        if (is_zero(y[k])) continue;
+        for (std::size_t i = k + 1; i < rank_; ++i) subtract(y[i], at(i, k), y[k]);
       }
       back(y);
       for (std::size_t i = 0; i < rank_; ++i) X(col_[i], c) = y[i] * column_scale_[col_[i]];
@@ -104,23 +105,25 @@ class Elimination {
   }
 
   void reduce(const T& cutoff) {
+    largest_.assign(a_.rows, T(0));
+    for (std::size_t i = 0; pivots_ == Pivots::complete && i < a_.rows; ++i) largest_[row_[i]] = largest_in(i, 0);
     while (rank_ < std::min(a_.rows, a_.cols) && eliminate(cutoff)) ++rank_;
   }
 
   bool eliminate(const T& cutoff) {
     const std::size_t k = rank_;
-    std::size_t pi = k, pj = k;
+    const bool complete = pivots_ == Pivots::complete;
+    std::size_t pi = k;
     T largest(0);
     for (std::size_t i = k; i < a_.rows; ++i) {
-      const bool diagonal = pivots_ == Pivots::diagonal;
-      for (std::size_t j = diagonal ? i : k; j < (diagonal ? i + 1 : a_.cols); ++j) {
-        const T size = magnitude(at(i, j));
-        if (!(size > largest)) continue;
-        largest = size;
-        pi = i, pj = j;
-      }
+      const T size = complete ? largest_[row_[i]] : magnitude(at(i, i));
+      if (!(size > largest)) continue;
+      largest = size;
+      pi = i;
     }
     if (!(largest > cutoff)) return false;
+    std::size_t pj = complete ? k : pi;
+    while (complete && magnitude(at(pi, pj)) < largest) ++pj;
     std::swap(row_[k], row_[pi]);
     std::swap(col_[k], col_[pj]);
     std::vector<std::size_t> filled;
@@ -132,8 +135,18 @@ class Elimination {
       const T factor = at(i, k) / at(k, k);
       at(i, k) = factor;
       for (const std::size_t j : filled) at(i, j) = at(i, j) - factor * at(k, j);
+      if (complete) largest_[row_[i]] = largest_in(i, k + 1);
     }
     return true;
+  }
+
+  /// Of a row, from a column on.
+  T largest_in(std::size_t i, std::size_t from) const {
+    T largest(0);
+    for (std::size_t j = from; j < a_.cols; ++j) {
+      if (const T& x = at(i, j); !is_zero(x)) largest = std::max(largest, magnitude(x));
+    }
+    return largest;
   }
 
   static void subtract(T& sum, const T& a, const T& b) {
@@ -142,14 +155,16 @@ class Elimination {
 
   void back(std::vector<T>& y) const {
     for (std::size_t i = rank_; i-- > 0;) {
-      for (std::size_t k = i + 1; k < rank_; ++k) subtract(y[i], at(i, k), y[k]);
+      if (is_zero(y[i])) continue;
       y[i] = y[i] / at(i, i);
+      for (std::size_t k = 0; k < i; ++k) subtract(y[k], at(k, i), y[i]);
     }
   }
 
   Matrix<T> a_;
   std::vector<std::size_t> row_, col_;
   std::vector<T> row_scale_, column_scale_;
+  std::vector<T> largest_;  // of what is left of each row: it changes with the row alone
   Pivots pivots_;
   std::size_t rank_ = 0;
 };

@@ -52,6 +52,7 @@ Json to_json(const analysis::SteadyMotions& found, const Options& options) {
           {"held_in_vain", found.search.released},
           {"starts", options.starts},
           {"converged", found.search.converged},
+          {"further_members", found.search.further_members},
           {"refused", found.search.refused},
           {"interrupted", found.search.interrupted},
           {"certificate", found.problem.certificate}};
@@ -87,6 +88,10 @@ std::string text(const analysis::SteadyMotions& found, const Options& options) {
                                        : fmt::format("{} equilibria and steady motions", found.points.size()));
   for (const analysis::HeldValue& h : found.held) out += fmt::format("  held: {} = {} ({})\n", h.name, h.value, h.why);
   for (const analysis::SteadyMotion& point : found.points) out += text(point, found.problem.flow->names());
+  if (found.search.further_members > 0) {
+    out += fmt::format("\nfurther           {} of the starts led to further members of families, which are not shown\n",
+                       found.search.further_members);
+  }
   if (found.search.refused > 0) {
     out += fmt::format("\nrefused           {} of the starts ended where the equations have no slope: {}\n",
                        found.search.refused, found.search.reason);
