@@ -24,6 +24,7 @@ using symbolic::SymbolKind;
 
 constexpr int digits = 50;
 constexpr int steps = 120;  // Newton's steps halve the distance where rows become dependent, until that is `dependent`
+constexpr double dependent = 1e-6;     // what is nearer turns steps aside
 constexpr int closed_digits = 38;      // |psi| of a configuration
 constexpr double longest_step = 0.7;   // of a coordinate, in units of its scale: angles of 40 degrees
 constexpr double stride = 0.25;        // from one configuration of a motion to the next, likewise
@@ -36,10 +37,25 @@ constexpr double plainly_independent = 1e-7;  // a row's part outside the span o
 cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 cl_R exact(double value) { return cln::cl_float(numeric::exact(value), cln::float_format(digits)); }
 
-cl_R dot(const Row& a, const Row& b) {
-  cl_R sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum = sum + a[i] * b[i];
+using numeric::is_zero;
+using std::sqrt;
+
+template <class T>
+T dot(const std::vector<T>& a, const std::vector<T>& b) {
+  T sum(0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!is_zero(a[i]) && !is_zero(b[i])) sum = sum + a[i] * b[i];  // most entries are 0
+  }
   return sum;
+}
+
+std::vector<std::vector<double>> rounded(const std::vector<Row>& rows) {
+  const cl_R nothing = small(300);
+  std::vector<std::vector<double>> result(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    for (const cl_R& x : rows[k]) result[k].push_back(cln::abs(x) < nothing ? 0 : cln::double_approx(x));
+  }
+  return result;
 }
 
 bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text == "1"; }
@@ -57,38 +73,51 @@ std::vector<double> scales(const Mechanics& m, const std::vector<cl_R>& q) {
   return result;
 }
 
-}  // namespace
-
-Selection select_independent(const std::vector<Row>& rows, const std::vector<Turn>& turns, const cl_R& tolerance) {
-  // A row that only the last step towards the constraints keeps from being 0.
-  const cl_R vanishing = small(25);
-  std::vector<Row> left = rows;
-  std::vector<cl_R> length;
-  for (const Row& row : rows) length.push_back(cln::sqrt(dot(row, row)));
+/// `vanishing`: the length of a row that only the last step towards the constraints keeps from being 0.
+template <class T>
+Selection selected(const std::vector<std::vector<T>>& rows, const std::vector<Turn>& turns, const T& tolerance,
+                   const T& vanishing, const T& hair) {
+  std::vector<std::vector<T>> left = rows;
+  std::vector<T> length, outside;  // of each row, and of what is outside the span of those that are used
+  for (const auto& row : rows) length.push_back(sqrt(dot(row, row)));
+  outside = length;
   std::vector<bool> used(rows.size(), false);
   Selection result;
   for (const Turn turn : {Turn::always, Turn::first, Turn::last}) {
     for (;;) {
       std::optional<std::size_t> best;
-      cl_R largest = tolerance;
+      T largest = tolerance;
       for (std::size_t k = 0; k < rows.size(); ++k) {
         if (used[k] || turns[k] != turn || length[k] < vanishing) continue;
-        const cl_R part = cln::sqrt(dot(left[k], left[k])) / length[k];
+        const T part = outside[k] / length[k];
         // Equal parts of different rows differ by rounding: the first of them wins by a hair.
-        if (part > largest * cl_R(cln::cl_RA(1000001) / 1000000)) largest = part, best = k;
+        if (part > largest * hair) largest = part, best = k;
       }
       if (!best) break;
       used[*best] = true;
-      const Row chosen = left[*best];
-      const cl_R square = dot(chosen, chosen);
-      for (Row& row : left) {
-        const cl_R factor = dot(row, chosen) / square;
-        for (std::size_t i = 0; i < row.size(); ++i) row[i] = row[i] - factor * chosen[i];
+      const std::vector<T> chosen = left[*best];
+      const T square = dot(chosen, chosen);
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (used[k]) continue;
+        std::vector<T>& row = left[k];
+        const T along = dot(row, chosen);
+        if (is_zero(along)) continue;
+        const T factor = along / square;
+        for (std::size_t i = 0; i < row.size(); ++i) {
+          if (!is_zero(chosen[i])) row[i] = row[i] - factor * chosen[i];
+        }
+        outside[k] = sqrt(dot(row, row));
       }
     }
   }
   for (std::size_t k = 0; k < rows.size(); ++k) (used[k] ? result.kept : result.rest).push_back(k);
   return result;
+}
+
+}  // namespace
+
+Selection select_independent(const std::vector<Row>& rows, const std::vector<Turn>& turns, const cl_R& tolerance) {
+  return selected<cl_R>(rows, turns, tolerance, small(25), cl_R(cln::cl_RA(1000001) / 1000000));
 }
 
 Closure::Closure(Mechanics& m, Lowering& lower) : m_(m), lower_(lower) {
@@ -304,7 +333,6 @@ bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
   const std::size_t n = m_.q.size(), count = psi_.size();
   const std::vector<double> scale = scales(m_, at.q);
   const std::vector<Turn> none(count, Turn::last);
-  const cl_R dependent = small(6);
   std::vector<Ref> roots = psi_;
   roots.insert(roots.end(), gradient_.begin(), gradient_.end());
   for (int step = 0; step < steps; ++step) {
@@ -315,7 +343,7 @@ bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
         if (moves[i]) rows[k][i] = v[count + k * n + i] * exact(scale[i]);
       }
     }
-    const Selection chosen = select_independent(rows, none, dependent);
+    const Selection chosen = selected<double>(rounded(rows), none, dependent, 1e-25, 1.000001);
     cl_R size = 0, rest = 0;
     for (const std::size_t k : chosen.kept) size = cln::max(size, cln::abs(v[k]));
     for (const std::size_t k : chosen.rest) {
@@ -339,7 +367,10 @@ bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
     Row move(n, exact(0));
     cl_R longest = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t a = 0; a < r; ++a) move[i] = move[i] - rows[chosen.kept[a]][i] * y[a];
+      for (std::size_t a = 0; a < r; ++a) {
+        const cl_R& slope = rows[chosen.kept[a]][i];
+        if (!cln::zerop(slope)) move[i] = move[i] - slope * y[a];
+      }
       longest = cln::max(longest, cln::abs(move[i]));
     }
     const cl_R shorten = longest > exact(longest_step) ? exact(longest_step) / longest : exact(1);
