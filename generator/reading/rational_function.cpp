@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <set>
 
+#include "reading/exact_division.hpp"
+
 namespace eomgen::reading {
 namespace {
 
@@ -72,6 +74,16 @@ void add_factor(Factorisation& result, Sum factor, long exponent) {
   result.factors.emplace_back(std::move(factor), exponent);
 }
 
+/// c x m + rest, where the atom x is in no other term: what divides that divides m, and nothing but 1 divides all
+/// terms.
+bool is_irreducible(const Sum& primitive) {
+  std::map<AtomPtr, int, AtomLess> times;
+  for (const auto& [monomial, coefficient] : primitive.terms()) {
+    for (const Factor& factor : monomial) times[factor.atom] += is_one(factor.exponent) ? 1 : 2;
+  }
+  return std::any_of(times.begin(), times.end(), [](const auto& atom) { return atom.second == 1; });
+}
+
 }  // namespace
 
 Factorisation factorise(const Sum& whole) {
@@ -82,9 +94,14 @@ Factorisation factorise(const Sum& whole) {
     result.sign = -1;
     primitive = -primitive;
   }
+  if (primitive.is_number()) return result;
+  if (primitive.size() <= factored_terms && is_irreducible(primitive)) {
+    work::spend(operations_of_reading(primitive) + 2 * primitive.size());
+    result.factors.emplace_back(primitive, 1);
+    return result;
+  }
   Letters letters;
   const std::optional<ex> polynomial = primitive.size() > factored_terms ? std::nullopt : letters.polynomial(primitive);
-  if (primitive.is_number()) return result;
   if (!polynomial) {
     result.factors.emplace_back(primitive, 1);
     return result;
@@ -110,13 +127,7 @@ Factorisation factorise(const Sum& whole) {
 std::optional<Sum> exact_quotient(const Sum& a, const Sum& b) {
   if (a.is_zero()) return a;
   if (a.size() > divided_terms || b.size() > divided_terms) return std::nullopt;
-  const Content common_a = content(a), common_b = content(b);
-  Letters letters;
-  const std::optional<ex> x = letters.polynomial(divide(a, common_a)), y = letters.polynomial(divide(b, common_b));
-  ex q;
-  if (!x || !y || !GiNaC::divide(*x, *y, q)) return std::nullopt;
-  const Sum front(common_a.monomial, common_a.number);
-  return front * multiply(inverse(common_b.monomial), {}) * letters.sum(q.expand()) * Sum(cln::recip(common_b.number));
+  return divide_exactly(a, b);
 }
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Quotients of small polynomials: GiNaC factors and divides, on fresh symbols in place of our atoms.
+// Quotients of small polynomials; GiNaC factors, on fresh symbols in place of our atoms.
 #pragma once
 
 #include <optional>

@@ -112,6 +112,43 @@ TEST_CASE("quotients: common factors cancel, denominators are factored") {
   CHECK(parts.factors[0].second == 2);
 }
 
+TEST_CASE(
+    "exact quotients: found where there is one, beside roots and divisors that all terms have, and nowhere else") {
+  System s = some_symbols();
+  const Sum x = s.symbol("x"), y = s.symbol("y"), a = s.symbol("a"), m = s.symbol("m"), k = s.symbol("k");
+  const Sum u = square(x) + square(y), v = power(x, 4) + square(y);
+  const Sum root = power(u, reading::Rational(-1) / 2), other = power(v, reading::Rational(-1) / 2);
+  const auto divides = [](const Sum& p, const Sum& q) {
+    const std::optional<Sum> found = reading::exact_quotient(p * q, q);
+    return found && *found == p;
+  };
+  for (const Sum& p : {x, x - Sum(2) * y, m * u + k * v, u * v + sin(a) * x + Sum(7), power(x + y + k, 5)}) {
+    for (const Sum& q : {u, Sum(3) * x * y - v, x + m, square(sin(a)) - k * u, Sum(reading::Rational(2) / 3) * x}) {
+      CHECK(divides(p, q));
+      CHECK(reading::exact_quotient(p * q + k, q).has_value() == (q.size() == 1));  // one term divides everything
+    }
+  }
+  CHECK(reading::exact_quotient(x * u * other, u) == x * other);
+  CHECK(reading::exact_quotient(x * u * power(m, -2) * root, v) == std::nullopt);
+  CHECK(reading::exact_quotient(power(u, reading::Rational(1) / 2) * x + square(y) * x * root + power(x, 3) * root,
+                                u) == Sum(2) * x * root);  // sqrt(u) = u/sqrt(u), multiplied out
+  CHECK(reading::exact_quotient(x + m, u) == std::nullopt);
+  CHECK(reading::exact_quotient(Sum(), u) == Sum());
+  CHECK(reading::exact_quotient(over(u, x), u) == power(x, -1));
+}
+
+TEST_CASE("factors: sums with an atom that stands in one term alone have none, others are found") {
+  System s = some_symbols();
+  const Sum x = s.symbol("x"), y = s.symbol("y"), m = s.symbol("m"), k = s.symbol("k"), a = s.symbol("a");
+  const auto count = [](const Sum& sum) { return reading::factorise(sum).factors.size(); };
+  CHECK(count(m * square(x) + k * y) == 1);
+  CHECK(count(Sum(4) * m * k * square(x) + Sum(6) * m * y * x) == 1);  // beside the content m x
+  CHECK(count(k + m * square(x + y)) == 1);
+  CHECK(count((k + m * x) * (k - sin(a) * y)) == 2);
+  CHECK(count((x + y) * (x - y) * m) == 2);
+  CHECK(count(m * k + m * x + y * k + y * x) == 2);
+}
+
 TEST_CASE("zero test: proven, numerical, no") {
   System s = some_symbols();
   const Sum a = s.symbol("a"), b = s.symbol("b"), x = s.symbol("x");
