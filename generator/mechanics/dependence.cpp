@@ -89,6 +89,18 @@ bool holds_at(const std::vector<Row>& rows, const Selection& chosen) {
               "parameter for both");
 }
 
+[[noreturn]] void refuse_open(const Mechanics& m, const Closure& closure) {
+  const bool known = closure.gap() > 0;
+  const std::uint32_t k = known ? closure.gap_at() : m.active.back();
+  throw Error(
+      "mechanics", where(m, k),
+      fmt::format(
+          "there are more constraints than coordinates, and no configuration is found in which all hold{}",
+          known ? fmt::format(": '{}' is off by {:.2g} where the others do", m.constraints[k].label, closure.gap())
+                : ""),
+      "give the default scene a start or a `guess` near one, if constraints repeat one another; else remove one");
+}
+
 /// What moves by prescription has to do so alike in all equations that repeat one another.
 void require_same_rates(const Mechanics& m, const Closure& closure, const Bound& of, const Selection& chosen,
                         const Configuration& at) {
@@ -321,6 +333,7 @@ void drop_dependent_equations(Mechanics& m, Lowering& lower) {
   if (!start) {
     const bool exact = joints || m.freedom() <= 0;
     if (exact && closure.gap() > 0 && closure.gap() < looks_redundant) refuse_inexact(m, closure);
+    if (m.freedom() < 0) refuse_open(m, closure);
     return;  // no configuration: the start of a run will tell
   }
   const bool regular = is_regular_at(m, closure, *start);

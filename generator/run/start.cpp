@@ -79,6 +79,22 @@ class StartSolver {
     }
   }
 
+  /// Of four Euler parameters three are given, and are shorter than 1.
+  bool follows_from_unit(std::uint32_t f) const {
+    const model::Frame& frame = p_.mechanics.model->frames[f];
+    if (frame.rotation != "euler_parameters") return false;
+    double square = 0;
+    std::size_t given = 0;
+    for (const model::NodeId entry : frame.entries) {
+      const model::Node& node = p_.mechanics.model->arena[entry];
+      const auto found = p_.given.find({node.index, 0});
+      if (node.op != model::Op::coordinate || found == p_.given.end()) continue;
+      ++given;
+      square += found->second.value * found->second.value;
+    }
+    return given + 1 == frame.entries.size() && square < 1 - start_tolerance;
+  }
+
   // Of a body that rolls or slides the position follows from the attitude, not the other way round: angles and their
   // rates that are not given are 0. So are those of bodies in joints, unless joints close a loop from which they
   // follow.
@@ -90,7 +106,7 @@ class StartSolver {
       for (const model::NodeId entry : model.frames[f].entries) {
         const model::Node& node = model.arena[entry];
         if (node.op != model::Op::coordinate) continue;
-        if (!p_.guess.contains({node.index, 0})) held.insert({node.index, 0});
+        if (!p_.guess.contains({node.index, 0}) && !follows_from_unit(f)) held.insert({node.index, 0});
         if (!turns && !p_.guess.contains({node.index, 1})) held.insert({node.index, 1});
       }
     }
@@ -188,12 +204,24 @@ class StartSolver {
       p_.solved.push_back(open + " (chosen: the constraints can be met in several ways)");
   }
 
+  // What no constraint feels there stays where it is.
+  void move_beside(std::uint8_t order, const std::vector<std::size_t>& free, double offset) {
+    if (offset == 0) return;
+    for (const std::size_t i : free) rows_.value({s_.free[i], order}) += offset;
+    VectorXd residual;
+    MatrixXd A;
+    rows_.linearise(order, residual, A);
+    for (const std::size_t i : free) {
+      if (A.col(static_cast<Eigen::Index>(i)).isZero(0)) rows_.value({s_.free[i], order}) -= offset;
+    }
+  }
+
   // Tried from the guess (or 0), then from points beside it: at 0 a gradient may vanish (x^2 + y^2 - L^2).
   void newton(std::uint8_t order, const std::vector<std::size_t>& free) {
     const std::vector<double> start = order == 0 ? p_.q : p_.qdot;
     for (const double offset : {0.0, 1.0, -1.0, 0.1, 10.0}) {
       (order == 0 ? p_.q : p_.qdot) = start;
-      for (const std::size_t i : free) rows_.value({s_.free[i], order}) += offset;
+      move_beside(order, free, offset);
       if (!iterate(order, free, offset == 0)) continue;  // beside it nothing that stays would be 0
       // Only what the constraints fix may follow from them; the rest would be a guess of ours.
       for (const std::size_t i : free) {

@@ -173,3 +173,25 @@ initial = { x = -3, y = 2 }
   const ChildResult set = expect(2, folder, {"run", "slack.toml", "--set", "initial_y=1"});
   CHECK(contains(set.err, "'initial_y' is the start value of a coordinate: it cannot be set"));
 }
+
+TEST_CASE("of Euler parameters the fourth follows from three that are given, and what no constraint feels stays 0") {
+  const Folder folder;
+  const std::string body =
+      "format = 1\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { disk = 0.2 }\nposition = { cartesian = [\"x\", \"y\", "
+      "\"z\"] }\nrotation = { euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }\n[[force]]\ngravity = "
+      "\"-9.81*E3\"\n";
+  const std::string scene = "[scene.default]\ninitial = { e0 = 0.999, e1 = 0.02, e2 = 0.01 }\n";
+  folder.write("free.toml", body + scene);
+  folder.write("rolls.toml", body +
+                                 "[[constraint]]\nname = \"c\"\nrolling = { body = \"B\", at = \"-0.2*E3\", on = "
+                                 "\"ground\" }\n" +
+                                 scene);
+  for (const char* name : {"free.toml", "rolls.toml"}) {
+    CAPTURE(name);
+    const Json start = document(folder, {"run", name, "--t-end", "0"})["final"];
+    CHECK(start["e3"].get<double>() == doctest::Approx(std::sqrt(1 - 0.999 * 0.999 - 0.0005)).epsilon(1e-12));
+    CHECK(start["x"] == 0.0);
+    CHECK(start["y"] == 0.0);
+    CHECK(start["z"].get<double>() == (std::string(name) == "free.toml" ? 0 : doctest::Approx(0.2)));
+  }
+}

@@ -104,6 +104,12 @@ TEST_CASE("Bennett's loop moves, though scalar products say more than it has coo
   CHECK(built.m.freedom() == 1);
 }
 
+TEST_CASE("more constraints than coordinates, of which no configuration is found, are refused") {
+  std::string open = bennett_by_products();
+  open.replace(open.find("b = \"a*sin"), 28, "b = \"3*a\"");
+  CHECK(has(refusal(open), "no configuration is found in which all hold"));
+}
+
 TEST_CASE("three parallel cranks move a platform if they are equal for all values of the parameters") {
   const Built built(cranks({"L", "L", "L"}, "L = 1\n"));
   CHECK(built.m.freedom() == 1);

@@ -19,6 +19,7 @@ using Json = nlohmann::json;
 const std::vector<std::string>& refusals() {
   static const std::vector<std::string> texts{
       "nothing is left to move",      // locked
+      "more constraints than",        // a loop that cannot be closed
       "contradict",                   // constraints that cannot hold together
       "follows from",                 // one that says what others say
       "the start breaks constraint",  // an assembly that cannot be closed from its guess
