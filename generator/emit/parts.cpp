@@ -14,7 +14,7 @@ constexpr std::size_t longest_function = 3000, longest_part = 1000;
 std::vector<std::size_t> parts_of(const program::Function& function) {
   const auto& code = function.code;
   std::vector<std::size_t> part(code.size(), 0);
-  if (code.size() <= longest_function || function.name == "taylor_next") return part;
+  if (code.size() <= longest_function) return part;
   std::size_t now = 0;
   for (std::size_t i = 0, since = 0; i < code.size(); ++i, ++since) {
     const bool together = i > 0 && code[i].pack != 0 && code[i].pack == code[i - 1].pack;

@@ -64,6 +64,8 @@ TEST_CASE(
   const std::string text{std::istreambuf_iterator<char>(written), {}};
   CHECK(text.find("long_chain_rhs_part2(") != std::string::npos);
   CHECK(text.find("long_chain_taylor_start_part2(") != std::string::npos);
+  REQUIRE(e.program.taylor->next.code.size() > 3000);
+  CHECK(text.find("long_chain_taylor_next_part2(") != std::string::npos);
   std::ofstream(use) << "#include \"long_chain.hpp\"\n#include \"long_chain.h\"\n"
                         "int main() { return eom::long_chain::selftest() + long_chain_selftest(); }\n";
   CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O1", "-c", "-o", object}, {c}) == "");
