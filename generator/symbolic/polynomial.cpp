@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "symbolic/small_numbers.hpp"
 #include "work.hpp"
 
 namespace eomgen::symbolic {
@@ -15,28 +16,11 @@ constexpr long highest_expanded_power = 8;
 void add_term(Polynomial& p, const Monomial& m, const Rational& coefficient) {
   const auto [place, inserted] = p.try_emplace(m, coefficient);
   if (inserted) return;
-  place->second = place->second + coefficient;
-  if (cln::zerop(place->second)) p.erase(place);
+  place->second = plus(place->second, coefficient);
+  if (is_zero(place->second)) p.erase(place);
 }
 
-Monomial times(const Monomial& a, const Monomial& b) {
-  Monomial result;
-  auto i = a.begin();
-  auto j = b.begin();
-  while (i != a.end() || j != b.end()) {
-    if (j == b.end() || (i != a.end() && i->first < j->first)) {
-      result.push_back(*i++);
-    } else if (i == a.end() || j->first < i->first) {
-      result.push_back(*j++);
-    } else {
-      const long exponent = i->second + j->second;
-      if (exponent != 0) result.emplace_back(i->first, exponent);
-      ++i;
-      ++j;
-    }
-  }
-  return result;
-}
+Monomial product_of(const Monomial& a, const Monomial& b) { return product_of_powers<&Power::atom>(a, b); }
 
 }  // namespace
 
@@ -99,7 +83,7 @@ Expander::Maybe Expander::expand_node(Ref r) {
       Maybe power = *arg(0);
       if (power->size() == 1) {
         Monomial m = power->begin()->first;
-        for (auto& factor : m) factor.second *= node.payload;
+        for (Power& factor : m) factor.exponent *= node.payload;
         return Polynomial{{m, cln::expt(power->begin()->second, node.payload)}};
       }
       for (std::int32_t i = 1; i < node.payload && power; ++i) power = product(*power, *arg(0));
@@ -114,7 +98,7 @@ Expander::Maybe Expander::product(const Polynomial& a, const Polynomial& b) cons
   if (effort_ != nullptr && !effort_->take(a.size() * b.size())) return std::nullopt;
   Polynomial result;
   for (const auto& [m, c] : a) {
-    for (const auto& [n, d] : b) add_term(result, times(m, n), c * d);
+    for (const auto& [n, d] : b) add_term(result, product_of(m, n), times(c, d));
   }
   if (result.size() > budget_) result = reduce(std::move(result));
   if (result.size() > budget_) return std::nullopt;
@@ -127,7 +111,7 @@ Expander::Maybe Expander::quotient(const Polynomial& a, const Polynomial& b) {
   Polynomial inverse;
   if (divisor.size() == 1) {
     Monomial m = divisor.begin()->first;
-    for (auto& factor : m) factor.second = -factor.second;
+    for (Power& factor : m) factor.exponent = -factor.exponent;
     inverse.emplace(std::move(m), cln::recip(divisor.begin()->second));
   } else {
     const Ref denominator = rebuild(divisor);
@@ -167,22 +151,19 @@ std::optional<Polynomial> Expander::replace_square(const Polynomial& p, Ref squa
   Polynomial result;
   bool any = false;
   for (const auto& [m, c] : p) {
-    const auto factor = std::find_if(m.begin(), m.end(), [&](const auto& f) { return f.first == square; });
-    if (factor == m.end() || factor->second < 2) {
+    const auto factor = std::find_if(m.begin(), m.end(), [&](const Power& f) { return f.atom == square; });
+    if (factor == m.end() || factor->exponent < 2) {
       add_term(result, m, c);
       continue;
     }
     any = true;
-    const long pairs = factor->second / 2;
-    Monomial rest = m;
-    auto& exponent = rest[static_cast<std::size_t>(factor - m.begin())].second;
-    exponent -= 2 * pairs;
-    if (exponent == 0) rest.erase(rest.begin() + (factor - m.begin()));
+    const std::int64_t pairs = factor->exponent / 2;
+    const Monomial rest = product_of(m, Monomial{{square, -2 * pairs}});
     // (1 - other^2)^pairs by the binomial theorem
     Rational binomial = 1;
-    for (long k = 0; k <= pairs; ++k) {
+    for (std::int64_t k = 0; k <= pairs; ++k) {
       const Monomial even = k == 0 ? Monomial{} : Monomial{{other, 2 * k}};
-      add_term(result, times(rest, even), c * binomial);
+      add_term(result, product_of(rest, even), c * binomial);
       binomial = binomial * Rational(-(pairs - k)) / Rational(k + 1);
     }
     if (result.size() > 4 * budget_) return std::nullopt;
@@ -228,13 +209,14 @@ Ref Expander::rebuild_monomial(const Monomial& m, const Rational& coefficient) {
 // Factors that all terms share are pulled out in front.
 Ref Expander::rebuild(const Polynomial& p) {
   if (p.empty()) return dag_.zero();
-  std::map<Ref, long> common;
+  std::map<Ref, std::int64_t> common;
   for (const auto& [r, exponent] : p.begin()->first) common[r] = exponent;
   for (const auto& term : p) {
-    std::map<Ref, long> here(term.first.begin(), term.first.end());
+    std::map<Ref, std::int64_t> here;
+    for (const auto& [r, exponent] : term.first) here.emplace(r, exponent);
     for (auto& [r, exponent] : common) {
       const auto found = here.find(r);
-      exponent = std::min(exponent, found == here.end() ? 0L : found->second);
+      exponent = std::min(exponent, found == here.end() ? std::int64_t{0} : found->second);
     }
     for (const auto& [r, exponent] : here) {
       if (exponent < 0) common.try_emplace(r, 0).first->second = std::min(common[r], exponent);
@@ -243,11 +225,11 @@ Ref Expander::rebuild(const Polynomial& p) {
   Monomial front, inverse;
   for (const auto& [r, exponent] : common) {
     if (exponent == 0) continue;
-    front.emplace_back(r, exponent);
-    inverse.emplace_back(r, -exponent);
+    front.push_back({r, exponent});
+    inverse.push_back({r, -exponent});
   }
   Ref sum = dag_.zero();
-  for (const auto& [m, c] : p) sum = dag_.add(sum, rebuild_monomial(times(m, inverse), c));
+  for (const auto& [m, c] : p) sum = dag_.add(sum, rebuild_monomial(product_of(m, inverse), c));
   Ref result = rebuild_monomial(front, Rational(1));
   return dag_.mul(result, sum);
 }

@@ -3,18 +3,23 @@
 // whichever direction leaves fewer terms. In: a Ref. Out: a Ref of equal value, never more terms than the budget.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
 #include "symbolic/dag.hpp"
+#include "symbolic/short_list.hpp"
 
 namespace eomgen::symbolic {
 
-/// Atoms with their exponents (any sign), sorted by atom.
-using Monomial = std::vector<std::pair<Ref, long>>;
+/// Of an atom, with an exponent of any sign.
+struct Power {
+  Ref atom;
+  std::int64_t exponent = 1;
+  friend auto operator<=>(const Power&, const Power&) = default;
+};
+using Monomial = ShortList<Power, 4>;  // ascending by atom, none with exponent 0
 /// Coefficients are not zero.
 using Polynomial = std::map<Monomial, Rational>;
 
