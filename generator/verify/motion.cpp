@@ -55,7 +55,11 @@ Motion motion_at(const Judge& judge, const State& at) {
   for (std::size_t i = 0; i < size; ++i) {
     Real scale = 0;
     for (std::size_t k = 0; k < size; ++k) scale = scale + exact(solution.inverse[k][i]) * row_scale[k];
-    if (i < n) motion.scale.push_back(scale);
+    if (i >= n) continue;
+    // An acceleration that a constraint makes 0 is what remains where the terms of its own equation cancel.
+    const Real inertia = cln::abs(matrix[i * size + i]);
+    if (!cln::zerop(inertia)) scale = scale + row_scale[i] / inertia;
+    motion.scale.push_back(scale);
   }
   if (!judge.model().joints.empty()) {  // as of system_values
     Real largest = 0;

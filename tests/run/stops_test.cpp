@@ -166,3 +166,38 @@ initial = { x = 1, y = 2 }
   const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
   CHECK(std::abs(square - pull * pull) <= closed_form);  // and has no other part
 }
+
+TEST_CASE("stops: between a floor and a ceiling each bounces a ball by its own coefficient of restitution") {
+  // Where both touch forces are not determined: nothing that a run needs may be asked for there.
+  const test::Finished end = run_text("ball_between", R"toml(format = 1
+[parameters]
+m = 2
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "h"] }
+[[constraint]]
+name = "guide"
+velocity = "(1 + x^2)*x_dot - h_dot"
+[[constraint]]
+name = "floor"
+holonomic = "h"
+holds = "unilateral"
+restitution = 0.5
+[[constraint]]
+name = "ceiling"
+holonomic = "1 - h"
+holds = "unilateral"
+restitution = 0.25
+[scene.default]
+t = [0, 8]
+initial = { x = 0, h = 0.5, x_dot = 1 }
+)toml");
+  // Along h = 1/2 + x + x^3/3 the kinetic energy stays: m/2 h_dot^2 (1 + 1/(1 + x^2)^2).
+  CHECK(std::abs(end.final("x") + std::pow(end.final("x"), 3) / 3 + 0.5 - end.final("h")) <= closed_form);
+  CHECK(end.simulation.result.outcome == eom::Outcome::done);
+  const double x = end.final("x"), rate = end.final("x_dot");
+  const double energy = rate * rate * (1 + (1 + x * x) * (1 + x * x));  // over m/2
+  // Ceiling, floor: the speed is a quarter, then half of what it was; the third hit comes after t = 8.
+  CHECK(std::abs(energy - 2.0 / 16 / 4) <= closed_form);
+}

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "eom/hybrid/problem.hpp"
@@ -104,7 +105,8 @@ inline ConstraintRows::ConstraintRows(const Problem& problem)
 
 inline void ConstraintRows::start(double t, const double* x, const double* u) {
   if (integrals_.empty()) return;
-  problem_.code->outputs(t, x, problem_.parameters.data(), u, 0, y_.data());
+  const int code = problem_.code->outputs(t, x, problem_.parameters.data(), u, apart_mode(code_->contacts), y_.data());
+  if (code != 0) std::fill(y_.begin(), y_.end(), std::numeric_limits<double>::quiet_NaN());  // it says nothing then
   for (Integral& integral : integrals_) integral.constant = y_[integral.psi];
 }
 
@@ -147,7 +149,9 @@ inline int ConstraintRows::operator()(double t, const double* x, const double* u
     for (std::size_t i = 0; i < n_; ++i) A[row + rows * i] = apart ? 0 : A_[order_[k] + m * i];
   }
   if (!integrals_.empty() || !slips_.empty()) {
-    if (const int code = problem_.code->outputs(t, x, p, u, mode_, y_.data()); code != 0) return code;
+    // Neither integrals nor slips depend on forces.
+    const int code = problem_.code->outputs(t, x, p, u, apart_mode(code_->contacts), y_.data());
+    if (code != 0) return code;
     fill_integrals(x, psi, A, b);
     fill_slips(x, psi, A, b);
   }

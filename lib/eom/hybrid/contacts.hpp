@@ -32,6 +32,8 @@ class ContactModes {
   int mode() const { return switch_ ? switch_->mode : 0; }
   /// The mode of a start; what slides off at once is told.
   std::vector<ModeEvent> start(double t, std::span<double> x);
+  /// Not 0: what a start needs has no value there, by the codes of the ABI.
+  int start_code() const { return start_code_; }
   void watch(std::span<EventFunction> functions) const { switch_->watch(functions); }
   /// Makes the functions those that are watched; sizes of slips are kept in mind.
   void adjust(double* g);
@@ -96,6 +98,7 @@ class ContactModes {
   ContactVelocities velocities_;
   bool two_directions_ = false;      // some contact slides in two
   std::vector<double> restitution_;  // of each contact, at the start
+  int start_code_ = 0;               // of what they are computed from
   double largest_gap_ = 0;           // of contacts that are apart
   Changed changed_;
   Rhs rhs_;
@@ -155,15 +158,19 @@ inline std::vector<ModeEvent> ContactModes::start(double t, std::span<double> x)
   switch_.reset();  // of a run before: what is a force in this mode was a gap in that one
   largest_gap_ = 0;
   restitution_.assign(contacts.size(), 0.0);
-  if (two_directions_) velocities_.hold(t, x.data(), model_.inputs(t), 0);  // how much slip counts, before any is given
+  start_code_ = 0;
+  if (two_directions_) velocities_.hold(t, x.data(), model_.inputs(t));  // how much slip counts, before any is given
   std::vector<double> slip(contacts.size(), 0.0);
   std::array<bool, max_contacts> apart{};
+  int begins = 0;  // what can be left touches as the start says, all else sticks
   for (std::size_t j = 0; j < contacts.size(); ++j) {
     apart[j] = problem_.apart[j];
-    restitution_[j] = velocities_.restitution(t, x.data(), model_.inputs(t), j);
+    if (apart[j]) begins = with_contact_digit(begins, j, 3);
+    const int code = velocities_.restitution(t, x.data(), model_.inputs(t), j, restitution_[j]);
+    if (code != 0) start_code_ = code;
     rule_.restitution(j, restitution_[j]);
   }
-  if (functions_(t, x.data(), 0, g.data()) == 0) {
+  if (functions_(t, x.data(), begins, g.data()) == 0) {
     for (std::size_t j = 0; j < contacts.size(); ++j) {
       const double* const value = g.data() + contact_values * j;
       slip[j] = contacts[j].dimensions == 2 ? std::hypot(value[0], value[2]) : std::abs(value[0]);
@@ -186,7 +193,7 @@ inline std::vector<ModeEvent> ContactModes::start(double t, std::span<double> x)
 }
 
 inline void ContactModes::hold(double t, const double* x) {
-  if (two_directions_) velocities_.hold(t, x, model_.inputs(t), mode());
+  if (two_directions_) velocities_.hold(t, x, model_.inputs(t));
 }
 
 inline bool ContactModes::slow_slip(double t, const double* x, double h, bool now) {
@@ -204,8 +211,8 @@ inline bool ContactModes::slow_slip(double t, const double* x, double h, bool no
       for (std::size_t i = 0; i < k_.size(); ++i) middle_[i] = x[i] + h * k_[i];
       moved = true;
     }
-    const std::array<double, 2> here = velocities_.slip(t, x, model_.inputs(t), mode(), j);
-    const std::array<double, 2> there = velocities_.slip(t + h, middle_.data(), model_.inputs(t + h), mode(), j);
+    const std::array<double, 2> here = velocities_.slip(t, x, model_.inputs(t), j);
+    const std::array<double, 2> there = velocities_.slip(t + h, middle_.data(), model_.inputs(t + h), j);
     slow = std::hypot(here[0], here[1]) < steps * std::hypot(there[0] - here[0], there[1] - here[1]);
   }
   return slow;
@@ -215,7 +222,7 @@ inline bool ContactModes::slow_slip(double t, const double* x, double h, bool no
 /// direction is all but linear there.
 inline int ContactModes::Motion::stop(double& t, std::span<double> x, int mode, std::size_t j) const {
   const auto slip = [&](double at, const double* state) {
-    return self->velocities_.slip(at, state, self->model_.inputs(at), mode, j);
+    return self->velocities_.slip(at, state, self->model_.inputs(at), j);
   };
   const std::array<double, 2> w = slip(t, x.data());
   const double speed = std::hypot(w[0], w[1]);

@@ -37,10 +37,11 @@ class ContactVelocities {
   void tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
   void see_slip(double speed) { largest_slip_ = std::max(largest_slip_, speed); }
   /// A step begins at (t, x): how much slip in two directions counts there.
-  void hold(double t, const double* x, const double* u, int mode);
+  void hold(double t, const double* x, const double* u);
   double least_slip(std::size_t contact) const { return least_[contact]; }
-  std::array<double, 2> slip(double t, const double* x, const double* u, int mode, std::size_t contact);
-  double restitution(double t, const double* x, const double* u, std::size_t contact);
+  std::array<double, 2> slip(double t, const double* x, const double* u, std::size_t contact);
+  /// Into e; returns the code of the outputs.
+  int restitution(double t, const double* x, const double* u, std::size_t contact, double& e);
 
  private:
   int move(double t, std::span<double> x, const double* u);
@@ -67,10 +68,13 @@ inline double ContactVelocities::still() const {
   return std::max({rounding, atol_, std::max(share * rtol_, roundings) * largest_slip_});
 }
 
-inline double ContactVelocities::restitution(double t, const double* x, const double* u, std::size_t contact) {
+inline int ContactVelocities::restitution(double t, const double* x, const double* u, std::size_t contact, double& e) {
+  e = 0;
   if (!problem_.contacts[contact].restitution) return 0;
-  problem_.code->outputs(t, x, problem_.parameters.data(), u, 0, y_.data());
-  return y_[*problem_.contacts[contact].restitution];
+  const int mode = apart_mode(problem_.code->contacts);
+  const int code = problem_.code->outputs(t, x, problem_.parameters.data(), u, mode, y_.data());
+  if (code == 0) e = y_[*problem_.contacts[contact].restitution];
+  return code;
 }
 
 inline void ContactVelocities::forget() {
@@ -79,9 +83,10 @@ inline void ContactVelocities::forget() {
 }
 
 // Slip is known to the tolerance of the rates that it is made of.
-inline void ContactVelocities::hold(double t, const double* x, const double* u, int mode) {
+inline void ContactVelocities::hold(double t, const double* x, const double* u) {
   constexpr double tolerances = 30;
   const std::size_t n = problem_.code->free.size();
+  const int mode = apart_mode(problem_.code->contacts);
   if (problem_.code->outputs(t, x, problem_.parameters.data(), u, mode, y_.data()) != 0) return;
   for (std::size_t j = 0; j < least_.size(); ++j) {
     if (problem_.contacts[j].slip.size() != 2) continue;
@@ -98,9 +103,9 @@ inline void ContactVelocities::hold(double t, const double* x, const double* u, 
   }
 }
 
-inline std::array<double, 2> ContactVelocities::slip(double t, const double* x, const double* u, int mode,
-                                                     std::size_t contact) {
+inline std::array<double, 2> ContactVelocities::slip(double t, const double* x, const double* u, std::size_t contact) {
   std::array<double, 2> w{};
+  const int mode = apart_mode(problem_.code->contacts);
   if (problem_.code->outputs(t, x, problem_.parameters.data(), u, mode, y_.data()) != 0) return w;
   for (std::size_t a = 0; a < 2; ++a) w[a] = y_[problem_.contacts[contact].slip[a]];
   return w;

@@ -136,6 +136,10 @@ inline bool Integration::start(Result& total, const OnEvent& event) {
   for (const ModeEvent& told : parts_.start_contacts(total.t, total.x)) {
     if (event) event({told.t, told.kind, told.name}, total.x);
   }
+  if (parts_.contacts && parts_.contacts->start_code() != 0) {
+    total.outcome = outcome_of_abi_code(parts_.contacts->start_code());
+    return false;
+  }
   // It has to begin on the constraints, to rounding.
   if (requires_feature(problem_.solver, Feature::constraints) && parts_.projection(total.t, total.x.data()) != 0) {
     total.outcome = Outcome::inconsistent_start;

@@ -41,6 +41,16 @@ struct ContactShape {
   bool rolls = false;          // sticking is rolling
 };
 
+/// The mode in which all that can be left is apart and all else sticks. Forces are determined there; where everything
+/// touches they may not be, as of a ball between a floor and a ceiling, and functions have no values.
+template <class Contacts>
+int apart_mode(const Contacts& contacts) {
+  int mode = 0;
+  for (std::size_t j = 0; j < contacts.size(); ++j)
+    if (contacts[j].unilateral) mode = with_contact_digit(mode, j, 3);
+  return mode;
+}
+
 /// Whether a contact of this shape can be in a state.
 constexpr bool contact_allows(const ContactShape& shape, int digit) {
   const bool high = digit >= 3;
