@@ -80,8 +80,12 @@ class Search {
           rough_steady_state(flow_, symmetry_, spread_start(r_, symmetry_, turns_, k), rough_, *held_, targets);
       if (!rough.reason.empty()) result_.refuse(rough.reason, rough.z);
       if (!rough.found) continue;
+      State<double> named = rough.z;
+      name_plainly(named, rough_, 1e-8, [&](State<double>& at, const State<double>& other) {
+        if (is_rough_steady_state(flow_, symmetry_, other, rough_, *held_, targets)) at = other;
+      });
       State<Precise> z;
-      for (const double x : rough.z) z.push_back(number<Precise>(numeric::exact(x)));
+      for (const double x : named) z.push_back(number<Precise>(numeric::exact(x)));
       wrap(z);
       const auto known = std::find_if(seen.begin(), seen.end(), [&](const End& s) { return is_same(s.z, z); });
       if (known != seen.end()) {
@@ -194,37 +198,43 @@ class Search {
   }
 
   void normalise(State<Precise>& z) const {
+    name_plainly(z, r_.setting, tiny<Precise>(30),
+                 [this](State<Precise>& at, const State<Precise>& other) { take_if_steady(at, other); });
+    wrap(z);
+  }
+
+  /// One of the two names of each attitude; `take` puts another in its place where that is steady too.
+  template <class T, class Take>
+  void name_plainly(State<T>& z, const Setting<T>& setting, const T& nothing, const Take& take) const {
     for (const auto& e : r_.parameters) {
-      const auto first =
-          std::find_if(e.begin(), e.end(), [&](std::size_t i) { return magnitude(z[i]) > tiny<Precise>(30); });
-      if (first == e.end() || cln::plusp(z[*first])) continue;
-      State<Precise> other = z;
+      const auto first = std::find_if(e.begin(), e.end(), [&](std::size_t i) { return magnitude(z[i]) > nothing; });
+      if (first == e.end() || z[*first] > T(0)) continue;
+      State<T> other = z;
       for (const std::size_t i : e) {
         other[i] = -other[i];
         other[n_ + i] = -other[n_ + i];
       }
-      take_if_steady(z, other);
+      take(z, other);
     }
+    const T pi = number<T>(cln::pi(precise_format()));
     for (std::size_t k = 0; k < r_.euler.size(); ++k) {
-      const auto sign = [&](const State<Precise>& at) {
-        return regular_[k].values<Precise>(flow_.lookup(at, r_.setting))[0];
+      const auto sign = [&](const State<T>& at) {
+        return regular_[k].template values<T>(flow_.lookup(at, setting))[0];
       };
-      if (!cln::minusp(sign(z))) continue;
+      if (!(sign(z) < T(0))) continue;
       const auto& [a, b, c] = r_.euler[k].places;
-      const Precise pi = cln::pi(precise_format());
-      for (const Precise& middle : {Precise(0), pi}) {
-        State<Precise> other = z;
+      for (const T& middle : {T(0), pi}) {
+        State<T> other = z;
         other[a] = z[a] + pi;
         other[b] = middle - z[b];
         other[c] = z[c] + pi;
         other[n_ + b] = -z[n_ + b];
-        if (!cln::plusp(sign(other))) continue;
-        for (const std::size_t i : ignored_positions(symmetry_)) other[i] = r_.start[i];
-        take_if_steady(z, other);
+        if (!(sign(other) > T(0))) continue;
+        for (const std::size_t i : ignored_positions(symmetry_)) other[i] = number<T>(r_.start[i]);
+        take(z, other);
         break;
       }
     }
-    wrap(z);
   }
 
   // A name of the same attitude; not where something that is held, or a force, tells the names apart.

@@ -108,6 +108,18 @@ RoughEnd rough_steady_state(const Flow& flow, const Symmetry& symmetry, const St
   return end;
 }
 
+bool is_rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& z,
+                           const Setting<double>& setting, const Held& held, const std::vector<double>& targets) {
+  constexpr double nearness = 1e-8;
+  try {
+    bool open = false;
+    const auto move = step(equations(flow, symmetry, z, z, setting, held, targets), z, open);
+    return move && move->allFinite() && move->cwiseAbs().maxCoeff() < nearness;
+  } catch (const std::domain_error&) {
+    return false;
+  }
+}
+
 State<double> spread_start(const SearchRequest& request, const Symmetry& symmetry, const std::vector<bool>& turns,
                            std::size_t k) {
   const std::size_t n = request.flow.coordinates();

@@ -18,6 +18,10 @@ struct RoughEnd {
 RoughEnd rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& start,
                             const Setting<double>& setting, const Held& held, const std::vector<double>& targets);
 
+/// Whether z is one, to rounding.
+bool is_rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& z,
+                           const Setting<double>& setting, const Held& held, const std::vector<double>& targets);
+
 /// The k-th start: entry 0 is the scene's, the others are spread over ranges, turns, and multiples of the scene's
 /// values.
 State<double> spread_start(const SearchRequest& request, const Symmetry& symmetry, const std::vector<bool>& turns,
