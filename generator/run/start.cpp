@@ -11,6 +11,7 @@
 #include "derive/imposition.hpp"
 #include "numeric/dense.hpp"
 #include "run/scene.hpp"
+#include "run/start_refusal.hpp"
 #include "run/start_rows.hpp"
 #include "run/start_unknowns.hpp"
 
@@ -22,8 +23,6 @@ using Eigen::VectorXd;
 
 // Newton ends when the step is below start_rounding; 50 steps are far more than it needs.
 constexpr int newton_steps = 50;
-// Columns of A whose part outside the span of the others is smaller than this (relative) do not fix their coordinate.
-constexpr double rank_tolerance = 1e-10;
 
 class StartSolver {
  public:
@@ -66,8 +65,7 @@ class StartSolver {
       VectorXd residual;
       MatrixXd A;
       rows_.linearise(order, residual, A);
-      const auto found = std::find(rows_.of(order).begin(), rows_.of(order).end(), k);
-      const auto row = static_cast<Eigen::Index>(found - rows_.of(order).begin());
+      const Eigen::Index row = row_of(order, k);
       bool given = std::isfinite(residual(row));
       for (std::size_t i = 0; i < n_; ++i) {
         const StartProblem::Key key{s_.free[i], order};
@@ -150,13 +148,61 @@ class StartSolver {
     return result;
   }
 
+  /// Contacts that can be left and are open at this place, though not all that their gaps depend on is given.
+  std::vector<std::size_t> open_contacts() {
+    VectorXd residual;
+    MatrixXd A;
+    rows_.linearise(0, residual, A);
+    std::vector<std::size_t> open;
+    for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
+      if (!s_.contacts[j].unilateral || p_.apart[j]) continue;
+      const Eigen::Index row = row_of(0, *s_.contacts[j].unilateral);
+      if (residual(row) > 0 && rows_.relative(residual, A, 0, row) > start_tolerance) open.push_back(j);
+    }
+    return open;
+  }
+  Eigen::Index row_of(std::uint8_t order, std::size_t constraint) const {
+    const auto found = std::find(rows_.of(order).begin(), rows_.of(order).end(), constraint);
+    return static_cast<Eigen::Index>(found - rows_.of(order).begin());
+  }
+
+  /// What cannot touch beside all else that is given is apart, if it is open where the search begins.
+  void leave_what_cannot_touch(const std::vector<double>& begin, const std::vector<std::string>& told) {
+    const std::vector<double> end = p_.q;
+    p_.q = begin;
+    const std::vector<std::size_t> open = open_contacts();
+    if (open.empty()) {
+      p_.q = end;
+      return;
+    }
+    p_.solved = told;
+    std::string names;
+    for (const std::size_t j : open) {
+      p_.apart[j] = true;
+      rows_.drop(*s_.contacts[j].unilateral);
+      names += (names.empty() ? "'" : ", '") + s_.contacts[j].name + "'";
+    }
+    p_.solved.push_back(names + (open.size() == 1 ? " is" : " are") + " apart: the start cannot be met while " +
+                        (open.size() == 1 ? "it touches" : "all touch"));
+    solve(0);
+    for (const std::size_t j : open) require_open(s_.contacts[j]);
+  }
+  void require_open(const system::Contact& contact) {
+    if (rows_.evaluate({s_.psi[*contact.unilateral]})[0] >= 0) return;
+    throw Error("scene", p_.mechanics.model->where(p_.scene.span),
+                fmt::format("the start breaks constraint '{}', which is to be 0 or more", contact.name),
+                "give values with which it is open or touches, or start the search elsewhere with guess = { .. }");
+  }
+
   void solve(std::uint8_t order) {
     if (rows_.of(order).empty()) return;
     std::vector<std::size_t> free = unknowns(order);
+    const std::vector<std::string> told = p_.solved;
     for (const std::size_t i : free) {
       const auto guess = p_.guess.find({s_.free[i], order});
       if (guess != p_.guess.end()) rows_.value({s_.free[i], order}) = guess->second;
     }
+    const std::vector<double> begin = p_.q;
     if (rows_.worst(order) > rounding) newton(order, free);
     if (rows_.worst(order) > start_tolerance && !loose_.empty()) {
       loose_.clear();
@@ -171,8 +217,12 @@ class StartSolver {
       newton(order, free);
     }
     if (rows_.worst(order) > start_tolerance) choose(order, free);
+    if (order == 0 && rows_.worst(order) > start_tolerance) {
+      leave_what_cannot_touch(begin, told);
+      if (rows_.of(order).empty()) return;
+    }
     Eigen::Index k = 0;
-    if (rows_.worst(order, &k) > start_tolerance) refuse(order, static_cast<std::size_t>(k), free);
+    if (rows_.worst(order, &k) > start_tolerance) refuse_start(p_, rows_, order, static_cast<std::size_t>(k), free);
   }
 
   /// Where the constraints could be met in several ways, as by rolling that says nothing of the spin about the normal:
@@ -190,7 +240,7 @@ class StartSolver {
     }
     std::vector<std::size_t> chosen;
     std::string open;
-    const std::vector<bool> felt = felt_most(columns, first, rank_tolerance);
+    const std::vector<bool> felt = felt_most(columns, first, start_rank_tolerance);
     for (std::size_t i = 0; i < free.size(); ++i) {
       const StartProblem::Key key{s_.free[free[i]], order};
       if (felt[i])
@@ -250,10 +300,10 @@ class StartSolver {
       for (std::size_t i = 0; i < moving.size(); ++i) {
         columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(moving[i]));
       }
-      auto [move, rank] = numeric::least_squares(columns, residual, rank_tolerance);
+      auto [move, rank] = numeric::least_squares(columns, residual, start_rank_tolerance);
       if (rank < columns.cols()) {
         if (!partly) return false;
-        if (!keep_fixed(columns, rank, rank_tolerance, move)) return rows_.worst(order) <= rounding;
+        if (!keep_fixed(columns, rank, start_rank_tolerance, move)) return rows_.worst(order) <= rounding;
       }
       double size = 0, scale = 0;
       for (std::size_t i = 0; i < moving.size(); ++i) {
@@ -265,106 +315,6 @@ class StartSolver {
       if (size <= start_rounding * scale || rows_.worst(order) <= start_rounding) return rows_.worst(order) <= rounding;
     }
     return rows_.worst(order) <= rounding;
-  }
-
-  struct Broken {
-    std::size_t row;
-    double off, relative;  // to what the row is made of
-  };
-
-  /// Of rates: the first constraint that cannot hold beside what is given and the constraints before it, and by how
-  /// much it is off then.
-  std::optional<Broken> first_broken(const std::vector<std::size_t>& free) const {
-    VectorXd residual;
-    MatrixXd A;
-    rows_.linearise(1, residual, A);
-    MatrixXd columns(A.rows(), static_cast<Eigen::Index>(free.size()));
-    for (std::size_t i = 0; i < free.size(); ++i)
-      columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(free[i]));
-    const std::vector<std::size_t>& bound = rows_.of(1);
-    const std::size_t turns = rows_.first_turn();
-    std::vector<std::size_t> before;
-    for (std::size_t k = 0; k < bound.size(); ++k) {
-      if (bound[k] >= turns) before.push_back(k);
-    }
-    for (std::size_t k = 0; k < bound.size(); ++k) {
-      if (bound[k] >= turns) continue;
-      const auto count = static_cast<Eigen::Index>(before.size());
-      MatrixXd held(count, columns.cols());
-      VectorXd wanted(count);
-      for (Eigen::Index i = 0; i < count; ++i) {
-        held.row(i) = columns.row(static_cast<Eigen::Index>(before[static_cast<std::size_t>(i)]));
-        wanted(i) = residual(static_cast<Eigen::Index>(before[static_cast<std::size_t>(i)]));
-      }
-      const auto row = static_cast<Eigen::Index>(k);
-      VectorXd move = VectorXd::Zero(columns.cols());
-      VectorXd beside = columns.row(row).transpose();
-      if (count > 0 && columns.cols() > 0) {
-        move = numeric::least_squares(held, wanted, rank_tolerance).x;
-        beside -= held.transpose() * numeric::least_squares(held.transpose(), beside).x;
-      }
-      const double off = residual(row) - columns.row(row).dot(move);
-      const double size = std::abs(residual(row)) + columns.row(row).cwiseAbs().dot(move.cwiseAbs());
-      if (beside.norm() <= rank_tolerance * columns.row(row).norm() && std::abs(off) > start_tolerance * size)
-        return Broken{k, off, std::abs(off) / size};
-      before.push_back(k);
-    }
-    return std::nullopt;
-  }
-
-  [[noreturn]] void refuse_turn(const StartProblem::Turn& turn, double off) const {
-    throw Error("scene", p_.mechanics.model->where(turn.span),
-                fmt::format("no rates give '{}' this angular velocity: a component is off by {:.6g}",
-                            p_.mechanics.model->frames[turn.frame].name, off),
-                "start away from the singular places of its angles, which `check` lists; leave rates that follow from "
-                "it out; its constraints may not allow it");
-  }
-
-  [[noreturn]] void refuse(std::uint8_t order, std::size_t k, const std::vector<std::size_t>& free) const {
-    VectorXd residual;
-    MatrixXd A;
-    rows_.linearise(order, residual, A);
-    std::optional<Broken> broken;
-    if (order == 1 && !p_.turns.empty()) broken = first_broken(free);
-    if (broken) k = broken->row;
-    const auto row = static_cast<Eigen::Index>(k);
-    const double off = broken ? broken->off : residual(row);
-    const double relative = broken ? broken->relative : rows_.relative(residual, A, order, row);
-    const std::size_t bound = rows_.of(order)[k], turns = rows_.first_turn(), m = s_.active.size();
-    if (bound >= turns) refuse_turn(p_.turns[(bound - turns) / 3], residual(row));
-    const mechanics::Constraint& constraint =
-        p_.mechanics.constraints[bound < m ? s_.active[bound] : s_.redundant[bound - m].constraint];
-    std::string given, open;
-    model::Span span = p_.scene.span;
-    for (std::size_t i = 0; i < n_; ++i) {
-      if (A(row, static_cast<Eigen::Index>(i)) == 0) continue;
-      const StartProblem::Key key{s_.free[i], order};
-      const auto found = p_.given.find(key);
-      if (std::find(free.begin(), free.end(), i) != free.end()) {
-        open += (open.empty() ? "" : ", ") + rows_.label(key);
-      } else if (found != p_.given.end()) {
-        given += (given.empty() ? "\"" : ", \"") + rows_.label(key) + "\"";
-        span = found->second.span;
-      }
-    }
-    const bool alone = open.find(',') == std::string::npos;  // one unknown or none: nothing else could fix it
-    const std::string remedy =
-        alone && !(open.empty() && !given.empty())
-            ? fmt::format(
-                  "{}: check its signs{}, or start the search elsewhere with guess = {{ .. }}",
-                  open.empty()
-                      ? "its gradient vanishes there: it has no real solution, or only ones where it has no force"
-                      : fmt::format("no value of {} was found that meets it: it may have no real solution", open),
-                  given.empty() ? "" : " and what is given")
-        : !given.empty() && open.empty()
-            ? fmt::format("give consistent values, or name what may be moved: solve = [one of {}]", given)
-            : fmt::format("the constraint does not fix {} by itself: give all but one of them, or name one in solve",
-                          open);
-    throw Error("scene", p_.mechanics.model->where(span),
-                fmt::format("the start breaks constraint '{}'{}: it is off by {:.6g} (relative {:.3g}, allowed {:.0e})",
-                            constraint.label, order == 0 || !constraint.holonomic() ? "" : " in its rates", off,
-                            relative, start_tolerance),
-                broken ? "give consistent values, or leave out rates that follow from the angular velocity" : remedy);
   }
 
   static constexpr double rounding = 1e-14;  // of rows_.relative(): a few units in the last place of a sum of terms

@@ -2,6 +2,7 @@
 // Friction along a direction that a stop holds while it touches, against closed forms.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/folders.hpp"
@@ -200,4 +201,49 @@ initial = { x = 0, h = 0.5, x_dot = 1 }
   const double energy = rate * rate * (1 + (1 + x * x) * (1 + x * x));  // over m/2
   // Ceiling, floor: the speed is a quarter, then half of what it was; the third hit comes after t = 8.
   CHECK(std::abs(energy - 2.0 / 16 / 4) <= closed_form);
+}
+
+TEST_CASE("stops: what cannot touch at the start is apart, which is told") {
+  const char* const wheels = R"toml(format = 1
+[parameters]
+b = 0.05
+[coordinates]
+phi1 = {}
+phi2 = {}
+[energy]
+kinetic = "1/2*phi1_dot^2 + phi2_dot^2"
+potential = "0"
+[[force]]
+generalized = { phi1 = "2" }
+[[constraint]]
+name = "forth"
+holonomic = "b - (phi1 - phi2)"
+holds = "unilateral"
+[[constraint]]
+name = "back"
+holonomic = "b + phi1 - phi2"
+holds = "unilateral"
+[scene.default]
+t = [0, 1]
+)toml";
+  const test::Finished end = run_text("backlash", wheels);
+  const auto told = [&](const std::string& text) {
+    const std::vector<std::string>& all = end.simulation.scene.solved;
+    return std::any_of(all.begin(), all.end(), [&](const std::string& note) { return note.find(text) != note.npos; });
+  };
+  CHECK(told("'forth', 'back' are apart: the start cannot be met while all touch"));
+  // phi1 = t^2 up to b, then both together with 2/3, of a third of the momentum.
+  const double hit = std::sqrt(0.05), rest = 1 - hit;
+  CHECK(std::abs(end.final("phi2") - (2 * hit / 3 * rest + rest * rest / 3)) <= closed_form);
+  CHECK(std::abs(end.final("phi1") - end.final("phi2") - 0.05) <= closed_form);
+}
+
+TEST_CASE("stops: where nothing else is said a contact touches at the start, and one that cannot be open is refused") {
+  const std::string ball =
+      "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\"] }\n"
+      "[[constraint]]\nname = \"floor\"\nholonomic = \"y - x^2 - 1\"\nholds = \"unilateral\"\n";
+  const test::Finished end = run_text("touching_ball", ball + "[scene.default]\nt = [0, 0.1]\ninitial = { x = 1 }\n");
+  CHECK(std::abs(end.rows.at(0, "y") - 2) <= closed_form);
+  CHECK_THROWS_WITH_AS(run_text("sunk_ball", ball + "[scene.default]\nt = [0, 0.1]\ninitial = { y = 0.5 }\n"),
+                       doctest::Contains("the start breaks constraint 'floor'"), Error);
 }

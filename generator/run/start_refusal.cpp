@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/start_refusal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "numeric/dense.hpp"
+#include "run/scene.hpp"
+
+namespace eomgen::run {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct Broken {
+  std::size_t row;
+  double off, relative;  // to what the row is made of
+};
+
+/// Of rates: the first constraint that cannot hold beside what is given and the constraints before it, and by how
+/// much it is off then.
+std::optional<Broken> first_broken(const StartRows& rows, const std::vector<std::size_t>& free) {
+  VectorXd residual;
+  MatrixXd A;
+  rows.linearise(1, residual, A);
+  MatrixXd columns(A.rows(), static_cast<Eigen::Index>(free.size()));
+  for (std::size_t i = 0; i < free.size(); ++i)
+    columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(free[i]));
+  const std::vector<std::size_t>& bound = rows.of(1);
+  const std::size_t turns = rows.first_turn();
+  std::vector<std::size_t> before;
+  for (std::size_t k = 0; k < bound.size(); ++k) {
+    if (bound[k] >= turns) before.push_back(k);
+  }
+  for (std::size_t k = 0; k < bound.size(); ++k) {
+    if (bound[k] >= turns) continue;
+    const auto count = static_cast<Eigen::Index>(before.size());
+    MatrixXd held(count, columns.cols());
+    VectorXd wanted(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      held.row(i) = columns.row(static_cast<Eigen::Index>(before[static_cast<std::size_t>(i)]));
+      wanted(i) = residual(static_cast<Eigen::Index>(before[static_cast<std::size_t>(i)]));
+    }
+    const auto row = static_cast<Eigen::Index>(k);
+    VectorXd move = VectorXd::Zero(columns.cols());
+    VectorXd beside = columns.row(row).transpose();
+    if (count > 0 && columns.cols() > 0) {
+      move = numeric::least_squares(held, wanted, start_rank_tolerance).x;
+      beside -= held.transpose() * numeric::least_squares(held.transpose(), beside).x;
+    }
+    const double off = residual(row) - columns.row(row).dot(move);
+    const double size = std::abs(residual(row)) + columns.row(row).cwiseAbs().dot(move.cwiseAbs());
+    if (beside.norm() <= start_rank_tolerance * columns.row(row).norm() && std::abs(off) > start_tolerance * size)
+      return Broken{k, off, std::abs(off) / size};
+    before.push_back(k);
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void refuse_turn(const StartProblem& problem, const StartProblem::Turn& turn, double off) {
+  throw Error("scene", problem.mechanics.model->where(turn.span),
+              fmt::format("no rates give '{}' this angular velocity: a component is off by {:.6g}",
+                          problem.mechanics.model->frames[turn.frame].name, off),
+              "start away from the singular places of its angles, which `check` lists; leave rates that follow from "
+              "it out; its constraints may not allow it");
+}
+
+}  // namespace
+
+void refuse_start(const StartProblem& problem, const StartRows& rows, std::uint8_t order, std::size_t k,
+                  const std::vector<std::size_t>& free) {
+  const system::EquationSystem& s = problem.system;
+  VectorXd residual;
+  MatrixXd A;
+  rows.linearise(order, residual, A);
+  std::optional<Broken> broken;
+  if (order == 1 && !problem.turns.empty()) broken = first_broken(rows, free);
+  if (broken) k = broken->row;
+  const auto row = static_cast<Eigen::Index>(k);
+  const double off = broken ? broken->off : residual(row);
+  const double relative = broken ? broken->relative : rows.relative(residual, A, order, row);
+  const std::size_t bound = rows.of(order)[k], turns = rows.first_turn(), m = s.active.size();
+  if (bound >= turns) refuse_turn(problem, problem.turns[(bound - turns) / 3], residual(row));
+  const mechanics::Constraint& constraint =
+      problem.mechanics.constraints[bound < m ? s.active[bound] : s.redundant[bound - m].constraint];
+  std::string given, open;
+  model::Span span = problem.scene.span;
+  for (std::size_t i = 0; i < s.free.size(); ++i) {
+    if (A(row, static_cast<Eigen::Index>(i)) == 0) continue;
+    const StartProblem::Key key{s.free[i], order};
+    const auto found = problem.given.find(key);
+    if (std::find(free.begin(), free.end(), i) != free.end()) {
+      open += (open.empty() ? "" : ", ") + rows.label(key);
+    } else if (found != problem.given.end()) {
+      given += (given.empty() ? "\"" : ", \"") + rows.label(key) + "\"";
+      span = found->second.span;
+    }
+  }
+  const bool alone = open.find(',') == std::string::npos;  // one unknown or none: nothing else could fix it
+  const std::string remedy =
+      alone && !(open.empty() && !given.empty())
+          ? fmt::format("{}: check its signs{}, or start the search elsewhere with guess = {{ .. }}",
+                        open.empty()
+                            ? "its gradient vanishes there: it has no real solution, or only ones where it has no force"
+                            : fmt::format("no value of {} was found that meets it: it may have no real solution", open),
+                        given.empty() ? "" : " and what is given")
+      : !given.empty() && open.empty()
+          ? fmt::format("give consistent values, or name what may be moved: solve = [one of {}]", given)
+          : fmt::format("the constraint does not fix {} by itself: give all but one of them, or name one in solve",
+                        open);
+  throw Error("scene", problem.mechanics.model->where(span),
+              fmt::format("the start breaks constraint '{}'{}: it is off by {:.6g} (relative {:.3g}, allowed {:.0e})",
+                          constraint.label, order == 0 || !constraint.holonomic() ? "" : " in its rates", off, relative,
+                          start_tolerance),
+              broken ? "give consistent values, or leave out rates that follow from the angular velocity" : remedy);
+}
+
+}  // namespace eomgen::run
