@@ -37,6 +37,8 @@ class Factoring {
     Shared best;
     while (terms.size() > 1 && find(terms, best)) {
       std::vector<Term> with, without;
+      with.reserve(terms.size());
+      without.reserve(terms.size());
       for (Term& term : terms) (has(term, best) ? with : without).push_back(std::move(term));
       const Term front = common(with, best);
       for (Term& term : with) {

@@ -27,6 +27,7 @@ class Flattening {
   Polynomials run() {
     const std::vector<NodeId> order = from_.order();
     uses_ = from_.uses(order);
+    to_.reserve(order.size());
     if (expand_) find_barriers();
     for (const NodeId id : order) {
       value_[id] = value(id);

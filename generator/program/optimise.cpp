@@ -3,17 +3,24 @@
 // results move by a fifth with the order, so the best one is kept. Everything is counted in steps, never in seconds:
 // the same graph gives the same program everywhere.
 #include <algorithm>
+#include <optional>
 
 #include "program/polynomials.hpp"
 
 namespace eomgen::program {
 namespace {
 
+struct Costed {
+  Polynomials graph;
+  std::size_t cost = 0;
+};
+
 /// One descent: factor, share, clear up, while the cost falls by a thousandth.
-Polynomials descend(Polynomials graph, std::uint64_t seed) {
+Costed descend(const Costed& start, std::uint64_t seed) {
   constexpr int rounds = 8;
-  Polynomials best = graph;
-  std::size_t cost = count_operations(best).cost();
+  Polynomials graph = start.graph;
+  std::optional<Costed> better;
+  std::size_t cost = start.cost;
   for (int round = 0; round < rounds; ++round) {
     factor_sums(graph, seed);
     graph = flatten(graph, false);
@@ -21,13 +28,15 @@ Polynomials descend(Polynomials graph, std::uint64_t seed) {
     share_sums(graph, seed);
     graph = flatten(graph, false);
     const std::size_t now = count_operations(graph).cost(), before = cost;
+    const bool last = round + 1 == rounds || (round > 0 && now + before / 1000 >= before);
     if (now < cost) {
-      best = graph;
       cost = now;
+      if (last) return {std::move(graph), now};
+      better = Costed{graph, now};
     }
-    if (round > 0 && now + before / 1000 >= before) break;
+    if (last) break;
   }
-  return best;
+  return better ? *std::move(better) : start;
 }
 
 }  // namespace
@@ -35,22 +44,19 @@ Polynomials descend(Polynomials graph, std::uint64_t seed) {
 Polynomials optimise(const std::vector<Polynomials>& starts) {
   // Programs of tens of operations get many orders, programs of thousands one from each start.
   constexpr std::size_t budget = 4000, most = 12;
-  Polynomials best;
-  std::size_t cost = 0;
-  const auto keep = [&](Polynomials found) {
-    const std::size_t now = count_operations(found).cost();
-    if (cost != 0 && now >= cost) return;
-    cost = now;
-    best = std::move(found);
-  };
+  std::optional<Costed> best;
   for (const Polynomials& start : starts) {
     const std::size_t orders = std::clamp<std::size_t>(budget / (count_operations(start).flops() + 1), 1, most);
     for (const bool inline_products : {false, true}) {
-      const Polynomials flat = flatten(start, inline_products);
-      for (std::uint64_t seed = 0; seed < orders; ++seed) keep(descend(flat, seed));
+      Costed flat{flatten(start, inline_products), 0};
+      flat.cost = count_operations(flat.graph).cost();
+      for (std::uint64_t seed = 0; seed < orders; ++seed) {
+        Costed found = descend(flat, seed);
+        if (!best || best->cost == 0 || found.cost < best->cost) best = std::move(found);
+      }
     }
   }
-  return best;
+  return best ? std::move(best->graph) : Polynomials();
 }
 
 }  // namespace eomgen::program

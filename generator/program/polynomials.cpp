@@ -38,37 +38,44 @@ std::uint64_t scramble(std::uint64_t a, std::uint64_t b) {
   return z ^ (z >> 31);
 }
 
-void NodeIndex::add(std::uint64_t hash, NodeId node) {
-  const auto insert = [this](const Slot& slot) {
-    std::size_t at = slot.hash & (slots_.size() - 1);
-    while (slots_[at].taken) at = (at + 1) & (slots_.size() - 1);
-    slots_[at] = slot;
-  };
-  if (2 * (taken_ + 1) > slots_.size()) {
-    const std::vector<Slot> old =
-        std::exchange(slots_, std::vector<Slot>(std::max<std::size_t>(64, 2 * slots_.size())));
-    // From an open slot on, so that those of one hash stay in their order.
-    std::size_t first = 0;
-    while (first < old.size() && old[first].taken) ++first;
-    for (std::size_t i = 0; i < old.size(); ++i) {
-      const Slot& slot = old[(first + i) & (old.size() - 1)];
-      if (slot.taken) insert(slot);
-    }
+void NodeIndex::reserve(std::size_t nodes) {
+  std::size_t size = std::max<std::size_t>(64, slots_.size());
+  while (size < 2 * nodes) size *= 2;
+  if (size == slots_.size()) return;
+  const std::vector<Slot> old = std::exchange(slots_, std::vector<Slot>(size));
+  // From an open slot on, so that those of one hash stay in their order.
+  std::size_t first = 0;
+  while (first < old.size() && old[first].taken) ++first;
+  for (std::size_t i = 0; i < old.size(); ++i) {
+    const Slot& slot = old[(first + i) & (old.size() - 1)];
+    if (slot.taken) place(slot);
   }
-  insert({hash, node, true});
-  ++taken_;
+}
+
+void NodeIndex::place(const Slot& slot) {
+  std::size_t at = slot.hash & (slots_.size() - 1);
+  while (slots_[at].taken) at = (at + 1) & (slots_.size() - 1);
+  slots_[at] = slot;
+}
+
+void NodeIndex::add(std::uint64_t hash, NodeId node) {
+  reserve(++taken_);
+  place({hash, node, true});
 }
 
 namespace {
 
 std::uint64_t hash(const std::vector<Term>& terms, std::uint64_t start) {
   std::uint64_t h = start;
+  const auto take = [&h](std::uint64_t value) {
+    h = (h ^ value) * 0x9e3779b97f4a7c15ull;
+    h ^= h >> 29;
+  };
   for (const Term& term : terms) {
-    h = scramble(h, symbolic::hash_of(term.coefficient));
-    for (const Factor& f : term.factors)
-      h = scramble(h, (std::uint64_t{f.node} << 32) + static_cast<std::uint32_t>(f.exponent));
+    take(symbolic::hash_of(term.coefficient));
+    for (const Factor& f : term.factors) take((std::uint64_t{f.node} << 32) + static_cast<std::uint32_t>(f.exponent));
   }
-  return h;
+  return scramble(h, 0);
 }
 std::uint64_t hash_of_call(Op op, const std::vector<Term>& arguments) {
   return hash(arguments, static_cast<std::uint64_t>(op) + 1000);

@@ -70,6 +70,7 @@ class NodeIndex {
     return nullptr;
   }
   void add(std::uint64_t hash, NodeId node);
+  void reserve(std::size_t nodes);
 
  private:
   struct Slot {
@@ -77,12 +78,18 @@ class NodeIndex {
     NodeId node = 0;
     bool taken = false;
   };
+  void place(const Slot& slot);
+
   std::vector<Slot> slots_;  // none, or a power of 2 of them
   std::size_t taken_ = 0;
 };
 
 class Polynomials {
  public:
+  void reserve(std::size_t nodes) {
+    nodes_.reserve(nodes);
+    index_.reserve(nodes);
+  }
   NodeId leaf(const Operand& operand);
   NodeId call(symbolic::Op op, std::vector<Term> arguments);
   /// A sum as it stands: equal lists of terms are one node.

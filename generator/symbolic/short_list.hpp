@@ -23,19 +23,23 @@ class ShortList {
   using const_iterator = const T*;
   using const_reverse_iterator = std::reverse_iterator<const T*>;
 
-  ShortList() noexcept {}
-  ShortList(std::initializer_list<T> items) {
+  ShortList() noexcept : inside_{} {}
+  ShortList(std::initializer_list<T> items) : inside_{} {
     reserve(items.size());
     for (const T& item : items) new (data() + size_++) T(item);
   }
   ShortList(const ShortList& other) : size_(other.size_) {
+    if (size_ <= inside && other.capacity_ == inside) {
+      copy_inside(other);
+      return;
+    }
     if (size_ > inside) {
       outside_ = new T[size_];
       capacity_ = size_;
     }
     std::copy_n(other.data(), size_, data());
   }
-  ShortList(ShortList&& other) noexcept { take(other); }
+  ShortList(ShortList&& other) noexcept : inside_{} { take(other); }
   ShortList& operator=(const ShortList& other) {
     if (this != &other) *this = ShortList(other);
     return *this;
@@ -67,6 +71,8 @@ class ShortList {
     if (size_ == capacity_) grow(2 * capacity_);
     data()[size_++] = item;
   }
+  /// Where `reserve` has made room.
+  void push_back_reserved(T item) noexcept { data()[size_++] = item; }
   /// The first `count` stay.
   void shorten(std::size_t count) noexcept { size_ = static_cast<std::uint32_t>(count); }
 
@@ -87,6 +93,10 @@ class ShortList {
     outside_ = wider;
     capacity_ = capacity;
   }
+  /// All of it, used or not: of a size that the compiler knows.
+  void copy_inside(const ShortList& other) noexcept {
+    std::memcpy(static_cast<void*>(inside_), static_cast<const void*>(other.inside_), sizeof(inside_));
+  }
   void release() noexcept {
     if (capacity_ != inside) delete[] outside_;
   }
@@ -94,7 +104,7 @@ class ShortList {
     size_ = other.size_;
     capacity_ = other.capacity_;
     if (capacity_ == inside)
-      std::copy_n(other.inside_, size_, inside_);
+      copy_inside(other);
     else
       outside_ = other.outside_;
     other.size_ = 0;
@@ -127,13 +137,13 @@ Powers product_of_powers(const Powers& a, const Powers& b, std::int32_t power_of
       ++i, ++j;
       if (factor.exponent == 0) continue;
     }
-    result.push_back(factor);
+    result.push_back_reserved(factor);
   }
-  for (; i != end_i; ++i) result.push_back(*i);
+  for (; i != end_i; ++i) result.push_back_reserved(*i);
   for (; j != end_j; ++j) {
     auto factor = *j;
     factor.exponent *= power_of_b;
-    result.push_back(factor);
+    result.push_back_reserved(factor);
   }
   return result;
 }
