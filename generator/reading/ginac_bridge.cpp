@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reading/ginac_bridge.hpp"
 
+#include <set>
+
 #include "reading/trig.hpp"
 
 namespace eomgen::reading {
@@ -53,28 +55,30 @@ ex Bridge::node(Ref r) {
   }
 }
 
+ex Bridge::term_to_ginac(const Monomial& monomial, const Rational& coefficient) {
+  GiNaC::exvector factors{GiNaC::numeric(coefficient)};
+  for (const Factor& factor : monomial) {
+    const Atom& atom = *factor.atom;
+    ex base;
+    if (atom.op == Op::symbol)
+      base = symbol(atom.symbol);
+    else if (atom.op == Op::pi)
+      base = GiNaC::Pi;
+    else if (atom.op == Op::add)
+      base = to_ginac(atom.args[0]);
+    else {
+      std::vector<ex> args;
+      for (const Sum& arg : atom.args) args.push_back(to_ginac(arg));
+      base = ginac_call(atom.op, args);
+    }
+    factors.push_back(is_one(factor.exponent) ? base : ex(GiNaC::pow(base, GiNaC::numeric(factor.exponent))));
+  }
+  return GiNaC::mul(factors);
+}
+
 ex Bridge::to_ginac(const Sum& sum) {
   GiNaC::exvector terms;
-  for (const auto& [monomial, coefficient] : sum.terms()) {
-    GiNaC::exvector factors{GiNaC::numeric(coefficient)};
-    for (const Factor& factor : monomial) {
-      const Atom& atom = *factor.atom;
-      ex base;
-      if (atom.op == Op::symbol)
-        base = symbol(atom.symbol);
-      else if (atom.op == Op::pi)
-        base = GiNaC::Pi;
-      else if (atom.op == Op::add)
-        base = to_ginac(atom.args[0]);
-      else {
-        std::vector<ex> args;
-        for (const Sum& arg : atom.args) args.push_back(to_ginac(arg));
-        base = ginac_call(atom.op, args);
-      }
-      factors.push_back(is_one(factor.exponent) ? base : ex(GiNaC::pow(base, GiNaC::numeric(factor.exponent))));
-    }
-    terms.push_back(GiNaC::mul(factors));
-  }
+  for (const auto& [monomial, coefficient] : sum.terms()) terms.push_back(term_to_ginac(monomial, coefficient));
   return GiNaC::add(terms);
 }
 
@@ -131,20 +135,31 @@ Sum Bridge::convert_function(const ex& e) {
 Sum Bridge::derivative(const Sum& sum, const Symbol& by) { return from_ginac(to_ginac(sum).diff(symbol(by))); }
 
 Sum Bridge::total_derivative(const Sum& sum) {
-  std::map<Symbol, bool> present;
-  for_each_atom(sum, [&](const Atom& atom) {
-    if (atom.op == Op::symbol) present[atom.symbol] = true;
-  });
-  const ex e = to_ginac(sum);
+  std::map<Symbol, GiNaC::exvector> slopes;  // of the terms that hold the symbol
+  std::set<Symbol> held;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    held.clear();
+    for (const Factor& factor : monomial) {
+      for_each_atom(factor, [&](const Atom& atom) {
+        if (atom.op == Op::symbol) held.insert(atom.symbol);
+      });
+    }
+    const ex term = term_to_ginac(monomial, coefficient);
+    for (const Symbol& s : held) {
+      const bool moves = s.kind == SymbolKind::time || s.kind == SymbolKind::function ||
+                         s.kind == SymbolKind::coordinate || s.kind == SymbolKind::integral;
+      if (moves) slopes[s].push_back(term.diff(symbol(s)));
+    }
+  }
   ex result = 0;
-  for (const auto& [s, yes] : present) {
+  for (const auto& [s, terms] : slopes) {
+    const ex slope = GiNaC::add(terms);
     if (s.kind == SymbolKind::time) {
-      result += e.diff(symbol(s));
-    } else if (s.kind == SymbolKind::function || s.kind == SymbolKind::coordinate) {
-      const Symbol rate{s.kind, s.index, static_cast<std::uint8_t>(s.order + 1)};
-      result += e.diff(symbol(s)) * symbol(rate);
+      result += slope;
     } else if (s.kind == SymbolKind::integral) {
-      result += e.diff(symbol(s)) * from_dag(dag_.rates().at(s));
+      result += slope * from_dag(dag_.rates().at(s));
+    } else {
+      result += slope * symbol({s.kind, s.index, static_cast<std::uint8_t>(s.order + 1)});
     }
   }
   return from_ginac(result);

@@ -36,6 +36,7 @@ class Bridge {
   Sum convert_power(const GiNaC::ex& e);
   Sum convert_function(const GiNaC::ex& e);
   GiNaC::ex node(symbolic::Ref r);
+  GiNaC::ex term_to_ginac(const Monomial& monomial, const Rational& coefficient);
 
   const symbolic::Dag& dag_;
   Alphabet alphabet_;

@@ -125,11 +125,13 @@ std::vector<std::pair<Monomial, Rational>> display_order(const Sum& sum);
 template <class Visit>
 void for_each_atom(const Sum& sum, Visit&& visit) {
   for (const auto& [monomial, coefficient] : sum.terms()) {
-    for (const Factor& factor : monomial) {
-      visit(*factor.atom);
-      for (const Sum& arg : factor.atom->args) for_each_atom(arg, visit);
-    }
+    for (const Factor& factor : monomial) for_each_atom(factor, visit);
   }
+}
+template <class Visit>
+void for_each_atom(const Factor& factor, Visit&& visit) {
+  visit(*factor.atom);
+  for (const Sum& arg : factor.atom->args) for_each_atom(arg, visit);
 }
 bool contains(const Sum& sum, const Symbol& symbol);
 bool is_one(const Rational& r);
