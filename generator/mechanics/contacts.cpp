@@ -136,7 +136,8 @@ class ContactReader {
     }
   }
 
-  // a_i - (psi_i / psi_c) a_c lies in the surface; c is a coordinate on which psi depends.
+  // a_i - (psi_i / psi_c) a_c lies in the surface; c is a coordinate on which psi depends. Where psi_c passes through 0
+  // that vector would turn round, and what slides would seem to stop: of a single tangent psi_c times it is taken then.
   void find_tangents() {
     const std::size_t equations = contact_.constraints.size();
     if (own_.size() <= equations) {
@@ -159,8 +160,10 @@ class ContactReader {
     }
     for (std::size_t i = 0; i < own_.size(); ++i) {
       if (i == c || contact_.directions.size() == 1) continue;
-      const Ref share = dag_.div(slope(0)[own_[i]], slope(0)[own_[c]]);
-      contact_.directions.push_back(unit(lower_.subtract(a[i], lower_.scale(share, a[c]))));
+      const Ref own = slope(0)[own_[i]], divisor = slope(0)[own_[c]];
+      const bool turns = own_.size() == 2 && !dag_.symbols({divisor}).empty();
+      contact_.directions.push_back(unit(turns ? lower_.subtract(lower_.scale(divisor, a[i]), lower_.scale(own, a[c]))
+                                               : lower_.subtract(a[i], lower_.scale(dag_.div(own, divisor), a[c]))));
     }
     if (own_.size() == 3)
       contact_.directions.push_back(tidy(symbolic::cross(dag_, unit(normals[0]), contact_.directions[0])));

@@ -3,6 +3,7 @@
 // of motion and is refused; where a unilateral contact does while it touches, as a stop at the end of a rough guide,
 // the motion does not determine the friction along it.
 #include <algorithm>
+#include <optional>
 
 #include "mechanics/pfaffian.hpp"
 #include "mechanics/stages.hpp"
@@ -194,10 +195,13 @@ class Search {
 void find_held_directions(Mechanics& m) {
   if (std::none_of(m.contacts.begin(), m.contacts.end(), sticks)) return;
   if (m.free.size() < m.active.size()) return;  // told elsewhere
-  Search search(m, FormSpace::Where::anywhere);
-  if (search.sees()) {
+  // Where the constraints hold, if such places are found: some directions are held there alone.
+  std::optional<Search> search;
+  search.emplace(m, FormSpace::Where::on_constraints);
+  if (!search->sees()) search.emplace(m, FormSpace::Where::anywhere);
+  if (search->sees()) {
     for (Contact& contact : m.contacts)
-      if (sticks(contact)) search.look_at(contact);
+      if (sticks(contact)) search->look_at(contact);
   }
   std::vector<std::size_t> leavable;
   for (std::size_t j = 0; j < m.contacts.size(); ++j)
@@ -206,7 +210,7 @@ void find_held_directions(Mechanics& m) {
   for (std::size_t choice = std::size_t{1} << leavable.size(); choice-- > 0;) {
     Touching touching(m.contacts.size(), false);
     for (std::size_t i = 0; i < leavable.size(); ++i) touching[leavable[i]] = ((choice >> i) & 1) != 0;
-    search.require_determinate(touching);
+    search->require_determinate(touching);
   }
 }
 

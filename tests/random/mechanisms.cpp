@@ -31,6 +31,7 @@ Mechanism Builder::build() {
     else
       add_particle();
   }
+  while (coordinates_.empty()) add_particle();
   add_forces();
   add_energies();
   add_constraints();

@@ -247,3 +247,35 @@ TEST_CASE("stops: where nothing else is said a contact touches at the start, and
   CHECK_THROWS_WITH_AS(run_text("sunk_ball", ball + "[scene.default]\nt = [0, 0.1]\ninitial = { y = 0.5 }\n"),
                        doctest::Contains("the start breaks constraint 'floor'"), Error);
 }
+
+TEST_CASE("stops: what slides on a floor slides on where a coordinate stops telling the way along it") {
+  // Below the origin the floor's gradient has no part along theta.
+  const test::Finished end = run_text("polar_floor", R"toml(format = 1
+[parameters]
+m = 2
+g = 10
+mu = 0.1
+[coordinates]
+r = {}
+theta = {}
+[[particle]]
+name = "P"
+mass = "m"
+position = "r*sin(theta)*E1 - r*cos(theta)*E2"
+[[force]]
+gravity = "-g*E2"
+[[constraint]]
+name = "floor"
+holonomic = "r*cos(theta) - 2"
+friction = { static = "mu", dynamic = "mu" }
+[scene.default]
+t = [0, 4]
+initial = { theta = -0.5, r_dot = -1.5 }
+)toml");
+  const double x0 = -2 * std::tan(0.5), v0 = end.rows.at(0, "theta_dot") * 2 / std::pow(std::cos(0.5), 2);
+  REQUIRE(v0 > 0);
+  REQUIRE(v0 * v0 / 2 > -x0);  // it comes beyond, and rests where mu g has taken all of its speed
+  const double x = x0 + v0 * v0 / 2, theta = end.final("theta");
+  CHECK(std::abs(2 * std::tan(theta) - x) <= 1e-8);
+  CHECK(v0 < 4);  // by then
+}
