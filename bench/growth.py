@@ -86,6 +86,13 @@ def table(eomgen, families):
                 before = r
 
 
+def replace(begin, end, lines):
+    """The table between two comments of docs/benchmarks.md."""
+    document = growth_models.ROOT / "docs" / "benchmarks.md"
+    head, rest = document.read_text().split(begin)
+    document.write_text(head + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1])
+
+
 def main():
     arguments = [a for a in sys.argv[1:] if a != "--write"]
     if not arguments:
@@ -95,10 +102,7 @@ def main():
         print(line, flush=True)
         lines.append(line)
     if "--write" in sys.argv:
-        document = growth_models.ROOT / "docs" / "benchmarks.md"
-        text = document.read_text()
-        head, rest = text.split(BEGIN)
-        document.write_text(head + BEGIN + "\n" + "\n".join(lines) + "\n" + END + rest.split(END)[1])
+        replace(BEGIN, END, lines)
 
 
 if __name__ == "__main__":
