@@ -74,7 +74,8 @@ TEST_CASE("--max-steps ends a run and says how to go on") {
 TEST_CASE("every solver that list shows runs, and they agree") {
   const Folder folder;
   const double expected = pendulum_from_rest(1.0, std::sqrt(9.81), 10).angle;
-  for (const Json& solver : document(folder, {"list"})["solvers"]) {
+  const Json listed = document(folder, {"list"});
+  for (const Json& solver : listed["solvers"]) {
     const std::string name = solver["name"].get<std::string>();
     if (solver["constrained"].get<bool>()) continue;  // this model has nothing for it to keep
     CAPTURE(name);

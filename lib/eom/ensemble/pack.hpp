@@ -20,7 +20,8 @@ inline constexpr std::size_t pack_width = 4;
 inline constexpr std::size_t pack_width = 2;
 #endif
 using Pack = double __attribute__((vector_size(8 * pack_width)));
-using PackInMemory = double __attribute__((vector_size(8 * pack_width), aligned(8), may_alias));
+// A typedef: in an alias declaration clang forgets `aligned`.
+typedef double PackInMemory __attribute__((vector_size(8 * pack_width), aligned(8), may_alias));
 #endif
 
 [[gnu::always_inline]] inline Pack load(const double* at) { return *reinterpret_cast<const PackInMemory*>(at); }
