@@ -61,12 +61,19 @@ Motion motion_at(const Judge& judge, const State& at) {
     if (!cln::zerop(inertia)) scale = scale + row_scale[i] / inertia;
     motion.scale.push_back(scale);
   }
-  if (!judge.model().joints.empty()) {  // as of system_values
+  if (m > 0) {  // as of system_values
+    const Real share = least_share(judge.model());
     Real largest = 0;
     for (const Real& scale : motion.scale) largest = cln::max(largest, scale);
-    for (Real& scale : motion.scale) scale = cln::max(scale, largest / 10000);
+    for (Real& scale : motion.scale) scale = cln::max(scale, largest * share);
   }
   return motion;
+}
+
+// Beyond the digits that are compared, and far above rounding. A joint has moments among its forces, whose sizes
+// differ.
+Real least_share(const model::Model& model) {
+  return cln::expt(cln::cl_RA(1) / 10, cln::cl_I(model.joints.empty() ? 20 : 4));
 }
 
 }  // namespace eomgen::verify

@@ -17,4 +17,8 @@ struct Motion {
 /// lambda are not determined.
 Motion motion_at(const Judge& judge, const State& state);
 
+/// What is smaller than this beside the largest acceleration, or multiplier, of a system with constraints counts as if
+/// it were as large: it may be what rounding leaves of 0.
+Real least_share(const model::Model& model);
+
 }  // namespace eomgen::verify

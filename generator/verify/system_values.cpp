@@ -10,6 +10,7 @@
 
 #include "symbolic/evaluate.hpp"
 #include "verify/linear_solve.hpp"
+#include "verify/motion.hpp"
 
 namespace eomgen::verify {
 
@@ -148,10 +149,9 @@ std::vector<Real> propagate(const Solved& solved, const std::vector<Real>& row_s
   return scale;
 }
 
-/// A joint may keep a body from turning that nothing turns: accelerations and multipliers that are 0 up to rounding are
-/// so beside the largest ones.
-void raise_least(std::vector<Real>& scale, std::size_t accelerations) {
-  const Real share = cln::cl_RA(1) / 10000;
+/// A joint may keep a body from turning that nothing turns, constraints may hold what nothing pulls: accelerations and
+/// multipliers that are 0 up to rounding are so beside the largest ones.
+void raise_least(std::vector<Real>& scale, std::size_t accelerations, const Real& share) {
   const auto raise = [&](auto begin, auto end) {
     Real largest = 0;
     for (auto at = begin; at != end; ++at) largest = cln::max(largest, *at);
@@ -207,7 +207,7 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
     v.scale[fixed.coordinate] = sum / slope;
     v.scale[all + fixed.constraint] = v.rows[fixed.coordinate].scale / slope;
   }
-  if (!mechanics.joints.empty()) raise_least(v.scale, all);
+  if (!s.active.empty()) raise_least(v.scale, all, least_share(*mechanics.model));
 }
 
 }  // namespace
