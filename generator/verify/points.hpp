@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
@@ -63,7 +64,9 @@ class Points {
   std::vector<Real> correction(const State& state, bool rates, const std::vector<bool>* held, bool by_room) const;
   Real room(const State& state, std::size_t coordinate) const;
   bool move_inside(State& state, const std::vector<Real>& step) const;
+  void close_implied(State& state);
   void require_implied(const State& state) const;
+  std::optional<std::size_t> first_open(const State& state, bool rates) const;
   void require_inside(const State& state) const;
   void require_smooth(const State& state) const;
 
@@ -74,6 +77,7 @@ class Points {
   std::vector<std::size_t> leavable_;
   std::vector<Choosing> choosings_;  // taken in turn
   std::size_t turn_ = 0;
+  std::set<std::size_t> open_;   // implied constraints that positions are moved onto all the same
   std::vector<Choice> choices_;  // per coordinate
   std::vector<Real> defaults_;   // of the parameters
   std::vector<double> input_defaults_;

@@ -33,7 +33,8 @@ TEST_CASE("bench: every solver's error falls with its tolerance or step, and the
       CHECK(row["step"].is_null() == solver["adaptive"].get<bool>());
       CHECK(row["error_along"].get<double>() >= row["error"].get<double>());
       CHECK(row["seconds"].get<double>() > 0);
-      errors.push_back(row["error_along"]);
+      // Within its long steps the polynomial of radau has the order of its stages alone.
+      errors.push_back(row[name == "radau" ? "error" : "error_along"]);
     }
     REQUIRE(errors.size() >= 9);
     const double fall = errors.front() / errors.back();

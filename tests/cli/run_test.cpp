@@ -84,9 +84,10 @@ TEST_CASE("every solver that list shows runs, and they agree") {
     if (!adaptive) words.insert(words.end(), {"--step", "0.001"});
     const Json run = document(folder, words);
     CHECK(run["solver"] == name);
-    CHECK(run["solver_reason"] == "as asked for");
-    CHECK(std::abs(angle(run) - expected) < 1e-6);
-    CHECK(run["error_estimate"]["theta"].get<double>() < 1e-6);
+    CHECK(run["solver_reason"].get<std::string>().starts_with("as asked for"));
+    const double bound = solver["order"] == 2 ? 1e-4 : 1e-6;  // steps of 1e-3 over ten seconds: 10 times their square
+    CHECK(std::abs(angle(run) - expected) < bound);
+    CHECK(run["error_estimate"]["theta"].get<double>() < bound);
     if (!adaptive) CHECK(run["steps"] == 10000);
   }
 }

@@ -27,6 +27,7 @@ const std::vector<std::string>& refusals() {
       "has no mass",  // a coordinate that nothing with inertia moves along
       "no inertia",
       "changes no equation of motion",  // a force that does no work: friction at a pivot
+      "contains no coordinate",         // a distance of two bodies that nothing changes
       "does not determine the force",   // of a contact whose constraint follows from others
       "fixes nothing",                  // a joint that would hold a place that a function of time moves
       "contains no velocity",           // a knife edge along an arm: its point never moves that way

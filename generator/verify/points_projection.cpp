@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// States at which equations are checked, moved onto the constraints.
+#include <cln/integer.h>
+#include <cln/rational.h>
+#include <cln/real.h>
+
+#include "verify/linear_solve.hpp"
+#include "verify/points.hpp"
+#include "verify/rejected.hpp"
+
+namespace eomgen::verify {
+namespace {
+
+constexpr double singular_constraints = 1e10;
+
+}  // namespace
+
+/// How far a coordinate is from the nearer end of its range; its scale, if that is less.
+Real Points::room(const State& state, std::size_t i) const {
+  const Choice& c = choices_[i];
+  Real room = exact(c.scale);
+  if (c.has_lower) room = cln::min(room, state.q[i] - exact(c.lower));
+  if (c.has_upper) room = cln::min(room, exact(c.upper) - state.q[i]);
+  return room;
+}
+
+/// Takes the step, or of it what leaves every coordinate inside its range. False: it was cut.
+bool Points::move_inside(State& s, const std::vector<Real>& step) const {
+  const Real most = cln::cl_RA(9) / 10;  // of the way to the end of the range
+  Real part = 1;
+  for (std::size_t i = 0; i < step.size(); ++i) {
+    const Choice& c = choices_[i];
+    const auto keep = [&](const Real& way) {  // of the sign of the step
+      if (cln::abs(step[i]) > most * cln::abs(way)) part = cln::min(part, most * way / step[i]);
+    };
+    if (c.has_lower && cln::minusp(step[i]) && s.q[i] > exact(c.lower)) keep(exact(c.lower) - s.q[i]);
+    if (c.has_upper && cln::plusp(step[i]) && s.q[i] < exact(c.upper)) keep(exact(c.upper) - s.q[i]);
+  }
+  for (std::size_t i = 0; i < step.size(); ++i) s.q[i] = s.q[i] + part * step[i];
+  return part == 1;
+}
+
+/// The least change that removes the defect, measured by the scales, or by what is left to the ends of the ranges:
+/// W A^T (A W A^T)^-1 (-defect).
+std::vector<Real> Points::correction(const State& state, bool rates, const std::vector<bool>* held,
+                                     bool by_room) const {
+  State at = state;
+  at.qddot.clear();  // nobody asks for psi_ddot here
+  ConstraintValues c = judge_.constraint_values(at);
+  const std::size_t n = choices_.size();
+  std::vector<Real> defect = rates ? c.psi_dot : c.psi;
+  for (std::size_t k = c.gradient.size(); k-- > 0;) {
+    const bool follows = judge_.implied(k) && (rates || !open_.contains(k));
+    if ((rates || judge_.holonomic(k)) && !follows && !state.apart.contains(k))
+      continue;  // else: binds no position, follows, is open
+    c.gradient.erase(c.gradient.begin() + static_cast<std::ptrdiff_t>(k));
+    defect.erase(defect.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  const std::size_t rows = c.gradient.size();
+  if (rows == 0) return std::vector<Real>(n, Real(0));
+  std::vector<Real> weight;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Real scale = held != nullptr && (*held)[i] ? Real(0)
+                       : rates                       ? exact(choices_[i].rate_scale)
+                       : by_room                     ? room(state, i)
+                                                     : exact(choices_[i].scale);
+    weight.push_back(scale * scale);
+  }
+  std::vector<Real> gram(rows * rows, Real(0)), right;
+  for (const Real& value : defect) right.push_back(-value);
+  for (std::size_t j = 0; j < n; ++j) {
+    std::vector<std::size_t> bound;  // constraints that it is in
+    for (std::size_t i = 0; i < rows; ++i)
+      if (!cln::zerop(c.gradient[i][j])) bound.push_back(i);
+    for (const std::size_t i : bound) {
+      const Real scaled = c.gradient[i][j] * weight[j];
+      for (const std::size_t k : bound) gram[i * rows + k] = gram[i * rows + k] + scaled * c.gradient[k][j];
+    }
+  }
+  const Solution y = solve(std::move(gram), std::move(right));
+  if (!y.exists() || y.condition > singular_constraints) throw Unclosed("the constraints lose rank");
+  std::vector<Real> change(n, Real(0));
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t i = 0; i < rows; ++i)
+      if (!cln::zerop(c.gradient[i][j])) change[j] = change[j] + weight[j] * c.gradient[i][j] * y.x()[i];
+  return change;
+}
+
+void Points::project_positions(State& s, const std::vector<bool>* held) const {
+  if (judge_.constraints().empty()) return;
+  // Convergence is quadratic: after a step of relative size 10^-h the error is of the order 10^-2h.
+  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() / 2 + 2));
+  const Real own = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() / 2 - 8));
+  constexpr int most_settling = 8;
+  int settled = 0;
+  bool by_room = false;  // once a step would have left a range: coordinates near an end are moved less then
+  for (int iteration = 0; iteration < 40; ++iteration) {
+    const std::vector<Real> step = correction(s, false, held, by_room);
+    Real size = 0;
+    for (std::size_t i = 0; i < step.size(); ++i) size = cln::max(size, cln::abs(step[i]) / exact(choices_[i].scale));
+    if (!move_inside(s, step)) by_room = true;
+    // The first step may be as long as a prescribed motion is far away: a radius of a planet, where no start gives a
+    // scale.
+    if (iteration > 0 && size > 1000) break;
+    if (size >= small) continue;
+    // A coordinate far below its scale, as a height of 1 beside a width of 1e300, has digits of its own to come.
+    const auto coarse = [&](std::size_t i) { return cln::abs(step[i]) > cln::abs(s.q[i]) * own; };
+    if (++settled == most_settling) return;
+    bool any = false;
+    for (std::size_t i = 0; i < step.size(); ++i) any = any || coarse(i);
+    if (!any) return;
+  }
+  throw Unclosed("no configuration on the constraints was found");
+}
+
+void Points::project_velocities(State& s) const {
+  if (judge_.constraints().empty()) return;
+  // Linear; a second time for the digits of what is nearly at rest. What is left where nothing can move is 0.
+  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() - 6));
+  std::vector<Real> size;
+  for (std::size_t i = 0; i < choices_.size(); ++i)
+    size.push_back(cln::max(cln::abs(s.qdot[i]), exact(choices_[i].rate_scale)) * small);
+  for (int round = 0; round < 2; ++round) {
+    const std::vector<Real> change = correction(s, true, nullptr, false);
+    for (std::size_t i = 0; i < change.size(); ++i) s.qdot[i] = s.qdot[i] + change[i];
+  }
+  for (std::size_t i = 0; i < size.size(); ++i) {
+    if (cln::abs(s.qdot[i]) <= size[i]) s.qdot[i] = 0;
+  }
+}
+
+/// What follows from velocities alone, as a joint of a body that they hold, binds positions all the same: those that
+/// are open are closed one by one, as long as that closes more.
+void Points::close_implied(State& s) {
+  for (std::size_t round = 0; judge_.any_implied() && round < judge_.constraints().size(); ++round) {
+    const std::optional<std::size_t> open = first_open(s, false);
+    if (!open || !judge_.holonomic(*open) || open_.contains(*open)) break;
+    open_.insert(*open);
+    project_positions(s);
+  }
+}
+
+/// Relative to the size of the terms, as far as the digits of a projection go.
+void Points::require_implied(const State& s) const {
+  if (first_open(s, true)) throw Rejected("a joint closes in another way");
+}
+
+/// Of the constraints that follow from others: the first that does not hold, in positions or also in rates.
+std::optional<std::size_t> Points::first_open(const State& s, bool rates) const {
+  if (!judge_.any_implied()) return std::nullopt;
+  const ConstraintValues c = judge_.constraint_values(s);
+  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() - 15));
+  for (std::size_t k = 0; k < c.psi.size(); ++k) {
+    if (!judge_.implied(k)) continue;
+    Real size = 1, rate = 1;
+    for (std::size_t i = 0; i < s.q.size(); ++i) {
+      size = size + cln::abs(c.gradient[k][i] * s.q[i]);
+      rate = rate + cln::abs(c.gradient[k][i] * s.qdot[i]);
+    }
+    if (cln::abs(c.psi[k]) > small * size || (rates && cln::abs(c.psi_dot[k]) > small * rate)) return k;
+  }
+  return std::nullopt;
+}
+
+}  // namespace eomgen::verify
