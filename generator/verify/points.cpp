@@ -10,7 +10,6 @@
 
 #include "error.hpp"
 #include "verify/linear_solve.hpp"
-#include "verify/rejected.hpp"
 
 namespace eomgen::verify {
 namespace {

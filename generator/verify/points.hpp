@@ -12,6 +12,7 @@
 #include <optional>
 #include <random>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,22 @@
 
 namespace eomgen::verify {
 
+/// A state that is not compared, and why; counted by reason.
+struct Rejected : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The constraints cannot be met there.
+struct Unclosed : Rejected {
+  using Rejected::Rejected;
+};
+
 class Points {
  public:
   /// At most `cap` rejections in all. Parameters in `fixed` have that value at every point. States are moved onto the
-  /// constraints; implied ones have to hold there by themselves. Scalar constraints in `leavable` are closed, all of
-  /// them or, where that cannot be, as many as can be, other ones at other points; the others are State::apart.
+  /// constraints; implied ones hold there by themselves, or are moved onto too. Scalar constraints in `leavable` are
+  /// closed, all of them or, where that cannot be, as many as can be, other ones at other points; the others are
+  /// State::apart.
   Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed = {},
          std::vector<std::size_t> leavable = {});
 

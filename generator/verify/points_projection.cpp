@@ -6,7 +6,6 @@
 
 #include "verify/linear_solve.hpp"
 #include "verify/points.hpp"
-#include "verify/rejected.hpp"
 
 namespace eomgen::verify {
 namespace {
