@@ -70,13 +70,15 @@ class Functions {
   }
 
   Arrays sizes(const std::string& function, const Arrays& values) const {
+    constexpr double least_number = 1e-290;  // smaller numbers have fewer digits in binary64, which bounds are in
     const std::vector<std::vector<double>> bounds = program_.bounds(function, at_);
     Arrays result;
     for (std::size_t r = 0; r < values.size(); ++r) {
       result.emplace_back();
       for (std::size_t i = 0; i < values[r].size(); ++i) {
         if (!std::isfinite(bounds[r][i])) return {};
-        result.back().push_back(cln::abs(values[r][i]) + size_of_rounding(bounds[r][i], judge_.precision()));
+        result.back().push_back(cln::abs(values[r][i]) +
+                                size_of_rounding(std::max(bounds[r][i], least_number), judge_.precision()));
       }
     }
     return result;
