@@ -81,7 +81,9 @@ class Search {
     for (const std::vector<Ref>& tangent : contact.tangents) tangents_.push_back(row(tangent));
     base_ = always_;
     if (contact.unilateral) base_.push_back(row(m_.constraints[contact.constraints[0]].gradient));
-    if (free_directions(base_) < tangents_.size()) refuse(contact);
+    const std::size_t free = free_directions(base_);
+    if (free == 0) refuse(contact);
+    if (free < tangents_.size()) return;  // too many to be determined, if the rest is free: require_determinate
     for (std::uint32_t c = 0; c < m_.contacts.size(); ++c) {
       const Contact& other = m_.contacts[c];
       if (&other == &contact || !other.unilateral) continue;

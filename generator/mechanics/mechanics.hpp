@@ -93,9 +93,6 @@ struct Integral {
   Ref psi;
 };
 
-/// Where a law of friction acts: a particle on a surface (one constraint) or a curve (two), a body on a plane or
-/// another body, or one coordinate with a given normal force. The friction force is sum_a phi_a t_a with the symbols
-/// phi_a = {SymbolKind::friction, first + a}. A unilateral constraint is a contact with or without friction.
 /// A unilateral contact that lets nothing slide along sum_a along_a t_a while it touches, as a stop at the end of a
 /// rough guide: there the motion does not determine the friction, which is taken to be 0.
 struct HeldDirection {
@@ -103,6 +100,9 @@ struct HeldDirection {
   std::vector<Ref> along;  // per tangent; of any length
 };
 
+/// Where a law of friction acts: a particle on a surface (one constraint) or a curve (two), a body on a plane or
+/// another body, or one coordinate with a given normal force. The friction force is sum_a phi_a t_a with the symbols
+/// phi_a = {SymbolKind::friction, first + a}. A unilateral constraint is a contact with or without friction.
 struct Contact {
   std::string name;                        // of the constraint or the force
   std::vector<std::uint32_t> constraints;  // 1 or 2 indices; none: the normal force is given

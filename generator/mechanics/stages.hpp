@@ -22,8 +22,8 @@ void drop_dependent_equations(Mechanics& mechanics, Lowering& lower);  // those 
 bool may_repeat(const Mechanics& mechanics, const Constraint& constraint);
 const model::Constraint& model_constraint(const Mechanics& mechanics, const Constraint& constraint);
 void drop_held_directions(Mechanics& mechanics);  // of contacts, along which other constraints let nothing slide
-void find_held_directions(
-    Mechanics& mechanics);  // that others hold while they touch; refuses those that are always held
+/// Those that others hold while they touch; refuses friction along what is always held.
+void find_held_directions(Mechanics& mechanics);
 const model::Friction& law_of(const Mechanics& mechanics, const Contact& contact);
 
 }  // namespace eomgen::mechanics

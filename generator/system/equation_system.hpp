@@ -62,15 +62,15 @@ struct Event {
   Ref value;  // the event is where it changes its sign; may use qddot of free coordinates and multipliers
 };
 
-/// A contact with friction or that can be left (docs/theory.md, "Friction"). The friction force sum_a phi_a t_a enters
-/// f and the reactions with the symbols phi_a = {SymbolKind::friction, first + a}; the law that determines them depends
-/// on the mode.
 /// mechanics::HeldDirection: phi has no part along it while contact `by` touches.
 struct HeldDirection {
   std::uint32_t by = 0;    // index into EquationSystem::contacts
   std::vector<Ref> along;  // per tangent
 };
 
+/// A contact with friction or that can be left (docs/theory.md, "Friction"). The friction force sum_a phi_a t_a enters
+/// f and the reactions with the symbols phi_a = {SymbolKind::friction, first + a}; the law that determines them depends
+/// on the mode.
 struct Contact {
   std::string name;
   std::uint32_t first = 0;               // index of the first phi

@@ -138,6 +138,8 @@ inline bool Integration::start(Result& total, const OnEvent& event) {
   }
   if (parts_.contacts && parts_.contacts->start_code() != 0) {
     total.outcome = outcome_of_abi_code(parts_.contacts->start_code());
+    reason_ = explain(parts_, {}, {}, total);
+    total.detail = sentence(reason_);
     return false;
   }
   // It has to begin on the constraints, to rounding.
