@@ -22,9 +22,6 @@ namespace {
 
 using namespace eomgen::bench;
 
-using eomgen::bench::Handwritten;
-using eomgen::bench::HandwrittenBatch;
-
 constexpr int repeats = 41;
 constexpr std::size_t count = 64,
                       stride = 72;   // no power of two: rows that are one apart would share a place in the cache
@@ -57,7 +54,7 @@ double nanoseconds_per_state(std::size_t calls, const Run& run) {
   run();  // what ran before it is out of the caches
   const double start = processor_seconds();
   for (std::size_t k = 0; k < calls; ++k) run();
-  const double seconds = (processor_seconds() - start);
+  const double seconds = processor_seconds() - start;
   return 1e9 * seconds / static_cast<double>(calls * count);
 }
 

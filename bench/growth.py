@@ -86,24 +86,25 @@ def table(eomgen, families):
                 before = r
 
 
-def replace(begin, end, lines):
-    """The table between two comments of docs/benchmarks.md."""
+def write(begin, end, lines):
+    """Replaces the table between two comments of docs/benchmarks.md."""
     document = growth_models.ROOT / "docs" / "benchmarks.md"
     head, rest = document.read_text().split(begin)
     document.write_text(head + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1])
 
 
-def main():
+def main(usage, begin, end, table):
+    """The command line of a program that prints a table: of all rows, or of those that are named."""
     arguments = [a for a in sys.argv[1:] if a != "--write"]
     if not arguments:
-        sys.exit("usage: bench/growth.py EOMGEN [--write] [FAMILY ...]")
+        sys.exit(f"usage: {usage}")
     lines = []
     for line in table(os.path.abspath(arguments[0]), arguments[1:]):
         print(line, flush=True)
         lines.append(line)
     if "--write" in sys.argv:
-        replace(BEGIN, END, lines)
+        write(begin, end, lines)
 
 
 if __name__ == "__main__":
-    main()
+    main("bench/growth.py EOMGEN [--write] [FAMILY ...]", BEGIN, END, table)

@@ -9,11 +9,10 @@ most memory that one of them took. With --write the table in docs/benchmarks.md 
 import json
 import os
 import pathlib
-import sys
 import tempfile
 
 import mechanism_models
-from growth import measured, replace
+from growth import main, measured
 
 BEGIN, END = "<!-- mechanisms: written by bench/mechanisms.py -->", "<!-- end of mechanisms -->"
 COMMANDS = [("check", []), ("verify", ["--no-compile"]), ("run", ["--t-end", "0.2"]), ("linearize", []), ("equilibria", [])]
@@ -42,17 +41,5 @@ def table(eomgen, names):
             yield row(eomgen, name, pathlib.Path(folder))
 
 
-def main():
-    arguments = [a for a in sys.argv[1:] if a != "--write"]
-    if not arguments:
-        sys.exit("usage: bench/mechanisms.py EOMGEN [--write] [NAME ...]")
-    lines = []
-    for line in table(os.path.abspath(arguments[0]), arguments[1:]):
-        print(line, flush=True)
-        lines.append(line)
-    if "--write" in sys.argv:
-        replace(BEGIN, END, lines)
-
-
 if __name__ == "__main__":
-    main()
+    main("bench/mechanisms.py EOMGEN [--write] [NAME ...]", BEGIN, END, table)

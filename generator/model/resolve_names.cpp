@@ -261,8 +261,8 @@ void Resolver::unknown_name(const SyntaxNode& node) {
   if (hint.empty() && is_reserved(name)) hint = fmt::format("'{}' is a function: write {}(...)", name, name);
   if (hint.empty()) {
     hint =
-        "declare it: a coordinate in [coordinates] or in a position, a constant in [parameters], a value in "
-        "[definitions]";
+        "declare it: a coordinate in [coordinates] or in position = { cartesian = [..] }, a constant in [parameters], "
+        "a value in [definitions]";
   }
   source_.fail(node.span, fmt::format("the name {} is not declared", quote(name)), hint);
 }

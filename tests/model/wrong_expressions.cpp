@@ -53,12 +53,12 @@ std::vector<WrongModel> wrong_expressions() {
        "a comparison stands where a value is asked", "write if(a < b, x, y)"},
       {"an error behind an escape", pendulum({{"-g*E3", "-g*\\u0045\\u0033 + nope"}}), "11:30",
        "the name 'nope' is not declared",
-       "declare it: a coordinate in [coordinates] or in a position, a constant in [parameters], a value in "
-       "[definitions]"},
+       "declare it: a coordinate in [coordinates] or in position = { cartesian = [..] }, a constant in [parameters], a "
+       "value in [definitions]"},
       {"an error in a text of several lines", pendulum({{"\"-g*E3\"", "\"\"\"\n  -g*E3\n  + nope\"\"\""}}), "13:5",
        "the name 'nope' is not declared",
-       "declare it: a coordinate in [coordinates] or in a position, a constant in [parameters], a value in "
-       "[definitions]"},
+       "declare it: a coordinate in [coordinates] or in position = { cartesian = [..] }, a constant in [parameters], a "
+       "value in [definitions]"},
   };
 }
 

@@ -7,8 +7,8 @@ namespace eomgen::model {
 std::vector<WrongModel> wrong_names() {
   return {
       {"an unknown name", pendulum({{"-g*E3", "-grav*E3"}}), "11:13", "the name 'grav' is not declared",
-       "declare it: a coordinate in [coordinates] or in a position, a constant in [parameters], a value in "
-       "[definitions]"},
+       "declare it: a coordinate in [coordinates] or in position = { cartesian = [..] }, a constant in [parameters], a "
+       "value in [definitions]"},
       {"a misspelt parameter", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"R - LL\"\n"), "14:18",
        "the name 'LL' is not declared", "did you mean 'L'?"},
       {"a misspelt velocity", pendulum({}, "[[force]]\non = \"P\"\nforce = \"-L*tehta_dot*E1\"\n"), "14:13",
@@ -68,8 +68,8 @@ std::vector<WrongModel> wrong_names() {
        "13:17", "'tehta' is not a coordinate", "did you mean 'theta'?"},
       {"extension outside a spring", pendulum({}, "[definitions]\na = \"extension\"\n"), "13:6",
        "the name 'extension' is not declared",
-       "declare it: a coordinate in [coordinates] or in a position, a constant in [parameters], a value in "
-       "[definitions]"},
+       "declare it: a coordinate in [coordinates] or in position = { cartesian = [..] }, a constant in [parameters], a "
+       "value in [definitions]"},
       {"a body's axis of a particle", pendulum({}, "[definitions]\na = \"P.e1\"\n"), "13:6", "'P' has no part 'e1'",
        "its parts are e_q, a_q and g_q for q = R, phi, theta"},
       {"an unused kind of position", pendulum({{"spherical", "sperical"}}), "9:14", "a position has no key 'sperical'",

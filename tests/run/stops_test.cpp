@@ -20,31 +20,66 @@ test::Finished run_text(const std::string& name, const std::string& text) {
   return test::run_model(path, [](pipeline::SimulationRequest& request) { request.overrides.outputs = {"all"}; });
 }
 
-}  // namespace
+/// A block on a rough floor, at the wall x + y = 3.
+std::string block_beside_a_wall(const std::string& floor, const std::string& force, int t_end) {
+  return R"toml(format = 1
+[parameters]
+m = 2
+g = 10
+mu = 0.3
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "y", "z"] }
+[[force]]
+gravity = "-g*E3"
+[[force]]
+on = "P"
+force = ")toml" +
+         force + R"toml("
+[[constraint]]
+name = "floor"
+holonomic = ")toml" +
+         floor + R"toml("
+friction = { static = "mu", dynamic = "mu" }
+[[constraint]]
+name = "wall"
+holonomic = "3 - x - y"
+holds = "unilateral"
+[scene.default]
+initial = { x = 1, y = 2 }
+t = [0, )toml" +
+         std::to_string(t_end) + "]\n";
+}
 
-TEST_CASE("stops: a slider on a rough guide bounces off its stop and comes to rest where friction lets it") {
-  const test::Finished end = run_text("slider", R"toml(format = 1
+/// A slider in a rough guide whose friction is 4 N at most, with a stop at x = 1.
+std::string slider_with_a_stop(const std::string& forces, const std::string& restitution, const std::string& scene) {
+  return R"toml(format = 1
 [parameters]
 m = 2
 F = 4
-e = 0.3
 [coordinates]
 x = {}
 [energy]
 kinetic = "1/2*m*x_dot^2"
 potential = "0"
-[[force]]
+)toml" + forces +
+         R"toml([[force]]
 name = "guide"
 dry = { coordinate = "x", normal = "F", static = 1, dynamic = 1 }
 [[constraint]]
 name = "stop"
 holonomic = "1 - x"
 holds = "unilateral"
-restitution = "e"
-[scene.default]
-t = [0, 5]
-initial = { x = 0.5, x_dot = 2 }
-)toml");
+)toml" + restitution +
+         "[scene.default]\n" + scene;
+}
+
+}  // namespace
+
+TEST_CASE("stops: a slider on a rough guide bounces off its stop and comes to rest where friction lets it") {
+  const test::Finished end = run_text(
+      "slider", slider_with_a_stop("", "restitution = 0.3\n", "t = [0, 5]\ninitial = { x = 0.5, x_dot = 2 }\n"));
   // It is slowed by F/m = 2: 4 - 2*2/2 = 2 is the square of its speed at the stop, e^2*2 that after it.
   CHECK(std::abs(end.final("x") - (1 - 0.09 * 2 / (2 * 2))) <= closed_form);
   CHECK(end.final("x_dot") == 0);
@@ -52,28 +87,9 @@ initial = { x = 0.5, x_dot = 2 }
 }
 
 TEST_CASE("stops: what presses a slider onto its stop is borne by the stop, and released it goes on as friction says") {
-  const test::Finished end = run_text("pressed_slider", R"toml(format = 1
-[parameters]
-m = 2
-F = 4
-[coordinates]
-x = {}
-[energy]
-kinetic = "1/2*m*x_dot^2"
-potential = "0"
-[[force]]
-generalized = { x = "10 - 6*t" }
-[[force]]
-name = "guide"
-dry = { coordinate = "x", normal = "F", static = 1, dynamic = 1 }
-[[constraint]]
-name = "stop"
-holonomic = "1 - x"
-holds = "unilateral"
-[scene.default]
-t = [0, 4]
-initial = { x = 1 }
-)toml");
+  const test::Finished end = run_text(
+      "pressed_slider",
+      slider_with_a_stop("[[force]]\ngeneralized = { x = \"10 - 6*t\" }\n", "", "t = [0, 4]\ninitial = { x = 1 }\n"));
   const std::size_t last = end.rows.size() - 1;
   bool pressed = false, stuck = false;
   for (std::size_t row = 0; row <= last; ++row) {
@@ -97,32 +113,7 @@ initial = { x = 1 }
 }
 
 TEST_CASE("stops: a block on a rough floor that a wall holds slides along the wall, and sticks across it alone") {
-  const test::Finished end = run_text("block_at_walls", R"toml(format = 1
-[parameters]
-m = 2
-g = 10
-mu = 0.3
-[[particle]]
-name = "P"
-mass = "m"
-position = { cartesian = ["x", "y", "z"] }
-[[force]]
-gravity = "-g*E3"
-[[force]]
-on = "P"
-force = "50*E1 + 30*E2 + 4*t*(E1 - E2)"
-[[constraint]]
-name = "floor"
-holonomic = "z"
-friction = { static = "mu", dynamic = "mu" }
-[[constraint]]
-name = "wall"
-holonomic = "3 - x - y"
-holds = "unilateral"
-[scene.default]
-t = [0, 2]
-initial = { x = 1, y = 2 }
-)toml");
+  const test::Finished end = run_text("block_at_walls", block_beside_a_wall("z", "50*E1 + 30*E2 + 4*t*(E1 - E2)", 2));
   // Along the wall, (E1 - E2)/sqrt(2), it is pulled by (20 + 8 t)/sqrt(2) > mu m g = 6: it slides from the start.
   const double root = std::sqrt(2.0), along = (10 * 4 + 4.0 * 8 / 3) / root / 2 - 6.0 * 4 / 2 / 2;
   CHECK(std::abs((end.final("x") - end.final("y") + 1) / root - along) <= 1e-8);
@@ -131,32 +122,7 @@ initial = { x = 1, y = 2 }
 }
 
 TEST_CASE("stops: a block that sticks beside a wall has no friction towards it") {
-  const test::Finished end = run_text("block_at_rest", R"toml(format = 1
-[parameters]
-m = 2
-g = 10
-mu = 0.3
-[[particle]]
-name = "P"
-mass = "m"
-position = { cartesian = ["x", "y", "z"] }
-[[force]]
-gravity = "-g*E3"
-[[force]]
-on = "P"
-force = "50*E1 + 46*E2"
-[[constraint]]
-name = "floor"
-holonomic = "z - x/10"
-friction = { static = "mu", dynamic = "mu" }
-[[constraint]]
-name = "wall"
-holonomic = "3 - x - y"
-holds = "unilateral"
-[scene.default]
-t = [0, 1]
-initial = { x = 1, y = 2 }
-)toml");
+  const test::Finished end = run_text("block_at_rest", block_beside_a_wall("z - x/10", "50*E1 + 46*E2", 1));
   CHECK(std::abs(end.final("x") - 1) <= closed_form);
   CHECK(std::abs(end.final("y") - 2) <= closed_form);
   // The force F, the weight and the normal forces of floor and wall have no part along (1, -1, 1/10), the line that is
