@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions of slip along which constraints let nothing move. Where they do so always, friction changes no equation
-// of motion and is refused; where a unilateral contact does while it touches, as a stop at the end of a rough guide,
-// the motion does not determine the friction along it.
+// Directions of slip along which constraints let nothing move: where others do so always, as a rail on a rough floor,
+// or a unilateral contact while it touches, as a stop at the end of a rough guide, the motion does not determine the
+// friction along them. Where no other direction is left, friction changes no equation of motion and is refused.
 #include <algorithm>
 #include <optional>
 
@@ -22,8 +22,9 @@ using Touching = std::vector<bool>;
 
 std::size_t sticking_directions(const Contact& contact, std::size_t index, const Touching& touching) {
   if (!sticks(contact) || (contact.unilateral && !touching[index])) return 0;
-  const auto held = std::count_if(contact.held.begin(), contact.held.end(),
-                                  [&](const HeldDirection& direction) { return touching[direction.by]; });
+  const auto held = std::count_if(contact.held.begin(), contact.held.end(), [&](const HeldDirection& direction) {
+    return direction.by == index || touching[direction.by];
+  });
   return contact.dimensions() - std::min(contact.dimensions(), static_cast<std::size_t>(held));
 }
 
@@ -76,23 +77,28 @@ class Search {
     }
   }
 
-  void look_at(Contact& contact) {
+  void look_at(std::uint32_t index) {
+    Contact& contact = m_.contacts[index];
     tangents_.clear();
     for (const std::vector<Ref>& tangent : contact.tangents) tangents_.push_back(row(tangent));
     base_ = always_;
     if (contact.unilateral) base_.push_back(row(m_.constraints[contact.constraints[0]].gradient));
     const std::size_t free = free_directions(base_);
     if (free == 0) refuse(contact);
-    if (free < tangents_.size()) return;  // too many to be determined, if the rest is free: require_determinate
+    if (free < tangents_.size()) {
+      std::optional<std::vector<Ref>> along = always_held(contact);
+      if (!along) return;  // too many directions to be determined, which require_determinate tells
+      contact.held.push_back({index, std::move(*along)});
+    }
     for (std::uint32_t c = 0; c < m_.contacts.size(); ++c) {
-      const Contact& other = m_.contacts[c];
-      if (&other == &contact || !other.unilateral) continue;
-      const Row g = row(m_.constraints[other.constraints[0]].gradient);
+      if (c == index || !m_.contacts[c].unilateral) continue;
+      const Row g = row(m_.constraints[m_.contacts[c].constraints[0]].gradient);
       std::vector<Row> rows = base_;
       rows.push_back(g);
-      if (free_directions(rows) == tangents_.size()) continue;
+      if (free_directions(rows) == free) continue;
+      // Of one direction that is left, any length.
       std::optional<std::vector<Ref>> along =
-          tangents_.size() == 1 ? std::vector<Ref>{m_.dag->one()} : share_of(g, contact);
+          free == 1 ? std::vector<Ref>(tangents_.size(), m_.dag->one()) : share_of(g, contact);
       if (along) contact.held.push_back({c, std::move(*along)});
     }
   }
@@ -122,6 +128,20 @@ class Search {
     for (std::size_t point = 0; point < space_.points(); ++point)
       most = std::max(most, rank(all, point) - rank(rows, point));
     return most;
+  }
+
+  /// What one constraint that always holds lets not slide, of two directions; nothing where it takes several.
+  std::optional<std::vector<Ref>> always_held(const Contact& contact) {
+    std::vector<Row> rows;
+    if (contact.constraints.size() == 1) rows.push_back(row(m_.constraints[contact.constraints[0]].gradient));
+    for (const Row& g : always_) {
+      rows.push_back(g);
+      const bool holds = free_directions(rows) < tangents_.size();
+      rows.pop_back();
+      std::optional<std::vector<Ref>> along = holds ? share_of(g, contact) : std::nullopt;
+      if (along) return along;
+    }
+    return std::nullopt;
   }
 
   /// h with g = h_1 t_1 + h_2 t_2, but for a factor and the contact's own normal: minors of these rows. Nothing where
@@ -202,8 +222,8 @@ void find_held_directions(Mechanics& m) {
   search.emplace(m, FormSpace::Where::on_constraints);
   if (!search->sees()) search.emplace(m, FormSpace::Where::anywhere);
   if (search->sees()) {
-    for (Contact& contact : m.contacts)
-      if (sticks(contact)) search->look_at(contact);
+    for (std::uint32_t j = 0; j < m.contacts.size(); ++j)
+      if (sticks(m.contacts[j])) search->look_at(j);
   }
   std::vector<std::size_t> leavable;
   for (std::size_t j = 0; j < m.contacts.size(); ++j)

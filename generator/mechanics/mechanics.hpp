@@ -94,9 +94,10 @@ struct Integral {
 };
 
 /// A unilateral contact that lets nothing slide along sum_a along_a t_a while it touches, as a stop at the end of a
-/// rough guide: there the motion does not determine the friction, which is taken to be 0.
+/// rough guide, or constraints that always hold: there the motion does not determine the friction, which is taken to
+/// be 0.
 struct HeldDirection {
-  std::uint32_t by = 0;    // index into Mechanics::contacts
+  std::uint32_t by = 0;    // index into Mechanics::contacts; the contact itself: always
   std::vector<Ref> along;  // per tangent; of any length
 };
 

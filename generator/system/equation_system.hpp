@@ -62,9 +62,9 @@ struct Event {
   Ref value;  // the event is where it changes its sign; may use qddot of free coordinates and multipliers
 };
 
-/// mechanics::HeldDirection: phi has no part along it while contact `by` touches.
+/// mechanics::HeldDirection: phi has no part along it while it sticks and contact `by` touches.
 struct HeldDirection {
-  std::uint32_t by = 0;    // index into EquationSystem::contacts
+  std::uint32_t by = 0;    // index into EquationSystem::contacts; the contact itself: always
   std::vector<Ref> along;  // per tangent
 };
 

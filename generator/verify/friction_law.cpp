@@ -54,7 +54,8 @@ class Law {
       std::vector<std::vector<Real>> held;  // by what touches
       for (const system::HeldDirection& direction : c.held) {
         std::vector<Real> along = take(direction.along.size());
-        if (presses(direction.by) >= 0) held.push_back(std::move(along));
+        const bool touches = !s_.contacts[direction.by].unilateral || presses(direction.by) >= 0;
+        if (touches) held.push_back(std::move(along));
       }
       if (slip.empty()) continue;
       const bool apart = c.unilateral && presses(j) < 0;

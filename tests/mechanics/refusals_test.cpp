@@ -189,22 +189,49 @@ TEST_CASE(
       "all stick, the forces are not determined");
 }
 
-TEST_CASE("mechanics: friction along a direction that a unilateral contact holds knows which") {
-  const std::string plane =
-      "[[constraint]]\nname = \"plane\"\nholonomic = \"z\"\nfriction = { static = 0.3, dynamic = 0.2 }\n";
-  const std::string wall = "[[constraint]]\nname = \"wall\"\nholonomic = \"3*x + 4*y\"\nholds = \"unilateral\"\n";
-  const std::string aside = "[[constraint]]\nname = \"aside\"\nholonomic = \"u\"\nholds = \"unilateral\"\n";
-  const std::string space =
-      "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
-      "[[particle]]\nname = \"Q\"\nmass = 1\nposition = { cartesian = [\"u\", \"v\"] }\n";
-  const model::Model model = model::read_model_text(space + plane + wall + aside, "wall.toml");
-  const mechanics::Mechanics m = mechanics::build_mechanics(model);
-  REQUIRE(m.contacts.size() == 3);
-  REQUIRE(m.contacts[0].held.size() == 1);
-  CHECK(m.contacts[0].held[0].by == 1);
-  const std::vector<cln::cl_R> along = symbolic::evaluate(
-      *m.dag, m.contacts[0].held[0].along, [](const symbolic::Symbol&) { return cln::cl_R(1); }, 20);
-  CHECK(cln::abs(4 * along[0] - 3 * along[1]) < cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 15)));
+TEST_CASE("mechanics: friction along a direction that another constraint holds knows which") {
+  const auto floor = [](const std::string& other) {
+    const model::Model model = model::read_model_text(
+        "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
+        "[[particle]]\nname = \"Q\"\nmass = 1\nposition = { cartesian = [\"u\", \"v\"] }\n"
+        "[[constraint]]\nname = \"plane\"\nholonomic = \"z - x/8\"\nfriction = { static = 0.3, dynamic = 0.2 }\n" +
+            other,
+        "floor.toml");
+    return mechanics::build_mechanics(model);
+  };
+  const auto constraint = [](const std::string& name, const std::string& psi, bool unilateral) {
+    return "[[constraint]]\nname = \"" + name + "\"\nholonomic = \"" + psi + "\"\n" +
+           (unilateral ? "holds = \"unilateral\"\n" : "");
+  };
+  for (const bool unilateral : {true, false}) {
+    CAPTURE(unilateral);
+    const mechanics::Mechanics m =
+        floor(constraint("wall", "3*x + 4*y", unilateral) + constraint("aside", "u - v^2", unilateral));
+    REQUIRE(m.contacts.size() == (unilateral ? 3 : 1));
+    const mechanics::Contact& plane = m.contacts[0];
+    REQUIRE(plane.held.size() == 1);
+    CHECK(plane.held[0].by == (unilateral ? 1 : 0));
+    // Its part of E1, E2: the wall's gradient, less the part along the plane's normal.
+    std::vector<symbolic::Ref> wanted;
+    for (std::size_t k = 0; k < 3; ++k) {
+      symbolic::Ref sum = m.dag->zero();
+      for (std::size_t a = 0; a < 2; ++a)
+        sum = m.dag->add(sum, m.dag->mul(plane.held[0].along[a], plane.directions[a][k]));
+      wanted.push_back(sum);
+    }
+    const std::vector<cln::cl_R> h = symbolic::evaluate(
+        *m.dag, wanted, [](const symbolic::Symbol&) { return cln::cl_R(1); }, 20);
+    const cln::cl_R small = cln::expt(symbolic::Rational(1) / 10, 15);
+    // (3, 4, 0) less its part along (-1, 0, 8): (3*64/65, 4, 3*8/65).
+    CHECK(cln::abs(4 * h[0] - h[1] * 3 * 64 / 65) < small);
+    CHECK(cln::abs(8 * h[2] - h[0]) < small);
+  }
+  // Two constraints that hold a direction together: which part is whose is not looked for.
+  const std::string both = "[[constraint]]\nname = \"belt\"\nholonomic = \"x + y - u\"\n" +
+                           constraint("held", "u - v^2 - 2", false) + constraint("too", "u + v^3 - 3", false);
+  CHECK_THROWS_WITH_AS(
+      floor(both),
+      doctest::Contains("with 'plane' friction can hold 2 directions, and the system has 1 degree of freedom"), Error);
 }
 
 TEST_CASE("mechanics refuses: friction where constraints let nothing move") {

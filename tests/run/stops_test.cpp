@@ -20,8 +20,8 @@ test::Finished run_text(const std::string& name, const std::string& text) {
   return test::run_model(path, [](pipeline::SimulationRequest& request) { request.overrides.outputs = {"all"}; });
 }
 
-/// A block on a rough floor, at the wall x + y = 3.
-std::string block_beside_a_wall(const std::string& floor, const std::string& force, int t_end) {
+/// A block on a rough floor, at the wall x + y = 3, or on a rail there.
+std::string block_beside_a_wall(const std::string& floor, const std::string& force, int t_end, bool rail = false) {
   return R"toml(format = 1
 [parameters]
 m = 2
@@ -45,11 +45,8 @@ friction = { static = "mu", dynamic = "mu" }
 [[constraint]]
 name = "wall"
 holonomic = "3 - x - y"
-holds = "unilateral"
-[scene.default]
-initial = { x = 1, y = 2 }
-t = [0, )toml" +
-         std::to_string(t_end) + "]\n";
+)toml" + (rail ? "" : "holds = \"unilateral\"\n") +
+         "[scene.default]\ninitial = { x = 1, y = 2 }\nt = [0, " + std::to_string(t_end) + "]\n";
 }
 
 /// A slider in a rough guide whose friction is 4 N at most, with a stop at x = 1.
@@ -112,26 +109,34 @@ TEST_CASE("stops: what presses a slider onto its stop is borne by the stop, and 
   CHECK(std::abs(end.final("x") - (1 - s * s * s / 2)) <= closed_form);
 }
 
-TEST_CASE("stops: a block on a rough floor that a wall holds slides along the wall, and sticks across it alone") {
-  const test::Finished end = run_text("block_at_walls", block_beside_a_wall("z", "50*E1 + 30*E2 + 4*t*(E1 - E2)", 2));
-  // Along the wall, (E1 - E2)/sqrt(2), it is pulled by (20 + 8 t)/sqrt(2) > mu m g = 6: it slides from the start.
-  const double root = std::sqrt(2.0), along = (10 * 4 + 4.0 * 8 / 3) / root / 2 - 6.0 * 4 / 2 / 2;
-  CHECK(std::abs((end.final("x") - end.final("y") + 1) / root - along) <= 1e-8);
-  CHECK(std::abs(end.final("x") + end.final("y") - 3) <= closed_form);
-  CHECK(std::abs(end.final("reaction.wall") - 40) <= closed_form);  // (50 + 30)/sqrt(2) over |grad psi| = sqrt(2)
+TEST_CASE("stops: a block on a rough floor that a wall or a rail holds slides along it, and sticks across it alone") {
+  for (const bool rail : {false, true}) {
+    CAPTURE(rail);
+    const test::Finished end = run_text(rail ? "block_on_rail" : "block_at_walls",
+                                        block_beside_a_wall("z", "50*E1 + 30*E2 + 4*t*(E1 - E2)", 2, rail));
+    // Along the wall, (E1 - E2)/sqrt(2), it is pulled by (20 + 8 t)/sqrt(2) > mu m g = 6: it slides from the start.
+    const double root = std::sqrt(2.0), along = (10 * 4 + 4.0 * 8 / 3) / root / 2 - 6.0 * 4 / 2 / 2;
+    CHECK(std::abs((end.final("x") - end.final("y") + 1) / root - along) <= 1e-8);
+    CHECK(std::abs(end.final("x") + end.final("y") - 3) <= closed_form);
+    CHECK(std::abs(end.final("reaction.wall") - 40) <= closed_form);  // (50 + 30)/sqrt(2) over |grad psi| = sqrt(2)
+  }
 }
 
-TEST_CASE("stops: a block that sticks beside a wall has no friction towards it") {
-  const test::Finished end = run_text("block_at_rest", block_beside_a_wall("z - x/10", "50*E1 + 46*E2", 1));
-  CHECK(std::abs(end.final("x") - 1) <= closed_form);
-  CHECK(std::abs(end.final("y") - 2) <= closed_form);
-  // The force F, the weight and the normal forces of floor and wall have no part along (1, -1, 1/10), the line that is
-  // left; the friction f along it balances theirs.
-  const double length = std::sqrt(2.01), pull = (50 - 46 - 20 * 0.1) / length;
-  const double f[3] = {end.final("friction.floor.1"), end.final("friction.floor.2"), end.final("friction.floor.3")};
-  CHECK(std::abs((f[0] - f[1] + f[2] / 10) / length + pull) <= closed_form);
-  const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-  CHECK(std::abs(square - pull * pull) <= closed_form);  // and has no other part
+TEST_CASE("stops: a block that sticks beside a wall or on a rail has no friction towards it") {
+  for (const bool rail : {false, true}) {
+    CAPTURE(rail);
+    const test::Finished end = run_text(rail ? "block_at_rest_on_rail" : "block_at_rest",
+                                        block_beside_a_wall("z - x/10", "50*E1 + 46*E2", 1, rail));
+    CHECK(std::abs(end.final("x") - 1) <= closed_form);
+    CHECK(std::abs(end.final("y") - 2) <= closed_form);
+    // The force F, the weight and the normal forces of floor and wall have no part along (1, -1, 1/10), the line that
+    // is left; the friction f along it balances theirs.
+    const double length = std::sqrt(2.01), pull = (50 - 46 - 20 * 0.1) / length;
+    const double f[3] = {end.final("friction.floor.1"), end.final("friction.floor.2"), end.final("friction.floor.3")};
+    CHECK(std::abs((f[0] - f[1] + f[2] / 10) / length + pull) <= closed_form);
+    const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
+    CHECK(std::abs(square - pull * pull) <= closed_form);  // and has no other part
+  }
 }
 
 TEST_CASE("stops: between a floor and a ceiling each bounces a ball by its own coefficient of restitution") {
