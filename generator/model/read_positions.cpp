@@ -53,6 +53,10 @@ const Entry& PositionsReader::system_entry(const Value& table) const {
     keys.known.push_back(system->name);
     if (!system->constant.name.empty()) keys.known.push_back(system->constant.name);
   }
+  if (const Entry* polar = table.entry("polar")) {
+    source_.fail(polar->span, "a position has no key 'polar'",
+                 "cylindrical coordinates may leave out z: write cylindrical = [\"r\", \"theta\"]");
+  }
   check_keys(table, keys);
   const Entry* found = nullptr;
   for (const Entry& entry : table.entries) {

@@ -72,6 +72,8 @@ std::vector<WrongModel> wrong_names() {
        "value in [definitions]"},
       {"a body's axis of a particle", pendulum({}, "[definitions]\na = \"P.e1\"\n"), "13:6", "'P' has no part 'e1'",
        "its parts are e_q, a_q and g_q for q = R, phi, theta"},
+      {"polar coordinates", pendulum({{"spherical", "polar"}}), "9:14", "a position has no key 'polar'",
+       "cylindrical coordinates may leave out z: write cylindrical = [\"r\", \"theta\"]"},
       {"an unused kind of position", pendulum({{"spherical", "sperical"}}), "9:14", "a position has no key 'sperical'",
        "did you mean 'spherical'?"},
   };

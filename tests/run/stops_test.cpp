@@ -174,6 +174,38 @@ initial = { x = 0, h = 0.5, x_dot = 1 }
   CHECK(std::abs(energy - 2.0 / 16 / 4) <= closed_form);
 }
 
+TEST_CASE("stops: balls in a row that touch are hit together, with a gap between them one after the other") {
+  for (const bool gap : {false, true}) {
+    CAPTURE(gap);
+    const test::Finished end = run_text(gap ? "row_with_gap" : "row", R"toml(format = 1
+[coordinates]
+x1 = {}
+x2 = {}
+x3 = {}
+[energy]
+kinetic = "1/2*x1_dot^2 + 1/2*x2_dot^2 + 1/2*x3_dot^2"
+potential = "0"
+[[constraint]]
+name = "left"
+holonomic = "x2 - x1 - 1/10"
+holds = "unilateral"
+restitution = 1
+[[constraint]]
+name = "right"
+holonomic = "x3 - x2 - 1/10"
+holds = "unilateral"
+restitution = 1
+[scene.default]
+t = [0, 1]
+initial = { x1 = -1, x2 = 0, x1_dot = 2, x3 = )toml" + std::string(gap ? "0.10001" : "0.1") +
+                                                                          " }\n");
+    const double after[2][3] = {{-2.0 / 3, 4.0 / 3, 4.0 / 3}, {0, 0, 2}};
+    CHECK(std::abs(end.final("x1_dot") - after[gap][0]) <= closed_form);
+    CHECK(std::abs(end.final("x2_dot") - after[gap][1]) <= closed_form);
+    CHECK(std::abs(end.final("x3_dot") - after[gap][2]) <= closed_form);
+  }
+}
+
 TEST_CASE("stops: what cannot touch at the start is apart, which is told") {
   const char* const wheels = R"toml(format = 1
 [parameters]
