@@ -117,12 +117,19 @@ TEST_CASE("batch: compiled for any processor of its kind, it takes the widest re
   for (const Example& e : {two, in_single({two}).front()}) {
     const Folder folder;
     emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
-    int widest = widths(e).front().lanes;
-    for (const Width& width : widths(e)) widest = std::max(widest, width.lanes);
-    CHECK(wrong(folder.path, e, {widest, {}}, "0") == "");
+#ifdef __clang__  // has one width in a file, that of its flags (docs/abi.md)
+    const auto lanes = [&](int bits) { return bits / (e.context.single_error ? 32 : 64); };
+#else
+    const auto lanes = [&](int) {
+      int widest = 1;
+      for (const Width& width : widths(e)) widest = std::max(widest, width.lanes);
+      return widest;
+    };
+#endif
+    CHECK(wrong(folder.path, e, {lanes(128), {}}, "0") == "");
 #if defined(__x86_64__) && defined(__GNUC__)
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-      CHECK(wrong(folder.path, e, {widest, {"-mavx2", "-mfma"}}, "0") == "");
+      CHECK(wrong(folder.path, e, {lanes(256), {"-mavx2", "-mfma"}}, "0") == "");
 #endif
   }
 }
