@@ -21,7 +21,8 @@ const Words endless{"run", "P2_planar_pendulum", "--t-end", "1e7", "--every", "2
 std::string wait_for_rows(const Folder& folder, const std::string& name, std::size_t bytes = 100000) {
   for (int k = 0; k < 2000; ++k) {
     for (const std::string& file : folder.names()) {
-      if (file.starts_with(name + ".partial-") && file.size() == name.size() + 15 && folder.read(file).size() > bytes)
+      if (file.starts_with(name + ".partial-") && file.size() == name.size() + 15 &&
+          std::filesystem::file_size(folder / file) > bytes)
         return file;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

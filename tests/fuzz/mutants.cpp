@@ -17,13 +17,14 @@
 #include <string_view>
 
 #include "commands.hpp"
+#include "support/sanitized.hpp"
 
 namespace {
 
 using namespace eomgen::fuzz;
 
-constexpr rlim_t most_seconds = 60;  // of processor time: a machine that is busy finds nothing
-constexpr rlim_t most_memory = rlim_t{2} << 30;
+constexpr rlim_t most_seconds = eomgen::test::sanitized ? 600 : 60;  // of processor time: a busy machine finds nothing
+constexpr rlim_t most_memory = eomgen::test::sanitized ? RLIM_INFINITY : rlim_t{2} << 30;
 constexpr int refused = 2;
 
 bool has_exited(int status, int code) { return WIFEXITED(status) && WEXITSTATUS(status) == code; }

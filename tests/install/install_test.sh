@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # The installed tree: complete, movable, and usable without the generator's libraries.
-#   install_test.sh BUILD SOURCE SCRATCH CMAKE CXX
+#   install_test.sh BUILD SOURCE SCRATCH CMAKE CXX [FLAG]
+# FLAG: of the sanitizers with which the build was made; what uses its library needs it too.
 set -euo pipefail
-build=$1 source=$2 scratch=$3 cmake=$4 cxx=$5
+build=$1 source=$2 scratch=$3 cmake=$4 cxx=$5 sanitizers=${6-}
 
 refuse() {
   printf 'FAILED: %s\n' "$*" >&2
@@ -44,7 +45,7 @@ if grep -rIlE '#include *<(ginac|cln)/' -- "$prefix/include"; then refuse "these
 
 echo "-- a stranger's program makes a model in code with the library, prints its LaTeX, emits C and runs it"
 cp -R "$source/examples/library" "$scratch/library"
-"$cmake" -S "$scratch/library" -B "$scratch/library/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O0 \
+"$cmake" -S "$scratch/library" -B "$scratch/library/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE="-O0 $sanitizers" \
   -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF >"$scratch/library.log" 2>&1 ||
   { cat "$scratch/library.log"; refuse "find_package(eomgen) for the library"; }
 "$cmake" --build "$scratch/library/build"

@@ -6,20 +6,11 @@
 #include <vector>
 
 #include "random/mechanisms.hpp"
-
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define EOMGEN_RANDOM_SANITIZED
-#endif
-#endif
+#include "support/sanitized.hpp"
 
 namespace eomgen::random_models {
 
-#ifdef EOMGEN_RANDOM_SANITIZED
-inline constexpr int processor_seconds = 400, address_megabytes = 0;  // shadow memory has terabytes of addresses
-#else
-inline constexpr int processor_seconds = 40, address_megabytes = 1500;
-#endif
+inline constexpr int processor_seconds = test::sanitized ? 400 : 40, address_megabytes = test::sanitized ? 0 : 1500;
 
 /// Of `check`, for models on which it once took many times as long.
 inline constexpr int seconds_of_a_check = processor_seconds / 10;
