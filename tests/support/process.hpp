@@ -17,7 +17,7 @@ struct ChildCommand {
   std::vector<std::string> arguments;  // the program first; looked for in PATH if it is no path
   std::string folder = ".";
   std::map<std::string, std::optional<std::string>> environment{};  // changes; nothing: taken out
-  double limit = 30;                                                // seconds
+  double limit = 30;                                                // seconds; ten times as many under the sanitizers
 };
 
 struct ChildResult {
