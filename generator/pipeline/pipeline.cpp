@@ -74,8 +74,8 @@ void take_forms(Derived& derived, FormChoice choice) {
   if (choice && others.empty()) {
     const bool any = !derived.mechanics.active.empty();
     throw Error("derive", Where{derived.model.file, 0, 0, 1, ""},
-                any ? fmt::format("the constraints of this model can be left, or hang together in blocks that are too "
-                                  "large for form '{}'",
+                any ? fmt::format("the constraints of this model can be left, hang together in blocks that are too "
+                                  "large for form '{}', or have no columns that are independent where they hold",
                                   system::name(*choice))
                     : fmt::format("form '{}' is one of constraints that keep multipliers, and this model has none",
                                   system::name(*choice)),

@@ -4,9 +4,11 @@
 #include <cln/real.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "error.hpp"
+#include "program/constrained_points.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/polynomial.hpp"
 #include "symbolic/sample.hpp"
@@ -85,10 +87,39 @@ bool is_rounding(const Dag& dag, Ref r) {
   return true;
 }
 
-/// The choice of dependent columns whose determinant never vanishes, or else is the shortest that is not always zero.
-std::optional<DependentBlock> block_of(Dag& dag, const std::vector<Ref>& A, std::size_t n, const Columns& rows,
-                                       const Columns& columns) {
+/// Whether the determinant is 0 wherever the constraints hold and it is looked at, against the lengths of its rows.
+bool vanishes_where_they_hold(const Dag& dag, const std::vector<Ref>& A, std::size_t n, const DependentBlock& block,
+                              const std::vector<Point>& points) {
+  constexpr double rounding = 1e-8;  // of points that are right to 1e-11, at slopes of some hundred
+  std::vector<Ref> roots{block.determinant};
+  for (const std::size_t k : block.rows)
+    roots.insert(roots.end(), A.begin() + static_cast<std::ptrdiff_t>(k * n),
+                 A.begin() + static_cast<std::ptrdiff_t>((k + 1) * n));
+  bool judged = false;
+  for (const Point& point : points) {
+    const std::vector<double> value =
+        symbolic::evaluate(dag, roots, [&](const symbolic::Symbol& s) -> double { return point.at(s); });
+    double scale = 1;
+    for (std::size_t k = 0; k < block.rows.size(); ++k) {
+      double square = 0;
+      for (std::size_t i = 0; i < n; ++i) square += std::pow(value[1 + k * n + i], 2);
+      scale *= std::sqrt(square);
+    }
+    if (!std::isfinite(value[0]) || !std::isfinite(scale)) continue;
+    if (std::abs(value[0]) > rounding * scale) return false;
+    judged = true;
+  }
+  return judged;
+}
+
+/// The choice of dependent columns whose determinant never vanishes, or else is the shortest that is not always zero
+/// where the constraints hold.
+std::optional<DependentBlock> block_of(const system::EquationSystem& s, const Columns& rows, const Columns& columns) {
+  Dag& dag = *s.dag;
+  const std::vector<Ref>& A = s.A;
+  const std::size_t n = s.free.size();
   if (rows.size() > most_rows || columns.size() > most_columns || columns.size() < rows.size()) return std::nullopt;
+  std::optional<std::vector<Point>> points;
   std::optional<DependentBlock> best;
   std::size_t best_size = 0;
   std::vector<bool> chosen(columns.size(), false);
@@ -101,6 +132,10 @@ std::optional<DependentBlock> block_of(Dag& dag, const std::vector<Ref>& A, std:
     if (dag.is_zero(block.determinant) || is_singular_everywhere(dag, {dag.power(block.determinant, 2)}, 1)) continue;
     const std::size_t size = never_vanishes(dag, block.determinant) ? 0 : dag.reachable({block.determinant}).size();
     if ((best && size >= best_size) || (size > 0 && is_rounding(dag, block.determinant))) continue;
+    if (size > 0) {
+      if (!points) points = points_on_constraints(s, rows);
+      if (vanishes_where_they_hold(dag, A, n, block, *points)) continue;
+    }
     best = std::move(block);
     best_size = size;
   } while (std::prev_permutation(chosen.begin(), chosen.end()));
@@ -112,7 +147,7 @@ std::optional<DependentBlock> block_of(Dag& dag, const std::vector<Ref>& A, std:
 std::optional<std::vector<DependentBlock>> dependent_blocks(const system::EquationSystem& s) {
   std::vector<DependentBlock> result;
   for (const auto& [rows, columns] : connected(*s.dag, s.A, s.free.size(), s.active.size())) {
-    std::optional<DependentBlock> block = block_of(*s.dag, s.A, s.free.size(), rows, columns);
+    std::optional<DependentBlock> block = block_of(s, rows, columns);
     if (!block) return std::nullopt;
     result.push_back(std::move(*block));
   }
@@ -146,7 +181,9 @@ ConstrainedSolve::ConstrainedSolve(const system::EquationSystem& s, Ties ties)
   Dag& dag = *dag_;
   const std::optional<std::vector<DependentBlock>> blocks = dependent_blocks(s);
   if (!blocks) {
-    throw Error("program", {}, "the constraints of this model hang together in blocks that are too large for this form",
+    throw Error("program", {},
+                "the constraints of this model hang together in blocks that are too large for this form, or "
+                "have no columns that are independent where they hold",
                 "use --form multipliers");
   }
   blocks_ = *blocks;
