@@ -4,17 +4,7 @@ set(EOMGEN_PRECOMPILED_OPTIONS
 
 # eomgen_precompile(TARGET header ...): what most files of it include is parsed once. Every file still names what it
 # needs: builds without precompiled headers (the sanitizers') tell where one does not.
-# Headers of others alone: ccache takes a precompiled header from before a change of a comment, and gcc no longer knows
-# the changed file as the one that #pragma once let in already.
 function(eomgen_precompile target)
-  foreach(header IN LISTS ARGN)
-    string(REGEX REPLACE "^[<\"]|[>\"]$" "" file ${header})
-    find_file(own ${file} PATHS ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/generator ${PROJECT_SOURCE_DIR}/lib
-      ${PROJECT_SOURCE_DIR}/tests NO_CACHE NO_DEFAULT_PATH)
-    if(own)
-      message(FATAL_ERROR "${target} precompiles ${own}, a header of this project; include it where it is needed")
-    endif()
-  endforeach()
   if(EOMGEN_PRECOMPILE)
     target_precompile_headers(${target} PRIVATE ${ARGN})
     target_compile_options(${target} PRIVATE ${EOMGEN_PRECOMPILED_OPTIONS})
@@ -29,13 +19,13 @@ function(eomgen_take_precompiled target owner)
   endif()
 endfunction()
 
-# eomgen_stage(NAME [COLD] SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
+# eomgen_stage(NAME [OWN_HEADERS] [COLD] SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
 # One static library per stage. NEEDS is the dependency rule: a stage sees only what it names.
-# Headers are included as "stage/file.hpp" from generator/.
+# Headers are included as "stage/file.hpp" from generator/. OWN_HEADERS: it precompiles others than the stages share.
 # COLD: no time is spent in it, no integrator compiled; the compiler takes a quarter less of its own without the last
 # optimisations.
 function(eomgen_stage name)
-  cmake_parse_arguments(ARG "COLD" "" "SOURCES;NEEDS;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_HEADERS;COLD" "" "SOURCES;NEEDS;LINKS" ${ARGN})
   add_library(eomgen_${name} STATIC ${ARG_SOURCES})
   target_include_directories(eomgen_${name} PUBLIC ${PROJECT_SOURCE_DIR}/generator)
   target_link_libraries(eomgen_${name} PRIVATE eomgen_warnings)
@@ -46,7 +36,7 @@ function(eomgen_stage name)
   if(ARG_COLD)
     target_compile_options(eomgen_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
-  if(ARG_NEEDS)  # those without are tables
+  if(ARG_NEEDS AND NOT ARG_OWN_HEADERS)  # those without are tables
     eomgen_take_precompiled(eomgen_${name} eomgen_error)
   endif()
 endfunction()
