@@ -172,6 +172,25 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("dependent columns are chosen where the constraints hold") {
+  // Of the row (q1, q0 + p0) the first entry is the shorter one, and 0 wherever q1 (q0 + p0) = 0 holds near q1 = 0.
+  const Maker k;
+  Scalar T = k.number(0);
+  for (std::uint32_t i = 0; i < 3; ++i) T = T + k.p(1) * k.q(i, 1) * k.q(i, 1);
+  system::EquationSystem system = lagrange(k, 3, T, k.q(0) + k.q(2), {k.number(0), k.number(0), k.number(0)});
+  constrain(system, k, "product", k.q(1) * (k.q(0) + k.p(0)));
+  const auto blocks = program::dependent_blocks(system);
+  REQUIRE(blocks.has_value());
+  REQUIRE(blocks->size() == 1);
+  CHECK(blocks->front().dependent == std::vector<std::size_t>{1});
+  system::EquationSystem without = lagrange(k, 3, T, k.q(0) + k.q(2), {k.number(0), k.number(0), k.number(0)});
+  constrain(without, k, "velocity", k.q(1) * (k.q(0) + k.p(0)));
+  without.holonomic = {false};
+  const auto free = program::dependent_blocks(without);
+  REQUIRE(free.has_value());
+  CHECK(free->front().dependent == std::vector<std::size_t>{0});  // a constraint on velocities holds anywhere
+}
+
 TEST_CASE("which forms hold everywhere: minors of one column more than rows, or a determinant that cannot vanish") {
   const Maker k;
   const auto square = [](Scalar x) { return x * x; };

@@ -69,6 +69,7 @@ inline void constrain(system::EquationSystem& system, const Maker& k, const std:
     b = b - entry * k.q(j, 1);
   }
   system.active.push_back(index);
+  system.holonomic.push_back(true);
   system.psi.push_back(psi.ref);
   system.b.push_back(k.d(psi, {SymbolKind::time, 0, 0}).ref);
   system.gamma.push_back(k.ddt(rate, n).ref);
