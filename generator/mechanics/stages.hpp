@@ -22,7 +22,7 @@ void drop_dependent_equations(Mechanics& mechanics, Lowering& lower);  // those 
 bool may_repeat(const Mechanics& mechanics, const Constraint& constraint);
 const model::Constraint& model_constraint(const Mechanics& mechanics, const Constraint& constraint);
 void drop_held_directions(Mechanics& mechanics);  // of contacts, along which other constraints let nothing slide
-/// Those that others hold while they touch; refuses friction along what is always held.
+/// Those that others hold while they touch, or always; refuses friction that has no direction left.
 void find_held_directions(Mechanics& mechanics);
 const model::Friction& law_of(const Mechanics& mechanics, const Contact& contact);
 

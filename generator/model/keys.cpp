@@ -11,10 +11,12 @@ namespace eomgen::model {
 void SectionReader::check_keys(const Value& table, const Keys& keys) const {
   for (const Entry& entry : table.entries) {
     if (std::find(keys.known.begin(), keys.known.end(), entry.key) != keys.known.end()) continue;
+    const std::string what = fmt::format("{} has no key {}", keys.what, quote(entry.key));
+    if (const auto other = keys.others.find(entry.key); other != keys.others.end())
+      source_.fail(entry.span, what, other->second);
     const std::vector<std::string> candidates(keys.known.begin(), keys.known.end());
     const std::string hint = did_you_mean(entry.key, candidates);
-    source_.fail(entry.span, fmt::format("{} has no key {}", keys.what, quote(entry.key)),
-                 hint.empty() ? fmt::format("its keys are {}", fmt::join(keys.known, ", ")) : hint);
+    source_.fail(entry.span, what, hint.empty() ? fmt::format("its keys are {}", fmt::join(keys.known, ", ")) : hint);
   }
 }
 

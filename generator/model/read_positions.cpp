@@ -48,14 +48,12 @@ void PositionsReader::declare_entry(const Value& entry, std::string_view unit) {
 
 // The one entry of the table that names a coordinate system; keys that belong to another one are refused.
 const Entry& PositionsReader::system_entry(const Value& table) const {
-  Keys keys{"a position", {"from", "axes", "custom", "x", "q"}};
+  Keys keys{"a position",
+            {"from", "axes", "custom", "x", "q"},
+            {{"polar", "cylindrical coordinates may leave out z: write cylindrical = [\"r\", \"theta\"]"}}};
   for (const coordinates::CoordinateSystem* system : coordinates::registry()) {
     keys.known.push_back(system->name);
     if (!system->constant.name.empty()) keys.known.push_back(system->constant.name);
-  }
-  if (const Entry* polar = table.entry("polar")) {
-    source_.fail(polar->span, "a position has no key 'polar'",
-                 "cylindrical coordinates may leave out z: write cylindrical = [\"r\", \"theta\"]");
   }
   check_keys(table, keys);
   const Entry* found = nullptr;

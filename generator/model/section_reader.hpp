@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -23,6 +24,7 @@ inline constexpr long max_chain = 64;
 struct Keys {
   std::string what;  // "[[particle]]"
   std::vector<std::string_view> known;
+  std::map<std::string, std::string, std::less<>> others{};  // what others call so, and how it is written here
 };
 
 /// Where a place is declared.

@@ -79,8 +79,8 @@ TEST_CASE("sweep: runs that cannot begin cost no derivation each, wherever they 
   CHECK(found["failed"] == 2001);
 }
 
-TEST_CASE("sweep: memory does not hold rows, nor what runs put into the graph of the model") {
-  if (sanitized) return;
+TEST_CASE("sweep: memory does not hold rows, nor what runs put into the graph of the model" *
+          doctest::skip(sanitized)) {  // the sanitizers' own would be measured
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const auto peak = [&](const char* samples, const Words& how) {
