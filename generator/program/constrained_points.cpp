@@ -24,8 +24,8 @@ constexpr int most_steps = 40;
 constexpr double difference = 6e-6;     // the cube root of binary64's epsilon: of central differences
 constexpr double longest_step = 0.5;    // of values between 0.2 and 1.2
 constexpr double nearest_step = 1e-11;  // differences hold a slope to some 1e-10: two more steps are rounding
-constexpr double zero = 1e-11;
-constexpr double shortest_row = 1e-6;  // against the same row where the search began
+constexpr double zero = 1e-11;          // of psi, after a step of that length at slopes of some 1
+constexpr double shortest_row = 1e-6;   // against the same row where the search began
 
 Eigen::VectorXd values(const Dag& dag, const std::vector<Ref>& roots, const Point& at) {
   const std::vector<double> result =
