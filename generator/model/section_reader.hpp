@@ -20,11 +20,11 @@ inline constexpr std::size_t max_coordinates = 1000;
 inline constexpr std::size_t max_scenes = 100;
 inline constexpr long max_chain = 64;
 
-/// The keys of one kind of table: those that exist, and those that a later version brings.
+/// The keys of one kind of table: those that exist, and what others call them.
 struct Keys {
   std::string what;  // "[[particle]]"
   std::vector<std::string_view> known;
-  std::map<std::string, std::string, std::less<>> others{};  // what others call so, and how it is written here
+  std::map<std::string, std::string, std::less<>> others{};  // a word of others, and how it is written here
 };
 
 /// Where a place is declared.

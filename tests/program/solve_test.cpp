@@ -191,6 +191,23 @@ TEST_CASE("dependent columns are chosen where the constraints hold") {
   CHECK(free->front().dependent == std::vector<std::size_t>{0});  // a constraint on velocities holds anywhere
 }
 
+TEST_CASE("rows that depend on one another wherever the constraints hold have no columns to choose") {
+  // Away from there every determinant is a multiple of the first psi.
+  const Maker k;
+  Scalar T = k.number(0);
+  for (std::uint32_t i = 0; i < 4; ++i) T = T + k.p(0) * k.q(i, 1) * k.q(i, 1);
+  const Scalar none = k.number(0), psi = k.q(2) + k.q(0) * k.q(0);
+  system::EquationSystem system = lagrange(k, 4, T, k.q(0) + k.q(3), {none, none, none, none});
+  constrain(system, k, "a", psi);
+  constrain(system, k, "again", psi * (k.number(1) + k.q(1)));
+  CHECK_FALSE(program::dependent_blocks(system).has_value());
+  for (const system::Form form : {system::Form::nullspace, system::Form::chaplygin}) {
+    system.form = form;
+    CHECK_FALSE(program::form_applies(system, form, false));
+    CHECK_THROWS_AS(program::make_solve(system, program::Ties::ascending), Error);
+  }
+}
+
 TEST_CASE("which forms hold everywhere: minors of one column more than rows, or a determinant that cannot vanish") {
   const Maker k;
   const auto square = [](Scalar x) { return x * x; };
