@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/constrained_points.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
 
+#include "numeric/dense.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/sample.hpp"
 
@@ -45,7 +45,7 @@ std::optional<Point> onto(const Dag& dag, const std::vector<Ref>& psi, const std
       J.col(static_cast<Eigen::Index>(j)) = (values(dag, psi, up) - values(dag, psi, down)) / (2 * difference);
     }
     if (!now.allFinite() || !J.allFinite()) return std::nullopt;
-    Eigen::VectorXd step = J.completeOrthogonalDecomposition().solve(-now);
+    Eigen::VectorXd step = numeric::least_squares(J, -now).x;
     const double length = step.norm();
     if (length > longest_step) step *= longest_step / length;
     for (std::size_t j = 0; j < moved.size(); ++j) at[moved[j]] += step[static_cast<Eigen::Index>(j)];

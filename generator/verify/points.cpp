@@ -15,13 +15,14 @@ namespace eomgen::verify {
 namespace {
 
 // How far random values go from the defaults and starts, before anything is rejected.
-constexpr double parameter_spread = 0.25;  // relative
-constexpr double coordinate_spread = 0.5;  // of the scale of its unit
-constexpr double angle_spread = 1.2;       // rad
-constexpr double range_margin = 0.05;      // of a chart's range, at either end: charts are singular there
-constexpr double longest_span = 100;       // s; later times test nothing more
-constexpr double kink_margin = 1e-6;       // so that rounding to binary64 cannot change the branch
-constexpr std::size_t patience = 12;       // tries to close the same contacts before one of them is left open
+constexpr double parameter_spread = 0.25;    // relative
+constexpr double coordinate_spread = 0.5;    // of the scale of its unit
+constexpr double angle_spread = 1.2;         // rad
+constexpr double range_margin = 0.05;        // of a chart's range, at either end: charts are singular there
+constexpr double longest_span = 100;         // s; later times test nothing more
+constexpr double kink_margin = 1e-6;         // so that rounding to binary64 cannot change the branch
+constexpr std::size_t patience = 12;         // tries to close the same contacts before one of them is left open
+constexpr std::size_t inside_patience = 48;  // where they close, but never within the ranges
 
 bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text == "1"; }
 
@@ -215,7 +216,7 @@ void Points::require_inside(const State& s) const {
     const double q = cln::double_approx(s.q[i]);
     const double margin = c.has_lower && c.has_upper ? 0.5 * range_margin * (c.upper - c.lower) : 0;
     if ((c.has_lower && q <= c.lower + margin) || (c.has_upper && q >= c.upper - margin))
-      throw Rejected("outside the range of a coordinate");
+      throw Outside("outside the range of a coordinate");
   }
 }
 
@@ -226,7 +227,7 @@ void Points::require_smooth(const State& s) const {
   if (margin.kink < kink_margin) throw Rejected("too near a kink");
 }
 
-// One more contact stays open, each of those that were to be closed in turn. False: the fault lies elsewhere.
+// Whether it is the contacts to be closed that fail, and not something else.
 bool Points::give_up_closing(Choosing& choosing) {
   if (choosing.open.size() == leavable_.size()) return false;
   if (choosing.reached) {  // and seldom: states with all of them open are looked at too
@@ -237,8 +238,13 @@ bool Points::give_up_closing(Choosing& choosing) {
     choosings_.push_back(std::move(all));
     return true;
   }
-  if (++choosing.failures < patience) return true;
-  const std::set<std::size_t> open = choosing.open;
+  if (++choosing.failures == patience) leave_one_open();
+  return true;
+}
+
+// One more contact stays open, each of those that were to be closed in turn.
+void Points::leave_one_open() {
+  const std::set<std::size_t> open = choosings_[turn_ % choosings_.size()].open;
   choosings_.erase(choosings_.begin() + static_cast<std::ptrdiff_t>(turn_ % choosings_.size()));
   for (std::size_t j = 0; j < leavable_.size(); ++j) {
     if (open.contains(j)) continue;
@@ -251,7 +257,6 @@ bool Points::give_up_closing(Choosing& choosing) {
     };
     if (std::none_of(choosings_.begin(), choosings_.end(), closes_more)) choosings_.push_back(std::move(more));
   }
-  return true;
 }
 
 State Points::next() {
@@ -275,6 +280,15 @@ State Points::next() {
       if (give_up_closing(choosing)) continue;
       ++turn_;  // contacts that closed once and do not again keep no others from their turn
       reject(unclosed.what());
+    } catch (const Outside& outside) {
+      // A contact that is far away is met by leaving a chart: it cannot be closed within the ranges.
+      if (choosing.reached && give_up_closing(choosing)) continue;
+      const bool closes = choosing.open.size() < leavable_.size();
+      if (choosing.reached)
+        ++turn_;
+      else if (closes && ++choosing.outside == inside_patience)
+        leave_one_open();
+      reject(outside.what());
     } catch (const Rejected& rejected) {
       reject(rejected.what());
     } catch (const Singular& singular) {

@@ -30,6 +30,11 @@ struct Unclosed : Rejected {
   using Rejected::Rejected;
 };
 
+/// A coordinate is outside its range there.
+struct Outside : Rejected {
+  using Rejected::Rejected;
+};
+
 class Points {
  public:
   /// At most `cap` rejections in all. Parameters in `fixed` have that value at every point. States are moved onto the
@@ -56,10 +61,11 @@ class Points {
   /// Which of `leavable` are open.
   struct Choosing {
     std::set<std::size_t> open;
-    std::size_t failures = 0;
+    std::size_t failures = 0, outside = 0;
     bool reached = false;
   };
   bool give_up_closing(Choosing& choosing);
+  void leave_one_open();
   double uniform();                // in (0, 1)
   double symmetric();              // in (-1, 1)
   Real exact(double value) const;  // the same number at full precision

@@ -29,6 +29,8 @@ ChildCommand by_ranks(const char* ranks, const Folder& folder, const Words& word
   result.arguments =
       with({EOMGEN_MPIRUN, "--oversubscribe", "--allow-run-as-root", "-n", ranks, EOMGEN_MPI_PROGRAM}, words);
   result.limit = 120;
+  result.environment["OMPI_MCA_odls_base_sigkill_timeout"] =
+      "0";  // else mpirun waits seconds wherever an exit code is not 0
   return result;
 }
 
