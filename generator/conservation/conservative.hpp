@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which forces have a potential: the curl of their generalised components, eq. (2.20) in the coordinates of the model,
-// and the work along closed paths around what is singular. Theory: docs/theory.md, "Force fields".
+// Tests which forces have a potential: by the curl of their generalised components, eq. (2.20) in the coordinates of
+// the model, and by the work along closed paths around singular points. Theory: docs/theory.md, "Force fields".
 #pragma once
 
 #include <optional>
@@ -17,14 +17,14 @@ const char* name(Verdict verdict);
 struct ForceClass {
   std::string name;
   Verdict conservative = Verdict::unknown;
-  /// What entered U, and what was found of the rest; where `many_valued`, of a region that does not go around the
-  /// singular points.
+  /// The part in U and the potential found for the rest. If `many_valued`, it holds in a region that does not enclose
+  /// the singular points.
   std::optional<symbolic::Ref> potential;
   bool in_energy = false;  // the whole force is in U
   bool many_valued = false;
   std::vector<DomainCondition> domain;     // of the potential
-  std::string reason;                      // one sentence where the verdict is not yes, or there is more to say
-  std::optional<symbolic::Ref> work = {};  // of one turn around, where many_valued and known
+  std::string reason;                      // one sentence if the verdict is not yes, or needs a remark
+  std::optional<symbolic::Ref> work = {};  // of one turn around a singular point, if many_valued and known
 };
 
 /// One entry per Model::forces entry.

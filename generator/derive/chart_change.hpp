@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: charts that can be exchanged. Out: the formulas of the exchange, on a Dag.
+// In: charts that can be switched. Out: the formulas of the switch, on a Dag.
 #pragma once
 
 #include "model/charts.hpp"
@@ -7,8 +7,8 @@
 
 namespace eomgen::derive {
 
-/// The attitude or the direction is written down in the one chart and read off in the other; rates by way of the
-/// angular velocity or the velocity of the direction, which both share.
+/// Expresses the attitude or the direction in the one chart and extracts the coordinates of the other. Rates are
+/// converted through the angular velocity or the velocity of the direction.
 system::ChartChange chart_change(symbolic::Dag& dag, const model::Model& model, const model::SwitchedChart& chart);
 
 }  // namespace eomgen::derive

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The names of mechanics that every route uses.
+// The names of mechanics that every formulation uses.
 #pragma once
 
 #include "mechanics/imposition.hpp"
@@ -14,7 +14,7 @@ using mechanics::write_out;
 using symbolic::Dag;
 using symbolic::Ref;
 
-/// The integrals of functions of time for which write_out has no closed form: states of the system.
+/// The integrals of functions of time without a closed form (write_out): states of the system.
 inline std::vector<system::IntegralState> integral_states(const Mechanics& mechanics) {
   std::vector<system::IntegralState> states;
   for (const mechanics::OpenIntegral& open : mechanics::open_integrals(mechanics))

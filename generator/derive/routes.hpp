@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The registry of routes to the equations of motion: each derives the same EquationSystem its own way, and no route
-// includes another. What they share: all start from Mechanics and end with equations.hpp; lagrange and expanded
-// differentiate energies with euler_lagrange.hpp; recursive and articulated find and describe a tree with trees/.
-// docs/architecture.md, "What routes share", lists it file by file. verify holds them against one another and against
-// the judge, which shares nothing with them.
+// The registry of formulations of the equations of motion. Each derives the same EquationSystem in its own way and
+// includes no other. All start from Mechanics and end with equations.hpp; lagrange and expanded differentiate energies
+// with euler_lagrange.hpp; recursive and articulated find and describe a tree with trees/. docs/architecture.md lists
+// the shared files. verify checks the formulations against one another and against the independent oracle, which shares
+// nothing with them.
 #pragma once
 
 #include <optional>
@@ -20,12 +20,12 @@ inline constexpr std::size_t any_size = static_cast<std::size_t>(-1);
 struct RouteEntry {
   const char* name;
   const char* title;
-  const char* applies;  // to what; told where the route is left out
-  /// Nothing where the route does not apply to the model in this approach.
+  const char* applies;  // to which models; reported if the formulation is skipped
+  /// Empty if the formulation does not apply to the model in this approach.
   std::optional<system::EquationSystem> (*derive)(mechanics::Mechanics&, system::Approach);
-  /// Coordinates of a tree beyond which a route over trees that has a larger limit is cheaper by far.
+  /// The number of coordinates of a tree beyond which a tree formulation with a larger limit is far cheaper.
   std::size_t worth_on_trees = any_size;
-  bool over_trees = false;  // made for trees of particles or bodies
+  bool over_trees = false;  // for trees of particles or bodies
 };
 
 /// In the order of derive/routes/registry.inc, NAME() of derive/routes/NAME.cpp.
@@ -37,15 +37,15 @@ namespace route {
 #undef ROUTE
 }  // namespace route
 
-/// A route's equations, or why it is left out.
+/// The equations of a formulation, or why it was skipped.
 struct Outcome {
   std::optional<system::EquationSystem> system;
   std::string why;           // empty where there are equations
-  bool over_budget = false;  // false: the route does not apply, or another one is cheaper by far
+  bool over_budget = false;  // false: it does not apply, or another one is far cheaper
 };
 
-/// The route within a budget of operations; left out too where a tree is so large that another route is cheaper by far:
-/// full matrices are left to small systems (docs/theory.md, "Routes").
+/// Derives the equations within a budget of operations. A formulation is skipped if another is far cheaper on a tree of
+/// that size: full matrices serve small systems only (docs/theory.md, "Routes").
 Outcome derive_where_worth(const RouteEntry& route, mechanics::Mechanics& mechanics, system::Approach approach);
 
 }  // namespace eomgen::derive

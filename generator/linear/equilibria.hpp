@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equilibria and steady motions: Newton's iteration from many starts, the same ones in every process, polished in many
-// digits; what is the same but for turns of angles, signs of Euler parameters or the two names of an attitude in Euler
-// angles is one.
+// Search for equilibria and steady motions by Newton's method from many starts, which are the same in every process.
+// Results are refined in many digits. Points that differ by turns of angles, signs of Euler parameters or the two
+// Euler-angle triples of an attitude are one.
 #pragma once
 
 #include "linear/stability.hpp"
 
 namespace eomgen::linear {
 
-/// What the search may assume of a coordinate of z.
+/// The range of a coordinate of z in the search.
 struct Range {
   double lower = -HUGE_VAL, upper = HUGE_VAL;
 };
 
-/// Three angles of one body or frame: (a, b, c) and (a + pi, +-b, c + pi) are one attitude. `regular` changes its sign
-/// between them.
+/// Three angles of one body or frame: (a, b, c) and (a + pi, +-b, c + pi) are the same attitude. The sign of `regular`
+/// differs between them.
 struct EulerSet {
   std::array<std::size_t, 3> places;  // in z
   Ref regular;
@@ -25,7 +25,7 @@ struct SearchRequest {
   State<Precise> start;
   Setting<Precise> setting;
   std::vector<Range> ranges;                           // per coordinate
-  std::vector<std::array<std::size_t, 4>> parameters;  // Euler parameters: e and -e are one attitude
+  std::vector<std::array<std::size_t, 4>> parameters;  // Euler parameters: e and -e are the same attitude
   std::vector<EulerSet> euler;
   std::vector<Quantity> held;  // with the values of `targets`
   std::vector<Precise> targets;
@@ -38,28 +38,28 @@ struct FoundPoint {
   State<Precise> z;
   double off = 0;  // Steady::off
   std::size_t family =
-      0;  // dimensions of the family of steady motions that it is one of, before anything was held for it
+      0;  // dimension of its family of steady motions, before any quantity was held
 };
 
 struct SearchResult {
   Symmetry symmetry;                // at the start
-  std::vector<bool> turns;          // per coordinate of z: an angle, of which a turn more is the same place
-  std::vector<std::size_t> held;    // entries of z that were held at their start values, since families leave them open
-  bool released = false;            // with them held nothing was found; the points are members of their families
+  std::vector<bool> turns;          // per coordinate of z: an angle, periodic by one turn
+  std::vector<std::size_t> held;    // entries of z held at their start values, since families leave them undetermined
+  bool released = false;            // nothing was found with them held; the points are members of families
   std::vector<FoundPoint> points;   // in the order of their entries
-  std::size_t converged = 0;        // starts that led to some point
-  std::size_t further_members = 0;  // starts that led to members of families beyond those that are among `points`
-  std::size_t refused = 0;          // starts whose way ended where the equations have no value or no slope
-  std::string reason;               // of the first of them
+  std::size_t converged = 0;        // starts that converged to a point
+  std::size_t further_members = 0;  // starts that converged to members of families that are not in `points`
+  std::size_t refused = 0;          // starts whose iteration ended where the equations have no value or no derivative
+  std::string reason;               // of the first failure
   State<double> refused_at;         // and where
-  bool interrupted = false;         // before all starts were tried: what is here was found by then
+  bool interrupted = false;         // before all starts were tried; results so far
 
-  /// A start whose way ended where the equations have no value or no slope.
+  /// Records a start whose iteration ended where the equations have no value or no derivative.
   void refuse(const std::string& why, State<double> at);
   void refuse(const std::string& why, const State<Precise>& at);
 };
 
-/// Throws std::domain_error where the start has no field.
+/// Throws std::domain_error if the field has no value at the start.
 SearchResult find_steady_motions(const SearchRequest& request);
 
 }  // namespace eomgen::linear

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The vector field of the equations of motion at a point and its slopes: (q, v) -> (v, a) with M a = f + A^T lambda and
-// A a + gamma = 0, differentiated with a and lambda as functions of the point. In: an EquationSystem without contacts.
+// The vector field of the equations of motion at a point and its Jacobian: (q, v) -> (v, a) with M a = f + A^T lambda
+// and A a + gamma = 0, differentiated with a and lambda as functions of the point. In: an EquationSystem without
+// contacts.
 #pragma once
 
 #include <memory>
@@ -16,7 +17,7 @@ namespace eomgen::linear {
 template <class T>
 using State = std::vector<T>;
 
-/// What stays as it is while the state moves.
+/// Quantities that stay constant while the state varies.
 template <class T>
 struct Setting {
   std::vector<T> parameters, inputs;
@@ -27,7 +28,7 @@ struct Setting {
 template <class T>
 struct Field {
   Matrix<T> X;          // 2n x 1: v, a
-  Matrix<T> slope;      // 2n x (2n + 1), by z
+  Matrix<T> slope;      // 2n x (2n + 1), with respect to z
   Matrix<T> by_inputs;  // 2n x inputs
   Matrix<T> phi;        // constraints on positions (holonomic, then leaves), then on velocities
   Matrix<T> phi_slope;  // by z
@@ -45,24 +46,24 @@ class Flow {
   const std::vector<Symbol>& symbols() const { return symbols_; }   // of z without t
   bool uses_integrals() const { return uses_integrals_; }
 
-  /// Throws std::domain_error where the field has no value or no slope.
+  /// Throws std::domain_error if the field has no value or no derivative.
   template <class T>
   Field<T> at(const State<T>& z, const Setting<T>& setting) const;
 
-  /// Of a field the constraints alone.
+  /// The constraint part of the field alone.
   template <class T>
   Field<T> constraints_at(const State<T>& z, const Setting<T>& setting) const;
 
-  /// Values of the integrals that make the leaf of a state.
+  /// Values of the integrals that define the leaf of a state.
   template <class T>
   std::vector<T> leaf(const State<T>& z, const Setting<T>& setting) const;
 
-  /// Values and slopes of a tape. Where a formula has none but its limits from all sides agree, these: the root in |v|
-  /// v at rest, a distance that goes through 0. Throws std::domain_error where they do not.
+  /// Values and Jacobian of a tape. If a formula has none but its limits from all sides agree, the limits are returned:
+  /// the root in |v| v at rest, a distance that goes through 0. Throws std::domain_error if they do not agree.
   template <class T>
   Sloped<T> sloped(const Tape& tape, const State<T>& z, const Setting<T>& setting) const;
 
-  /// Other expressions of the system, with slopes by z.
+  /// A tape of other expressions of the system, with derivatives with respect to z.
   Tape tape(std::vector<Ref> expressions) const;
   template <class T>
   std::function<T(const Symbol&)> lookup(const State<T>& z, const Setting<T>& setting) const;
@@ -87,7 +88,7 @@ class Flow {
   std::vector<std::string> names_;
   std::vector<Ref> entries_;
   std::vector<Symbol> symbols_;
-  std::vector<std::size_t> place_;  // of a coordinate of the model in z
+  std::vector<std::size_t> place_;  // index in z of a coordinate of the model
   std::vector<Symbol> directions_;  // z, then inputs
   bool uses_integrals_ = false;
   std::unique_ptr<Tape> tape_, constraint_tape_, leaf_tape_;

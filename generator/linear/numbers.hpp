@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The same formulas in binary64, where many points are tried, and in many digits, where something is decided.
+// Number types: the same formulas serve in binary64, for many points, and in many digits, for decisions.
 #pragma once
 
 #include <cln/float.h>
@@ -15,7 +15,7 @@ namespace eomgen::linear {
 
 using Precise = cln::cl_R;
 
-/// Digits of everything that is decided here: a zero of multiplicity m leaves roots of 1e-160^(1/m).
+/// Digits of all decisions: a zero of multiplicity m leaves roots of 1e-160^(1/m).
 inline constexpr int digits = 160;
 inline cln::float_format_t precise_format() {
   static const cln::float_format_t format = cln::float_format(digits);
@@ -55,7 +55,7 @@ inline Precise number<Precise>(const Precise& x) {
   return cln::cl_float(x, precise_format());
 }
 
-/// An expression has no value, or no slope, at a point.
+/// Throws std::domain_error unless an expression has a value, or a derivative, at a point.
 inline void require_domain(bool ok, const char* what) {
   if (!ok) throw std::domain_error(what);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The QR algorithm in many digits, for real matrices without symmetry: balanced, brought to Hessenberg form by
-// reflections, double shifts. Backward stable: what comes out are eigenvalues of a matrix that is the given one in all
-// but the last digits. Source: Golub, Van Loan, Matrix Computations, sections 7.4, 7.5, 7.6.1 (inverse iteration).
+// The QR algorithm in many digits, for real matrices without symmetry: balanced, reduced to Hessenberg form by
+// reflections, double shifts. Backward stable: the results are eigenvalues of a matrix that differs from the given one
+// in the last digits only. Source: Golub, Van Loan, Matrix Computations, sections 7.4, 7.5, 7.6.1 (inverse iteration).
 #pragma once
 
 #include <cln/complex.h>
@@ -10,10 +10,10 @@
 
 namespace eomgen::linear {
 
-/// D^-1 A D with powers of 2 on the diagonal of D, so that rows and columns are of like size.
+/// D^-1 A D with powers of 2 on the diagonal of D, so that rows and columns have similar norms.
 Matrix<Precise> balanced(Matrix<Precise> A);
 
-/// A root of the characteristic polynomial, and how well the matrix tells it.
+/// A root of the characteristic polynomial, and its conditioning.
 struct Root {
   cln::cl_N value;
   Precise residual;   // |A x - value x| / |x| for the best x
@@ -29,7 +29,7 @@ struct Roots {
 /// Of a balanced matrix, in no particular order.
 Roots roots(const Matrix<Precise>& A);
 
-/// The largest sum of a row.
+/// The largest absolute row sum.
 Precise largest_row(const Matrix<Precise>& A);
 
 }  // namespace eomgen::linear

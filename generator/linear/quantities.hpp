@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Expressions of the state that are held, or conserved: their values and slopes along a flow.
+// Expressions of the state that are prescribed or conserved, with their values and derivatives along a flow.
 #pragma once
 
 #include "linear/linearise.hpp"
@@ -11,7 +11,7 @@ struct Quantity {
   Ref expression;
 };
 
-/// Quantities with the values that they are to have.
+/// Quantities with their prescribed values.
 class Held {
  public:
   Held(const Flow& flow, std::vector<Quantity> quantities)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Is a steady motion stable? Unstable by an eigenvalue, attracting by all of them, or stable in Lyapunov's sense
-// because the energy less multiples of momenta has a definite second variation on the constraints at fixed momenta
-// (docs/theory.md, "Steady motions").
+// The stability of a steady motion: unstable by an eigenvalue, attracting by all of them, or stable in Lyapunov's
+// sense. The latter holds if the energy minus multiples of momenta has a definite second variation on the constraints
+// at fixed momenta (docs/theory.md, "Steady motions").
 #pragma once
 
 #include <string>
@@ -24,17 +24,17 @@ struct Verdict {
 
 class StabilityTest {
  public:
-  /// `energies`: conserved, any of which may decide; `momenta`: conserved beside them.
+  /// `energies`: conserved quantities, any of which may decide; `momenta`: further conserved quantities.
   StabilityTest(const Flow& flow, symbolic::Dag& dag, const std::vector<Quantity>& energies,
                 const std::vector<Quantity>& momenta);
 
-  /// Of what is retained: coordinates that nothing feels may drift.
+  /// Judges the retained entries; ignorable coordinates may drift.
   Verdict operator()(const Linearisation& steady) const;
 
  private:
   struct Function {
     std::string name;
-    Tape gradient;  // whose slopes are the second derivatives
+    Tape gradient;  // its derivatives are the second derivatives
   };
   struct Slopes {
     Matrix<Precise> first, second;  // 1 x 2n, 2n x 2n
@@ -46,7 +46,8 @@ class StabilityTest {
   std::vector<Function> energies_, momenta_, constraints_;
 };
 
-/// Whether every direction in which A has no slope leads along steady motions: how many there are, or nothing.
+/// The dimension of the family of steady motions, if every direction in the null space of A leads along one; otherwise
+/// empty.
 std::optional<std::size_t> family(const Flow& flow, const Linearisation& steady, const Matrix<Precise>& retained);
 
 }  // namespace eomgen::linear

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of expressions and their slopes along many directions at once, by differentiation forward through the graph:
-// numbers only, no derivative is written out. Shares with symbolic/calculus the table of functions and nothing else.
+// Values of expressions and their derivatives in many directions at once, by forward differentiation through the graph.
+// It computes numbers only and forms no derivative expressions. Shares with symbolic/calculus the table of functions
+// and nothing else.
 #pragma once
 
 #include <functional>
@@ -23,14 +24,14 @@ struct Sloped {
 
 class Tape {
  public:
-  /// Directions are symbols: slopes are partial derivatives.
+  /// Directions are symbols, so the derivatives are partial.
   Tape(const Dag& dag, std::vector<Ref> roots, std::vector<Symbol> directions);
 
-  /// Throws std::domain_error where a root has no value or no slope: outside of a domain, at the root of 0, on the edge
-  /// of abs. A branch of `if` that is not taken needs neither. `edge`: digits within which a kink counts as met.
+  /// Throws std::domain_error if a root has no value or no derivative: outside of a domain, at the root of 0, on a kink
+  /// of abs. A branch of `if` that is not taken needs neither. `edge`: digits within which a point counts as on a kink.
   template <class T>
   Sloped<T> at(const std::function<T(const Symbol&)>& lookup, int edge = 13) const;
-  /// Values alone: the root of 0 has one, and so has the edge of abs.
+  /// Values alone; these exist at the root of 0 and on the kink of abs.
   template <class T>
   std::vector<T> values(const std::function<T(const Symbol&)>& lookup) const;
 
@@ -41,8 +42,8 @@ class Tape {
     std::uint8_t arity = 0;
     std::array<std::uint32_t, 4> args{};  // places in steps_
     bool moves = false;                   // depends on a direction
-    std::uint32_t place = 0;              // among those that move
-    std::uint32_t direction = 0;          // of a symbol that moves
+    std::uint32_t place = 0;              // among the steps that move
+    std::uint32_t direction = 0;          // of a moving symbol
   };
 
   template <class T>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Configurations in which all holonomic constraints hold, in 50 digits, though some of the constraints may repeat
-// others there: where loops of joints close. In: Mechanics with its constraints. Out: values of coordinates, and the
-// rows of the constraints.
+// Configurations in which all holonomic constraints hold, in 50 digits. Constraints may be redundant, as where loops of
+// joints close. In: Mechanics with its constraints. Out: values of coordinates, and the rows of the constraints.
 #pragma once
 
 #include <cln/real.h>
@@ -20,11 +19,12 @@ struct Configuration {
   cln::cl_R t = 0;
 };
 
-/// Which rows are asked first.
+/// The order in which rows are considered.
 enum class Turn { always, first, last };
 
-/// Rows of a matrix that are independent, chosen one after another: the one with the largest part outside the span of
-/// those before it (relative to its length), turn after turn. Ties go to the first.
+/// Independent rows of a matrix, chosen one after another. Each step takes the row with the largest part outside the
+/// span of the rows chosen before, relative to its length. Rows of higher priority are considered first. Ties go to the
+/// first row.
 struct Selection {
   std::vector<std::size_t> kept, rest;  // ascending
 };
@@ -34,23 +34,24 @@ class Closure {
  public:
   Closure(Mechanics& mechanics, Lowering& lower);
 
-  /// In binary64, cheaply: whether the constraints hold and are independent at the start of the default scene. False
-  /// says nothing.
+  /// Whether the constraints hold and are independent at the start of the default scene, in binary64. False is
+  /// inconclusive.
   bool is_regular();
-  /// At the start of the default scene: what it does not give follows from the constraints.
+  /// The configuration at the start of the default scene. Values that the scene does not give follow from the
+  /// constraints.
   std::optional<Configuration> start();
-  /// Another configuration, not far away; with other values of the parameters, if asked.
+  /// Another configuration nearby; with other parameter values if `other_parameters` is set.
   std::optional<Configuration> near(const Configuration& from, std::uint64_t seed, bool other_parameters);
-  /// The one behind `at`, on the way that leads there from `before`.
+  /// The next configuration beyond `at` in the direction from `before` to `at`.
   std::optional<Configuration> beyond(const Configuration& before, const Configuration& at);
   /// d psi/d q of all constraints (coefficients of velocities) by all coordinates.
   std::vector<Row> rows(const Configuration& at) const;
-  /// b of all constraints: d psi/d t at fixed q, or what is there at rest.
+  /// b of all constraints: d psi/d t at fixed q, or the constant part of a velocity constraint.
   std::vector<cln::cl_R> rates(const Configuration& at) const { return values(rates_, at); }
   std::vector<cln::cl_R> values(const std::vector<Ref>& expressions, const Configuration& at) const;
 
-  /// Of the last search that failed: by how much an equation that looks redundant does not hold, and which; 0 if that
-  /// was not why.
+  /// After a failed search: the residual of an equation that looks redundant but does not hold, and its constraint. The
+  /// residual is 0 if the search failed for another reason.
   double gap() const { return gap_; }
   std::uint32_t gap_at() const { return gap_at_; }
 
@@ -63,11 +64,11 @@ class Closure {
   Mechanics& m_;
   Lowering& lower_;
   std::vector<std::uint32_t> bound_;  // constraints on positions that always hold
-  std::vector<Ref> psi_;              // of these, functions of time written out
+  std::vector<Ref> psi_;              // of `bound_`, with functions of time expanded
   std::vector<Ref> gradient_;         // of these
   std::vector<Ref> all_;              // rows of all constraints
   std::vector<Ref> rates_;
-  std::vector<Ref> along_;  // directions of what joints exert
+  std::vector<Ref> along_;  // directions of joint forces and moments
   double gap_ = 0;
   std::uint32_t gap_at_ = 0;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A constraint written as a square or a higher power, multiplied out or not: its gradient vanishes where it holds, so
-// that no force along it could keep it. Seen in numbers, without taking it apart.
+// Constraints written as a square or a higher power, expanded or not. Their gradient vanishes where they hold, so no
+// force along it could enforce them. The test is numerical and does not take the expression apart.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace eomgen::mechanics {
 
-/// Newton's method from a few points, along the gradient by the coordinates `of`: where all that come near psi = 0 do
-/// so by a constant factor a step, its roots are multiple ones. False where no point comes near.
+/// Runs Newton's method from a few points along the gradient with respect to the coordinates `of`. If all iterations
+/// that approach psi = 0 converge only linearly, the roots are multiple. False if no iteration approaches psi = 0.
 bool is_degenerate(const symbolic::Dag& dag, symbolic::Ref psi, const std::vector<symbolic::Symbol>& of,
                    const std::vector<symbolic::Ref>& gradient);
 

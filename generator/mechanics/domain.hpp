@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Operations of the model that have no value in any state: division by what is 0 everywhere, the logarithm of it, roots
-// of negative numbers. In: the operation and its place, which stages after this one do not know.
+// Operations of the model that have no value in any state: division by an expression that is identically 0, its
+// logarithm, roots of negative numbers. In: the operation and its place in the source, which later stages do not know.
 #pragma once
 
 #include "mechanics/mechanics.hpp"
 
 namespace eomgen::mechanics {
 
-/// Throws Error {stage "mechanics"} at `place` where `divisor` is 0 whatever the state and the time.
+/// Throws Error{stage "mechanics"} at `place` if `divisor` is identically 0.
 void require_divisor(const Mechanics& mechanics, Ref divisor, const model::Span& place);
 
-/// The same of the length of a vector whose direction is asked for.
+/// The same for the length of a vector that is normalised.
 void require_direction(const Mechanics& mechanics, Ref length, const model::Span& place);
 
-/// The same where `expression` is a function or a power without a value, or a root of 0 that has no derivative.
+/// The same if `expression` is a function or a power without a value, or a root of 0 that has no derivative.
 void require_value(const Mechanics& mechanics, Ref expression, const model::Span& place);
 
 }  // namespace eomgen::mechanics

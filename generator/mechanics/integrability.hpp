@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which constraints on velocities are integrable, alone or together (Frobenius, t counted as a coordinate), and the
+// Integrability of velocity constraints, alone or together (Frobenius' theorem, with t as a coordinate), and the
 // integrals psi(q, t) = constant that are found.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: one form. Out: psi with d psi = factor * form, proven. Factors that are tried: 1; functions of one variable;
+// In: a one-form. Out: psi with d psi = factor * form, proven. Factors that are tried: 1; functions of one variable;
 // products of powers of the variables, of the parts of the coefficients, and of sums of two squares.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace eomgen::mechanics {
 
-/// Nothing where no factor or no integral was found, which says nothing of whether there is one.
+/// Empty if no factor or no integral is found. This is inconclusive: an integral may still exist.
 std::optional<Ref> find_integral(FormSpace& space, const Form& form);
 
 }  // namespace eomgen::mechanics

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Integrability by numbers. In: one-forms at a point, on the active holonomic constraints. Out: whether some of them
-// are closed modulo themselves there, and where motions that they allow lead to: the tangent space of their orbit
-// (Chow, Sussmann). A value that is not 0 refutes; zeros say what is worth a proof.
+// Numerical integrability tests. In: one-forms at a point on the active holonomic constraints. Out: whether some of
+// them are closed modulo themselves there, and the tangent space of the orbit of the motions that they allow (Chow,
+// Sussmann). A nonzero value refutes integrability. Zeros are only candidates for a proof.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,16 @@
 
 namespace eomgen::mechanics {
 
-/// What motions along the forms' kernel reach from a point: all directions of the involutive closure.
+/// The tangent space of the orbit through a point: all directions of the involutive closure of the forms' kernel.
 class Orbit {
  public:
   using Vector = std::vector<cln::cl_R>;
   Orbit(std::size_t variables, std::vector<Vector> directions)
       : variables_(variables), directions_(std::move(directions)) {}
 
-  /// Forms that stay independent of the way: those of the largest integrable system.
+  /// The dimension of the largest integrable subsystem.
   std::size_t integrable() const { return variables_ - directions_.size(); }
-  /// Whether a form, by its values there, is one of them.
+  /// Whether a form, given by its values at the point, belongs to the largest integrable subsystem.
   bool keeps(const Vector& form) const;
 
  private:
@@ -28,11 +28,11 @@ class Orbit {
   std::vector<Vector> directions_;  // orthonormal
 };
 
-/// d omega of the last form on the common kernel of all, at a point: true where it is not 0, so that Frobenius'
-/// condition fails. Nothing where there are no values.
+/// Evaluates d omega of the last form on the common kernel of all forms at a point. True if it is not 0, so that
+/// Frobenius' condition fails. Empty if there are no values.
 std::optional<bool> fails_frobenius(FormSpace& space, const std::vector<Form>& forms, std::size_t point);
 
-/// Nothing where there are no values, the forms are dependent, or there are too many.
+/// Empty if there are no values, if the forms are dependent, or if there are too many.
 std::optional<Orbit> orbit(FormSpace& space, const std::vector<Form>& forms, std::size_t point);
 
 }  // namespace eomgen::mechanics

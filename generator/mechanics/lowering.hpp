@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the model's expression trees to Dag nodes: kinematics (velocities, bases) included.
+// Lowers the model's expression trees to Dag nodes, including kinematics (velocities, bases).
 #pragma once
 
 #include <unordered_map>
@@ -10,10 +10,10 @@ namespace eomgen::mechanics {
 
 using symbolic::Scalar;
 
-/// The row of symbolic/functions.hpp that a function of the model language is.
+/// The operation of symbolic/functions.hpp for a function of the model language.
 symbolic::Op op_of(model::Fn fn);
 
-/// Interprets model expressions on the Dag of `mechanics`; memoised, so that sharing in the model is sharing here.
+/// Builds model expressions on the Dag of `mechanics`. Memoised: shared subexpressions of the model stay shared.
 class Lowering {
  public:
   explicit Lowering(Mechanics& mechanics);
@@ -22,16 +22,16 @@ class Lowering {
   Vec3 vector(model::NodeId id);
   Vec3 position(std::uint32_t place);
   Vec3 axis(std::uint32_t frame, std::size_t stage, std::size_t k);
-  /// The angular velocity of the axes after a stage: its components along them, and along those before (frame's parent
-  /// at first) of the axes before.
+  /// The angular velocity of the axes after a stage, along these axes; `rates_before`: that of the axes before the
+  /// stage, along those (at first: of the frame's parent).
   std::array<Ref, 3> rates(std::uint32_t frame, std::size_t stage);
   std::array<Ref, 3> rates_before(std::uint32_t frame, std::size_t stage);
   std::array<Ref, 3> own_rates(std::uint32_t frame);
   Vec3 angular_velocity(std::uint32_t frame);  // w = n1dot g1 + n2dot g2 + n3dot g3, eq. (5.59)
 
-  /// The extension that Op::extension stands for while a spring's energy is read.
+  /// Sets the value of Op::extension while a spring's energy is lowered.
   void set_extension(Ref extension);
-  /// The slip speed that Op::slip stands for while coefficients of friction are read.
+  /// Sets the value of Op::slip, the slip speed, while coefficients of friction are lowered.
   void set_slip(Ref speed);
 
   Ref dot(const Vec3& a, const Vec3& b) { return symbolic::dot(dag_, a, b); }
@@ -42,7 +42,7 @@ class Lowering {
   Ref norm(const Vec3& a);
   Vec3 gradient(const Vec3& a, std::uint32_t coordinate);  // d a/d q
 
-  /// d/dt; throws where `at` would need a third derivative of a coordinate or the rate of an input.
+  /// d/dt. Throws Error at `at` if the result needs a third derivative of a coordinate or the rate of an input.
   Ref ddt(Ref expression, const model::Span& at);
   Vec3 ddt(const Vec3& expression, const model::Span& at);
   /// d/dt at fixed coordinates and velocities.

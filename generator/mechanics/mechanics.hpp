@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: Model. Out: the same system as expressions on one Dag: positions, energies, applied loads, constraints, and which
-// constraints fix a coordinate. Theory: docs/theory.md, eqs. (1.31), (2.20), (2.31), (3.20).
+// In: Model. Out: the same system as expressions on one Dag: positions, energies, applied loads, constraints, and the
+// coordinates that constraints fix. Theory: docs/theory.md, eqs. (1.31), (2.20), (2.31), (3.20).
 #pragma once
 
 #include <memory>
@@ -26,19 +26,19 @@ struct PointMass {
   std::uint32_t place = 0;
 };
 
-/// How a body turns: T = w.Jw/2, eq. (6.65), with constant components J along `axes`. These are the body's own; where J
-/// does not change as the body turns about one of them they are those before its last rotation, which have simpler
-/// components.
+/// The rotation of a body: T = w.Jw/2, eq. (6.65), with constant components J along `axes`. The axes are the body's
+/// own. If J does not change as the body turns about one of them, they are the axes before its last rotation, which
+/// have simpler components.
 struct Spin {
   std::string name;
   std::uint32_t frame = 0;
   std::array<Vec3, 3> axes;
   std::array<std::array<Ref, 3>, 3> J;
   std::array<Ref, 3> w;        // along `axes`
-  std::array<Ref, 3> carrier;  // angular velocity of `axes` themselves
+  std::array<Ref, 3> carrier;  // angular velocity of `axes`
 };
 
-/// A force that is not derived from the potential, at a moving point.
+/// A force without a potential, at a moving point.
 struct Load {
   std::string name;
   Vec3 force;
@@ -48,29 +48,29 @@ struct Load {
 
 enum class ConstraintKind { holonomic, velocity };
 
-/// Whether an equation is needed: not where it holds whatever the coordinates are, nor where it does so wherever the
-/// other constraints hold. Such equations are neither imposed nor active and have no multiplier.
+/// Whether a constraint equation is independent. An identity holds for all coordinates. A redundant equation follows
+/// from the other constraints. Both are neither imposed nor active and have no multiplier.
 enum class Need { holds, identity, redundant };
 const char* name(Need need);  // "holds", "identity", "redundant"
 
-/// One scalar equation: psi(q, t) = 0, or f . qdot + b = 0 with f(q, t), b(q, t). Either way the force on the system is
-/// lambda f, eqs. (2.31), (2.50), with f = d psi/d q of a holonomic one.
+/// One scalar equation: psi(q, t) = 0, or f . qdot + b = 0 with f(q, t), b(q, t). In both cases the force on the system
+/// is lambda f, eqs. (2.31), (2.50), with f = d psi/d q for a holonomic constraint.
 struct Constraint {
   std::string name;   // "sphere"
   std::string label;  // "sphere", or "sphere.2" where the constraint has several equations
   ConstraintKind kind = ConstraintKind::holonomic;
-  Ref psi;                                 // 0 of a velocity constraint
+  Ref psi;                                 // 0 for a velocity constraint
   std::vector<Ref> gradient;               // f_i, all coordinates
   Ref rate;                                // b: d psi/d t at fixed q
-  model::NodeId written = model::no_node;  // psi, or what is 0 of a velocity constraint, in the model
+  model::NodeId written = model::no_node;  // psi or the velocity form, in the model
   bool unilateral = false;                 // psi >= 0: never eliminated
   Need need = Need::holds;
-  bool determined = true;  // the motion determines its force; of joints JointReaction says it
+  bool determined = true;  // whether the motion determines its force; for joints see JointReaction
 
   bool holonomic() const { return kind == ConstraintKind::holonomic; }
 };
 
-/// psi = 0 read as q_c = value(t): such a coordinate is eliminated (Approach I and II, eqs. (2.96)-(2.101)).
+/// psi = 0 solved for q_c = value(t). The coordinate is eliminated (Approach I and II, eqs. (2.96)-(2.101)).
 struct FixedCoordinate {
   std::uint32_t coordinate;
   std::uint32_t constraint;
@@ -80,60 +80,60 @@ struct FixedCoordinate {
 enum class Integrable { yes, no, unknown };
 const char* name(Integrable verdict);
 
-/// What a constraint is found to be; holonomic ones are their own integral.
+/// The result of the integrability test of a constraint. Holonomic constraints are their own integral.
 struct Classification {
   Integrable integrable = Integrable::yes;
-  std::string reason;  // a sentence; empty of holonomic ones
+  std::string reason;  // a sentence; empty for holonomic constraints
 };
 
-/// psi(q, t) of free coordinates, t and independent parameters that constraints on velocities keep at its start value.
+/// psi(q, t) of free coordinates, t and independent parameters. Velocity constraints keep it at its start value.
 struct Integral {
-  std::string label;              // of the constraint that it stands for
-  std::vector<std::uint32_t> of;  // constraints whose combination d psi is
+  std::string label;              // of the constraint that it replaces
+  std::vector<std::uint32_t> of;  // d psi is a combination of these constraints
   Ref psi;
 };
 
-/// A unilateral contact that lets nothing slide along sum_a along_a t_a while it touches, as a stop at the end of a
-/// rough guide, or constraints that always hold: there the motion does not determine the friction, which is taken to
-/// be 0.
+/// A contact that blocks sliding along sum_a along_a t_a while it is closed, such as a stop at the end of a rough
+/// guide, or constraints that always hold. Along this direction the motion does not determine the friction, which is
+/// taken to be 0.
 struct HeldDirection {
-  std::uint32_t by = 0;    // index into Mechanics::contacts; the contact itself: always
-  std::vector<Ref> along;  // per tangent; of any length
+  std::uint32_t by = 0;    // index into Mechanics::contacts; own index: always blocked
+  std::vector<Ref> along;  // per tangent; not normalised
 };
 
-/// Where a law of friction acts: a particle on a surface (one constraint) or a curve (two), a body on a plane or
+/// A place where a friction law acts: a particle on a surface (one constraint) or a curve (two), a body on a plane or
 /// another body, or one coordinate with a given normal force. The friction force is sum_a phi_a t_a with the symbols
 /// phi_a = {SymbolKind::friction, first + a}. A unilateral constraint is a contact with or without friction.
 struct Contact {
   std::string name;                        // of the constraint or the force
   std::vector<std::uint32_t> constraints;  // 1 or 2 indices; none: the normal force is given
-  std::uint32_t place = 0;                 // of the particle; 0 where a coordinate rubs
-  std::uint32_t coordinate = 0;            // that rubs, where place is 0
+  std::uint32_t place = 0;                 // of the particle; 0 for friction in a coordinate
+  std::uint32_t coordinate = 0;            // the coordinate with friction, if place is 0
   std::uint32_t first = 0;                 // index of the first phi
   std::vector<Ref> gram;                   // grad psi_k . grad psi_l at the particle, row-major
   Ref normal;                              // the given normal force
-  std::vector<Vec3> directions;            // t_a, orthonormal; none where a coordinate rubs
-  std::vector<std::uint32_t> numbers;      // of a body: which of its two tangents t_a are, 0 or 1
+  std::vector<Vec3> directions;            // t_a, orthonormal; none for friction in a coordinate
+  std::vector<std::uint32_t> numbers;      // of a body: which of its two tangents each t_a is, 0 or 1
   std::vector<std::vector<Ref>>
       tangents;           // t_a . dr/dq_i per t_a, all coordinates; of a body t_a . dv/dqdot_i of its point there
   std::vector<Ref> slip;  // t_a . (v - v_s)
   std::vector<HeldDirection> held;
-  Ref static_coefficient, dynamic_coefficient;  // may depend on the slip speed; the first none where there is a width
+  Ref static_coefficient, dynamic_coefficient;  // may depend on the slip speed; the first is empty with a width
   std::optional<Ref> width;                     // of the smooth law -mu |N| w / sqrt(w^2 + width^2)
-  bool unilateral = false;                      // its one constraint can be left
-  Ref restitution;                              // of impacts then
+  bool unilateral = false;                      // its one constraint can open
+  Ref restitution;                              // of impacts, if unilateral
   std::optional<std::uint32_t> body_contact;    // of a body: index into Model::constraints
-  bool rolls = false;                           // sticking is rolling: the point of contact moves over the body
+  bool rolls = false;                           // sticking means rolling: the contact point moves over the body
 
   std::size_t dimensions() const { return tangents.size(); }
 };
 
-/// The force of a joint on B, then the moment about its point of B, along the axes of the model::Joint:
-/// component j is sum_k along[j][k] lambda_(first + k).
+/// The force of a joint on B, then the moment about its point of B, along the axes of the model::Joint. Component j is
+/// sum_k along[j][k] lambda_(first + k).
 struct JointReaction {
   std::uint32_t first = 0;  // of its constraints
   std::array<std::vector<Ref>, model::joint_components> along;
-  /// False where equations that are not needed leave a component open: the motion does not determine it.
+  /// False if redundant equations leave a component undetermined by the motion.
   std::array<bool, model::joint_components> determined{true, true, true, true, true, true};
 
   std::size_t equations() const { return along[0].size(); }
@@ -158,23 +158,23 @@ struct Mechanics {
   std::vector<Spin> spins;              // per Model::bodies entry
   Ref kinetic_given;                    // of [energy], 0 if none
   Ref kinetic;                          // sum m/2 v.v + kinetic_given, with the unconstrained coordinates
-  Ref potential;                        // everything that has a potential, and [energy]
+  Ref potential;                        // of all conservative forces, and of [energy]
   std::vector<Ref> potential_by_force;  // per Model::forces entry, 0 where the force is a Load
   std::vector<Load> loads;
   std::vector<std::vector<Ref>>
-      force_components;  // per Model::forces entry: its Q_i beyond the potential, loads included
+      force_components;  // per Model::forces entry: its Q_i without the potential, with loads
 
   std::vector<Constraint> constraints;
   std::vector<FixedCoordinate> fixed;  // in the order of elimination
-  std::vector<std::uint32_t> free;     // coordinates that stay, ascending
-  std::vector<std::uint32_t> active;   // constraints that stay, with multipliers, ascending
+  std::vector<std::uint32_t> free;     // coordinates that are not eliminated, ascending
+  std::vector<std::uint32_t> active;   // constraints with multipliers, ascending
 
   std::vector<Classification> classification;  // per constraint
   std::vector<Integral> integrals;
   std::vector<JointReaction> joints;  // per Model::joints entry
   std::vector<Contact> contacts;  // constraints with friction or unilateral in the order of the model, then dry forces
 
-  std::vector<Ref> event;                            // per Model::events entry: changes its sign there
+  std::vector<Ref> event;                            // per Model::events entry: its sign changes at the event
   std::vector<Ref> function_value;                   // per Model::functions entry, as an expression of t
   std::vector<Ref> parameter_value;                  // per parameter, of other parameters or constants
   std::vector<std::optional<Vec3>> place_position;   // per Model::places entry
@@ -182,16 +182,16 @@ struct Mechanics {
   std::vector<std::array<Ref, 3>> angular_velocity;  // per Model::frames entry, along its own axes
 
   bool is_eliminated(std::uint32_t coordinate) const;
-  /// Degrees of freedom: coordinates that stay less constraints that always hold.
+  /// Degrees of freedom: free coordinates minus constraints that always hold.
   long freedom() const;
-  /// Whether a constraint is imposed or has a multiplier.
+  /// Whether a constraint is independent: imposed or active.
   bool holds(std::uint32_t constraint) const { return constraints[constraint].need == Need::holds; }
   /// f . qdot + b of a constraint.
   Ref velocity_form(const Constraint& constraint) const;
 };
 
-/// Spells the model out on a Dag and classifies its constraints. Throws Error{stage "mechanics"}: a constraint or force
-/// that changes no equation, a coordinate without inertia that nothing determines.
+/// Builds the model on a Dag and classifies its constraints. Throws Error{stage "mechanics"} for a constraint or force
+/// that changes no equation, and for a coordinate without inertia that nothing determines.
 Mechanics build_mechanics(std::shared_ptr<const model::Model> model);
 
 /// The same with a copy of the model.
@@ -199,10 +199,10 @@ inline Mechanics build_mechanics(model::Model model) {
   return build_mechanics(std::make_shared<const model::Model>(std::move(model)));
 }
 
-/// The friction of a body along tangent 0 or 1; 0 along one that is left out.
+/// The friction force of a body along tangent 0 or 1; 0 if that tangent is omitted.
 Ref rolling_friction(const Mechanics& mechanics, const Contact& contact, std::uint32_t tangent);
 
-/// J v, and H = J w, along the axes of the spin.
+/// J v, and the angular momentum H = J w, along the axes of the rotation.
 std::array<Ref, 3> times(Dag& dag, const Spin& spin, const std::array<Ref, 3>& v);
 std::array<Ref, 3> momentum(Dag& dag, const Spin& spin);
 

@@ -9,10 +9,10 @@
 
 namespace eomgen::mechanics {
 
-/// F = J (J^T J)^-1 Q with J = dr/dq of the coordinates that move the particle and nothing else, the least F with
-/// F . dr/dq_i = Q_i. Nothing where these do not span what it can do: what acts along other coordinates is exerted on
-/// other masses too. `mass`: index into Mechanics::masses; `Q`: of all coordinates. Slopes are written out with the
-/// constraints imposed.
+/// F = J (J^T J)^-1 Q with J = dr/dq of the coordinates that move the particle and nothing else: the least F with F .
+/// dr/dq_i = Q_i. Empty if these coordinates do not span the motion of the particle, since forces along other
+/// coordinates act on other masses too. `mass`: index into Mechanics::masses; `Q`: of all coordinates. Derivatives are
+/// expanded with the constraints imposed.
 std::optional<Vec3> force_on_particle(Mechanics& mechanics, std::size_t mass, const std::vector<Ref>& Q);
 
 }  // namespace eomgen::mechanics

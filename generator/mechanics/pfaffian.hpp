@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One-forms sum_i c_i dx_i in the free coordinates and t, of which constraints on velocities are made: f_i dq_i + b dt
-// = 0. In: constraints. Out: their forms, elimination among them, and Frobenius' condition, with exact zeros told from
-// those that only numbers show.
+// One-forms sum_i c_i dx_i in the free coordinates and t. Velocity constraints are f_i dq_i + b dt = 0. In:
+// constraints. Out: their forms, elimination among them, and Frobenius' condition. Proven zeros are kept apart from
+// numerical ones.
 #pragma once
 
 #include <cln/real.h>
@@ -16,46 +16,45 @@ namespace eomgen::mechanics {
 
 using Form = std::vector<Ref>;  // coefficients of FormSpace::variables
 
-/// How it is known that something vanishes identically; `unknown`: there was no point at which to look, or no effort
-/// left to do so.
+/// The result of a test for an identical zero. `unknown`: there was no sample point, or the effort is used up.
 enum class Vanishing { proven, at_points, no, unknown };
 
 /// Rows with a 1 in their pivot column and 0 in the pivot columns of the others.
 struct Echelon {
   std::vector<Form> rows;
   std::vector<std::size_t> pivots;  // column of each row
-  bool exact = true;                // every entry that was taken for 0 is proven to be 0
+  bool exact = true;                // every entry that was treated as 0 is proven to be 0
 };
 
 class FormSpace {
  public:
-  /// Whether points are taken on the active holonomic constraints.
+  /// The set of sample points: on the active holonomic constraints, or unrestricted.
   enum class Where { on_constraints, anywhere };
   explicit FormSpace(Mechanics& mechanics, Where where = Where::on_constraints);
 
   Dag& dag() const { return dag_; }
   const std::vector<symbolic::Symbol>& variables() const { return variables_; }
 
-  /// f . dq + b dt with eliminated coordinates imposed, functions of time and dependent parameters written out.
+  /// f . dq + b dt with eliminated coordinates imposed; functions of time and dependent parameters are expanded.
   Form of(const Constraint& constraint);
   Form differential(Ref psi);
   Ref written(Ref expression);
-  /// df/dx of a variable; integrals of functions of time have a rate.
+  /// df/dx of a variable. Integrals of functions of time have a rate.
   Ref derivative(Ref f, std::size_t variable);
 
-  /// By values at a few points in 50 digits; then, if they vanish there, by proof, as long as the effort lasts.
+  /// Tests values at a few points in 50 digits. If all are zero, tries a proof while effort remains.
   Vanishing vanishing(Ref expression);
-  /// Values at one of the points; throws std::domain_error where there is none.
+  /// Values at one of the sample points. Throws std::domain_error if there are none.
   std::vector<cln::cl_R> values(const std::vector<Ref>& expressions, std::size_t point) const;
   cln::cl_R value(const symbolic::Symbol& symbol, std::size_t point) const;
   std::size_t points() const { return points_.size(); }
 
-  /// Whether the effort is used up; what is looked at from then on is unknown, and eliminations end early.
+  /// Whether the effort is used up. Later tests then return `unknown`, and eliminations end early.
   bool spent() const { return effort_.left == 0; }
 
-  /// Gauss-Jordan; columns of the first `columns` entries may hold pivots (0: all). Sets `exact`.
+  /// Gauss-Jordan elimination. Only the first `columns` columns may hold pivots (0: all). Sets `exact`.
   Echelon echelon(std::vector<Form> rows, std::size_t columns = 0);
-  /// What is left of a form after the rows of an echelon are subtracted.
+  /// The remainder of a form after subtraction of the rows of an echelon.
   Form reduced(Form form, const Echelon& rows);
   /// d omega_k modulo all rows, by row: one entry per pair of columns without pivot. All zero: integrable (Frobenius).
   std::vector<Form> curvature(const Echelon& rows);
@@ -77,7 +76,7 @@ class FormSpace {
   symbolic::Effort effort_;  // of all proofs and simplifications together
 };
 
-/// x of A x = b in the sense of elimination with complete pivots, for a matrix of few rows; false where it is singular.
+/// Solves A x = b of few rows by elimination with complete pivoting. False if A is singular.
 bool solve_small(const std::vector<std::vector<cln::cl_R>>& A, const std::vector<cln::cl_R>& b,
                  std::vector<cln::cl_R>& x);
 

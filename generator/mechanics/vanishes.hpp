@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Does an expression vanish identically? Numerically, at a few random points and 40 digits; used to tell users of
-// forces and constraints that change nothing, never to drop a term.
+// Tests numerically whether expressions vanish identically, at a few random points in 40 digits. Serves messages about
+// forces and constraints that change nothing; never used to drop a term.
 #pragma once
 
 #include "symbolic/dag.hpp"
 
 namespace eomgen::mechanics {
 
-/// True only if all of `expressions` are zero at every point where they could be evaluated, but for what rounding
-/// leaves of terms that cancel, and there was such a point.
+/// True if all of `expressions` are zero, up to rounding of terms that cancel, at every point where they have values,
+/// and there is such a point.
 bool vanishes(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& expressions);
 
-/// A value at one of these points refutes that it vanishes identically: no proof need be tried.
+/// Whether a value at one of these points is nonzero. Then no proof of zero need be tried.
 bool is_somewhere_nonzero(const symbolic::Dag& dag, symbolic::Ref expression);
 
 }  // namespace eomgen::mechanics

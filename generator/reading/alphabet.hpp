@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The symbols of one model as atoms, with what is known of their signs.
+// The symbols of one model as atoms, with their known signs.
 #pragma once
 
 #include <map>
@@ -24,7 +24,7 @@ class Alphabet {
 /// pi as a sum.
 Sum pi();
 
-/// A sum as a Dag node, built in our own order.
+/// A sum as a Dag node, built in the canonical order.
 symbolic::Ref to_dag(symbolic::Dag& dag, const Sum& sum);
 
 }  // namespace eomgen::reading

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of a canonical sum in binary64, at many points. In: a Sum. Out: its value; not a number where a function is
-// not defined there.
+// Values of a canonical sum in binary64, at many points. In: a Sum. Out: its value; NaN where a function is not
+// defined.
 #pragma once
 
 #include <cstddef>
@@ -11,21 +11,21 @@
 
 namespace eomgen::reading {
 
-/// Atoms are evaluated once each, arguments before what is taken of them. The sum has to live as long.
+/// Evaluates each atom once, arguments first. The sum must outlive the evaluator.
 class Evaluator {
  public:
   explicit Evaluator(const Sum& sum) : whole_(flat(sum)) {}
 
-  /// The symbols, with their places in `at`.
+  /// The symbols, with their indices into `at`.
   const std::map<Symbol, std::size_t>& symbols() const { return symbols_; }
 
-  /// `at`: a value for each symbol, in its place. Counts its operations: throws OverBudget.
+  /// `at`: a value for each symbol, at its index. Counts its operations: throws OverBudget.
   double operator()(const std::vector<double>& at);
 
  private:
   struct Power {
     std::size_t item;
-    int whole;        // the exponent, where it is a small whole number; else 0
+    int whole;        // the exponent if it is a small integer; else 0
     double exponent;  // else
   };
   struct Term {
@@ -51,8 +51,8 @@ class Evaluator {
   std::map<const Atom*, std::size_t, Before> places_;
   std::map<Symbol, std::size_t> symbols_;
   std::vector<Item> items_;
-  std::size_t size_ = 0;  // factors and terms
-  Flat whole_;            // after what it fills
+  std::size_t size_ = 0;  // number of factors and terms
+  Flat whole_;            // declared after the members that its initialiser fills
 };
 
 }  // namespace eomgen::reading

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether one sum divides another one without remainder: mostly it does not, which the first term tells.
+// Exact division of sums. In most cases there is a remainder, which the first term already shows.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 
 namespace eomgen::reading {
 
-/// a / b for sums that are polynomials in their atoms, up to a common factor with any exponents; nothing where that is
-/// none, or exponents are beyond what anybody reads. b is not 0.
+/// a / b for sums that are polynomials in their atoms, up to a common factor with any exponents. Empty if there is a
+/// remainder, or if exponents are too large to display. b is not 0.
 std::optional<Sum> divide_exactly(const Sum& a, const Sum& b);
 
-/// Operations that it takes to put a sum together of products of powers.
+/// The number of operations that form a sum from products of powers.
 std::size_t operations_of_reading(const Sum& sum);
 
 }  // namespace eomgen::reading

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reading forms of one model. In: Mechanics. Out: each form, derived when it is first asked for and kept; what was
-// too long once is not tried again by a form that begins with the same calculation.
+// The display forms of one model. In: Mechanics. Out: each form, derived on first use and cached. A calculation that
+// was too long once is not tried again by another form.
 #pragma once
 
 #include <map>
@@ -12,19 +12,20 @@
 
 namespace eomgen::reading {
 
-/// What is wanted of a form: its equations, with constraints as far as they fix coordinates; or all that is shown.
+/// The requested part of a form: its equations with constraints as far as they fix coordinates, or all that is
+/// displayed.
 enum class Extent { equations, whole };
 
-/// As derive_reading of reading.hpp, which gives the whole.
+/// Like derive_reading of reading.hpp, which derives the whole form.
 ReadingForm derive_reading(const mechanics::Mechanics& mechanics, system::Approach approach, Extent extent);
-/// `two`: the form by approach II, whose Lagrangian is taken; what is too long there is here.
+/// `two`: the form by Approach II, which provides the Lagrangian. Parts that are too long there are too long here.
 RouthForm routh_form(const mechanics::Mechanics& mechanics, const std::vector<std::uint32_t>& cyclic,
                      const ReadingForm& two);
 LinearForm linear_form(const mechanics::Mechanics& mechanics, const ReadingForm& two);
 
 class Forms {
  public:
-  /// `mechanics` has to outlive it, and to stay what it is.
+  /// `mechanics` must outlive the object and stay unchanged.
   explicit Forms(const mechanics::Mechanics& mechanics);
 
   const ReadingForm& operator()(system::Approach approach, Extent extent = Extent::whole);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is printed: a small tree in which every choice of layout has been made - order, signs, brackets by precedence,
-// fractions. The printers (print/) turn it into text, LaTeX and MathML and choose nothing.
+// Formulas ready for printing: a small tree with all choices of layout made - order, signs, brackets by precedence,
+// fractions. The printers (print/) convert it to text, LaTeX and MathML and make no choices.
 #pragma once
 
 #include <string>
@@ -43,7 +43,7 @@ struct Formula {
 
 inline constexpr const char* at_least = ">=";
 
-Formula number(const Rational& value);  // negative ones are wrapped
+Formula number(const Rational& value);  // negative values become a `negative` formula
 Formula symbol(const Symbol& symbol);
 Formula mark(std::string word, std::vector<Formula> lower = {}, std::vector<Formula> upper = {});
 Formula negative(Formula a);  // -(-a) = a
@@ -54,15 +54,15 @@ Formula relation(std::vector<Formula> sides);
 Formula wrap(Form form, std::vector<Formula> args);
 bool is_zero(const Formula& f);
 
-/// How sums are factored for reading.
+/// How sums are factored for display.
 enum class Layout {
   terms,    // equations: every product of velocities or accelerations is a term of its own
   grouped,  // energies, reactions: common factors of terms of like kind are taken out
 };
 Formula arrange(const Sum& sum, Layout layout = Layout::grouped);
-/// As a product of irreducible factors, for determinants.
+/// The sum as a product of irreducible factors, for determinants.
 Formula factored(const Sum& sum);
-/// The terms of arrange() one by one, each possibly `negative`.
+/// The terms of arrange(), each possibly `negative`.
 std::vector<Formula> arranged_terms(const Sum& sum, Layout layout);
 
 }  // namespace eomgen::reading

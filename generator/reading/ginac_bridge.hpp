@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between the Dag, GiNaC and canonical sums. GiNaC differentiates and substitutes for the reading form and factors
-// small polynomials; nothing that it orders or prints leaves this stage.
+// Converts between the Dag, GiNaC and canonical sums. GiNaC differentiates and substitutes for the display form and
+// factors small polynomials. None of its orderings or output leaves this stage.
 #pragma once
 
 #include <ginac/ginac.h>
@@ -18,14 +18,14 @@ class Bridge {
 
   GiNaC::ex from_dag(symbolic::Ref r);  // memoised over the Dag, iterative
   GiNaC::ex to_ginac(const Sum& sum);
-  Sum from_ginac(const GiNaC::ex& e);  // multiplied out and simplified (trig.hpp); throws work::OverBudget
+  Sum from_ginac(const GiNaC::ex& e);  // expanded and simplified (trig.hpp); throws work::OverBudget
   const GiNaC::symbol& symbol(const Symbol& symbol);
   Alphabet& alphabet() { return alphabet_; }
 
   Sum sum(symbolic::Ref r) { return from_ginac(from_dag(r)); }
   /// d/ds of a sum.
   Sum derivative(const Sum& sum, const Symbol& by);
-  /// d/dt: q -> qdot -> qddot, functions of time likewise; `functions`, `coordinates` in all.
+  /// d/dt: q -> qdot -> qddot, functions of time likewise.
   Sum total_derivative(const Sum& sum);
   /// Derivative with respect to t at fixed coordinates and velocities.
   Sum explicit_derivative(const Sum& sum);
@@ -40,16 +40,16 @@ class Bridge {
 
   const symbolic::Dag& dag_;
   Alphabet alphabet_;
-  std::map<Symbol, GiNaC::ex> symbols_;  // as ex: a copy of a positive symbol as a plain one would forget its sign
+  std::map<Symbol, GiNaC::ex> symbols_;  // as ex: copying a possymbol to a plain symbol would lose its sign
   std::map<GiNaC::ex, Symbol, GiNaC::ex_is_less> meaning_;
   std::map<symbolic::Ref, GiNaC::ex> nodes_;
-  long steps_ = 0;  // of the conversion under way: GiNaC shows trees where the Dag shares
+  long steps_ = 0;  // of the current conversion: GiNaC traverses trees where the Dag shares nodes
 };
 
-/// A function call as GiNaC knows it; abs, sign, min, max and select are our own, with the derivatives of real
-/// functions (abs' = sign).
+/// A GiNaC function call. abs, sign, min, max and select are our own, with the derivatives of real functions (abs' =
+/// sign).
 GiNaC::ex ginac_call(Op function, const std::vector<GiNaC::ex>& args);
-/// Which function a GiNaC call is; Op::symbol if none of ours.
+/// The operation of a GiNaC call; Op::symbol for a function that is not ours.
 Op function_of(const GiNaC::function& f);
 
 }  // namespace eomgen::reading

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What both approaches start from.
+// The energies and forces that both approaches start from.
 #pragma once
 
 #include "reading/ginac_bridge.hpp"
@@ -7,11 +7,12 @@
 
 namespace eomgen::reading {
 
-/// Rotations.
+/// The rotations of bodies.
 std::vector<ReadSpin> read_spins(const mechanics::Mechanics& mechanics, Bridge& bridge);
-/// The kinetic energy without them: sum m/2 v.v + [energy], velocities differentiated here, not taken from mechanics.
+/// The kinetic energy without rotations: sum m/2 v.v + [energy]. Velocities are differentiated here, not taken from
+/// mechanics.
 Sum translational_energy(const mechanics::Mechanics& mechanics, Bridge& bridge);
-/// T, eq. (1.31), (3.20), of both.
+/// T, eq. (1.31), (3.20), with rotations.
 Sum kinetic_energy(const Sum& translation, const std::vector<ReadSpin>& spins);
 Sum kinetic_energy(const mechanics::Mechanics& mechanics, Bridge& bridge);
 
@@ -21,10 +22,10 @@ Sum generalized_force(const mechanics::Mechanics& mechanics, Bridge& bridge, std
 /// q_c -> d, qdot_c -> d_dot, qddot_c -> d_ddot, eq. (2.97).
 std::map<Symbol, Sum> imposed_values(const mechanics::Mechanics& mechanics, Bridge& bridge);
 
-/// The part of each degree 2, 1, 0 in the velocities; nothing if it is no polynomial of degree 2 in them.
+/// The parts of degree 2, 1, 0 in the velocities. Empty if the energy is no polynomial of degree 2 in them.
 std::optional<std::array<Sum, 3>> split_by_degree(const Sum& kinetic);
 
-/// d/dt dL/dqdot_i - dL/dq_i = Q_i + sum lambda_k dpsi_k/dq_i of one coordinate, `values` imposed at the end.
+/// d/dt dL/dqdot_i - dL/dq_i = Q_i + sum lambda_k dpsi_k/dq_i of one coordinate. `values` are imposed at the end.
 Equation lagrange_equation(const mechanics::Mechanics& mechanics, Bridge& bridge, const Sum& lagrangian,
                            std::uint32_t coordinate, const std::map<Symbol, Sum>& values);
 

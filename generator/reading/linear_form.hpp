@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equations of motion beside a motion: M dq'' + C dq' + K dq = B du for small deviations, with M, C, K, B at any
-// state, and at rest, where M, C, K are those of an equilibrium. In: Mechanics. Approach II, of models without
+// The equations of motion linearised about a motion: M dq'' + C dq' + K dq = B du for small deviations. M, C, K, B hold
+// at any state; those at rest are the ones of an equilibrium. In: Mechanics. Approach II, for models without
 // multipliers and friction.
 #pragma once
 
@@ -8,22 +8,22 @@
 
 namespace eomgen::reading {
 
-/// n x n by rows (equations) and columns (coordinates); B n x m. Slopes of r = M qddot + h - Q by qddot, qdot, q, and
-/// of -r by u.
+/// n x n by rows (equations) and columns (coordinates); B n x m. Derivatives of r = M qddot + h - Q with respect to
+/// qddot, qdot, q, and of -r with respect to u.
 struct Slopes {
   std::vector<Sum> mass, damping, stiffness, input;
 };
 
 struct LinearForm {
-  std::string why_not;                     // nothing below: too long, multipliers, friction
+  std::string why_not;                     // if set, the rest is empty: too long, multipliers, friction
   std::vector<std::uint32_t> coordinates;  // n
   std::vector<std::uint32_t> inputs;       // m
   Slopes along;                            // a motion
   Slopes at_rest;                          // qdot = qddot = 0
-  std::vector<Sum> rest;                   // r at rest: what an equilibrium makes zero
+  std::vector<Sum> rest;                   // r at rest; 0 in an equilibrium
 };
 
-/// Never throws work::OverBudget: says so in `why_not`.
+/// Never throws work::OverBudget, but sets `why_not`.
 LinearForm linear_form(const mechanics::Mechanics& mechanics);
 
 }  // namespace eomgen::reading

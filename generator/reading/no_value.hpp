@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the functions of this stage throw in place of std::domain_error, which is where GiNaC or a Sum meets an
-// expression without a value. Operations of the model's own text are refused before, with their place
-// (mechanics/domain.hpp).
+// The error that this stage throws in place of std::domain_error, when GiNaC or a Sum meets an expression without a
+// value. Operations in the model's own text are rejected earlier, with their place (mechanics/domain.hpp).
 #pragma once
 
 #include "error.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sum while its sines and cosines are worked on: the exponents of a term stand side by side in a few words, one lane
-// for each atom of the sum, such that the order of the words is the order of the monomials (sum.hpp); terms are found
-// by a hash. In: a Sum. Out: the same Sum with its terms changed; the atoms stay what they are, each sine beside its
+// A sum in packed form, for operations on its sines and cosines. The exponents of a term are packed into a few words,
+// one lane for each atom of the sum. The order of the words is the order of the monomials (sum.hpp), and terms are
+// found by a hash. In: a Sum. Out: the same Sum with changed terms. The atoms stay the same, each sine beside its
 // cosine.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace eomgen::reading {
 
-/// The atoms of a sum, ascending, and those that their sines and cosines may become.
+/// The atoms of a sum, ascending, and the sines and cosines that its own may turn into.
 class Lanes {
  public:
   explicit Lanes(const Sum& sum);
@@ -29,17 +29,17 @@ class Lanes {
   std::size_t words() const { return (atoms_.size() + per_word - 1) / per_word; }
   const std::vector<Angle>& angles() const { return angles_; }               // ascending by x
   const std::vector<std::uint32_t>& trig() const { return trig_; }           // their lanes, ascending
-  std::uint32_t dual(std::uint32_t lane) const { return duals_[lane]; }      // of cos(x) that of sin(x)
+  std::uint32_t dual(std::uint32_t lane) const { return duals_[lane]; }      // of cos(x) the lane of sin(x), and vice versa
   std::uint32_t angle(std::uint32_t lane) const { return angle_of_[lane]; }  // into angles()
   long one() const { return one_; }                                          // exponents are multiples of 1/one()
 
   using Word = std::uint64_t;
-  /// Of a sine or cosine, in units of 1/one().
+  /// The exponent of a sine or cosine, in units of 1/one().
   long exponent(const Word* term, std::uint32_t lane) const {
     const long code = code_of(term, lane);
     return code == absent ? 0 : middle - code;
   }
-  /// Throws TermBudget beyond what anybody reads.
+  /// Throws TermBudget if the exponent is too large to display.
   void set_exponent(Word* term, std::uint32_t lane, long exponent) const;
 
   std::vector<Word> pack(const Monomial& monomial) const;
@@ -48,7 +48,7 @@ class Lanes {
   Rational degree(const Word* term) const;
 
  private:
-  // Lanes are compared from the left: what is there before what is absent, greater exponents before less.
+  // Lanes are compared from the left: present before absent, greater exponents before smaller ones.
   static constexpr std::uint32_t per_word = 4, bits = 16;
   static constexpr long absent = 0xffff, middle = 0x7fff;
   static unsigned shift(std::uint32_t lane) { return bits * (per_word - 1 - lane % per_word); }
@@ -61,10 +61,10 @@ class Lanes {
   Rational exponent_of(std::uint32_t lane, long code) const;
 
   std::vector<AtomPtr> atoms_;
-  std::unordered_map<const Atom*, std::uint32_t> lane_of_;  // of the atoms that the sum holds; looked up only
+  std::unordered_map<const Atom*, std::uint32_t> lane_of_;  // of the atoms of the sum; for lookup only
   std::vector<Angle> angles_;
   std::vector<std::uint32_t> trig_, duals_, angle_of_;
-  std::vector<std::vector<Rational>> exponents_, sizes_;  // of atoms that are no sines and cosines: descending, by code
+  std::vector<std::vector<Rational>> exponents_, sizes_;  // of atoms other than sines and cosines: descending, by code
   long one_ = 1;
 };
 
@@ -79,15 +79,15 @@ class PackedSum {
   const Lanes& lanes() const { return *lanes_; }
   std::size_t size() const { return alive_; }
   const Word* term(Entry entry) const { return keys_.data() + entry * words_; }
-  /// 0: the term is gone.
+  /// 0 if the term was cancelled.
   const Rational& coefficient(Entry entry) const { return entries_[entry].coefficient; }
   bool less(Entry a, Entry b) const;
-  /// The term with these exponents, there or gone; or none.
+  /// The term with these exponents, present or cancelled; otherwise none.
   Entry find(const Word* term) const;
-  /// Returns where it is, and whether it was not listed before.
+  /// Returns its entry, and whether it was not listed before.
   std::pair<Entry, bool> add(const Word* term, const Rational& coefficient);
 
-  /// All terms, ascending; from here on they are listed.
+  /// All terms, ascending. Afterwards they count as listed.
   const std::vector<Entry>& sorted();
 
  private:
@@ -103,8 +103,8 @@ class PackedSum {
   std::size_t words_, alive_ = 0;
   std::vector<Word> keys_;
   std::vector<Held> entries_;
-  std::vector<Entry> slots_;          // a power of 2 of them, half of them open
-  std::vector<Entry> order_, added_;  // listed: ascending; since then
+  std::vector<Entry> slots_;          // their number is a power of 2; half are empty
+  std::vector<Entry> order_, added_;  // listed, ascending; added since
 };
 
 }  // namespace eomgen::reading

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The steps between energies and Lagrange's equations, as (2.108), (2.110) have them. In: the energies of a
-// ReadingForm. Out: per coordinate dT/dqdot, its rate, dT/dq, dU/dq and the generalised force, before anything is
-// imposed that the energies do not have already.
+// The intermediate steps between energies and Lagrange's equations, as in (2.108), (2.110). In: the energies of a
+// ReadingForm. Out: per coordinate dT/dqdot, its rate, dT/dq, dU/dq and the generalised force. Constraints are imposed
+// only as far as in the energies.
 #pragma once
 
 #include "reading/reading.hpp"
@@ -15,10 +15,10 @@ struct Partials {
   Sum kinetic;                // dT/dq
   Sum potential;              // dU/dq
   Sum force;                  // Q
-  std::string left_out = {};  // why nothing of this is here
+  std::string left_out = {};  // why the members above are empty
 };
 
-/// One entry for each equation of `form`, in its order; none where it is shown by parts. Each has a budget of its own.
+/// One entry for each equation of `form`, in its order; none if by_parts. Each has its own budget.
 std::vector<Partials> partial_derivatives(const mechanics::Mechanics& mechanics, const ReadingForm& form);
 
 }  // namespace eomgen::reading

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The product of this stage: the equations of motion as one reads them. In: Mechanics. Out: energies, Lagrange's
+// The product of this stage: the equations of motion in display form. In: Mechanics. Out: energies, Lagrange's
 // equations by Approach I (2.96)-(2.98) or II (2.99)-(2.101), constraint forces, the geometry of coordinates
 // (1.20)-(1.32), (2.184)-(2.185), singular sets. Theory: docs/theory.md.
 #pragma once
@@ -18,21 +18,22 @@ namespace eomgen::reading {
 
 using Components = std::array<Sum, 3>;
 
-/// Operations (products and sums of two terms) that are spent on a form, and on one formula of those that are shown
-/// beside it. What takes more is left out, on every machine the same.
+/// The budget, in products and sums of two terms, of a form, and of one formula displayed beside it. Results over
+/// budget are omitted, on every machine the same.
 inline constexpr std::size_t form_budget = 5'000'000, item_budget = 200'000;
 
 using work::LeftOut;
 
-/// One constraint psi = 0, with its first and second total time derivatives; of one on velocities `rate` is what is 0.
+/// One constraint psi = 0, with its first and second total time derivatives. For a velocity constraint, `rate` is its
+/// left-hand side.
 struct ReadConstraint {
   std::uint32_t constraint;  // index into Mechanics::constraints
   std::string label;
   bool holonomic = true;
   Sum psi, rate, acceleration;
-  std::string no_psi, no_rate, no_acceleration;  // why they are left out; empty where they are there
+  std::string no_psi, no_rate, no_acceleration;  // why they are omitted; empty if they are present
   std::optional<mechanics::FixedCoordinate>
-      fixes;                                  // where it reads q_c = d(t); by approach II also of other coordinates
+      fixes;                                  // if it is q_c = d(t); in Approach II also of other coordinates
   Sum value, value_rate, value_acceleration;  // of that coordinate
 };
 
@@ -45,7 +46,7 @@ struct MultiplierTerm {
 /// d/dt(momentum) - slope = force + sum lambda_k dpsi_k/dq_i.
 struct Equation {
   std::uint32_t coordinate;
-  bool of_motion;  // false: it gives a constraint force
+  bool of_motion;  // false: it determines a constraint force
   Sum momentum;    // dL/dqdot_i
   Sum slope;       // dL/dq_i
   Sum force;       // Q_i = F . dr/dq_i and given generalised forces
@@ -53,18 +54,18 @@ struct Equation {
   Sum expanded;  // the left-hand side written out: M qddot + h
 };
 
-/// lambda_k as an expression; nothing where only the equations of motion together determine it.
+/// lambda_k as an expression; empty if only the equations of motion together determine it.
 struct ReadReaction {
   std::uint32_t constraint;
   std::string label;
   std::optional<Sum> value;
 };
 
-/// A set where the inertia matrix of an approach, or a metric, has no inverse: factor = 0.
+/// A set factor = 0 where the inertia matrix of an approach, or a metric, is singular.
 struct SingularSet {
   std::string approach;  // "I", "II", "both"
   Sum factor;
-  std::vector<Formula> solutions;  // phi = 0, phi = pi where these are known
+  std::vector<Formula> solutions;  // phi = 0, phi = pi if known
 };
 
 /// Rotation of a body: T = sum_ik J_ik w_i w_k/2.
@@ -85,19 +86,19 @@ struct ReadingForm {
   ~ReadingForm();
 
   system::Approach approach = system::Approach::one;
-  bool by_parts = false;  // too large to be multiplied out: m r_ddot . dr/dq in place of the equations written out
+  bool by_parts = false;  // too large to expand: m r_ddot . dr/dq in place of the expanded equations
   std::string why_by_parts;
   Sum kinetic, potential, lagrangian;           // unconstrained for I, constrained for II
-  Sum translation;                              // the part of `kinetic` that is not of `spins`; 0 where by_parts
-  std::vector<ReadSpin> spins;                  // for I as they are, for II with the constraints imposed
-  std::string no_spins;                         // why there are none, where bodies turn
+  Sum translation;                              // the part of `kinetic` without rotations; 0 if by_parts
+  std::vector<ReadSpin> spins;                  // in II with the constraints imposed
+  std::string no_spins;                         // why they are omitted, if bodies rotate
   std::optional<std::array<Sum, 3>> by_degree;  // II: T2, T1, T0, eq. (3.50)
   std::vector<ReadConstraint> constraints;
   std::vector<Equation> equations;  // I: all coordinates, II: the free ones
   std::vector<ReadReaction> reactions;
 };
 
-/// Derives the equations for reading. Never throws work::OverBudget: sets by_parts instead.
+/// Derives the equations in display form. Never throws work::OverBudget, but sets by_parts.
 ReadingForm derive_reading(const mechanics::Mechanics& mechanics, system::Approach approach);
 
 /// Curvilinear coordinates of one particle: bases, metric, Christoffel symbols; n = 1, 2 or 3 coordinates.
@@ -106,7 +107,7 @@ struct Geometry {
   std::vector<std::uint32_t> coordinates;  // n
   std::vector<Components> covariant;       // a_i along E1..E3, eq. (1.20)
   std::vector<Components> contravariant;   // a^i, eq. (1.22)
-  std::vector<Components> covariant_unit;  // the same along the chart's unit vectors; empty where it names none
+  std::vector<Components> covariant_unit;  // the same along the chart's unit vectors; empty if it has none
   std::vector<Components> contravariant_unit;
   std::vector<std::optional<std::uint32_t>> unit_names;  // whose coordinate's e_q each unit vector is
   std::vector<Sum> metric, inverse;                      // n x n, eq. (1.31)
@@ -116,26 +117,26 @@ struct Geometry {
   Sum kinetic;                     // T, eq. (1.32)
 };
 
-/// For every particle whose position is given in a chart.
+/// The geometry for every particle whose position is given in a chart.
 std::vector<Geometry> geometry(const mechanics::Mechanics& mechanics, std::vector<LeftOut>* left_out = nullptr);
 
-/// The configuration manifold: M_ik from T2 (free coordinates, constraints imposed) with its Christoffel symbols;
-/// nothing where it is too large. `name` is empty, the bases are empty.
+/// The configuration manifold: M_ik from T2 (free coordinates, constraints imposed) with its Christoffel symbols. Empty
+/// if it is too large. `name` and the bases are empty.
 std::optional<Geometry> configuration_space(const mechanics::Mechanics& mechanics,
                                             std::vector<LeftOut>* left_out = nullptr);
 
-/// Where the equations of an approach fail, and where a potential or force does. What was not looked at is told in
-/// `left_out`.
+/// The sets where the equations of an approach, a potential or a force are singular. Parts that were not examined are
+/// reported in `left_out`.
 std::vector<SingularSet> singular_sets(const mechanics::Mechanics& mechanics, std::vector<LeftOut>* left_out = nullptr);
 
-/// lhs - rhs of each equation of motion, in the order of ReadingForm::equations, on the Dag of `mechanics`: symbols q,
+/// lhs - rhs of each equation of motion, in the order of ReadingForm::equations, on the Dag of `mechanics`. Symbols: q,
 /// qdot, qddot of free coordinates, parameters, functions of time, inputs, multipliers. Empty if form.by_parts.
 std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::Mechanics& mechanics);
 
-/// A scalar expression as the model's author wrote it, nothing multiplied out; nothing if there are vectors in it.
+/// A scalar expression as the model's author wrote it, not expanded. Empty if it contains vectors.
 std::optional<Formula> as_written(const model::Model& model, model::NodeId expression);
 
-/// Any expression of the Dag, simplified for reading; throws work::OverBudget.
+/// Any expression of the Dag, simplified for display. Throws work::OverBudget.
 Sum read(const mechanics::Mechanics& mechanics, symbolic::Ref expression);
 
 }  // namespace eomgen::reading

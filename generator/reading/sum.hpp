@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The canonical form in which equations are read: a sum of monomials with exact coefficients, over atoms (symbols,
-// function calls, sums under a power). Its order is our own - by kind, then by order of declaration - and never
-// GiNaC's, which changes from process to process. Products are always multiplied out here; layout.cpp factors them
-// again for reading.
+// The canonical form of displayed equations: a sum of monomials with exact coefficients, over atoms (symbols, function
+// calls, sums under a power). The order is by kind, then by order of declaration. GiNaC's order is not used, since it
+// changes from process to process. Products are always expanded here; layout.cpp factors them again for display.
 #pragma once
 
 #include <cln/rational.h>
@@ -27,7 +26,7 @@ class Sum;
 struct Atom;
 using AtomPtr = std::shared_ptr<const Atom>;
 
-/// Thrown where an expression would be multiplied out beyond what anybody reads; callers then show it by parts.
+/// Thrown if an expression has too many terms to display. Callers then show it by parts.
 struct TermBudget : work::OverBudget {
   TermBudget() : work::OverBudget("too many terms to be written out") {}
 };
@@ -58,7 +57,7 @@ class Sum {
   explicit Sum(AtomPtr atom) { add({{std::move(atom), 1}}, 1); }
   Sum(Monomial monomial, const Rational& coefficient) { add(std::move(monomial), coefficient); }
 
-  /// Of terms that ascend already, none of them 0.
+  /// Builds a sum from ascending terms, none of them 0.
   static Sum ascending(std::vector<std::pair<Monomial, Rational>> terms);
 
   void add(const Monomial& monomial, const Rational& coefficient);
@@ -71,7 +70,7 @@ class Sum {
 
   Sum& operator+=(const Sum& other);
   Sum& operator-=(const Sum& other);
-  /// Of every term.
+  /// Multiplies every term.
   void scale(const Rational& factor);
 
  private:
@@ -83,13 +82,13 @@ class Sum {
 Sum operator+(Sum a, const Sum& b);
 Sum operator-(Sum a, const Sum& b);
 Sum operator-(const Sum& a);
-/// Throws work::OverBudget: by its terms, or by the operations that all of this takes (reading.hpp).
+/// Throws work::OverBudget by its number of terms, or by the operations of the whole calculation (reading.hpp).
 Sum operator*(const Sum& a, const Sum& b);
 Sum operator*(const Rational& factor, const Sum& a);
 inline bool operator==(const Sum& a, const Sum& b) { return compare(a, b) == 0; }
 
 /// A symbol (Op::symbol), pi, a function call, a sum under a power (Op::add; args[0] is its base, primitive), or a
-/// power with an exponent that is no number (Op::pow).
+/// power with a non-numeric exponent (Op::pow).
 struct Atom {
   Op op = Op::symbol;
   Symbol symbol{};
@@ -98,10 +97,10 @@ struct Atom {
   bool half_turn = false;  // an angle in (0, pi)
 };
 
-/// Product of two monomials as a sum: powers of sums that become whole are multiplied out.
+/// Product of two monomials as a sum. Powers of sums whose exponents become integers are expanded.
 Sum multiply(const Monomial& a, const Monomial& b);
-/// x^exponent: multiplied out for whole exponents >= 0, the common factor pulled out of other ones, sqrt(x^2) = |x| or
-/// x where x is known to be positive.
+/// x^exponent: expanded for integer exponents >= 0. Otherwise the common factor is pulled out, with sqrt(x^2) = |x|, or
+/// x if x is known to be positive.
 Sum power(const Sum& x, const Rational& exponent);
 /// A function call with its sign pulled out: sin(-x) = -sin(x), cos(-x) = cos(x).
 Sum call(Op function, std::vector<Sum> args);
@@ -116,12 +115,12 @@ Content content(const Sum& sum);
 Sum divide(const Sum& sum, const Content& by);
 Monomial inverse(const Monomial& monomial);
 
-/// Whether a term that is displayed first has a negative coefficient; decides which sign is pulled out of brackets.
+/// Whether the term displayed first has a negative coefficient; decides which sign is pulled out of brackets.
 bool leads_negative(const Sum& sum);
-/// Terms in the order in which they are displayed: accelerations, velocities, coordinates, the rest.
+/// Terms in display order: accelerations, velocities, coordinates, the rest.
 std::vector<std::pair<Monomial, Rational>> display_order(const Sum& sum);
 
-/// Calls `visit` for every atom, also inside of arguments.
+/// Calls `visit` for every atom, including those in arguments.
 template <class Visit>
 void for_each_atom(const Sum& sum, Visit&& visit) {
   for (const auto& [monomial, coefficient] : sum.terms()) {
@@ -136,7 +135,7 @@ void for_each_atom(const Factor& factor, Visit&& visit) {
 bool contains(const Sum& sum, const Symbol& symbol);
 bool is_one(const Rational& r);
 bool is_integer(const Rational& r);
-/// The exponent as a long; only for whole ones of reasonable size.
+/// The exponent as a long; only for integers of reasonable size.
 long to_long(const Rational& r);
 
 }  // namespace eomgen::reading

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Is an expression zero for all values of its symbols?
+// Tests whether an expression is zero for all values of its symbols.
 #pragma once
 
 #include "reading/sum.hpp"
@@ -13,9 +13,9 @@ enum class Zero {
   unknown,    // no point lies in the domain of all functions
 };
 
-/// Exact first, then at random points with 50 digits; the points are the same in every process.
+/// Tests exactly first, then at random points with 50 digits. The points are the same in every process.
 Zero zero_test(const Sum& sum);
-/// The same where it does not matter how certain it is: a proof is only sought where there are no numbers.
+/// The same if the certainty does not matter: a proof is sought only if there are no numerical values.
 bool is_zero(const Sum& sum);
 
 }  // namespace eomgen::reading

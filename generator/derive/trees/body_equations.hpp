@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// M and f of a tree of bodies in the coordinates of the model, and the same solved.
+// M and f of a tree of bodies in the coordinates of the model, and their solution.
 #pragma once
 
 #include <optional>
@@ -9,11 +9,11 @@
 
 namespace eomgen::derive {
 
-/// How M u' = f is solved for trees of bodies.
+/// Solves M u' = f for trees of bodies.
 using BodySolve = system::Solution (*)(Dag&, const BodyTree&, const std::vector<LinkMotion>&);
 
-/// Nothing where the bodies form no tree (body_tree.hpp), and by Approach I only where there is nothing to impose.
-/// Solved with angular velocities in place of the rates of ball joints where no multipliers and no friction are.
+/// Empty if the bodies form no tree (body_tree.hpp), and in Approach I if there are constraints to impose. Without
+/// multipliers and friction, angular velocities replace the rates of ball joints in the solution.
 std::optional<system::EquationSystem> equations_of_bodies(Mechanics& mechanics, system::Approach approach,
                                                           const char* route, BodySolve solve);
 

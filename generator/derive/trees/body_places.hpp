@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A position as the model writes it: from which place, and with which components along the axes of bodies and frames.
+// A position as the model states it: the place it is measured from, and components along the axes of bodies and frames.
 #pragma once
 
 #include <map>
@@ -15,7 +15,7 @@ struct WrittenPlace {
   std::map<std::uint32_t, Vec3> components;  // by frame, along its own axes
 };
 
-/// Nothing where the position is more than such a sum (cross products, unit vectors, ..).
+/// Empty if the position is not such a sum (cross products, unit vectors, ..).
 std::optional<WrittenPlace> written_place(const Mechanics& mechanics, mechanics::Lowering& lower, std::uint32_t place);
 
 }  // namespace eomgen::derive

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The recursive scheme for trees of bodies (Featherstone 2008, ch. 5, 6), on expressions: accelerations outwards,
-// forces and composite inertias inwards, every quantity along the axes of its link. Where angular velocities stand for
-// the rates of ball joints, what hangs on a joint counts as a point mass there: composite inertias are constant.
+// The recursive Newton-Euler and composite-body algorithms for trees of bodies (Featherstone 2008, ch. 5, 6), on
+// expressions: accelerations outwards, forces and composite inertias inwards, all along the axes of the link. If
+// angular velocities replace the rates of ball joints, the bodies beyond a joint count as a point mass there, and
+// composite inertias are constant.
 #pragma once
 
 #include "derive/trees/body_motion.hpp"
@@ -10,7 +11,7 @@
 namespace eomgen::derive {
 
 struct BodyEquations {
-  std::vector<Ref> M, f;  // n x n row-major, n; of the rates or what stands for them
+  std::vector<Ref> M, f;  // n x n row-major, n; for the rates or the angular velocities in their place
 };
 
 BodyEquations body_equations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rigid bodies and particles that hang on one another, as links whose masses and joints are known along their own axes:
-// what positions say as sums of components along the axes of bodies and frames, each place measured from another one.
+// A tree of rigid bodies and particles as links whose masses and joints are known along their own axes. It is read from
+// positions that are sums of components along the axes of bodies and frames, each measured from another place.
 #pragma once
 
 #include <optional>
@@ -10,46 +10,46 @@
 
 namespace eomgen::derive {
 
-/// How a coordinate moves a link against its parent: angular velocity of its axes, velocity of its origin.
+/// The motion of a link relative to its parent per coordinate rate: angular velocity of its axes, velocity of its
+/// origin.
 struct Freedom {
-  std::size_t index;  // in the coordinates that were asked for
+  std::size_t index;  // into the requested coordinates
   Vec3 turning, shifting;
 };
 
-/// Axes with an origin and what is fixed in them. All vectors of a link are along its own axes, but for `offset`.
+/// Axes with an origin, and the masses fixed in them. All vectors of a link are along its own axes, except `offset`.
 struct BodyLink {
   int parent = -1;                // index of a link before this one, -1: the ground
-  std::uint32_t frame = 0;        // of the model, whose axes these are
+  std::uint32_t frame = 0;        // of the model; its axes
   Vec3 offset;                    // from the parent's origin to the own one, along the parent's axes
-  Vec3 offset_rate, offset_bias;  // its rate, and that one's at zero second rates
+  Vec3 offset_rate, offset_bias;  // its rate, and the derivative of that rate at zero qddot
   Turn turn;
-  bool relative = true;  // turned against the parent; otherwise along E1, E2, E3 on a parent that turns
+  bool relative = true;  // axes relative to the parent; otherwise E1, E2, E3 on a rotating parent
   bool absolute =
-      false;  // the angular velocity itself stands for the rates of the three (four) coordinates that turn it
+      false;  // the angular velocity replaces the rates of its three (four) coordinates of rotation
   std::vector<Freedom> freedoms;
-  std::vector<Freedom> angles;  // of an absolute link: the coordinates, in place of which `freedoms` has the three axes
-  std::vector<Ref> parameters;  // Euler parameters and their rates: 4 and 4, in the order of `angles`; none otherwise
+  std::vector<Freedom> angles;  // of an absolute link: its coordinates, which the three axes replace in `freedoms`
+  std::vector<Ref> parameters;  // 4 Euler parameters, then their 4 rates, in the order of `angles`; otherwise empty
   Ref mass;
   Vec3 moment;   // sum of m r
   Mat3 inertia;  // about the origin
 
-  /// The parent's turning carries it along, as far as its velocities (or what stands for them) are its own.
+  /// Whether the parent's rotation carries the link, as its rates are relative to the parent.
   bool carried() const { return relative && !absolute; }
 };
 
 struct BodyTree {
   std::vector<BodyLink> links;  // parents first
   Vec3 gravity;                 // acceleration, of uniform gravity, along E1, E2, E3
-  std::vector<Ref> Q;           // all other forces, of the coordinates
+  std::vector<Ref> Q;           // all other generalised forces
 };
 
-/// The tree that the coordinates `of` see; with `imposed`, the eliminated coordinates are functions of time. Nothing
-/// where the model has no bodies, where a coordinate moves no joint or several, where a mass varies, or kinetic energy
-/// is given.
+/// The tree for the coordinates `of`. With `imposed`, the eliminated coordinates are functions of time. Empty if the
+/// model has no bodies, if a coordinate moves no joint or several, if a mass varies, or if kinetic energy is given.
 std::optional<BodyTree> body_tree(Mechanics& mechanics, const std::vector<std::uint32_t>& of, bool imposed);
 
-/// Lets the angular velocity of each link that three coordinates, or four Euler parameters, turn stand for their rates.
-/// With fewer angular velocities than coordinates some indices are left without a freedom.
+/// Replaces the rates of three angles, or of four Euler parameters, of a link by its angular velocity. With fewer
+/// angular velocities than coordinates, some indices have no freedom.
 void use_angular_velocities(Dag& dag, BodyTree& tree);
 
 }  // namespace eomgen::derive

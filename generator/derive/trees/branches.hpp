@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Particles that hang on one another: where every coordinate theta_a moves all the particles beyond it by one and the
-// same vector J_a = dr/dtheta_a, the particles form a tree of links, and the equations need each J_a once:
+// Trees of particles. If every coordinate theta_a moves all particles beyond it by the same vector J_a = dr/dtheta_a,
+// the particles form a tree of links, and the equations need each J_a once:
 //   M_ab = (mass beyond the outer of a, b) J_a . J_b,   h_a = J_a . sum_beyond m (bias acceleration - g).
 // This is the recursive Newton-Euler and composite-body scheme (Featherstone 2008, ch. 5, 6) for particles.
 #pragma once
@@ -14,18 +14,18 @@ namespace eomgen::derive {
 
 using mechanics::Mechanics;
 
-/// A particle as the coordinates `of` move it; everything in theta, rates of theta and time.
+/// A particle as a function of the coordinates `of`; all quantities in theta, rates of theta and time.
 struct TreeParticle {
   Ref mass;
-  Vec3 position, velocity, bias;  // bias: acceleration with the second rates of theta at zero
+  Vec3 position, velocity, bias;  // bias: acceleration at zero second derivatives of theta
 };
 
 /// Coordinates that move the same particles.
 struct Link {
   std::vector<std::size_t> joints;     // indices of theta, ascending
-  std::vector<std::size_t> particles;  // that no link further out moves
+  std::vector<std::size_t> particles;  // those that no outer link moves
   int parent = -1;                     // index of a link before this one
-  Ref mass_beyond;                     // of all particles that it moves
+  Ref mass_beyond;                     // of all particles it moves
 };
 
 struct Branches {
@@ -35,15 +35,15 @@ struct Branches {
   std::vector<std::size_t> of;  // link of each theta
   std::vector<Link> links;      // parents first
   Vec3 gravity;                 // acceleration, of uniform gravity
-  std::vector<Ref> f;           // per theta: the forces beside gravity, S^-T (Q - dU/dq)
+  std::vector<Ref> f;           // per theta: the forces without gravity, S^-T (Q - dU/dq)
 
-  /// True where link `outer` is `inner` or hangs on it.
+  /// Whether link `outer` is `inner` or one of its descendants.
   bool beyond(std::size_t outer, std::size_t inner) const;
 };
 
-/// The tree that the coordinates `of` see; with `imposed`, the eliminated coordinates are functions of time. Nothing
-/// where the particles are no tree, or where kinetic energy was given beside them. Where it was given alone they are
-/// those of point_energies.hpp.
+/// The tree for the coordinates `of`. With `imposed`, the eliminated coordinates are functions of time. Empty if the
+/// particles form no tree, or if kinetic energy is given besides them. If it is given alone, the particles are those of
+/// point_energies.hpp.
 std::optional<Branches> branches(Mechanics& mechanics, const std::vector<std::uint32_t>& of, bool imposed);
 
 }  // namespace eomgen::derive

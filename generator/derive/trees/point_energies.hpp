@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A kinetic energy that is a sum of squares of velocities of points is that of particles: sum m/2 (x_dot^2 + y_dot^2 +
 // z_dot^2), however it is written. In: Mechanics with an energy and no masses. Out: particles with the same energy, in
-// whatever space.
+// an abstract space.
 #pragma once
 
 #include <optional>
@@ -11,9 +11,9 @@
 
 namespace eomgen::derive {
 
-/// Nothing where the energy is anything else, or where few coordinates make it not worth looking. Coordinates x, y, z
-/// are those squares that move with the same coordinates and have the same mass; which is which, and their signs, are
-/// such that a coordinate moves as many particles as can be by the same vector. They have no name and no place.
+/// Empty for any other energy, or if there are too few coordinates for a gain. Squares that move with the same
+/// coordinates and have the same mass become x, y, z of one particle. Their order and signs are chosen such that a
+/// coordinate moves as many particles as possible by the same vector. The particles have no name and no place.
 std::optional<std::vector<mechanics::PointMass>> particles_of_energy(mechanics::Mechanics& mechanics);
 
 }  // namespace eomgen::derive

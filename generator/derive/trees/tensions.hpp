@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tree of particles as links that carry forces: which directions they carry, and the accelerations that follow.
+// A tree of particles as links that transmit forces: the directions of these forces, and the accelerations that follow.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ struct LoadedLink {
   Ref weight;                       // m_first / m_k: dimensionless inverse mass
   std::vector<std::size_t> joints;  // indices of theta
   std::vector<Vec3> J;
-  std::vector<Vec3> N;  // the directions that carry force: normal to all J, and to one another
-  Vec3 c;               // acceleration relative to the parent at zero second rates
+  std::vector<Vec3> N;  // the directions of force: normal to all J, and to one another
+  Vec3 c;               // acceleration relative to the parent at zero second derivatives
 };
 
 struct LoadedLinks {
@@ -24,11 +24,11 @@ struct LoadedLinks {
   Ref first_mass;
 };
 
-/// Nothing where a link has no particle or several, a mass that varies or is zero, or leaves directions that are not
+/// Empty if a link has no particle or several, a mass that varies or is zero, or directions of force that are not
 /// known.
 std::optional<LoadedLinks> loaded_links(Dag& dag, const Branches& tree);
 
-/// Second rates of theta, as expressions in theta and its rate.
+/// The second derivatives of theta, as expressions in theta and its rate.
 system::Solution accelerations(Dag& dag, const Branches& tree, const LoadedLinks& links);
 
 }  // namespace eomgen::derive

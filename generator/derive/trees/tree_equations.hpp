@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// M_theta, f_theta of a tree of particles (branches.hpp), and what becomes of them in the coordinates of the model.
+// M_theta, f_theta of a tree of particles (branches.hpp), and their transformation to the coordinates of the model.
 #pragma once
 
 #include "derive/equations.hpp"
@@ -9,16 +9,16 @@ namespace eomgen::derive {
 
 struct TreeEquations {
   Branches tree;
-  FullEquations of_model;        // M = S^T M_theta S, f = S^T f_theta, of the coordinates that were asked for
+  FullEquations of_model;        // M = S^T M_theta S, f = S^T f_theta, of the requested coordinates
   system::QuasiEquations quasi;  // the same before the transformation
 };
 
-/// Of the coordinates that move, with the constraints imposed. Nothing where they form no tree, and by Approach I only
-/// where there is nothing to impose.
+/// The equations of the free coordinates, with the constraints imposed. Empty if they form no tree, and in Approach I
+/// if there are constraints to impose.
 std::optional<TreeEquations> motion_of_tree(Mechanics& mechanics, system::Approach approach);
 
-/// `assemble` with M and f of the motion; the constraint forces of eliminated coordinates come from the tree that all
-/// coordinates form: nothing where they form none.
+/// Calls `assemble` with M and f of the motion. The constraint forces of eliminated coordinates come from the tree of
+/// all coordinates: empty if they form none.
 std::optional<system::EquationSystem> assemble_tree(Mechanics& mechanics, const TreeEquations& motion,
                                                     const char* route, system::Approach approach);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What acts on a tree of particles or bodies: uniform gravity as an acceleration that all of it shares, the rest as
-// forces of the coordinates. Shared by the routes over trees.
+// Forces on a tree of particles or bodies: uniform gravity as an acceleration of the whole tree, the rest as
+// generalised forces. Shared by the tree formulations.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace eomgen::derive {
 
-/// Imposes the constraints where they are to be, and writes functions of time out.
+/// Expands functions of time, and imposes the constraints if `imposed`.
 class Expansion {
  public:
   Expansion(Mechanics& m, bool imposed) : imposed_(imposed), impose_(impose(m)), write_(write_out(m)) {}
@@ -21,7 +21,7 @@ class Expansion {
   symbolic::Substitution impose_, write_;
 };
 
-/// Uniform gravity as an acceleration; `other_potential` is the potential of everything else.
+/// Splits off uniform gravity as an acceleration. `other_potential` receives the potential of everything else.
 Vec3 take_gravity(Mechanics& m, Expansion& expanded, Ref& other_potential);
 
 /// Q_i - d(potential)/dq_i of the coordinates `of`.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Components of vectors and matrices along the axes of one link and of the next: rotations applied step by step, which
-// for steps about one axis each costs less than their product does.
+// Transforms components of vectors and matrices between the axes of adjacent links. Rotations are applied step by step,
+// which costs less than their product if each step is about one axis.
 #pragma once
 
 #include <vector>
@@ -19,11 +19,11 @@ Mat3 add(Dag& dag, const Mat3& a, const Mat3& b);
 /// [d x]: v -> d x v.
 Mat3 cross_matrix(Dag& dag, const Vec3& d);
 
-/// From the axes of a parent to own ones: e_k = sum_j R_kj p_j, step by step. Steps that turn about one axis come with
-/// the components of their angular velocity.
+/// One step of the rotation from the axes of a parent to those of a link: e_k = sum_j R_kj p_j. Steps about one axis
+/// have the components of their angular velocity.
 struct Step {
   Mat3 R;
-  Vec3 w, w_bias;  // along the axes after the step; its rate at zero second rates
+  Vec3 w, w_bias;  // along the axes after the step; its rate at zero qddot
 };
 
 class Turn {
@@ -32,13 +32,13 @@ class Turn {
 
   Vec3 to_own(Dag& dag, Vec3 v) const;
   Vec3 to_parent(Dag& dag, Vec3 v) const;
-  /// R^T A R of a matrix along the own axes; symmetric ones stay so.
+  /// R^T A R of a matrix along the link's axes; symmetric ones stay symmetric.
   Mat3 to_parent(Dag& dag, Mat3 a, bool symmetric) const;
-  /// The way back.
+  /// The inverse rotation.
   Turn reversed() const;
 };
 
-/// The axis that a step turns about, if it is one of the three: 3 otherwise.
+/// The axis of a step's rotation, if it is one of the three: otherwise 3.
 std::size_t axis_of(const Dag& dag, const Mat3& R);
 
 }  // namespace eomgen::derive
