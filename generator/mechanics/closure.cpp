@@ -23,15 +23,15 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 
 constexpr int digits = 50;
-constexpr int steps = 120;  // Newton's steps halve the distance where rows become dependent, until that is `dependent`
-constexpr double dependent = 1e-6;     // what is nearer turns steps aside
+constexpr int steps = 120;  // near dependent rows, Newton steps halve the distance down to `dependent`
+constexpr double dependent = 1e-6;     // below this, steps lose their direction
 constexpr int closed_digits = 38;      // |psi| of a configuration
 constexpr double longest_step = 0.7;   // of a coordinate, in units of its scale: angles of 40 degrees
-constexpr double stride = 0.25;        // from one configuration of a motion to the next, likewise
+constexpr double stride = 0.25;        // between configurations of a motion, in the same units
 constexpr double other_values = 0.04;  // how far parameters are varied, relative
 
 constexpr int plain_steps = 40;               // of Newton's method in binary64
-constexpr double plain_tolerance = 1e-10;     // of psi then
+constexpr double plain_tolerance = 1e-10;     // of psi in binary64
 constexpr double plainly_independent = 1e-7;  // a row's part outside the span of the others
 
 cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
@@ -60,7 +60,7 @@ std::vector<std::vector<double>> rounded(const std::vector<Row>& rows) {
 
 bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text == "1"; }
 
-/// Sizes of the coordinates: those of one unit have one; angles 1.
+/// Scales of the coordinates: one for each unit; 1 for angles.
 std::vector<double> scales(const Mechanics& m, const std::vector<cl_R>& q) {
   std::vector<double> result;
   for (const model::Coordinate& c : m.model->coordinates) {
@@ -73,12 +73,13 @@ std::vector<double> scales(const Mechanics& m, const std::vector<cl_R>& q) {
   return result;
 }
 
-/// `vanishing`: the length of a row that only the last step towards the constraints keeps from being 0.
+/// `vanishing`: the length below which a row counts as 0 and is nonzero only because the constraints hold
+/// approximately.
 template <class T>
 Selection selected(const std::vector<std::vector<T>>& rows, const std::vector<Turn>& turns, const T& tolerance,
                    const T& vanishing, const T& hair) {
   std::vector<std::vector<T>> left = rows;
-  std::vector<T> length, outside;  // of each row, and of what is outside the span of those that are used
+  std::vector<T> length, outside;  // of each row, and of its part outside the span of the used rows
   for (const auto& row : rows) length.push_back(sqrt(dot(row, row)));
   outside = length;
   std::vector<bool> used(rows.size(), false);
@@ -90,7 +91,7 @@ Selection selected(const std::vector<std::vector<T>>& rows, const std::vector<Tu
       for (std::size_t k = 0; k < rows.size(); ++k) {
         if (used[k] || turns[k] != turn || length[k] < vanishing) continue;
         const T part = outside[k] / length[k];
-        // Equal parts of different rows differ by rounding: the first of them wins by a hair.
+        // Equal parts of different rows differ by rounding; a small margin favours the first.
         if (part > largest * hair) largest = part, best = k;
       }
       if (!best) break;
@@ -144,7 +145,7 @@ std::vector<cl_R> Closure::values(const std::vector<Ref>& expressions, const Con
         if (s.order > 0) throw std::domain_error("a velocity");
         return at.q.at(s.index);
       case SymbolKind::time: return at.t;
-      case SymbolKind::integral: return exact(0);  // counts from the start
+      case SymbolKind::integral: return exact(0);  // integrals start at 0
       default: throw std::domain_error("no value");
     }
   };
@@ -166,7 +167,7 @@ double Closure::uniform(std::uint64_t& state) const {  // in (-1, 1)
   return static_cast<double>(state >> 11) / 4503599627370496.0 - 1;
 }
 
-// As the file gives them and the default scene sets them; with a seed, independent ones varied.
+// Parameters as given by the file and the default scene; with a seed, independent ones are varied.
 void Closure::set_parameters(Configuration& at, std::uint64_t seed) const {
   const model::Model& model = *m_.model;
   std::vector<Ref> value = m_.parameter_value;
@@ -184,13 +185,13 @@ void Closure::set_parameters(Configuration& at, std::uint64_t seed) const {
     if (!others.empty() || seed == 0 || model.parameters[i].start_of || model.start_time == i) return;
     std::uint64_t state = seed * 977 + i;
     uniform(state);
-    const double by = other_values * uniform(state);  // of what is switched off by a 0 too
+    const double by = other_values * uniform(state);  // also for parameters that are 0
     at.parameters[i] = cln::zerop(at.parameters[i]) ? exact(by) : at.parameters[i] * exact(1 + by);
   };
   for (std::uint32_t i = 0; i < value.size(); ++i) settle_one(i);
 }
 
-/// What the default scene gives; `open` is false of such coordinates. The others are 0.
+/// The values that the default scene gives; their entries of `open` become false. The others are 0.
 Configuration Closure::given(std::vector<bool>& open) const {
   const model::Scene& scene = m_.model->scenes.front();
   Configuration at;
@@ -279,7 +280,7 @@ std::optional<Configuration> Closure::start() {
   gap_ = 0;
   try {
     const Configuration at = given(open);
-    // Where coordinates that are not given have no slope at 0, a point beside it.
+    // If the derivatives vanish at 0 in the coordinates that are not given, start from a nearby point.
     Configuration found = at;
     if (settle(found, open)) return found;
     const double gap = gap_;
@@ -327,8 +328,8 @@ std::optional<Configuration> Closure::beyond(const Configuration& before, const 
   return std::nullopt;
 }
 
-// Newton's method with the least change of the coordinates, on rows that are clearly independent here. What looks
-// dependent has to hold by itself in the end.
+// Newton's method with least-norm steps, on rows that are clearly independent here. Rows that look dependent must hold
+// at the end.
 bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
   const std::size_t n = m_.q.size(), count = psi_.size();
   const std::vector<double> scale = scales(m_, at.q);
@@ -352,7 +353,7 @@ bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
     if (size < small(closed_digits)) {
       gap_ = rest > small(closed_digits - 8) ? cln::double_approx(rest) : 0;
       if (gap_ != 0) return false;
-      // What else is asked for here, of velocities alone too: throws where it has no value.
+      // Evaluates all other expressions used here: throws if one has no value.
       for (const auto* others : {&all_, &rates_, &along_}) values(*others, at);
       return true;
     }

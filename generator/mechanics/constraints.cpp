@@ -22,14 +22,14 @@ std::set<std::uint32_t> coordinates_in(const Dag& dag, Ref expression) {
   return result;
 }
 
-// psi as it reads once the coordinates that are already fixed are written as functions of time.
+// psi with the coordinates fixed so far replaced by functions of time.
 Ref with_fixed(const Mechanics& m, Ref psi) {
   std::map<Symbol, Ref> values;
   for (const FixedCoordinate& fixed : m.fixed) values[{SymbolKind::coordinate, fixed.coordinate, 0}] = fixed.value;
   return symbolic::Substitution(*m.dag, std::move(values))(psi);
 }
 
-// If psi is linear in its only coordinate, with a factor that cannot depend on the motion: that coordinate's value.
+// The value of the only coordinate of psi, if psi is linear in it with a factor that does not depend on the motion.
 bool solve_for_only_coordinate(const Mechanics& m, Ref psi, FixedCoordinate& result) {
   Dag& dag = *m.dag;
   const std::set<std::uint32_t> present = coordinates_in(dag, psi);
@@ -64,7 +64,7 @@ void add_position_form(const Mechanics& m, Lowering& lower, Constraint& result) 
   result.rate = lower.explicit_rate(result.psi);
 }
 
-// f_i = d e/d qdot_i and b = e at rest, of an expression e that is linear in the velocities.
+// f_i = d e/d qdot_i and b = e at rest, for an expression e that is linear in the velocities.
 void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) {
   Dag& dag = *m.dag;
   result.kind = ConstraintKind::velocity;
@@ -87,7 +87,7 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
         "write an expression that is linear in them: d'Alembert's principle says what force keeps such a constraint, "
         "and nothing of one that is not linear");
   }
-  for (Ref& slope : result.gradient) slope = at_rest(slope);  // velocities that cancel may still be written there
+  for (Ref& slope : result.gradient) slope = at_rest(slope);  // velocities that cancel may still occur in it
   result.rate = at_rest(e);
   if (!vanishes(dag, {dag.sub(e, m.velocity_form(result))})) {
     throw Error("mechanics", m.model->where(m.model->arena[result.written].span),
@@ -96,7 +96,7 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
   }
 }
 
-// The point of contact stays on both surfaces, whatever moves.
+// The contact point must stay on both surfaces in any motion.
 void check_contact(const Mechanics& m, Lowering& lower, const model::Constraint& constraint) {
   const model::BodyContact& contact = *constraint.contact;
   const auto refuse = [&](const std::string& what, const char* remedy) {
@@ -121,7 +121,7 @@ void check_contact(const Mechanics& m, Lowering& lower, const model::Constraint&
   }
 }
 
-// (r - L)^2 is refused as it is read; here what is that when it is multiplied out, or 1 - cos(x).
+// (r - L)^2 is rejected when it is read. This rejects its expanded form, and 1 - cos(x).
 void refuse_power(const Mechanics& m, const Constraint& c) {
   std::vector<Symbol> of;
   std::vector<Ref> slopes;
@@ -137,7 +137,7 @@ void refuse_power(const Mechanics& m, const Constraint& c) {
               "coordinate that it fixes");
 }
 
-// Of a vector or of rolling an equation may say nothing, as a distance from the plane that no coordinate changes.
+// One equation of a vector or of rolling may be trivial, such as a distance from the plane that no coordinate changes.
 bool may_hold(const model::Constraint& constraint) {
   const bool several = constraint.joint || constraint.rolling || constraint.psi.size() > (constraint.velocity ? 1 : 2);
   return several && !constraint.friction && !constraint.unilateral;
@@ -150,7 +150,7 @@ bool says_nothing(const Mechanics& m, const Constraint& c) {
   return vanishes(*m.dag, all);
 }
 
-/// A constraint of which every equation holds by itself can be left out.
+/// A constraint is superfluous if all its equations are identities.
 void require_something(const Mechanics& m, const model::Constraint& constraint) {
   const auto idle = [&](const Constraint& c) { return c.name != constraint.name || c.need == Need::identity; };
   if (constraint.joint || !std::all_of(m.constraints.begin(), m.constraints.end(), idle)) return;

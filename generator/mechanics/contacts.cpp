@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts: which particle a constraint with friction presses on, the directions in which it can slide there, and how
-// fast it does.
+// Contacts: the particle of a constraint with friction, its directions of slip, and the slip velocity.
 #include <algorithm>
 #include <eom/modes/contact_state.hpp>
 #include <functional>
@@ -63,8 +62,8 @@ class ContactReader {
   }
 
  private:
-  // The point of the body that touches has F . dv/dqdot_i, and what it touches the opposite: of the slip velocity v all
-  // at once.
+  // The contact point of the body has F . dv/dqdot_i and its counterpart the opposite, so the slip velocity v gives
+  // both at once.
   void read_body(const model::BodyContact& contact, const model::Friction& law) {
     contact_.place = contact.place;
     contact_.gram = {dag_.one()};
@@ -136,8 +135,9 @@ class ContactReader {
     }
   }
 
-  // a_i - (psi_i / psi_c) a_c lies in the surface; c is a coordinate on which psi depends. Where psi_c passes through 0
-  // that vector would turn round, and what slides would seem to stop: of a single tangent psi_c times it is taken then.
+  // a_i - (psi_i / psi_c) a_c lies in the surface; c is a coordinate on which psi depends. The vector would reverse
+  // where psi_c passes through 0, and sliding would seem to stop. For a single tangent, psi_c times the vector is used
+  // in that case.
   void find_tangents() {
     const std::size_t equations = contact_.constraints.size();
     if (own_.size() <= equations) {
@@ -169,7 +169,8 @@ class ContactReader {
       contact_.directions.push_back(tidy(symbolic::cross(dag_, unit(normals[0]), contact_.directions[0])));
   }
 
-  /// sum c_i a_i with c = psi_1,i x psi_2,i: along this no psi changes; shorter than the product of the gradients.
+  /// sum c_i a_i with c = psi_1,i x psi_2,i: no psi changes along this vector. It is shorter than the product of the
+  /// gradients.
   Vec3 along_curve(const std::vector<Vec3>& a) {
     Vec3 sum{dag_.zero(), dag_.zero(), dag_.zero()};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -253,7 +254,7 @@ const model::Friction& law_of(const Mechanics& m, const Contact& contact) {
 
 namespace {
 
-/// Values of expressions of parameters alone; none of others. Throws Error at `span` where one has no value.
+/// Values of expressions that depend on parameters alone; none for others. Throws Error at `span` if one has no value.
 std::vector<cln::cl_R> known_values(const Mechanics& m, const std::vector<Ref>& expressions, const std::string& what,
                                     const model::Span& span) {
   constexpr int digits = 30;

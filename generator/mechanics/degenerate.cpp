@@ -16,8 +16,8 @@ namespace {
 
 enum class Approach { none, regular, multiple };
 
-// At a root of multiplicity k a step leaves (1 - 1/k)^k of psi: 1/4 for a square, 1/e at most. A simple root is met
-// quadratically.
+// At a root of multiplicity k, a Newton step reduces psi by the factor (1 - 1/k)^k: 1/4 for a square, 1/e at most.
+// Convergence to a simple root is quadratic.
 constexpr double least_left = 0.2, most_left = 0.4;
 constexpr int in_a_row = 12, most_steps = 40;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equations that follow from the others where all of them hold, though near these configurations they are independent:
-// of closed loops, by joints or by [[constraint]]s. docs/theory.md, "Dependent constraints".
+// Equations of closed loops, by joints or [[constraint]]s, that are redundant where all hold but independent in the
+// neighbourhood. docs/theory.md, "Dependent constraints".
 #include <cln/rational.h>
 #include <fmt/format.h>
 
@@ -20,8 +20,8 @@ using cln::cl_R;
 cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 
 constexpr int dependent_digits =
-    20;  // rows in 50 digits, configurations to 38: parts outside the span below this are 0
-constexpr double looks_redundant = 1e-4;  // |psi| of an equation that was meant to follow from the others
+    20;  // rows have 50 digits, configurations 38: smaller parts outside the span are 0
+constexpr double looks_redundant = 1e-4;  // |psi| of an equation that was meant to be redundant
 
 bool of_joint(const Mechanics& m, std::uint32_t k) { return model_constraint(m, m.constraints[k]).joint.has_value(); }
 
@@ -39,10 +39,10 @@ Where where(const Mechanics& m, std::uint32_t k) {
   return m.model->where(m.model->arena[m.constraints[k].written].span);
 }
 
-/// Rows of constraints on positions or velocities that always hold, by all coordinates.
+/// Rows of holonomic and velocity constraints that always hold, for all coordinates.
 struct Bound {
   std::vector<std::uint32_t> constraints;
-  std::vector<Turn> turns;  // joints are the first to be left out; what fixes a coordinate, or rubs, never is
+  std::vector<Turn> turns;  // joints are dropped first; constraints with friction or that fix a coordinate never
 };
 
 Bound bound(const Mechanics& m) {
@@ -64,7 +64,7 @@ std::vector<Row> rows_of(const Closure& closure, const Bound& of, const Configur
   return rows;
 }
 
-/// Whether the rest lies in the span of what is kept, which is independent, at this configuration too.
+/// Whether the other rows lie in the span of the selected rows, which are independent, at this configuration too.
 bool holds_at(const std::vector<Row>& rows, const Selection& chosen) {
   std::vector<Turn> turns(rows.size(), Turn::last);
   for (const std::size_t k : chosen.kept) turns[k] = Turn::always;
@@ -101,7 +101,7 @@ bool holds_at(const std::vector<Row>& rows, const Selection& chosen) {
       "give the default scene a start or a `guess` near one, if constraints repeat one another; else remove one");
 }
 
-/// What moves by prescription has to do so alike in all equations that repeat one another.
+/// Prescribed motion must be the same in all equations that repeat one another.
 void require_same_rates(const Mechanics& m, const Closure& closure, const Bound& of, const Selection& chosen,
                         const Configuration& at) {
   std::vector<Row> rows = rows_of(closure, of, at);
@@ -121,7 +121,8 @@ void require_same_rates(const Mechanics& m, const Closure& closure, const Bound&
   }
 }
 
-/// Whether d . u is the same for all multipliers u with the same forces: d is a combination of the columns of A.
+/// Whether d . u is the same for all multipliers u with the same forces, so that d is a combination of the columns of
+/// A.
 class Determined {
  public:
   Determined(const std::vector<Row>& rows, std::size_t coordinates) {
@@ -129,7 +130,7 @@ class Determined {
       Row column;
       for (const Row& row : rows) column.push_back(row[i]);
       const cl_R size = length(column);
-      Row left = beside(beside(column));  // twice, for the digits
+      Row left = beside(beside(column));  // twice, for accuracy
       const cl_R rest = length(left);
       if (cln::zerop(size) || rest < size * small(dependent_digits)) continue;
       for (cl_R& x : left) x = x / rest;
@@ -138,8 +139,8 @@ class Determined {
   }
   bool operator()(const Row& component) const {
     const cl_R size = length(component);
-    // Entries are directions and arms: what is smaller by so many digits is a zero of a configuration that was solved
-    // for.
+    // Entries are directions and lever arms. Entries this many digits smaller are zeros of a configuration that was
+    // computed numerically.
     return size < small(dependent_digits) || length(beside(component)) < size * small(dependent_digits);
   }
 
@@ -180,7 +181,7 @@ void find_determined(Mechanics& m, const Closure& closure, const Configuration& 
   }
 }
 
-/// Friction needs the force that presses.
+/// Friction needs a determined normal force.
 void require_normal_forces(const Mechanics& m) {
   for (const Contact& contact : m.contacts) {
     for (const std::uint32_t k : contact.constraints) {
@@ -195,7 +196,7 @@ void require_normal_forces(const Mechanics& m) {
 
 bool is_repeated(const Constraint& c) { return c.need == Need::redundant; }
 
-/// Configurations near the start: it may be a singular one itself; elsewhere the rank is that of the mechanism.
+/// Configurations near the start. The start itself may be singular; the rank elsewhere is that of the mechanism.
 std::vector<Configuration> around(Closure& closure, const Configuration& start) {
   std::vector<Configuration> points;
   for (std::uint64_t seed = 1; seed <= 8 && points.size() < 3; ++seed) {
@@ -204,7 +205,7 @@ std::vector<Configuration> around(Closure& closure, const Configuration& start) 
   return points;
 }
 
-/// Where the motion leads from the start, both ways: once around a loop.
+/// Configurations along the motion from the start, in both directions: once around a loop.
 std::vector<Configuration> on_the_way(Closure& closure, const Configuration& start, const Configuration& beside) {
   constexpr int strides = 14;
   std::vector<Configuration> way;
@@ -221,7 +222,7 @@ std::vector<Configuration> on_the_way(Closure& closure, const Configuration& sta
   return way;
 }
 
-/// The volume that these rows span, each in units of its usual length.
+/// The volume that these rows span, each in units of its typical length.
 double volume(const std::vector<Row>& rows, const std::vector<double>& usual, const std::vector<std::size_t>& of) {
   double result = 1;
   std::vector<std::vector<double>> basis;
@@ -241,8 +242,8 @@ double volume(const std::vector<Row>& rows, const std::vector<double>& usual, co
   return result;
 }
 
-/// An equation that is chosen at the start may say nothing at a configuration that the motion passes (a length between
-/// bars in line), where one of those that follow from it does: they change places.
+/// An equation chosen at the start may become trivial at a configuration on the way (a length between aligned bars)
+/// where one of the dropped equations is not. The two are exchanged.
 void keep_on_the_way(const Bound& of, const std::vector<std::vector<Row>>& way, Selection& chosen) {
   constexpr double nearly_nothing = 0.2, plainly_better = 3;
   std::vector<double> usual(of.constraints.size(), 0);
@@ -280,7 +281,7 @@ void keep_on_the_way(const Bound& of, const std::vector<std::vector<Row>>& way, 
   }
 }
 
-// Of the equations of a loop those that follow from the others at every configuration, whatever the parameters are.
+// Drops the equations of a loop that are redundant at every configuration and for all parameters.
 void drop_at(Mechanics& m, Closure& closure, const Configuration& start, const std::vector<Configuration>& points) {
   const Bound of = bound(m);
   Selection chosen;
@@ -288,12 +289,12 @@ void drop_at(Mechanics& m, Closure& closure, const Configuration& start, const s
     Selection here = select_independent(rows_of(closure, of, at), of.turns, small(dependent_digits));
     if (here.kept.size() > chosen.kept.size()) chosen = std::move(here);
   }
-  // Rows that are independent around the start may not be at it, though as many others are.
+  // Rows that are independent around the start may be dependent at it, while the same number of others is independent.
   const std::vector<Row> at_start = rows_of(closure, of, start);
   const Selection there = select_independent(at_start, of.turns, small(dependent_digits));
   if (there.kept.size() == chosen.kept.size() && !holds_at(at_start, chosen)) chosen = there;
   std::erase_if(chosen.rest,
-                [&](std::size_t k) { return of.turns[k] == Turn::always; });  // the start of a run will tell
+                [&](std::size_t k) { return of.turns[k] == Turn::always; });  // the start of a run reports it
   if (chosen.rest.empty()) return;
   std::vector<std::vector<Row>> way;
   for (const std::vector<Configuration>& some :

@@ -22,8 +22,8 @@ bool is_touched(const Mechanics& m, std::uint32_t constraint) {
   });
 }
 
-// Where several coordinates would do, one that nothing but this constraint names leaves the rest as it is; then the
-// last one.
+// If several coordinates could be eliminated, one that occurs in no other expression is preferred, since the rest stays
+// unchanged; otherwise the last one.
 bool in_configuration(const Mechanics& m, std::uint32_t constraint, std::uint32_t coordinate) {
   Dag& dag = *m.dag;
   symbolic::Derivation by = symbolic::partial(dag, {SymbolKind::coordinate, coordinate, 0});
@@ -53,7 +53,7 @@ std::optional<FixedCoordinate> solve(const Mechanics& m, std::uint32_t constrain
   return best;
 }
 
-// What was fixed before may depend on the coordinate that goes now.
+// Coordinates fixed earlier may depend on this one.
 void take(Mechanics& m, FixedCoordinate next) {
   symbolic::Derivation ddt = symbolic::total_time(*m.dag, m.q.size(), m.model->functions.size());
   next.rate = ddt(next.value);

@@ -19,7 +19,7 @@ bool depends_on_coordinates(const Dag& dag, Ref r) {
                      [](const symbolic::Symbol& s) { return s.kind == SymbolKind::coordinate; });
 }
 
-/// Factors of a product, of a sum those that all its terms have.
+/// Factors of a product; for a sum, the factors common to all its terms.
 std::vector<Ref> factors(const Dag& dag, Ref r) {
   const symbolic::Node& node = dag[r];
   const auto of = [&dag](Ref x) { return factors(dag, x); };
@@ -70,8 +70,8 @@ Ref without(Dag& dag, Ref r, Ref factor) {
   }
 }
 
-/// Where all move along one line: the slope by a coordinate, if it is the same everywhere and the vector is a multiple
-/// of it.
+/// For motion along one line: the derivative with respect to a coordinate, if it is constant and the vector is a
+/// multiple of it.
 std::optional<Vec3> line(Lowering& lower, Dag& dag, std::size_t coordinates, const Vec3& along) {
   for (std::uint32_t k = 0; k < coordinates; ++k) {
     Vec3 slope = lower.gradient(along, k);
@@ -104,7 +104,8 @@ std::optional<Vec3> direction(Lowering& lower, Dag& dag, std::size_t coordinates
   bool changed = false;
   for (const Ref factor : common.value_or(std::vector<Ref>{})) {
     if (!depends_on_coordinates(dag, factor) || dag.is_positive(factor)) continue;
-    // A sum may be among the factors beside those of its terms: each is taken once, while all components still have it.
+    // A sum may be listed as a factor besides those of its terms: each is used once, while all components still have
+    // it.
     const auto has = [&](Ref x) {
       if (dag.is_zero(x)) return true;
       const std::vector<Ref> all = factors(dag, x);

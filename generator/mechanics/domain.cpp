@@ -15,7 +15,7 @@ namespace {
 using symbolic::Dag;
 using symbolic::Op;
 
-/// Whether a product has a factor that vanishes identically. What rounding leaves of it would be larger under a root.
+/// Whether a product has a factor that vanishes identically. Rounding residues would be larger under a root.
 bool is_zero_everywhere(const Dag& dag, Ref expression) {
   std::vector<Ref> open{expression};
   std::set<Ref> seen;
@@ -38,10 +38,10 @@ bool is_zero_everywhere(const Dag& dag, Ref expression) {
   return false;
 }
 
-/// Of an expression without symbols.
+/// The reason why an expression without symbols has no value.
 std::string why_no_number(const Dag& dag, Ref expression) {
   constexpr int digits = 40;
-  static const cln::cl_R beyond = cln::expt(cln::cl_RA(10), 30);  // what rounding makes of a pole
+  static const cln::cl_R beyond = cln::expt(cln::cl_RA(10), 30);  // a pole after rounding
   const auto nothing = [](const symbolic::Symbol&) -> cln::cl_R { throw std::logic_error("a symbol"); };
   try {
     const cln::cl_R value = symbolic::evaluate(dag, {expression}, nothing, digits)[0];

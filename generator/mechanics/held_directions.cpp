@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions of slip along which constraints let nothing move: where others do so always, as a rail on a rough floor,
-// or a unilateral contact while it touches, as a stop at the end of a rough guide, the motion does not determine the
-// friction along them. Where no other direction is left, friction changes no equation of motion and is refused.
+// Directions of slip that constraints block: always, as a rail on a rough floor does, or while a contact is closed, as
+// a stop at the end of a rough guide does. The motion does not determine the friction along them. If no other direction
+// is left, friction changes no equation of motion and is rejected.
 #include <algorithm>
 #include <optional>
 
@@ -17,7 +17,7 @@ using Real = cln::cl_R;
 
 bool sticks(const Contact& contact) { return contact.dimensions() > 0 && !contact.width; }
 
-/// A choice of the contacts that touch, of those that can be left.
+/// A subset of the unilateral contacts that are closed.
 using Touching = std::vector<bool>;
 
 std::size_t sticking_directions(const Contact& contact, std::size_t index, const Touching& touching) {
@@ -41,7 +41,7 @@ class Search {
 
   bool sees() const { return space_.points() > 0; }
 
-  /// Where more directions can stick than there are to move in, the motion does not determine what friction holds.
+  /// If more directions can stick than there are degrees of freedom, the motion does not determine the static friction.
   void require_determinate(const Touching& touching) {
     std::size_t freedom = m_.free.size() - m_.active.size(), directions = 0, apart = 0;
     bool any_touches = false;
@@ -87,7 +87,7 @@ class Search {
     if (free == 0) refuse(contact);
     if (free < tangents_.size()) {
       std::optional<std::vector<Ref>> along = always_held(contact);
-      if (!along) return;  // too many directions to be determined, which require_determinate tells
+      if (!along) return;  // too many directions; require_determinate reports it
       contact.held.push_back({index, std::move(*along)});
     }
     for (std::uint32_t c = 0; c < m_.contacts.size(); ++c) {
@@ -96,7 +96,7 @@ class Search {
       std::vector<Row> rows = base_;
       rows.push_back(g);
       if (free_directions(rows) == free) continue;
-      // Of one direction that is left, any length.
+      // One remaining direction may have any length.
       std::optional<std::vector<Ref>> along =
           free == 1 ? std::vector<Ref>(tangents_.size(), m_.dag->one()) : share_of(g, contact);
       if (along) contact.held.push_back({c, std::move(*along)});
@@ -120,7 +120,7 @@ class Search {
     return numeric::Elimination<Real>(std::move(matrix), small, numeric::Pivots::complete).rank();
   }
 
-  /// How many directions of slip are left where these rows hold: at the point where most are.
+  /// The number of directions of slip left under these rows: the maximum over the sample points.
   std::size_t free_directions(const std::vector<Row>& rows) const {
     std::vector<Row> all = rows;
     all.insert(all.end(), tangents_.begin(), tangents_.end());
@@ -130,7 +130,7 @@ class Search {
     return most;
   }
 
-  /// What one constraint that always holds lets not slide, of two directions; nothing where it takes several.
+  /// The direction, of two, that one permanent constraint blocks; empty if it takes several constraints.
   std::optional<std::vector<Ref>> always_held(const Contact& contact) {
     std::vector<Row> rows;
     if (contact.constraints.size() == 1) rows.push_back(row(m_.constraints[contact.constraints[0]].gradient));
@@ -144,17 +144,17 @@ class Search {
     return std::nullopt;
   }
 
-  /// h with g = h_1 t_1 + h_2 t_2, but for a factor and the contact's own normal: minors of these rows. Nothing where
-  /// other constraints have a part in it.
+  /// h with g = h_1 t_1 + h_2 t_2, up to a factor and the contact's own normal: minors of these rows. Empty if other
+  /// constraints are involved.
   std::optional<std::vector<Ref>> share_of(const Row& g, const Contact& contact) {
     std::vector<Row> rows = tangents_;
     if (contact.constraints.size() == 1) {
       const Row normal = row(m_.constraints[contact.constraints[0]].gradient);
-      if (rank({normal}, 0) > 0) rows.push_back(normal);  // else it fixes a coordinate, which is not free
+      if (rank({normal}, 0) > 0) rows.push_back(normal);  // otherwise it fixes a coordinate
     }
     const std::size_t n = rows.size();
     if (n > m_.free.size()) return std::nullopt;
-    // Columns in which the rows are independent, the first ones that are.
+    // The first columns in which the rows are independent.
     std::vector<std::size_t> columns;
     for (std::size_t j = 0; j < m_.free.size() && columns.size() < n; ++j) {
       columns.push_back(j);
@@ -167,7 +167,7 @@ class Search {
       replaced[a] = g;
       share.push_back(symbolic::simpler(*m_.dag, determinant(of(replaced, columns)), 60));
     }
-    // What is left of g is a part of the normal.
+    // The rest of g is a part of the normal.
     const Ref whole = determinant(of(rows, columns));
     Row rest;
     for (std::size_t j = 0; j < g.size(); ++j) {
@@ -216,8 +216,8 @@ class Search {
 
 void find_held_directions(Mechanics& m) {
   if (std::none_of(m.contacts.begin(), m.contacts.end(), sticks)) return;
-  if (m.free.size() < m.active.size()) return;  // told elsewhere
-  // Where the constraints hold, if such places are found: some directions are held there alone.
+  if (m.free.size() < m.active.size()) return;  // reported elsewhere
+  // Sample points on the constraints, if any are found: some directions are blocked only there.
   std::optional<Search> search;
   search.emplace(m, FormSpace::Where::on_constraints);
   if (!search->sees()) search.emplace(m, FormSpace::Where::anywhere);
@@ -228,7 +228,7 @@ void find_held_directions(Mechanics& m) {
   std::vector<std::size_t> leavable;
   for (std::size_t j = 0; j < m.contacts.size(); ++j)
     if (m.contacts[j].unilateral) leavable.push_back(j);
-  // From everything to nothing.
+  // From all contacts to none.
   for (std::size_t choice = std::size_t{1} << leavable.size(); choice-- > 0;) {
     Touching touching(m.contacts.size(), false);
     for (std::size_t i = 0; i < leavable.size(); ++i) touching[leavable[i]] = ((choice >> i) & 1) != 0;

@@ -42,10 +42,10 @@ Values with_derivatives(Dag& dag, const std::vector<Ref>& value) {
   return values;
 }
 
-// Every function of time and its derivatives, of t, parameters and integrals; the integrands likewise.
+// All functions of time and their derivatives, as expressions of t, parameters and integrals; the integrands likewise.
 Values written_functions(const Mechanics& m, std::vector<Ref>& integrands) {
   Dag& dag = *m.dag;
-  // Functions may use one another, without cycles: n rounds reach the bottom of the longest chain.
+  // Functions may use one another, without cycles: n rounds resolve the longest chain.
   std::vector<Ref> value = m.function_value;
   Values values = with_derivatives(dag, value);
   for (bool changed = !value.empty(); changed;) {
@@ -58,7 +58,7 @@ Values written_functions(const Mechanics& m, std::vector<Ref>& integrands) {
     }
     if (changed) values = with_derivatives(dag, value);
   }
-  // Functions come in again with the rates of integrals.
+  // The rates of integrals contain functions again.
   for (const auto& [symbol, rate] : dag.rates()) integrands.push_back(rate);
   for (bool changed = !integrands.empty(); changed;) {
     changed = false;
@@ -79,13 +79,13 @@ bool holds_integral(const Dag& dag, Ref expression) {
   return std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::integral; });
 }
 
-// Integrals in closed form, where there is one: inside ones first. What is left becomes states.
+// Integrals with a closed form, inner ones first. The others become states.
 Values closed_integrals(const Mechanics& m, std::vector<Ref>& integrands) {
   Dag& dag = *m.dag;
   Values closed;
   if (integrands.empty()) return closed;
   const Ref start = dag.symbol({SymbolKind::parameter, *m.model->start_time, 0});
-  for (std::uint32_t i = 0; i < integrands.size(); ++i) {  // inner ones come before those that use them
+  for (std::uint32_t i = 0; i < integrands.size(); ++i) {  // inner integrals come first
     symbolic::Substitution inner(dag, closed);
     integrands[i] = inner(integrands[i]);
     if (holds_integral(dag, integrands[i])) continue;

@@ -17,13 +17,13 @@ using symbolic::Substitution;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-// Of a row beside the span of others, from 50 digits.
+// Part of a row outside the span of others, in 50 digits.
 cln::cl_R independent_part() { return cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 20)); }
 
 constexpr std::uint32_t first_constant =
-    0x20000000u;  // of SymbolKind::extra: constants of integrals while others are sought
+    0x20000000u;  // of SymbolKind::extra: constants of known integrals
 
-/// A surface psi = c on which others are sought: one variable is given by the rest.
+/// A surface psi = c on which further integrals are sought: one variable is a function of the others.
 struct Leaf {
   std::size_t variable;
   Ref value;
@@ -53,7 +53,7 @@ class Classifier {
     for (std::size_t k = 0; k < forms_.size(); ++k) {
       if (alone[k] == Vanishing::proven || alone[k] == Vanishing::at_points) seek(forms_[k], velocity_[k]);
     }
-    // What numbers say is complete needs no combinations.
+    // If the numerical test finds the integrals complete, no combinations are needed.
     const bool more = !orbit_ || orbit_->integrable() > holonomic_.size() + m_.integrals.size();
     const Echelon terminal = more ? last_derived(system(forms_)) : Echelon{};
     for (std::size_t k = 0; k < forms_.size(); ++k) {
@@ -81,7 +81,7 @@ class Classifier {
     return proven ? Vanishing::proven : Vanishing::at_points;
   }
 
-  // Refuted by numbers, or proven.
+  // Refuted numerically, or proven.
   Vanishing by_itself(std::size_t k) {
     const std::vector<Form> forms = system({forms_[k]});
     for (std::size_t point = 0; point < space_.points(); ++point) {
@@ -96,8 +96,8 @@ class Classifier {
     return result == Vanishing::proven && !rows.exact ? Vanishing::at_points : result;
   }
 
-  /// The largest integrable system among the combinations of the forms: those whose curvature vanishes, again and
-  /// again. No rows where the effort does not suffice.
+  /// The largest integrable system among the combinations of the forms: the end of the derived flag, whose curvature
+  /// vanishes. No rows if the effort is used up.
   Echelon last_derived(std::vector<Form> forms) {
     while (true) {
       Echelon rows = space_.echelon(std::move(forms));
@@ -177,7 +177,7 @@ class Classifier {
 
   // ---- integrals
 
-  /// psi = c from now on, where it can be solved for one of its variables.
+  /// Imposes psi = c, if it can be solved for one of its variables.
   void eliminate(Ref psi, Ref c) {
     for (const bool constant_slope : {true, false}) {
       for (std::size_t i = 0; i + 1 < space_.variables().size(); ++i) {
@@ -237,7 +237,7 @@ class Classifier {
     return true;
   }
 
-  /// Whether a differential is independent of those of holonomic constraints and of integrals that were found.
+  /// Whether a differential is independent of those of holonomic constraints and of known integrals.
   bool says_more(const Form& slope) {
     std::vector<Form> forms = holonomic_;
     for (const Integral& known : m_.integrals) forms.push_back(space_.differential(known.psi));
@@ -249,7 +249,7 @@ class Classifier {
         const Selection independent =
             select_independent(rows, std::vector<Turn>(rows.size(), Turn::last), independent_part());
         if (independent.rest.empty()) return true;
-      } catch (const std::domain_error&) {  // this point says nothing
+      } catch (const std::domain_error&) {  // no value at this point
       }
     }
     return false;
@@ -266,7 +266,7 @@ class Classifier {
     }
   }
 
-  /// The first constraint of the system that no integral stands for.
+  /// The first constraint of the system that no integral replaces.
   std::optional<std::uint32_t> unlabelled(const Echelon& terminal) {
     const auto has_integral = [&](std::uint32_t k) {
       return std::any_of(m_.integrals.begin(), m_.integrals.end(),
@@ -280,7 +280,7 @@ class Classifier {
     return std::nullopt;
   }
 
-  /// Which constraints d psi is a combination of, by numbers.
+  /// The constraints of which d psi is a combination, numerically.
   std::vector<std::uint32_t> parts_of(Ref psi) {
     std::vector<Form> rows = system(forms_);
     rows.push_back(space_.differential(psi));
@@ -316,7 +316,7 @@ class Classifier {
     const auto its = std::find_if(m_.integrals.begin(), m_.integrals.end(),
                                   [&](const Integral& i) { return i.label == m_.constraints[constraint].label; });
     if (its != m_.integrals.end()) {
-      // An integral whose differential is proven to be the constraint's is the proof that was missing.
+      // An integral whose differential is proven to be the constraint's completes the missing proof.
       if (found.integrable == Integrable::unknown && its->of == std::vector<std::uint32_t>{constraint}) {
         found = {Integrable::yes, "an integral was found"};
       }

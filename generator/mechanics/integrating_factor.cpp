@@ -35,7 +35,7 @@ class Search {
   }
 
  private:
-  /// Functions that narrow the domain or hide a simpler form.
+  /// The number of functions that narrow the domain or hide a simpler form.
   std::size_t roughness(Ref psi) const {
     std::size_t count = 0;
     for (const Ref r : dag_.reachable({psi})) {
@@ -51,7 +51,7 @@ class Search {
 
   Ref d(Ref f, std::size_t i) { return space_.derivative(f, i); }
 
-  /// psi of a form that is closed: one variable after the other, in both orders.
+  /// psi of a closed form, integrated one variable after another, in both orders.
   std::optional<Ref> with_factor(Ref factor) {
     Form form;
     for (const Ref c : form_) form.push_back(space_.simpler(dag_.mul(factor, c)));
@@ -104,7 +104,7 @@ class Search {
     return std::nullopt;
   }
 
-  /// exp of a sum, c log u taken out as u^c.
+  /// exp of a sum; terms c log u become u^c.
   Ref exponential(Ref sum) {
     Ref product = dag_.one(), rest = dag_.zero();
     for (const Ref term : symbolic::terms_of(dag_, sum)) {
@@ -150,11 +150,11 @@ class Search {
     return result;
   }
 
-  /// d omega + d(log mu) ^ omega = 0 with log mu = sum alpha_b log u_b is linear in alpha: solved by numbers for few
+  /// d omega + d(log mu) ^ omega = 0 with log mu = sum alpha_b log u_b is linear in alpha: solved numerically for a few
   /// bases at a time, then proven.
   std::optional<Ref> by_powers() {
     const std::vector<Ref> u = bases();
-    std::vector<Ref> entries;  // by pair: d omega, then d(log u_b) ^ omega
+    std::vector<Ref> entries;  // per pair: d omega, then d(log u_b) ^ omega
     for (std::size_t i = 0; i < form_.size(); ++i) {
       for (std::size_t j = i + 1; j < form_.size(); ++j) {
         entries.push_back(dag_.sub(d(form_[j], i), d(form_[i], j)));
@@ -178,7 +178,7 @@ class Search {
     return subsets(u, equations, chosen, 0);
   }
 
-  // By size: the factor with the fewest bases first.
+  // In order of size: factors with the fewest bases first.
   std::optional<Ref> subsets(const std::vector<Ref>& u, const std::vector<std::vector<cl_R>>& equations,
                              std::vector<std::size_t>& chosen, std::size_t depth) {
     for (std::size_t size = 1; depth == 0 && size <= most_factors; ++size) {

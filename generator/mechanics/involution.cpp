@@ -19,9 +19,9 @@ using Vector = std::vector<cl_R>;
 using Matrix = std::vector<Vector>;  // by rows
 using MatrixSeries = std::vector<Matrix>;
 
-constexpr int digits = 50, zero_digits = 20;  // of a direction beside those before it
+constexpr int digits = 50, zero_digits = 20;  // of a direction outside the span of earlier ones
 constexpr int regular_digits = 30;            // of a pivot
-constexpr std::size_t most_entries = 200000;  // of the slopes of all forms
+constexpr std::size_t most_entries = 200000;  // of the derivatives of all forms
 
 cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 
@@ -31,7 +31,7 @@ cl_R dot(const Vector& a, const Vector& b) {
   return sum;
 }
 
-/// Adds what a vector has beside orthonormal ones, if that is anything.
+/// Adds the normalised part of a vector outside the span of orthonormal ones, unless it is 0.
 bool add_direction(std::vector<Vector>& basis, Vector v) {
   const cl_R length = cln::sqrt(dot(v, v));
   if (cln::zerop(length)) return false;
@@ -56,7 +56,7 @@ numeric::Matrix<cl_R> dense(const Matrix& A) {
   return result;
 }
 
-/// Columns in which the rows are regular, by elimination with complete pivots; none where the rows are dependent.
+/// Columns in which the rows are regular, by elimination with complete pivoting; none if the rows are dependent.
 std::vector<std::size_t> pivots(const Matrix& A) {
   const numeric::Elimination<cl_R> factors(dense(A), small(zero_digits), numeric::Pivots::complete);
   if (factors.rank() < A.size()) return {};
@@ -79,7 +79,7 @@ Matrix inverse(const Matrix& A) {
   return result;
 }
 
-/// The forms along a curve that they allow, and the curve's variation, all as power series.
+/// The forms along an admissible curve, and the curve's variation, as power series.
 class Path {
  public:
   Path(FormSpace& space, const std::vector<Form>& forms, std::size_t point)
@@ -115,7 +115,7 @@ class Path {
     inverse_ = inverse(regular);
   }
 
-  /// Coefficients 0..order of the forms, and of the curve one more.
+  /// Coefficients 0..order of the forms, and one more of the curve.
   void go_to(std::size_t order) {
     while (A_.size() <= order) {
       step_to(A_.size());
@@ -123,7 +123,7 @@ class Path {
     }
   }
 
-  /// d omega of form k at the start, by pairs of variables.
+  /// d omega of form k at the start, per pair of variables.
   Matrix curl(std::size_t k) const {
     Matrix result(n_, Vector(n_, cl_R(0)));
     for (std::size_t s = 0; s < slopes_.size(); ++s) {
@@ -136,7 +136,7 @@ class Path {
     return result;
   }
 
-  /// Fields that span the kernel, 1 in one independent variable each.
+  /// Fields that span the kernel, each 1 in one independent variable.
   std::vector<MatrixSeries> fields(std::size_t order) {
     go_to(order);
     std::vector<MatrixSeries> result;
@@ -199,7 +199,7 @@ class Path {
     while (x_.size() <= order) step();
   }
 
-  // A x' = 0, the independent variables as they come.
+  // A x' = 0, with prescribed independent variables.
   void step() {
     const std::size_t k = x_.size() - 1;
     Vector next(n_, cl_R(0));
@@ -221,7 +221,7 @@ class Path {
     x_.push_back(std::move(next));
   }
 
-  /// X of A_p X = right, coefficient after coefficient.
+  /// Solves A_p X = right, coefficient by coefficient.
   MatrixSeries solved(const MatrixSeries& right) const {
     MatrixSeries X;
     for (std::size_t k = 0; k < right.size(); ++k) {
@@ -290,8 +290,8 @@ std::optional<bool> fails_frobenius(FormSpace& space, const std::vector<Form>& f
   }
 }
 
-// With M_0 the fields and M_(k+1) = M_k' - F M_k along a curve of generic controls, the values of all M_k at its start
-// span the orbit's tangent; the rank grows with k until it is complete.
+// Let M_0 be the fields and M_(k+1) = M_k' - F M_k along a curve of generic controls. The values of all M_k at the
+// start span the tangent space of the orbit; the rank grows with k until it is complete.
 std::optional<Orbit> orbit(FormSpace& space, const std::vector<Form>& forms, std::size_t point) {
   const std::size_t n = space.variables().size();
   if (forms.empty() || forms.size() * n * n > most_entries) return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Joints: that their points are fixed in the bodies, and their reactions. docs/theory.md, "Joints".
+// Joints: checks that their points are fixed in the bodies, and adds their reactions. docs/theory.md, "Joints".
 #include <algorithm>
 
 #include "mechanics/stages.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces: what has a potential goes into U, everything else becomes a load at a point or a generalised force.
+// Forces: conservative ones go into U, all others become a load at a point or a generalised force.
 #include "mechanics/direction.hpp"
 #include "mechanics/stages.hpp"
 #include "mechanics/vanishes.hpp"
@@ -47,7 +47,7 @@ class ForceReader {
     }
   }
   void add_potential(const model::Effect& effect) {
-    // The line between the ends comes first: emitted code has operands in the order in which they are met.
+    // The line between the ends comes first: operands of emitted code are in the order of first use.
     if (effect.other != model::no_node) lower_.subtract(lower_.vector(effect.at), lower_.vector(effect.other));
     if (effect.extension != model::no_node) lower_.set_extension(lower_.scalar(effect.extension));
     potential_ = dag_.add(potential_, lower_.scalar(effect.value));
@@ -57,7 +57,7 @@ class ForceReader {
     const Vec3 a = lower_.vector(effect.at), b = lower_.vector(effect.other);
     const Vec3 along = lower_.subtract(a, b);
     if (const auto w = direction(lower_, dag_, m_.q.size(), along)) {
-      // Points that may meet: c (w . v)/(w . w) w with the line w between them has a value there too.
+      // For points that may coincide, c (w . v)/(w . w) w with the line w between them also has a value there.
       const Ref size = symbolic::tidy(dag_, lower_.dot(*w, *w)), rate = lower_.dot(*w, lower_.ddt(along, force_->span));
       const Ref pull = dag_.div(dag_.mul(lower_.scalar(effect.value), symbolic::simpler(dag_, rate, 60)), size);
       load(lower_.scale(dag_.neg(pull), *w), a);
@@ -111,7 +111,7 @@ class ForceReader {
     }
     return Q;
   }
-  // A force that enters no equation is a mistake of the model, not something to drop silently.
+  // A force that enters no equation is a mistake in the model and must be reported.
   void refuse_if_idle(std::size_t first_load) const {
     std::vector<Ref> effect = components(first_load);
     for (std::uint32_t i = 0; i < m_.q.size(); ++i) {

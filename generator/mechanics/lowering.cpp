@@ -14,7 +14,7 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 namespace sym = symbolic;
 
-// Deeper than any expression that a person writes; keeps the recursion away from the end of the stack.
+// Deeper than any handwritten expression; protects the stack from deep recursion.
 constexpr int depth_limit = 5000;
 
 }  // namespace
@@ -128,7 +128,7 @@ Lowering::Value Lowering::lower_leaf(const model::Node& node) {
   }
 }
 
-// v . J v, along the axes in which the moment of inertia is known.
+// v . J v, along the axes in which J is known.
 Ref Lowering::inertia(std::uint32_t body, const Vec3& v) {
   const Spin& spin = m_.spins.at(body);
   const std::array<Ref, 3> along{dot(v, spin.axes[0]), dot(v, spin.axes[1]), dot(v, spin.axes[2])};
@@ -155,7 +155,7 @@ Ref Lowering::joint_force(const model::Node& node) {
   return sum;
 }
 
-// The multiplier of one equation of a constraint; Mechanics lists the equations of all constraints in one row.
+// The multiplier of one equation of a constraint; Mechanics lists the equations of all constraints consecutively.
 Ref Lowering::multiplier(const model::Node& node) {
   const model::Constraint& wanted = m_.model->constraints[node.index];
   if (wanted.rolls_by_friction()) return rolling_reaction(node);
@@ -173,7 +173,7 @@ Ref Lowering::multiplier(const model::Node& node) {
               "name a constraint that holds something");
 }
 
-// Friction along one of the tangents, 0 along one that is left out; or the multiplier of the normal.
+// Friction along one of the tangents, 0 if it is omitted; or the multiplier of the normal.
 Ref Lowering::rolling_reaction(const model::Node& node) {
   const auto same = [&](const auto& entry) { return entry.name == m_.model->constraints[node.index].name; };
   if (node.order == 2) {
@@ -287,8 +287,8 @@ Lowering::Value Lowering::basis(const model::Node& node) {
   return of(scale(dag_.div(dag_.one(), norm(a)), a));
 }
 
-// The chart's own unit vector for a coordinate that is one of its entries and in no other; it holds where a_q vanishes
-// too.
+// The chart's own unit vector for a coordinate that is one of its entries and occurs in no other; it exists where a_q
+// vanishes too.
 model::NodeId Lowering::chart_vector(std::uint32_t place, std::uint32_t coordinate) {
   const auto& chart = m_.model->places[place].chart;
   model::NodeId result = model::no_node;
@@ -305,7 +305,7 @@ model::NodeId Lowering::chart_vector(std::uint32_t place, std::uint32_t coordina
   return entries_with_it == 1 ? result : model::no_node;
 }
 
-// a^i = sum_k a^ik a_k with the inverse metric of the chart's own coordinates, eq. (1.22); one, two or three of them.
+// a^i = sum_k a^ik a_k with the inverse metric of the chart's own coordinates, eq. (1.22); one to three of them.
 Vec3 Lowering::contravariant(std::uint32_t place, std::uint32_t coordinate, const model::Span& span) {
   std::vector<Vec3> a;
   std::size_t wanted = 3;
@@ -347,7 +347,7 @@ Vec3 Lowering::contravariant(std::uint32_t place, std::uint32_t coordinate, cons
   return scale(dag_.div(dag_.one(), determinant), sum);
 }
 
-// In curvilinear coordinates the squares often add up to one square, such as R^2: then there is no root to take.
+// In curvilinear coordinates the squares often add up to a square, such as R^2, and no root is needed.
 Ref Lowering::norm(const Vec3& a) {
   constexpr std::size_t term_budget = 60;
   const Ref square = dot(a, a);

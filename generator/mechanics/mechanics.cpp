@@ -23,7 +23,7 @@ void add_symbols(Mechanics& m) {
   }
 }
 
-// Functions and parameters; loops of joints need them before all else that has a value.
+// Functions and parameters. Loops of joints need them before everything else that has a value.
 void add_known_values(Mechanics& m, Lowering& lower) {
   m.function_value.clear();
   m.parameter_value.clear();
@@ -41,8 +41,8 @@ void add_values(Mechanics& m, Lowering& lower) {
   }
 }
 
-// The rate of an integral must be known before anything that holds it is differentiated, and so before the Lowering is
-// made that does it; integrals inside of integrals come first.
+// The rate of an integral must be known before an expression that contains it is differentiated, hence before the
+// Lowering is constructed. Inner integrals come first.
 void add_integrals(Mechanics& m) {
   for (std::uint32_t i = 0; i < m.model->integrals.size(); ++i) {
     const Ref integrand = Lowering(m).scalar(m.model->integrals[i].integrand);
@@ -50,7 +50,7 @@ void add_integrals(Mechanics& m) {
   }
 }
 
-// Parameters that are declared positive, and coordinates whose range starts at 0 or above.
+// Positivity of parameters that are declared positive, and of coordinates whose range starts at 0 or above.
 void add_assumptions(Mechanics& m, Lowering& lower) {
   Dag& dag = *m.dag;
   for (std::uint32_t i = 0; i < m.model->parameters.size(); ++i) {
@@ -65,7 +65,7 @@ void add_assumptions(Mechanics& m, Lowering& lower) {
   }
 }
 
-// A coordinate that no kinetic energy and no constraint mentions has no equation.
+// A coordinate without kinetic energy and constraint has no equation.
 void require_equations(const Mechanics& m) {
   Dag& dag = *m.dag;
   for (const std::uint32_t i : m.free) {

@@ -13,7 +13,7 @@ namespace {
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-/// Coordinates that the position names.
+/// Coordinates that occur in the position.
 std::vector<std::uint32_t> coordinates_of(const Mechanics& m, const PointMass& mass) {
   std::vector<std::uint32_t> result;
   for (const Symbol& s : m.dag->symbols({mass.position[0], mass.position[1], mass.position[2]})) {
@@ -33,8 +33,8 @@ bool turns(const Mechanics& m, std::uint32_t i) {
   });
 }
 
-/// Coordinates that move the particle and nothing else, if they span all that it can do: they are all of its position,
-/// or three, or two of a chart in a plane.
+/// Coordinates that move the particle and nothing else, if they span all its motions: they are all coordinates of its
+/// position, or three, or two of a chart in a plane.
 std::vector<std::uint32_t> moving_it_alone(const Mechanics& m, std::size_t p) {
   const std::vector<std::uint32_t> all = coordinates_of(m, m.masses[p]);
   std::vector<std::uint32_t> alone = all;

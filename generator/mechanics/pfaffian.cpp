@@ -22,16 +22,16 @@ using symbolic::SymbolKind;
 constexpr int digits = 50, agreed_digits = 30;
 constexpr std::size_t wanted_points = 4, tried_points = 40;
 constexpr std::size_t term_budget = 300;
-constexpr std::size_t most_effort = 1000000;  // products of terms: some tenths of a second
+constexpr std::size_t most_effort = 1000000;  // products of terms: a few tenths of a second
 
 cln::cl_R small(int exponent) { return cln::cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 
-/// Of all digits, so that sums of values are too.
+/// A random value with all digits set, so that sums of values have them too.
 cln::cl_R value_at(const Symbol& symbol, std::uint64_t point) {
   return cln::cl_float(cln::cl_R(symbolic::sample(symbol, point)), cln::float_format(digits));
 }
 
-/// Parameters that are expressions of others -> those expressions; as many rounds as chains may be long.
+/// Replaces dependent parameters by their expressions, in as many rounds as the longest chain may need.
 symbolic::Substitution independent_parameters(const Mechanics& m) {
   std::map<Symbol, Ref> values;
   for (std::uint32_t i = 0; i < m.parameter_value.size(); ++i) {
@@ -117,7 +117,7 @@ cln::cl_R FormSpace::value(const Symbol& symbol, std::size_t point) const {
   return found == points_[point].end() ? value_at(symbol, point) : found->second;
 }
 
-// Newton's method with the least change of the coordinates; t and parameters stay.
+// Newton's method with least-norm steps in the coordinates; t and parameters are fixed.
 bool FormSpace::move_onto_constraints(std::map<Symbol, cln::cl_R>& point) const {
   if (psi_.empty()) return true;
   const std::size_t n = variables_.size() - 1, count = psi_.size();
@@ -156,7 +156,7 @@ Vanishing FormSpace::vanishing(Ref expression) {
     try {
       if (cln::abs(values({expression}, point)[0]) > small(agreed_digits)) return Vanishing::no;
       judged = true;
-    } catch (const std::domain_error&) {  // this point says nothing
+    } catch (const std::domain_error&) {  // no value at this point
     }
   }
   if (!judged) return Vanishing::unknown;
@@ -165,7 +165,7 @@ Vanishing FormSpace::vanishing(Ref expression) {
 
 Ref FormSpace::simpler(Ref expression) { return symbolic::simpler(dag_, expression, term_budget, &effort_); }
 
-// A constant pivot if there is one, else the one with the smallest expression: what follows stays readable.
+// Chooses a constant pivot if there is one, otherwise the one with the smallest expression, to keep results short.
 bool FormSpace::choose_pivot(const std::vector<Form>& rows, const std::vector<bool>& used, std::size_t columns,
                              const std::vector<std::size_t>& pivots, std::pair<std::size_t, std::size_t>& at) const {
   std::size_t best = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[constraint]]s whose coefficients are combinations of those of others wherever one looks: they repeat them or
-// contradict them. What could be left out of the file is refused; equations that could not, as of rolling, have no
+// [[constraint]]s whose coefficients are combinations of others at every sample point: they are redundant or
+// contradictory. Those that the user could omit are rejected. Equations that cannot be omitted, as of rolling, get no
 // multiplier.
 #include <cln/integer.h>
 #include <cln/integer_io.h>
@@ -20,7 +20,7 @@ namespace {
 
 using cln::cl_R;
 
-constexpr long largest_denominator = 12;  // of a coefficient that is named
+constexpr long largest_denominator = 12;  // of a coefficient in a message
 
 cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 
@@ -29,13 +29,13 @@ using Rows = std::vector<std::vector<cl_R>>;
 
 struct Combination {
   std::vector<cl_R> coefficients;  // of the rows before it
-  bool same_rate = false;          // b is that combination too
+  bool same_rate = false;          // b is the same combination
 };
 
-/// Independent rows of one point, orthonormalised without their b, as they come.
+/// Independent rows at one point, orthonormalised without their b, in order.
 class Span {
  public:
-  /// Whether a row has no part outside of those that were added.
+  /// Whether a row lies in the span of the added rows.
   bool holds(const std::vector<cl_R>& row) const { return largest(rest(row)) <= small(25); }
   void add(const std::vector<cl_R>& row) {
     std::vector<cl_R> left = rest(rest(row));
@@ -66,7 +66,7 @@ class Span {
   std::vector<std::vector<cl_R>> basis_;
 };
 
-/// How row k of `rows` follows from the independent ones among those before it, if it does.
+/// Row k of `rows` as a combination of the independent rows before it, if it is one.
 std::optional<Combination> combination(const Rows& rows, const std::vector<std::size_t>& independent, std::size_t k) {
   const std::size_t n = rows[k].size() - 1, count = independent.size();
   const auto dot = [&](std::size_t a, std::size_t b) {
@@ -93,8 +93,8 @@ std::optional<Combination> combination(const Rows& rows, const std::vector<std::
   return result;
 }
 
-/// Whether the rows of a combination are as many as the columns that they have: then every row is a combination of
-/// them, which says nothing.
+/// Whether the rows of a combination are as many as their nonzero columns: then every row is trivially a combination of
+/// them.
 bool spans_all(const Rows& rows, const std::vector<std::size_t>& independent, const Combination& of, std::size_t k) {
   std::vector<std::size_t> parts{k};
   for (std::size_t a = 0; a < independent.size(); ++a) {
@@ -110,7 +110,7 @@ bool spans_all(const Rows& rows, const std::vector<std::size_t>& independent, co
   return columns > 0 && parts.size() > columns;
 }
 
-/// "2 a - b/3"; empty where a coefficient is not a simple number.
+/// "2 a - b/3"; empty if a coefficient is not a simple number.
 std::string named(const Mechanics& m, const std::vector<std::uint32_t>& constraints,
                   const std::vector<std::size_t>& independent, const Combination& at, const Combination& elsewhere) {
   std::string text;
@@ -144,8 +144,8 @@ std::string listed(const Mechanics& m, const std::vector<std::uint32_t>& constra
   return text;
 }
 
-/// Whether psi of constraint k is that combination of the others too: where they are closed, so is k. True where one
-/// that cannot be left is among them, and where there are no values to tell by.
+/// Whether psi of constraint k is the same combination of the others: if they are closed, so is k. True if one of them
+/// cannot open, or if there are no values.
 bool close_together(const Mechanics& m, FormSpace& space, const std::vector<std::uint32_t>& constraints,
                     const std::vector<std::size_t>& independent, std::size_t k, const Combination& at) {
   std::vector<Ref> psi{space.written(m.constraints[constraints[k]].psi)};
@@ -194,11 +194,11 @@ Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints,
   return Error("mechanics", where, what, "remove one of them: no motion satisfies them all");
 }
 
-/// What a constraint is left with, when all of its equations follow from others.
+/// The error for a constraint if all of its equations are redundant.
 using Refusals = std::map<std::string, Error>;
 
 Refusals drop_repeated(Mechanics& m) {
-  std::vector<std::uint32_t> constraints;  // what is given in positions comes first, so that the others are blamed
+  std::vector<std::uint32_t> constraints;  // holonomic constraints first, so that errors name the others
   for (const bool holonomic : {true, false}) {
     for (const std::uint32_t k : m.active) {
       if (m.constraints[k].holonomic() == holonomic && !model_constraint(m, m.constraints[k]).joint)
@@ -226,7 +226,7 @@ Refusals drop_repeated(Mechanics& m) {
       continue;  // outside the domain of a function: another point
     }
   }
-  if (at.size() < 2) return {};  // no values: the start will tell
+  if (at.size() < 2) return {};  // no values: checked at the start of a run
   std::vector<std::size_t> independent;
   std::array<Span, 2> spans;
   Refusals refusals;
@@ -253,7 +253,7 @@ Refusals drop_repeated(Mechanics& m) {
     if (!leavable(k)) continue;
     const std::optional<Combination> here = combination(at[0], independent, k),
                                      there = combination(at[1], independent, k);
-    // Walls that face one another bind the same velocities, and are not touched together.
+    // Opposite walls constrain the same velocities but are not closed together.
     const bool dependent = here && there;
     if (dependent && close_together(m, space, constraints, independent, k, *here))
       throw refusal(m, constraints, k, independent, *here, *there);

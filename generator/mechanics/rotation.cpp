@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Axes that turn, and bodies: angular velocities from the rates of angles and parameters, stage by stage.
+// Rotating axes and bodies: angular velocities from the rates of angles and parameters, stage by stage.
 #include "mechanics/stages.hpp"
 
 namespace eomgen::mechanics {
@@ -20,7 +20,7 @@ std::array<Ref, 3> Lowering::rates_before(std::uint32_t frame, std::size_t stage
   return stage == 0 ? own_rates(m_.model->frames[frame].parent) : rates(frame, stage - 1);
 }
 
-// w_k = sum_j R_kj v_j + the stage's own: recursion over the tree of frames, so that nothing is differentiated.
+// w_k = sum_j R_kj v_j + the stage's own: recursion over the tree of frames, without differentiation.
 std::array<Ref, 3> Lowering::rates(std::uint32_t frame, std::size_t stage) {
   const model::Stage& step = m_.model->frames[frame].stages[stage];
   const std::array<Ref, 3> before = rates_before(frame, stage);
@@ -47,7 +47,7 @@ Vec3 Lowering::angular_velocity(std::uint32_t frame) {
 
 namespace {
 
-/// The axis about which the last stage turns, if that is one of the axes and J does not see it.
+/// The rotation axis of the last stage, if it is one of the axes and J is symmetric about it.
 std::optional<std::size_t> axis_of_symmetry(const Dag& dag, const model::Stage& last,
                                             const std::array<std::array<Ref, 3>, 3>& J) {
   for (std::size_t i = 0; i < 3; ++i) {

@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint64_t points = 4;
 constexpr int digits = 40, more_digits = 70;
 
-// The values at a point; none outside of the domain of a function, which says nothing.
+// The values at a point; none outside the domain of a function, which is inconclusive.
 std::vector<cln::cl_R> values_at(const Dag& dag, const std::vector<Ref>& expressions, std::uint64_t point,
                                  int with = digits) {
   try {
@@ -31,8 +31,8 @@ std::vector<cln::cl_R> values_at(const Dag& dag, const std::vector<Ref>& express
   }
 }
 
-/// Far above what is left of terms that cancel; or small, as a narrow bump is far from its place, and the same with
-/// more digits.
+/// Whether a value is far above rounding residues of cancelled terms, or small but the same with more digits, as the
+/// tail of a narrow bump.
 bool is_nonzero(const Dag& dag, Ref expression, std::uint64_t point, const cln::cl_R& value) {
   if (cln::zerop(value)) return false;
   if (cln::abs(value) > cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 30))) return true;
@@ -44,7 +44,7 @@ bool is_nonzero(const Dag& dag, Ref expression, std::uint64_t point, const cln::
 
 bool vanishes(const Dag& dag, const std::vector<Ref>& expressions) {
   if (std::all_of(expressions.begin(), expressions.end(), [&](Ref r) { return dag.is_zero(r); })) return true;
-  // Beyond a kink an expression may be something else: sampling one side proves nothing.
+  // An expression may differ beyond a kink: samples on one side prove nothing.
   if (dag.has_kinks(expressions)) return false;
   bool evaluated = false;
   for (std::uint64_t point = 1; point <= points; ++point) {

@@ -29,7 +29,7 @@ class Lanes {
   std::size_t words() const { return (atoms_.size() + per_word - 1) / per_word; }
   const std::vector<Angle>& angles() const { return angles_; }               // ascending by x
   const std::vector<std::uint32_t>& trig() const { return trig_; }           // their lanes, ascending
-  std::uint32_t dual(std::uint32_t lane) const { return duals_[lane]; }      // of cos(x) the lane of sin(x), and vice versa
+  std::uint32_t dual(std::uint32_t lane) const { return duals_[lane]; }      // sin(x) <-> cos(x)
   std::uint32_t angle(std::uint32_t lane) const { return angle_of_[lane]; }  // into angles()
   long one() const { return one_; }                                          // exponents are multiples of 1/one()
 
