@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the curl vanishes, the work along a closed path depends only on what singular points it goes around.
+// If the curl vanishes, the work along a closed path depends only on the singular points it encloses.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,7 +27,7 @@ class Paths {
  public:
   Paths(mechanics::Mechanics& m, const std::vector<Ref>& Q) : m_(m), dag_(*m.dag), Q_(Q) {}
 
-  /// Whether q -> q + 2 pi brings every place back, and moves some on the way.
+  /// Whether q -> q + 2 pi restores every place, and moves some in between.
   bool is_turn(std::size_t i, const std::vector<Vec3>& places) {
     symbolic::Substitution turned = turn(i);
     std::vector<Ref> difference;
@@ -45,9 +45,11 @@ class Paths {
     return {dag_, {{coordinate(i), dag_.add(m_.q[i], dag_.mul(dag_.integer(2), dag_.pi()))}}};
   }
 
-  /// The work around circles in the plane of coordinates i and k: none, some, or a number that does not settle.
+  /// The work around circles in the plane of coordinates i and k: none, some, or undecided if the quadrature does not
+  /// converge.
   Circulation::Answer around_circles(std::size_t i, std::size_t k) {
-    // Circles about the origin, and about a point off it; those that meet a singular point do not settle.
+    // Circles about the origin, and about another point. Quadratures over circles through a singular point do not
+    // converge.
     static constexpr double circles[][3] = {
         {0, 0, 0.61}, {0, 0, 2.3}, {0, 0, 11.7}, {0.83, -0.57, 0.71}, {0.83, 0.57, 2.9}};
     bool settled = false;
@@ -62,7 +64,7 @@ class Paths {
   }
 
  private:
-  // The trapezoidal rule, which converges geometrically on a circle: the integral, and that of its absolute value.
+  // The trapezoidal rule, which converges geometrically on a circle: the integral, and that of the absolute value.
   std::pair<double, double> integral(std::size_t i, std::size_t k, const double (&circle)[3], int points) const {
     double work = 0, size = 0;
     for (int p = 0; p < points; ++p) {
@@ -84,8 +86,7 @@ class Paths {
   const std::vector<Ref>& Q_;
 };
 
-// A function without inverse functions of angles is one function of the place: its differences along closed paths are
-// 0.
+// A function without inverse trigonometric functions is single-valued: its change along closed paths is 0.
 bool has_branches(const Dag& dag, Ref U) {
   using symbolic::Op;
   const std::vector<Ref> nodes = dag.reachable({U});

@@ -66,7 +66,7 @@ class Classifier {
     return false;
   }
 
-  // The curl vanishes: what is left is the work around singular points.
+  // The curl vanishes; only work around singular points remains to be tested.
   void find() {
     const std::optional<Potential> potential = find_potential(m_, Q_);
     const Circulation around = circulation(m_, Q_, potential, places());
@@ -92,7 +92,7 @@ class Classifier {
     }
   }
 
-  // Where the force acts; a generalised force is one of coordinates, which count turns, and not of places.
+  // The places where the force acts. A generalised force has none: it depends on coordinates, which count turns.
   std::vector<mechanics::Vec3> places() const {
     std::vector<mechanics::Vec3> result;
     for (const mechanics::Load& load : m_.loads) {

@@ -24,7 +24,7 @@ using system::OutputKind;
 
 namespace {
 
-// Of a proof, where values have said yes already: products of two terms, a tenth of a second; and terms of one
+// Budget of a proof after numerical agreement: products of two terms (a tenth of a second), and terms of one
 // expression.
 constexpr std::size_t proof_effort = 300'000, proof_terms = 400;
 
@@ -49,7 +49,7 @@ Certainty vanishing(Dag& dag, const std::vector<Ref>& expressions) {
 
 namespace {
 
-/// Forces that are not in U and yet have a potential.
+/// Forces with a potential that are not in U.
 struct Applied {
   Ref potential;
   std::vector<Ref> Q;  // of the other forces
@@ -79,7 +79,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   for (const Ref surface : jump_surfaces(dag, {s.energy})) power.push_back(by_time(surface));
   if (const Certainty c = hit ? Certainty::no : vanishing(dag, power); c != Certainty::no)
     result.push_back({"energy", "total energy T + U", s.energy, OutputKind::energy, 0, 0, c});
-  // The constrained Lagrangian: what Approach II differentiates, so a cyclic coordinate of it is one of the motion.
+  // The constrained Lagrangian, which Approach II differentiates: its cyclic coordinates are those of the motion.
   const Ref L = dag.sub(s.kinetic, s.potential);
   symbolic::Substitution imposed = impose(m), written = write_out(m);
   const bool energy_conserved = !result.empty();
@@ -106,7 +106,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
     result.push_back({"momentum." + name, "generalised momentum of " + name, p, OutputKind::momentum, i, 0, certainty});
     offer(result.back());
   }
-  std::vector<Ref> must_vanish = s.b;  // constraints that move do work in the reduced system too
+  std::vector<Ref> must_vanish = s.b;  // moving constraints do work in the reduced system too
   must_vanish.push_back(by_time(dag.sub(L, V)));
   for (const Ref surface : surfaces) must_vanish.push_back(by_time(surface));
   must_vanish.push_back(input_power);
@@ -125,7 +125,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
     const auto differential = [&](const std::string& by, Ref value) {
       s.outputs.push_back({"differential." + integral.label + "." + by, value, OutputKind::differential, j});
     };
-    // Its differential, for the projection: by the free coordinates and t.
+    // Its differential with respect to the free coordinates and t, for the projection.
     for (const std::uint32_t i : s.free) {
       const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(integral.psi);
       differential(m.model->coordinates[i].name, slope);

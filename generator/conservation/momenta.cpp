@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // sum d(m v)/dt . d = sum (Q_i - dU/dq_i) xi_i + sum lambda_k A_ki xi_i for displacements d = dr/dq_i xi_i of all
-// masses: with d = E_k or E_k x r the left-hand side is dG_k/dt or dH_k/dt. Of bodies, dH/dt . (dw/dqdot_i xi_i) is
-// added: the body turns about E_k, or not at all.
+// masses. With d = E_k or E_k x r the left-hand side is dG_k/dt or dH_k/dt. For bodies, dH/dt . (dw/dqdot_i xi_i) is
+// added: the body rotates about E_k, or not at all.
 #include "conservation/momenta.hpp"
 
 #include <cmath>
@@ -28,8 +28,8 @@ using symbolic::Ref;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-constexpr double screening = 1e-5;  // what passes is decided in many digits
-// Of writing J^T J out, which finds zeros where coordinates are orthogonal: products of two terms, and terms of one
+constexpr double screening = 1e-5;  // candidates are then tested in many digits
+// Budget of expanding J^T J, which finds zeros for orthogonal coordinates: products of two terms, and terms of one
 // entry.
 constexpr std::size_t gram_effort = 300'000, gram_terms = 400;
 
@@ -57,7 +57,7 @@ bool is_in_range(const std::vector<double>& J, const std::vector<double>& d, std
   return residual <= screening * length;
 }
 
-/// force . y is nothing beside what it could be.
+/// Whether force . y is 0 relative to its possible size.
 bool does_no_work(const double* force, const std::vector<double>& y) {
   double sum = 0, forces = 0, longest = 0;
   for (std::size_t i = 0; i < y.size(); ++i) {
@@ -65,7 +65,7 @@ bool does_no_work(const double* force, const std::vector<double>& y) {
     forces += std::abs(force[i]);
     longest = std::max(longest, std::abs(y[i]));
   }
-  return std::abs(sum) <= screening * forces * longest;  // a y_i that should be 0 is rounding of the longest
+  return std::abs(sum) <= screening * forces * longest;  // zero entries of y have rounding errors of the longest
 }
 
 class Search {
@@ -93,8 +93,8 @@ class Search {
       H_.push_back(times(dag_, spin, w_.back()));
       axes_.push_back({all(spin.axes[0]), all(spin.axes[1]), all(spin.axes[2])});
     }
-    // Displacements that the constraints allow: where coordinates are dependent (Euler parameters) they decide among
-    // those that move everything alike.
+    // Admissible displacements: for dependent coordinates (Euler parameters) the constraints select among those with
+    // the same motion.
     J_.insert(J_.end(), s.A.begin(), s.A.end());
     const std::vector<Ref> Q = generalized_forces(m);
     for (const std::uint32_t i : s.free) {
@@ -107,7 +107,7 @@ class Search {
     }
   }
 
-  /// `repeats`: whether this expression is of no interest, which is far easier to see than that it is conserved.
+  /// `repeats`: whether this expression is redundant, which is far cheaper to test than conservation.
   template <class Repeats>
   std::optional<Conserved> component(bool angular, std::size_t k, const Repeats& repeats) {
     const std::vector<Ref> d = displacement(angular, k);
@@ -169,7 +169,7 @@ class Search {
     return d;
   }
 
-  /// By values at one point: the displacement is one of the coordinates', and the forces do no work on it.
+  /// Tests at one point that the displacement is one of the coordinates' and that the forces do no work on it.
   bool may_be_conserved(const std::vector<Ref>& d) const {
     std::vector<Ref> both = J_;
     both.insert(both.end(), d.begin(), d.end());
@@ -186,8 +186,8 @@ class Search {
     return false;
   }
 
-  // What has to vanish: J xi - d, the work on xi, that of the constraint forces, and of the impulses where energies
-  // jump.
+  // Expressions that must vanish: J xi - d, the work on xi, that of the constraint forces, and that of the impulses
+  // where energies jump.
   std::vector<Ref> conditions(const std::vector<Ref>& d) {
     std::vector<Ref> y(n_, dag_.zero());
     for (std::size_t i = 0; i < n_; ++i) {
@@ -212,7 +212,7 @@ class Search {
       for (std::size_t k = 0; k <= i; ++k) {
         Ref sum = dag_.zero();
         for (std::size_t r = 0; r < rows; ++r) sum = dag_.add(sum, dag_.mul(J_[r * n_ + i], J_[r * n_ + k]));
-        N[i * n_ + k] = N[k * n_ + i] = expand.tidy(sum);  // orthogonal coordinates leave a diagonal
+        N[i * n_ + k] = N[k * n_ + i] = expand.tidy(sum);  // diagonal for orthogonal coordinates
       }
     }
     return {dag_, std::move(N), n_, symbolic::Ties::ascending};
@@ -228,9 +228,9 @@ class Search {
   Dag& dag_;
   std::size_t n_;
   std::vector<Ref> mass_, J_, force_;
-  std::vector<Ref> across_;  // slopes of the surfaces at which energies jump, row by row
+  std::vector<Ref> across_;  // gradients of the surfaces where energies jump, row by row
   std::vector<Vec3> r_, v_, w_, H_;
-  std::vector<std::array<Vec3, 3>> axes_;  // of the spins
+  std::vector<std::array<Vec3, 3>> axes_;  // of the rotating bodies
   std::optional<symbolic::Factorisation> factors_;
 };
 

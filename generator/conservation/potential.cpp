@@ -48,7 +48,7 @@ class Search {
   }
 
  private:
-  static constexpr std::size_t most_coordinates = 6;  // beyond, orders and expressions become too many
+  static constexpr std::size_t most_coordinates = 6;  // more coordinates have too many orders and expressions
 
   Ref slope(Ref f, std::size_t i) { return symbolic::partial(dag_, coordinate(i))(f); }
 
@@ -103,7 +103,7 @@ bool depends_on_place(const Dag& dag, Ref r) {
   return std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::coordinate; });
 }
 
-// sqrt(x^2 + y^2) is 0 where x^2 + y^2 is; what is shown is the simpler one.
+// sqrt(x^2 + y^2) is 0 where x^2 + y^2 is; the simpler one is reported.
 Ref zero_set(const Dag& dag, Ref r) {
   while (dag[r].op == Op::sqrt || dag[r].op == Op::power || dag[r].op == Op::neg) r = dag[r].args[0];
   return r;

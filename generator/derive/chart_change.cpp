@@ -62,11 +62,11 @@ Vec3 along(Dag& dag, std::size_t axis, Ref size) {
   return v;
 }
 
-/// Sines and cosines of the angles of a set that make the matrix Q, eq. (5.57); that of the middle one that vanishes
-/// where the set fails is taken to be positive.
+/// Sines and cosines of the angles of a set whose matrix is Q, eq. (5.57). The expression of the middle angle that
+/// vanishes at the singularity is taken as positive.
 std::array<Turn, 3> read_off(Dag& dag, const Axes& axes, const Matrix& Q) {
   const auto [i, j, k] = axes;
-  const std::size_t m = 3 - i - j;  // the axis that is neither the first nor the second
+  const std::size_t m = 3 - i - j;  // the third axis
   const auto q = [&](std::size_t a, std::size_t b) { return Scalar{&dag, Q[a][b]}; };
   const auto length = [&](Scalar a, Scalar b) { return Scalar{&dag, dag.call(Op::sqrt, (a * a + b * b).ref)}; };
   const Scalar sign{&dag, dag.integer((i + 1) % 3 == j ? 1 : -1)};
@@ -88,7 +88,7 @@ std::vector<Ref> change_of_angles(Dag& dag, const std::vector<std::uint32_t>& an
   w = symbolic::add(dag, times(dag, R[2], w), along(dag, from[2], n.rate[2].ref));
   const std::array<Turn, 3> turns = read_off(dag, to, times(dag, R[2], times(dag, R[1], R[0])));
 
-  // Along the axes before the last step g2 and g3 are two of them, and g1 has no part along g2.
+  // Along the axes before the last step, g2 and g3 are two of the axes, and g1 has no component along g2.
   const Vec3 v = times(dag, transposed(step(dag, to[2], turns[2])), w);
   const Matrix second = step(dag, to[1], turns[1]);
   const std::size_t third = 3 - to[1] - to[2];
@@ -100,7 +100,7 @@ std::vector<Ref> change_of_angles(Dag& dag, const std::vector<std::uint32_t>& an
   return result;
 }
 
-/// phi from the axis `from`, theta about it, to the same about the axis `to`.
+/// Converts phi from the axis `from` and theta about it to the same angles for the axis `to`.
 std::vector<Ref> change_of_direction(Dag& dag, const std::vector<std::uint32_t>& angles, std::size_t from,
                                      std::size_t to) {
   const Angles n = symbols(dag, angles);

@@ -16,7 +16,7 @@ using system::OutputKind;
 
 Symbol coordinate(std::uint32_t i, std::uint8_t order) { return {SymbolKind::coordinate, i, order}; }
 
-/// Imposes the constraints, then writes functions of time out.
+/// Imposes the constraints, then expands functions of time.
 struct Finish {
   symbolic::Substitution imposed, written;
   Ref operator()(Ref r) { return written(imposed(r)); }
@@ -32,7 +32,7 @@ void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
   Dag& dag = *m.dag;
   symbolic::Derivation bias = symbolic::total_time(dag, m.q.size(), m.model->functions.size(), true);
   for (const std::uint32_t k : s.active) {
-    // Written with the fixed coordinates imposed first, so that A has only the columns that move.
+    // The fixed coordinates are imposed first, so that A has only the columns of free coordinates.
     const mechanics::Constraint& constraint = m.constraints[k];
     const Ref psi = finish.imposed(constraint.psi);
     s.holonomic.push_back(constraint.holonomic());
@@ -47,7 +47,7 @@ void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
   }
 }
 
-// What is not imposed, but holds where the active constraints do.
+// Equations that are not imposed, but hold if the active constraints do.
 void add_redundant(Mechanics& m, EquationSystem& s, Finish& finish) {
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     if (m.constraints[k].need != mechanics::Need::redundant) continue;
@@ -62,9 +62,8 @@ void add_redundant(Mechanics& m, EquationSystem& s, Finish& finish) {
   }
 }
 
-// The (b) equations: row c of M qddot - f = sum_k lambda_k dpsi_k/dq_c, from the last coordinate that was fixed to the
-// first; a constraint's gradient has only coordinates that were fixed with it or before it, so this is a back
-// substitution.
+// The (b) equations: row c of M qddot - f = sum_k lambda_k dpsi_k/dq_c, from the last fixed coordinate to the first. A
+// constraint's gradient has only coordinates that were fixed with it or before it, so this is a back substitution.
 void add_reactions(Mechanics& m, const FullEquations& full, EquationSystem& s) {
   Dag& dag = *m.dag;
   const std::size_t n = m.q.size();
@@ -84,11 +83,11 @@ void add_reactions(Mechanics& m, const FullEquations& full, EquationSystem& s) {
   }
 }
 
-/// N = sum lambda_k grad psi_k on every particle whose coordinates move nothing else, where the motion determines it.
+/// N = sum lambda_k grad psi_k on every particle with coordinates that move nothing else, if the motion determines it.
 void add_constraint_forces(Mechanics& m, EquationSystem& s) {
   Dag& dag = *m.dag;
   std::vector<Ref> Q(m.q.size(), dag.zero());
-  std::vector<bool> open(m.q.size(), false);  // constraints act along it whose force is not determined
+  std::vector<bool> open(m.q.size(), false);  // constraints with undetermined forces act along it
   for (const system::Reaction& reaction : s.reactions) {
     const mechanics::Constraint& c = m.constraints[reaction.constraint];
     for (std::size_t i = 0; i < Q.size(); ++i) {
@@ -117,7 +116,7 @@ void add_constraint_forces(Mechanics& m, EquationSystem& s) {
   }
 }
 
-/// Multipliers; of joints the force on B and the moment about its point instead. Both as far as the motion determines
+/// Multipliers; for joints, the force on B and the moment about its point instead. Both as far as the motion determines
 /// them.
 void add_reaction_outputs(Mechanics& m, EquationSystem& s) {
   Dag& dag = *m.dag;
@@ -192,7 +191,7 @@ void add_outputs(Mechanics& m, EquationSystem& s) {
   }
 }
 
-// A multiplier in an event is the reaction of that constraint, an expression where the constraint is eliminated.
+// A multiplier in an event is the reaction of that constraint: an expression if the constraint is eliminated.
 void add_events(Mechanics& m, EquationSystem& s) {
   std::map<Symbol, Ref> forces;
   for (const system::Reaction& r : s.reactions) forces[{SymbolKind::multiplier, r.constraint, 0}] = r.value;
@@ -207,7 +206,7 @@ void add_contacts(Mechanics& m, EquationSystem& s, Finish& finish) {
     result.name = contact.name;
     result.first = contact.first;
     result.rolls = contact.rolls;
-    result.reactions = contact.constraints;  // reactions stand in the order of the constraints
+    result.reactions = contact.constraints;  // reactions are in the order of the constraints
     for (const Ref g : contact.gram) result.gram.push_back(finish(g));
     if (contact.constraints.empty()) result.normal = finish(contact.normal);
     for (const Ref w : contact.slip) {
@@ -233,7 +232,8 @@ void add_contacts(Mechanics& m, EquationSystem& s, Finish& finish) {
   }
 }
 
-/// The slip velocity along each tangent, and its slopes by the rates of the free coordinates, in which it is linear.
+/// The slip velocity along each tangent, and its coefficients of the rates of the free coordinates, in which it is
+/// linear.
 void add_slip_outputs(Mechanics& m, std::uint32_t index, EquationSystem& s) {
   const mechanics::Contact& contact = m.contacts[index];
   const bool vector = contact.dimensions() > 1;
@@ -251,7 +251,7 @@ void add_slip_outputs(Mechanics& m, std::uint32_t index, EquationSystem& s) {
   }
 }
 
-/// Friction forces as vectors, slip, and the mode of each contact as a number: 0 sticks, 1 and -1 slides, 2 apart.
+/// Friction forces as vectors, slip, and the mode of each contact as a number: 0 sticks, 1 and -1 slides, 2 open.
 void add_contact_outputs(Mechanics& m, EquationSystem& s) {
   Dag& dag = *m.dag;
   for (std::uint32_t j = 0; j < m.contacts.size(); ++j) {

@@ -10,7 +10,7 @@ using symbolic::SymbolKind;
 
 Symbol rate_symbol(std::uint32_t i) { return {SymbolKind::coordinate, i, 1}; }
 
-/// What moving masses and prescribed parts of their positions add.
+/// The contribution of varying masses and of prescribed parts of positions.
 struct Prescribed {
   Ref inertia;  // dT/dt at fixed q and qdot
   Ref moving;   // T1 + 2 T0
@@ -48,8 +48,8 @@ Prescribed of_masses(Mechanics& m, symbolic::Derivation& at_fixed_motion) {
   return sum;
 }
 
-// Whether the given kinetic energy is a quadratic form of the velocities: then T1 + 2 T0 vanishes, and saying so keeps
-// accelerations out of the power.
+// Whether the given kinetic energy is a quadratic form of the velocities. Then T1 + 2 T0 vanishes, and omitting it
+// keeps accelerations out of the power.
 bool is_quadratic_form(Mechanics& m, Ref T) {
   Dag& dag = *m.dag;
   symbolic::Substitution at_rest = rates_at_rest(m);

@@ -18,14 +18,14 @@ const std::vector<RouteEntry>& all() {
   return entries;
 }
 
-/// Whether most of the mass matrix is filled, as along a chain; branches near the root leave it empty.
+/// Whether most entries of the mass matrix are nonzero, as for a chain; branches near the root leave zeros.
 bool is_full(const mechanics::Mechanics& m, const system::EquationSystem& s) {
   constexpr std::size_t share = 4;
   const auto filled = std::count_if(s.M.begin(), s.M.end(), [&](symbolic::Ref r) { return !m.dag->is_zero(r); });
   return static_cast<std::size_t>(filled) * share > s.M.size();
 }
 
-/// The routes over trees that are worth it on larger trees than `route`, the one for the largest first.
+/// The tree formulations that remain efficient on larger trees than `route`, the one with the largest limit first.
 std::vector<RouteEntry> cheaper_on_trees(const RouteEntry& route) {
   std::vector<RouteEntry> cheaper;
   for (const RouteEntry& other : routes()) {
@@ -36,7 +36,7 @@ std::vector<RouteEntry> cheaper_on_trees(const RouteEntry& route) {
   return cheaper;
 }
 
-/// The tree with most of its mass matrix filled is left to a cheaper route where one applies.
+/// A tree with a nearly full mass matrix is left to a cheaper formulation, if one applies.
 bool is_left_to_another(const RouteEntry& route, mechanics::Mechanics& m, system::Approach approach) {
   if (m.q.size() <= route.worth_on_trees) return false;
   for (const RouteEntry& other : cheaper_on_trees(route)) {

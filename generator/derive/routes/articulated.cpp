@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The articulated route: particles on links that carry forces only along directions in which they do not let the
-// particle move. The accelerations relative to the parent vanish along these directions,
+// The articulated formulation: particles on links that transmit forces only along directions in which the particle
+// cannot move. The accelerations relative to the parent vanish along these directions,
 //   N_k . (a_k - a_parent - c_k) = 0,   a_k = g + (F_k + N_k T_k + W_k - sum_children (N_c T_c + W_c)) / m_k,
-// which gives the tensions T by a factorisation without fill; then theta_ddot_k = J_k . (a_k - a_parent - c_k) / J_k .
-// J_k. The cost grows with the number of links, not with its cube. W_k = J_k f_k / J_k . J_k is what the forces on
-// theta_k come to. Trees of bodies: derive/trees/body_elimination.hpp.
+// which gives the tensions T by a factorisation without fill-in. Then theta_ddot_k = J_k . (a_k - a_parent - c_k) / J_k
+// . J_k. The cost grows linearly with the number of links. W_k = J_k f_k / J_k . J_k is equivalent to the forces on
+// theta_k. Trees of bodies: derive/trees/body_elimination.hpp.
 #include "derive/routes.hpp"
 #include "derive/trees/body_elimination.hpp"
 #include "derive/trees/body_equations.hpp"
@@ -14,8 +14,8 @@
 namespace eomgen::derive {
 namespace {
 
-/// Trees (derive/trees/branches.hpp) with one particle of constant mass at the end of every link, no multipliers, and
-/// links whose directions of force are known: as many coordinates as dimensions, or one fewer.
+/// Applies to trees (derive/trees/branches.hpp) with one particle of constant mass at the end of every link, no
+/// multipliers, and links whose directions of force are known: as many coordinates as dimensions, or one fewer.
 std::optional<system::EquationSystem> by_articulated(Mechanics& m, system::Approach approach) {
   if (!m.spins.empty()) {
     std::optional<system::EquationSystem> s = equations_of_bodies(m, approach, "articulated", body_accelerations);
@@ -34,7 +34,7 @@ std::optional<system::EquationSystem> by_articulated(Mechanics& m, system::Appro
   symbolic::Substitution back = motion->tree.coordinates.back(dag);
   for (Ref& r : solution.qddot) r = back(r);
   for (symbolic::Pivot& pivot : solution.pivots) pivot = {back(pivot.pivot), back(pivot.scale)};
-  const QuasiCoordinates& theta = motion->tree.coordinates;  // q = S^-1 theta, for the second rates too
+  const QuasiCoordinates& theta = motion->tree.coordinates;  // q = S^-1 theta, also for the second derivatives
   if (!theta.identity()) solution.qddot = symbolic::applied(dag, theta.S_inverse, solution.qddot);
   s->solution = std::move(solution);
   return s;

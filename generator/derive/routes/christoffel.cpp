@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The christoffel route: M_ik(q) qddot_i + [ij,k] qdot_i qdot_j = Q_k with the symbols of the first kind (2.184),
-// (2.177), and with the terms of T1 and T0 and of dM/dt where something moves by prescription.
+// The christoffel formulation: M_ik(q) qddot_i + [ij,k] qdot_i qdot_j = Q_k with the symbols of the first kind (2.184),
+// (2.177). Prescribed motion adds the terms of T1, T0 and dM/dt.
 #include <algorithm>
 
 #include "derive/equations.hpp"
@@ -49,7 +49,7 @@ class QuadraticEnergy {
   }
   const std::vector<Ref>& M() const { return M_; }
 
-  /// dT/dq_k - d/dt(dT/dqdot_k) without second rates.
+  /// dT/dq_k - d/dt(dT/dqdot_k) without accelerations.
   Ref inertia(std::size_t k) {
     symbolic::Derivation explicitly = symbolic::explicit_time(dag_, m_.model->functions.size());
     Ref sum = dag_.sub(by_[k](T0_), explicitly(N_[k]));
@@ -95,7 +95,8 @@ FullEquations equations(Mechanics& m, QuadraticEnergy& energy, Ref U, const std:
   return result;
 }
 
-/// Small systems: few coordinates, a kinetic energy that is quadratic in the velocities and expands within the budget.
+/// Applies to small systems: few coordinates, and a kinetic energy that is quadratic in the velocities and expands
+/// within the budget.
 std::optional<system::EquationSystem> by_christoffel(Mechanics& m, system::Approach approach) {
   if (m.q.size() > coordinate_budget || !symbolic::Expander(*m.dag, term_budget)(m.kinetic)) return std::nullopt;
   QuadraticEnergy energy(m, m.kinetic, all_coordinates(m));
@@ -103,7 +104,7 @@ std::optional<system::EquationSystem> by_christoffel(Mechanics& m, system::Appro
   const std::vector<Ref> Q = generalized_forces(m);
   const FullEquations full = equations(m, energy, m.potential, Q, all_coordinates(m));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "christoffel", approach);
-  // Constraints leave velocities linear in those of the free coordinates, so what is left is quadratic too.
+  // Imposed velocities are linear in those of the free coordinates, so the energy stays quadratic.
   symbolic::Substitution imposed = impose(m);
   QuadraticEnergy constrained(m, imposed(m.kinetic), m.free);
   const FullEquations motion = equations(m, constrained, imposed(m.potential), Q, m.free);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The expanded route: Lagrange's equations of energies that are expanded first, sin^2 + cos^2 = 1 used; best for small
-// systems.
+// The expanded formulation: Lagrange's equations of energies that are expanded first, with sin^2 + cos^2 = 1; best for
+// small systems.
 #include "derive/euler_lagrange.hpp"
 #include "derive/routes.hpp"
 #include "symbolic/polynomial.hpp"
@@ -8,7 +8,7 @@
 namespace eomgen::derive {
 namespace {
 
-// Beyond this an expansion has never been the cheapest, and larger systems must not wait for it.
+// Beyond this an expansion has never been the cheapest, and it would delay larger systems.
 constexpr std::size_t term_budget = 300;
 constexpr std::size_t coordinate_budget = 8;
 
@@ -18,7 +18,7 @@ FullEquations reduced(symbolic::Expander& expander, FullEquations equations) {
   return equations;
 }
 
-/// Applies where the kinetic energy fits into the term budget of the expansion.
+/// Applies if the kinetic energy fits into the term budget of the expansion.
 std::optional<system::EquationSystem> by_expanded(Mechanics& m, system::Approach approach) {
   if (m.q.size() > coordinate_budget) return std::nullopt;
   symbolic::Expander expander(*m.dag, term_budget);
@@ -30,8 +30,7 @@ std::optional<system::EquationSystem> by_expanded(Mechanics& m, system::Approach
   const FullEquations full = reduced(expander, euler_lagrange(m, T, U, Q, all_coordinates(m)));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "expanded", approach);
   symbolic::Substitution imposed = impose(m);
-  // An expansion ends over a common denominator; expanded again, that would be multiplied out into what it does not
-  // concern.
+  // An expansion has a common denominator. A second expansion would multiply it into unrelated terms.
   const auto constrained = [&](Ref whole, Ref reduced_whole) {
     return imposed(whole) == whole ? reduced_whole : expander.tidy(imposed(reduced_whole));
   };

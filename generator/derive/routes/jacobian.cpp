@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The jacobian route: no energy is formed. With J_i = dr/dq_i (the covariant basis, eq. (3.20)) and the acceleration
-// a = sum J_i qddot_i + a0, the equations are the components sum m a . J_i of the balance of momentum (2.68).
+// The jacobian formulation: no energy is formed. With J_i = dr/dq_i (the covariant basis, eq. (3.20)) and the
+// acceleration a = sum J_i qddot_i + a0, the equations are the components sum m a . J_i of the balance of momentum
+// (2.68).
 #include <algorithm>
 
 #include "derive/equations.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 using symbolic::SymbolKind;
 
-/// Euler's equations along the axes of the spin, (dH/dt + carrier x H) . dw/dqdot_i, eqs. (8.41), (9.39).
+/// Euler's equations along the axes of the rotation, (dH/dt + carrier x H) . dw/dqdot_i, eqs. (8.41), (9.39).
 void add_spin(Mechanics& m, const mechanics::Spin& given, symbolic::Substitution* imposed,
               const std::vector<std::uint32_t>& which, symbolic::Derivation& bias, FullEquations& result) {
   Dag& dag = *m.dag;
@@ -57,7 +58,7 @@ FullEquations equations(Mechanics& m, symbolic::Substitution* imposed, const std
     const Vec3 a0{bias(v[0]), bias(v[1]), bias(v[2])};
     const Ref mass_rate = bias(mass.mass);
     std::vector<Vec3> J;
-    std::vector<std::size_t> moves;  // coordinates that move it: of many particles each has few
+    std::vector<std::size_t> moves;  // coordinates that move it: few for each of many particles
     for (std::size_t i = 0; i < n; ++i) {
       J.push_back({by[i](r[0]), by[i](r[1]), by[i](r[2])});
       if (std::any_of(J[i].begin(), J[i].end(), [&](Ref x) { return !dag.is_zero(x); })) moves.push_back(i);
@@ -78,8 +79,8 @@ FullEquations equations(Mechanics& m, symbolic::Substitution* imposed, const std
   return result;
 }
 
-/// M = sum m J^T J, f = Q - dU/dq - sum J^T (m Jdot qdot + mdot v). Applies where there are masses at known positions
-/// and nothing but them (no [energy] kinetic).
+/// M = sum m J^T J, f = Q - dU/dq - sum J^T (m Jdot qdot + mdot v). Applies if all inertia is that of masses at known
+/// positions (no [energy] kinetic).
 std::optional<system::EquationSystem> by_jacobian(Mechanics& m, system::Approach approach) {
   if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given)) return std::nullopt;
   const std::vector<Ref> Q = generalized_forces(m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The recursive route: composite masses and forces collected from the tips of the branches to the ground.
+// The recursive formulation: composite masses and forces are collected from the tips of the branches to the ground.
 #include <algorithm>
 
 #include "derive/routes.hpp"
@@ -10,7 +10,7 @@
 namespace eomgen::derive {
 namespace {
 
-/// The mass matrix of the whole, factorised; without the rows that no freedom has.
+/// The factorised mass matrix of the whole tree, without the rows that no freedom has.
 system::Solution factorised(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) {
   const BodyEquations equations = body_equations(dag, tree, motion);
   const std::size_t n = equations.f.size();
@@ -31,8 +31,8 @@ system::Solution factorised(Dag& dag, const BodyTree& tree, const std::vector<Li
   return result;
 }
 
-/// Particles that form a tree (derive/trees/branches.hpp), derived with the constraints imposed; by Approach I only
-/// where there is nothing to impose.
+/// Applies to particles that form a tree (derive/trees/branches.hpp), derived with the constraints imposed; in Approach
+/// I only if there are no constraints to impose.
 std::optional<system::EquationSystem> by_recursive(Mechanics& m, system::Approach approach) {
   if (!m.spins.empty()) return equations_of_bodies(m, approach, "recursive", factorised);
   const std::optional<TreeEquations> motion = motion_of_tree(m, approach);

@@ -6,14 +6,14 @@ namespace {
 
 using symbolic::cross;
 
-/// N = I alpha + H a + n, F = H^T alpha + M a + f: moment about the origin and force that a link and all beyond it
-/// need.
+/// N = I alpha + H a + n, F = H^T alpha + M a + f: the moment about the origin and the force required by a link and all
+/// links beyond it.
 struct Articulated {
   Mat3 I, H, M;
   Vec3 n, f;
 };
 
-/// What is left of one second rate when it is eliminated: u = (r - N.alpha - F.a)/D.
+/// The equation of one eliminated acceleration: u = (r - N.alpha - F.a)/D.
 struct Eliminated {
   Vec3 turning, shifting;
   Ref r, D;
@@ -95,8 +95,8 @@ class Elimination {
     }
   }
 
-  /// Along a freedom that is one of the axes nothing is left: exact zeros in place of differences, and the applied
-  /// force.
+  /// Along a freedom that is one of the axes the remaining inertia is 0: exact zeros in place of differences, and the
+  /// applied force.
   void clear(Articulated& body, const Vec3& s, const Vec3& v, Ref Q) {
     if (const std::size_t k = unit(dag_, s); k < 3 && is_zero(dag_, v)) {
       for (std::size_t i = 0; i < 3; ++i) body.I[i][k] = body.I[k][i] = body.H[k][i] = dag_.zero();
@@ -112,7 +112,7 @@ class Elimination {
     const BodyLink& link = tree_.links[l];
     Articulated body = bodies_[l];
     Articulated& to = bodies_[place(link.parent)];
-    if (!link.carried()) {  // turning of the parent moves the origin alone
+    if (!link.carried()) {  // the parent's rotation moves only the origin
       body.I = body.H = zero_matrix(dag_);
       if (!link.relative) body.n = symbolic::zero_vector(dag_);
     } else {

@@ -15,7 +15,7 @@ FullEquations in_coordinates(Dag& dag, const BodyTree& tree) {
   return {std::move(equations.M), std::move(equations.f)};
 }
 
-/// The constraints that keep multipliers are the lengths of Euler parameters that angular velocities stand for.
+/// The active constraints are the length constraints of Euler parameters that angular velocities replace.
 bool only_lengths(const Mechanics& m, const BodyTree& tree) {
   std::set<std::string> lengths;
   for (const BodyLink& link : tree.links) {
@@ -26,9 +26,9 @@ bool only_lengths(const Mechanics& m, const BodyTree& tree) {
          });
 }
 
-/// Kinetic energy does not know the length of Euler parameters, and neither does what acts on the body: the multiplier
-/// of the length is 0, but for forces that are given along the parameters as such. Against these it holds along e: e.Q
-/// + lambda e.A = 0.
+/// The multiplier of the length is 0, as kinetic energy and forces on the body do not depend on the length of Euler
+/// parameters. Only forces given along the parameters themselves need it. It balances them along e: e.Q + lambda e.A =
+/// 0.
 std::vector<Ref> multipliers_of_lengths(const Mechanics& m, const BodyTree& tree, const system::EquationSystem& s) {
   Dag& dag = *m.dag;
   std::vector<Ref> lambda(m.active.size(), dag.zero());

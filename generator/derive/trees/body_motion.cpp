@@ -6,13 +6,13 @@ namespace {
 
 using symbolic::cross;
 
-/// Three steps about one axis each, the rates of the three coordinates alone, the axis of the middle one another than
-/// the others': Euler angles.
+/// Euler angles: three steps about one axis each, with the rates of the three coordinates alone. The axis of the middle
+/// step differs from the others.
 struct Angles {
   std::array<std::size_t, 3> axis;
-  std::size_t third;  // not that of the first and the middle step
+  std::size_t third;  // neither of the first nor of the middle step
   std::array<std::size_t, 3> freedom;
-  Ref c, s;  // what the middle step makes of the first axis: c along it, s along the third
+  Ref c, s;  // image of the first axis under the middle step: c along it, s along the third
   bool symmetric() const { return axis[2] == axis[0]; }
   Ref divisor() const { return symmetric() ? s : c; }
 };
@@ -28,7 +28,7 @@ std::optional<Angles> euler_angles(Dag& dag, const BodyLink& link) {
     if (dag[rate].op != symbolic::Op::symbol) return std::nullopt;
   }
   if (angles.axis[0] == angles.axis[1] || angles.axis[1] == angles.axis[2]) return std::nullopt;
-  // Each rate is that of one coordinate: the directions of the freedoms tell which.
+  // Each rate is that of one coordinate, identified by the direction of its freedom.
   for (std::size_t k = 0; k < 3; ++k) {
     Vec3 s = symbolic::zero_vector(dag);
     s[angles.axis[k]] = dag.one();
@@ -48,22 +48,22 @@ Ref volume(Dag& dag, const BodyLink& link) {
   return dot(dag, link.angles[0].turning, cross(dag, link.angles[1].turning, link.angles[2].turning));
 }
 
-/// The vector that is normal to the turning of the other two coordinates.
+/// The vector normal to the rotation axes of the other two coordinates.
 Vec3 normal(Dag& dag, const BodyLink& link, std::size_t f) {
   return cross(dag, link.angles[(f + 1) % 3].turning, link.angles[(f + 2) % 3].turning);
 }
 
-/// Of Euler angles one after the other, from the last step back to the first.
+/// Solves for the rates of Euler angles one after another, from the last step back to the first.
 std::array<Ref, 3> angle_rates(Dag& dag, const BodyLink& link, const Angles& angles, Vec3 parent, Vec3 w, Vec3 own) {
   const std::vector<Step>& steps = link.turn.steps;
-  // Before the last step: the parent's part, and what the own acceleration leaves of it.
+  // Along the axes before the last step: the difference of the own acceleration and the parent's part.
   for (std::size_t k = 0; k < 2; ++k) {
     w = times(dag, steps[k].R, w);
     parent = symbolic::add(dag, times(dag, steps[k].R, parent), cross(dag, w, steps[k].w));
     w = symbolic::add(dag, w, steps[k].w);
   }
   own = symbolic::subtract(dag, own, cross(dag, times(dag, steps[2].R, w), steps[2].w));
-  Vec3 across = own;  // without what turns about the last axis
+  Vec3 across = own;  // without the rotation about the last axis
   across[angles.axis[2]] = dag.zero();
   const Vec3 left = symbolic::subtract(dag, times(dag, transposed(steps[2].R), across), parent);
   const Ref first = dag.div(left[angles.symmetric() ? angles.third : angles.axis[0]], angles.divisor());
@@ -76,7 +76,7 @@ std::array<Ref, 3> angle_rates(Dag& dag, const BodyLink& link, const Angles& ang
   return result;
 }
 
-/// Twice the dual basis along the own axes: e_dot = dual . w for parameters of unit length.
+/// Twice the dual basis along the link's axes: e_dot = dual . w for parameters of unit length.
 std::array<Vec3, 4> twice_dual(Dag& dag, const BodyLink& link) {
   const Vec3 e{link.parameters[1], link.parameters[2], link.parameters[3]};
   std::array<Vec3, 4> result;
@@ -89,7 +89,7 @@ std::array<Vec3, 4> twice_dual(Dag& dag, const BodyLink& link) {
   return result;
 }
 
-/// e_ddot = dual . alpha - |e_dot|^2 e, which keeps the length.
+/// e_ddot = dual . alpha - |e_dot|^2 e, which preserves the length.
 void parameter_rates(Dag& dag, const BodyLink& link, const Vec3& alpha, std::vector<Ref>& result) {
   const std::array<Vec3, 4> dual = twice_dual(dag, link);
   const Vec3 half = symbolic::scale(dag, dag.constant(symbolic::Rational(1) / 2), alpha);

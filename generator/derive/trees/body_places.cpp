@@ -8,7 +8,7 @@ class Reading {
  public:
   Reading(const Mechanics& m, mechanics::Lowering& lower) : m_(m), dag_(*m.dag), lower_(lower) {}
 
-  /// factor times the vector `id`, added to the result; false where it cannot be read.
+  /// Adds factor times the vector `id` to the result. False if its form is not supported.
   bool read(model::NodeId id, Ref factor) {
     using model::Op;
     const model::Node& node = m_.model->arena[id];

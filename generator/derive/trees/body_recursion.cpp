@@ -6,14 +6,14 @@ namespace {
 
 using symbolic::cross;
 
-/// Mass, its first moment and the inertia about the origin of the link.
+/// Mass, first moment of mass and inertia about the origin of the link.
 struct Composite {
   Ref mass;
   Vec3 moment;
   Mat3 inertia;
 };
 
-/// Momentum of a composite: of translation, and about the origin.
+/// Momentum of a composite: linear, and angular about the origin.
 struct Momentum {
   Vec3 linear, angular;
 };
@@ -37,7 +37,7 @@ class Recursion {
  private:
   static std::size_t place(int link) { return static_cast<std::size_t>(link); }
 
-  /// What the second rates at zero leave: forces and moments that each link needs, from the tips inwards.
+  /// At zero accelerations of the coordinates: forces and moments that each link needs, from the tips inwards.
   void forces() {
     const std::size_t count = tree_.links.size();
     const Vec3 none = symbolic::zero_vector(dag_);
@@ -102,7 +102,8 @@ class Recursion {
     }
   }
 
-  /// The column of M: the momentum of all that a coordinate moves, seen by it and by those further in.
+  /// The column of M: the momentum of everything that a coordinate moves, projected on it and on the coordinates
+  /// further in.
   void column(std::size_t l, const Freedom& freedom) {
     const Composite& c = composite_[l];
     Momentum p;

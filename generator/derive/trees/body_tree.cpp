@@ -45,7 +45,7 @@ class Builder {
   }
 
  private:
-  /// A body that turns about its centre of mass as far as its place is concerned.
+  /// A body that rotates about its centre of mass without effect on its position.
   struct Spinning {
     const model::Body* body;
     Anchor at;
@@ -81,7 +81,7 @@ class Builder {
     }
   }
 
-  /// Its inertia belongs to the link that has its axes, wherever that is.
+  /// Its inertia belongs to the link with its axes, wherever that is.
   bool add_spinning(const Spinning& spinning) {
     Anchor from = spinning.at;
     for (std::uint32_t frame = spinning.body->frame; frame != 0; frame = m_.model->frames[frame].parent) {
@@ -96,7 +96,7 @@ class Builder {
     return own.has_value();
   }
 
-  /// The place in the tree; nothing where its position is not of the form that trees have.
+  /// The place in the tree. Empty if its position does not have the form of a tree.
   std::optional<Anchor> anchor(std::uint32_t place) {
     if (const auto found = anchors_.find(place); found != anchors_.end()) return found->second;
     const std::optional<WrittenPlace> written = written_place(m_, lower_, place);
@@ -108,7 +108,7 @@ class Builder {
     return at;
   }
 
-  /// Along the axes that the point is fixed in first, then from the inner axes to the outer.
+  /// Components along the axes in which the point is fixed first, then from the inner axes to the outer.
   std::optional<Anchor> moved(Anchor at, const std::map<std::uint32_t, Vec3>& components) {
     std::vector<std::uint32_t> frames;
     for (const auto& [frame, v] : components) frames.push_back(frame);
@@ -128,14 +128,14 @@ class Builder {
     return at;
   }
 
-  /// The point as one that is fixed in the axes of `frame`, by links in between where it is not.
+  /// The point as one that is fixed in the axes of `frame`; inserts links where it is not.
   std::optional<Anchor> attached(const Anchor& at, std::uint32_t frame) {
     if (frame_of(at.link) == frame) return at;
     if (frame == 0) return link_at(at, 0, false);
     const std::uint32_t parent = m_.model->frames[frame].parent;
     std::uint32_t inner = parent;
     while (inner != 0 && inner != frame_of(at.link)) inner = m_.model->frames[inner].parent;
-    // Axes of the ground lie between where the frame does not turn against those that the point is fixed in.
+    // Ground axes are inserted if the frame does not rotate relative to the axes of the point.
     const std::optional<Anchor> from =
         inner == frame_of(at.link) ? attached(at, parent) : attached(*attached(at, 0), parent);
     return from ? link_at(*from, frame, true) : from;
@@ -159,7 +159,7 @@ class Builder {
     return {index, symbolic::zero_vector(dag_)};
   }
 
-  /// A link with the same axes whose origin is the point, which moves.
+  /// A link with the same axes whose origin is the moving point.
   Anchor shifted(const Anchor& at) {
     BodyLink link = massless(at.link, frame_of(at.link));
     link.offset = at.offset;
@@ -215,7 +215,7 @@ class Builder {
     if (m_.model->frames[link.frame].rotation == "euler_parameters") add_parameters(link);
   }
 
-  /// The freedoms in the order of the four parameters, where all of them are free.
+  /// The freedoms in the order of the four parameters, if all of them are free.
   void add_parameters(BodyLink& link) {
     std::vector<Freedom> sorted;
     std::vector<Ref> rates;
@@ -281,7 +281,7 @@ void use_angular_velocities(Dag& dag, BodyTree& tree) {
     if (!link.absolute) continue;
     link.angles = link.freedoms;
     link.freedoms.resize(3);
-    for (Step& step : link.turn.steps) {  // w of parameters of unit length does not change with e_ddot = 0
+    for (Step& step : link.turn.steps) {  // w of unit parameters is constant at e_ddot = 0
       if (!link.parameters.empty()) step.w_bias = symbolic::zero_vector(dag);
     }
     for (std::size_t k = 0; k < 3; ++k) {

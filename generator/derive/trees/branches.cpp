@@ -14,7 +14,7 @@ namespace {
 
 using symbolic::Symbol;
 
-/// J of each theta and the particles that it moves; false where it moves two of them differently, or none.
+/// J of each theta and the particles that it moves. False if it moves two of them differently, or none.
 bool find_joints(Dag& dag, Branches& b, std::vector<std::set<std::size_t>>& moved) {
   for (const Symbol& theta : b.coordinates.theta) {
     symbolic::Derivation by = symbolic::partial(dag, theta);
@@ -53,7 +53,7 @@ bool find_links(Dag& dag, Branches& b, const std::vector<std::set<std::size_t>>&
       if (!inside && !common.empty()) return false;
       known = inside && sets[l]->size() == moved[a].size();
       if (known) b.of[a] = l;
-      if (inside) parent = static_cast<int>(l);  // sets shrink, so the last one that holds it is the smallest
+      if (inside) parent = static_cast<int>(l);  // sets shrink, so the last containing set is the smallest
     }
     if (!known) {
       b.of[a] = b.links.size();

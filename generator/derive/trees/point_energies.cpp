@@ -27,7 +27,7 @@ struct Square {
   std::map<std::uint32_t, Ref> J;  // those that are not 0
 };
 
-/// A particle in the making: squares along the axes, each with a sign.
+/// A particle under construction: squares along the axes, each with a sign.
 struct Placed {
   std::array<const Square*, 3> axis{};
   std::array<int, 3> sign{1, 1, 1};
@@ -65,7 +65,7 @@ class Recognition {
                        [=](const Symbol& s) { return s.kind == SymbolKind::coordinate && s.order >= least_order; });
   }
 
-  /// The squares in `factor` times `energy`; false where there is anything else.
+  /// Collects the squares in `factor` times `energy`. False if there is any other term.
   bool collect(Ref energy, Ref factor) {
     const symbolic::Node node = dag_[energy];
     switch (node.op) {
@@ -98,7 +98,7 @@ class Recognition {
     return true;
   }
 
-  /// x with dx/dq_j = J_j, proven where it is by one coordinate after another.
+  /// x with dx/dq_j = J_j, integrated by one coordinate after another and proven.
   std::optional<Ref> integral(const Square& square) {
     Ref x = dag_.zero();
     for (const auto& [j, J] : square.J) {
@@ -116,7 +116,7 @@ class Recognition {
     return x;
   }
 
-  /// Squares of the same mass that move with the same coordinates, up to three.
+  /// Groups squares of the same mass that move with the same coordinates, up to three.
   std::vector<Placed> placed_squares() {
     std::vector<Placed> result;
     std::vector<bool> taken(squares_.size(), false);
@@ -147,7 +147,7 @@ class Recognition {
     return result;
   }
 
-  /// The order and the signs with which most coordinates move it as they move others.
+  /// The order and the signs with which the most coordinates move this particle as they move others.
   Placed best(const std::vector<const Square*>& group) {
     std::array<const Square*, 3> order{};
     std::copy(group.begin(), group.end(), order.begin());

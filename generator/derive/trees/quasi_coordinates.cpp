@@ -15,7 +15,7 @@ using symbolic::Op;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-// Indices of the symbols that stand for theta: beyond those that other stages use while an expression is built.
+// Indices of the symbols for theta: beyond those that other stages use while an expression is built.
 constexpr std::uint32_t first_index = 1u << 20;
 
 using Row = std::vector<Rational>;
@@ -24,7 +24,7 @@ bool is_zero(const Row& row) {
   return std::all_of(row.begin(), row.end(), [](const Rational& c) { return cln::zerop(c); });
 }
 
-/// row . q + rest; or, where `linear` is false, any other dependence on q.
+/// row . q + rest; if `linear` is false, any other dependence on q.
 struct Form {
   bool linear = true;
   Row row;
@@ -37,7 +37,7 @@ class Rewriter {
     for (std::size_t i = 0; i < n_; ++i) place_[of[i]] = i;
   }
 
-  /// Collects the linear forms that the nodes of `roots` use as a whole.
+  /// Collects the maximal linear forms in the nodes of `roots`.
   void collect(const std::vector<Ref>& roots) {
     for (const Ref r : dag_.reachable(roots)) {
       const Form& form = forms_.emplace(r.id, read(r)).first->second;
@@ -50,7 +50,7 @@ class Rewriter {
   const std::vector<Row>& rows() const { return rows_; }
   const std::vector<Ref>& users() const { return users_; }
 
-  /// The expression in theta; the forms have been collected.
+  /// The expression in theta; requires collected forms.
   Ref rewrite(Ref root, const std::vector<Symbol>& theta) {
     for (const Ref r : dag_.reachable({root})) result_[r.id] = rewritten(r, theta);
     return use(root, theta);
@@ -123,7 +123,7 @@ class Rewriter {
     const auto first = std::find_if(row.begin(), row.end(), [](const Rational& x) { return !cln::zerop(x); });
     return static_cast<std::size_t>(first - row.begin());
   }
-  /// Among the rows; their number where it is none of them.
+  /// The index among the rows; the number of rows if it is none of them.
   std::size_t place_of(const Row& row) const {
     const auto same = by_first_.find(first_of(row));
     if (same == by_first_.end()) return rows_.size();
@@ -148,7 +148,7 @@ class Rewriter {
 
   Ref rewritten(Ref r, const std::vector<Symbol>& theta) {
     const Form& form = forms_.at(r.id);
-    if (form.linear) return r;  // whole forms are replaced where they are used
+    if (form.linear) return r;  // maximal forms are replaced where they are used
     const Node node = dag_[r];
     std::array<Ref, 4> args{};
     for (std::uint8_t i = 0; i < node.arity; ++i) args[i] = use(node.args[i], theta);
@@ -161,11 +161,11 @@ class Rewriter {
   std::unordered_map<std::uint32_t, Form> forms_;
   std::unordered_map<std::uint32_t, Ref> result_;
   std::vector<Row> rows_;
-  std::map<std::size_t, std::vector<std::size_t>> by_first_;  // rows by their first entry that is not 0
+  std::map<std::size_t, std::vector<std::size_t>> by_first_;  // rows by their first nonzero entry
   std::vector<Ref> users_;
 };
 
-/// The inverse of a square matrix, exactly; nothing where there is none.
+/// The exact inverse of a square matrix; empty if it is singular.
 std::optional<std::vector<Rational>> inverse(const std::vector<Rational>& a, std::size_t n) {
   numeric::Matrix<Rational> matrix(n, n), unit(n, n);
   matrix.a = a;
@@ -213,7 +213,7 @@ QuasiCoordinates quasi_coordinates(Dag& dag, const std::vector<std::uint32_t>& o
   if (rewriter.rows().size() != n) return same;
   QuasiCoordinates result;
   bool identity = true;
-  std::vector<std::size_t> order(n);  // forms by their last coordinate, so that S is triangular where it can be
+  std::vector<std::size_t> order(n);  // forms by their last coordinate, so that S is triangular if possible
   for (std::size_t a = 0; a < n; ++a) order[a] = a;
   const auto last = [&](std::size_t a) {
     std::size_t i = n;

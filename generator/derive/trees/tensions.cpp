@@ -10,9 +10,9 @@
 namespace eomgen::derive {
 namespace {
 
-constexpr std::size_t small = 40;  // terms: what lies within one link is a handful
+constexpr std::size_t small = 40;  // terms: expressions within one link have few
 
-/// Short expressions multiplied out, with sin^2 + cos^2 = 1; others as they are.
+/// Expands short expressions, with sin^2 + cos^2 = 1; leaves others unchanged.
 class Tidy {
  public:
   explicit Tidy(Dag& dag) : dag_(dag), expand_(dag, small) {}
@@ -24,7 +24,7 @@ class Tidy {
   symbolic::Expander expand_;
 };
 
-/// Summands of a sum with their factors, so that those of the parent cancel exactly.
+/// Summands of a sum with their factors, so that those shared with the parent cancel exactly.
 void gather(const Dag& dag, Ref root, const symbolic::Rational& factor, std::map<Ref, symbolic::Rational>& sum) {
   std::vector<std::pair<Ref, symbolic::Rational>> open{{root, factor}};
   while (!open.empty()) {
@@ -52,7 +52,7 @@ Ref difference(Dag& dag, Ref a, Ref b) {
   return result;
 }
 
-/// plus or minus v / |v| where |v| is a plain expression, else v.
+/// +- v / |v| if |v| is a simple expression, otherwise v.
 Vec3 unit_if_plain(Dag& dag, Tidy& tidy, const Vec3& v) {
   Ref length = dag.call(symbolic::Op::sqrt, tidy.dot(v, v));
   if (dag[length].op == symbolic::Op::abs) length = dag[length].args[0];
@@ -62,7 +62,7 @@ Vec3 unit_if_plain(Dag& dag, Tidy& tidy, const Vec3& v) {
   return unit;
 }
 
-/// The axis that nothing moves along, if there is one: the tree is planar then.
+/// The axis along which nothing moves, if there is one: the tree is planar then.
 std::optional<std::size_t> still_axis(const Dag& dag, const Branches& tree) {
   for (std::size_t axis = 3; axis-- > 0;) {
     if (std::all_of(tree.J.begin(), tree.J.end(), [&](const Vec3& J) { return dag.is_zero(J[axis]); })) return axis;
@@ -76,8 +76,8 @@ Vec3 unit(Dag& dag, std::size_t axis) {
   return e;
 }
 
-/// Directions normal to all J of a link and to one another, none along the axis `still`: the link itself where it is
-/// one, else cross products. Nothing where the J leave a plane that has no plain basis.
+/// Directions normal to all J of a link and to one another, none along the axis `still`: the link itself if it is one,
+/// otherwise cross products. Empty if the J leave a plane without a simple basis.
 std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const LoadedLink& loaded, const Vec3& along,
                                          std::optional<std::size_t> still) {
   const std::size_t left = (still ? 2 : 3) - loaded.J.size();
@@ -90,7 +90,7 @@ std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const LoadedLink&
     const Vec3 second = still ? unit(dag, *still) : loaded.J[1];
     return std::vector<Vec3>{unit_if_plain(dag, tidy, cross(dag, loaded.J[0], second))};
   }
-  for (std::size_t axis = 3; axis-- > 0 && left == 2;) {  // J in a plane: its normal, and what is left in the plane
+  for (std::size_t axis = 3; axis-- > 0 && left == 2;) {  // J in a plane: its normal, and the other direction in the plane
     if (!dag.is_zero(loaded.J[0][axis])) continue;
     const Vec3 e = unit(dag, axis);
     return std::vector<Vec3>{e, unit_if_plain(dag, tidy, cross(dag, loaded.J[0], e))};
@@ -98,7 +98,7 @@ std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const LoadedLink&
   return std::nullopt;
 }
 
-/// The linear system of the tensions, and what it leaves.
+/// The linear system of the tensions, and the accelerations that follow.
 class Tensions {
  public:
   Tensions(Dag& dag, const Branches& tree, const LoadedLinks& links)
@@ -128,7 +128,7 @@ class Tensions {
   }
 
  private:
-  /// W_k / m_first: the force along the J that does on theta_k what f_k does.
+  /// W_k / m_first: the force along the J that is equivalent to f_k on theta_k.
   Vec3 free_force(const LoadedLink& loaded) {
     const Vec3 none = symbolic::zero_vector(dag_);
     std::vector<Ref> f;
@@ -155,10 +155,10 @@ class Tensions {
     return factors.backward(factors.forward(r));
   }
 
-  /// How tension or free force of link `source`, along `force`, moves particle k relative to its parent, along
-  /// `direction`.
+  /// The acceleration of particle k relative to its parent along `direction`, per unit of tension or free force of link
+  /// `source` along `force`.
   Ref response(std::size_t k, const Vec3& direction, std::size_t source, const Vec3& force) {
-    // force acts on the particle of `source` and, reversed, on its parent.
+    // `force` acts on the particle of `source` and, reversed, on its parent.
     const auto weight_at = [&](int particle) {
       Ref w = dag_.zero();
       if (particle == static_cast<int>(source)) w = dag_.add(w, links_.links[source].weight);
@@ -169,7 +169,7 @@ class Tensions {
     };
     const Ref w = dag_.sub(weight_at(static_cast<int>(k)), weight_at(links_.links[k].parent));
     if (dag_.is_zero(w)) return w;
-    // Within one link sines and cosines meet their squares, and normals are normal.
+    // Within one link sines and cosines combine to squares, and normals are orthogonal.
     const Ref along = k == source ? tidy_.dot(direction, force) : dot(dag_, direction, force);
     return dag_.mul(w, along);
   }
@@ -204,7 +204,7 @@ class Tensions {
   const LoadedLinks& links_;
   std::vector<Vec3> free_;                              // W of each link
   std::vector<std::pair<std::size_t, Vec3>> carrying_;  // link, direction
-  std::vector<Ref> tension_;                            // T / m_first, of each of these
+  std::vector<Ref> tension_;                            // T / m_first, for each of these
 };
 
 }  // namespace

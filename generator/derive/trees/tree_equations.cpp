@@ -4,7 +4,7 @@
 namespace eomgen::derive {
 namespace {
 
-/// Per link: what the particles beyond it exert by their inertia and weight, d(m v)/dt - m g without second rates.
+/// Per link: the inertia force and weight of the particles beyond it, d(m v)/dt - m g at zero accelerations.
 std::vector<Vec3> inertia_beyond(Dag& dag, const Branches& b) {
   const Vec3 none = symbolic::zero_vector(dag);
   std::vector<Vec3> force(b.links.size(), none);

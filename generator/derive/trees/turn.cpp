@@ -48,8 +48,8 @@ std::size_t axis_of(const Dag& dag, const Mat3& R) {
 
 namespace {
 
-/// R^T A R with A symmetric and R about axis i, with the double angle in one auxiliary quantity instead of four
-/// products each.
+/// R^T A R with A symmetric and R about axis i; the double angle gives one auxiliary quantity in place of four products
+/// each.
 Mat3 about_axis_to_parent(Dag& dag, const Mat3& R, const Mat3& a, std::size_t i) {
   const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
   const Ref c = R[j][j], s = R[j][k];
