@@ -11,9 +11,9 @@ namespace {
 using Places = std::vector<std::size_t>;
 
 constexpr std::size_t most_charts = 4000;
-constexpr double good_chart = 0.02;  // smallest pivot of the dependent columns, against 1
+constexpr double good_chart = 0.02;  // smallest pivot of the dependent columns, relative to 1
 constexpr double well_conditioned = 0.3;
-constexpr double reach = 0.07;  // of the points beside, relative
+constexpr double reach = 0.07;  // relative distance of nearby points
 constexpr int sample_points = 3;
 
 Places all_of(std::size_t from, std::size_t to) {
@@ -35,13 +35,13 @@ Matrix<double> rounded(const Matrix<Precise>& A) {
   return B;
 }
 
-/// Columns of a block of constraints that may be the dependent ones, the best first.
+/// Candidate sets of dependent columns for a block of constraints, the best first.
 struct Candidate {
   Places columns;
   double quality;
 };
 
-/// n over k; more than `most_charts` where it is more.
+/// n over k; any value above `most_charts` if it exceeds that.
 std::size_t subsets_of(std::size_t n, std::size_t k) {
   std::size_t count = 1;
   for (std::size_t i = 0; i < std::min(k, n - k) && count <= most_charts; ++i) count = count * (n - i) / (i + 1);
@@ -71,7 +71,7 @@ std::vector<Candidate> candidates(const Matrix<Precise>& block) {
   else
     subsets(block.cols, pivots.size(), 0, chosen, all);
   Matrix<double> A = rounded(block);
-  for (std::size_t i = 0; i < A.rows; ++i) {  // against the whole row, so that what all but vanishes there is no pivot
+  for (std::size_t i = 0; i < A.rows; ++i) {  // relative to the whole row, so that a nearly zero entry is no pivot
     double size = 0;
     for (std::size_t j = 0; j < A.cols; ++j) size = std::max(size, std::abs(A(i, j)));
     for (std::size_t j = 0; j < A.cols && size > 0; ++j) A(i, j) /= size;
@@ -100,7 +100,7 @@ Chart chart_of(std::size_t n, const Places& positions, const Places& speeds) {
 template <class T>
 using Pattern = std::vector<std::vector<bool>>;
 
-/// Where an entry is not 0 at one of the points at least.
+/// Marks entries that are nonzero at one of the points or more.
 template <class T>
 void join(Pattern<T>& pattern, const Matrix<T>& A, const T& small) {
   pattern.resize(A.rows, std::vector<bool>(A.cols, false));
@@ -111,7 +111,7 @@ void join(Pattern<T>& pattern, const Matrix<T>& A, const T& small) {
   }
 }
 
-/// Positions and the time are let go where nothing that stays feels them.
+/// Drops positions and the time if no retained entry depends on them.
 template <class T>
 std::vector<bool> retained_of(const Pattern<T>& feels, std::size_t positions) {
   const std::size_t size = feels.size();
@@ -148,7 +148,7 @@ std::uint64_t mixed(std::uint64_t x) {  // splitmix64
   return x ^ (x >> 31);
 }
 
-/// Entries of z that the retained ones determine alone.
+/// Entries of z that depend on the retained ones alone.
 Places constants(const std::vector<Field<Precise>>& fields, const Chart& chart, const std::vector<bool>& retained) {
   Pattern<Precise> feels;
   for (const Field<Precise>& field : fields) join(feels, tangent(field, chart), tiny<Precise>(50));
@@ -179,15 +179,15 @@ Chart best_chart(const Flow& flow, const Field<Precise>& here, const std::vector
       try {
         const std::vector<bool> retained = retained_in<double>(rough, chart, 1e-9);
         const auto count = static_cast<std::size_t>(std::count(retained.begin(), retained.end(), true));
-        // Among equals those that name the speeds of the coordinates that stay, then the better conditioned (coarsely:
-        // rounding decides nothing), then those whose dependent ones come first in the model.
+        // Ties: prefer charts with the speeds of the retained coordinates, then the better conditioned (coarsely, so
+        // that rounding does not decide), then those whose dependent entries come first in the model.
         const double quality = std::round(20 * std::min({a.quality, b.quality, well_conditioned}));
         const std::tuple<std::size_t, std::size_t, double> score{count, without(a.columns, b.columns).size(), -quality};
         if (best && !(score < *best)) continue;
         best = score;
         result = chart;
       } catch (const std::domain_error&) {
-        continue;  // fails at a point beside
+        continue;  // singular at a nearby point
       }
     }
   }
@@ -271,7 +271,7 @@ std::optional<State<Precise>> beside(const Flow& flow, const State<Precise>& z, 
       setting.leaf = flow.leaf(moved, setting);
       if (auto found = projected(flow, moved, setting)) return found;
     } catch (const std::domain_error&) {
-      continue;  // outside of a domain: nearer
+      continue;  // outside of a domain: try a nearer point
     }
   }
   return std::nullopt;

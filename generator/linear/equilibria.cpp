@@ -36,8 +36,8 @@ class Search {
               rounded(r_.setting.leaf)};
   }
 
-  // Once as it is. If families are among what is found, once more with what they leave open held; what stands alone
-  // stays.
+  // Searches once as requested. If families are found, searches again with their undetermined entries held; isolated
+  // points are kept.
   void run() {
     all_starts();
     std::vector<FoundPoint> alone, members;
@@ -59,7 +59,7 @@ class Search {
   }
 
  private:
-  // Members of families that are looked at: while nothing is held for them, and afterwards.
+  // Members of families that are examined: before any entry is held for them, and afterwards.
   static constexpr std::size_t first_members = 3, most_members = 20;
 
   void all_starts() {
@@ -67,7 +67,7 @@ class Search {
     for (const Precise& t : held_->targets) targets.push_back(to_double(t));
     struct End {
       State<double> z;
-      bool leads;  // far away, with rates of 1e8, Newton's steps in binary64 are small where there is nothing
+      bool leads;  // far away, with rates of 1e8, binary64 Newton steps may be small without a solution
     };
     std::vector<End> seen;
     for (std::size_t k = 0; k < r_.starts; ++k) {
@@ -113,12 +113,12 @@ class Search {
                        });
   }
 
-  /// What was held from the beginning.
+  /// The quantities held by the request.
   void hold_own(const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) const {
     value = Matrix<Precise>(r_.targets.size(), 1);
     slope = Matrix<Precise>(r_.targets.size(), at.size());
     if (r_.targets.empty()) return;
-    const Sloped<Precise> s = held_->at(at, r_.setting);  // first, and then what families leave open
+    const Sloped<Precise> s = held_->at(at, r_.setting);  // requested ones first, then those for families
     for (std::size_t k = 0; k < r_.targets.size(); ++k) {
       value(k, 0) = s.value[k] - r_.targets[k];
       for (std::size_t d = 0; d < s.slope.cols; ++d) slope(k, d) = s.slope(k, d);
@@ -128,13 +128,13 @@ class Search {
   bool is_steady(const State<Precise>& rough) {
     try {
       return polish(rough);
-    } catch (const std::domain_error& error) {  // the coordinates fail there, as angles at a pole
+    } catch (const std::domain_error& error) {  // the coordinates are singular there, as angles at a pole
       result_.refuse(error.what(), rough);
       return false;
     }
   }
 
-  /// Whether there is a steady motion, within the ranges of the coordinates.
+  /// Whether a steady motion exists within the ranges of the coordinates.
   bool polish(State<Precise> rough) {
     for (const std::size_t i : ignored_positions(symmetry_)) rough[i] = r_.start[i];
     std::optional<Steady> found = steady(rough);
@@ -162,7 +162,7 @@ class Search {
     return true;
   }
 
-  // Coordinates that are back where they were after 2 pi: the flow and the constraints are the same there.
+  // Coordinates with period 2 pi: the flow and the constraints are the same there.
   void find_turns() {
     turns_.assign(n_, false);
     const Precise turn = Precise(2) * cln::pi(precise_format());
@@ -179,7 +179,7 @@ class Search {
         continue;
       }
     }
-    for (const std::size_t i : ignored_positions(symmetry_)) turns_[i] = false;  // they stay at the start
+    for (const std::size_t i : ignored_positions(symmetry_)) turns_[i] = false;  // they keep their start values
   }
 
   static bool equal(const Matrix<Precise>& A, const Matrix<Precise>& B) {
@@ -203,7 +203,7 @@ class Search {
     wrap(z);
   }
 
-  /// One of the two names of each attitude; `take` puts another in its place where that is steady too.
+  /// Selects one of the two coordinate triples of each attitude. `take` replaces the point if the other is steady too.
   template <class T, class Take>
   void name_plainly(State<T>& z, const Setting<T>& setting, const T& nothing, const Take& take) const {
     for (const auto& e : r_.parameters) {
@@ -237,13 +237,13 @@ class Search {
     }
   }
 
-  // A name of the same attitude; not where something that is held, or a force, tells the names apart.
+  // The other triple of the same attitude; not if a held quantity or a force distinguishes them.
   void take_if_steady(State<Precise>& z, const State<Precise>& other) const {
     const auto found = steady(other);
     if (found && is_same(rounded(other), found->z)) z = other;
   }
 
-  /// Directions along which steady motions with what is held go on, as columns.
+  /// Directions along which steady motions with the held quantities continue, as columns.
   Matrix<Precise> open_directions(const State<Precise>& z) const {
     const Field<Precise> field = flow_.at(z, r_.setting);
     Matrix<Precise> J = stacked(field.phi_slope, rows_of(field.slope, symmetry_.constant));
@@ -264,12 +264,12 @@ class Search {
     return Elimination<Precise>(columns_of(J, columns), tiny<Precise>(40), tiny<Precise>(60)).null_space();
   }
 
-  /// Of the open directions those along which steady motions do go on: a multiple root opens directions too, and is
-  /// alone.
+  /// The open directions along which steady motions do continue. A multiple root has open directions too, but is
+  /// isolated.
   Matrix<Precise> family_directions(const State<Precise>& z) const {
     const Matrix<Precise> N = open_directions(z);
     if (N.cols == 0) return N;
-    Matrix<Precise> together(N.rows, 1);  // in no special direction
+    Matrix<Precise> together(N.rows, 1);  // a generic direction
     for (std::size_t i = 0; i < N.rows; ++i) {
       for (std::size_t k = 0; k < N.cols; ++k)
         together(i, 0) = together(i, 0) + number<Precise>(Precise(1 + 0.3 * random_number(77, k))) * N(i, k);
@@ -292,13 +292,13 @@ class Search {
     const std::optional<Steady> found = find_steady(flow_, symmetry_, beside, r_.setting, own_);
     if (!found) return false;
     for (std::size_t i = 0; i < N.rows;
-         ++i) {  // it must not fall back: along a family the way back is as long as the square of the step
+         ++i) {  // no falling back: along a family the correction is of second order in the step
       if (magnitude(found->z[i] - beside[i]) > tiny<Precise>(3) / 4 * (Precise(1) + magnitude(z[i]))) return false;
     }
     return true;
   }
 
-  // Positions that are retained, then speeds, one for each direction that is open at a member, at their start values.
+  // Retained positions, then speeds, at their start values: one for each open direction at a member.
   void hold_families(const State<Precise>& member) {
     const Matrix<Precise> N = family_directions(member);
     Matrix<Precise> chosen;
@@ -357,7 +357,7 @@ SearchResult find_steady_motions(const SearchRequest& request) {
   std::optional<State<Precise>> start;
   try {
     start = projected(request.flow, request.start, request.setting);
-  } catch (const std::domain_error&) {  // it has no field; the search needs a place that has one
+  } catch (const std::domain_error&) {  // no field there; the search needs a point that has one
     Setting<Precise> setting = request.setting;
     for (std::uint64_t seed = 500; !start && seed < 510; ++seed)
       start = beside(request.flow, request.start, setting, seed);

@@ -9,7 +9,7 @@ using symbolic::SymbolKind;
 
 namespace {
 
-// Of a matrix that was scaled: far above rounding, far below what a mechanical system has.
+// Rank tolerance of a scaled matrix: far above rounding, far below values in mechanical systems.
 template <class T>
 T singular();
 template <>
@@ -21,7 +21,7 @@ Precise singular<Precise>() {
   return tiny<Precise>(60);
 }
 
-/// Most slopes are 0.
+/// Most derivatives are 0.
 template <class T>
 void subtract(T& sum, const T& slope, const T& by) {
   if (!is_zero(slope)) sum = sum - slope * by;
@@ -118,9 +118,8 @@ Field<T> Flow::constraints_at(const State<T>& z, const Setting<T>& setting) cons
   return field;
 }
 
-// With K = [M, -A^T; A, 0]: K (a, lambda) = (f, -gamma), and along every direction d
-// K (a', lambda') = (f' - M' a + A'^T lambda, -gamma' - A' a). Rows of A that follow from others are left out by the
-// elimination.
+// With K = [M, -A^T; A, 0]: K (a, lambda) = (f, -gamma), and along every direction d K (a', lambda') = (f' - M' a +
+// A'^T lambda, -gamma' - A' a). The elimination drops redundant rows of A.
 template <class T>
 void Flow::differentiate(const Sloped<T>& s, const State<T>& z, Field<T>& field) const {
   const std::size_t size = n_ + m_, f0 = n_ * n_, A0 = f0 + n_, gamma0 = A0 + m_ * n_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slopes as limits. Along a ray that leaves z the formula is smooth, however it is written; where the slopes go to the
-// same numbers along every ray, the function has these slopes at z.
+// Derivatives as limits. Along a ray from z the formula is smooth, in whatever form it is written. If the derivatives
+// converge to the same values along every ray, the function has these derivatives at z.
 #include <algorithm>
 
 #include "linear/chart.hpp"
@@ -8,20 +8,21 @@
 namespace eomgen::linear {
 namespace {
 
-constexpr double apart = 1e-5;  // by which slopes on both sides of a kink differ at least, against 1 and their size
+constexpr double apart = 1e-5;  // least relative difference of derivatives across a kink
 constexpr int rays = 2;         // and their opposites
 
 template <class T>
 State<T> moved(const State<T>& z, const T& step, std::uint64_t ray) {
   State<T> result = z;
-  for (std::size_t i = 0; i + 1 < z.size(); ++i) {  // t stays
+  for (std::size_t i = 0; i + 1 < z.size(); ++i) {  // t is fixed
     const T direction = number<T>(Precise(0.3 + 0.7 * random_number(40 + ray, i)));
     result[i] = result[i] + step * direction * (T(1) + magnitude(z[i]));
   }
   return result;
 }
 
-/// The largest difference of values and slopes, against 1 and their size: a step has a slope on both sides.
+/// The largest difference of values and derivatives, relative to 1 and their magnitude: a step has equal derivatives on
+/// both sides.
 template <class T>
 T difference(const Sloped<T>& a, const Sloped<T>& b) {
   T largest(0);
@@ -46,8 +47,8 @@ using Steps = std::vector<std::pair<double, double>>;  // multiples of a step an
 template <class T>
 using At = std::function<Sloped<T>(const State<T>&)>;
 
-/// The mean over all rays, and by how much they differ. `step` is small enough to be on one side of every kink that z
-/// is not on.
+/// The mean over all rays, and their deviation. `step` must be small enough not to cross a kink that does not contain
+/// z.
 template <class T>
 std::pair<Sloped<T>, T> over_rays(const At<T>& at, const State<T>& z, const T& step, const Steps& steps) {
   std::vector<Sloped<T>> ends;
@@ -78,7 +79,7 @@ Sloped<double> limit(const At<double>& at, const State<double>& z) {
 Sloped<Precise> limit(const At<Precise>& at, const State<Precise>& z) {
   constexpr int exact = 20;
   require_domain(to_double(over_rays<Precise>(at, z, tiny<Precise>(12), {{1, 1}}).second) < apart, "");
-  // Extrapolated along each ray from three points: what is linear and quadratic in the step falls out.
+  // Extrapolates along each ray from three points: linear and quadratic terms in the step cancel.
   const Precise third = Precise(1) / Precise(3);
   auto [sum, largest] = over_rays<Precise>(at, z, tiny<Precise>(50), {{1, 8}, {2, -6}, {4, 1}});
   require_domain(largest < tiny<Precise>(exact), "");

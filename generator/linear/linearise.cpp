@@ -6,7 +6,8 @@
 namespace eomgen::linear {
 namespace {
 
-// A start is known to some 16 digits, the end of a run to its tolerance: what is this near to a steady motion is on it.
+// A start is known to about 16 digits, the end of a run to its tolerance. A state this close to a steady motion counts
+// as on it.
 constexpr double nearness = 1e-7;
 
 bool is_near(const State<Precise>& a, const State<Precise>& b) {
@@ -23,13 +24,13 @@ Matrix<Precise> reduced_matrix(const Field<Precise>& field, const Chart& chart, 
   Matrix<Precise> A = columns_of(with_time, columns);
   Precise largest(0);
   for (const Precise& x : A.a) largest = std::max(largest, magnitude(x));
-  for (Precise& x : A.a) {  // what cancels leaves a rounding
+  for (Precise& x : A.a) {  // cancellation leaves rounding errors
     if (magnitude(x) <= tiny<Precise>(std::min(100, known - 5)) * largest) x = Precise(0);
   }
   return A;
 }
 
-/// Zeros of the same motion with other parameters; along a motion that is not steady, at another of its states too.
+/// Zero eigenvalues of the same motion with other parameters; along an unsteady motion also at another of its states.
 std::optional<std::size_t> zeros_beside(const Flow& flow, const Linearisation& here, Setting<Precise> setting,
                                         std::uint64_t seed) {
   try {
@@ -64,7 +65,7 @@ Linearisation linearise(const Flow& flow, const State<Precise>& start, const Set
   require_domain(on_constraints.has_value(), "the state does not satisfy the constraints");
   result.z = *on_constraints;
   result.symmetry = find_symmetry(flow, result.z, setting, seed);
-  // The independent entries as they were given.
+  // Keeps the independent entries as given.
   if (const auto same = projected(flow, start, setting, result.symmetry.chart.dependent)) result.z = *same;
   if (result.symmetry.autonomous) {
     const auto steady = find_steady(flow, result.symmetry, result.z, setting);

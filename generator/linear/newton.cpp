@@ -10,10 +10,10 @@ namespace eomgen::linear {
 namespace {
 
 constexpr int most_steps = 80;
-constexpr double longest_step = 0.7;  // of an entry, against 1 and its size
+constexpr double longest_step = 0.7;  // of an entry, relative to 1 and its magnitude
 constexpr double settled = 1e-11;
 constexpr double rank_tolerance = 1e-9;
-constexpr double least_row = 1e-6;           // of the largest slope
+constexpr double least_row = 1e-6;           // relative to the largest derivative
 constexpr std::size_t plain_attitudes = 81;  // Euler parameters of -1, 0, 1
 
 struct Equations {
@@ -48,8 +48,8 @@ Equations equations(const Flow& flow, const Symmetry& symmetry, const State<doub
   return e;
 }
 
-/// The least step, with entries measured against 1 and their size, rows against their largest slope; where that all but
-/// vanishes, beside other rows, it counts no more: its value would be a rounding made large.
+/// The least-norm step, with entries relative to 1 and their magnitude, and rows relative to their largest derivative.
+/// A row that nearly vanishes compared with the others is ignored, since scaling would amplify its rounding.
 std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z, bool& open) {
   const auto rows = static_cast<Eigen::Index>(e.value.size()), columns = static_cast<Eigen::Index>(z.size() - 1);
   Eigen::MatrixXd J(rows, columns);
@@ -74,7 +74,7 @@ std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z, 
   return std::move(found.x);
 }
 
-// All of -1, 0, 1 first: they hold the turns that carry axes into axes. Then random ones.
+// All combinations of -1, 0, 1 first: they include the rotations that map axes to axes. Then random ones.
 void set_attitude(const SearchRequest& request, const std::array<std::size_t, 4>& e, std::size_t k, State<double>& z) {
   std::size_t code = k;
   bool any = false;
@@ -136,7 +136,7 @@ State<double> spread_start(const SearchRequest& request, const Symmetry& symmetr
   for (std::size_t i = 0; i < 2 * n; ++i) {
     const double r = random_number(request.seed + 50000, 64 * k + i);
     if (i >= n) {
-      // Rates of what a steady motion keeps are 0.
+      // Entries that are constant in a steady motion have zero rates.
       z[i] = kept[i - n] ? 0 : attitudes_only ? z[i] : std::abs(z[i]) > 0 ? z[i] * (1 + 1.5 * r) : fastest * r;
       continue;
     }

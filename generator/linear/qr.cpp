@@ -9,10 +9,10 @@ namespace {
 using cln::cl_N;
 
 constexpr int deflation_digits = digits - 4;
-// Towards a Jordan block of size m the error falls by (m - 1)/m a round only.
+// For a Jordan block of size m, the error decreases by (m - 1)/m per iteration only.
 constexpr int most_rounds_each = 1500;
 
-/// v with v0 = 1 and beta, so that (1 - beta v v^T) x is along the first axis.
+/// v with v0 = 1, and beta, such that (1 - beta v v^T) x is along the first axis.
 struct Reflection {
   std::vector<Precise> v;
   Precise beta = 0;
@@ -89,7 +89,7 @@ void add_pair(const Precise& a, const Precise& b, const Precise& c, const Precis
     found.push_back(cln::complex(middle, -im));
     return;
   }
-  // The larger one from the sum, the other one from the product: nothing cancels.
+  // The larger root from the sum, the other one from the product, without cancellation.
   const Precise root = cln::sqrt(square);
   const Precise larger = cln::minusp(middle) ? middle - root : middle + root;
   found.push_back(larger);
@@ -100,9 +100,9 @@ class Francis {
  public:
   explicit Francis(Matrix<Precise> H) : H_(std::move(H)), nothing_(tiny<Precise>(deflation_digits) * largest_row(H_)) {}
 
-  /// False where the iteration does not end.
+  /// False if the iteration does not converge.
   bool run(std::vector<cl_N>& found) {
-    std::size_t end = H_.rows;  // rows from `end` on are done
+    std::size_t end = H_.rows;  // rows from `end` on are finished
     int round = 0;
     while (end > 0) {
       const std::size_t begin = block(end);
@@ -123,8 +123,8 @@ class Francis {
   }
 
  private:
-  /// Where the block that ends there begins; what is next to nothing below the diagonal, beside the whole matrix,
-  /// becomes 0: the digits leave room for roots that are many orders smaller.
+  /// The first row of the block that ends there. Negligible subdiagonal entries, relative to the whole matrix, become
+  /// 0; the digits suffice for roots that are many orders smaller.
   std::size_t block(std::size_t end) {
     for (std::size_t k = end - 1; k > 0; --k) {
       if (magnitude(H_(k, k - 1)) > nothing_) continue;
@@ -151,7 +151,7 @@ class Francis {
         if (k + 2 < end) x.push_back(H_(k + 2, k - 1));
       }
       const Reflection r = reflection(x);
-      // Rows and columns of the block alone: what lies outside moves no root.
+      // Rows and columns of the block alone: entries outside do not change its roots.
       reflect_rows(H_, r, k, k > begin ? k - 1 : begin, end);
       reflect_columns(H_, r, k, begin, std::min(end, k + 4));
       for (std::size_t i = 1; k > begin && i < x.size(); ++i) H_(k + i, k - 1) = Precise(0);
@@ -178,7 +178,7 @@ void normalise(std::vector<cl_N>& x) {
   for (cl_N& entry : x) entry = entry / size;
 }
 
-/// H - value = P L U of a Hessenberg matrix; pivots that vanish become next to nothing.
+/// H - value = P L U of a Hessenberg matrix; zero pivots are replaced by negligible ones.
 class Shifted {
  public:
   Shifted(const Matrix<Precise>& H, const cl_N& value, const Precise& norm)
@@ -229,12 +229,12 @@ class Shifted {
   std::vector<bool> swapped_;
 };
 
-/// Residual on A itself: the Hessenberg form is held with it.
+/// The residual is taken on A itself, which also checks the Hessenberg form.
 Root examined(const Matrix<Precise>& A, const Hessenberg& form, const cl_N& value, const Precise& norm) {
   const std::size_t n = A.rows;
   const Shifted shifted(form.H, value, norm);
   std::vector<cl_N> right(n), left(n);
-  for (std::size_t i = 0; i < n; ++i) {  // no eigenvector is perpendicular to it but by accident
+  for (std::size_t i = 0; i < n; ++i) {  // generic: almost surely not perpendicular to an eigenvector
     right[i] = number<Precise>(Precise(1) + Precise(static_cast<unsigned long>(7 * i % 11)) / 13);
     left[i] = number<Precise>(Precise(1) + Precise(static_cast<unsigned long>(5 * i % 13)) / 17);
   }
@@ -244,7 +244,7 @@ Root examined(const Matrix<Precise>& A, const Hessenberg& form, const cl_N& valu
     normalise(right);
     normalise(left);
   }
-  cl_N overlap = 0;  // `left` solves with the transpose: no conjugate
+  cl_N overlap = 0;  // `left` is from the transpose: no conjugate
   for (std::size_t i = 0; i < n; ++i) overlap = overlap + left[i] * right[i];
   const std::vector<cl_N> x = form.back(right);
   std::vector<cl_N> rest(n);
@@ -284,7 +284,7 @@ Matrix<Precise> balanced(Matrix<Precise> A) {
         column = column + magnitude(A(j, i));
       }
       if (is_zero(row) || is_zero(column)) continue;
-      // column 2^k and row 2^-k are of one size.
+      // Scaling by 2^k makes column and row norms similar.
       const int k = static_cast<int>(std::lround(to_double(cln::ln(row / column)) / (2 * std::log(2.0))));
       if (k == 0) continue;
       const Precise factor = cln::expt(Precise(2), k);
@@ -309,7 +309,7 @@ Roots roots(const Matrix<Precise>& A) {
   const Precise norm = largest_row(A);
   for (const cl_N& value : found) {
     const Precise im = cln::imagpart(value);
-    if (cln::minusp(im)) {  // the conjugate of the one before
+    if (cln::minusp(im)) {  // the conjugate of the previous one
       result.list.push_back({value, result.list.back().residual, result.list.back().condition});
       continue;
     }

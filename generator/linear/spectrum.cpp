@@ -11,11 +11,11 @@
 namespace eomgen::linear {
 namespace {
 
-// Pivots below these parts of scaled rows are 0: far from rounding, far from anything that a model has.
+// Pivots of scaled rows below these are 0: far above rounding, far below values in models.
 constexpr int most_rank_digits = 60, rank_margin = 5;
-constexpr int root_digits = 18;          // parts of a root below these are 0
-constexpr double printed = 1e-12;        // what an eigenvalue is good for
-constexpr double well_told = 1e-6;       // condition from which binary64 tells eigenvalues one by one
+constexpr int root_digits = 18;          // smaller parts of a root are 0
+constexpr double printed = 1e-12;        // accuracy of a printed eigenvalue
+constexpr double well_told = 1e-6;       // condition above which binary64 separates eigenvalues
 constexpr double rounding_factor = 100;  // of binary64's QR, on n eps |A|
 
 Precise least(const Precise& x, const Precise& y) { return x < y ? x : y; }
@@ -23,7 +23,7 @@ double re(const Root& r) { return to_double(cln::realpart(r.value)); }
 double im(const Root& r) { return to_double(cln::imagpart(r.value)); }
 Precise size_of(const cln::cl_N& x) { return cln::abs(x); }
 
-/// An exact 2 would have a root of a few digits.
+/// A float 2: the root of an exact 2 would have few digits.
 Matrix<Precise> as_floats(Matrix<Precise> A) {
   for (Precise& x : A.a) {
     if (!is_zero(x)) x = number<Precise>(x);
@@ -46,7 +46,7 @@ Matrix<Precise> without_null_space(const Matrix<Precise>& A, const Elimination<P
   return rest;
 }
 
-/// Zeros, by ranks: what is left has none.
+/// Splits off zeros by ranks; the rest has none.
 std::size_t split_zeros(Matrix<Precise>& A, int known) {
   const int rank_digits = std::min(most_rank_digits, known - rank_margin),
             floor_digits = std::min(100, known - rank_margin);
@@ -64,8 +64,8 @@ std::size_t split_zeros(Matrix<Precise>& A, int known) {
   return zeros;
 }
 
-// What a Jordan block spreads into, and equal roots: as near to one another as their errors. The mean is known far
-// better than each.
+// Merges roots that a Jordan block spreads into, and equal roots: those closer than their errors. The mean is far more
+// accurate than each.
 void merge(std::vector<Root>& list, std::vector<Precise>& error, const Precise& norm) {
   const std::size_t n = list.size();
   std::vector<std::size_t> leader(n);
@@ -99,8 +99,8 @@ void merge(std::vector<Root>& list, std::vector<Precise>& error, const Precise& 
       if (leader[j] != i) continue;
       list[j].value = mean;
       list[j].condition = Precise(0);
-      // The mean moves with the square of what each moves by, and at least by a rounding.
-      const bool wide = spread > tiny<Precise>(10) * size_of(mean);  // then it may as well be several
+      // The error of the mean is of second order in that of each, and at least a rounding.
+      const bool wide = spread > tiny<Precise>(10) * size_of(mean);  // then these may be several roots
       error[j] = wide ? spread : spread * spread / norm + tiny<Precise>(known_digits) * norm;
     }
   }
@@ -108,7 +108,7 @@ void merge(std::vector<Root>& list, std::vector<Precise>& error, const Precise& 
 
 using Complex = std::complex<double>;
 
-/// What binary64 says of the same matrix, scaled to size 1.
+/// The eigenvalues of the same matrix in binary64, scaled to norm 1.
 class Binary64 {
  public:
   Binary64(const Matrix<Precise>& A, const Precise& norm)
@@ -122,8 +122,8 @@ class Binary64 {
     rounding_ = rounding_factor * static_cast<double>(A.rows) * 2.3e-16;
   }
 
-  /// One of its eigenvalues, which no other root has, is as near as roundings allow; where they allow anything, the
-  /// matrix is singular there within its roundings.
+  /// Assigns one of its eigenvalues that no other root has, if it is as close as rounding allows. If rounding allows
+  /// any distance, the matrix is singular there to rounding.
   bool has(const Root& r) {
     const Complex at = {to_double(cln::realpart(r.value) / norm_), to_double(cln::imagpart(r.value) / norm_)};
     const double condition = to_double(r.condition);

@@ -22,7 +22,7 @@ std::string in_words(Stability stability) {
 
 namespace {
 
-constexpr int nothing = 60;  // of numbers that are known to more than 100 digits
+constexpr int nothing = 60;  // zero of numbers with more than 100 known digits
 
 std::vector<std::size_t> retained_entries(const Linearisation& l) {
   std::vector<std::size_t> result;
@@ -38,7 +38,7 @@ Precise largest(const Matrix<Precise>& A) {
   return result;
 }
 
-/// All pivots of a symmetric matrix, in the order of their size, of one sign.
+/// Whether all pivots of a symmetric matrix, in order of magnitude, have one sign.
 bool is_definite(Matrix<Precise> H) {
   const Precise scale = largest(H);
   if (H.rows == 0) return true;
@@ -88,7 +88,7 @@ StabilityTest::Slopes StabilityTest::slopes(const Function& function, const Line
   return result;
 }
 
-// F = E - sum mu I with dF = 0 on the constraints; along a curve on them d2F = z'^T (F'' - sum kappa phi'') z', where
+// F = E - sum mu I with dF = 0 on the constraints. Along a curve on them, d2F = z'^T (F'' - sum kappa phi'') z', with
 // dF = sum kappa dphi.
 bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size_t>& columns,
                              const Function& energy) const {
@@ -99,13 +99,14 @@ bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size
   }
   const Matrix<Precise> T = columns_of(whole, columns);
   Slopes F = slopes(energy, l);
-  Matrix<Precise> along;  // slopes of the momenta that are taken, by the retained entries
+  Matrix<Precise> along;  // derivatives of the used momenta by the retained entries
   std::vector<Slopes> taken;
   for (const Function& momentum : momenta_) {
     const Slopes I = slopes(momentum, l);
     const Matrix<Precise> all = I.first * whole, kept = I.first * T;
     for (std::size_t k = 0; k < all.cols; ++k) {
-      // It may be conserved and yet feel a coordinate that the motion does not: then it is none of the reduced motion.
+      // It may be conserved but depend on a coordinate that the motion does not depend on. Then it is no quantity of
+      // the reduced motion.
       if (std::find(columns.begin(), columns.end(), k) == columns.end() &&
           magnitude(all(0, k)) > tiny<Precise>(nothing) * (Precise(1) + largest(all)))
         goto next;
@@ -163,7 +164,7 @@ std::optional<std::size_t> family(const Flow& flow, const Linearisation& steady,
     const auto found = steady_state(flow, steady.symmetry, start, steady.setting);
     if (!found) return std::nullopt;
     for (std::size_t i = 0; i + 1 < T.rows;
-         ++i) {  // it must not fall back: the way back is as long as the square of the step
+         ++i) {  // no falling back: the correction is of second order in the step
       if (magnitude((*found)[i] - start[i]) > step * size / Precise(4) * (Precise(1) + magnitude(steady.z[i])))
         return std::nullopt;
     }

@@ -35,7 +35,7 @@ Equations steady_equations(const Flow& flow, const Symmetry& symmetry, const Sta
   return e;
 }
 
-/// Of the terms of an equation, as far as its slopes tell.
+/// The magnitude of the terms of an equation, estimated from its derivatives.
 Precise size_of(const Equations& e, std::size_t i, const State<Precise>& z) {
   Precise size(1);
   for (std::size_t j = 0; j < e.slope.cols; ++j)
@@ -43,7 +43,7 @@ Precise size_of(const Equations& e, std::size_t i, const State<Precise>& z) {
   return size;
 }
 
-/// Every equation holds in so many digits, against the size of its terms.
+/// Whether every equation holds to so many digits, relative to the magnitude of its terms.
 bool holds(const Equations& e, const State<Precise>& z, int digits_of_it = 90) {
   for (std::size_t i = 0; i < e.value.rows; ++i) {
     if (magnitude(e.value(i, 0)) > tiny<Precise>(digits_of_it) * size_of(e, i, z)) return false;
@@ -51,7 +51,7 @@ bool holds(const Equations& e, const State<Precise>& z, int digits_of_it = 90) {
   return true;
 }
 
-/// What counts as no pivot and as no row or column, as powers of 1/10.
+/// Rank tolerances for pivots and for rows or columns, as powers of 1/10.
 struct Rank {
   int cutoff, floor;
 };
@@ -71,12 +71,12 @@ std::optional<State<Precise>> newton(const Flow& flow, const Symmetry& symmetry,
       if (magnitude(move(i, 0)) > Precise(1000) * (Precise(1) + magnitude(start[i]))) return std::nullopt;
       done = done && magnitude(move(i, 0)) <= tiny<Precise>(exact) * (Precise(1) + magnitude(z[i]));
     }
-    if (done) return holds(e, z) ? std::optional(z) : std::nullopt;  // before the last step, far below what is asked
+    if (done) return holds(e, z) ? std::optional(z) : std::nullopt;  // before the last step, far below the required tolerance
   }
   return std::nullopt;
 }
 
-/// What Newton's iteration is given, of a place where it starts near a root.
+/// The input of Newton's iteration near a root.
 struct Problem {
   const Flow& flow;
   const Symmetry& symmetry;
@@ -107,8 +107,8 @@ Precise largest_move(const Matrix<Precise>& move, const State<Precise>& z) {
   return largest;
 }
 
-// At a root of multiplicity m Newton's steps shrink by 1 - 1/m each, all alike: once they do, the rest of the way is
-// their sum.
+// At a root of multiplicity m, Newton steps shrink by 1 - 1/m each. Once the ratio is constant, the remaining distance
+// is their geometric sum.
 std::optional<Steady> multiple_root(const Problem& p) {
   constexpr int most_steps = 400, exact = 130, cutoff = 130, floor = 150;
   State<Precise> z = p.start;
@@ -140,8 +140,8 @@ std::optional<Steady> multiple_root(const Problem& p) {
   return std::nullopt;
 }
 
-/// By how much of themselves, at least, the numbers of the setting would have to differ for each equation to hold: the
-/// largest.
+/// The least relative change of the numbers of the setting with which each equation holds: the largest over the
+/// equations.
 Precise distance_in_numbers(const Problem& p, const State<Precise>& z) {
   const Equations e = p.at(z);
   const Precise change = tiny<Precise>(50);
@@ -168,7 +168,7 @@ Precise distance_in_numbers(const Problem& p, const State<Precise>& z) {
   return largest;
 }
 
-// The least squares of the equations have a minimum that is 0 but for roundings of what is given.
+// Least squares of the equations: the minimum is 0 up to rounding of the given numbers.
 std::optional<Steady> rounded_root(const Problem& p) {
   constexpr int most_steps = 60, exact = 100;
   constexpr double roundings = 1e-12;
@@ -193,7 +193,7 @@ std::optional<Steady> rounded_root(const Problem& p) {
   return std::nullopt;
 }
 
-// What is 0 but for the way that led there.
+// Sets entries to 0 that are 0 up to the error of the iteration.
 void snap(const Problem& p, Steady& found) {
   State<Precise> z = found.z;
   bool changed = false;
@@ -213,8 +213,8 @@ void snap(const Problem& p, Steady& found) {
 
 }  // namespace
 
-// In a family of steady motions the slopes lose rank there, and all but lose it beside: such pivots count as none.
-// Where that throws an equation away that is needed, the iteration does not end, and smaller pivots count.
+// In a family of steady motions the Jacobian is rank-deficient there, and nearly so nearby: such pivots count as 0. If
+// that drops a needed equation, the iteration does not converge, and smaller pivots count.
 std::optional<State<Precise>> steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
                                            const Setting<Precise>& setting, const Extra& extra) {
   for (const Rank rank : {Rank{5, 11}, Rank{10, 14}, Rank{20, 30}}) {
@@ -229,8 +229,8 @@ std::optional<State<Precise>> steady_state(const Flow& flow, const Symmetry& sym
 
 std::optional<Steady> find_steady(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
                                   const Setting<Precise>& setting, const Extra& extra) {
-  constexpr int near = 7;     // digits in which the equations hold where such a root is looked for
-  constexpr int exact = 140;  // and in which they do at the end of Newton's way to a simple one
+  constexpr int near = 7;     // digits of the equations where such a root is sought
+  constexpr int exact = 140;  // and after convergence to a simple root
   std::optional<Steady> found;
   State<Precise> start = z;
   if (const auto plain = steady_state(flow, symmetry, z, setting, extra)) {
@@ -244,7 +244,7 @@ std::optional<Steady> find_steady(const Flow& flow, const Symmetry& symmetry, co
       if (const auto root = multiple_root(p)) found = root;
     }
     if (!found && holds(e, start, near)) found = rounded_root(p);
-  } catch (const std::domain_error&) {  // where these led; the plain one stays
+  } catch (const std::domain_error&) {  // at the new point; keep the plain root
   }
   if (found) snap(p, *found);
   return found;

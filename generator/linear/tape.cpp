@@ -28,7 +28,7 @@ T call(Op op, const T& x) {
   return arithmetic<T>().call(op, x);
 }
 
-/// `numbers` of symbolic::slope_of.
+/// The `numbers` argument of symbolic::slope_of.
 template <class T>
 struct Numbers {
   static T one() { return T(1); }
@@ -37,7 +37,7 @@ struct Numbers {
   static T call(Op op, const T& x) { return linear::call(op, x); }
 };
 
-/// A value and its partial derivatives by the operands; or why there are none.
+/// A value and its partial derivatives with respect to the operands, or why there are none.
 template <class T>
 struct Local {
   T value{0};
@@ -47,13 +47,13 @@ struct Local {
 
 constexpr const char* on_an_edge = "it lies on the edge of abs, sign, min, max or if";
 
-/// `moves`: what is compared does.
+/// `moves`: whether the compared values depend on a direction.
 template <class T>
 Local<T> kinked(Op op, const std::array<T, 4>& x, bool moves, int edge) {
   const bool one = op == Op::abs || op == Op::sign;
   const T gap = one ? x[0] : x[0] - x[1];
   const bool below = gap < T(0);
-  // Decided once, in the digits at hand: exactly on the edge there is no slope.
+  // Decided once, in the digits of T: exactly on the kink there is no derivative.
   const bool met = moves && !(magnitude(gap) > tiny<T>(edge) * (magnitude(x[0]) + magnitude(one ? T(1) : x[1])));
   const char* const no_slope = met ? on_an_edge : nullptr;
   switch (op) {
@@ -150,13 +150,13 @@ Tape::Tape(const Dag& dag, std::vector<Ref> roots, std::vector<Symbol> direction
   for (const Ref r : roots) roots_.push_back(place.at(r));
 }
 
-/// What each step gave; where it has no value or no slope, why.
+/// The results of all steps, with the reason if one has no value or no derivative.
 template <class T>
 struct Tape::Run {
   std::vector<T> value;
   Matrix<T> slope;  // of the steps that move
   std::vector<std::string> reasons;
-  std::vector<std::uint32_t> no_value, no_slope;  // per step: 0, or 1 + a place in `reasons`
+  std::vector<std::uint32_t> no_value, no_slope;  // per step: 0, or 1 + an index into `reasons`
 
   std::uint32_t because(const std::string& reason) {
     reasons.push_back(reason);

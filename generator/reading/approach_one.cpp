@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Approach I, (2.96)-(2.98): every coordinate's equation from the full, unconstrained Lagrangian; then the integrable
-// constraints are imposed, and the equations split into those of the motion and those of the constraint forces.
+// Approach I, (2.96)-(2.98): every coordinate's equation from the full, unconstrained Lagrangian. Then the integrable
+// constraints are imposed, and the equations split into those of motion and those of the constraint forces.
 #include "reading/approaches.hpp"
 #include "reading/rational_function.hpp"
 #include "reading/trig.hpp"
@@ -8,7 +8,7 @@
 namespace eomgen::reading {
 namespace {
 
-// The (b) equations from the last coordinate that was fixed to the first: each has one multiplier that is new.
+// The (b) equations from the last fixed coordinate to the first: each has one new multiplier.
 std::vector<ReadReaction> solve_reactions(const mechanics::Mechanics& m, Bridge& bridge, const ReadingForm& form) {
   std::vector<std::optional<Sum>> lambda(m.constraints.size());
   for (auto fixed = m.fixed.rbegin(); fixed != m.fixed.rend(); ++fixed) {

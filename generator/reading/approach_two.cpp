@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Approach II, (2.99)-(2.101): the integrable constraints are substituted into the Lagrangian first; only the free
-// coordinates have equations, and no force of an imposed constraint appears.
+// Approach II, (2.99)-(2.101): the integrable constraints are substituted into the Lagrangian first. Only the free
+// coordinates have equations, without forces of imposed constraints.
 #include "reading/approaches.hpp"
 #include "reading/trig.hpp"
 

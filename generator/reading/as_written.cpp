@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Expressions of the model without any rewriting: constraints and functions of time keep the shape that their author
-// gave them.
+// Expressions of the model without rewriting: constraints and functions of time keep their author's form.
 #include <cln/integer_io.h>
 
 #include <sstream>
@@ -13,10 +12,10 @@ namespace {
 
 constexpr int deepest = 200;
 
-// No value: a vector is in it, or it is too deep; such an expression is shown multiplied out.
+// No value if the expression contains a vector or is too deep. It is then displayed in expanded form.
 using Written = std::optional<Formula>;
 
-// 981/100 -> 9.81: numbers of a model are decimals, kept exactly.
+// 981/100 -> 9.81: numbers of a model are decimals, stored exactly.
 Formula decimal(const Rational& value) {
   constexpr int most_digits = 12;
   Formula f = number(value);

@@ -13,7 +13,7 @@
 namespace eomgen::reading {
 namespace {
 
-// Exponents side by side, those of the first atom leftmost; the highest bit of each lane is spare.
+// Packed exponents, those of the first atom leftmost; the highest bit of each lane is spare.
 using Word = std::uint64_t;
 using Powers = symbolic::ShortList<Word, 4>;
 constexpr std::uint32_t per_word = 4, bits = 16;
@@ -28,7 +28,7 @@ using Terms = std::vector<Term>;  // greatest powers first
 
 unsigned shift(std::uint32_t lane) { return bits * (per_word - 1 - lane % per_word); }
 
-/// a / b, where no exponent of b is greater.
+/// a / b; no exponent of b is greater than that of a.
 std::optional<Powers> quotient(const Powers& a, const Powers& b) {
   Powers result;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -67,7 +67,7 @@ class Letters {
     }
   }
 
-  /// The least exponents of each atom, 0 where a term is without it.
+  /// The least exponent of each atom, 0 if a term does not contain it.
   std::vector<Rational> common(const Sum& sum) const {
     std::vector<Rational> least(atoms_.size(), Rational(0));
     std::vector<std::size_t> times(atoms_.size(), 0);
@@ -86,7 +86,7 @@ class Letters {
   /// The sum without its common factor, in the order of its terms, which is that of their powers.
   std::optional<Terms> polynomial(const Sum& sum, const std::vector<Rational>& common) const {
     const std::size_t words = (atoms_.size() + per_word - 1) / per_word;
-    // An exponent that is absent is 0: beside a common one that is negative it is greater.
+    // An absent exponent is 0, which is greater than a negative common one.
     Powers absent;
     for (std::size_t i = 0; i < words; ++i) absent.push_back(0);
     std::vector<bool> needed(atoms_.size(), false);  // in every term
@@ -112,7 +112,7 @@ class Letters {
     return result;
   }
 
-  /// Whether a power of a sum becomes whole without the common factor: then it is multiplied out.
+  /// Whether a power of a sum gets an integer exponent without the common factor: then it is expanded.
   bool opens(const Sum& sum, const std::vector<Rational>& common) const {
     const auto opened = [&](const Factor& factor) {
       if (factor.atom->op != Op::add && factor.atom->op != Op::abs) return false;
@@ -153,10 +153,10 @@ class Letters {
   }
 
   std::vector<AtomPtr> atoms_;
-  std::unordered_map<const Atom*, std::uint32_t> lane_of_;  // looked up only
+  std::unordered_map<const Atom*, std::uint32_t> lane_of_;  // for lookup only
 };
 
-/// rest - by divisor, without the first terms of both, which cancel.
+/// rest - by divisor, without the leading terms of both, which cancel.
 Terms remainder(Terms& rest, const Term& by, const Terms& divisor) {
   Terms result;
   result.reserve(rest.size() + divisor.size());
@@ -186,7 +186,7 @@ Powers degrees(const Terms& terms) {
   return result;
 }
 
-/// Nothing where a remainder is left. First and last terms divide, and degrees subtract, where anything does.
+/// Empty if there is a remainder. If the division is exact, first and last terms divide, and degrees subtract.
 std::optional<Terms> divide(Terms rest, const Terms& divisor) {
   Terms result;
   if (!quotient(rest.front().powers, divisor.front().powers) || !quotient(rest.back().powers, divisor.back().powers))
@@ -247,7 +247,7 @@ std::optional<Sum> divide_exactly(const Sum& a, const Sum& b) {
   const Letters letters(a, b);
   const std::vector<Rational> common_a = letters.common(a), common_b = letters.common(b);
   if (letters.opens(a, common_a) || letters.opens(b, common_b)) return divide_opened(a, content(a), b, content(b));
-  // As operations of taking the common factors out.
+  // The operations of extracting the common factors.
   work::spend(2 * (a.size() + b.size()));
   const std::optional<Sum> whole = divide(letters, a, common_a, b, common_b);
   if (!whole) return std::nullopt;

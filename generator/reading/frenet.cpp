@@ -17,7 +17,7 @@ namespace {
 
 using mechanics::Mechanics;
 
-constexpr std::size_t readable_terms = 60;  // of |r' x r''|^2: more fill pages
+constexpr std::size_t readable_terms = 60;  // of |r' x r''|^2: more would fill pages
 
 Sum dot(const Components& a, const Components& b) { return simplify(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]); }
 
@@ -38,7 +38,7 @@ Components over(const Components& a, const Sum& length) {
 
 bool vanishes(const Components& a) { return is_zero(a[0]) && is_zero(a[1]) && is_zero(a[2]); }
 
-/// d/dp along the curve, where q_i changes as direction_i dp: any parameter p will do.
+/// d/dp along the curve, with dq_i = direction_i dp for any parameter p.
 class Along {
  public:
   Along(Bridge& bridge, const std::vector<std::uint32_t>& coordinates, std::vector<Sum> direction)
@@ -63,7 +63,7 @@ class Along {
   std::vector<Sum> direction_;
 };
 
-// The null vector of the active constraints' gradients: by cofactors, (-1)^i det(A without column i).
+// The null vector of the active constraints' gradients, by cofactors: (-1)^i det(A without column i).
 std::vector<Sum> direction(const Mechanics& m, Bridge& bridge) {
   const std::size_t n = m.free.size();
   std::vector<Sum> A;
@@ -85,7 +85,7 @@ std::vector<Sum> direction(const Mechanics& m, Bridge& bridge) {
   return result;
 }
 
-// The chart's e_q as they are on the curve; nothing where they are not three orthonormal ones.
+// The chart's e_q on the curve; empty if they are not three orthonormal ones.
 std::vector<Components> unit_vectors(Mechanics& m, Bridge& bridge, Frenet& f) {
   const auto& chart = m.model->places[m.masses[0].place].chart;
   std::vector<Components> result;
@@ -134,7 +134,8 @@ Frenet frenet(const Mechanics& mechanics) try {
   Bridge bridge(m);
   Frenet f;
   f.name = m.masses[0].name;
-  // Eliminated coordinates are functions of time, which is held: they stay names, whose signs are known, until the end.
+  // Eliminated coordinates are functions of time, which is fixed. They stay symbols, whose signs are known, until the
+  // end.
   Components r;
   for (std::size_t c = 0; c < 3; ++c) r[c] = bridge.sum(m.masses[0].position[c]);
   Along along(bridge, m.free, direction(m, bridge));

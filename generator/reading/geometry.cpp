@@ -65,7 +65,7 @@ Components along(const Components& vector, const std::vector<Components>& unit) 
   return {dot(vector, unit[0]), dot(vector, unit[1]), dot(vector, unit[2])};
 }
 
-// The chart's unit vectors e_q, where it spells out three of them and they are orthonormal.
+// The chart's unit vectors e_q, if it defines three orthonormal ones.
 void add_unit_vectors(Bridge& bridge, mechanics::Mechanics& m, const model::Chart& chart, Geometry& g) {
   std::vector<Components> unit;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -18,7 +18,7 @@ constexpr long most_steps = 2'000'000;
 const GiNaC::symbol& Bridge::symbol(const Symbol& meaning) {
   auto found = symbols_.find(meaning);
   if (found == symbols_.end()) {
-    // Names are never looked at: the table is the only tie between a GiNaC symbol and what it means.
+    // Names are never used: only the table maps a GiNaC symbol to its meaning.
     const ex fresh = alphabet_.atom(meaning)->positive ? ex(GiNaC::possymbol()) : ex(GiNaC::realsymbol());
     found = symbols_.emplace(meaning, fresh).first;
     meaning_.emplace(fresh, meaning);
@@ -135,7 +135,7 @@ Sum Bridge::convert_function(const ex& e) {
 Sum Bridge::derivative(const Sum& sum, const Symbol& by) { return from_ginac(to_ginac(sum).diff(symbol(by))); }
 
 Sum Bridge::total_derivative(const Sum& sum) {
-  std::map<Symbol, GiNaC::exvector> slopes;  // of the terms that hold the symbol
+  std::map<Symbol, GiNaC::exvector> slopes;  // of the terms that contain the symbol
   std::set<Symbol> held;
   for (const auto& [monomial, coefficient] : sum.terms()) {
     held.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// GiNaC's functions beside those of symbolic/functions.hpp. GiNaC differentiates its own by rules of its own.
+// The functions of symbolic/functions.hpp in GiNaC, which differentiates its own by its own rules.
 #include "reading/ginac_bridge.hpp"
 
 namespace eomgen::reading {
@@ -11,7 +11,7 @@ using GiNaC::function_options;
 
 ex call(unsigned serial, const std::vector<ex>& args) { return GiNaC::function(serial, GiNaC::exvector(args)); }
 
-// Registered on first use, so that there is no order of static initialisation to mind.
+// Registered on first use, so that the order of static initialisation does not matter.
 unsigned sign_serial();
 unsigned select_serial();
 
@@ -52,7 +52,7 @@ unsigned select_serial() {
   return serial;
 }
 
-/// Both ways. pow and sqrt are no functions to GiNaC, but powers.
+/// The table in both directions. pow and sqrt are powers in GiNaC, not functions.
 struct Known {
   Op op;
   unsigned serial;

@@ -11,7 +11,7 @@ using mechanics::Mechanics;
 
 namespace {
 
-// Of the kinetic energy: with more, no equation fits on a page.
+// Terms of the kinetic energy: with more, no equation fits on a page.
 constexpr std::size_t readable_terms = 800;
 
 bool over_a_sum(const Sum& sum) {
@@ -59,7 +59,7 @@ Sum kinetic_energy(const Sum& translation, const std::vector<ReadSpin>& spins) {
   for (const ReadSpin& spin : spins) {
     Sum twice;
     for (std::size_t i = 0; i < 3; ++i) {
-      // Over a sum, as with Euler parameters, products of components are no longer read by anybody.
+      // Over a sum, as with Euler parameters, products of components are too long to display.
       if (over_a_sum(spin.w[i])) throw TermBudget();
       for (std::size_t k = 0; k < 3; ++k) {
         if (!spin.J[i][k].is_zero()) twice += spin.J[i][k] * simplify(spin.w[i] * spin.w[k]);
@@ -118,7 +118,7 @@ std::optional<std::array<Sum, 3>> split_by_degree(const Sum& kinetic) {
 
 namespace {
 
-/// e_i + sum_c e_c dq_c/dq_i over the eliminated coordinates q_c that depend on q_i, of components e along the
+/// e_i + sum_c e_c dq_c/dq_i over the eliminated coordinates q_c that depend on q_i, for components e along the
 /// coordinates.
 template <class Component>
 Sum along_free(const Mechanics& m, Bridge& bridge, std::uint32_t i, const std::map<Symbol, Sum>& values,

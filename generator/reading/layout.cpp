@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From canonical sums to what a person would write: m (R_dot^2 + R^2 phi_dot^2)/2 rather than three products. Terms are
-// gathered by what moves in them, coefficients factored, like kinds of terms share their common factor.
+// Converts canonical sums to conventional notation: m (R_dot^2 + R^2 phi_dot^2)/2 in place of three products. Terms are
+// grouped by their velocities and accelerations, coefficients are factored, and terms of like kind share their common
+// factor.
 #include <cln/integer.h>
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 namespace eomgen::reading {
 namespace {
 
-// Lines are broken between terms, never inside of a bracket: a bracket must fit on one.
+// Lines break between terms, never inside a bracket: a bracket must fit on one line.
 constexpr std::size_t longest_bracket = 6;
 
 struct ByMotion {
@@ -24,7 +25,7 @@ bool moves(const Atom& atom) {
   if (atom.op != Op::symbol || atom.symbol.order == 0) return false;
   return atom.symbol.kind == SymbolKind::coordinate || atom.symbol.kind == SymbolKind::function;
 }
-bool is_fixed(const Atom& atom) {  // parameters and numbers: what is gathered last
+bool is_fixed(const Atom& atom) {  // parameters and numbers: grouped last
   return atom.op == Op::pi || (atom.op == Op::symbol && (atom.symbol.kind == SymbolKind::parameter ||
                                                          atom.symbol.kind == SymbolKind::multiplier));
 }
@@ -59,7 +60,7 @@ bool has_negative_term(const Sum& sum) {
   return std::any_of(sum.terms().begin(), sum.terms().end(), [](const auto& term) { return cln::minusp(term.second); });
 }
 
-// -(a - b) as it is written: b - a.
+// -(a - b) as b - a.
 Formula negated_bracket(const Sum& base) {
   std::vector<Formula> terms = polynomial_terms(-base);
   const auto positive =
@@ -70,7 +71,7 @@ Formula negated_bracket(const Sum& base) {
 
 Formula opposite(Formula f);
 
-// a - b + c as b - a - c; the first that is added leads.
+// a - b + c as b - a - c; the first added term leads.
 Formula opposite_sum(Formula f) {
   for (Formula& term : f.args) term = opposite(std::move(term));
   const auto added =
@@ -84,7 +85,7 @@ bool subtracts(const Formula& f) {
          std::any_of(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form == Form::negative; });
 }
 
-// -f without a minus in front, where a bracket can take it: -(a - b) c is (b - a) c, also over a denominator.
+// -f without a leading minus, if a bracket can absorb it: -(a - b) c is (b - a) c, also over a denominator.
 Formula opposite(Formula f) {
   if (f.form == Form::negative) return negative(std::move(f));
   if (subtracts(f)) return opposite_sum(std::move(f));
@@ -105,7 +106,8 @@ Formula opposite(Formula f) {
   return negative(std::move(f));
 }
 
-// What begins with a minus although another order, or a bracket, avoids it. Accelerations stay in front of equations.
+// Whether a formula has a leading minus that another order or a bracket would avoid. Accelerations stay first in
+// equations.
 Formula led_by_plus(Formula f, bool reordered) {
   if (f.form == Form::negative) return opposite(std::move(f.args[0]));
   if (f.form != Form::sum || f.args[0].form != Form::negative) return f;
@@ -117,7 +119,7 @@ Formula led_by_plus(Formula f, bool reordered) {
   return f;
 }
 
-// The factor 1/(a - b) of a negative term, which reads better as 1/(b - a) of a positive one.
+// The factor 1/(a - b) of a negative term, displayed as 1/(b - a) of a positive one.
 const Factor* sign_taker(const Monomial& monomial) {
   for (const Factor& factor : monomial) {
     if (factor.atom->op == Op::add && factor.exponent == -1 && has_negative_term(factor.atom->args[0])) return &factor;
@@ -125,7 +127,7 @@ const Factor* sign_taker(const Monomial& monomial) {
   return nullptr;
 }
 
-// coefficient * monomial * brackets * motion. Brackets of parameters, (m1 + m2) l^2, go where parameters do.
+// coefficient * monomial * brackets * motion. Brackets of parameters, (m1 + m2) l^2, stand with the parameters.
 Formula term_formula(const Rational& coefficient, const Monomial& monomial, std::vector<Formula> brackets = {},
                      const Monomial& motion = {}, bool brackets_first = false) {
   std::vector<Formula> above, below;
@@ -184,7 +186,7 @@ long degree(const Monomial& monomial) {
   return cln::cl_I_to_long(cln::ceiling1(sum));
 }
 
-/// A sum as content times what is left of it, with a sign that makes the first term positive.
+/// A sum as content times the rest, with a sign that makes the first term positive.
 struct Factored {
   Rational number = 1;
   Monomial monomial;
@@ -209,7 +211,7 @@ Formula factored_formula(const Factored& f, const Monomial& motion = {}) {
   return term_formula(f.number, f.monomial, {bracket(f.rest)}, motion, of_parameters);
 }
 
-// m1 l^2 + m2 l^2 + m2 k^2 -> (m1 + m2) l^2 + m2 k^2: the factor that saves most, if any saves something.
+// m1 l^2 + m2 l^2 + m2 k^2 -> (m1 + m2) l^2 + m2 k^2: extracts the factor that saves most, if any.
 bool take_out_best(Sum& left, Factored& taken) {
   if (left.size() < 2 || left.size() > 64) return false;
   long best = 0;
@@ -247,7 +249,7 @@ bool take_out_best(Sum& left, Factored& taken) {
   return true;
 }
 
-// Terms of a sum without velocities: gathered by what depends on coordinates, each coefficient factored.
+// Terms of a sum without velocities: grouped by their dependence on coordinates, each coefficient factored.
 std::vector<Formula> polynomial_terms(const Sum& sum) {
   std::vector<Formula> result;
   for (const ByMotion& group : gather(sum, [](const Atom& atom) { return !is_fixed(atom); })) {
@@ -307,7 +309,7 @@ std::vector<Formula> share_brackets(const std::vector<ByMotion>& groups) {
   return result;
 }
 
-// (x^2 + y^2)/2 rather than x^2/2 + y^2/2, where most terms are the simpler for it.
+// (x^2 + y^2)/2 in place of x^2/2 + y^2/2, if that makes most terms simpler.
 std::optional<Formula> number_in_front(const Sum& whole) {
   constexpr std::size_t longest = 9;  // a bracket cannot be broken over lines
   if (whole.size() < 3 || whole.size() > longest) return std::nullopt;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one order of everything that is printed: by kind, then by order of declaration. Nothing here looks at addresses,
-// serial numbers or hashes, so that every process prints the same.
+// The order of all printed expressions: by kind, then by order of declaration. It does not use addresses, serial
+// numbers or hashes, so that every process prints the same.
 #include <algorithm>
 #include <array>
 
@@ -9,7 +9,7 @@
 namespace eomgen::reading {
 namespace {
 
-// Of the factors of a product: 2 lambda m d^2 R sin(phi)^2 d_dot theta_dot.
+// The order of the factors of a product: 2 lambda m d^2 R sin(phi)^2 d_dot theta_dot.
 constexpr int coordinates = 6, calls = 7, rates = 8, accelerations = 10, last_rank = 11;
 constexpr int rank_of(SymbolKind kind, int order) {
   switch (kind) {
@@ -48,7 +48,7 @@ int rank(const Atom& atom) {
 int sign_of(bool less, bool greater) { return less ? -1 : greater ? 1 : 0; }
 int compare_numbers(const Rational& a, const Rational& b) { return cln::compare(a, b); }
 
-// How much of each kind is in a term, what moves first: accelerations, rates, rates of coordinates, positions.
+// The degree of each kind in a term, in order: accelerations, rates, rates of coordinates, positions.
 using Weight = std::array<Rational, 4>;
 
 void weigh(const Monomial& monomial, Weight& weight) {
@@ -63,7 +63,7 @@ void weigh(const Monomial& monomial, Weight& weight) {
   }
 }
 
-// Part of a monomial from the factors of one rank on, as they are displayed.
+// Compares monomials from the factors of one rank on, in display order.
 int compare_from(const Monomial& a, const Monomial& b, int first, int last) {
   const auto inside = [&](const Factor& f) { return rank(*f.atom) >= first && rank(*f.atom) <= last; };
   auto i = std::find_if(a.begin(), a.end(), inside), j = std::find_if(b.begin(), b.end(), inside);

@@ -17,7 +17,7 @@ AtomPtr sum_atom(const Sum& base) {
   Atom atom;
   atom.op = Op::add;
   atom.args = {base};
-  // A sum of terms that are all positive is positive; even powers are not negative, but may vanish.
+  // A sum of positive terms is positive. Even powers are not negative, but may vanish.
   atom.positive = !base.is_zero();
   for (const auto& [monomial, coefficient] : base.terms()) {
     atom.positive = atom.positive && cln::plusp(coefficient);
@@ -26,13 +26,13 @@ AtomPtr sum_atom(const Sum& base) {
   return std::make_shared<const Atom>(std::move(atom));
 }
 
-// A sum under a power is multiplied out only for whole positive exponents.
+// A sum under a power is expanded only for positive integer exponents.
 Sum atomic_power(const Sum& base, const Rational& exponent) {
   if (base.is_number() && is_one(base.number())) return 1;
   return Sum(Monomial{{sum_atom(base), exponent}}, 1);
 }
 
-// The whole part of a root of a positive number goes in front: sqrt(8) = 2 sqrt(2) only where it is exact, 4 -> 2.
+// The exact part of a root of a positive number is extracted: 4 -> 2; sqrt(8) stays.
 Sum number_power(const Rational& number, const Rational& exponent) {
   if (is_integer(exponent)) {
     const long n = to_long(exponent);
@@ -46,7 +46,7 @@ Sum number_power(const Rational& number, const Rational& exponent) {
   return atomic_power(Sum(number), exponent);
 }
 
-/// A sum of terms none of which can be negative: x^2 + y^2, whatever x and y are.
+/// A sum without negative terms: x^2 + y^2 for any x and y.
 bool never_negative(const Sum& sum) {
   for (const auto& [monomial, coefficient] : sum.terms()) {
     if (cln::minusp(coefficient)) return false;
@@ -59,7 +59,7 @@ bool never_negative(const Sum& sum) {
 }
 
 Sum absolute(const AtomPtr& atom) {
-  if (atom->op == Op::add) return call(Op::abs, {atom->args[0]});  // a sum is an atom under powers other than 1 only
+  if (atom->op == Op::add) return call(Op::abs, {atom->args[0]});  // a sum is an atom only under powers other than 1
   if (atom->positive) return Sum(atom);
   if (atom->op == Op::abs || atom->op == Op::sqrt) return Sum(atom);
   return call(Op::abs, {Sum(atom)});
@@ -109,7 +109,7 @@ Sum power(const Sum& x, const Rational& exponent) {
   }
   Content common = content(x);
   if (!is_integer(exponent)) {
-    // Only what is a power of something known stays outside of a root.
+    // Only powers of positive atoms leave a root.
     std::erase_if(common.monomial, [](const Factor& f) {
       return !f.atom->positive && !(is_integer(f.exponent) && cln::evenp(cln::numerator(f.exponent)));
     });
@@ -125,8 +125,8 @@ Sum power(const Sum& x, const Rational& exponent) {
 
 namespace {
 
-/// Quarter turns that stand in an angle beside something else: 1 of pi/2 - x; the angle is left without them. None
-/// where what stands there is no whole number of them.
+/// Integer quarter turns in an angle with other terms: 1 of pi/2 - x; they are removed from the angle. None if the
+/// number is no integer.
 long take_quarter_turns(Sum& angle) {
   for (const auto& [monomial, coefficient] : angle.terms()) {
     const bool of_pi = monomial.size() == 1 && monomial[0].atom->op == Op::pi && is_one(monomial[0].exponent);

@@ -13,7 +13,7 @@ namespace {
 
 using GiNaC::ex;
 
-// Factoring is for what a person would factor.
+// Factoring is limited to sums that a person would factor.
 constexpr std::size_t factored_terms = 24;
 constexpr std::size_t divided_terms = 400;
 
@@ -24,7 +24,7 @@ struct AtomLess {
 /// Polynomials over atoms as GiNaC polynomials over symbols.
 class Letters {
  public:
-  /// Nothing if an exponent is negative or no whole number.
+  /// Empty if an exponent is negative or no integer.
   std::optional<ex> polynomial(const Sum& sum) {
     ex result = 0;
     for (const auto& [monomial, coefficient] : sum.terms()) {
@@ -62,7 +62,7 @@ class Letters {
 };
 
 void add_factor(Factorisation& result, Sum factor, long exponent) {
-  if (factor.is_number()) return;  // the numeric content is known already, up to its sign
+  if (factor.is_number()) return;  // the numeric content is known up to its sign
   factor = divide(factor, Content{content(factor).number, {}});
   if (leads_negative(factor)) factor = -factor;
   for (auto& [known, times] : result.factors) {
@@ -74,8 +74,8 @@ void add_factor(Factorisation& result, Sum factor, long exponent) {
   result.factors.emplace_back(std::move(factor), exponent);
 }
 
-/// c x m + rest, where the atom x is in no other term: what divides that divides m, and nothing but 1 divides all
-/// terms.
+/// Whether a sum is irreducible as c x m + rest with the atom x in no other term: a divisor must divide m, and only 1
+/// divides all terms.
 bool is_irreducible(const Sum& primitive) {
   std::map<AtomPtr, int, AtomLess> times;
   for (const auto& [monomial, coefficient] : primitive.terms()) {
@@ -132,11 +132,11 @@ std::optional<Sum> exact_quotient(const Sum& a, const Sum& b) {
 
 namespace {
 
-/// Of the sums in denominators: the same ones stand under every part.
+/// Caches factorisations of sums in denominators: the same sums recur.
 using Factorisations = std::map<AtomPtr, Factorisation, AtomLess>;
 
 Sum cancel_whole(const Sum& sum, Factorisations& known) {
-  // the largest power of every sum in a denominator
+  // The largest power of every sum in a denominator.
   std::map<AtomPtr, Rational, AtomLess> under;
   for (const auto& [monomial, coefficient] : sum.terms()) {
     for (const Factor& factor : monomial) {
@@ -156,7 +156,7 @@ Sum cancel_whole(const Sum& sum, Factorisations& known) {
     rest = rest * power(Sum(parts.content.monomial, parts.sign * parts.content.number), -exponent);
     for (const auto& [base, times] : parts.factors) bases.emplace_back(base, times * to_long(exponent));
   }
-  // Multiplied out, a product with x^-1 of a sum may hold whole positive powers of it, which are sums by now.
+  // An expanded product with x^-1 of a sum may contain positive integer powers of it, which are sums now.
   Sum result = rest;
   for (auto& [base, times] : bases) {
     for (std::optional<Sum> q; times > 0 && (q = exact_quotient(numerator, base)); --times) numerator = *q;
@@ -166,7 +166,7 @@ Sum cancel_whole(const Sum& sum, Factorisations& known) {
   return result.size() <= sum.size() ? result : sum;
 }
 
-/// The sums that stand in denominators, and the atoms in them.
+/// The sums in denominators, and the atoms in them.
 std::set<AtomPtr, AtomLess> atoms_of_denominators(const Sum& sum) {
   std::set<AtomPtr, AtomLess> result;
   for (const auto& [monomial, coefficient] : sum.terms()) {
@@ -183,7 +183,7 @@ std::set<AtomPtr, AtomLess> atoms_of_denominators(const Sum& sum) {
 
 }  // namespace
 
-// First each part by itself that other factors single out (x_dot (a^2 + b^2)/(a^2 + b^2) + ..), then the whole.
+// First each part with its own other factors (x_dot (a^2 + b^2)/(a^2 + b^2) + ..), then the whole.
 Sum cancel(const Sum& sum) {
   const std::set<AtomPtr, AtomLess> below = atoms_of_denominators(sum);
   if (below.empty() || sum.size() > divided_terms) return sum;
@@ -207,7 +207,7 @@ Sum absorb_roots(const Sum& sum) {
     const Sum base = root.atom->args[0];
     Sum rest = divide(sum, {1, {root}});
     Rational exponent = root.exponent;
-    if (base.size() < 2) continue;  // one term divides everything, again and again
+    if (base.size() < 2) continue;  // a single term always divides
     for (std::optional<Sum> q; rest.size() > 1 && (q = exact_quotient(rest, base)); exponent = exponent + 1) rest = *q;
     if (exponent != root.exponent) return rest * Sum(Monomial{{root.atom, exponent}}, 1);
   }

@@ -18,7 +18,7 @@ namespace {
 
 using mechanics::Mechanics;
 
-// Equations that are too long to be read: what is left is which coordinates and forces there are.
+// For equations that are too long to display: keeps the list of coordinates and forces only.
 void leave_by_parts(const Mechanics& m, ReadingForm& form, const std::string& why) {
   form.by_parts = true;
   form.why_by_parts = why;
@@ -36,7 +36,7 @@ void leave_by_parts(const Mechanics& m, ReadingForm& form, const std::string& wh
   }
 }
 
-/// What `read` gives within the budget of an item; where it takes more, why.
+/// The result of `read` within the budget of an item, or the reason if it takes more.
 template <class Read>
 std::string within_budget(Read&& read) {
   try {
@@ -48,7 +48,7 @@ std::string within_budget(Read&& read) {
   }
 }
 
-/// What the constraint makes of the coordinate that it fixes, if it fixes one.
+/// The value of the coordinate that the constraint fixes, if any.
 void read_value(const Mechanics& m, Bridge& bridge, ReadConstraint& c, ReadingForm& form) {
   const auto fixes = [&c](const mechanics::FixedCoordinate& f) { return f.constraint == c.constraint; };
   const auto found = std::find_if(m.fixed.begin(), m.fixed.end(), fixes);
@@ -81,7 +81,7 @@ void read_rates(const Mechanics& m, Bridge& bridge, ReadConstraint& c) {
 }
 
 void add_constraints(const Mechanics& m, Bridge& bridge, Extent extent, ReadingForm& form) {
-  const work::Budget budget(form_budget);  // of all together
+  const work::Budget budget(form_budget);  // of all items together
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     if (!m.holds(k)) continue;
     ReadConstraint c;
@@ -94,7 +94,7 @@ void add_constraints(const Mechanics& m, Bridge& bridge, Extent extent, ReadingF
   }
 }
 
-/// The rotations as they are; in the form with the constraints imposed by approach II. Throws work::OverBudget.
+/// The rotations; in Approach II with the constraints imposed. Throws work::OverBudget.
 std::vector<ReadSpin> add_spins(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
   std::vector<ReadSpin> spins;
   try {
@@ -105,7 +105,7 @@ std::vector<ReadSpin> add_spins(const Mechanics& m, Bridge& bridge, ReadingForm&
         for (Sum& w : spin.w) w = simplify(bridge.substitute(w, values));
       }
     }
-  } catch (const work::OverBudget& over) {  // angular velocities along a long chain of relative rotations
+  } catch (const work::OverBudget& over) {  // e.g. a long chain of relative rotations
     form.spins.clear();
     form.no_spins = over.what();
     if (spins.empty()) throw;
@@ -113,7 +113,7 @@ std::vector<ReadSpin> add_spins(const Mechanics& m, Bridge& bridge, ReadingForm&
   return spins;
 }
 
-/// At most so many terms has what is written out; sines that combine make fewer of them.
+/// An upper bound of the number of terms of the expanded equations; trigonometric simplification gives fewer.
 double most_terms(const symbolic::Dag& dag, symbolic::Ref expression) {
   std::unordered_map<std::uint32_t, double> count;
   for (const symbolic::Ref r : dag.reachable({expression})) {
@@ -136,12 +136,12 @@ ReadingForm derive_reading(const Mechanics& given, system::Approach approach, Ex
   ReadingForm form;
   form.approach = approach;
   Bridge bridge(m);
-  // What would be too long is not begun: along chains of relative rotations it grows exponentially.
+  // A result that would be too long is not started: along chains of relative rotations its length grows exponentially.
   constexpr double longest = 12000, longest_of_spins = 200000;
   const bool grows = !m.spins.empty() || !m.dag->is_zero(m.kinetic_given);
   const double terms = grows ? most_terms(*m.dag, m.kinetic) : 0;
   try {
-    const work::Budget budget(form_budget);  // for all of it, so that no part is waited for anew
+    const work::Budget budget(form_budget);  // one budget for the whole form
     if (terms > longest_of_spins) form.no_spins = TermBudget().what();
     const std::vector<ReadSpin> spins = form.no_spins.empty() ? add_spins(m, bridge, form) : std::vector<ReadSpin>{};
     if (terms > longest) throw TermBudget();
@@ -172,7 +172,7 @@ std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::
     result.push_back(residual);
   }
   for (const ReadConstraint& c :
-       form.constraints) {  // what approach II wrote in terms of other coordinates has moved as it says
+       form.constraints) {  // coordinates that Approach II expressed by others have moved accordingly
     if (!c.fixes || m.is_eliminated(c.fixes->coordinate)) continue;
     result.push_back(dag.sub(m.qddot[c.fixes->coordinate], to_dag(dag, c.value_acceleration)));
   }

@@ -21,8 +21,8 @@ bool is_in(const std::vector<std::uint32_t>& list, std::uint32_t i) {
   return std::find(list.begin(), list.end(), i) != list.end();
 }
 
-// M_ck of the cyclic coordinates from their momenta; false where these are not linear in the rates, or do not give
-// them.
+// Solves the momenta of the cyclic coordinates for their rates. False if they are not linear in the rates or do not
+// determine them.
 bool solve_rates(Bridge& bridge, RouthForm& form) {
   const std::size_t n = form.cyclic.size();
   std::map<Symbol, Sum> at_rest;
@@ -49,7 +49,7 @@ bool solve_rates(Bridge& bridge, RouthForm& form) {
   return true;
 }
 
-/// The constrained Lagrangian: that of the form, unless it has more constraints built in than those that fix
+/// The constrained Lagrangian: that of the form, unless the form imposes more constraints than those that fix
 /// coordinates.
 Sum lagrangian(const Mechanics& m, Bridge& bridge, const ReadingForm& two) {
   if (two.equations.size() == m.free.size()) {
@@ -78,7 +78,7 @@ void reduce(const Mechanics& m, Bridge& bridge, const ReadingForm& two, RouthFor
     form.routhian -= Sum(bridge.alphabet().atom(momentum_symbol(form.cyclic[i]))) * form.rates[i];
   }
   form.routhian = simplify(cancel(form.routhian));
-  values.insert(rates.begin(), rates.end());  // forces may depend on the rates that have left
+  values.insert(rates.begin(), rates.end());  // forces may depend on the eliminated rates
   Sum energy = -form.routhian;
   for (const std::uint32_t i : m.free) {
     if (is_in(form.cyclic, i)) continue;

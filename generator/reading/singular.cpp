@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the inertia matrix of an approach has no inverse, factor by factor of its determinant; and where a potential
+// Sets where the inertia matrix of an approach is singular, factor by factor of its determinant, and where a potential
 // or force divides by zero.
 #include <cln/integer.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 using mechanics::Mechanics;
 
-// Beyond this a determinant is not written out; the charts of the particles are looked at instead.
+// Larger determinants are not expanded; the charts of the particles are examined instead.
 constexpr std::size_t largest_determinant = 4;
 
 bool varies(const Symbol& symbol) {
@@ -35,14 +35,14 @@ bool varies(const Sum& sum) {
   return result;
 }
 
-// cos(alpha) of a parameter: a value of the parameter, too, may be where coordinates fail.
+// cos(alpha) of a parameter: coordinates may also be singular at a parameter value.
 bool turns(const Sum& factor) {
   if (factor.size() != 1 || factor.terms().begin()->first.size() != 1) return false;
   const Op op = factor.terms().begin()->first[0].atom->op;
   return op == Op::sin || op == Op::cos;
 }
 
-// Where f = 0 for the few f whose zeros everybody knows.
+// The zeros of f for a few f with well-known zeros.
 std::vector<Formula> solutions(const Sum& factor) {
   if (factor.size() != 1) return {};
   const Monomial& monomial = factor.terms().begin()->first;
@@ -78,7 +78,7 @@ class Sets {
     }
     for (const auto& [factor, exponent] : parts.factors) add(approach, factor);
   }
-  // x^-1, (x^2 + y^2)^(-3/2): the equations hold nowhere near x = 0, x^2 + y^2 = 0
+  // x^-1, (x^2 + y^2)^(-3/2): the equations are singular at x = 0, x^2 + y^2 = 0.
   void add_denominators(const std::string& approach, const Sum& sum) {
     for (const auto& [monomial, coefficient] : sum.terms()) {
       for (const Factor& factor : monomial) {
@@ -94,7 +94,7 @@ class Sets {
 };
 
 bool positive_always(const Sum& factor) {
-  // a sum of terms without a sign change and with a part that does not vanish: m1 + m2 sin(x)^2
+  // A sum of terms without a sign change, of which one does not vanish: m1 + m2 sin(x)^2.
   if (turns(factor)) return false;
   bool constant_part = false;
   for (const auto& [monomial, coefficient] : factor.terms()) {
@@ -111,11 +111,11 @@ bool positive_always(const Sum& factor) {
   return constant_part;
 }
 
-/// Whether a search for a zero ends far from one, from many starts: then a factor of a determinant that is never
-/// negative has none. Parameters count as positive, as masses, inertias and lengths are.
+/// Whether searches for a zero from many starts end far from one. Then a factor of a nonnegative determinant has no
+/// zeros. Parameters count as positive, like masses, inertias and lengths.
 bool stays_away_from_zero(const Sum& factor) {
   constexpr int starts = 40, shrinkings = 40;
-  constexpr double near = 1e-5;  // of the largest value met
+  constexpr double near = 1e-5;  // of the largest value found
   Evaluator value(factor);
   std::vector<double> at(value.symbols().size());
   std::vector<std::size_t> moving;
@@ -157,7 +157,7 @@ bool stays_away_from_zero(const Sum& factor) {
   return std::isfinite(least) && least > near * largest;
 }
 
-// Of masses and bodies the determinant is never negative; a kinetic energy that the file gives may be anything.
+// For masses and bodies the determinant is never negative. A kinetic energy given by the file may have any sign.
 void add_determinant(const Mechanics& m, Bridge& bridge, const std::string& approach, const Sum& kinetic,
                      const std::vector<std::uint32_t>& which, Sets& sets) {
   const bool of_masses = m.dag->is_zero(m.kinetic_given);
@@ -169,8 +169,8 @@ void add_determinant(const Mechanics& m, Bridge& bridge, const std::string& appr
   }
 }
 
-// Where the determinant is too large to be written out: the angles of bodies fail where their basis has no dual. With
-// the first or the last of them gone the basis of the other two never fails.
+// If the determinant is too large to expand: the angles of bodies are singular where their basis has no dual. If the
+// first or the last angle is eliminated, the basis of the other two is never singular.
 void add_rotations(const Mechanics& mechanics, Bridge& bridge, const std::map<Symbol, Sum>& values, Sets& sets) {
   Mechanics m = mechanics;  // shares the Dag; lowering may add nodes to it
   for (const model::Body& body : m.model->bodies) {
@@ -190,7 +190,7 @@ void add_rotations(const Mechanics& mechanics, Bridge& bridge, const std::map<Sy
 
 void add_geometry(const Mechanics& m, Bridge& bridge, const std::map<Symbol, Sum>& values, Sets& sets) {
   if (m.q.size() <= largest_determinant) return;
-  // Each particle's chart fails where its metric does; that is where the whole inertia matrix may.
+  // Each particle's chart is singular where its metric is; the whole inertia matrix may be singular there.
   for (const Geometry& g : geometry(m)) {
     sets.add_factors("I", g.determinant);
     bool stays = false;
@@ -210,7 +210,7 @@ std::vector<SingularSet> singular_sets(const Mechanics& m, std::vector<LeftOut>*
     try {
       const work::Budget budget(item_budget);
       look();
-    } catch (const work::OverBudget& over) {  // the run's own pivots tell these places
+    } catch (const work::OverBudget& over) {  // a run detects these places by its pivots
       if (left_out != nullptr) left_out->push_back({what, over.what()});
     }
   };

@@ -12,15 +12,15 @@ namespace eomgen::reading {
 namespace {
 
 constexpr int most_rounds = 6;
-constexpr long most_pairs = 64;  // powers beyond are not written out
+constexpr long most_pairs = 64;  // higher powers are not expanded
 
-/// Operations of what is done, as sums count theirs: a product of two terms, the adding of a term.
+/// Operation counts as for sums: one for a product of two terms or an addition of a term.
 constexpr std::size_t operations_of_a_pair = 4, operations_of_a_merge = 3, operations_of_a_replacement = 5;
 std::size_t operations_of_a_power(std::size_t pairs) {
   return 1 + 2 * (pairs * (pairs + 1) - 2) + 3 * (pairs + 1);  // 1, the powers of 1 - g^2, their terms
 }
 
-/// The pairs of f^2 in a term; 0 where f is under a root or in a divisor.
+/// The number of factors f^2 in a term; 0 if f is under a root or in a denominator.
 long pairs_of(const Lanes& lanes, const Lanes::Word* term, std::uint32_t f) {
   const long exponent = lanes.exponent(term, f);
   return exponent > 0 && exponent % lanes.one() == 0 ? exponent / lanes.one() / 2 : 0;
@@ -40,7 +40,7 @@ class Merging {
  public:
   explicit Merging(PackedSum& sum) : sum_(sum), lanes_(sum.lanes()), rest_(lanes_.words()), partner_(rest_) {}
 
-  // Passes over the whole sum; the search goes on behind a term that was merged.
+  // Passes over the whole sum; the search continues behind a merged term.
   void run() {
     while (pass()) {
     }
@@ -67,7 +67,7 @@ class Merging {
       if (symbolic::is_zero(sum_.coefficient(entry)) || !merge(entry)) continue;
       changed = true;
       for (const Entry added : added_) {
-        if (!sum_.less(entry, added)) continue;  // the next pass comes to it
+        if (!sum_.less(entry, added)) continue;  // left to the next pass
         coming_.push_back(added);
         std::push_heap(coming_.begin(), coming_.end(), greater);
       }
@@ -75,7 +75,7 @@ class Merging {
     return changed;
   }
 
-  // Where f^2 m stands with its partner, k (f^2 + g^2) m -> k m and k m - k f^2 m -> k g^2 m; one term less each time.
+  // If f^2 m has a partner: k (f^2 + g^2) m -> k m and k m - k f^2 m -> k g^2 m; one term fewer each time.
   bool merge(Entry self) {
     for (const std::uint32_t f : lanes_.trig()) {
       if (pairs_of(lanes_, sum_.term(self), f) > 0 && merge(self, f)) return true;
@@ -107,7 +107,7 @@ class Merging {
     return found != PackedSum::none && symbolic::same(sum_.coefficient(found), coefficient);
   }
 
-  /// `self` and `other`, which has this coefficient, go; what is left of them is a multiple of `result`.
+  /// Merges `self` and `other`, which has this coefficient, into a multiple of `result`.
   void replace(Entry self, const std::vector<Lanes::Word>& other, const std::vector<Lanes::Word>& result,
                const Rational& coefficient) {
     spent_ += operations_of_a_merge;
@@ -160,7 +160,7 @@ PackedSum replace_square(PackedSum& sum, std::uint32_t f) {
   return result;
 }
 
-/// How long it reads: terms first, then factors.
+/// The display length: number of terms first, then of factors.
 bool shorter(PackedSum& a, PackedSum& b) {
   if (a.size() != b.size()) return a.size() < b.size();
   const auto factors = [](PackedSum& sum) {
@@ -177,7 +177,7 @@ PackedSum merged(PackedSum sum) {
   return sum;
 }
 
-/// Angles of which a square of a sine or cosine is there.
+/// Angles with a square of a sine or cosine.
 std::vector<Lanes::Angle> squared_angles(PackedSum& sum) {
   const Lanes& lanes = sum.lanes();
   std::vector<bool> found(lanes.angles().size(), false);
@@ -192,7 +192,7 @@ std::vector<Lanes::Angle> squared_angles(PackedSum& sum) {
   return result;
 }
 
-/// Lanes of sines and cosines above the fraction bar.
+/// Lanes of sines and cosines in the numerator.
 std::vector<std::uint32_t> trig_factors(const Lanes& lanes, const Lanes::Word* term) {
   std::vector<std::uint32_t> result;
   for (const std::uint32_t lane : lanes.trig()) {
@@ -202,7 +202,7 @@ std::vector<std::uint32_t> trig_factors(const Lanes& lanes, const Lanes::Word* t
   return result;
 }
 
-/// Takes on `other` where it is shorter.
+/// Adopts `other` if it is shorter.
 bool improve(PackedSum& best, PackedSum other) {
   if (!shorter(other, best)) return false;
   best = std::move(other);
@@ -224,7 +224,7 @@ PackedSum packed(const Lanes& lanes, const Sum& sum, const Rational& factor) {
   return result;
 }
 
-/// c term, whose partner has f' in place of f in two factors; whether that is there with c or -c.
+/// Whether the partner of c term, with f' in place of f in two factors, is present with coefficient c or -c.
 bool has_partner(const PackedSum& sum, const Lanes::Word* term, const Rational& c, std::uint32_t a, std::uint32_t b) {
   const Lanes& lanes = sum.lanes();
   std::vector<Lanes::Word> partner(term, term + lanes.words());
@@ -265,10 +265,10 @@ bool may_recombine(const Sum& sum) {
 Sum reduce_squares(const Sum& sum) {
   if (!has_squares(sum)) return sum;
   const Lanes lanes(sum);
-  cln::cl_I denominator = 1;  // of all coefficients: sums of integers are quick
+  cln::cl_I denominator = 1;  // of all coefficients: integer sums are faster
   for (const auto& [monomial, coefficient] : sum.terms())
     denominator = cln::lcm(denominator, cln::denominator(coefficient));
-  PackedSum best = merged(packed(lanes, sum, denominator));  // mostly that is all
+  PackedSum best = merged(packed(lanes, sum, denominator));  // sufficient in most cases
   for (int round = 0; round < most_rounds; ++round) {
     bool improved = false;
     for (const Lanes::Angle& angle : squared_angles(best)) {

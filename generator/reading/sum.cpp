@@ -8,7 +8,7 @@
 namespace eomgen::reading {
 namespace {
 
-// x |x| stays, |x|^2 = x^2.
+// x |x| is kept, |x|^2 = x^2.
 bool is_whole_power_to_expand(const Factor& factor) {
   if (factor.atom->op == Op::add) return is_integer(factor.exponent) && cln::plusp(factor.exponent);
   if (factor.atom->op != Op::abs || !is_integer(factor.exponent)) return false;
@@ -70,7 +70,7 @@ Sum operator*(const Rational& factor, const Sum& a) {
 
 namespace {
 
-/// The factors of both, unless a power of a sum becomes whole.
+/// The factors of both, unless a power of a sum becomes an integer power.
 bool multiply_factors(const Monomial& a, const Monomial& b, Monomial& product) {
   product.clear();
   product.reserve(a.size() + b.size());
@@ -93,7 +93,7 @@ bool multiply_factors(const Monomial& a, const Monomial& b, Monomial& product) {
   return true;
 }
 
-/// sum += coefficient a b, as operations of the product and of the sum.
+/// sum += coefficient a b; counts the operations of the product and of the sum.
 void add_product(Sum& sum, const Monomial& a, const Monomial& b, const Rational& coefficient) {
   Monomial plain;
   if (multiply_factors(a, b, plain)) {

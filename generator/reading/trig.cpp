@@ -66,7 +66,7 @@ const Rational* coefficient_of(const Sum& sum, const Monomial& monomial) {
 
 constexpr std::size_t operations_of_a_product = 2;  // the atom's and the product's
 
-/// monomial atom^exponent, of an atom that is no sum under a power.
+/// monomial atom^exponent, for an atom that is no sum under a power.
 Monomial times(const Monomial& monomial, const AtomPtr& atom, long exponent) {
   work::spend(operations_of_a_product);
   auto at = monomial.begin();
@@ -89,7 +89,7 @@ Monomial times(const Monomial& monomial, const AtomPtr& atom, long exponent) {
   return result;
 }
 
-/// cos(x) of sin(x), and sin(x) of cos(x); each made once.
+/// cos(x) for sin(x), and sin(x) for cos(x); each created once.
 class Duals {
  public:
   const AtomPtr& operator()(const AtomPtr& atom) {
@@ -99,7 +99,7 @@ class Duals {
   }
 
  private:
-  std::unordered_map<AtomPtr, AtomPtr> made_;  // looked up only
+  std::unordered_map<AtomPtr, AtomPtr> made_;  // for lookup only
 };
 
 // k m f(a) g(b) + l m f'(a) g'(b), |k| = |l|, as one term; `a` and `b` are factors of `monomial`.
@@ -114,11 +114,11 @@ bool recombine_at(Sum& sum, const Monomial& monomial, const Rational& k, const F
   const bool same = *other == k;
   Sum merged;
   if (f == g) {
-    // cos cos +- sin sin; seen from sin sin the sign of the whole follows its partner's
+    // cos cos +- sin sin; starting from sin sin, the sign of the whole is that of its partner.
     const Rational sign = f == Op::cos || same ? Rational(1) : Rational(-1);
     merged = sign * call(Op::cos, {same ? x - y : x + y});
   } else {
-    // f(x) g(y) is sin(x) cos(y), or cos(x) sin(y) read the other way round
+    // f(x) g(y) is sin(x) cos(y), or cos(x) sin(y) with the roles exchanged.
     const Sum &s = f == Op::sin ? x : y, &c = f == Op::sin ? y : x;
     merged = call(Op::sin, {same ? s + c : s - c});
   }
@@ -144,7 +144,7 @@ bool recombine_term(Sum& sum, const Monomial& monomial, const Rational& k, Duals
   return false;
 }
 
-// One pass; the search goes on behind a term that was merged, so that long sums take one pass or two.
+// One pass; the search continues behind a merged term, so that long sums take one or two passes.
 bool recombine_all(Sum& sum, Duals& duals) {
   bool changed = false;
   for (auto term = sum.terms().begin(); term != sum.terms().end();) {

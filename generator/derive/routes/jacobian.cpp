@@ -12,7 +12,8 @@ namespace {
 
 using symbolic::SymbolKind;
 
-/// Euler's equations along the axes of the rotation, (dH/dt + carrier x H) . dw/dqdot_i, eqs. (8.41), (9.39).
+/// Euler's equations along the axes of the rotation, (dH/dt + W x H) . dw/dqdot_i with the angular velocity W of these
+/// axes, eqs. (8.41), (9.39).
 void add_spin(Mechanics& m, const mechanics::Spin& given, symbolic::Substitution* imposed,
               const std::vector<std::uint32_t>& which, symbolic::Derivation& bias, FullEquations& result) {
   Dag& dag = *m.dag;

@@ -90,7 +90,7 @@ std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const LoadedLink&
     const Vec3 second = still ? unit(dag, *still) : loaded.J[1];
     return std::vector<Vec3>{unit_if_plain(dag, tidy, cross(dag, loaded.J[0], second))};
   }
-  for (std::size_t axis = 3; axis-- > 0 && left == 2;) {  // J in a plane: its normal, and the other direction in the plane
+  for (std::size_t axis = 3; axis-- > 0 && left == 2;) {  // J in a plane: its normal, and one in the plane
     if (!dag.is_zero(loaded.J[0][axis])) continue;
     const Vec3 e = unit(dag, axis);
     return std::vector<Vec3>{e, unit_if_plain(dag, tidy, cross(dag, loaded.J[0], e))};
