@@ -71,7 +71,7 @@ std::optional<State<Precise>> newton(const Flow& flow, const Symmetry& symmetry,
       if (magnitude(move(i, 0)) > Precise(1000) * (Precise(1) + magnitude(start[i]))) return std::nullopt;
       done = done && magnitude(move(i, 0)) <= tiny<Precise>(exact) * (Precise(1) + magnitude(z[i]));
     }
-    if (done) return holds(e, z) ? std::optional(z) : std::nullopt;  // before the last step, far below the required tolerance
+    if (done) return holds(e, z) ? std::optional(z) : std::nullopt;  // before the last step, far below tolerance
   }
   return std::nullopt;
 }

@@ -84,15 +84,15 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
     throw Error(
         "mechanics", m.model->where(m.model->arena[result.written].span),
         "constraint '" + result.label + "' is not linear in the velocities",
-        "write an expression that is linear in them: d'Alembert's principle says what force keeps such a constraint, "
-        "and nothing of one that is not linear");
+        "write an expression that is linear in them: d'Alembert's principle gives the force of linear constraints "
+        "only");
   }
   for (Ref& slope : result.gradient) slope = at_rest(slope);  // velocities that cancel may still occur in it
   result.rate = at_rest(e);
   if (!vanishes(dag, {dag.sub(e, m.velocity_form(result))})) {
     throw Error("mechanics", m.model->where(m.model->arena[result.written].span),
                 "constraint '" + result.label + "' divides by a velocity",
-                "multiply it out, so that it reads f*x_dot + g*y_dot + h");
+                "expand it to the form f*x_dot + g*y_dot + h");
   }
 }
 
@@ -133,7 +133,7 @@ void refuse_power(const Mechanics& m, const Constraint& c) {
   throw Error("mechanics", m.model->where(m.model->arena[c.written].span),
               "constraint '" + c.label +
                   "' is a square or a higher power: its gradient vanishes where it holds, so that it has no force",
-              "write what is raised to the power (r - L in place of r^2 - 2*L*r + L^2), or one equation for each "
+              "write the base of the power (r - L in place of r^2 - 2*L*r + L^2), or one equation for each "
               "coordinate that it fixes");
 }
 
@@ -155,8 +155,8 @@ void require_something(const Mechanics& m, const model::Constraint& constraint) 
   const auto idle = [&](const Constraint& c) { return c.name != constraint.name || c.need == Need::identity; };
   if (constraint.joint || !std::all_of(m.constraints.begin(), m.constraints.end(), idle)) return;
   throw Error("mechanics", m.model->where(constraint.span),
-              "constraint '" + constraint.name + "' holds whatever the coordinates are",
-              "remove it, or give its bodies coordinates that it binds");
+              "constraint '" + constraint.name + "' holds for all values of the coordinates",
+              "remove it, or give its bodies coordinates that it constrains");
 }
 
 }  // namespace
@@ -194,7 +194,7 @@ void add_constraints(Mechanics& m, Lowering& lower) {
             "mechanics", m.model->where(constraint.span),
             "constraint '" + result.label + "' does not depend on any " + (velocities ? "velocity" : "coordinate"),
             constraint.joint
-                ? "its bodies do not move against one another here: remove the joint, or give them coordinates"
+                ? "its bodies cannot move relative to one another: remove the joint, or give them coordinates"
             : velocities ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
                          : "a constraint relates coordinates, such as holonomic = \"R - d\"");
       }

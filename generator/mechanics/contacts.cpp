@@ -238,8 +238,8 @@ class ContactReader {
 };
 
 [[noreturn]] void refuse_more(const Mechanics& m, const model::Span& span) {
-  throw Error("mechanics", m.model->where(span), "this is the fourth contact with friction or that can be left",
-              "a model may have three: the number of modes grows with every one");
+  throw Error("mechanics", m.model->where(span), "this is the fourth contact with friction or that can open",
+              "a model may have three: each one multiplies the number of modes");
 }
 
 }  // namespace
@@ -284,7 +284,7 @@ void check_law(const Mechanics& m, const Contact& contact) {
                 negative ? "a coefficient of friction of '" + contact.name + "' is negative"
                          : "the static coefficient of friction of '" + contact.name + "' is less than the dynamic one",
                 negative ? "friction opposes slip: give coefficients of 0 or more"
-                         : "what sticks at a force must not be dragged loose by less: give static >= dynamic");
+                         : "sliding friction must not exceed the limit of sticking: give static >= dynamic");
   }
   if (!contact.width) return;
   const std::vector<cln::cl_R> width =

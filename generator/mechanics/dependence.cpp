@@ -75,7 +75,7 @@ bool holds_at(const std::vector<Row>& rows, const Selection& chosen) {
   throw Error(
       "mechanics", where(m, closure.gap_at()),
       fmt::format(
-          "equation '{}' looks as if it followed from the other constraints, but is off by {:.2g} where they hold",
+          "equation '{}' seems to follow from the other constraints, but is off by {:.2g} where they hold",
           m.constraints[closure.gap_at()].label, closure.gap()),
       "a loop with redundant joints closes only if the dimensions are exact: write sqrt(3)/2 or cos(pi/6) instead of "
       "decimals");
@@ -85,7 +85,7 @@ bool holds_at(const std::vector<Row>& rows, const Selection& chosen) {
   throw Error("mechanics", where(m, k),
               fmt::format("equation '{}' follows from the other constraints for these values of the parameters only",
                           m.constraints[k].label),
-              "write what the values have in common: make one parameter an expression of the others, or use one "
+              "state how the values are related: make one parameter an expression of the others, or use one "
               "parameter for both");
 }
 
@@ -189,7 +189,7 @@ void require_normal_forces(const Mechanics& m) {
       throw Error("mechanics", where(m, k),
                   fmt::format("the motion does not determine the force of '{}', and its contact needs it",
                               m.constraints[k].label),
-                  "remove the constraints that repeat it, or give the bodies coordinates that let them part");
+                  "remove the constraints that repeat it, or give the bodies coordinates that let them separate");
     }
   }
 }

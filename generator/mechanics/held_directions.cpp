@@ -203,7 +203,7 @@ class Search {
   [[noreturn]] void refuse(const Contact& contact) const {
     throw Error("mechanics", m_.model->where(law_of(m_, contact).span),
                 "the friction of '" + contact.name +
-                    "' acts along what the constraints hold already: it changes no equation of motion",
+                    "' acts along directions that constraints block: it changes no equation of motion",
                 "remove the friction, or free the direction along which it is to act");
   }
 

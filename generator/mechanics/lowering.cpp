@@ -170,7 +170,7 @@ Ref Lowering::multiplier(const model::Node& node) {
     return dag_.symbol({SymbolKind::multiplier, k + node.order, 0});
   }
   throw Error("mechanics", m_.model->where(node.span), "this constraint has no force",
-              "name a constraint that holds something");
+              "name a constraint that is not redundant");
 }
 
 // Friction along one of the tangents, 0 if it is omitted; or the multiplier of the normal.

@@ -39,15 +39,15 @@ std::string with(std::string text, const std::string& what, const std::string& b
 
 }  // namespace
 
-TEST_CASE("conserved: a spherical pendulum of constant length keeps its energy and h_z") {
+TEST_CASE("conserved: a spherical pendulum of constant length conserves its energy and h_z") {
   CHECK(names(with(spherical_pendulum, " LENGTH", "")) == std::vector<std::string>{"energy", "momentum.theta"});
 }
 
-TEST_CASE("conserved: of varying length it keeps h_z only") {
+TEST_CASE("conserved: a spherical pendulum of varying length conserves h_z only") {
   CHECK(names(with(spherical_pendulum, " LENGTH", " + sin(t)/5")) == std::vector<std::string>{"momentum.theta"});
 }
 
-TEST_CASE("conserved: a bead on a hoop that turns at a constant rate keeps the Jacobi integral, not the energy") {
+TEST_CASE("conserved: a bead on a hoop that turns at a constant rate conserves the Jacobi integral, not the energy") {
   const std::vector<std::string> found = names(R"toml(format = 1
 [parameters]
 m = 1
@@ -64,7 +64,7 @@ holonomic = "theta - W*t"
   CHECK(found == std::vector<std::string>{"jacobi"});
 }
 
-TEST_CASE("conserved: a damper leaves nothing") {
+TEST_CASE("conserved: with a damper nothing is conserved") {
   const std::vector<std::string> found = names(R"toml(format = 1
 [parameters]
 m = 1
@@ -82,7 +82,7 @@ x = {}
   CHECK(found.empty());
 }
 
-TEST_CASE("conserved: what jumps in time or in place is not kept, though its derivatives vanish on either side") {
+TEST_CASE("conserved: a quantity that jumps in time or space is not conserved, though its derivatives vanish") {
   const auto with_potential = [](const std::string& potential) {
     return names(
         "format = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"" +
@@ -95,7 +95,7 @@ TEST_CASE("conserved: what jumps in time or in place is not kept, though its der
   CHECK(with_potential("abs(y)") == std::vector<std::string>{"energy", "momentum.x"});
 }
 
-TEST_CASE("conserved: momenta of the whole are kept across a jump that only the distance decides") {
+TEST_CASE("conserved: total momenta are conserved across a jump that depends only on a distance") {
   const auto pair = [](const std::string& condition) {
     return names(
         "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\"] "
@@ -115,7 +115,7 @@ TEST_CASE("conserved: momenta of the whole are kept across a jump that only the 
   CHECK_FALSE(has(fixed, "angular_momentum.E3"));
 }
 
-TEST_CASE("conserved: a bump that is narrow, far away or faint is no constant") {
+TEST_CASE("conserved: a narrow, distant or faint bump is detected as not constant") {
   for (const char* potential : {"exp(-((x - 30)/0.01)^2)", "1e-40*x"}) {
     CAPTURE(potential);
     const std::vector<std::string> found =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which forces have a potential: verdicts that were found by hand.
+// Forces with and without a potential, against results derived by hand.
 #include <doctest/doctest.h>
 
 #include "conservation/conservative.hpp"
@@ -26,7 +26,7 @@ std::string field(const std::string& force) { return "on = \"P\"\nforce = \"" + 
 
 }  // namespace
 
-TEST_CASE("fields: velocities and inputs leave no potential") {
+TEST_CASE("fields: forces with velocities and inputs have no potential") {
   CHECK(One(cartesian, field("-k*velocity(P)")).found.reason == "it depends on velocities");
   CHECK(One(cartesian, field("u*E1")).found.reason == "it depends on an input");
   CHECK(One(cartesian, field("u*E1")).found.conservative == conservation::Verdict::no);
@@ -54,7 +54,7 @@ TEST_CASE("fields: a force along a circle does work on each turn, the same gener
 }
 
 TEST_CASE(
-    "fields: a potential that exists and has no closed form found is told so; one that may not exist is unknown") {
+    "fields: a potential that exists without a closed form is reported; one that may not exist is unknown") {
   const One gauss("\"x*E1\"\n[coordinates]\nx = {}", field("exp(-x^2)*E1"));
   CHECK(gauss.found.conservative == conservation::Verdict::yes);
   CHECK_FALSE(gauss.found.potential.has_value());
@@ -63,7 +63,7 @@ TEST_CASE(
   CHECK(kinked.found.conservative == conservation::Verdict::unknown);
 }
 
-TEST_CASE("fields: what changes in time has a potential at each instant, and says that the energy changes") {
+TEST_CASE("fields: a time-dependent field has a potential at each instant, and the energy changes") {
   const One moving(cartesian, field("-k*sin(t)*x*E1"));
   CHECK(moving.found.conservative == conservation::Verdict::yes);
   CHECK(moving.found.reason == "it depends on time, so that it changes the energy all the same");
@@ -78,7 +78,7 @@ TEST_CASE("fields: a field with circulation about a point off the origin is many
   CHECK(pair.found.conservative != conservation::Verdict::yes);
 }
 
-TEST_CASE("fields: a source has a logarithm, which is one function of the place") {
+TEST_CASE("fields: a source has a logarithmic potential, which is single-valued") {
   const One source(cartesian, field("k*P/dot(P, P)"));
   CHECK(source.found.conservative == conservation::Verdict::yes);
   CHECK(source.found.potential.has_value());

@@ -51,7 +51,7 @@ central_gravity = { GM = "GM" }
 )toml" + more;
 }
 
-// Three masses on rods, the first free; `more` may let forces act on it.
+// Three masses on rods, the first free; `more` may add forces.
 std::string free_chain(const std::string& more = "") {
   return R"toml(format = 1
 [parameters]
@@ -73,14 +73,14 @@ from = "P"
 
 }  // namespace
 
-TEST_CASE("momenta: Kepler's problem in Cartesian coordinates keeps the angular momentum, which is proven") {
+TEST_CASE("momenta: Kepler's problem in Cartesian coordinates provably conserves the angular momentum") {
   const Found found(kepler());
   CHECK(found.names() ==
         std::vector<std::string>{"energy", "angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"});
   for (const conservation::Conserved& c : found.conserved) CHECK(c.certainty == conservation::Certainty::proven);
 }
 
-TEST_CASE("momenta: what is found is r x m v, and its size the sum of the sizes of its terms") {
+TEST_CASE("momenta: the result is r x m v, and its magnitude the sum of the magnitudes of its terms") {
   const Found found(kepler());
   const conservation::Conserved* h = found.named("angular_momentum.E2");
   REQUIRE(h != nullptr);
@@ -93,19 +93,19 @@ TEST_CASE("momenta: what is found is r x m v, and its size the sum of the sizes 
   CHECK(values[1] == doctest::Approx(2.0 * std::sqrt(14.0) * std::sqrt(434.0)));
 }
 
-TEST_CASE("momenta: uniform gravity along E2 leaves only what it does no work on") {
+TEST_CASE("momenta: uniform gravity along E2 conserves only components on which it does no work") {
   const Found found(kepler("[[force]]\ngravity = \"-g*E2\"\n"));
   CHECK(found.names() == std::vector<std::string>{"energy", "angular_momentum.E2"});
 }
 
-TEST_CASE("momenta: a chain in free space keeps G and H, with gravity the horizontal part of G only") {
+TEST_CASE("momenta: a chain in free space conserves G and H, with gravity the horizontal part of G only") {
   CHECK(Found(free_chain()).names() ==
         std::vector<std::string>{"energy", "momentum.x", "momentum.y", "angular_momentum.E3"});
   CHECK(Found(free_chain("[[force]]\ngravity = \"-g*E2\"\n")).names() ==
         std::vector<std::string>{"energy", "momentum.x"});
 }
 
-TEST_CASE("momenta: a constraint that a rotation keeps leaves H, one that it breaks does not") {
+TEST_CASE("momenta: a constraint that is invariant under rotation conserves H, any other does not") {
   const std::string circle = "[[constraint]]\nname = \"c\"\nholonomic = \"x^2 + y^2 - m\"\n";
   const std::string ellipse = "[[constraint]]\nname = \"c\"\nholonomic = \"x^2 + 2*y^2 - m\"\n";
   CHECK(Found(kepler(circle)).named("angular_momentum.E3") != nullptr);
@@ -113,7 +113,7 @@ TEST_CASE("momenta: a constraint that a rotation keeps leaves H, one that it bre
   CHECK(Found(kepler(ellipse)).named("angular_momentum.E3") == nullptr);
 }
 
-TEST_CASE("momenta: forces without a potential count; a pair that cancels leaves the momentum") {
+TEST_CASE("momenta: forces without a potential count; a balanced pair conserves the momentum") {
   const std::string drag = "[[force]]\non = \"P\"\nforce = \"-g*velocity(P)\"\n";
   CHECK(Found(kepler(drag)).names().empty());
   const std::string pair = R"toml(
@@ -123,7 +123,7 @@ damper = { between = ["P", "link2"], coefficient = "g" }
   CHECK(Found(free_chain(pair)).names() == std::vector<std::string>{"momentum.x", "momentum.y", "angular_momentum.E3"});
 }
 
-TEST_CASE("momenta: of a mass that changes m v is kept where no force acts, and the energy is not") {
+TEST_CASE("momenta: a varying mass without forces conserves m v but not the energy") {
   const Found found(R"toml(format = 1
 [parameters]
 m0 = 1

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From one chart to another and back: the same attitude or direction, rates that are the derivatives of the values.
+// Switches from one chart to another and back: the attitude or direction stays the same, and rates are the derivatives
+// of the values.
 #include "derive/chart_change.hpp"
 
 #include <doctest/doctest.h>
@@ -14,7 +15,7 @@ using namespace eomgen;
 
 namespace {
 
-constexpr double rounding = 1e-13;   // a few operations on numbers about 1, some 0.2 from a singular set
+constexpr double rounding = 1e-13;   // a few operations on numbers about 1, about 0.2 from a singular set
 constexpr double difference = 1e-8;  // of central differences with steps of 1e-5: their square, times third derivatives
 
 model::Model body(const std::string& set) {
@@ -71,7 +72,7 @@ void check_rates(symbolic::Dag& dag, const std::vector<symbolic::Ref>& formulas,
 }  // namespace
 
 TEST_CASE(
-    "chart change: each of the twelve sets has a second one, of the same attitude, with rates that belong to the "
+    "chart change: each of the twelve sets converts to a second one with the same attitude and rates that match the "
     "values") {
   std::size_t sets = 0;
   for (const rotations::Rotation& r : rotations::registry()) {
@@ -86,7 +87,7 @@ TEST_CASE(
     CHECK(charts[0].regular(model) == (r.name[0] == r.name[2] ? "sin(b)" : "cos(b)"));
     symbolic::Dag dag;
     const system::ChartChange change = derive::chart_change(dag, model, charts[0]);
-    const double near = change.at_sine ? 0.2 : M_PI / 2 - 0.2;  // where the own set is about to fail
+    const double near = change.at_sine ? 0.2 : M_PI / 2 - 0.2;  // near the singularity of the own set
     for (const Values& x : {Values{0.4, near, -1.1, 0.3, -0.8, 1.7}, Values{2.9, near, 4.0, -2, 0.1, 0.6},
                             Values{-1.3, near + 0.5, 0.2, 1, 2, -3}}) {
       const Values second = applied(dag, change.to, change.angles, x);
@@ -96,7 +97,7 @@ TEST_CASE(
       CHECK((attitude(r.name, again) - attitude(r.name, x)).norm() < rounding);
       check_rates(dag, change.back, change.angles, second);
       const double guard = change.second_at_sine ? std::sin(second[1]) : std::cos(second[1]);
-      if (x[1] == near) CHECK(std::abs(guard) > 0.97);  // the second one is far from failing there
+      if (x[1] == near) CHECK(std::abs(guard) > 0.97);  // the second set is far from singular there
     }
   }
   CHECK(sets == 12);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each route, each approach, against equations of motion worked out by hand.
+// Each formulation and approach against equations of motion derived by hand.
 #include "derive/routes.hpp"
 
 #include <doctest/doctest.h>
@@ -37,7 +37,7 @@ void for_each_route(const model::Model& model,
 
 }  // namespace
 
-TEST_CASE("routes: P7 moves as (2.109) says and its reaction is (2.111)") {
+TEST_CASE("routes: P7 has the equation of motion (2.109) and the reaction (2.111)") {
   const model::Model model = model::read_model_text(R"toml(format = 1
 [parameters]
 m = 2
@@ -139,7 +139,7 @@ generalized = { x = "F - c*x_dot" }
     CHECK(point.output(system, "power") == doctest::Approx((F - c * v) * v).epsilon(rounding));
     systems.insert(named(system));
   });
-  // The jacobian route and trees have no masses to work with.
+  // The jacobian formulation and trees need masses.
   for (const char* name : {"lagrange I", "lagrange II", "christoffel I", "christoffel II", "expanded I", "expanded II"})
     CHECK_MESSAGE(systems.contains(name), name);
   for (const std::string& name : systems) {
@@ -176,8 +176,8 @@ holonomic = "x^2 + y^2 - L^2"
   });
 }
 
-TEST_CASE("routes: a mass that grows and a position that moves by prescription keep the power balance") {
-  // dE/dt from the energy itself, differentiated along the motion that the equations give.
+TEST_CASE("routes: a growing mass and a prescribed position satisfy the power balance") {
+  // dE/dt from the energy itself, differentiated along the derived motion.
   const model::Model model = model::read_model_text(R"toml(format = 1
 [parameters]
 m0 = 1

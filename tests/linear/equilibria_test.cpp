@@ -37,7 +37,7 @@ const double pi = std::acos(-1.0);
 
 }  // namespace
 
-TEST_CASE("double pendulum: four equilibria, of which the hanging one is stable by its energy") {
+TEST_CASE("double pendulum: four equilibria; the hanging one is stable by its energy") {
   const analysis::SteadyMotions all = found("S5_double_pendulum");
   REQUIRE(all.points.size() == 4);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -53,7 +53,7 @@ TEST_CASE("double pendulum: four equilibria, of which the hanging one is stable 
 TEST_CASE("cart and pendulum: with friction on the track the hanging one attracts") {
   const analysis::SteadyMotions all = found("cart_pendulum");
   REQUIRE(all.points.size() == 2);
-  CHECK(all.held.empty());  // friction keeps no momentum
+  CHECK(all.held.empty());  // friction conserves no momentum
   CHECK(all.points[0].verdict.stability == Stability::stable);
   CHECK(all.points[1].verdict.stability == Stability::unstable);
   same(value(all, 1, "theta"), pi);
@@ -117,7 +117,7 @@ TEST_CASE("sleigh: straight ahead is stable, astern is not") {
   for (const char* scene : {"ahead", "astern"}) {
     const analysis::SteadyMotions all = found("R13_sleigh", {}, scene, scenes);
     REQUIRE(all.points.size() == 1);
-    CHECK(all.points[0].family == 2);  // which way, how fast
+    CHECK(all.points[0].family == 2);  // direction, speed
     CHECK(all.points[0].verdict.stability == (scene == std::string("ahead") ? Stability::stable : Stability::unstable));
   }
 }

@@ -12,7 +12,7 @@ using linear::Precise;
 
 namespace {
 
-/// dY/dy by central differences in 160 digits: y moved, the other entries solved from the constraints.
+/// dY/dy by central differences in 160 digits: y is varied, the other entries are solved from the constraints.
 void holds_against_differences(const Linearised& x) {
   const linear::Flow& flow = *x.problem.flow;
   const auto& chart = x.l.symmetry.chart;
@@ -144,20 +144,20 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("sleigh: straight ahead it turns back at the rate m L1 u/(J + m L1^2), astern it runs off") {
+TEST_CASE("sleigh: deviations decay at the rate m L1 u/(J + m L1^2) straight ahead and grow at it astern") {
   for (const double u : {5.0, -5.0}) {
     const Linearised x =
         linearised("R13_sleigh", "ahead",
                    fmt::format("\n[scene.ahead]\nfrom = \"default\"\ninitial = {{ x1_dot = {}, phi_dot = 0 }}\n", u));
     const double m = x.parameter("m"), L1 = x.parameter("L1"), rate = -m * L1 * u / (x.parameter("J") + m * L1 * L1);
     CHECK(x.l.kind == Kind::steady);
-    CHECK(x.l.structural_zeros == 4);  // where it is, which way, how fast
+    CHECK(x.l.structural_zeros == 4);  // position, direction, speed
     same(x.value(u > 0 ? 4 : 0).re, rate);
   }
 }
 
 TEST_CASE(
-    "rotating hoop: at the critical rate a zero pair is there for these parameters only; the equations feel no time") {
+    "rotating hoop: at the critical rate a zero pair exists for these parameters only; the system is autonomous") {
   const Linearised x = linearised(
       "rotating_hoop", "bottom",
       "\n[scene.bottom]\nfrom = \"default\"\ninitial = { beta = 0 }\nparameters = { w = \"3 rad/s\", R = 1, g = 9 }\n");
@@ -170,7 +170,7 @@ TEST_CASE(
   same(free.value(0).re, std::sqrt(36 - free.parameter("g") / free.parameter("R")));
 }
 
-TEST_CASE("a state on no steady motion is linearised along its motion, and said to be") {
+TEST_CASE("a state on no steady motion is linearised along its motion and reported as such") {
   const Linearised x = linearised("R6_rolling_disk");
   CHECK(x.l.kind == Kind::motion);
   holds_against_differences(x);
@@ -181,7 +181,7 @@ TEST_CASE("a state on no steady motion is linearised along its motion, and said 
   holds_against_differences(linearised("R1_free_body_euler_parameters"));
 }
 
-TEST_CASE("the state at a time is that of the run") {
+TEST_CASE("the state at a given time is that of the run") {
   const Linearised x = linearised("S5_double_pendulum", "default", "", {}, 1.5);
   const Finished run =
       run_model("S5_double_pendulum", [](pipeline::SimulationRequest& request) { request.overrides.t_end = 1.5; });

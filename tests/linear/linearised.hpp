@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene of a shipped model, or of one with further scenes, linearised.
+// The linearisation of a scene of a shipped model, or of one with added scenes.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -12,7 +12,7 @@
 
 namespace eomgen::test {
 
-/// 160 digits on the way to binary64: the last digit, and those of the closed form it is held against.
+/// Tolerance of 160 digits rounded to binary64: the last digit, and those of the reference closed form.
 inline constexpr double linear_tolerance = 1e-12;
 
 struct Linearised {
@@ -47,7 +47,7 @@ struct Linearised {
   std::size_t zeros() const { return l.spectrum.zeros; }
 };
 
-/// `more` is written below the model: further scenes.
+/// `more` is appended to the model: further scenes.
 inline Linearised linearised(const std::string& model, const std::string& scene = "default",
                              const std::string& more = "", const std::map<std::string, symbolic::Rational>& set = {},
                              std::optional<double> at = {}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mechanisms as others write them, of many coordinates and constraints, against published values and closed forms.
+// Mechanisms from the literature, with many coordinates and constraints, against published values and closed forms.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ TEST_CASE(
     CHECK(bicycle.zeros() == 6);
     CHECK(bicycle.l.structural_zeros == 6);
     CHECK(bicycle.l.spectrum.holds());
-    constexpr double published = 1e-13;  // all digits that are
+    constexpr double published = 1e-13;  // all published digits
     for (const auto& [n, re, im] : {std::tuple{6U, -0.322866429004087, 0.0},
                                     {7U, -0.775341882195845, 4.46486771378823},
                                     {8U, -0.775341882195845, -4.46486771378823},
@@ -82,7 +82,7 @@ TEST_CASE("a rattleback at rest rocks with the two frequencies of its axes of in
   same(frequencies[1], std::sqrt(sum / 2 + root));
 }
 
-TEST_CASE("of many coordinates that constraints bind but for one, the one that stays is found at once") {
+TEST_CASE("the independent one of many constrained coordinates is found at once") {
   constexpr int n = 40;
   std::string text = "format = 1\n", start;
   for (int k = 1; k <= n; ++k) {
@@ -101,7 +101,7 @@ TEST_CASE("of many coordinates that constraints bind but for one, the one that s
   same(row.value(0).im, 0.5);  // sqrt(10/n)
 }
 
-TEST_CASE("a search that ends where angles fail says so of that place, not of the start") {
+TEST_CASE("a search that ends where angles are singular reports that place, not the start") {
   const std::string rods = R"toml(format = 1
 [[body]]
 name = "upper"
@@ -128,8 +128,8 @@ initial = { a = 0.1, b = 0.7, c = 0.2, d = 0.9 }
   }
 }
 
-// Two bodies hang on one another by ball joints: each may be turned about its length, whatever a coordinate is held at.
-TEST_CASE("of a family that stays open twenty members are looked at, and the starts that lead to others are counted") {
+// Two bodies are connected by ball joints: each may rotate about its length, whichever coordinate is held.
+TEST_CASE("twenty members of an undetermined family are examined, and starts that lead to others are counted") {
   std::string text = "format = 1\n";
   for (const int k : {1, 2}) {
     text += fmt::format(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces at rest and at the edges of their formulas: dampers whose points meet, drag, branches that are not taken,
-// roots that are multiple, balances that hold but for roundings; chains of damped bodies.
+// Forces at rest and at singularities of their formulas: dampers whose points coincide, drag, branches that are not
+// taken, multiple roots, balances up to rounding; chains of damped bodies.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -50,7 +50,7 @@ const std::string at_rest = "[scene.default]\ninitial = { x = 0 }\n";
 
 }  // namespace
 
-TEST_CASE("a mass on a spring and a damper: where the points of the damper meet it is linear all the same") {
+TEST_CASE("a mass on a spring and a damper: linear also where the points of the damper coincide") {
   const std::string path = file("damper", numbers + particle + spring + damper + at_rest);
   const Linearised here = linearised_at(path);
   CHECK(here.l.kind == linear::Kind::equilibrium);
@@ -94,7 +94,7 @@ TEST_CASE(
   same(rod.A("x_dot", "x"), 1 - 4);
 }
 
-TEST_CASE("quadratic drag has no slope at rest, however it is written, and one in the wind") {
+TEST_CASE("quadratic drag has derivative 0 at rest in any form, and a nonzero one in wind") {
   for (const char* law : {"force = \"-0.3*norm(velocity(P))*velocity(P)\"\non = \"P\"\n",
                           "force = \"-0.3*unit(velocity(P))*dot(velocity(P), velocity(P))\"\non = \"P\"\n",
                           "drag = { on = \"P\", density = 1.2, area = 0.5, coefficient = 1 }\n",
@@ -121,7 +121,7 @@ TEST_CASE("quadratic drag has no slope at rest, however it is written, and one i
        0);
 }
 
-TEST_CASE("a kink that is one is told with the line of its force, by both commands, and never as nothing found") {
+TEST_CASE("a true kink is reported with the line of its force by both commands, never as nothing found") {
   struct Case {
     const char* name;
     std::string text;
@@ -149,7 +149,7 @@ TEST_CASE("a kink that is one is told with the line of its force, by both comman
   }
 }
 
-TEST_CASE("a search begins where linearize does: at the edge of an `if` that is not taken, at a spring of length 0") {
+TEST_CASE("a search starts where linearize does: at the boundary of an untaken `if`, at a spring of length 0") {
   const std::string text =
       "[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"(x^2 + y^2)/2\"\n"
       "[[force]]\ngeneralized = { x = \"if(x < 1, -x_dot, -abs(y)*3)\", y = \"if(x > 5, max(0, y), 0)\" "
@@ -167,7 +167,7 @@ TEST_CASE("a search begins where linearize does: at the edge of an `if` that is 
   same(value(all, 1, "x"), 0.5);
 }
 
-TEST_CASE("hover of a planar rotorcraft: found though its inputs are off balance by a rounding, and told by how much") {
+TEST_CASE("hover of a planar rotorcraft is found with inputs off balance by a rounding, which is reported") {
   const std::string path = file("hover",
                                 "[parameters]\nm = 0.7\ng = 9.81\nI = 0.02\nl = 0.3\n[inputs]\nu1 = { default = 3.4335 "
                                 "}\nu2 = { default = 3.4335 }\n"
@@ -183,7 +183,7 @@ TEST_CASE("hover of a planar rotorcraft: found though its inputs are off balance
   const analysis::SteadyMotions all = found(path);
   REQUIRE(all.points.size() == 1);
   CHECK(all.points[0].l.off < 1e-15);
-  // A balance that is off by more than roundings is none.
+  // A balance with more than rounding errors is none.
   std::string heavy = read_text(path);
   heavy.replace(heavy.find("m = 0.7"), 7, "m = 0.7001");
   write_text(path, heavy);
@@ -191,7 +191,7 @@ TEST_CASE("hover of a planar rotorcraft: found though its inputs are off balance
   CHECK(linearised_at(path).l.kind == linear::Kind::motion);
 }
 
-TEST_CASE("slider-crank with all coordinates bound to one another: both rests of both ways to put it together") {
+TEST_CASE("slider-crank with all coordinates constrained: both equilibria of both assemblies") {
   const analysis::SteadyMotions all = found(
       file("slider",
            "[parameters]\nr = 0.2\nL = 0.6\n[coordinates]\na = {}\nb = {}\nx = {}\n"
@@ -209,7 +209,7 @@ TEST_CASE("slider-crank with all coordinates bound to one another: both rests of
   }
 }
 
-TEST_CASE("equilibria that are multiple roots are found, each once, and are no families") {
+TEST_CASE("equilibria that are multiple roots are found once each and are no families") {
   struct Case {
     const char *name, *potential;
     double x, y;
@@ -233,7 +233,7 @@ TEST_CASE("equilibria that are multiple roots are found, each once, and are no f
   }
 }
 
-TEST_CASE("a hanging chain of 12 damped bodies: no eigenvalue has a positive real part, and binary64 agrees on each") {
+TEST_CASE("a hanging chain of 12 damped bodies: no eigenvalue has a positive real part, and binary64 confirms each") {
   std::string text = "[parameters]\nm = 1\nL = 0.3\ng = 9.81\nJ = 0.0075\nc = 0.01\n";
   std::string before = "origin";
   for (int k = 1; k <= 12; ++k) {

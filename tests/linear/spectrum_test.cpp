@@ -20,7 +20,7 @@ Matrix<Precise> matrix(const Rows& rows) {
   return A;
 }
 
-/// S J S^-1 with a full S of small numbers.
+/// S J S^-1 with a full S of small integers.
 Matrix<Precise> similar(const Rows& J) {
   const std::size_t n = J.size();
   Matrix<Precise> S(n, n), one(n, n);
@@ -43,7 +43,7 @@ void same(const Spectrum& s, const std::vector<Eigenvalue>& expected) {
 
 }  // namespace
 
-TEST_CASE("Jordan blocks stay whole: a triple 0, a double pair on the imaginary axis, a double -2") {
+TEST_CASE("Jordan blocks are resolved: a triple 0, a double pair on the imaginary axis, a double -2") {
   const Spectrum s = spectrum(similar({{0, 1, 0, 0, 0, 0, 0, 0, 0},
                                        {0, 0, 1, 0, 0, 0, 0, 0, 0},
                                        {0, 0, 0, 0, 0, 0, 0, 0, 0},
@@ -57,7 +57,7 @@ TEST_CASE("Jordan blocks stay whole: a triple 0, a double pair on the imaginary 
   same(s, {{0, 3}, {0, 3}, {0, 0}, {0, 0}, {0, 0}, {0, -3}, {0, -3}, {-2, 0}, {-2, 0}});
 }
 
-TEST_CASE("small is not zero: 1e-9 beside 1e6 is an eigenvalue, and so is a pair with a weak damping") {
+TEST_CASE("small is not zero: 1e-9 beside 1e6 is an eigenvalue, and so is a weakly damped pair") {
   const Spectrum s = spectrum(similar({{1e6, 0, 0, 0}, {0, 1e-9, 0, 0}, {0, 0, -1e-12, 2}, {0, 0, -2, -1e-12}}));
   CHECK(s.zeros == 0);
   same(s, {{1e6, 0}, {1e-9, 0}, {-1e-12, 2}, {-1e-12, -2}});
@@ -72,7 +72,7 @@ TEST_CASE("a nilpotent matrix has zeros only, an empty one nothing") {
 
 namespace {
 
-/// n masses in a row, each held to the next: x'' = -K x / m - C x' / m with K and C of the same shape.
+/// n masses in a row, each connected to the next: x'' = -K x / m - C x' / m with K and C of the same structure.
 Matrix<Precise> chain(std::size_t n, double stiffness, double damping) {
   Matrix<Precise> A(2 * n, 2 * n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -125,7 +125,7 @@ TEST_CASE("chains of springs and dampers: closed forms, undamped, damped, stiff,
   }
 }
 
-TEST_CASE("a block of Jordan of size 12 stays one value, and one beside it that differs by 1e-9 stays apart") {
+TEST_CASE("a Jordan block of size 12 gives one value, separate from another that differs by 1e-9") {
   Rows J(14, std::vector<double>(14, 0));
   for (std::size_t i = 0; i < 14; ++i) J[i][i] = i < 12 ? -2 : i == 12 ? -3 : -3 - 1e-9;
   for (std::size_t i = 0; i < 11; ++i) J[i][i + 1] = 1;
@@ -162,7 +162,7 @@ TEST_CASE("a hanging chain of particles: squares of its frequencies are zeros of
   }
 }
 
-TEST_CASE("equal blocks side by side are equal values, not a spread: six critically damped oscillators") {
+TEST_CASE("equal blocks give equal values without a spread: six critically damped oscillators") {
   Rows J(12, std::vector<double>(12, 0));
   for (std::size_t i = 0; i < 12; i += 2) J[i][i + 1] = 1, J[i + 1][i] = -4, J[i + 1][i + 1] = -4;
   const Spectrum s = spectrum(similar(J));
@@ -173,7 +173,7 @@ TEST_CASE("equal blocks side by side are equal values, not a spread: six critica
   }
 }
 
-TEST_CASE("what 160 digits cannot hold is told: a block of Jordan of size 40") {
+TEST_CASE("insufficient precision of 160 digits is reported: a Jordan block of size 40") {
   Rows J(40, std::vector<double>(40, 0));
   for (std::size_t i = 0; i < 40; ++i) {
     J[i][i] = -1;
@@ -184,7 +184,7 @@ TEST_CASE("what 160 digits cannot hold is told: a block of Jordan of size 40") {
   CHECK(!s.holds());
 }
 
-TEST_CASE("elimination tells the rank, a solution and the null space") {
+TEST_CASE("elimination gives the rank, a solution and the null space") {
   const Matrix<Precise> A = matrix({{1, 2, 3}, {2, 4, 6}, {1, 0, 1}});
   const Elimination<Precise> e(A, tiny<Precise>(30));
   CHECK(e.rank() == 2);

@@ -37,7 +37,7 @@ std::vector<Ref> expressions(symbolic::Dag& dag) {
 
 }  // namespace
 
-TEST_CASE("slopes of every operation are those of symbolic differentiation, in 160 digits and in binary64") {
+TEST_CASE("derivatives of every operation match symbolic differentiation, in 160 digits and in binary64") {
   symbolic::Dag dag;
   std::vector<Ref> roots = expressions(dag), slopes;
   for (const Ref r : roots) {
@@ -65,7 +65,7 @@ TEST_CASE("slopes of every operation are those of symbolic differentiation, in 1
   }
 }
 
-TEST_CASE("where there is no value or no slope the tape says so") {
+TEST_CASE("the tape reports a missing value or derivative") {
   symbolic::Dag dag;
   const Ref a = dag.symbol(x), b = dag.symbol(y);
   const auto zero = [](const Symbol& s) { return s == x ? 0.0 : 1.0; };
@@ -73,6 +73,6 @@ TEST_CASE("where there is no value or no slope the tape says so") {
                       dag.call(Op::asin, b), dag.call(Op::max, a, dag.mul(a, b))}) {
     CHECK_THROWS_AS(linear::Tape(dag, {r}, {x, y}).at<double>(zero), std::domain_error);
   }
-  // Without a direction along which it moves, the root of 0 is 0.
+  // The root of 0 is 0 if it depends on no direction.
   CHECK(linear::Tape(dag, {dag.call(Op::sqrt, dag.power(a, 2))}, {y}).at<double>(zero).value[0] == 0);
 }

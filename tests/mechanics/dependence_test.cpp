@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Constraints that follow from others: what is left out, what the motion determines then, what is refused.
+// Redundant constraints: which are dropped, which forces the motion then determines, and which models are rejected.
 #include <doctest/doctest.h>
 
 #include <map>
@@ -64,17 +64,17 @@ std::string cranks(const std::vector<std::string>& lengths, const std::string& p
 }  // namespace
 
 TEST_CASE(
-    "two wheels roll on one axle: what the second says of the axle's height and of its slip sideways the first has "
-    "said") {
+    "two wheels roll on one axle: the second wheel's equations of the axle's height and lateral slip repeat the "
+    "first's") {
   const Built built(wheels_on_one_axle("z"));
   CHECK(built.of(mechanics::Need::redundant) == "right.2 right.3");
   CHECK(built.m.freedom() == 2);
-  // Forces sideways are shared in some way, and sideways is neither along E1 nor along E2.
+  // Lateral forces are shared in some way, and lateral is neither along E1 nor along E2.
   CHECK(built.undetermined() == "left.1 left.2 left.3 right.1 right.2 right.3");
 }
 
 TEST_CASE(
-    "a body rolls at constant height: the distance from the plane is no equation, and its force is not determined") {
+    "a body rolls at constant height: the distance from the plane is an identity, and its force is undetermined") {
   const Built built(wheels_on_one_axle("R"));
   CHECK(built.of(mechanics::Need::identity) == "left.3 right.3");
   CHECK(built.of(mechanics::Need::redundant) == "right.2");
@@ -82,11 +82,11 @@ TEST_CASE(
   CHECK(built.undetermined() == "left.1 left.2 left.3 right.1 right.2 right.3");
 }
 
-TEST_CASE("wheels of different radii on one level axle are refused") {
+TEST_CASE("wheels of different radii on one level axle are rejected") {
   CHECK(has(refusal(wheels_on_one_axle("z", "R", "2*R")), "'right.3' fixes nothing"));
 }
 
-TEST_CASE("Bricard's mechanism moves, though it has as many constraints as coordinates") {
+TEST_CASE("Bricard's mechanism has one degree of freedom with as many constraints as coordinates") {
   for (const std::string& text : {bricard_by_products(), bricard_by_distances()}) {
     const Built built(text);
     CHECK(built.m.q.size() == built.m.constraints.size());
@@ -98,13 +98,13 @@ TEST_CASE("Bricard's mechanism moves, though it has as many constraints as coord
   }
 }
 
-TEST_CASE("Bennett's loop moves, though scalar products say more than it has coordinates") {
+TEST_CASE("Bennett's loop has one degree of freedom with more scalar equations than coordinates") {
   const Built built(bennett_by_products());
   CHECK(built.m.constraints.size() == 4);
   CHECK(built.m.freedom() == 1);
 }
 
-TEST_CASE("more constraints than coordinates, of which no configuration is found, are refused") {
+TEST_CASE("more constraints than coordinates without a configuration where all hold are rejected") {
   std::string open = bennett_by_products();
   open.replace(open.find("b = \"a*sin"), 28, "b = \"3*a\"");
   CHECK(has(refusal(open), "no configuration is found in which all hold"));
@@ -119,7 +119,7 @@ TEST_CASE("three parallel cranks move a platform if they are equal for all value
   CHECK(Built(cranks({"L", "L"}, "L = 1\n")).undetermined().empty());
 }
 
-TEST_CASE("the unit length of Euler parameters follows where those of another body are bound to them") {
+TEST_CASE("the unit length of Euler parameters is redundant if another body's parameters are constrained to them") {
   std::string text = "format = 1\n";
   for (const std::string b : {"A", "B"}) {
     text += "[[body]]\nname = \"" + b +
@@ -132,7 +132,7 @@ TEST_CASE("the unit length of Euler parameters follows where those of another bo
   CHECK(built.m.freedom() == 3);
 }
 
-TEST_CASE("a constraint that can be left out of the file is refused where it repeats others, with all its equations") {
+TEST_CASE("a constraint that the user can omit is rejected if all its equations repeat others") {
   const std::string text = wheels_on_one_axle("z");
   const std::string again =
       "[[constraint]]\nname = \"again\"\nrolling = { body = \"L\", at = \"-R*E3\", on = \"ground\" }\n[scene.default]";

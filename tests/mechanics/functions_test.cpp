@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The functions of the model language and those of the graph: two tables, as the judge reads one of them only.
+// The functions of the model language and those of the graph: two tables, since the independent oracle reads only one
+// of them.
 #include "symbolic/functions.hpp"
 
 #include <doctest/doctest.h>
@@ -11,10 +12,10 @@
 
 using namespace eomgen;
 
-TEST_CASE("functions: what a row of the table calls itself is a function of the language, on as many arguments") {
+TEST_CASE("functions: each named row of the table is a function of the language with as many arguments") {
   std::size_t functions = 0;
   for (const symbolic::Function& row : symbolic::function_table) {
-    if (row.op == symbolic::Op::pow || row.op == symbolic::Op::select) continue;  // ^ and if, which are no calls
+    if (row.op == symbolic::Op::pow || row.op == symbolic::Op::select) continue;  // ^ and if are no calls
     CAPTURE(row.name);
     const model::FunctionName* found = model::find_function(row.name);
     REQUIRE(found != nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which constraints on velocities are integrable, alone or together; what their integrals are; which repeat others.
+// Integrability of velocity constraints, alone or together; their integrals; redundant ones.
 #include "mechanics/integrability.hpp"
 
 #include <doctest/doctest.h>
@@ -46,8 +46,8 @@ struct Found {
     return text;
   }
 
-  /// d psi/dt along velocities that the constraints allow, by central differences, at a few states; the worst of all
-  /// integrals. Only the rows of the constraints come from mechanics.
+  /// d psi/dt along admissible velocities, by central differences, at a few states: the worst of all integrals. Only
+  /// the rows of the constraints come from mechanics.
   double worst_rate() const {
     double worst = 0;
     for (int point = 1; point <= 3; ++point) {
@@ -103,7 +103,7 @@ std::string refusal(const std::string& coordinates, const std::vector<std::strin
 
 }  // namespace
 
-TEST_CASE("integrability: single constraints, with a factor where one is needed, and their integrals") {
+TEST_CASE("integrability: single constraints, with an integrating factor if needed, and their integrals") {
   for (const char* e : {"x_dot - k", "x*x_dot + y*y_dot + f", "y*z*x_dot + x*z*y_dot + x*y*z_dot", "x*y_dot - y*x_dot",
                         "y*x_dot + 2*x*y_dot", "x_dot + k*x", "cos(y)*x_dot*exp(z) - x*sin(y)*y_dot*exp(z)",
                         "x*x_dot + y*y_dot - k*sin(3*t)*exp(t)", "y_dot - x_dot*tan(x)", "x^2*y_dot - y*x_dot*(x+1)",
@@ -117,7 +117,7 @@ TEST_CASE("integrability: single constraints, with a factor where one is needed,
   }
 }
 
-TEST_CASE("integrability: constraints that no function of the positions and t replaces") {
+TEST_CASE("integrability: constraints without an integral of the positions and t") {
   for (const char* e : {"y_dot + z*x_dot", "x*x_dot + z*y*y_dot + z*y*z_dot", "x_dot*sin(z) - y_dot*cos(z)",
                         "y^2*x_dot + x*y_dot - f", "x_dot*sqrt(x^2 + y^2) + x + y_dot*t"}) {
     INFO(std::string(e));
@@ -134,7 +134,7 @@ TEST_CASE("integrability: constraints that are integrable only together") {
   CHECK(pair.m.integrals.size() == 2);
   CHECK(pair.worst_rate() < 1e-8);
 
-  // Neither of the two is integrable with the rest left out.
+  // Neither of the two is integrable without the rest.
   const Found both("x y z w", {velocity("x_dot + z*y_dot + z_dot*w"), velocity("z_dot*w + w_dot + z*y_dot")});
   CHECK(both.m.integrals.size() <= 2);
   CHECK(both.worst_rate() < 1e-8);
@@ -145,13 +145,13 @@ TEST_CASE("integrability: constraints that are integrable only together") {
   CHECK(disk.m.integrals.size() == 3);
   CHECK(disk.worst_rate() < 1e-8);
 
-  // The same disk that may turn.
+  // The same disk, free to turn.
   const Found turning("x y phi psi", {velocity("x_dot - R*psi_dot*cos(phi)"), velocity("y_dot - R*psi_dot*sin(phi)")});
   CHECK(turning.verdicts() == "no no");
   CHECK(turning.m.integrals.empty());
 }
 
-TEST_CASE("integrability: a combination is integrable where no constraint is") {
+TEST_CASE("integrability: a combination is integrable although no single constraint is") {
   const Found found("x y z w", {velocity("x_dot + y*z_dot"), velocity("w_dot - y*z_dot")});
   CHECK(found.verdicts() == "no no");
   REQUIRE(found.m.integrals.size() == 1);
@@ -159,7 +159,7 @@ TEST_CASE("integrability: a combination is integrable where no constraint is") {
   CHECK(found.worst_rate() < 1e-8);
 }
 
-TEST_CASE("integrability: what a holonomic constraint fixes makes others integrable") {
+TEST_CASE("integrability: a coordinate fixed by a holonomic constraint makes others integrable") {
   const Found straight("x y phi psi", {holonomic("phi - k*t^2"), velocity("x_dot - R*psi_dot*cos(phi)"),
                                        velocity("phi_dot + y_dot - t")});
   CHECK(straight.verdicts() == "yes no yes");  // cos(phi(t)) psi_dot is no total derivative
@@ -169,13 +169,13 @@ TEST_CASE("integrability: what a holonomic constraint fixes makes others integra
   CHECK(Found("x y z", {velocity("z*x_dot + x*y_dot")}).verdicts() == "no");
 }
 
-TEST_CASE("integrability: what a holonomic constraint keeps is no integral of one on velocities") {
+TEST_CASE("integrability: a holonomic constraint's function is no integral of a velocity constraint") {
   const Found found("a b c", {holonomic("cos(a) + cos(b) - 1.5"), velocity("c_dot + cos(c)*a_dot + b_dot")});
-  CHECK(found.verdicts() == "yes yes");  // on the curve that is left
+  CHECK(found.verdicts() == "yes yes");  // on the remaining curve
   CHECK(found.m.integrals.empty());
 }
 
-TEST_CASE("integrability: a car with trailers reaches every configuration, however many there are") {
+TEST_CASE("integrability: a car reaches every configuration with any number of trailers") {
   for (const int trailers : {1, 5, 9}) {
     std::string coordinates = "x y s th0";
     std::vector<std::string> wheels{velocity("x_dot*sin(th0 + s) - y_dot*cos(th0 + s) - th0_dot*cos(s)"),
@@ -197,7 +197,7 @@ TEST_CASE("integrability: a car with trailers reaches every configuration, howev
   }
 }
 
-TEST_CASE("integrability: a wheel that cannot turn keeps to its line, the trailer behind it to none") {
+TEST_CASE("integrability: a wheel that cannot turn stays on its line, the trailer behind it does not") {
   const Found found("x y th0 th1", {velocity("x_dot*sin(th0) - y_dot*cos(th0)"),
                                     velocity("x_dot*sin(th1) - y_dot*cos(th1) + R*th1_dot"), velocity("th0_dot")});
   CHECK(found.verdicts() == "yes no yes");
@@ -205,7 +205,7 @@ TEST_CASE("integrability: a wheel that cannot turn keeps to its line, the traile
   CHECK(found.worst_rate() < 1e-8);
 }
 
-TEST_CASE("redundancy: constraints that follow from others, and those that contradict them, are named") {
+TEST_CASE("redundancy: redundant and contradictory constraints are named") {
   const std::string c1 = velocity("x_dot + y*z_dot"), c2 = velocity("w_dot - y*z_dot + k");
   CHECK(refusal("x y z w", {c1, c2, velocity("2*x_dot + 2*y*z_dot")}) ==
         "constraint 'c3' follows from 'c1': c3 = 2 c1");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models that read well but whose mechanics make no sense: each is refused with its place.
+// Models that are read without error but make no mechanical sense: each is rejected with its place.
 #include <doctest/doctest.h>
 
 #include "mechanics/mechanics.hpp"
@@ -38,13 +38,13 @@ Refusal refusal(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("mechanics refuses: gravity across the plane of motion changes no equation") {
+TEST_CASE("mechanics rejects: gravity across the plane of motion changes no equation") {
   const Refusal r = refusal(planar + "[[force]]\ngravity = \"-g*E3\"\n");
   CHECK(r.message == "'force 1' changes no equation of motion: it does no work in any motion of the coordinates");
   CHECK((r.line == 9 || r.line == 10));
 }
 
-TEST_CASE("mechanics refuses: what divides by 0 in every state, with its place") {
+TEST_CASE("mechanics rejects: division by 0 in every state, with its place") {
   for (const char* energy :
        {"1/(x - x)", "x/(sin(y)^2 + cos(y)^2 - 1)", "(x - x)^(-2)*y", "x/(-y^2*(sin(y)^2 + cos(y)^2 - 1)^3)",
         "1/(y*(sin(x)^2 + cos(x)^2 - 1))", "x/abs(2*(x + y)^2 - 2*x^2 - 2*y^2 - 4*x*y)"}) {
@@ -60,7 +60,7 @@ TEST_CASE("mechanics refuses: what divides by 0 in every state, with its place")
   CHECK(r.line == 13);
 }
 
-TEST_CASE("mechanics refuses: the direction of a vector that is 0 in every state, with its place") {
+TEST_CASE("mechanics rejects: the direction of a vector that is 0 in every state, with its place") {
   for (const char* force :
        {"force = \"unit(P - P)\"\non = \"P\"", "linear_actuator = { between = [\"P\", \"x*E1 + y*E2\"], force = 1 }"}) {
     CAPTURE(std::string(force));
@@ -70,7 +70,7 @@ TEST_CASE("mechanics refuses: the direction of a vector that is 0 in every state
   }
 }
 
-TEST_CASE("mechanics refuses: a function or a power that has no value in any state, with its place") {
+TEST_CASE("mechanics rejects: a function or a power that has no value in any state, with its place") {
   const auto of = [](const std::string& energy) {
     return refusal(planar + "[energy]\npotential = \"" + energy + "\"\n");
   };
@@ -98,21 +98,21 @@ TEST_CASE("mechanics refuses: a function or a power that has no value in any sta
   }
 }
 
-TEST_CASE("mechanics refuses: a constraint that follows from the one before it") {
+TEST_CASE("mechanics rejects: a constraint implied by an earlier one") {
   const Refusal r = refusal(planar +
                             "[[constraint]]\nname = \"a\"\nholonomic = \"x - 1\"\n"
                             "[[constraint]]\nname = \"b\"\nholonomic = \"2*x - 2\"\n");
   CHECK(r.message == "constraint 'b' follows from the constraints before it");
 }
 
-TEST_CASE("mechanics refuses: a constraint that contradicts the one before it") {
+TEST_CASE("mechanics rejects: a constraint that contradicts an earlier one") {
   const Refusal r = refusal(planar +
                             "[[constraint]]\nname = \"a\"\nholonomic = \"x - 1\"\n"
                             "[[constraint]]\nname = \"b\"\nholonomic = \"x - 2\"\n");
   CHECK(r.message.starts_with("constraint 'b' fixes nothing"));
 }
 
-TEST_CASE("mechanics refuses: a constraint that is not linear in the velocities") {
+TEST_CASE("mechanics rejects: a constraint that is not linear in the velocities") {
   const Refusal r = refusal(planar + "[[constraint]]\nname = \"speed\"\nvelocity = \"x_dot^2 + y_dot^2 - 1\"\n");
   CHECK(r.message == "constraint 'speed' is not linear in the velocities");
   CHECK(r.line == 11);
@@ -123,12 +123,12 @@ TEST_CASE("mechanics accepts: velocities whose squares cancel") {
         "accepted");
 }
 
-TEST_CASE("mechanics refuses: a constraint that divides by a velocity, linear as it is") {
+TEST_CASE("mechanics rejects: a constraint that divides by a velocity, even if it is linear") {
   const Refusal r = refusal(planar + "[[constraint]]\nname = \"c\"\nvelocity = \"(x_dot^2 + x_dot*y_dot*x)/x_dot\"\n");
   CHECK(r.message == "constraint 'c' divides by a velocity");
 }
 
-TEST_CASE("mechanics refuses: a coordinate that moves no mass") {
+TEST_CASE("mechanics rejects: a coordinate that moves no mass") {
   const Refusal r = refusal(planar + "[coordinates]\ns = {}\n[[force]]\non = \"P\"\nforce = \"-s*E1\"\n");
   CHECK(r.message.find("coordinate 's'") != std::string::npos);
 }
@@ -137,7 +137,7 @@ TEST_CASE("mechanics accepts: a force that acts only beyond a kink") {
   CHECK(refusal(planar + "[[force]]\non = \"P\"\nforce = \"-max(0, x - 50)*E1\"\n").message == "accepted");
 }
 
-TEST_CASE("mechanics refuses: more friction than there are directions to move in") {
+TEST_CASE("mechanics rejects: more friction directions than degrees of freedom") {
   const std::string slot =
       "[[constraint]]\nname = \"a\"\nholonomic = \"x - y/2\"\nfriction = { static = 0.2, dynamic = 0.1 }\n";
   const std::string joint =
@@ -154,7 +154,7 @@ TEST_CASE("mechanics refuses: more friction than there are directions to move in
   CHECK(refusal(planar + slot + smooth).message == "accepted");
 }
 
-TEST_CASE("mechanics refuses: restitution beyond 1, a width that is not positive") {
+TEST_CASE("mechanics rejects: restitution above 1, a width that is not positive") {
   const auto wall = [](const std::string& e) {
     return planar + "[[constraint]]\nname = \"a\"\nholonomic = \"x\"\nholds = \"unilateral\"\nrestitution = " + e +
            "\n";
@@ -169,14 +169,14 @@ TEST_CASE("mechanics refuses: restitution beyond 1, a width that is not positive
 }
 
 TEST_CASE(
-    "mechanics: a constraint that can be left takes no degree of freedom; friction counts what moves while it "
-    "touches") {
+    "mechanics: a unilateral constraint removes no degree of freedom; friction counts those that remain while it "
+    "is closed") {
   const std::string stop = "[[constraint]]\nname = \"stop\"\nholonomic = \"x\"\nholds = \"unilateral\"\n";
   const std::string plane = "[[constraint]]\nname = \"plane\"\nholonomic = \"y\"\n";
   const model::Model model = model::read_model_text(planar + stop + plane, "stop.toml");
   CHECK(mechanics::build_mechanics(model).freedom() == 1);
   const std::string dry = "friction = { static = 0.3, dynamic = 0.2 }\n";
-  CHECK(refusal(planar + stop + plane + dry).message == "accepted");  // the stop holds what the plane does
+  CHECK(refusal(planar + stop + plane + dry).message == "accepted");  // the stop blocks the same direction as the plane
   const auto guide = [](const std::string& name, const std::string& coordinate) {
     return "[[force]]\nname = \"" + name + "\"\ndry = { coordinate = \"" + coordinate +
            "\", normal = 1, static = 0.2, dynamic = 0.1 }\n";
@@ -189,7 +189,7 @@ TEST_CASE(
       "all stick, the forces are not determined");
 }
 
-TEST_CASE("mechanics: friction along a direction that another constraint holds knows which") {
+TEST_CASE("mechanics: friction along a blocked direction records the constraint that blocks it") {
   const auto floor = [](const std::string& other) {
     const model::Model model = model::read_model_text(
         "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
@@ -211,7 +211,7 @@ TEST_CASE("mechanics: friction along a direction that another constraint holds k
     const mechanics::Contact& plane = m.contacts[0];
     REQUIRE(plane.held.size() == 1);
     CHECK(plane.held[0].by == (unilateral ? 1 : 0));
-    // Its part of E1, E2: the wall's gradient, less the part along the plane's normal.
+    // Its part of E1, E2: the wall's gradient minus the part along the plane's normal.
     std::vector<symbolic::Ref> wanted;
     for (std::size_t k = 0; k < 3; ++k) {
       symbolic::Ref sum = m.dag->zero();
@@ -222,11 +222,11 @@ TEST_CASE("mechanics: friction along a direction that another constraint holds k
     const std::vector<cln::cl_R> h = symbolic::evaluate(
         *m.dag, wanted, [](const symbolic::Symbol&) { return cln::cl_R(1); }, 20);
     const cln::cl_R small = cln::expt(symbolic::Rational(1) / 10, 15);
-    // (3, 4, 0) less its part along (-1, 0, 8): (3*64/65, 4, 3*8/65).
+    // (3, 4, 0) minus its part along (-1, 0, 8): (3*64/65, 4, 3*8/65).
     CHECK(cln::abs(4 * h[0] - h[1] * 3 * 64 / 65) < small);
     CHECK(cln::abs(8 * h[2] - h[0]) < small);
   }
-  // Two constraints that hold a direction together: which part is whose is not looked for.
+  // Two constraints that block a direction together are not separated.
   const std::string both = "[[constraint]]\nname = \"belt\"\nholonomic = \"x + y - u\"\n" +
                            constraint("held", "u - v^2 - 2", false) + constraint("too", "u + v^3 - 3", false);
   CHECK_THROWS_WITH_AS(
@@ -234,17 +234,17 @@ TEST_CASE("mechanics: friction along a direction that another constraint holds k
       doctest::Contains("with 'plane' friction can hold 2 directions, and the system has 1 degree of freedom"), Error);
 }
 
-TEST_CASE("mechanics refuses: friction where constraints let nothing move") {
+TEST_CASE("mechanics rejects: friction where constraints block all sliding") {
   const Refusal r = refusal(planar +
                             "[[constraint]]\nname = \"a\"\nholonomic = \"x - y\"\n[[constraint]]\nname = "
                             "\"b\"\nholonomic = \"x + y^2\"\n[[particle]]\nname = \"R\"\nmass = 1\nposition = "
                             "{ cartesian = [\"u\", \"v\"] }\n[[force]]\nname = \"rub\"\ndry = { coordinate = "
                             "\"x\", normal = 1, static = 0.2, dynamic = 0.1 }\n");
   CHECK(r.message ==
-        "the friction of 'rub' acts along what the constraints hold already: it changes no equation of motion");
+        "the friction of 'rub' acts along directions that constraints block: it changes no equation of motion");
 }
 
-TEST_CASE("mechanics refuses: a constraint whose gradient vanishes where it holds, however the power is written") {
+TEST_CASE("mechanics rejects: a constraint whose gradient vanishes where it holds, in any form of the power") {
   for (const char* power : {"x^2 - 2*y*x + y^2", "1 - cos(x - y)", "x^2 + y^2",
                             "(x^2 + y^2)^2 - 2*(x^2 + y^2)*m^2 + m^4", "x^3 - 3*x^2*y + 3*x*y^2 - y^3"}) {
     CAPTURE(power);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is derived against equations typed in from the source or worked out by hand; compared by proof, not by text.
+// Derived equations against equations from the source or derived by hand; compared by proof, not by text.
 #include <doctest/doctest.h>
 
 #include "reading/by_name.hpp"
@@ -30,7 +30,7 @@ Sum residual(System& s, const Equation& equation) {
 
 }  // namespace
 
-TEST_CASE("P7: approach I reads as (2.111), approach II as (2.109)") {
+TEST_CASE("P7: approach I gives (2.111), approach II gives (2.109)") {
   System s(model::read_model(shipped("P7_moving_sphere")));
   const auto v = [&](const char* name) { return s.symbol(name); };
   const Sum m = v("m"), g = v("g"), D = v("D"), d = v("d"), sn = sin(v("phi")), cs = cos(v("phi"));
@@ -127,7 +127,7 @@ TEST_CASE("P2: both constraint forces of a pendulum of varying length") {
   REQUIRE(form.reactions.size() == 2);
   CHECK(same(*form.reactions[0].value,
              v("m") * v("L_ddot") - v("m") * v("L") * square(v("theta_dot")) - v("m") * v("g") * cos(v("theta"))));
-  CHECK(form.reactions[1].value->is_zero());  // nothing pushes out of the plane
+  CHECK(form.reactions[1].value->is_zero());  // no force out of the plane
 }
 
 TEST_CASE("S5: the planar double pendulum and the forces along its rods") {
@@ -148,7 +148,7 @@ TEST_CASE("S5: the planar double pendulum and the forces along its rods") {
              -m2 * (L2 * w2 + L1 * cos(t1 - t2) * w1 + L1 * sin(t1 - t2) * v("theta1_ddot")) - m2 * g * cos(t2)));
 }
 
-TEST_CASE("S5 in Cartesian coordinates: constraints stay with their multipliers and two time derivatives") {
+TEST_CASE("S5 in Cartesian coordinates: constraints keep their multipliers and two time derivatives") {
   System s(model::read_model(shipped("S5_double_pendulum_cartesian")));
   const auto v = [&](const char* name) { return s.symbol(name); };
   const ReadingForm form = derive(s, system::Approach::two);

@@ -29,7 +29,7 @@ name = "contact"
 rolling = { body = "disk", shape = { disk = "R" }, on = "ground" }
 )toml";
 
-/// A sum stands as an atom under powers other than 1 only; what prints and compares sums relies on it.
+/// A sum is an atom only under powers other than 1; printing and comparison rely on it.
 bool is_canonical(const Sum& sum) {
   bool result = true;
   const std::function<void(const Sum&)> visit = [&](const Sum& s) {
@@ -57,7 +57,7 @@ TEST_CASE(
     CHECK(c.no_acceleration.empty());
     CHECK(is_canonical(c.rate));
     CHECK(is_canonical(c.acceleration));
-    // x1_dot, or x2_dot, stands alone.
+    // x1_dot, or x2_dot, is alone.
     CHECK(std::any_of(c.rate.terms().begin(), c.rate.terms().end(),
                       [](const auto& term) { return term.first.size() == 1 && reading::is_one(term.second); }));
   }
@@ -74,7 +74,7 @@ TEST_CASE("sqrt(x^2 S^-2) of a sum of squares S is |x|/S: S is never negative") 
   CHECK(reading::call(symbolic::Op::abs, {S}) == S);
 }
 
-TEST_CASE("a budget of operations ends what exceeds it, also from within another, and the outer one pays") {
+TEST_CASE("a budget ends a calculation that exceeds it, also when nested; the outer budget is charged too") {
   const auto spent = [](std::size_t outer, std::size_t inner, std::size_t operations) {
     const work::Budget around(outer);
     bool over = false;

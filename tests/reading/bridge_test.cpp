@@ -54,7 +54,7 @@ std::vector<Ref> every_operation(Nodes& n) {
 
 }  // namespace
 
-TEST_CASE("bridge: every operation keeps its value on the way there and back") {
+TEST_CASE("bridge: every operation keeps its value in a round trip") {
   Nodes n;
   reading::Bridge bridge(n.system.mechanics);
   for (const Ref r : every_operation(n)) {
@@ -64,7 +64,7 @@ TEST_CASE("bridge: every operation keeps its value on the way there and back") {
   }
 }
 
-TEST_CASE("bridge: GiNaC's derivatives are the Dag's") {
+TEST_CASE("bridge: GiNaC's derivatives agree with the Dag's") {
   Nodes n;
   reading::Bridge bridge(n.system.mechanics);
   const Symbol x = n.dag.symbol_of(n.x);
@@ -76,7 +76,7 @@ TEST_CASE("bridge: GiNaC's derivatives are the Dag's") {
   }
 }
 
-TEST_CASE("bridge: the same expression met again is the same sum, whatever its path") {
+TEST_CASE("bridge: the same expression gives the same sum in any order of conversion") {
   Nodes n;
   reading::Bridge one(n.system.mechanics), two(n.system.mechanics);
   const std::vector<Ref> roots = every_operation(n);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Closed forms typed in as they stand in books: symbols of a model by name, joined with + - * and sin, cos.
+// Closed forms from books: symbols of a model by name, combined with + - * and sin, cos.
 #pragma once
 
 #include <string>

@@ -101,7 +101,7 @@ const char* mass = "[parameters]\nm = 1\nA = { value = 2, positive = true }\nB =
 
 }  // namespace
 
-TEST_CASE("the triad, curvature and torsion of the helix are those of (2.130), put right, and (2.131)") {
+TEST_CASE("the triad, curvature and torsion of the helix are those of (2.130), corrected, and (2.131)") {
   System s(model::read_model(shipped("P8_smooth_helix")));
   const reading::Frenet f = reading::frenet(s.mechanics);
   const Sum R = s.symbol("R"), al = s.symbol("alpha"), th = s.symbol("theta"),
@@ -137,7 +137,7 @@ TEST_CASE("a curve of one free coordinate agrees with numerical differentiation 
   }
 }
 
-TEST_CASE("a curve that two constraints leave without fixing a coordinate: Viviani's window") {
+TEST_CASE("a curve of two constraints that fix no coordinate: Viviani's window") {
   const Curve curve(std::string(mass) +
                     "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
                     "[[force]]\ngravity = \"-B*E3\"\n[[constraint]]\nname = \"curve\"\n"
@@ -153,7 +153,8 @@ TEST_CASE("a curve that two constraints leave without fixing a coordinate: Vivia
     const Vector r = position(0);
     const std::map<std::string, Real> at{{"A", A},    {"B", number(1)}, {"m", number(1)},
                                          {"x", r[0]}, {"y", r[1]},      {"z", r[2]}};
-    // The order of the constraints says which way along the curve; with it tangent and binormal change their signs.
+    // The order of the constraints determines the direction along the curve; with it tangent and binormal change their
+    // signs.
     Numbers expected = by_differences(position);
     const Real way = curve.value(f.tangent.fixed[0], at) * expected.tangent[0] +
                      curve.value(f.tangent.fixed[1], at) * expected.tangent[1] +
@@ -183,7 +184,7 @@ TEST_CASE("a straight line has a tangent and no curvature; a plane curve no tors
   CHECK(circle.torsion->is_zero());
 }
 
-TEST_CASE("where no curve is left the Frenet triad is refused, and why") {
+TEST_CASE("without a curve the Frenet triad is rejected with a reason") {
   for (const auto& [name, why] :
        {std::pair{"P7_moving_sphere", "leave 2 degrees of freedom"}, std::pair{"S5_double_pendulum", "2 particles"},
         std::pair{"cart_pendulum", "0 particles"}}) {

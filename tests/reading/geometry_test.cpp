@@ -25,7 +25,7 @@ struct Table {
     throw std::logic_error("no coordinate " + name);
   }
   Sum metric(const std::string& i, const std::string& k) const { return g.metric[at(i) * 3 + at(k)]; }
-  /// All symbols of the second kind but those named must vanish.
+  /// All symbols of the second kind except those named must vanish.
   void check_second_kind(const std::map<std::array<std::string, 3>, Sum>& expected) const {
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) {
@@ -148,7 +148,7 @@ position = "u*v*cos(theta)*E1 + u*v*sin(theta)*E2 + (u^2 - v^2)/2*E3"
   CHECK(g->second[(0 * 3 + 2) * 3 + 2] == over(1, u));
 }
 
-TEST_CASE("singular sets are told per approach") {
+TEST_CASE("singular sets are reported per approach") {
   System s(model::read_model(shipped("P7_moving_sphere")));
   std::map<std::string, std::vector<Sum>> sets;
   for (const reading::SingularSet& set : reading::singular_sets(s.mechanics)) sets[set.approach].push_back(set.factor);
@@ -166,7 +166,7 @@ TEST_CASE("singular sets are told per approach") {
   CHECK(reading::singular_sets(pendulum.mechanics).empty());
 }
 
-TEST_CASE("a determinant of masses that vanishes nowhere is no singular set, one that does is") {
+TEST_CASE("a determinant of masses gives a singular set only if it vanishes somewhere") {
   const std::string parameters =
       "format = 1\n[parameters]\nm = 1\nM = 2\nl = 1\nL = 1.5\nJ = 0.1\nK = 0.2\n[coordinates]\na = {}\nb = {}\n";
   const auto body = [](const std::string& name, const std::string& mass, const std::string& inertia,

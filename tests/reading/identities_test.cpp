@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Simplification keeps values and finds what a person would find.
+// Simplification preserves values and finds the forms that a person would find.
 #include <doctest/doctest.h>
 
 #include "reading/by_name.hpp"
@@ -57,7 +57,7 @@ TEST_CASE("trigonometry: the shorter of the two forms is kept, and nothing gets 
   CHECK(same(simplify(mixed), mixed));
 }
 
-TEST_CASE("trigonometry: squares beside roots, divisors and high powers of sines keep their value") {
+TEST_CASE("trigonometry: squares with roots, divisors and high powers of sines keep their value") {
   System s = some_symbols();
   const Sum a = s.symbol("a"), b = s.symbol("b"), m = s.symbol("m"), k = s.symbol("k"), x = s.symbol("x");
   const Sum third = power(x, reading::Rational(1) / 3), root = power(sin(a), reading::Rational(1) / 2);
@@ -74,7 +74,7 @@ TEST_CASE("trigonometry: squares beside roots, divisors and high powers of sines
   CHECK(simplify(mixed) == power(sin(a), 3) * cos(b) + x * square(sin(b)));
 }
 
-TEST_CASE("roots: sqrt(x^2) is x where x is positive, and |x| where nothing is known") {
+TEST_CASE("roots: sqrt(x^2) is x if x is positive, and |x| if its sign is unknown") {
   System s = some_symbols();
   const Sum m = s.symbol("m"), x = s.symbol("x"), phi = s.symbol("phi");
   CHECK(sqrt(square(m)) == m);
@@ -125,19 +125,19 @@ TEST_CASE(
   for (const Sum& p : {x, x - Sum(2) * y, m * u + k * v, u * v + sin(a) * x + Sum(7), power(x + y + k, 5)}) {
     for (const Sum& q : {u, Sum(3) * x * y - v, x + m, square(sin(a)) - k * u, Sum(reading::Rational(2) / 3) * x}) {
       CHECK(divides(p, q));
-      CHECK(reading::exact_quotient(p * q + k, q).has_value() == (q.size() == 1));  // one term divides everything
+      CHECK(reading::exact_quotient(p * q + k, q).has_value() == (q.size() == 1));  // a single term always divides
     }
   }
   CHECK(reading::exact_quotient(x * u * other, u) == x * other);
   CHECK(reading::exact_quotient(x * u * power(m, -2) * root, v) == std::nullopt);
   CHECK(reading::exact_quotient(power(u, reading::Rational(1) / 2) * x + square(y) * x * root + power(x, 3) * root,
-                                u) == Sum(2) * x * root);  // sqrt(u) = u/sqrt(u), multiplied out
+                                u) == Sum(2) * x * root);  // sqrt(u) = u/sqrt(u), expanded
   CHECK(reading::exact_quotient(x + m, u) == std::nullopt);
   CHECK(reading::exact_quotient(Sum(), u) == Sum());
   CHECK(reading::exact_quotient(over(u, x), u) == power(x, -1));
 }
 
-TEST_CASE("factors: sums with an atom that stands in one term alone have none, others are found") {
+TEST_CASE("factors: sums with an atom in one term alone have none, others are found") {
   System s = some_symbols();
   const Sum x = s.symbol("x"), y = s.symbol("y"), m = s.symbol("m"), k = s.symbol("k"), a = s.symbol("a");
   const auto count = [](const Sum& sum) { return reading::factorise(sum).factors.size(); };

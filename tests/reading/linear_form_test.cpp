@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// M, C, K, B of small deviations against slopes that are written by hand.
+// M, C, K, B of small deviations against derivatives written by hand.
 #include "reading/linear_form.hpp"
 
 #include <doctest/doctest.h>
@@ -58,7 +58,7 @@ TEST_CASE("small deviations of a cart with a pendulum: M, C, K, B along any moti
   CHECK(f.rest[1] == m * g * l * sine);
 }
 
-TEST_CASE("linear form: where multipliers or contacts stay, the reason is given") {
+TEST_CASE("linear form: with multipliers or contacts, the reason of omission is given") {
   for (const char* name : {"R15_pin_joint", "bouncing_ball"}) {
     CAPTURE(name);
     System s(model::read_model(shipped(name)));

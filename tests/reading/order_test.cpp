@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The order of everything is ours: GiNaC's serial numbers, hashes and addresses leave no trace.
+// The order of everything is our own: GiNaC's serial numbers, hashes and addresses have no effect.
 #include <doctest/doctest.h>
 #include <ginac/ginac.h>
 
@@ -13,7 +13,7 @@ using namespace eomgen::test;
 
 namespace {
 
-// Everything that a derivation holds, term by term in canonical order, as an expression of a fresh Dag.
+// All results of a derivation, term by term in canonical order, as an expression of a fresh Dag.
 std::size_t nodes_of(const reading::ReadingForm& form) {
   symbolic::Dag dag;
   std::size_t signature = 0;
@@ -27,7 +27,7 @@ std::size_t nodes_of(const reading::ReadingForm& form) {
 
 }  // namespace
 
-TEST_CASE("order: serial numbers burnt at random and moved heaps change nothing") {
+TEST_CASE("order: random serial numbers and heap addresses change nothing") {
   for (const char* name : {"P7_moving_sphere", "S5_spherical_double_pendulum", "P14_kepler_cartesian"}) {
     System s(model::read_model(shipped(name)));
     const std::size_t before = nodes_of(reading::derive_reading(s.mechanics, system::Approach::one));

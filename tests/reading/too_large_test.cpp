@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Large systems: told in parts, soon.
+// Large systems: displayed by parts, quickly.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -28,7 +28,7 @@ std::string relative_chain(int n) {
 
 }  // namespace
 
-TEST_CASE("a chain of 15 relative angles is told by parts, with every coordinate, in seconds") {
+TEST_CASE("a chain of 15 relative angles is displayed by parts, with every coordinate, in seconds") {
   System s(model::read_model_text(relative_chain(15), "chain"));
   const auto start = std::chrono::steady_clock::now();
   const reading::ReadingForm form = reading::derive_reading(s.mechanics, system::Approach::one);
@@ -38,7 +38,7 @@ TEST_CASE("a chain of 15 relative angles is told by parts, with every coordinate
   CHECK(reading::residuals_on_dag(form, s.mechanics).empty());
 }
 
-TEST_CASE("what is too long by one approach is not tried by the other where both are the same equations") {
+TEST_CASE("a form too long in one approach is not tried in the other if both have the same equations") {
   System s(model::read_model_text(relative_chain(15), "chain"));
   reading::Forms forms(s.mechanics);
   const reading::ReadingForm& one = forms(system::Approach::one);
@@ -52,7 +52,7 @@ TEST_CASE("what is too long by one approach is not tried by the other where both
   CHECK(reading::derive_reading(s.mechanics, system::Approach::two).why_by_parts != one.why_by_parts);
 }
 
-TEST_CASE("a chain of 4 relative angles is written out, with residuals on the Dag") {
+TEST_CASE("a chain of 4 relative angles is expanded, with residuals on the Dag") {
   System s(model::read_model_text(relative_chain(4), "chain"));
   const reading::ReadingForm form = reading::derive_reading(s.mechanics, system::Approach::one);
   CHECK_FALSE(form.by_parts);
