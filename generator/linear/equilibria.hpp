@@ -37,8 +37,7 @@ struct SearchRequest {
 struct FoundPoint {
   State<Precise> z;
   double off = 0;  // Steady::off
-  std::size_t family =
-      0;  // dimension of its family of steady motions, before any quantity was held
+  std::size_t family = 0;  // dimension of its family of steady motions, before any quantity was held
 };
 
 struct SearchResult {

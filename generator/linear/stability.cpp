@@ -163,8 +163,7 @@ std::optional<std::size_t> family(const Flow& flow, const Linearisation& steady,
     for (std::size_t i = 0; i + 1 < T.rows; ++i) start[i] = start[i] + step * T(i, d);
     const auto found = steady_state(flow, steady.symmetry, start, steady.setting);
     if (!found) return std::nullopt;
-    for (std::size_t i = 0; i + 1 < T.rows;
-         ++i) {  // no falling back: the correction is of second order in the step
+    for (std::size_t i = 0; i + 1 < T.rows; ++i) {  // no falling back: the correction is of second order in the step
       if (magnitude((*found)[i] - start[i]) > step * size / Precise(4) * (Precise(1) + magnitude(steady.z[i])))
         return std::nullopt;
     }

@@ -17,8 +17,7 @@ std::optional<State<Precise>> steady_state(const Flow& flow, const Symmetry& sym
 
 struct Steady {
   State<Precise> z;
-  double off =
-      0;  // relative change of the parameters and inputs that would make this an exact steady motion
+  double off = 0;            // relative change of the parameters and inputs that would make this an exact steady motion
   int known = known_digits;  // digits of z
 };
 

@@ -23,7 +23,7 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 
 constexpr int digits = 50;
-constexpr int steps = 120;  // near dependent rows, Newton steps halve the distance down to `dependent`
+constexpr int steps = 120;             // near dependent rows, Newton steps halve the distance down to `dependent`
 constexpr double dependent = 1e-6;     // below this, steps lose their direction
 constexpr int closed_digits = 38;      // |psi| of a configuration
 constexpr double longest_step = 0.7;   // of a coordinate, in units of its scale: angles of 40 degrees

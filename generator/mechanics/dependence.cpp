@@ -19,8 +19,7 @@ using cln::cl_R;
 
 cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 
-constexpr int dependent_digits =
-    20;  // rows have 50 digits, configurations 38: smaller parts outside the span are 0
+constexpr int dependent_digits = 20;  // rows have 50 digits, configurations 38: smaller parts outside the span are 0
 constexpr double looks_redundant = 1e-4;  // |psi| of an equation that was meant to be redundant
 
 bool of_joint(const Mechanics& m, std::uint32_t k) { return model_constraint(m, m.constraints[k]).joint.has_value(); }
@@ -74,9 +73,8 @@ bool holds_at(const std::vector<Row>& rows, const Selection& chosen) {
 [[noreturn]] void refuse_inexact(const Mechanics& m, const Closure& closure) {
   throw Error(
       "mechanics", where(m, closure.gap_at()),
-      fmt::format(
-          "equation '{}' seems to follow from the other constraints, but is off by {:.2g} where they hold",
-          m.constraints[closure.gap_at()].label, closure.gap()),
+      fmt::format("equation '{}' seems to follow from the other constraints, but is off by {:.2g} where they hold",
+                  m.constraints[closure.gap_at()].label, closure.gap()),
       "a loop with redundant joints closes only if the dimensions are exact: write sqrt(3)/2 or cos(pi/6) instead of "
       "decimals");
 }

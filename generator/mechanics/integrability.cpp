@@ -20,8 +20,7 @@ using symbolic::SymbolKind;
 // Part of a row outside the span of others, in 50 digits.
 cln::cl_R independent_part() { return cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 20)); }
 
-constexpr std::uint32_t first_constant =
-    0x20000000u;  // of SymbolKind::extra: constants of known integrals
+constexpr std::uint32_t first_constant = 0x20000000u;  // of SymbolKind::extra: constants of known integrals
 
 /// A surface psi = c on which further integrals are sought: one variable is a function of the others.
 struct Leaf {

@@ -161,8 +161,7 @@ struct Mechanics {
   Ref potential;                        // of all conservative forces, and of [energy]
   std::vector<Ref> potential_by_force;  // per Model::forces entry, 0 where the force is a Load
   std::vector<Load> loads;
-  std::vector<std::vector<Ref>>
-      force_components;  // per Model::forces entry: its Q_i without the potential, with loads
+  std::vector<std::vector<Ref>> force_components;  // per Model::forces entry: its Q_i without the potential, with loads
 
   std::vector<Constraint> constraints;
   std::vector<FixedCoordinate> fixed;  // in the order of elimination

@@ -15,7 +15,7 @@ void check_coefficients(const Mechanics& mechanics);       // of friction, where
 void eliminate_coordinates(Mechanics& mechanics);          // by constraints q_c = d(t), eq. (2.96)
 void add_joints(Mechanics& mechanics, Lowering& lower);    // their reactions
 bool holds_identically(Dag& dag, Ref psi);                 // proven or numerical; false if unknown
-void drop_repeated_equations(Mechanics& mechanics);  // that [[constraint]]s imply identically; or throws
+void drop_repeated_equations(Mechanics& mechanics);        // that [[constraint]]s imply identically; or throws
 void drop_dependent_equations(Mechanics& mechanics, Lowering& lower);  // implied where all hold, as in loops
 /// Whether an equation may be redundant because a user cannot omit it: equations of joints, unit lengths, rolling and
 /// vectors.

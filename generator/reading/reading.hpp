@@ -31,9 +31,8 @@ struct ReadConstraint {
   std::string label;
   bool holonomic = true;
   Sum psi, rate, acceleration;
-  std::string no_psi, no_rate, no_acceleration;  // why they are omitted; empty if they are present
-  std::optional<mechanics::FixedCoordinate>
-      fixes;                                  // if it is q_c = d(t); in Approach II also of other coordinates
+  std::string no_psi, no_rate, no_acceleration;     // why they are omitted; empty if they are present
+  std::optional<mechanics::FixedCoordinate> fixes;  // if it is q_c = d(t); in Approach II also of other coordinates
   Sum value, value_rate, value_acceleration;  // of that coordinate
 };
 

@@ -53,8 +53,7 @@ TEST_CASE("fields: a force along a circle does work on each turn, the same gener
   REQUIRE(moment.found.potential.has_value());
 }
 
-TEST_CASE(
-    "fields: a potential that exists without a closed form is reported; one that may not exist is unknown") {
+TEST_CASE("fields: a potential that exists without a closed form is reported; one that may not exist is unknown") {
   const One gauss("\"x*E1\"\n[coordinates]\nx = {}", field("exp(-x^2)*E1"));
   CHECK(gauss.found.conservative == conservation::Verdict::yes);
   CHECK_FALSE(gauss.found.potential.has_value());

@@ -24,9 +24,8 @@ struct BodyLink {
   Vec3 offset;                    // from the parent's origin to the own one, along the parent's axes
   Vec3 offset_rate, offset_bias;  // its rate, and the derivative of that rate at zero qddot
   Turn turn;
-  bool relative = true;  // axes relative to the parent; otherwise E1, E2, E3 on a rotating parent
-  bool absolute =
-      false;  // the angular velocity replaces the rates of its three (four) coordinates of rotation
+  bool relative = true;   // axes relative to the parent; otherwise E1, E2, E3 on a rotating parent
+  bool absolute = false;  // the angular velocity replaces the rates of its three (four) coordinates of rotation
   std::vector<Freedom> freedoms;
   std::vector<Freedom> angles;  // of an absolute link: its coordinates, which the three axes replace in `freedoms`
   std::vector<Ref> parameters;  // 4 Euler parameters, then their 4 rates, in the order of `angles`; otherwise empty
