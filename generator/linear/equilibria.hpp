@@ -50,7 +50,7 @@ struct SearchResult {
   std::size_t further_members = 0;  // starts that converged to members of families that are not in `points`
   std::size_t refused = 0;          // starts whose iteration ended where the equations have no value or no derivative
   std::string reason;               // of the first failure
-  State<double> refused_at;         // and where
+  State<double> refused_at;         // its state
   bool interrupted = false;         // before all starts were tried; results so far
 
   /// Records a start whose iteration ended where the equations have no value or no derivative.

@@ -333,7 +333,7 @@ void drop_dependent_equations(Mechanics& m, Lowering& lower) {
     const bool exact = joints || m.freedom() <= 0;
     if (exact && closure.gap() > 0 && closure.gap() < looks_redundant) refuse_inexact(m, closure);
     if (m.freedom() < 0) refuse_open(m, closure);
-    return;  // no configuration: the start of a run will tell
+    return;  // no configuration: the start of a run reports it
   }
   const bool regular = is_regular_at(m, closure, *start);
   if (regular && !repeated) return;

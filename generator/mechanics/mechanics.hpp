@@ -140,7 +140,7 @@ struct JointReaction {
 };
 
 struct Mechanics {
-  // Defined once: every file that holds one would compile them anew.
+  // Defined in mechanics.cpp, so that they are compiled only once.
   Mechanics();
   Mechanics(const Mechanics&);
   Mechanics(Mechanics&&) noexcept;

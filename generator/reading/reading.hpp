@@ -50,7 +50,7 @@ struct Equation {
   Sum slope;       // dL/dq_i
   Sum force;       // Q_i = F . dr/dq_i and given generalised forces
   std::vector<MultiplierTerm> multipliers;
-  Sum expanded;  // the left-hand side written out: M qddot + h
+  Sum expanded;  // the expanded left-hand side: M qddot + h
 };
 
 /// lambda_k as an expression; empty if only the equations of motion together determine it.
@@ -76,7 +76,7 @@ struct ReadSpin {
 };
 
 struct ReadingForm {
-  // Defined once: every file that holds one would compile them anew.
+  // Defined in reading.cpp, so that they are compiled only once.
   ReadingForm();
   ReadingForm(const ReadingForm&);
   ReadingForm(ReadingForm&&) noexcept;

@@ -37,7 +37,7 @@ analysis::SteadyMotions found(const std::string& path, std::size_t starts) {
 
 // J. P. Meijaard, J. M. Papadopoulos, A. Ruina, A. L. Schwab, Linearized dynamics equations for the balance and steer
 // of a bicycle: a benchmark and review, Proceedings of the Royal Society A 463 (2007) 1955-1982, table 2, at 5 m/s:
-// weave, capsize, castering. What else there is are zeros: where it is, where it heads, how far its wheels turned, its
+// weave, capsize, castering. The others are zeros: position, heading, wheel angles, its
 // speed.
 TEST_CASE(
     "the benchmark bicycle at 5 m/s has the published eigenvalues, in nine coordinates and in those of four bodies") {
