@@ -24,7 +24,7 @@ using symbolic::SymbolKind;
 
 constexpr int digits = 50;
 constexpr int steps = 120;             // near dependent rows, Newton steps halve the distance down to `dependent`
-constexpr double dependent = 1e-6;     // below this, steps lose their direction
+constexpr double dependent = 1e-6;     // rows closer to dependence deflect steps
 constexpr int closed_digits = 38;      // |psi| of a configuration
 constexpr double longest_step = 0.7;   // of a coordinate, in units of its scale: angles of 40 degrees
 constexpr double stride = 0.25;        // between configurations of a motion, in the same units
