@@ -17,7 +17,7 @@ using symbolic::SymbolKind;
 
 namespace {
 
-constexpr int no_solution = 3, many_solutions = 4;  // codes of docs/abi.md: of the law of friction
+constexpr int no_solution = 3, many_solutions = 4;  // return codes of docs/abi.md, for friction laws
 
 constexpr const char* section_mass = "mass matrix";
 constexpr const char* section_forces = "forces";
@@ -33,7 +33,7 @@ void fix_parameters(system::EquationSystem& s, const std::map<std::uint32_t, sym
   system::for_each_expression(s, [&fixed](Ref& r, system::Part) { r = fixed(r); });
 }
 
-/// Rows of A and gamma of contacts that are apart become 0.
+/// Sets rows of A and gamma to 0 for open contacts.
 void leave_open_contacts(system::EquationSystem& s) {
   Dag& dag = *s.dag;
   const std::size_t n = s.free.size();
@@ -49,14 +49,14 @@ void leave_open_contacts(system::EquationSystem& s) {
   }
 }
 
-/// With the arrays that it writes, which have no entries yet.
+/// A function with its result arguments, which have no entries yet.
 WantedFunction nothing_of(const char* name) {
   WantedFunction function{name, {}, {}, {}};
   for (const abi::Result& result : abi::find(name)->results) function.results.push_back({result.name, {}});
   return function;
 }
 
-/// "12" or, from ten rows on, "3_12".
+/// "12", or "3_12" if there are ten or more rows.
 std::string indices(std::size_t i, std::size_t j, std::size_t n) {
   return n < 10 ? fmt::format("{}{}", i + 1, j + 1) : fmt::format("{}_{}", i + 1, j + 1);
 }
@@ -167,14 +167,14 @@ WantedFunction AbiFunctions::rhs() {
   return function;
 }
 
-// d(qddot)/ds by differentiating the equations of motion, not their solution: with qddot and lambda held,
+// d(qddot)/ds by differentiating the equations of motion, not their solution. With qddot and lambda constant,
 //   M dqddot = df + dA^T lambda - dM qddot + A^T dlambda,   A dqddot = -(dgamma + dA qddot).
 std::vector<Ref> AbiFunctions::column(Symbol along) {
   Dag& dag = *system_.dag;
   symbolic::Derivation d = symbolic::partial(dag, along);
   std::vector<Ref> r, c;
-  // The law of friction is not linear, and what a route has solved by itself obeys M, f, A and gamma only where the
-  // constraints hold (Euler parameters of unit length): the solution is differentiated.
+  // The solution is differentiated in two cases: the friction law is nonlinear, and a solution by the formulation
+  // itself satisfies M, f, A and gamma only on the constraints (Euler parameters of unit length).
   if (!system_.contacts.empty() || (system_.solution && m_ > 0)) {
     for (const Ref a : qddot_) r.push_back(d(a));
     for (const system::IntegralState& integral : system_.integrals) r.push_back(d(integral.rate));
@@ -232,8 +232,8 @@ WantedFunction AbiFunctions::jac_p(std::size_t parameters) {
   return function;
 }
 
-// Of L = T - U. Its rate is f + (dp/dq) qdot + dp/dt, since M = dp/dqdot and M qddot = f + A^T lambda: every route has
-// it.
+// Momenta of L = T - U. Their rate is f + (dp/dq) qdot + dp/dt, since M = dp/dqdot and M qddot = f + A^T lambda. This
+// holds for every formulation.
 WantedFunction AbiFunctions::momenta() {
   Dag& dag = *system_.dag;
   WantedFunction function = nothing_of("momenta");
@@ -261,7 +261,7 @@ WantedFunction AbiFunctions::mass() {
   for (std::size_t j = 0; j < n_; ++j) {
     for (std::size_t i = 0; i < n_; ++i) function.results[0].entries.push_back(live_M_[i * n_ + j]);
   }
-  std::map<Symbol, Ref> none;  // h is without friction, which depends on the mode
+  std::map<Symbol, Ref> none;  // h excludes friction, which depends on the mode
   for (std::size_t b = 0; b < friction_.phi.size(); ++b) {
     none[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = system_.dag->zero();
   }

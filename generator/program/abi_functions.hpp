@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: EquationSystem and what is asked for. Out: the results of each function of the C ABI (docs/abi.md) as
-// expressions of t, the state, parameters and inputs; nothing is optimised yet.
+// In: an EquationSystem and a request. Out: the results of each function of the C ABI (docs/abi.md) as expressions of
+// t, the state, parameters and inputs. The expressions are not optimised yet.
 #pragma once
 
 #include <map>
@@ -21,7 +21,7 @@ struct WantedLabel {
   std::string name, section;
 };
 
-/// As Result has it.
+/// The expressions of one Result.
 struct WantedResult {
   std::string name;
   std::vector<Ref> entries;
@@ -35,10 +35,10 @@ struct WantedFunction {
   std::vector<WantedLabel> labels;
 };
 
-/// The equations of motion, solved, with what the functions of the ABI are made of.
+/// Solves the equations of motion and builds the functions of the ABI from the solution.
 class AbiFunctions {
  public:
-  /// `fix`: parameters that become numbers; `hold`: `mode` holds the branches of kinks.
+  /// `fix`: values that replace parameters. `hold`: `mode` freezes the branches of kinks.
   AbiFunctions(system::EquationSystem system, const std::map<std::uint32_t, symbolic::Rational>& fix,
                Ties ties = Ties::ascending, bool hold = false);
 
@@ -47,13 +47,13 @@ class AbiFunctions {
   WantedFunction jac_p(std::size_t parameters);
   WantedFunction mass();
   WantedFunction constraints();
-  /// dT/dqdot, and its rate but for the forces of constraints; without friction of contacts.
+  /// dT/dqdot and its time derivative without constraint forces and contact friction.
   WantedFunction momenta();
   WantedFunction reactions();
-  /// Throws Error with the names that exist where one is unknown.
+  /// Throws Error with the list of known names if a name is unknown.
   WantedFunction outputs(const std::vector<std::string>& names);
-  /// The events of the model, then the surfaces of the kinks that are held, then slip, above, below, hold, margin of
-  /// each contact (friction.hpp).
+  /// The events of the model, then the surfaces of the frozen kinks, then slip, above, below, hold and margin of each
+  /// contact (friction.hpp).
   WantedFunction events();
 
   const std::vector<Kink>& kinks() const { return kinks_; }
@@ -64,22 +64,23 @@ class AbiFunctions {
   void add_solution(WantedFunction& function);
   void label_matrices(WantedFunction& function);
   std::vector<Ref> column(symbolic::Symbol along);
-  /// qddot and the active multipliers written out; true in `solved` if there were any.
+  /// Substitutes the solution for qddot and the active multipliers. Sets `solved` to true if the expression contains
+  /// any of them.
   Ref written_out(Ref expression, bool& solved);
 
   system::EquationSystem system_;
   std::vector<Kink> kinks_;
-  std::vector<Ref> live_M_, live_f_, live_A_;  // of functions that have no mode
+  std::vector<Ref> live_M_, live_f_, live_A_;  // for functions without a mode argument
   std::size_t n_, m_;
   std::vector<Ref> qdot_, qddot_symbol_, lambda_symbol_;
   void close_contacts(std::map<symbolic::Symbol, Ref>& solution);
-  const LinearSolve& solve();  // made when first needed: a system that is solved already may never ask
+  const LinearSolve& solve();  // created on first use; a system that is solved already may never need it
 
   Ties ties_ = Ties::ascending;
   std::unique_ptr<LinearSolve> solve_;
   std::vector<Ref> qddot_, lambda_;
   std::unique_ptr<symbolic::Substitution> solution_;
-  FrictionSolution friction_;  // where there are contacts
+  FrictionSolution friction_;  // if there are contacts
 };
 
 }  // namespace eomgen::program

@@ -48,7 +48,7 @@ Values<cl_R> run(const Function& function, const Arguments<cl_R>& at, int digits
 }
 Values<double> run(const Function& function, const Arguments<double>& at, int) { return interpret(function, at); }
 
-// Whether the emitted code would go on: pivots, and what ends it with a code.
+// Whether emitted code would return 0: checks pivots and the tests that return a code.
 bool ends_well(const Function& function, const Values<cl_R>& values) {
   for (const auto& [pivot, scale] : values.pivots) {
     const cl_R least = cl_R(2 * pivot_tolerance) * cln::abs(scale);
@@ -70,7 +70,7 @@ void drop_codes(const Function& function, std::vector<std::vector<Real>>& result
   }
 }
 
-/// Entries that only other charts have stay 0.
+/// Scatters results to their indices. Entries that exist only in other charts stay 0.
 template <class Real>
 void put_in_place(const Program& all, const Function& function, std::vector<std::vector<Real>>& results) {
   if (function.places.empty()) return;
@@ -79,7 +79,7 @@ void put_in_place(const Program& all, const Function& function, std::vector<std:
   results[0] = std::move(whole);
 }
 
-/// The prepared values, one chart after the other.
+/// The prepared values of all charts in order.
 template <class Result, class One>
 Result all_prepared(const Program& program, const One& one) {
   Result result = one(*find(program, "prepare"));
@@ -92,8 +92,8 @@ Result all_prepared(const Program& program, const One& one) {
   return result;
 }
 
-/// The recurrences, driven as emitted code does (templates, emit/taylor.cpp). `checked` says whether the start is
-/// regular.
+/// Runs the recurrences as emitted code does (templates, emit/taylor.cpp). `checked` decides whether the values of
+/// order 0 are regular.
 template <class Real>
 std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real>& at, int order, int digits,
                                       const std::function<bool(const Values<Real>&)>& checked) {
@@ -105,7 +105,7 @@ std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real
   std::vector<Real> w = start.results[0], after = start.results[1];
   w.resize(taylor.prepared(), Real(0));
   coefficients.insert(coefficients.end(), after.begin(), after.end());
-  std::vector<std::vector<Real>> a{{}}, b{{}};  // factors by order, from 1
+  std::vector<std::vector<Real>> a{{}}, b{{}};  // factors by order, from order 1 on
   for (int k = 1; k < order; ++k) {
     for (std::size_t i = 0; i < taylor.products; ++i) {
       Real sum = 0;
@@ -127,7 +127,7 @@ std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real
   return coefficients;
 }
 
-/// Infinite where binary64 ends.
+/// Conversion to binary64; infinite on overflow.
 double to_binary64(const cl_R& value) {
   const bool held = cln::abs(value) <= numeric::exact(std::numeric_limits<double>::max());
   return held ? cln::double_approx(value)
@@ -184,7 +184,7 @@ std::optional<AbiResults> abi_values(const Program& program, const std::string& 
   const Function* wanted = find(*here, function);
   if (function == "rhs_prepared") {
     if (wanted == nullptr)
-      wanted = find(*here, "rhs");  // nothing worth preparing in this chart
+      wanted = find(*here, "rhs");  // this chart has no prepared values
     else
       at.w = interpret(*find(*here, "prepare"), at, digits).results[0];
   }
@@ -203,7 +203,7 @@ std::vector<std::vector<double>> abi_bounds(const Program& program, const std::s
   const Program& here = *in_charts(program, arguments.at.mode);
   Arguments<double> at = prepared_for(here, function, in_binary64(arguments.at), in_binary64(arguments.default_inputs));
   if (function == "taylor") {
-    // The recurrences couple orders: what binary64 has been off by here, and a hundred times that.
+    // The recurrences couple orders. The estimate is a hundred times the actual error of binary64 here.
     constexpr int digits = 40;
     constexpr double caution = 100;
     const std::optional<AbiResults> exact = abi_values(program, function, arguments, digits);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the functions of the C ABI (docs/abi.md) return for a Program, read without a compiler in many digits: what
-// compiled code is held against, by its self test and by `verify`.
+// Values of the functions of the C ABI (docs/abi.md) for a Program, computed without a compiler in many digits. The
+// self-test of emitted code and `verify` compare compiled code with these values.
 #pragma once
 
 #include <cln/real.h>
@@ -16,25 +16,26 @@ namespace eomgen::program {
 /// One list for each array that the function writes.
 using AbiResults = std::vector<std::vector<cln::cl_R>>;
 
-/// Arguments of a function of the ABI. `at.mode` is that of docs/abi.md, with the bits of kinks and charts; `at.side`
-/// and `at.w` are not used.
+/// Arguments of a function of the ABI. `at.mode` is the mode of docs/abi.md, with the bits of kinks and charts.
+/// `at.side` and `at.w` are unused.
 struct AbiArguments {
   Arguments<cln::cl_R> at;
-  std::vector<cln::cl_R> default_inputs;  // what mass and constraints see
-  int order = 0;                          // of taylor
+  std::vector<cln::cl_R> default_inputs;  // the inputs of mass and constraints
+  int order = 0;                          // for taylor
 };
 
-/// The program whose charts a mode names; nullptr: there is none.
+/// The program for the charts of a mode; nullptr if there is none.
 const Program* in_charts(const Program& program, int mode);
 
-/// "rhs", "jac", .., "prepare", "rhs_prepared", "taylor": those that the program has.
+/// Functions of the program: "rhs", "jac", .., "prepare", "rhs_prepared", "taylor".
 std::vector<std::string> abi_function_names(const Program& program);
 
-/// Nothing where the function has no value there: outside a domain, singular, no law of friction, not in these charts.
+/// Returns nothing if the function has no value there: outside its domain, singular, no solution of the friction law,
+/// or a mode of other charts.
 std::optional<AbiResults> abi_values(const Program& program, const std::string& function, const AbiArguments& arguments,
                                      int digits);
 
-/// How far binary64 may be off (rounding.hpp), in the same lists; of taylor an estimate.
+/// Error bounds of binary64 (rounding.hpp), in the same lists; for taylor an estimate.
 std::vector<std::vector<double>> abi_bounds(const Program& program, const std::string& function,
                                             const AbiArguments& arguments);
 

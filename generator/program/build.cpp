@@ -22,13 +22,13 @@ namespace {
 constexpr double worth_optimising = 1.5;  // times the cheapest raw cost
 
 struct Candidate {
-  std::size_t index = 0;  // into the candidates
+  std::size_t index = 0;  // index of the candidate
   std::unique_ptr<AbiFunctions> functions;
   WantedFunction rhs;
-  Polynomials raw;                  // as it comes out of the derivation
-  std::vector<Polynomials> starts;  // of what is cheap enough: cleared up; multiplied out
+  Polynomials raw;                  // as derived
+  std::vector<Polynomials> starts;  // for cheap candidates: flattened; expanded
   Polynomials best;
-  Operations operations;  // raw, then optimised
+  Operations operations;  // before, then after optimisation
   std::size_t raw_cost = 0;
 };
 
@@ -37,7 +37,8 @@ Polynomials tested(Polynomials graph) {
   return flatten(graph, false);
 }
 
-/// The optimised program; factors that only optimising has brought out of a pivot and its scale are cancelled.
+/// Optimises the graph. Afterwards common factors of a pivot and its scale that only optimisation reveals are
+/// cancelled.
 Polynomials optimised(const std::vector<Polynomials>& graphs) {
   Polynomials best = optimise(graphs);
   while (true) {
@@ -52,9 +53,9 @@ Polynomials as_derived(const AbiFunctions& functions, const WantedFunction& want
   return from_dag(*system.dag, wanted, system.free, system.integrals);
 }
 
-/// The function as it was derived, and with small products multiplied out.
+/// The function as derived, and the function with small products expanded.
 std::vector<Polynomials> starts(const Polynomials& graph) {
-  constexpr std::size_t worth_expanding = 3000;  // nodes; larger systems gain nothing by it
+  constexpr std::size_t worth_expanding = 3000;  // nodes; larger systems do not benefit
   std::vector<Polynomials> result = {tested(flatten(graph, false))};
   if (graph.size() < worth_expanding) result.push_back(tested(flatten(expand(graph), false)));
   return result;
@@ -71,7 +72,7 @@ Function finished(const Polynomials& graph, const WantedFunction& wanted) {
 }
 
 void add_prepared(const Candidate& chosen, Program& program) {
-  constexpr std::size_t worth_searching = 1500;  // flops; larger programs are split as they are
+  constexpr std::size_t worth_searching = 1500;  // flops; larger programs are split without a search
   std::vector<Polynomials> graphs{chosen.best};
   if (chosen.operations.flops() < worth_searching) {
     graphs.insert(graphs.begin(), chosen.starts.begin(), chosen.starts.end());
@@ -82,13 +83,13 @@ void add_prepared(const Candidate& chosen, Program& program) {
   program.functions.push_back(std::move(hoisted->rest));
 }
 
-/// Both orders of elimination of every route, as they come out of the derivation.
+/// The candidates as derived: every formulation with both orders of elimination.
 std::vector<Candidate> raw_candidates(const std::vector<system::EquationSystem>& systems, const Request& request) {
   const bool hold = std::find(request.with.begin(), request.with.end(), "events") != request.with.end();
   std::vector<Candidate> result;
   for (std::size_t i = 0; i < systems.size(); ++i) {
     for (const Ties ties : {Ties::ascending, Ties::descending}) {
-      // Where the route has solved its equations itself there is nothing to order.
+      // A formulation that is already solved has no order of elimination.
       if (ties == Ties::descending && (systems[i].solution || systems[i].free.size() + systems[i].active.size() < 2))
         continue;
       Candidate candidate;
@@ -105,7 +106,7 @@ std::vector<Candidate> raw_candidates(const std::vector<system::EquationSystem>&
   return result;
 }
 
-/// Optimises what is cheap enough and gives the index of the best.
+/// Optimises the cheap candidates and returns the index of the best.
 std::size_t choose(std::vector<Candidate>& candidates) {
   std::size_t cheapest = candidates[0].raw_cost;
   for (const Candidate& candidate : candidates) cheapest = std::min(cheapest, candidate.raw_cost);
@@ -121,7 +122,7 @@ std::size_t choose(std::vector<Candidate>& candidates) {
   return *best;
 }
 
-// One entry per system: its cheaper order of elimination.
+// One entry per system, for its cheaper order of elimination.
 std::vector<Tried> tried(const std::vector<Candidate>& candidates, const std::vector<system::EquationSystem>& systems) {
   std::vector<Tried> result;
   std::optional<std::size_t> last;
@@ -194,7 +195,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
     program.functions.push_back(finished(request.optimise ? optimised(graphs) : graphs[0], wanted));
   };
   for (const std::string& name : request.with) {
-    if (name == "outputs" || name == "rhs") continue;  // by the names asked for; always
+    if (name == "outputs" || name == "rhs") continue;  // outputs: by requested names; rhs: always built
     if (name == "taylor") {
       program.taylor = taylor_series(program.functions.front());
       continue;

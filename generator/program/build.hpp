@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: one system of equations derived by several routes. Out: the cheapest Program.
+// In: one system of equations, derived by several formulations. Out: the cheapest Program.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@ namespace eomgen::program {
 struct Request {
   std::vector<std::string>
       with;  // further functions: "jac", "jac_p", "mass", "momenta", "constraints", "reactions", "events", "taylor"
-  std::vector<std::string> outputs;  // names of EquationSystem::outputs; any name asks for the function "outputs"
-  std::map<std::uint32_t, symbolic::Rational> fix;  // parameters that become numbers
-  std::size_t parameters = 0;                       // of the model, for jac_p; 0: as many as the equations mention
-  bool optimise = true;                             // false: as derived (for tests and comparisons)
+  std::vector<std::string> outputs;  // names of EquationSystem::outputs; if not empty, "outputs" is built
+  std::map<std::uint32_t, symbolic::Rational> fix;  // values that replace parameters
+  std::size_t parameters = 0;                       // count in the model, for jac_p; 0: those in the equations
+  bool optimise = true;                             // false: code as derived (for tests and comparisons)
 };
 
-/// Ranks the candidates by the raw cost of their right-hand sides, optimises those within 1.5 times of the cheapest,
-/// keeps the cheapest (ties: the first), and makes the other functions for it: the right-hand side
-/// split into `prepare` and `rhs_prepared` where that is worth it, and those asked for. `Program::tried` lists all
-/// candidates. Throws Error for functions and outputs that do not exist or are not supported yet.
+/// Ranks the candidates by the unoptimised cost of their right-hand sides. Optimises those within 1.5 times of the
+/// cheapest and keeps the cheapest result (ties: the first). Builds the other functions for that candidate: the
+/// requested ones, and `prepare` and `rhs_prepared` if the split pays off. `Program::tried` lists all candidates.
+/// Throws Error for unknown or unsupported functions and outputs.
 Program build_program(std::vector<system::EquationSystem>& candidates, const Request& request);
 
 }  // namespace eomgen::program

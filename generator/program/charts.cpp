@@ -12,10 +12,10 @@
 namespace eomgen::program {
 namespace {
 
-/// y = the whole state, of which the angles and their rates change.
+/// y is the whole state with the angles and their rates changed.
 Function exchange(const symbolic::Dag& dag, const std::string& name, const Program& program,
                   const system::ChartChange& change, const std::vector<Ref>& formulas) {
-  // Symbols exist in the graph already where a formula uses them; the others are made in a copy.
+  // Symbols that occur in a formula exist in the graph; the others are created in a copy.
   symbolic::Dag graph = dag;
   WantedFunction wanted{name, {{"y", {}}}, {}, {}};
   std::vector<system::IntegralState> integrals;

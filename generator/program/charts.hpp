@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One program in several charts. In: programs of one model in its own charts and in second ones, formulas of the
-// exchange. Out: one.
+// One program for several charts. In: programs of one model in its own charts and in second charts, and the formulas of
+// the chart change. Out: one program.
 #pragma once
 
 #include "program/program.hpp"
@@ -8,22 +8,22 @@
 
 namespace eomgen::program {
 
-/// With charts fewer kinks can be held: their bits come after.
+/// Limit of frozen kinks in a program with several charts: chart bits take part of `mode`.
 inline constexpr std::size_t most_kinks_with_charts = 10;
 
-/// Which of these outputs a program in second charts can give as they are meant: all but momenta and accelerations of
-/// exchanged angles and what only the own charts conserve. `own`, `second`: of the equations in these charts;
-/// `exchanged`: coordinates of the model.
+/// Indices of the outputs that a program in second charts can compute with the same meaning. Excluded are momenta and
+/// accelerations of exchanged angles, and quantities that only the own charts conserve. `own`, `second`: outputs of the
+/// equations in these charts; `exchanged`: coordinates of the model.
 std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& outputs,
                                           const std::vector<system::Output>& own,
                                           const std::vector<system::Output>& second,
                                           const std::vector<std::uint32_t>& exchanged);
 
-/// Puts the functions of the exchange into `program`; `dag`: that of the changes.
+/// Adds the functions of the chart changes to `program`. `dag`: the graph of `changes`.
 void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<system::ChartChange>& changes);
 
-/// Puts one in second charts beside it, which was asked for the outputs at `places` only. Throws Error where the two do
-/// not go together.
+/// Adds the variant `second`, in the second charts `charts`, to `program`. The variant computes only the outputs at the
+/// indices `places`. Throws Error if the two programs are incompatible.
 void add_second(Program& program, Program second, unsigned charts, const std::vector<std::uint32_t>& places);
 
 }  // namespace eomgen::program

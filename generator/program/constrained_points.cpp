@@ -21,11 +21,11 @@ using symbolic::Symbol;
 constexpr std::size_t wanted = 4;
 constexpr std::uint64_t tries = 12;
 constexpr int most_steps = 40;
-constexpr double difference = 6e-6;     // the cube root of binary64's epsilon: of central differences
-constexpr double longest_step = 0.5;    // of values between 0.2 and 1.2
-constexpr double nearest_step = 1e-11;  // differences hold a slope to some 1e-10: two more steps are rounding
-constexpr double zero = 1e-11;          // of psi, after a step of that length at slopes of some 1
-constexpr double shortest_row = 1e-6;   // against the same row where the search began
+constexpr double difference = 6e-6;     // for central differences: the cube root of epsilon
+constexpr double longest_step = 0.5;    // for values between 0.2 and 1.2
+constexpr double nearest_step = 1e-11;  // differences are accurate to about 1e-10; then two steps reach rounding
+constexpr double zero = 1e-11;          // for psi, after a step of that length at slopes of about 1
+constexpr double shortest_row = 1e-6;   // relative to the same row at the start of the search
 
 Eigen::VectorXd values(const Dag& dag, const std::vector<Ref>& roots, const Point& at) {
   const std::vector<double> result =
@@ -33,7 +33,7 @@ Eigen::VectorXd values(const Dag& dag, const std::vector<Ref>& roots, const Poin
   return Eigen::Map<const Eigen::VectorXd>(result.data(), static_cast<Eigen::Index>(result.size()));
 }
 
-/// Newton's steps of the least length; nothing where they do not end.
+/// Newton's method with minimum-norm steps; returns nothing if it does not converge.
 std::optional<Point> onto(const Dag& dag, const std::vector<Ref>& psi, const std::vector<Symbol>& moved, Point at) {
   Eigen::MatrixXd J(static_cast<Eigen::Index>(psi.size()), static_cast<Eigen::Index>(moved.size()));
   for (int k = 0; k < most_steps; ++k) {
@@ -57,7 +57,7 @@ std::optional<Point> onto(const Dag& dag, const std::vector<Ref>& psi, const std
   return std::nullopt;
 }
 
-/// A length that went to 0, or a corner of all: there is no direction left to choose.
+/// Whether a length shrank to 0 or the point is a common corner, so that no direction is left to choose.
 bool is_degenerate(const Dag& dag, const std::vector<Ref>& A, std::size_t n, const Point& from, const Point& at) {
   const Eigen::VectorXd before = values(dag, A, from), after = values(dag, A, at);
   const auto columns = static_cast<Eigen::Index>(n);
@@ -80,7 +80,7 @@ std::vector<Point> points_on_constraints(const system::EquationSystem& s, const 
                      s.A.begin() + static_cast<std::ptrdiff_t>((k + 1) * n));
   }
   if (psi.empty()) return {};
-  // Those that the others make hold tell one of their branches from another.
+  // Redundant constraints that follow from these still distinguish between branches.
   for (const system::Watched& watched : s.redundant) {
     bool of_these = true;
     for (std::size_t i = 0; i < n && of_these; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points at which constraints hold. What vanishes exactly there, and not elsewhere, cannot be divided by: the moment
-// arms of a ball joint, say, about the very point that it holds.
+// Points that satisfy the constraints. An expression that vanishes exactly there, and only there, must not be a
+// divisor. Example: the moment arms of a ball joint about its own centre.
 #pragma once
 
 #include <map>
@@ -10,11 +10,12 @@
 
 namespace eomgen::program {
 
-using Point = std::map<symbolic::Symbol, double>;  // the symbols of what was asked for
+using Point = std::map<symbolic::Symbol, double>;  // values of the symbols in the requested rows
 
-/// Values of the symbols in A[rows] and psi[rows] with psi[rows] = 0 to rounding, at up to four points: of coordinates,
-/// or of parameters too where those alone do not do it (lengths that do not close). None of rows that are constraints
-/// on velocities alone, or where the search finds none: that says nothing. The same in every process.
+/// Up to four points with psi[rows] = 0 to rounding, as values of the symbols in A[rows] and psi[rows]. The search
+/// varies coordinates, and also parameters if coordinates alone are not enough (lengths that do not close). The result
+/// is empty for rows that constrain velocities only, and if the search fails; then nothing is known. The result is the
+/// same in every process.
 std::vector<Point> points_on_constraints(const system::EquationSystem& system, const std::vector<std::size_t>& rows);
 
 }  // namespace eomgen::program

@@ -16,12 +16,12 @@
 namespace eomgen::program {
 namespace {
 
-constexpr std::size_t most_rows = 3, most_columns = 12;  // of a block whose determinants are written out
+constexpr std::size_t most_rows = 3, most_columns = 12;  // limits of blocks whose determinants are written out
 constexpr std::size_t term_budget = 60;
 
 using Columns = std::vector<std::size_t>;
 
-/// det A[rows, columns] by cofactors of the first row; structural zeros cost nothing.
+/// det A[rows, columns] by cofactor expansion of the first row; structural zeros cost no operations.
 Ref determinant(Dag& dag, const std::vector<Ref>& A, std::size_t n, const Columns& rows, const Columns& columns) {
   if (rows.empty()) return dag.one();
   Ref sum = dag.zero();
@@ -42,7 +42,7 @@ bool never_vanishes(const Dag& dag, Ref r) {
   return dag.is_positive(r) || (dag[r].op == symbolic::Op::neg && dag.is_positive(dag[r].args[0]));
 }
 
-/// Rows that share a column, directly or by others, and the columns that they have.
+/// Blocks of rows that share columns directly or through other rows, and the columns of each block.
 std::vector<std::pair<Columns, Columns>> connected(const Dag& dag, const std::vector<Ref>& A, std::size_t n,
                                                    std::size_t m) {
   std::vector<std::size_t> label(m);
@@ -72,8 +72,8 @@ std::vector<std::pair<Columns, Columns>> connected(const Dag& dag, const std::ve
   return result;
 }
 
-/// Whether r is 0 in many digits wherever it is looked at: a determinant whose terms cancel, which in binary64 leaves a
-/// trace.
+/// Whether r is 0 in many digits at all test points: a determinant whose terms cancel, but leave a rounding error in
+/// binary64.
 bool is_rounding(const Dag& dag, Ref r) {
   const cln::cl_R small = cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 30));
   for (std::uint64_t point = 1; point <= 4; ++point) {
@@ -81,16 +81,16 @@ bool is_rounding(const Dag& dag, Ref r) {
       const auto at = [point](const symbolic::Symbol& s) -> cln::cl_R { return symbolic::sample(s, point); };
       if (cln::abs(symbolic::evaluate(dag, {r}, at, 40)[0]) > small) return false;
     } catch (const std::domain_error&) {
-      continue;  // outside the domain of a function there
+      continue;  // the point is outside the domain of a function
     }
   }
   return true;
 }
 
-/// Whether the determinant is 0 wherever the constraints hold and it is looked at, against the lengths of its rows.
+/// Whether the determinant, relative to the lengths of its rows, is 0 at all test points on the constraints.
 bool vanishes_where_they_hold(const Dag& dag, const std::vector<Ref>& A, std::size_t n, const DependentBlock& block,
                               const std::vector<Point>& points) {
-  constexpr double rounding = 1e-8;  // of points that are right to 1e-11, at slopes of some hundred
+  constexpr double rounding = 1e-8;  // for points with errors of 1e-11 and slopes of about 100
   std::vector<Ref> roots{block.determinant};
   for (const std::size_t k : block.rows)
     roots.insert(roots.end(), A.begin() + static_cast<std::ptrdiff_t>(k * n),
@@ -112,8 +112,8 @@ bool vanishes_where_they_hold(const Dag& dag, const std::vector<Ref>& A, std::si
   return judged;
 }
 
-/// The choice of dependent columns whose determinant never vanishes, or else is the shortest that is not always zero
-/// where the constraints hold.
+/// Chooses the dependent columns: those whose determinant never vanishes, or else the shortest determinant that is not
+/// always zero on the constraints.
 std::optional<DependentBlock> block_of(const system::EquationSystem& s, const Columns& rows, const Columns& columns) {
   Dag& dag = *s.dag;
   const std::vector<Ref>& A = s.A;
@@ -163,7 +163,7 @@ bool form_applies(const system::EquationSystem& s, system::Form form, bool every
   const std::optional<std::vector<DependentBlock>> blocks = dependent_blocks(s);
   if (!blocks || !everywhere) return blocks.has_value();
   return std::all_of(blocks->begin(), blocks->end(), [&](const DependentBlock& block) {
-    // One more column than rows: the minors are a null vector wherever the rows are independent.
+    // With one more column than rows the minors form a null vector wherever the rows are independent.
     if (form == system::Form::nullspace && block.independent.size() <= 1) return true;
     return never_vanishes(*s.dag, block.determinant);
   });
@@ -222,7 +222,7 @@ ConstrainedSolve::ConstrainedSolve(const system::EquationSystem& s, Ties ties)
   gram_ = std::make_unique<Factorisation>(dag, std::move(gram), m_, ties);
 }
 
-// The dependent part of a null vector is -adj(A_d) A_i; with det(A_d) in place i, or 1 and divided.
+// The dependent part of a null vector is -adj(A_d) A_i with det(A_d) at index i; or, divided, with 1 at index i.
 void ConstrainedSolve::add_null_vectors(const DependentBlock& block, bool divided) {
   Dag& dag = *dag_;
   const std::size_t r = block.rows.size();
@@ -252,7 +252,7 @@ void ConstrainedSolve::add_null_vectors(const DependentBlock& block, bool divide
 
 Ref ConstrainedSolve::simpler(Ref r) const { return symbolic::simpler(*dag_, r, term_budget); }
 
-/// p with A p = c: the dependent part alone, or the shortest, which exists wherever the rows are independent.
+/// p with A p = c: its independent part is 0, or p has minimum norm, which exists wherever the rows are independent.
 std::vector<Ref> ConstrainedSolve::particular(const std::vector<Ref>& c) const {
   Dag& dag = *dag_;
   std::vector<Ref> p(n_, dag.zero());
@@ -274,7 +274,7 @@ std::vector<Ref> ConstrainedSolve::particular(const std::vector<Ref>& c) const {
   return p;
 }
 
-/// lambda of A^T lambda = excess.
+/// Solves A^T lambda = excess for lambda.
 std::vector<Ref> ConstrainedSolve::multipliers(const std::vector<Ref>& excess) const {
   Dag& dag = *dag_;
   std::vector<Ref> lambda(m_, dag.zero());
@@ -329,7 +329,7 @@ Unknowns ConstrainedSolve::motion() const {
   return (*this)(f_, c);
 }
 
-// Beside those of the two factorisations the determinants that are divided by, against the rows that they are of.
+// Pivots of the two factorisations, and the determinants that are divided by, relative to their rows.
 std::vector<Pivot> ConstrainedSolve::pivots() const {
   Dag& dag = *dag_;
   std::vector<Pivot> result;

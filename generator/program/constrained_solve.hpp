@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: EquationSystem with constraints A qddot = c. Out: M x = r + A^T lambda, A x = c solved without a Schur
+// In: EquationSystem with constraints A qddot = c. Out: the solution of M x = r + A^T lambda, A x = c without a Schur
 // complement:
-//   x = p + Z w with A Z = 0, A p = c,   (Z^T M Z) w = Z^T (r - M p),
-// which is Maggi's and Kane's form for the accelerations (w are the rates of independent speeds, apart from Zdot), and
-// with Z = [1; -A_d^-1 A_i] Chaplygin's and Voronets', where the dependent velocities are solved for (docs/theory.md).
-// M may be singular as long as it is regular on the motions that the constraints leave.
+//   x = p + Z w with A Z = 0, A p = c,   (Z^T M Z) w = Z^T (r - M p).
+// This is the acceleration form of Maggi's and Kane's equations (w: rates of independent speeds, without the term of
+// Zdot). With Z = [1; -A_d^-1 A_i] it is Chaplygin's and Voronets' form, which is solved for the dependent velocities
+// (docs/theory.md). M may be singular if it is regular on the null space of A.
 #pragma once
 
 #include <memory>
@@ -13,16 +13,17 @@
 
 namespace eomgen::program {
 
-/// How the rows of A are solved: blocks of rows that share columns, each with as many dependent columns.
+/// A block of rows of A that share columns, with as many dependent columns.
 struct DependentBlock {
   std::vector<std::size_t> rows, dependent, independent;
   Ref determinant;  // of A[rows, dependent]
 };
 
-/// Nothing where a block is too large for its determinants to be written out.
+/// Returns nothing if a block is too large to write out its determinants.
 std::optional<std::vector<DependentBlock>> dependent_blocks(const system::EquationSystem& system);
 
-/// Whether the form exists for this system; `everywhere`: and holds wherever the constraints are independent.
+/// Whether the form exists for this system; with `everywhere`, whether it also holds wherever the constraints are
+/// independent.
 bool form_applies(const system::EquationSystem& system, system::Form form, bool everywhere);
 
 class ConstrainedSolve : public LinearSolve {
@@ -44,9 +45,9 @@ class ConstrainedSolve : public LinearSolve {
   bool divided_;  // Chaplygin's form
   std::vector<Ref> M_, A_, f_, gamma_;
   std::vector<DependentBlock> blocks_;
-  std::vector<std::vector<Ref>> adjugate_;         // per block, over its determinant if divided_
+  std::vector<std::vector<Ref>> adjugate_;         // per block, divided by its determinant if divided_
   std::vector<std::vector<Ref>> Z_;                // columns
-  std::unique_ptr<Factorisation> reduced_, gram_;  // Z^T M Z; A A^T where the form is not divided
+  std::unique_ptr<Factorisation> reduced_, gram_;  // Z^T M Z; A A^T if not divided_
 };
 
 }  // namespace eomgen::program

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gauss' elimination of a small matrix without symmetry, unrolled, without pivoting; zeros cost nothing.
+// Unrolled Gaussian elimination of a small unsymmetric matrix without pivoting. Structural zeros cost no operations.
 #pragma once
 
 #include <vector>

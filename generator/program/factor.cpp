@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// x*a + x*b + c -> x*(a + b) + c, the most frequent factor of a sum first, inside the new sums too.
+// x*a + x*b + c -> x*(a + b) + c, the most frequent factor of a sum first, then inside the new sums.
 #include <cln/rational.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace eomgen::program {
 namespace {
 
-/// A factor that several terms share: a node above or below the fraction bar, or the size of a coefficient.
+/// A factor that several terms share: a node in numerators or denominators, or the magnitude of a coefficient.
 struct Shared {
   bool number = false;
   NodeId node = 0;
@@ -22,7 +22,7 @@ class Factoring {
  public:
   Factoring(Polynomials& graph, std::uint64_t seed) : graph_(graph), seed_(seed) {}
 
-  /// Factors the sum of one node, once.
+  /// Factors the sum of one node once.
   void refine(NodeId id) {
     if (graph_[id].kind != Node::Kind::sum || graph_[id].terms.size() < 2) return;
     if (done_.size() < graph_.size()) done_.resize(graph_.size(), false);
@@ -45,7 +45,7 @@ class Factoring {
         term.coefficient = symbolic::over(term.coefficient, front.coefficient);
         if (!front.factors.empty()) term.factors = multiply(term.factors, front.factors, -1);
       }
-      // The bracket in normal form may turn out to be a sum that exists; a new one is factored in turn.
+      // The normal form of the bracket may be an existing sum; a new sum is factored in turn.
       Term bracket = graph_.normal(std::move(with));
       refine(bracket);
       without.push_back(multiply(front, bracket));
@@ -73,9 +73,10 @@ class Factoring {
     return {1, {{shared.node, exponent}}};
   }
 
-  /// The factor that saves most multiplications: those of all terms but one, and terms that are the factor alone.
+  /// The factor that saves the most multiplications. Not saved: one of the terms, and terms that are the factor alone.
   bool find(const std::vector<Term>& terms, Shared& best) {
-    // Of each factor: a node and whether it is divided by, ascending, and which terms it saves a multiplication in.
+    // Key of a factor: its node and whether it is a divisor, ascending. Value: the terms in which it saves a
+    // multiplication.
     saved_.clear();
     std::vector<std::pair<Rational, int>> sizes;
     for (const Term& term : terms) {
@@ -121,7 +122,7 @@ class Factoring {
   Polynomials& graph_;
   std::uint64_t seed_;
   std::vector<bool> done_;
-  std::vector<std::pair<std::uint64_t, int>> saved_;  // of the sum in which a factor is looked for
+  std::vector<std::pair<std::uint64_t, int>> saved_;  // for the sum that is searched for a factor
 };
 
 }  // namespace

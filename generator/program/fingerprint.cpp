@@ -41,7 +41,7 @@ class Writer {
   }
 
  private:
-  // Lengths first: no two lists of words are one text.
+  // Lengths come first, so that different lists never give the same text.
   void word(const std::string& value) { fmt::format_to(std::back_inserter(text), "{}:{} ", value.size(), value); }
   void word(const char* value) { word(std::string(value)); }
   template <class Number>

@@ -7,8 +7,8 @@
 
 namespace eomgen::program {
 
-/// Everything that a program calculates, as text: two programs with one fingerprint give the same values. For keys of
-/// what is kept.
+/// Serialises everything that determines the values of a program. Programs with equal fingerprints compute equal
+/// values. Used for cache keys.
 std::string fingerprint(const Program& program);
 
 }  // namespace eomgen::program

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rebuilds a graph bottom-up in normal form. Every other pass may leave aliases and chains behind; this one clears up.
+// Rebuilds a graph bottom-up in normal form. Other passes may leave aliases and chains; this pass removes them.
 #include <cln/rational.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ class Flattening {
       to_.pivots.push_back({to_.operand(translate(pair.pivot)), to_.operand(translate(pair.scale))});
     }
     for (const Label& label : from_.labels) {
-      // A label lives as long as its value is a value of its own.
+      // A label survives only if its value is still a node of its own.
       bool known = true;
       for (const Factor& f : label.value.factors) known = known && uses_[f.node] > 0;
       if (!known) continue;
@@ -65,7 +65,7 @@ class Flattening {
     return result;
   }
 
-  /// sqrt(s)^j s^k with as few factors as there can be: s^-1 sqrt(s) -> sqrt(s)^-1, sqrt(s)^2 -> s.
+  /// sqrt(s)^j s^k with the fewest factors: s^-1 sqrt(s) -> sqrt(s)^-1, sqrt(s)^2 -> s.
   bool combine_root(Monomial& factors) const {
     for (const Factor& root : factors) {
       const Node& node = to_[root.node];
@@ -76,7 +76,7 @@ class Flattening {
       std::int32_t whole = 0;
       for (const Factor& f : factors) whole += f.node == s ? f.exponent : 0;
       const std::int32_t halves = root.exponent + 2 * whole;
-      const std::int32_t odd = halves % 2;  // 1, 0 or -1: of the sign of halves
+      const std::int32_t odd = halves % 2;  // 1, 0 or -1, with the sign of halves
       if (root.exponent == odd && whole == (halves - odd) / 2) continue;
       const Factor had = root;
       factors = multiply(factors, {{had.node, had.exponent}}, -1);
@@ -89,10 +89,10 @@ class Flattening {
   }
   Term power_of(const Term& base, std::int32_t exponent) {
     const bool unit = symbolic::is_unit(base.coefficient);
-    // A divisor that turned out to be 0 stays a division by zero at run time; it must not be one here.
+    // A divisor that is identically 0 stays a division by zero at run time; it must not be evaluated here.
     if (symbolic::is_zero(base.coefficient) && exponent < 0)
       return {1, {{to_.call(Op::div, {Term{1, {}}, Term{0, {}}}), 1}}};
-    // Nor may untrusted exponents blow up exact numbers or overflow.
+    // Untrusted exponents must not overflow or produce huge exact numbers.
     constexpr std::int64_t largest_number = 64, largest = 1'000'000;
     if (base.is_constant() && !unit && std::abs(exponent) > largest_number) {
       return {1, {{to_.call(Op::pow, {base, Term{exponent, {}}}), 1}}};
@@ -127,7 +127,7 @@ class Flattening {
     return result;
   }
 
-  /// Entries of M, f, A and the values of the solve stay closed: what is multiplied out is what they are made of.
+  /// Entries of M, f, A and the values of the solve stay separate; only their contents are expanded.
   void find_barriers() {
     barrier_.assign(from_.size(), false);
     for (const Label& label : from_.labels) {
@@ -138,7 +138,7 @@ class Flattening {
     }
   }
 
-  /// Adds the summands of a product of sums to `terms`, if they are few.
+  /// Adds the summands of a product of sums to `terms` if they are few.
   bool multiply_out(const Term& term, std::vector<Term>& terms) const {
     constexpr std::size_t most = 36;
     std::vector<Term> products{{term.coefficient, {}}};
@@ -164,7 +164,7 @@ class Flattening {
     return opened;
   }
 
-  /// A sum that only this sum uses becomes part of it.
+  /// Merges a sum that only this sum uses.
   bool may_splice(const Term& old, const Term& moved) const {
     if (!moved.is_node() || to_[moved.factors[0].node].kind != Node::Kind::sum) return false;
     return old.factors.size() == 1 && old.factors[0].exponent == 1 && uses_[old.factors[0].node] == 1 &&
@@ -185,8 +185,8 @@ class Flattening {
   const Polynomials& from_;
   bool inline_products_, expand_;
   Polynomials to_;
-  std::vector<bool> barrier_;  // of from_
-  std::set<NodeId> closed_;    // of to_
+  std::vector<bool> barrier_;  // nodes of from_
+  std::set<NodeId> closed_;    // nodes of to_
   std::vector<Term> value_;
   std::vector<std::uint32_t> uses_;
 };

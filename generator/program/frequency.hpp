@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which pair is the most frequent one, while pairs come and go.
+// A queue of the most frequent pairs while pairs are added and removed.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace eomgen::program {
 
-/// Pairs are 64-bit keys that occur in rows. Ties go by `seed`; nothing depends on the order of the hash table.
+/// Pairs are 64-bit keys that occur in rows. `seed` breaks ties; the order of the hash table has no influence.
 class Frequency {
  public:
   explicit Frequency(std::uint64_t seed) : seed_(seed), entries_(std::size_t{1} << first_bits) {}
@@ -25,14 +25,15 @@ class Frequency {
   }
   void remove(std::uint64_t key, int count = 1) { at(key).count -= count; }
 
-  /// The most frequent pair that occurs at least twice, with the rows where it may still be; false if there is none.
+  /// Pops the most frequent pair that occurs at least twice, and the rows that may still contain it. Returns false if
+  /// there is none.
   bool pop(std::uint64_t& key, std::vector<std::uint32_t>& rows) {
     while (!heap_.empty()) {
       const Candidate top = heap_.top();
       heap_.pop();
       Entry& entry = at(top.key);
       if (entry.count < 2) continue;
-      if (entry.count != top.count) {  // out of date: back with what is true now
+      if (entry.count != top.count) {  // outdated: pushed again with the current count
         heap_.push({entry.count, top.rank, top.key});
         continue;
       }
@@ -87,7 +88,7 @@ class Frequency {
   }
 
   std::uint64_t seed_;
-  std::vector<Entry> entries_;  // a power of 2 of them, half of them open
+  std::vector<Entry> entries_;  // the size is a power of 2; at most half are in use
   std::size_t taken_ = 0;
   std::priority_queue<Candidate> heap_;
 };

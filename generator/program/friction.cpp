@@ -15,7 +15,7 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 using system::Contact;
 
-/// value + sum_b slope_b phi_b
+/// An affine function of phi: value + sum_b slope_b phi_b.
 struct Affine {
   Ref value;
   std::vector<Ref> slope;
@@ -47,7 +47,7 @@ class Closure {
  private:
   Symbol phi_symbol(std::size_t b) const { return {SymbolKind::friction, static_cast<std::uint32_t>(b), 0}; }
 
-  // qddot and lambda as affine functions of phi: one solve per tangent.
+  // qddot and lambda as affine functions of phi, with one solve per tangent.
   void solve_motion(const LinearSolve& solve) {
     std::map<Symbol, Ref> none;
     for (std::size_t b = 0; b < count_; ++b) none[phi_symbol(b)] = dag_.zero();
@@ -73,7 +73,7 @@ class Closure {
     for (const std::uint32_t k : s_.active) unknown_.push_back({SymbolKind::multiplier, k, 0});
   }
 
-  /// An expression that is linear in qddot, lambda and phi.
+  /// The affine form of an expression that is linear in qddot, lambda and phi.
   Affine affine(Ref expression) {
     std::map<Symbol, Ref> base;
     for (std::size_t i = 0; i < unknown_.size(); ++i) base[unknown_[i]] = motion_[i].value;
@@ -95,16 +95,16 @@ class Closure {
   }
 
   Ref slides(std::uint32_t j) const { return dag_.symbol(system::slides_symbol(j)); }
-  /// The sign of the normal force; a contact that can be left does not pull.
+  /// The sign of the normal force; a unilateral contact does not pull.
   Ref presses(std::uint32_t j) const {
     return s_.contacts[j].unilateral ? dag_.one() : dag_.symbol(system::presses_symbol(j));
   }
-  /// `apart` where contact j is left, else `touching`.
+  /// Selects `apart` if contact j is open, else `touching`.
   Ref by_touch(std::uint32_t j, Ref apart, Ref touching) const {
     if (!s_.contacts[j].unilateral || apart == touching) return touching;
     return dag_.select(dag_.symbol(system::presses_symbol(j)), dag_.zero(), apart, touching);
   }
-  /// `sliding` where contact j slides, else `sticking`.
+  /// Selects `sliding` if contact j slides, else `sticking`.
   Ref by_mode(std::uint32_t j, Ref sticking, Ref sliding) const {
     if (sticking == sliding || s_.contacts[j].width) return sliding;
     const Ref half = dag_.constant(symbolic::Rational(1) / 2), s = slides(j);
@@ -118,7 +118,7 @@ class Closure {
     return sum;
   }
   Ref speed(const Contact& c) const { return root(squares(c)); }
-  /// Component a of the direction of slip.
+  /// Component a of the unit vector of slip.
   Ref heading(std::uint32_t j, std::size_t a) const {
     const Contact& c = s_.contacts[j];
     if (c.width) return dag_.div(c.slip[a], root(dag_.add(squares(c), dag_.mul(*c.width, *c.width))));
@@ -138,7 +138,7 @@ class Closure {
             dag_.neg(by_mode(j, dag_.zero(), dag_.mul(c.dynamic_coefficient, heading(j, a))));
       }
       for (std::size_t b = 0; b < count_; ++b) {
-        const Ref none = b == row ? dag_.one() : dag_.zero();  // apart: phi = 0
+        const Ref none = b == row ? dag_.one() : dag_.zero();  // open contact: phi = 0
         matrix_[row * count_ + b] = by_touch(j, none, by_mode(j, rate.slope[b], law.slope[b]));
       }
       right_[row] = by_touch(j, dag_.zero(), dag_.neg(by_mode(j, rate.value, law.value)));
@@ -146,13 +146,14 @@ class Closure {
     if (c.reactions.size() == 1 && !c.slip.empty()) watch_surface(j);
   }
 
-  /// What vanishes while sticking: the slip's rate; along what another contact holds, phi itself.
+  /// Rows that vanish while sticking: the slip rate; phi itself along directions that another contact constrains.
   std::vector<Affine> sticking_rows(std::uint32_t j) {
     std::vector<Affine> rates;
     for (const Ref rate : s_.contacts[j].slip_rate) rates.push_back(affine(rate));
     return sticking_rows(s_.contacts[j], rates, 0, {});
   }
-  /// Of the contacts that hold a direction, those from `next` on touch or are apart; of those before, `touching` do.
+  /// The rows as a case distinction over the contacts that constrain a direction. Contacts before `next` are decided:
+  /// those in `touching` are closed, the others open.
   std::vector<Affine> sticking_rows(const Contact& c, const std::vector<Affine>& rates, std::size_t next,
                                     const std::vector<const system::HeldDirection*>& touching) const {
     if (next == c.held.size()) return held_rows(c, rates, touching);
@@ -176,7 +177,7 @@ class Closure {
       for (std::size_t a = 0; a < rows.size(); ++a) rows[a].slope[c.first + a] = dag_.one();
       return rows;
     }
-    // phi has no part along h, and the rate none across it.
+    // phi has no component along h; the slip rate has none perpendicular to h.
     const std::vector<Ref>& h = touching[0]->along;
     const auto across = [&](Ref first, Ref second) { return dag_.sub(dag_.mul(h[0], second), dag_.mul(h[1], first)); };
     for (std::size_t a = 0; a < 2; ++a) rows[0].slope[c.first + a] = h[a];
@@ -185,7 +186,7 @@ class Closure {
     return rows;
   }
 
-  /// What vanishes while sliding: phi_a + mu |N| w_a/|w|.
+  /// The row that vanishes while sliding: phi_a + mu |N| w_a/|w|.
   Affine sliding_law(std::uint32_t j, std::size_t a) {
     const Contact& c = s_.contacts[j];
     const Ref drag = dag_.mul(c.dynamic_coefficient, heading(j, a));
@@ -205,7 +206,7 @@ class Closure {
     return law;
   }
 
-  // Curves whose normal forces feel the friction at another contact are solved for together (normal_forces.hpp).
+  // Curves whose normal forces depend on the friction at another contact are solved together (normal_forces.hpp).
   void find_coupled_curves() {
     std::vector<std::uint32_t> curves;
     bool coupled = false;
@@ -244,34 +245,34 @@ class Closure {
       curve_normal_[j] = root(square);
       return;
     }
-    const Ref strength = c.width ? sigma_mu : c.dynamic_coefficient;  // the sign of sliding drops out of the square
+    const Ref strength = c.width ? sigma_mu : c.dynamic_coefficient;  // the sign of sliding cancels in the square
     const Ref a = dag_.sub(dag_.one(), dag_.mul(dag_.power(strength, 2), feedback));
     const Ref b = dag_.mul(sigma_mu, form(value, slope));
     const Ref discriminant = dag_.add(dag_.mul(b, b), dag_.mul(a, square));
     curve_normal_[j] = dag_.div(dag_.sub(root(discriminant), b), a);
     margin_[j] = by_mode(j, dag_.one(), a);
-    // a < 0: the roots have one sign, that of b; both are solutions where it is positive and the discriminant allows,
-    // none otherwise.
+    // a < 0: both roots have the sign of b. Both are solutions if it is positive and the discriminant is not negative;
+    // otherwise there is none.
     add_codes(margin_[j], dag_.call(symbolic::Op::min, b, discriminant));
   }
 
-  // phi = -mu w p sqrt(g) (x0 + L phi) has just one solution with p x >= 0 for one p where |factor L| < 1.
+  // phi = -mu w p sqrt(g) (x0 + L phi) has exactly one solution with p x >= 0 for one p if |factor L| < 1.
   void watch_surface(std::uint32_t j) {
     const Contact& c = s_.contacts[j];
-    Ref feedback = dag_.zero();  // of the friction on its own normal force, while sliding with p = 1
+    Ref feedback = dag_.zero();  // of friction on its own normal force, sliding with p = 1
     const Ref pressed = dag_.mul(c.dynamic_coefficient, root(c.gram[0]));
     for (std::size_t a = 0; a < c.slip.size(); ++a) {
       feedback = dag_.add(feedback, dag_.mul(dag_.mul(pressed, heading(j, a)), normal_[j][0].slope[c.first + a]));
     }
     if (dag_.is_zero(feedback)) return;
     const Ref own = dag_.add(dag_.one(), dag_.mul(presses(j), feedback));
-    // A contact that can be left does not pull: p = 1 alone, and beside it leaving, which the law allows where x0 < 0.
+    // A unilateral contact does not pull: p = 1. It may also open, which the law allows if x0 < 0.
     const Ref single = c.unilateral ? own : dag_.sub(dag_.one(), absolute(feedback));
     margin_[j] = by_touch(j, dag_.one(), by_mode(j, dag_.one(), single));
     add_codes(margin_[j], dag_.mul(dag_.mul(presses(j), normal_[j][0].value), own));
   }
 
-  /// Where the margin is negative: several solutions if `several` is positive, none otherwise.
+  /// Adds the codes for a negative margin: several solutions if `several` is positive, otherwise none.
   void add_codes(Ref margin, Ref several) {
     const Ref minus = dag_.integer(-1), one = dag_.one(), zero = dag_.zero();
     result_.none.push_back(dag_.select(margin, zero, dag_.select(several, zero, minus, one), one));
@@ -312,7 +313,7 @@ class Closure {
     if (coupled_.size() == 1) margin_[coupled_[0]] = normal.settled;
   }
 
-  /// |N| of contact j; the multiplier of one surface into `press`.
+  /// |N| of contact j; for a surface, `press` is set to the signed multiplier.
   Ref normal_force(std::uint32_t j, Ref& press) {
     const Contact& c = s_.contacts[j];
     const std::size_t n = c.reactions.size();
@@ -347,13 +348,13 @@ class Closure {
   const system::EquationSystem& s_;
   Dag& dag_;
   std::size_t count_ = 0;
-  std::vector<Symbol> unknown_;                          // qddot, then the multipliers
-  std::vector<Affine> motion_;                           // of these
-  std::map<std::uint32_t, std::vector<Affine>> normal_;  // multipliers of each contact
+  std::vector<Symbol> unknown_;                          // qddot, then multipliers
+  std::vector<Affine> motion_;                           // affine form of unknown_
+  std::map<std::uint32_t, std::vector<Affine>> normal_;  // multipliers per contact
   std::map<std::uint32_t, Ref> curve_normal_, margin_;
-  std::vector<Ref> matrix_, right_;          // of phi
-  std::vector<std::uint32_t> coupled_;       // curves, where their normal forces are coupled
-  std::vector<std::vector<Ref>> by_normal_;  // per coupled curve: what its normal force adds to right_
+  std::vector<Ref> matrix_, right_;          // linear system for phi
+  std::vector<std::uint32_t> coupled_;       // curves with coupled normal forces
+  std::vector<std::vector<Ref>> by_normal_;  // per coupled curve: coefficients of its normal force in right_
   FrictionSolution result_;
 };
 

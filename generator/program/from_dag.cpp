@@ -66,7 +66,7 @@ class Conversion {
     return node(graph_.call(node_of_dag.op, std::move(arguments)));
   }
 
-  /// a * b^exponent as a node of its own, so that it counts how often it is used; flatten dissolves it.
+  /// a * b^exponent as a node of its own, so that its uses are counted; flatten removes it.
   Term product(const Term& a, const Term& b, std::int32_t exponent) {
     const NodeId left = wrap(a), right = wrap(b);
     if (left == right) return node(graph_.fresh_sum({{1, {{left, exponent + 1}}}}));
@@ -113,7 +113,7 @@ class Conversion {
   std::vector<bool> known_;
 };
 
-/// Summands of a value: of the sum that it is, or itself.
+/// The summands of a value; the value itself if it is not a sum.
 std::vector<Term> summands(const Polynomials& graph, const Term& value) {
   if (!value.is_node()) return {value};
   const Node& node = graph[value.factors[0].node];

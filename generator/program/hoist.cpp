@@ -9,9 +9,9 @@
 namespace eomgen::program {
 namespace {
 
-constexpr std::size_t worth_hoisting = 50;  // times what is saved must reach the cost of the whole
+constexpr std::size_t worth_hoisting = 50;  // this multiple of the savings must reach the total cost
 
-/// Splits every monomial into what is made of parameters and the rest.
+/// Splits every monomial into a parametric part and the rest.
 class Splitting {
  public:
   explicit Splitting(const Polynomials& graph) : rest_(graph), prepare_(graph), parametric_(graph.size(), false) {
@@ -49,14 +49,14 @@ class Splitting {
     if (node.kind == Node::Kind::leaf) return node.leaf.slot == Slot::parameter || node.leaf.slot == Slot::pi;
     return std::all_of(node.terms.begin(), node.terms.end(), [this](const Term& term) { return all_parametric(term); });
   }
-  /// A parameter as it is, or a number, needs no preparation.
+  /// A plain parameter or a number needs no preparation.
   bool is_plain(const Term& term) const {
     return term.is_constant() || (term.is_node() && rest_[term.factors[0].node].kind == Node::Kind::leaf);
   }
 
   Term prepared(const Term& value) { return is_plain(value) ? value : entry(value); }
 
-  /// An entry of w; the nodes of `value` are those of prepare_.
+  /// An entry of w; `value` refers to nodes of prepare_.
   Term entry(const Term& value) {
     const bool negative = cln::minusp(value.coefficient);
     const Term size{cln::abs(value.coefficient), value.factors};
@@ -92,7 +92,7 @@ class Splitting {
   std::vector<bool> parametric_;
 };
 
-/// Keeps the entries of w that `rest` reads, in the order in which it does.
+/// Keeps only the entries of w that `rest` reads, in reading order.
 void keep_needed(Function& rest, Polynomials& prepare) {
   std::map<std::uint32_t, std::uint32_t> place;
   std::vector<Term> kept;

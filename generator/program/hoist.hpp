@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What depends on parameters only is computed once: a function in two, `prepare` (of p) and what is left (of the rest).
+// Hoists computations that depend on parameters only. One function becomes two: `prepare` (a function of p) and the
+// rest.
 #pragma once
 
 #include <optional>
@@ -16,8 +17,8 @@ struct Hoisted {
   Function rest;     // reads w through Slot::prepared
 };
 
-/// The cheapest of what the equal graphs `starts` become without their parts of parameters only; nothing where that
-/// saves less than a fiftieth of the cost of `whole`. `shape` as in `schedule`.
+/// The cheapest split of the equivalent graphs `starts`. Returns nothing if the split saves less than a fiftieth of the
+/// cost of `whole`. `shape` as in `schedule`.
 std::optional<Hoisted> hoist(const std::vector<Polynomials>& starts, const Operations& whole, const std::string& name,
                              const std::vector<ResultShape>& shape);
 

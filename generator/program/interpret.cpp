@@ -14,7 +14,7 @@ namespace {
 
 using symbolic::Op;
 
-/// Functions are those of binary64, rounded: what they are does not depend on the machine.
+/// Functions are computed in binary64 and rounded, so that results do not depend on the machine.
 struct Binary32 {
   using Number = float;
   using Twice = symbolic::Binary64;
@@ -39,8 +39,8 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, con
   const Real pi = number.pi();
   std::vector<Real> value;
   value.reserve(function.code.size());
-  std::vector<std::string> reasons;            // why values are missing; the branch that is not taken may be
-  std::map<std::size_t, std::size_t> missing;  // values, by reason
+  std::vector<std::string> reasons;            // reasons for missing values; branches not taken may lack one
+  std::map<std::size_t, std::size_t> missing;  // index of a missing value -> index of its reason
   const auto why = [&](const Operand& operand) -> std::optional<std::size_t> {
     const auto found = operand.slot == Slot::value ? missing.find(operand.index) : missing.end();
     return found == missing.end() ? std::nullopt : std::optional(found->second);
@@ -92,7 +92,7 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, con
       value.push_back(result);
     } else {
       try {
-        for (Real& operand : operands) operand = number.round(operand);  // of the mode: exact numbers until now
+        for (Real& operand : operands) operand = number.round(operand);  // mode values are exact up to here
         const auto operand = [&](std::size_t i) -> const Real& { return operands[i]; };
         value.push_back(symbolic::value_of(instruction.op, 0, operand, number));
       } catch (const std::domain_error& outside) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs a Function without a compiler: in binary64 or binary32 as the emitted code would, or with CLN at any number of
-// digits, so that verify can hold the optimised program against the expressions that it was made of.
+// Interprets a Function: in binary64 or binary32 as emitted code would, or with CLN in any number of digits. `verify`
+// compares optimised programs with their source expressions this way.
 #pragma once
 
 #include <cln/real.h>
@@ -16,9 +16,9 @@ template <class Real>
 struct Arguments {
   Real t{};
   std::vector<Real> x, p, u;
-  std::vector<Real> w{};        // what `prepare` made of p
-  std::vector<Real> side = {};  // of the kinks; left out: their branches follow the state
-  int mode = 0;                 // of friction contacts
+  std::vector<Real> w{};        // prepared values, from `prepare`
+  std::vector<Real> side = {};  // sides of the kinks; empty: branches follow the state
+  int mode = 0;                 // mode of the friction contacts
 };
 
 template <class Real>
@@ -27,9 +27,9 @@ struct Values {
   std::vector<std::pair<Real, Real>> pivots;  // pivot, scale
 };
 
-/// Throws std::domain_error where a function leaves its real domain or a division is by zero.
+/// Throws std::domain_error if a function leaves its real domain, and for a division by zero.
 Values<cln::cl_R> interpret(const Function& function, const Arguments<cln::cl_R>& arguments, int digits);
-/// Not-a-number or infinite where there is no value.
+/// NaN or infinite if there is no value.
 Values<double> interpret(const Function& function, const Arguments<double>& arguments);
 Values<float> interpret(const Function& function, const Arguments<float>& arguments);
 

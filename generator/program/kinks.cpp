@@ -21,11 +21,11 @@ class Holding {
  public:
   explicit Holding(Dag& dag) : dag_(dag) {}
 
-  /// New kinks are taken up while `collects` is true; later expressions only share those that are known.
+  /// New kinks are collected while `collects` is true; later expressions only share known kinks.
   bool collects = true;
   std::vector<Kink> kinks;
 
-  /// |value| and the like are no kinks of their own: its sign is watched already.
+  /// |value| and the like are no kinks of their own: the sign of value is monitored already.
   void leave(Ref value) { left_.insert(left_.end(), {value, dag_.neg(value)}); }
 
   Ref operator()(Ref expression) {
@@ -94,7 +94,7 @@ std::vector<Kink> hold_kinks(system::EquationSystem& s) {
   Holding hold(*s.dag);
   using system::Part;
   system::for_each_expression(s, [&hold](Ref& r, Part part) {
-    if (part == Part::constraints) return;  // a start and a projection have the state that they have
+    if (part == Part::constraints) return;  // start states and projections do not freeze branches
     hold.collects = part != Part::shown;
     r = hold(r);
     if (part == Part::slip) hold.leave(r);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kinks of the equations of motion (abs, sign, min, max, select) as switching surfaces. In: a system as it was derived.
-// Out: the same system whose branches can be held, and the surfaces.
+// Kinks of the equations of motion (abs, sign, min, max, select) as switching surfaces. In: a system as derived. Out:
+// the same system with branches that can be frozen, and the surfaces.
 //
-// Surface k is the argument of abs and sign, a - b of min(a, b), max(a, b) and of select(a < b). In place of its value
-// the branch is chosen by the symbol {SymbolKind::side, k} where that is not 0: 1 stands for values above 0, -1 for
-// values below. With side 0 the system is what it was.
+// Surface k is the argument of abs and sign, and a - b for min(a, b), max(a, b) and select(a < b). The symbol
+// {SymbolKind::side, k} selects the branch if it is not 0: 1 for positive values of the surface function, -1 for
+// negative ones. With side 0 the system is unchanged.
 #pragma once
 
 #include <vector>
@@ -14,22 +14,22 @@
 namespace eomgen::program {
 
 struct Kink {
-  symbolic::Op op;      // by which it was met first
-  symbolic::Ref value;  // changes its sign at the surface; may itself use sides of surfaces before it
+  symbolic::Op op;      // of the first occurrence
+  symbolic::Ref value;  // changes sign at the surface; may contain sides of earlier ones
 };
 
-/// The function that it is of: "abs", "sign", "min", "max", "if".
+/// The name of the function that has the kink: "abs", "sign", "min", "max", "if".
 const char* name(const Kink& kink);
 
-/// Bits of `mode` that hold sides: two for each kink, from first_kink_bit on; more kinks than that cannot be held.
+/// Bits of `mode` for the sides: two per kink, from first_kink_bit on. Further kinks cannot be frozen.
 inline constexpr std::size_t first_kink_bit = 8, most_kinks = 11;
 
-/// Whether the equations of motion have any that can be held.
+/// Whether the equations of motion have kinks that can be frozen.
 bool has_kinks(system::EquationSystem system);
 
-/// Makes branches of the equations of motion and of the laws of contacts depend on sides, and in reactions, outputs and
-/// events those that are the same. Surfaces of parameters alone and those where a contact changes its mode are left as
-/// they are, and so is what exceeds most_kinks.
+/// Makes the branches of the equations of motion and of the contact laws depend on sides, and equal branches in
+/// reactions, outputs and events. Surfaces of parameters alone, surfaces of mode changes of contacts, and surfaces
+/// beyond most_kinks are unchanged.
 std::vector<Kink> hold_kinks(system::EquationSystem& system);
 
 }  // namespace eomgen::program

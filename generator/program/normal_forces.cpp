@@ -11,7 +11,7 @@ using symbolic::Ref;
 
 namespace {
 
-constexpr int iterations = 7;  // quadratic: from a change by a half to rounding in six
+constexpr int iterations = 7;  // quadratic convergence: from a change by half to rounding in six
 
 class Iteration {
  public:
@@ -35,21 +35,21 @@ class Iteration {
     Ref size = dag_.zero();
     for (const Ref nu : result.nu) size = dag_.call(Op::max, size, nu);
     const symbolic::Rational enough =
-        symbolic::Rational(1) / 1000000000;  // its square, the error that is left, is rounding
+        symbolic::Rational(1) / 1000000000;  // its square, the remaining error, is at rounding level
     result.settled = dag_.sub(dag_.mul(dag_.constant(enough), size), last);
-    // At rest without any normal force nothing is left to settle.
+    // At rest without any normal force the iteration has converged.
     result.settled = dag_.select(dag_.zero(), size, result.settled, dag_.one());
-    result.several = dag_.integer(-1);  // how many there are is not known then
+    result.several = dag_.integer(-1);  // the number of solutions is unknown in that case
     return result;
   }
 
-  // One curve: nu^2 = a.Ga + 2 nu a.Gb + nu^2 b.Gb, with one positive solution where b.Gb < 1.
+  // One curve: nu^2 = a.Ga + 2 nu a.Gb + nu^2 b.Gb, with one positive solution if b.Gb < 1.
   NormalForces closed() const {
     const CurveForce& c = curves_[0];
     const Ref A = form(c, c.a, c.a), half = form(c, c.a, c.b[0]),
               margin = dag_.sub(dag_.one(), form(c, c.b[0], c.b[0]));
     const Ref discriminant = dag_.add(dag_.mul(half, half), dag_.mul(margin, A));
-    // Beyond that the roots have one sign: both are solutions where their sum 2 half/margin is positive.
+    // Otherwise the roots have the same sign. Both are solutions if their sum 2 half/margin is positive.
     return {{dag_.div(dag_.add(half, root(discriminant)), margin)},
             margin,
             dag_.call(Op::min, dag_.neg(half), discriminant)};

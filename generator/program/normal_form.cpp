@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sums in normal form: millions of them for one program, most of one to four terms that are in order already.
+// Normal form of sums. One program needs millions of them; most have one to four terms that are already sorted.
 #include <cln/rational.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ void sort(std::vector<Term>& terms) {
   if (!std::is_sorted(terms.begin(), terms.end(), before)) std::stable_sort(terms.begin(), terms.end(), before);
 }
 
-/// Adds up terms of the same monomial; drops zeros.
+/// Combines terms with the same monomial; drops zeros.
 void collect(std::vector<Term>& terms) {
   sort(terms);
   std::size_t kept = 0;
@@ -34,7 +34,7 @@ void collect(std::vector<Term>& terms) {
   terms.resize(kept);
 }
 
-/// What divides both (of divisors: what both divide by), in place of `common`.
+/// Reduces `common` to the factors that divide both monomials (negative exponents: that both divide by).
 void keep_common(Monomial& common, const Monomial& other) {
   std::size_t kept = 0;
   auto g = other.begin();
@@ -47,7 +47,7 @@ void keep_common(Monomial& common, const Monomial& other) {
   common.shorten(kept);
 }
 
-/// The monomial that divides every term (for divisors: that every term divides by), and the number that all share.
+/// The monomial and the number that divide every term (negative exponents: that every term divides by).
 Term content(const std::vector<Term>& terms) {
   const Rational& first = terms[0].coefficient;
   Term result{1, terms[0].factors};
@@ -86,7 +86,7 @@ Monomial Polynomials::expanded(const Monomial& monomial) const {
   return result;
 }
 
-/// Of a sine or cosine; products are looked through.
+/// The square of a sine or cosine in a term; products are expanded for the search.
 bool Polynomials::has_square(const Monomial& monomial) const {
   for (const Factor& f : monomial) {
     if (f.exponent >= 2 && is_trig(f.node)) return true;
@@ -97,8 +97,8 @@ bool Polynomials::has_square(const Monomial& monomial) const {
   return std::any_of(open.begin(), open.end(), [this](const Factor& f) { return f.exponent >= 2 && is_trig(f.node); });
 }
 
-// c K sin^2 + c K cos^2 -> c K, and c K - c K cos^2 -> c K sin^2 where that sine is at hand. Products are looked
-// through, for the squares may be hidden in (l cos)^2.
+// c K sin^2 + c K cos^2 -> c K, and c K - c K cos^2 -> c K sin^2 if that sine exists. Products are expanded for the
+// search, because squares may be hidden, as in (l cos)^2.
 bool Polynomials::apply_pythagoras(std::vector<Term>& terms) {
   if (std::none_of(terms.begin(), terms.end(), [this](const Term& term) { return has_square(term.factors); }))
     return false;
@@ -142,7 +142,7 @@ Term Polynomials::normal(std::vector<Term> terms) {
   }
   sort(terms);
   if (cln::minusp(terms[0].coefficient)) {
-    // Dividing may have changed which term is first; the first one is positive.
+    // The division may have changed the first term; its coefficient is made positive.
     for (Term& term : terms) term.coefficient = -term.coefficient;
     front.coefficient = -front.coefficient;
   }

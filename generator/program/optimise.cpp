@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The search: passes in turn until nothing gets cheaper, from several starts and with several orders of ties; greedy
-// results move by a fifth with the order, so the best one is kept. Everything is counted in steps, never in seconds:
-// the same graph gives the same program everywhere.
+// The search repeats the passes until the cost no longer falls, from several starts and with several orders of ties.
+// The cost of greedy results varies by a fifth with the order; the best result is kept. Limits count steps, never
+// seconds, so that the same graph gives the same program everywhere.
 #include <algorithm>
 #include <optional>
 
@@ -15,7 +15,7 @@ struct Costed {
   std::size_t cost = 0;
 };
 
-/// One descent: factor, share, clear up, while the cost falls by a thousandth.
+/// One descent: factor, share and flatten while the cost falls by a thousandth.
 Costed descend(const Costed& start, std::uint64_t seed) {
   constexpr int rounds = 8;
   Polynomials graph = start.graph;
@@ -42,7 +42,7 @@ Costed descend(const Costed& start, std::uint64_t seed) {
 }  // namespace
 
 Polynomials optimise(const std::vector<Polynomials>& starts) {
-  // Programs of tens of operations get many orders, programs of thousands one from each start.
+  // Programs with tens of operations are tried in many orders, programs with thousands in one order per start.
   constexpr std::size_t budget = 4000, most = 12;
   std::optional<Costed> best;
   for (const Polynomials& start : starts) {

@@ -43,7 +43,7 @@ void NodeIndex::reserve(std::size_t nodes) {
   while (size < 2 * nodes) size *= 2;
   if (size == slots_.size()) return;
   const std::vector<Slot> old = std::exchange(slots_, std::vector<Slot>(size));
-  // From an open slot on, so that those of one hash stay in their order.
+  // Starts at an empty slot, so that nodes of equal hash keep their order.
   std::size_t first = 0;
   while (first < old.size() && old[first].taken) ++first;
   for (std::size_t i = 0; i < old.size(); ++i) {

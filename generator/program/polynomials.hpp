@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the optimiser works on: a graph whose nodes are sums of monomials in other nodes,
+// The graph of the optimiser. Its nodes are sums of monomials in other nodes,
 //   node = sum_k c_k prod_j node_j ^ e_kj   (c exact, e integer, negative for divisors),
-// next to leaves and function calls. Products have no node of their own unless they are shared (a sum of one term), so
-// that factors meet and cancel: m g l sin(theta) / (m l^2) is one monomial.
+// besides leaves and function calls. A product has a node of its own only if it is shared (a sum of one term). Factors
+// therefore cancel: m g l sin(theta) / (m l^2) is one monomial.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct Term {
   Monomial factors;
 
   bool is_constant() const { return factors.empty(); }
-  /// One node or its negative: what needs no instruction of its own.
+  /// Whether the term is a node or its negative, which needs no instruction of its own.
   bool is_node() const;
 };
 bool operator==(const Term& a, const Term& b);
@@ -47,7 +47,7 @@ struct Node {
   std::vector<Term> terms;              // call: its arguments; sum: its summands
 };
 
-/// A name for a value, if the value survives; sections keep their order.
+/// A name for a value if the value survives optimisation; sections keep their order.
 struct Label {
   Term value;
   std::string name, section;
@@ -57,10 +57,10 @@ struct PivotPair {
   Term pivot, scale;  // scale 0: the pivot must not be exactly zero
 };
 
-/// Nodes by a hash of what they are; those of one hash in the order in which they came.
+/// An index of nodes by hash. Nodes with equal hashes keep their order of insertion.
 class NodeIndex {
  public:
-  /// The first of this hash for which `is_it` holds; null if there is none.
+  /// The first node with this hash that satisfies `is_it`; null if there is none.
   template <class IsIt>
   const NodeId* find(std::uint64_t hash, const IsIt& is_it) const {
     if (slots_.empty()) return nullptr;
@@ -80,7 +80,7 @@ class NodeIndex {
   };
   void place(const Slot& slot);
 
-  std::vector<Slot> slots_;  // none, or a power of 2 of them
+  std::vector<Slot> slots_;  // the size is 0 or a power of 2
   std::size_t taken_ = 0;
 };
 
@@ -92,16 +92,16 @@ class Polynomials {
   }
   NodeId leaf(const Operand& operand);
   NodeId call(symbolic::Op op, std::vector<Term> arguments);
-  /// A sum as it stands: equal lists of terms are one node.
+  /// A sum without normalisation; equal lists of terms share one node.
   NodeId sum(std::vector<Term> terms);
-  /// A node that is equal to no other (for passes, which make aliases that `flatten` resolves).
+  /// A node that is never shared (for passes that create aliases, which `flatten` resolves).
   NodeId fresh_sum(std::vector<Term> terms);
 
-  /// The sum of `terms` in normal form: like terms collected, sin^2 + cos^2 = 1 applied, the common factor in front.
+  /// The sum of `terms` in normal form: like terms collected, sin^2 + cos^2 = 1 applied, the common factor extracted.
   Term normal(std::vector<Term> terms);
-  /// What an instruction can take as an operand: a constant, or plus or minus a node.
+  /// Converts a term to an operand of an instruction: a constant, or plus or minus a node.
   Term operand(const Term& term);
-  /// sin(x) for cos(x) and the reverse, if the graph has it.
+  /// Finds sin(x) for cos(x) and vice versa. Returns false if the graph does not contain it.
   bool partner(NodeId trig, NodeId& result) const;
   bool is_trig(NodeId id) const;  // a sine or cosine
 
@@ -109,15 +109,15 @@ class Polynomials {
   std::vector<Term>& terms_of(NodeId id) { return nodes_[id].terms; }
   std::size_t size() const { return nodes_.size(); }
 
-  /// Nodes that results and pivots need, operands first; sines and cosines as early as they can be.
+  /// Nodes that results and pivots depend on, operands first; sines and cosines as early as possible.
   std::vector<NodeId> order() const;
-  /// How often each node is used by the nodes of `order`, results and pivots.
+  /// Number of uses of each node by the nodes of `order`, results and pivots.
   std::vector<std::uint32_t> uses(const std::vector<NodeId>& order) const;
-  /// Terms of `order` that divide by each node.
+  /// Number of terms in `order` that divide by each node.
   std::vector<std::uint32_t> divisor_uses(const std::vector<NodeId>& order) const;
-  /// Nodes that something is divided by, on their own or as factors of products.
+  /// Nodes that occur as divisors, alone or as factors of products.
   std::vector<bool> divisors(const std::vector<NodeId>& order) const;
-  /// The factors of a value that are not products themselves, ascending.
+  /// The factors of a value, with products expanded, ascending.
   std::vector<NodeId> atoms(const Term& term) const;
 
   std::vector<Term> results;
@@ -164,7 +164,7 @@ class Walk {
     for (const Factor& f : term.factors) from(f.node, take);
   }
   template <class Take>
-  void from_results(const Take& take) {  // pivots too
+  void from_results(const Take& take) {  // and pivots
     for (const PivotPair& pair : graph_.pivots) {
       from(pair.pivot, take);
       from(pair.scale, take);
@@ -179,31 +179,30 @@ class Walk {
   std::vector<NodeId> stack_;
 };
 
-/// Operations of the straight-line code that `schedule` makes of a graph.
+/// Operation count of the straight-line code that `schedule` generates for a graph.
 Operations count_operations(const Polynomials& graph);
 
-/// Straight-line code. `shape`: of its results, whose entries are the graph's results in
-/// order.
+/// Generates straight-line code. `shape`: the results; their entries are the results of the graph in order.
 Function schedule(const Polynomials& graph, const std::string& name, const std::vector<ResultShape>& shape);
 
-/// The same results with chains merged: a node that is used once goes into its user; with `inline_products` products
-/// that are shared do too (so that other factorings can be found).
+/// Merges chains: a node with one use is merged into its user. With `inline_products`, shared products are merged too,
+/// so that other factorings can be found.
 Polynomials flatten(const Polynomials& graph, bool inline_products);
 
-/// The same with small products of sums multiplied out inside the entries of M, f and the like (its labels), where
-/// Lagrange's equations have terms that cancel.
+/// Expands small products of sums inside the entries of M, f and the like (labelled values). There the terms of
+/// Lagrange's equations cancel.
 Polynomials expand(const Polynomials& graph);
 
-/// Sums rewritten as f*(...) + ..., most frequent factor first; ties by `seed`.
+/// Rewrites sums as f*(...) + ..., the most frequent factor first; `seed` breaks ties.
 void factor_sums(Polynomials& graph, std::uint64_t seed);
-/// The most frequent pair of factors, then of summands, becomes a node, and so on.
+/// Common subexpression elimination: the most frequent pair of factors (or summands) becomes a node, repeatedly.
 void share_products(Polynomials& graph, std::uint64_t seed);
 void share_sums(Polynomials& graph, std::uint64_t seed);
 
-/// A number that looks random and depends on its arguments only.
+/// A pseudo-random number that depends on the arguments only.
 std::uint64_t scramble(std::uint64_t a, std::uint64_t b);
 
-/// The best program that several seeded orders of the passes find, from any of several equal graphs.
+/// The cheapest graph found by several seeded orders of the passes, starting from equivalent graphs.
 Polynomials optimise(const std::vector<Polynomials>& starts);
 
 }  // namespace eomgen::program

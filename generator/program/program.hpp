@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The product of the program stage: straight-line code for each function of the C ABI (docs/abi.md), optimised, ready
-// for any target to print.
+// The product of the program stage: optimised straight-line code for each function of the C ABI (docs/abi.md), ready to
+// be printed for any target.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ namespace eomgen::program {
 struct Operations {
   std::size_t add = 0, mul = 0, div = 0, sqrt = 0, trig = 0, other = 0;
   std::size_t flops() const { return add + mul; }
-  /// Stated cost by which routes are ranked: add + mul + 8 div + 12 sqrt + 25 trig + 20 other.
+  /// Cost that ranks formulations: add + mul + 8 div + 12 sqrt + 25 trig + 20 other.
   std::size_t cost() const { return add + mul + 8 * div + 12 * sqrt + 25 * trig + 20 * other; }
-  /// An instruction of so many operands.
+  /// Adds one instruction with the given number of operands.
   void count(symbolic::Op op, std::size_t operands) {
     using symbolic::Op;
     switch (op) {
@@ -35,45 +35,45 @@ struct Operations {
   }
 };
 
-/// Where an operand comes from; side: of a kink, contact: of friction, both decoded from `mode`.
+/// Source of an operand. side (of a kink) and contact (friction) are decoded from `mode`.
 enum class Slot : std::uint8_t { constant, pi, time, state, parameter, input, prepared, side, contact, value };
 struct Operand {
   Slot slot = Slot::value;
-  std::uint32_t index = 0;  // constant: into Function::constants; value: of the instruction that made it
+  std::uint32_t index = 0;  // constant: in Function::constants; value: of the instruction
   bool negated = false;
   friend bool operator==(const Operand&, const Operand&) = default;
 };
 
 struct Instruction {
-  symbolic::Op op = symbolic::Op::add;  // no symbol, constant, neg
+  symbolic::Op op = symbolic::Op::add;  // never symbol, constant, neg
   std::vector<Operand> operands;        // add and mul may have more than two
   long exponent = 0;                    // of Op::power
-  std::string name;                     // a name that means something, or empty; "{3}_ddot": {3} is coordinate 3's
-  std::string section;                  // heading that starts here, or empty
-  // Sines and cosines that are ready at the same time come one after another and are computed together: the number of
-  // their pack, from 1 (0: alone), and the place of the angle in it.
+  std::string name;                     // suggested name or empty; "{3}_ddot": {3} is the name of coordinate 3
+  std::string section;                  // heading before this instruction, or empty
+  // Sines and cosines whose angles are ready at the same time are adjacent and computed together. `pack`: the number of
+  // their group from 1 on (0: computed alone). `lane`: the position of the angle in the group.
   std::uint32_t pack = 0, lane = 0;
 };
 
-/// A value that must not vanish relative to a scale (pivots of the solve): code 1, singular_mass_matrix. Where the
-/// scale is the constant 0 the pivot must only differ from zero.
+/// A pivot of the solve that must not vanish relative to a scale; otherwise the function returns 1,
+/// singular_mass_matrix. If the scale is the constant 0, the pivot must only be nonzero.
 struct PivotTest {
   Operand pivot, scale;
 };
 
-/// What is left of a diagonal entry by the subtractions of an elimination carries their rounding, some 1e-16 of the
-/// entry times the number of rows: below 1e-13 of it no more than two or three digits are right.
+/// Relative tolerance of pivots. The subtractions of an elimination leave a rounding error of about 1e-16 of the
+/// diagonal entry times the number of rows. Below 1e-13 of the entry at most two or three digits are correct.
 inline constexpr double pivot_tolerance = 1e-13;
 
-/// An argument of the function, or a test that ends it.
+/// A result argument of the function, or a test that ends it.
 struct Result {
-  std::string name;              // of the argument; of a test: empty
+  std::string name;              // of the argument; empty for a test
   std::vector<Operand> entries;  // column-major
-  int code = 0;                  // of a test: where an entry is negative the function ends with it
+  int code = 0;                  // for a test: returned if an entry is negative
   bool is_test() const { return code != 0; }
 };
 
-/// What a function is to give: Result without the operands.
+/// The shape of a Result: its name, entries and code without operands.
 struct ResultShape {
   std::string name;
   std::size_t entries = 0;
@@ -81,9 +81,9 @@ struct ResultShape {
 };
 
 struct Function {
-  std::string name;  // of the ABI: "rhs", "prepare", "mass", ...
+  std::string name;  // in the ABI: "rhs", "prepare", "mass", ...
   std::vector<Result> results;
-  std::vector<std::uint32_t> places;  // where the entries of the first result go; none: one after the other
+  std::vector<std::uint32_t> places;  // destination of the entries of the first result; empty: in order
   std::vector<symbolic::Rational> constants;
   std::vector<Instruction> code;
   std::vector<PivotTest> pivots;
@@ -91,8 +91,8 @@ struct Function {
   Operations operations;
 };
 
-/// The recurrences of the Taylor series of `rhs` (taylor.hpp).
-/// The array w of `next`: `zeros` values of order 0, then the sums S, then 1 where k is 1 and else 0, then 1/k.
+/// Recurrences of the Taylor series of `rhs` (taylor.hpp). The array w of `next` contains `zeros` values of order 0,
+/// the sums S, then 1 if k is 1 and else 0, then 1/k.
 struct Taylor {
   Function start;  // "taylor_start": results z (into w), dx
   Function next;  // "taylor_next": time is k, the state x is x_k; results a, b (k-th factors of each sum), dx (its k-th
@@ -108,22 +108,22 @@ struct Tried {
   Operations operations;
 };
 
-/// A contact with friction or that can be left: one digit of the mode.
+/// A contact with friction, or a unilateral contact: one digit of the mode.
 struct ContactInfo : eom::ContactShape {
   std::string name;
 };
 
-/// A chart that can be left for a second one: a bit of `mode` from eom::first_chart_bit on.
+/// A chart with an alternative second chart: one bit of `mode` from eom::first_chart_bit on.
 struct ChartInfo {
   std::string of, own, second, regular;  // "B", "313", "312", "sin(theta)"
-  std::vector<std::uint32_t> angles;     // places in x
-  std::uint32_t guarded = 0;             // that of the angle in `regular`
-  bool second_at_sine = true;            // where the second chart fails: the sine of that one is 0; else the cosine
-  Function to, back;                     // y, the state in the other chart, of x
+  std::vector<std::uint32_t> angles;     // indices in x
+  std::uint32_t guarded = 0;             // index of the angle in `regular`
+  bool second_at_sine = true;            // the second chart is singular at zero sine, else cosine
+  Function to, back;                     // y (state in the other chart) as a function of x
 };
 
 struct Program {
-  // Defined once: every file that holds one would compile them anew.
+  // Defined in program.cpp; inline definitions would be compiled in every file that uses a Program.
   Program();
   Program(const Program&);
   Program(Program&&) noexcept;
@@ -133,37 +133,37 @@ struct Program {
 
   std::vector<std::uint32_t> free;       // coordinates of the model; state x = (q_free, qdot_free, integrals)
   std::vector<std::uint32_t> integrals;  // of the model
-  /// Entries of the first result of a function; 0: there is no such function.
+  /// Number of entries of the first result of a function; 0 if the function does not exist.
   std::size_t entries(std::string_view function_name) const {
     for (const Function& function : functions) {
       if (function.name == function_name) return function.results[0].entries.size();
     }
     return 0;
   }
-  std::size_t prepared_count() const {  // of the array w: one chart after the other
+  std::size_t prepared_count() const {  // length of the array w; one chart after the other
     std::size_t count = entries("prepare");
     for (const Program& other : second) count += count > 0 ? other.entries("prepare") : 0;
     return count;
   }
-  std::size_t event_count() const { return entries("events"); }  // of the array g
+  std::size_t event_count() const { return entries("events"); }  // length of the array g
   std::size_t state_count() const { return 2 * free.size() + integrals.size(); }
   std::string route;
   system::Approach approach = system::Approach::two;
   system::Form form = system::Form::multipliers;
-  std::vector<Function> functions;  // rhs first; last `prepare` and `rhs_prepared` where they save work
+  std::vector<Function> functions;  // rhs first; `prepare` and `rhs_prepared` last, if they save work
   std::vector<Tried> tried;
   std::vector<std::string> reactions;  // labels, in the order of the array lambda
   std::vector<std::string> outputs;    // names, in the order of the array y
-  std::vector<std::string> events;     // of the model; first in the array g of the function events
+  std::vector<std::string> events;     // events of the model; they precede others in the array g
   std::vector<std::string>
       kinks;  // "abs", "if": after them the surfaces whose branches `mode` can hold, then 5 per contact
   std::size_t active_constraints = 0;
   std::vector<ContactInfo> contacts;
-  std::optional<Taylor> taylor;   // where it was asked for
-  std::vector<bool> holonomic;    // per active constraint: false where it binds velocities only
-  std::vector<ChartInfo> charts;  // that can be exchanged; none where the code has one chart only
+  std::optional<Taylor> taylor;   // if requested
+  std::vector<bool> holonomic;    // per active constraint; false if it constrains velocities only
+  std::vector<ChartInfo> charts;  // exchangeable charts; empty if the code has one chart
   std::vector<Program> second;    // the same functions with second charts
-  int in_charts = 0;              // of such a program: its bits of `mode`
+  int in_charts = 0;              // for a variant in second charts: its bits of `mode`
 };
 
 }  // namespace eomgen::program

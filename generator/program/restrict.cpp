@@ -30,7 +30,7 @@ Function restricted(const Function& function, const std::vector<std::size_t>& en
     if (!needed[i]) continue;
     place[i] = static_cast<std::uint32_t>(result.code.size());
     result.code.push_back(function.code[i]);
-    // What was computed together may be alone now.
+    // A member of a pack may be alone now.
     result.code.back().pack = result.code.back().lane = 0;
     for (Operand& operand : result.code.back().operands) moved(operand);
   }

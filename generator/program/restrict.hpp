@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A function with fewer results.
+// Restriction of a function to some of its results.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace eomgen::program {
 
-/// `function` with these entries of its first result alone, in this order, and only what they need. Without tests of
-/// pivots: where the function would return 1 the entries may be infinite or not a number.
+/// `function` with the given entries of its first result only, in this order, and the code that they need. Pivot tests
+/// are removed: entries may be infinite or NaN where the original function returns 1.
 Function restricted(const Function& function, const std::vector<std::size_t>& entries);
 
 }  // namespace eomgen::program

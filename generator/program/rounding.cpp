@@ -15,10 +15,10 @@ namespace {
 using symbolic::Op;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double least_normal = std::numeric_limits<double>::min();  // what is smaller loses digits
-constexpr double library = 4;                                        // half units of the C library's functions
+constexpr double least_normal = std::numeric_limits<double>::min();  // smaller numbers lose digits
+constexpr double library = 4;                                        // error of C library functions in half units
 
-/// A value and how far it may be off.
+/// A value and the bound of its error.
 struct Bounded {
   double value = 0, off = 0;
 };
@@ -28,7 +28,7 @@ Bounded rounded(double value, double off, double half_units = 1) {
   return {value, off + half_units * half_unit * std::fabs(value) + (value == 0 && off == 0 ? 0 : least_normal)};
 }
 
-/// x times y, of which one may be 0 and the other infinite.
+/// x times y with 0 times infinity = 0.
 double times(double x, double y) { return x == 0 || y == 0 ? 0 : x * y; }
 
 Bounded product(const Bounded& a, const Bounded& b) {
@@ -39,7 +39,7 @@ Bounded product(const Bounded& a, const Bounded& b) {
 }
 
 Bounded quotient(const Bounded& a, const Bounded& b) {
-  const double least = std::fabs(b.value) - b.off;  // of the denominator
+  const double least = std::fabs(b.value) - b.off;  // smallest magnitude of the denominator
   if (!(least > 0)) return {a.value / b.value, infinite};
   const double value = a.value / b.value;
   return rounded(value, (a.off + std::fabs(value) * b.off) / least);
@@ -74,7 +74,7 @@ struct Numbers {
 
 Bounded of_one(Op op, const Bounded& a) {
   const double x = a.value;
-  // The slope at x, and one half of what the curvature adds.
+  // The slope at x plus half of the contribution of the curvature.
   const auto smooth = [&](double value, double slope) {
     return rounded(value, times(std::fabs(slope), a.off) + times(a.off, a.off), library);
   };
@@ -93,7 +93,7 @@ Bounded of_one(Op op, const Bounded& a) {
   }
 }
 
-/// Whether rounding may turn a < b into its opposite.
+/// Whether rounding may reverse the comparison a < b.
 bool undecided(const Bounded& a, const Bounded& b) {
   return a.off + b.off > 0 && std::fabs(a.value - b.value) <= a.off + b.off;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the graph to straight-line code, and what that code costs. The two must agree: a test compares them.
+// Generates straight-line code from the graph, and counts its operations. A test compares code and count.
 #include <cln/rational.h>
 
 #include <algorithm>
@@ -14,14 +14,14 @@ namespace {
 
 using symbolic::Op;
 
-// x^1, x^2, x^3 are written out as factors; beyond, halves are squared.
+// x^1, x^2, x^3 are written as products; higher powers square x^(n/2).
 constexpr std::int32_t written_out = 3;
 
-// Two angles in a pack take half the time of the C library's functions, one takes as long.
+// A pack of two angles takes half the time of the C library; a pack of one takes the same time.
 constexpr std::size_t smallest_pack = 2;
 
 std::size_t power_factors(std::int32_t e) { return static_cast<std::size_t>(e <= written_out ? e : 2 + e % 2); }
-std::size_t power_cost(std::int32_t e) {  // of the halves that need an instruction
+std::size_t power_cost(std::int32_t e) {  // multiplications of the half power, which need an instruction
   return e <= written_out ? 0 : power_factors(e / 2) - 1 + power_cost(e / 2);
 }
 
@@ -94,14 +94,15 @@ class Schedule {
       const Node& node = graph_[id];
       const bool negative = cln::minusp(label.value.coefficient);
       if (node.kind != Node::Kind::sum) continue;
-      // The value of this name is minus the node: turn the node around where that costs nothing.
+      // The named value is the negative of the node. The node is negated if that costs nothing.
       flipped_[id] = negative && std::any_of(node.terms.begin(), node.terms.end(),
                                              [](const Term& term) { return cln::minusp(term.coefficient); });
       name_[id] = negative && !flipped_[id] ? "minus_" + label.name : label.name;
     }
   }
 
-  /// Sines and cosines by how many others their angles need; a sine and the cosine of the same angle are neighbours.
+  /// Groups sines and cosines by the depth of other trigonometric values in their angles. The sine and the cosine of
+  /// one angle are adjacent.
   std::vector<std::vector<NodeId>> trig_levels() const {
     std::vector<std::size_t> depth(graph_.size(), 0);
     std::vector<bool> taken(graph_.size(), false);
@@ -206,7 +207,7 @@ class Schedule {
     return reciprocal_[id];
   }
 
-  /// The size of a term as an operand; `negated` tells its sign.
+  /// The magnitude of a term as an operand; `negated` is its sign.
   Operand term(const Term& term, const std::string& name) {
     std::vector<Operand> above, below;
     if (!symbolic::is_unit(term.coefficient)) above.push_back(constant(cln::abs(term.coefficient)));
@@ -277,7 +278,7 @@ class Schedule {
         function_.pivots.push_back({operand(pair.pivot), operand(pair.scale)});
         continue;
       }
-      // What must not be zero is told only where the finished program still divides by it.
+      // A divisor is tested only if the finished program still divides by it.
       for (const NodeId id : graph_.atoms(pair.pivot)) {
         if (divides[id] && !tested[id]) function_.pivots.push_back({value_[id], constant(0)});
         tested[id] = true;

@@ -10,7 +10,8 @@ namespace {
 
 using symbolic::Op;
 
-// Operands of `next` whose place in w is known at the end: sum i is {input, i}, these are {side, 0}, {side, 1}.
+// Operands of `next` whose index in w is known only at the end: {input, i} is sum i; the two constants are {side, 0}
+// and {side, 1}.
 constexpr Operand time_rate{Slot::side, 0}, one_over_k{Slot::side, 1}, order_k{Slot::time, 0};
 
 }  // namespace
@@ -88,15 +89,14 @@ void SeriesCode::write_results(const Function& rhs) {
   start_.results.insert(start_.results.begin(), {"z", zeros_});
 }
 
-/// Of `next`: named before the length of w was known.
+/// Resolves an operand of `next` that was created before the length of w was known.
 void SeriesCode::place(Operand& o) const {
   const auto zeros = static_cast<std::uint32_t>(zeros_.size()), sums = static_cast<std::uint32_t>(factors_.size());
   if (o.slot == Slot::input) o = {Slot::prepared, zeros + o.index, o.negated};
   if (o.slot == Slot::side) o = {Slot::prepared, zeros + sums + o.index, o.negated};
 }
 
-/// A partner that was added has its angle in another pack, perhaps: packs and lanes anew, by what comes one after
-/// another.
+/// Renumbers packs and lanes by adjacency: an added partner may have its angle in another pack.
 void SeriesCode::number_packs() {
   std::uint32_t packs = 0, before = 0;
   std::vector<Operand> angles;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two pieces of code of a Taylor series while they are written: `start` for the order 0, `next` for the orders
-// above (taylor.hpp). What of `next` refers to sums and to values of `start` gets its place in w at the end.
+// Construction of the two functions of a Taylor series: `start` for order 0, `next` for the higher orders (taylor.hpp).
+// References from `next` to sums and to values of `start` get their index in w at the end.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ class SeriesCode {
   explicit SeriesCode(const Function& rhs);
 
  protected:
-  /// The series of an operand of the right-hand side, whose instructions so far have those of `values_`.
+  /// The series of an operand of the right-hand side. `values_` contains the series of the instructions so far.
   Series read(const Operand& operand) const;
 
   Operand at_start(symbolic::Op op, std::vector<Operand> operands, const std::string& name = {}) {
@@ -28,22 +28,22 @@ class SeriesCode {
   }
   Operand at_next(symbolic::Op op, std::vector<Operand> operands) { return push(next_, op, std::move(operands)); }
   Operand one() { return constant(start_, 1); }
-  /// What `start` computed, in `next`.
+  /// A value of `start` as an operand of `next`.
   Operand kept(const Operand& value);
 
-  /// sum over 0 < j < k of a_j b_(k-j); the second factor may follow with `close`.
+  /// Opens the sum over 0 < j < k of a_j b_(k-j). `close_sum` sets the second factor later.
   Operand open(const Operand& a);
   void close(const Operand& sum, const Operand& b) { factors_[sum.index][1] = b; }
   Operand sum(const Operand& a, const Operand& b);
-  /// A sum of which both factors follow.
+  /// Sets both factors of an open sum.
   void close(const Operand& sum, const Operand& a, const Operand& b) { factors_[sum.index] = {a, b}; }
 
-  /// k a_k: of the derivative.
+  /// k a_k, the coefficient of the derivative.
   Operand weighted(const Series& a);
-  /// w/k: the coefficient of what has the derivative w.
+  /// w/k, the coefficient of the antiderivative of w.
   Operand unweighted(const Operand& w);
 
-  /// With the results and the tests of the right-hand side; nothing may be added afterwards.
+  /// Adds the results and the pivot tests of the right-hand side. No code may be added afterwards.
   Taylor finished(const Function& rhs);
 
   Function start_, next_;
@@ -54,7 +54,7 @@ class SeriesCode {
   void place(Operand& operand) const;
   void number_packs();
 
-  std::vector<std::array<Operand, 2>> factors_;  // of the sums
+  std::vector<std::array<Operand, 2>> factors_;  // factors of the sums
   std::vector<Operand> zeros_;
   std::map<std::pair<Slot, std::uint32_t>, std::uint32_t> kept_;
   std::map<Key, Operand> weighted_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of a right-hand side as power series: what the recurrences are written in.
+// Power series of the values of a right-hand side: the building blocks of the recurrences.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,8 @@ inline Operand minus(Operand operand) {
   return operand;
 }
 
-/// A value of the right-hand side: `zero` in `start`; in `next` its coefficient of order k, where it moves at all.
+/// A value of the right-hand side. `zero`: coefficient of order 0, in `start`; `next`: coefficient of order k, in
+/// `next`, if the value depends on time or state.
 struct Series {
   bool moves = false;
   Operand zero, next;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Common subexpressions that no order of operations would show: the most frequent pair of factors of all products
-// becomes a node, then the next; the same for pairs of summands.
+// Common subexpression elimination, independent of the order of operations. The most frequent pair of factors of all
+// products becomes a node, repeatedly. Pairs of summands are treated in the same way.
 #include <cln/rational.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using Item = std::uint32_t;
 constexpr Item number_bit = 0x80000000u;  // an index into the numbers
 constexpr Item divisor_bit = 0x40000000u;
 
-/// Numbers by index, so that they can be parts of keys.
+/// Numbers by index, for use in keys.
 class Numbers {
  public:
   Item index(const Rational& value) {
@@ -60,7 +60,7 @@ class ProductSharing {
     int times;
     bool wanted;
   };
-  static constexpr std::size_t longest = 40;  // pairs are quadratic
+  static constexpr std::size_t longest = 40;  // the number of pairs is quadratic
 
   void add_row(NodeId id, std::size_t k) {
     const Term& term = graph_[id].terms[k];
@@ -77,7 +77,7 @@ class ProductSharing {
     rows_.push_back(std::move(row));
   }
 
-  /// The pairs of a row, or those with one of `with`.
+  /// Counts the pairs of a row, or those that contain an item of `with`.
   void count(std::uint32_t index, int sign, const std::vector<Item>& with = {}) {
     distinct_.clear();
     for (const Item item : rows_[index].items) {
@@ -147,7 +147,7 @@ class ProductSharing {
   Frequency pairs_;
   Numbers numbers_;
   std::vector<Row> rows_;
-  std::vector<Counted> distinct_;  // of the row that is counted
+  std::vector<Counted> distinct_;  // for the current row
 };
 
 class SumSharing {
@@ -198,7 +198,7 @@ class SumSharing {
     return symbolic::is_minus_one(a) ? -b : symbolic::over(b, a);
   }
 
-  /// a + ratio b, whatever it is multiplied by.
+  /// Key of a + ratio b, up to a common factor.
   std::uint64_t key(const std::pair<Item, Rational>& a, const std::pair<Item, Rational>& b) {
     return (std::uint64_t{a.first} << (64 - item_bits)) | (std::uint64_t{b.first} << (64 - 2 * item_bits)) |
            numbers_.index(ratio(b.second, a.second));
@@ -212,14 +212,14 @@ class SumSharing {
       pairs_.remove(key(items[i], items[j]));
   }
 
-  /// The pairs of a row.
+  /// Counts the pairs of a row.
   void count(std::uint32_t index, int sign) {
     const std::size_t size = rows_[index].items.size();
     for (std::size_t i = 0; i < size; ++i) {
       for (std::size_t j = i + 1; j < size; ++j) change(index, sign, i, j);
     }
   }
-  /// Those with item i.
+  /// Counts the pairs with item i.
   void count_with(std::uint32_t index, int sign, std::size_t i) {
     const std::size_t size = rows_[index].items.size();
     for (std::size_t j = 0; j < i; ++j) change(index, sign, j, i);
@@ -243,7 +243,7 @@ class SumSharing {
       const auto moved = std::find_if(items.begin(), items.end(), [b](const auto& item) { return item.first == b; });
       count_with(index, -1, static_cast<std::size_t>(moved - items.begin()));
       items.erase(moved);
-      items.emplace_back(node, coefficient);  // the newest monomial: still ascending
+      items.emplace_back(node, coefficient);  // the newest monomial; the order stays ascending
       count_with(index, +1, items.size() - 1);
     }
   }

@@ -21,7 +21,7 @@ using symbolic::Symbol;
 
 namespace {
 
-/// Per constraint: whether it binds coordinates of one block of M alone, and that block is singular.
+/// Per constraint: whether its coordinates all belong to one block of M and that block is singular.
 std::vector<bool> within_singular_blocks(const Dag& dag, const std::vector<Ref>& M, std::size_t n,
                                          const std::vector<Ref>& A) {
   std::vector<std::size_t> block(n, n);
@@ -70,12 +70,13 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
   if (augmented_) {
     quasi_.reset();
     M = system.M;
-    // Constraints of a singular block alone, as the lengths of Euler parameters, leave the other zeros of M as they
-    // are.
+    // Constraints of one singular block, such as the unit length of Euler parameters, leave the other zeros of M
+    // unchanged.
     const std::vector<bool> within = within_singular_blocks(dag, M, n_, A_);
     const std::vector<Ref> mass = M;
     augment(M, within);
-    if (is_singular_everywhere(dag, M, n_)) augment(M = mass, std::vector<bool>(m_, true));  // as they need one another
+    // blocks depend on one another
+    if (is_singular_everywhere(dag, M, n_)) augment(M = mass, std::vector<bool>(m_, true));
     if (is_singular_everywhere(dag, M, n_)) {
       throw Error("program", {}, "the mass matrix is singular at every state, with the constraints too",
                   "give every coordinate a mass or a constraint that determines it");
@@ -95,7 +96,7 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
   schur_ = std::make_unique<Factorisation>(dag, std::move(S), m_, ties);
 }
 
-// M + A^T S A with the rows that are taken.
+// M + A^T S A with the selected rows of A.
 void Solve::augment(std::vector<Ref>& M, const std::vector<bool>& taken) {
   Dag& dag = *dag_;
   S_.assign(m_, dag.zero());
@@ -111,7 +112,7 @@ void Solve::augment(std::vector<Ref>& M, const std::vector<bool>& taken) {
   }
 }
 
-// The sum of the inertias of the coordinates that a constraint binds; 1 where none of them has any.
+// The sum of the inertias of the coordinates in a constraint; 1 if none of them has inertia.
 Ref Solve::size_of_row(const std::vector<Ref>& M, std::size_t c) const {
   Dag& dag = *dag_;
   Ref sum = dag.zero();
@@ -174,7 +175,8 @@ std::vector<Pivot> Solve::pivots() const {
 
 namespace {
 
-/// Rank of a positive semidefinite matrix by elimination with diagonal pivots; values of 40 digits, zeros below 1e-25.
+/// Rank of a positive semidefinite matrix by elimination with diagonal pivots, in 40 digits; values below 1e-25 count
+/// as zero.
 bool is_singular(std::vector<cln::cl_R> M, std::size_t n) {
   cln::cl_R largest = 0;
   for (std::size_t i = 0; i < n; ++i) largest = cln::max(largest, cln::abs(M[i * n + i]));
@@ -190,7 +192,7 @@ bool is_singular_everywhere(const Dag& dag, const std::vector<Ref>& M, std::size
   for (std::size_t i = 0; i < n; ++i) {
     if (dag.is_zero(M[i * n + i])) return true;
   }
-  // Points without a value say nothing.
+  // Points without a value are ignored.
   constexpr std::uint64_t points = 8;
   bool judged = false;
   for (std::uint64_t point = 0; point < points; ++point) {

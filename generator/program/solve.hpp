@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // In: EquationSystem. Out: its solution as expressions on the same Dag,
 //   M qddot = f + A^T lambda,   A qddot = -gamma                              (docs/theory.md, index-1 form)
-// by M = L D L^T, unrolled in an order that keeps the zeros of M, then
+// by M = L D L^T, unrolled in an order that preserves the zeros of M, then
 //   S lambda = -gamma - A M^-1 f,   S = A M^-1 A^T = Y^T D^-1 Y,   Y = L^-1 A^T.
-// Structural zeros cost nothing; a diagonal M gives plain divisions. Where the system has QuasiEquations their matrix
-// is factorised, M^-1 = S^-1 M_theta^-1 S^-T. Where M alone is singular (a coordinate without mass, Euler parameters) M
-// + A^T S A takes its place, with f - A^T S gamma for f: on the constraints nothing changes. The rows of A are those
-// that bind a singular block of M alone, where that suffices, so that bodies with coordinates of their own stay apart.
-// S is diagonal, of the size of M, so that nothing small is lost in the sum. A constraint that is left has a row of
-// zeros in A and 1 on the diagonal of the Schur complement, so that its lambda is 0.
+// Structural zeros cost no operations; a diagonal M gives plain divisions. If the system has QuasiEquations, their
+// matrix is factorised: M^-1 = S^-1 M_theta^-1 S^-T. If only M is singular (a massless coordinate, Euler parameters), M
+// + A^T S A replaces M and f - A^T S gamma replaces f, which changes nothing on the constraints. If sufficient, only
+// the rows of A that constrain a singular block of M alone are used, so that bodies with coordinates of their own stay
+// decoupled. S is diagonal and scaled to M, so that small terms are not lost in the sum. An open contact has a zero row
+// in A and a 1 on the diagonal of the Schur complement, so that its lambda is 0.
 #pragma once
 
 #include <memory>
@@ -30,21 +30,21 @@ using symbolic::Ties;
 /// x and lambda.
 using Unknowns = std::pair<std::vector<Ref>, std::vector<Ref>>;
 
-/// The solver of one EquationSystem, in one of the forms.
+/// The solver of one EquationSystem in one of the forms.
 class LinearSolve {
  public:
   virtual ~LinearSolve() = default;
   /// x, lambda of M x = r + A^T lambda, A x = c.
   virtual Unknowns operator()(std::vector<Ref> r, const std::vector<Ref>& c) const = 0;
-  /// qddot, lambda of the equations of motion themselves.
+  /// qddot and lambda of the equations of motion.
   virtual Unknowns motion() const = 0;
   virtual std::vector<Pivot> pivots() const = 0;
 };
 
-/// By system.form.
+/// Selects the solver by system.form.
 std::unique_ptr<LinearSolve> make_solve(const system::EquationSystem& system, Ties ties);
 
-/// The solver of one EquationSystem for any right-hand side.
+/// Solves one EquationSystem for any right-hand side by LDL^T factorisation.
 class Solve : public LinearSolve {
  public:
   explicit Solve(const system::EquationSystem& system, Ties ties = Ties::ascending);
@@ -66,12 +66,12 @@ class Solve : public LinearSolve {
   std::vector<Ref> A_, f_, gamma_;
   std::optional<system::QuasiEquations> quasi_;
   bool augmented_ = false;
-  std::vector<Ref> S_;  // per constraint, where augmented; 0 of those that are left out
+  std::vector<Ref> S_;  // per constraint, if augmented; 0 for unused constraints
   std::unique_ptr<Factorisation> mass_, schur_;
   std::vector<std::vector<Ref>> Y_;
 };
 
-/// True where M has no inverse at any state: decided by values at a few points in high precision.
+/// Whether M is singular at every state. Decided by high-precision values at a few points.
 bool is_singular_everywhere(const Dag& dag, const std::vector<Ref>& M, std::size_t n);
 
 }  // namespace eomgen::program

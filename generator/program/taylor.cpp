@@ -19,7 +19,7 @@ using symbolic::Op;
 using symbolic::Rational;
 using symbolic::Slope;
 
-constexpr std::size_t stack_budget = std::size_t{1} << 21;  // bytes of the series of all products
+constexpr std::size_t stack_budget = std::size_t{1} << 21;  // bytes for the series of all products
 
 class Recurrences : private SeriesCode {
  public:
@@ -52,7 +52,7 @@ class Recurrences : private SeriesCode {
     }
     if (!moves) return copied(instruction);
     const std::string& name = instruction.name;
-    switch (instruction.op) {  // what the derivative of a function of one argument does not say
+    switch (instruction.op) {  // operations other than functions of one argument with a known derivative
       case Op::add: return total(a, name);
       case Op::mul: return product(a, name);
       case Op::div: return quotient(a[0], a[1], name);
@@ -136,7 +136,7 @@ class Recurrences : private SeriesCode {
     return c;
   }
 
-  /// The sine and the cosine of one angle, in the pack of the one that was asked for.
+  /// The sine and the cosine of one angle, in the pack of the requested one.
   const std::array<Series, 2>& trig(const Series& a, const Instruction& asked) {
     const auto [at, anew] = trig_.try_emplace(keys(a));
     if (!anew) return at->second;
@@ -151,7 +151,7 @@ class Recurrences : private SeriesCode {
     return result;
   }
 
-  /// s' = c a', c' = s a', the latter with a minus where it turns.
+  /// s' = c a', c' = s a', or c' = -s a' if `turns`.
   void pair(const Series& a, Series& s, Series& c, bool turns) {
     const Operand w = weighted(a), of_c = open(w), of_s = open(w);
     const auto signed_by = [turns](const Operand& o) { return turns ? minus(o) : o; };
@@ -161,13 +161,14 @@ class Recurrences : private SeriesCode {
     close(of_s, s.next);
   }
 
-  /// c of c' = b a', where the k-th coefficient of b may be known only afterwards: close(result.second, b.next).
+  /// The coefficient of c with c' = b a'. The k-th coefficient of b may be set later by close_sum(result.second,
+  /// b.next).
   std::pair<Operand, Operand> integrated(const Series& a, const Operand& b_zero) {
     const Operand w = weighted(a), s = open(w);
     return {unweighted(at_next(Op::add, {s, at_next(Op::mul, {w, kept(b_zero)})})), s};
   }
 
-  /// c_k of b c' = n', given k n_k.
+  /// c_k for b c' = n', given k n_k.
   Operand divided(const std::vector<Operand>& n, const Series& b) {
     const Operand inverse = at_start(Op::div, {one(), b.zero});
     const Operand s = open({});
@@ -184,7 +185,7 @@ class Recurrences : private SeriesCode {
     return total({Series{false, one(), {}}, plus ? square : minus(square)});
   }
 
-  /// By the derivative that the table of functions has of it.
+  /// A function of one argument, by its derivative in the table of functions.
   Series function(const std::vector<Series>& a, const Instruction& instruction) {
     Series c{true, copied(instruction).zero, {}};
     if (instruction.op == Op::atan2) {
@@ -242,7 +243,7 @@ class Recurrences : private SeriesCode {
     return divided(n, total({square(x), square(y)}));
   }
 
-  /// a c' = b c a' where b stands still, else c' = c (b log a)'.
+  /// a c' = b c a' if b is constant, else c' = c (b log a)'.
   Series general_power(const Series& a, const Series& b, const Instruction& instruction) {
     Series c{true, copied(instruction).zero, {}};
     if (b.moves) {
@@ -267,7 +268,7 @@ class Recurrences : private SeriesCode {
     return result;
   }
 
-  /// The branch of order 0, held.
+  /// Keeps the branch of order 0.
   Series branch(const std::vector<Series>& a, const Instruction& instruction) {
     Series c = copied(instruction);
     const auto next_of = [this](const Series& s) { return s.moves ? s.next : constant(next_, 0); };
@@ -282,7 +283,7 @@ class Recurrences : private SeriesCode {
       case Op::select:
         if (a[2].moves || a[3].moves) choose(a[0].zero, a[1].zero, next_of(a[2]), next_of(a[3]));
         break;
-      default: break;  // sign: stands still
+      default: break;  // sign: constant
     }
     return c;
   }
