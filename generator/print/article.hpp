@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The derivation of one model as a paper has it. In: Mechanics, both reading forms, and what later stages have found.
-// Out: a LaTeX document.
+// The derivation of one model as a paper. In: Mechanics, the display forms of both approaches, and the findings of
+// later stages. Out: a LaTeX document.
 #pragma once
 
 #include <complex>
@@ -15,7 +15,7 @@
 
 namespace eomgen::print {
 
-/// A force of the model, in its order.
+/// Findings on a force, in the order of the model.
 struct ForceFinding {
   std::string conservative;  // "yes", "no", "unknown"
   std::optional<symbolic::Ref> potential;
@@ -24,38 +24,39 @@ struct ForceFinding {
 };
 
 struct ConservedFinding {
-  system::OutputKind kind;  // as conservation::Conserved has them
+  system::OutputKind kind;  // as in conservation::Conserved
   std::uint32_t index, part;
   std::string title;
   symbolic::Ref expression;
-  std::optional<reading::Sum> named;  // the same, where functions of time keep their names
+  std::optional<reading::Sum> named;  // the same with functions of time by name
   bool proven = true;
 };
 
 /// An equilibrium or a steady motion.
 struct SteadyFinding {
   std::string kind;
-  std::vector<std::pair<symbolic::Symbol, double>> values;  // of coordinates and rates
-  std::vector<std::complex<double>> eigenvalues;            // that are not 0, of a pair the one above the axis
+  std::vector<std::pair<symbolic::Symbol, double>> values;  // coordinates and rates
+  std::vector<std::complex<double>> eigenvalues;            // nonzero; for a pair the one in the upper half-plane
   std::size_t zeros = 0, family = 0;
   std::string stability, reason;
 };
 
-/// What the sections after the equations are made of.
+/// Data of the sections after the equations.
 struct Findings {
   std::optional<Figure> figure;
   std::vector<ForceFinding> forces;
   std::vector<ConservedFinding> conserved;
-  std::optional<reading::RouthForm> routh;  // where a coordinate is cyclic
+  std::optional<reading::RouthForm> routh;  // if a coordinate is cyclic
   std::vector<SteadyFinding> steady;
-  std::vector<std::pair<std::string, double>> held;  // what the search held, by name
-  std::string no_steady;                             // why none is looked for; empty where the search was made
+  std::vector<std::pair<std::string, double>> held;  // names and values that the search kept fixed
+  std::string no_steady;                             // reason if no search was made, else empty
   std::string certificate;                           // the verdict of the comparison
-  std::string judged;  // what was compared with d'Alembert's principle: "lagrange I, lagrange II, ..."
+  std::string judged;  // compared with d'Alembert's principle: "lagrange I, lagrange II, ..."
   std::vector<work::LeftOut> left_out;
 };
 
-/// Without findings: the sections as far as the equations, the constraint forces and the singular sets.
+/// Returns the document. Without findings it contains the sections up to the equations, the constraint forces and the
+/// singular sets.
 std::string latex_document(const mechanics::Mechanics& mechanics, const reading::ReadingForm& one,
                            const reading::ReadingForm& two, const std::optional<Findings>& findings = {});
 

@@ -83,7 +83,7 @@ class Coordinates {
     out_.raw("\\end{longtable}\n");
   }
 
-  /// Of one particle in curvilinear coordinates, as (2.107) has it.
+  /// For one particle in curvilinear coordinates, eq. (2.107).
   void basis() {
     if (m_.masses.size() != 1 || !model_.bodies.empty()) return;
     const model::Place& place = model_.places[m_.masses.front().place];
@@ -157,7 +157,7 @@ class Coordinates {
     flush();
   }
 
-  /// Of constraints that are integrable together only.
+  /// For constraints that are integrable only together.
   void integrals() {
     for (const mechanics::Integral& integral : m_.integrals) {
       if (integral.of.size() < 2) continue;

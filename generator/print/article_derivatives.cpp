@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The energies, and what Lagrange's equations take of them: the law and its partial derivatives, by both approaches.
+// The energies, Lagrange's law and its partial derivatives, by both approaches.
 #include <algorithm>
 
 #include "print/article_parts.hpp"
@@ -106,7 +106,7 @@ void write_partials(Article& a, const ReadingForm& form, std::vector<Partials>& 
     const auto partial = [&](const std::string& letter, std::uint8_t order) {
       return reading::wrap(Form::partial, {mark(letter), coordinate(p.coordinate, order)});
     };
-    const auto add = [&](std::vector<Formula> formulas) {  // on one line where there is room
+    const auto add = [&](std::vector<Formula> formulas) {  // on one line if they fit
       Formula together = reading::wrap(Form::list, formulas);
       if (formulas.size() > 1 && a.out.fits_on_a_line(together))
         shown.push_back(std::move(together));

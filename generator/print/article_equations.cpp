@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lagrange's equations by both approaches, and what decouples.
+// Lagrange's equations by both approaches, and how they decouple.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -14,11 +14,11 @@ using symbolic::SymbolKind;
 
 namespace {
 
-constexpr std::size_t half_width = 33, whole_width = 66;  // printed characters of a cell
-constexpr std::size_t tallest_beside = 5;                 // lines of a cell that has another one beside it
-constexpr std::size_t tallest_row = 30;  // lines that still fit on a page: a row cannot be continued on the next
+constexpr std::size_t half_width = 33, whole_width = 66;  // visible characters of a cell
+constexpr std::size_t tallest_beside = 5;                 // maximum lines of a cell beside another one
+constexpr std::size_t tallest_row = 30;  // lines on a page: a row cannot span two pages
 
-/// Multipliers or friction in a sum.
+/// Whether a sum contains multipliers or friction.
 bool has_forces_of_constraints(const reading::Sum& sum) {
   bool found = false;
   reading::for_each_atom(sum, [&](const reading::Atom& atom) {
@@ -28,7 +28,7 @@ bool has_forces_of_constraints(const reading::Sum& sum) {
   return found;
 }
 
-/// One coordinate's equation by both approaches.
+/// The equation of one coordinate by both approaches.
 struct Row {
   std::uint32_t coordinate = 0;
   std::optional<Formula> one, two;
@@ -67,7 +67,7 @@ class Equations {
   }
 
  private:
-  /// What the equations below have been given.
+  /// Lists what approach II imposes on the equations.
   void imposed() {
     std::vector<std::string> names;
     for (const mechanics::FixedCoordinate& fixed : m_.fixed) names.push_back(a_.name_of(fixed.coordinate));
@@ -101,7 +101,7 @@ class Equations {
     return rows;
   }
 
-  /// What the letters of equations stand for that are not written out; once where both approaches have the same.
+  /// Definitions of letters in equations that are not written out; shown once if both approaches share them.
   void parts(const reading::ReadingForm& form) {
     std::vector<Statement> all;
     add_equations(m_, form, all);
@@ -247,8 +247,8 @@ class Equations {
   Article& a_;
   const mechanics::Mechanics& m_;
   LatexText& out_;
-  std::set<std::string> parts_;                   // that stand there
-  std::map<std::uint32_t, std::string> numbers_;  // of the first equation of each coordinate
+  std::set<std::string> parts_;                   // parts that are already defined
+  std::map<std::uint32_t, std::string> numbers_;  // number of the first equation of each coordinate
 };
 
 }  // namespace

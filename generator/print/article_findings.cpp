@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was found beyond the equations: conserved quantities, Routh's reduction, steady motions, singular sets, the
+// Findings beyond the equations: conserved quantities, Routh's reduction, steady motions, singular sets, the
 // certificate.
 #include <array>
 #include <charconv>
@@ -32,7 +32,7 @@ Formula letter_of(const Article& a, const ConservedFinding& c) {
     case OutputKind::momentum: return reading::symbol(reading::momentum_symbol(c.index));
     case OutputKind::linear_momentum: return mark(free_letter(a.model, "G", "cal G"), {axis});
     case OutputKind::angular_momentum: return mark(free_letter(a.model, "H", "cal H"), {axis});
-    case OutputKind::energy: return mark("cal E");  // E is the letter of the fixed axes
+    case OutputKind::energy: return mark("cal E");  // E denotes the fixed axes
     default: return mark(free_letter(a.model, "h", "cal H"));
   }
 }
@@ -67,7 +67,7 @@ std::string reason_of(const Article& a, const ConservedFinding& c) {
   }
 }
 
-/// Nothing where it is too long to be written out.
+/// Nothing if it is too long to write out.
 std::optional<Formula> value_of(Article& a, const ConservedFinding& c) {
   try {
     const reading::Sum sum = c.named ? *c.named : reading::read(a.m, c.expression);

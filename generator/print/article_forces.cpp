@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the constraints exert, and the laws of contacts.
+// Constraint forces, and the contact laws.
 #include <algorithm>
 
 #include "print/article_parts.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sections of a document, in its order. Each writes to `out`; what takes more than its budget is named in
+// The sections of a document, in order. Each section writes to `out`. Formulas that exceed their budget are listed in
 // `left_out`.
 #pragma once
 
@@ -19,10 +19,10 @@ struct Article {
   LatexText& out;
   std::vector<work::LeftOut> left_out = {};
 
-  /// Whether approach II has other equations than approach I.
+  /// Whether the equations of approach II differ from those of approach I.
   bool builds_in() const;
   std::string name_of(std::uint32_t coordinate, std::uint8_t order = 0) const;  // $\theta$
-  /// The formulas of statements; those that are left out are named.
+  /// The formulas of statements; omitted ones are listed in `left_out`.
   std::vector<reading::Formula> formulas(const std::vector<Statement>& statements);
 };
 
@@ -34,8 +34,8 @@ void write_coordinates(Article& article);
 void write_energies(Article& article);
 /// d/dt dT/dqdot - dT/dq + dU/dq = Q_q + ..
 void write_law(Article& article);
-/// dT/dqdot, its rate, dT/dq, dU/dq, Q of each coordinate. Approach I gives `first`; approach II shows those that are
-/// not among them.
+/// dT/dqdot, its rate, dT/dq, dU/dq, Q of each coordinate. Approach I fills `first`; approach II shows only those that
+/// differ from `first`.
 void write_partials(Article& article, const reading::ReadingForm& form, std::vector<reading::Partials>& first);
 void write_equations(Article& article);
 void write_constraint_forces(Article& article);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the system is made of: particles and bodies, parameters, inputs, forces.
+// Description of the system: particles and bodies, parameters, inputs, forces.
 #include <algorithm>
 #include <array>
 
@@ -14,7 +14,7 @@ using symbolic::SymbolKind;
 namespace {
 
 constexpr std::size_t longest_position = 12;  // terms
-constexpr std::size_t longest_value = 30;     // printed characters on a line of a table
+constexpr std::size_t longest_value = 30;     // visible characters on a table line
 
 std::string number_word(std::size_t n, const char* one, const char* many) {
   static constexpr std::array<const char*, 10> small{"no",   "one", "two",   "three", "four",
@@ -134,7 +134,7 @@ class System {
     try {
       reading::Sum sum = reading::read(m_, expression);
       if (sum.size() <= longest_position) return sum;
-    } catch (const work::OverBudget&) {  // a position that is too long to be read says nothing here
+    } catch (const work::OverBudget&) {  // a position that is too long is omitted
     }
     return std::nullopt;
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the constraints exert, as vectors. On a particle: N = sum lambda_k dpsi_k/dq^i a^i along the unit vectors of its
-// coordinates, eqs. (1.22), (2.99). On a body: F_c = sum lambda_k f_k^i a^i and M_c = sum lambda_k h_k^i g^i, with the
-// slopes of the constraint by the rates of its coordinates and angles as components along the dual bases, eqs. (9.2),
-// (9.84).
+// Constraint forces as vectors. On a particle: N = sum lambda_k dpsi_k/dq^i a^i along the unit vectors of its
+// coordinates, eqs. (1.22), (2.99). On a body: F_c = sum lambda_k f_k^i a^i and M_c = sum lambda_k h_k^i g^i, eqs.
+// (9.2), (9.84). Components along the dual bases are the derivatives of the constraint by the rates of coordinates and
+// angles.
 #include <algorithm>
 #include <optional>
 
@@ -20,8 +20,8 @@ using reading::Sum;
 using symbolic::Ref;
 using symbolic::SymbolKind;
 
-/// What is shown of multipliers: by approach II those of constraints that are built in are no unknowns, and a vector
-/// with them is left out.
+/// Multipliers in formulas. In approach II the multipliers of imposed constraints are not unknowns; vectors that
+/// contain them are omitted.
 class Multipliers {
  public:
   Multipliers(const Mechanics& m, const ReadingForm& form) : m_(m), built_in_(m.constraints.size(), false) {
@@ -36,8 +36,8 @@ class Multipliers {
   std::vector<bool> built_in_;
 };
 
-/// Whether the coordinate moves anything but the mass at `place` and the body: what constraints exert along it is else
-/// exerted on these.
+/// Whether the coordinate moves anything besides the mass at `place` and the body. If so, the constraint forces along
+/// it act on those too.
 bool moves_others(const Mechanics& m, std::uint32_t coordinate, std::uint32_t place,
                   std::optional<std::uint32_t> body) {
   symbolic::Derivation by = symbolic::partial(*m.dag, {SymbolKind::coordinate, coordinate, 1});
@@ -78,7 +78,7 @@ class BodyForces {
  private:
   static Formula coordinate(std::uint32_t i) { return reading::symbol({SymbolKind::coordinate, i, 0}); }
 
-  /// Three coordinates that move this body alone; none where an entry is anything else.
+  /// Three coordinates that move only this body; empty if an entry is anything else.
   std::vector<std::uint32_t> coordinates(const std::vector<model::NodeId>& entries) const {
     std::vector<std::uint32_t> result;
     for (const model::NodeId entry : entries) {
@@ -120,7 +120,7 @@ class BodyForces {
       if (!multipliers_.holds(k)) continue;
       const Formula lambda = reading::symbol({SymbolKind::multiplier, k, 0});
       std::vector<Formula> parts;
-      bool sums = false;  // terms can be broken over lines, brackets within brackets cannot
+      bool sums = false;  // lines break between terms, not within nested brackets
       for (std::size_t i = 0; i < along.size(); ++i) {
         const Sum slope = reading::read(m_, m_.constraints[k].gradient[along[i]]);
         if (slope.is_zero()) continue;
@@ -158,7 +158,7 @@ class BodyForces {
   std::vector<Statement>& out_;
 };
 
-/// Those of the chart; where it names none the contravariant basis.
+/// Basis vectors of the chart; if it names none, the contravariant basis.
 std::vector<Formula> vectors_of(const reading::Geometry& g) {
   std::vector<Formula> result;
   if (g.contravariant_unit.empty()) {
@@ -197,7 +197,7 @@ void add_particle_force(const Mechanics& m, const Multipliers& multipliers, cons
                  reading::relation({mark("bold N", std::move(sub)), combination(force, vectors_of(g))})});
 }
 
-/// Of particles whose three coordinates, or two in their plane, move them alone.
+/// Constraint forces on particles that are moved only by their three coordinates, or by two in their plane.
 void add_particle_forces(const Mechanics& m, const Multipliers& multipliers, std::vector<Statement>& out) {
   if (m.constraints.empty()) return;
   std::vector<reading::LeftOut> unseen;

@@ -13,19 +13,19 @@ namespace {
 
 using Point = Figure::Point;
 
-constexpr double shortest = 0.005;  // mm; what is shorter is not seen
+constexpr double shortest = 0.005;  // mm; shorter strokes are invisible
 
 const char* thickness(Figure::Weight weight) {
   return weight == Figure::Weight::strong ? "1pt" : weight == Figure::Weight::plain ? "0.5pt" : "0.25pt";
 }
 
-// No "-0.00", whose sign would be that of a rounding error.
+// Avoids "-0.00", whose sign would come from rounding.
 std::string written(double millimetres) {
   std::string text = fmt::format("{:.2f}", millimetres);
   return text == "-0.00" ? "0.00" : text;
 }
 
-// A box turns about its left end, so that is where a stroke begins.
+// A box rotates about its left end, where the stroke begins.
 std::string in_latex(Figure::Stroke stroke) {
   if (stroke.from[0] > stroke.to[0] || (stroke.from[0] == stroke.to[0] && stroke.from[1] > stroke.to[1]))
     std::swap(stroke.from, stroke.to);

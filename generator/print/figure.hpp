@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A drawing in a plane for a document. In: strokes, dots and labels in millimetres. Out: LaTeX of the picture
-// environment and rotated rules (graphicx), which every engine sets.
+// A plane drawing for a document. In: strokes, dots and labels in millimetres. Out: LaTeX with the picture environment
+// and rotated rules (graphicx), which every engine supports.
 #pragma once
 
 #include <array>
@@ -28,17 +28,17 @@ struct Figure {
     bool filled;
   };
   struct Label {
-    Point at;                                          // of its middle
+    Point at;                                          // centre of the label
     std::variant<std::string, reading::Formula> text;  // a name of the model, or a formula
   };
 
-  Point low{}, high{};  // corners of what is drawn
+  Point low{}, high{};  // corners of the bounding box
   std::vector<Stroke> strokes;
   std::vector<Dot> dots;
   std::vector<Label> labels;
 };
 
-/// Centred between paragraphs.
+/// LaTeX of the figure, centred between paragraphs.
 std::string figure_in_latex(const Figure& figure, const LatexText& text);
 
 }  // namespace eomgen::print

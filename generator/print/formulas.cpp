@@ -33,11 +33,11 @@ Formula dot_product(Formula a, Formula b) { return reading::wrap(Form::dot_produ
 namespace {
 
 constexpr std::size_t longest_in_a_list =
-    3;  // terms of an acceleration that still fits on a line with its coordinate and rate
+    3;  // terms of an acceleration that fits on a line with its coordinate and rate
 
 Formula multiplier(std::uint32_t k) { return reading::symbol({SymbolKind::multiplier, k, 0}); }
 
-// lambda slope: numbers first, then lambda, then the rest
+// lambda times a derivative: numbers first, then lambda, then the rest.
 Formula times_multiplier(std::uint32_t k, const Sum& slope) {
   const bool minus = reading::leads_negative(slope);
   const Formula f = arrange(minus ? -slope : slope);
@@ -54,7 +54,7 @@ Formula times_multiplier(std::uint32_t k, const Sum& slope) {
   return minus ? reading::negative(std::move(result)) : result;
 }
 
-// (a + b)^2, a^2 b^2
+// Squares: (a + b)^2, a^2 b^2.
 Formula squared(const Sum& w) {
   if (w.size() == 1) return arrange(w * w);
   return reading::wrap(Form::power, {arrange(w), reading::number(2)});
@@ -75,7 +75,7 @@ Formula component(const reading::ReadSpin& spin, std::size_t k) {
   return mark("omega", {reading::number(static_cast<long>(k + 1)), reading::number(static_cast<long>(spin.frame))});
 }
 
-/// Multiplied out; 0 where that goes beyond its budget.
+/// The expanded expression; 0 if that exceeds its budget.
 Sum sum_of_squares(const std::vector<const Sum*>& components) {
   try {
     Sum together;
@@ -86,7 +86,7 @@ Sum sum_of_squares(const std::vector<const Sum*>& components) {
   }
 }
 
-/// w.Jw/2 in as few squares as it has; `named`: of components that are given apart.
+/// w.Jw/2 with the fewest squares; `named`: with components that are defined separately.
 std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named) {
   std::vector<Formula> terms;
   std::array<bool, 3> done{};
@@ -121,7 +121,7 @@ std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named)
   return terms;
 }
 
-/// T as squares of velocities and of components of angular velocities; of a model without bodies as it is.
+/// T as squares of velocities and of components of angular velocities; unchanged for a model without bodies.
 Formula kinetic_formula(const ReadingForm& form) {
   if (form.spins.empty()) return arrange(form.kinetic);
   std::vector<Formula> terms =
@@ -132,7 +132,7 @@ Formula kinetic_formula(const ReadingForm& form) {
   return reading::sum(std::move(terms));
 }
 
-// m r_dot . r_dot/2 + w.Jw/2, with the components of w by name.
+// m r_dot . r_dot/2 + w.Jw/2, with named components of w.
 void add_rotations(const Mechanics& m, const ReadingForm& form, const Formula& T, std::vector<Statement>& out) {
   std::vector<Formula> terms;
   for (const mechanics::PointMass& mass : m.masses) {
@@ -150,11 +150,11 @@ Formula read_or_dots(const Mechanics& m, symbolic::Ref expression) {
   try {
     return arrange(reading::read(m, expression));
   } catch (const work::OverBudget&) {
-    return mark("...");  // too long to be read
+    return mark("...");  // too long to display
   }
 }
 
-// Q + sum lambda_k dpsi_k/dq, a positive term first if there is one
+// Q + sum lambda_k dpsi_k/dq, with a positive term first if there is one.
 Formula right_side(const Equation& equation) {
   std::vector<Formula> terms = reading::arranged_terms(equation.force, Layout::terms);
   for (const reading::MultiplierTerm& term : equation.multipliers)
@@ -263,7 +263,7 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
       add(found == mechanics::Integrable::yes  ? "binds velocities, integrable"
           : found == mechanics::Integrable::no ? "binds velocities, not integrable"
                                                : "binds velocities, integrability unknown",
-          // Equations by parts name it.
+          // Equations by parts define it.
           form.by_parts ? reading::relation({dotted(psi), written, zero}) : reading::relation({written, zero}));
       for (const mechanics::Integral& integral : m.integrals) {
         if (integral.label == c.label)
@@ -280,7 +280,7 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
 
 namespace {
 
-constexpr std::size_t most_terms = 300;  // of an equation that somebody reads
+constexpr std::size_t most_terms = 300;  // terms of a readable equation
 
 std::size_t longest_equation(const ReadingForm& form) {
   std::size_t longest = 0;
@@ -311,7 +311,7 @@ void add_equations(const Mechanics& m, const ReadingForm& form, std::vector<Stat
 void add_reactions(const ReadingForm& form, std::vector<Statement>& out) {
   for (const reading::ReadReaction& reaction : form.reactions) {
     if (!reaction.value) continue;
-    const bool long_sum = reaction.value->size() > 8;  // brackets cannot be broken over lines, terms can
+    const bool long_sum = reaction.value->size() > 8;  // lines break between terms, not within brackets
     out.push_back({"reactions", reaction.label, "", "",
                    reading::relation({multiplier(reaction.constraint),
                                       arrange(*reaction.value, long_sum ? Layout::terms : Layout::grouped)})});
@@ -323,7 +323,7 @@ void add_statements(const Mechanics& m, const ReadingForm& form, const std::vect
   const auto wanted = [&](const char* key) {
     return std::any_of(show.begin(), show.end(), [&](const std::string& s) { return s == key || s == "all"; });
   };
-  // What goes beyond its budget drops out, and says why; the others stay.
+  // A statement that exceeds its budget is omitted with the reason; the others are kept.
   const auto add = [&](const char* key, const auto& statements) {
     if (!wanted(key)) return;
     try {

@@ -15,7 +15,7 @@ using reading::FrenetVector;
 using reading::mark;
 using reading::Sum;
 
-// The denominator that all components have, such as sqrt(1 + alpha^2).
+// The common denominator of all components, such as sqrt(1 + alpha^2).
 reading::Monomial common_denominator(const Components& v) {
   std::optional<reading::Monomial> common;
   for (const Sum& component : v) {
@@ -44,7 +44,7 @@ Formula in_terms_of(Components v, const std::vector<Formula>& vectors) {
   return reading::fraction(combination(v, vectors), arrange(denominator));
 }
 
-// A sum of several terms over what all of them are divided by.
+// A sum as a quotient by the common denominator of its terms.
 Formula as_quotient(const Sum& x) {
   const reading::Monomial under = reading::inverse(common_denominator({x, Sum(), Sum()}));
   if (x.size() < 2 || under.empty()) return arrange(x);
@@ -64,8 +64,8 @@ void add_frenet(const mechanics::Mechanics& m, bool asked, std::vector<Statement
   } catch (const work::OverBudget& over) {
     out.push_back(left_out("frenet", m.masses[0].name, "", over.what()));
     return;
-  } catch (const Error&) {  // two constraints of which each says the same of the directions: found only as the curve is
-                            // looked at
+  } catch (const Error&) {  // two constraints with the same gradients, which only
+                            // the construction of the curve detects
     if (asked) throw;
     return;
   }

@@ -55,7 +55,7 @@ class ContactFormulas {
   }
 
  private:
-  /// The number of the contact where there are several, then what is given.
+  /// Subscript: the number of the contact if there are several, then the given indices.
   std::vector<Formula> subscript(std::vector<Formula> more) const {
     if (m_.contacts.size() > 1) more.insert(more.begin(), reading::number(static_cast<long>(index_ + 1)));
     return more;
@@ -70,7 +70,7 @@ class ContactFormulas {
   }
   Formula multiplier(std::uint32_t k) const { return reading::symbol({SymbolKind::multiplier, k, 0}); }
 
-  /// |f| of one component, the root of the sum of squares of two; `more` under the root.
+  /// |f| of one component, or the root of the sum of squares of two; `more`: further terms under the root.
   template <class Component>
   Formula length(Component&& component, const std::optional<Formula>& more = {}) const {
     if (contact_.dimensions() == 1 && !more) return call(symbolic::Op::abs, component(0));
@@ -110,7 +110,7 @@ class ContactFormulas {
     }
   }
 
-  // |lambda grad psi|, or of a curve |lambda_1 grad psi_1 + lambda_2 grad psi_2|.
+  // |lambda grad psi|; for a curve |lambda_1 grad psi_1 + lambda_2 grad psi_2|.
   Formula normal_force() {
     if (contact_.constraints.empty()) return call(symbolic::Op::abs, read(contact_.normal));
     const std::size_t n = contact_.constraints.size();

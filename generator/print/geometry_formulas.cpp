@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bases, metrics, line elements, Christoffel symbols and singular sets as formulas; what is zero is left out.
+// Bases, metrics, line elements, Christoffel symbols and singular sets as formulas; zeros are omitted.
 #include <algorithm>
 
 #include "print/formulas.hpp"
@@ -100,7 +100,7 @@ class Tables {
         {key, g_.name, "", role,
          reading::relation(
              {std::move(left),
-              arrange(right, right.size() > 6 ? Layout::terms : Layout::grouped)})});  // a bracket must fit on a line
+              arrange(right, right.size() > 6 ? Layout::terms : Layout::grouped)})});  // brackets must fit on a line
   }
 
   const Geometry& g_;
@@ -132,7 +132,7 @@ Formula combination(const Components& components, const std::vector<Formula>& ve
 void add_geometry(const Mechanics& m, const std::vector<std::string>& keys, std::vector<Statement>& out) {
   std::vector<reading::LeftOut> unseen;
   const std::vector<Geometry> particles = reading::geometry(m, &unseen);
-  // One free particle's manifold is its space; of anything else the whole has a metric of its own.
+  // The configuration manifold of one free particle is its space; every other system has a metric of its own.
   const bool whole = m.masses.size() != 1 || particles.empty() || !m.fixed.empty();
   const bool needed =
       whole && std::any_of(keys.begin(), keys.end(), [](const std::string& key) { return key != "basis"; });

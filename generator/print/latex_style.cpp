@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LaTeX for amsmath.
+// The LaTeX format (amsmath).
 #include <cln/integer_io.h>
 #include <cln/rational.h>
 
@@ -22,7 +22,8 @@ std::string integer(const cln::cl_I& value) {
 
 std::string function_name(Op op) { return symbolic::function_of(op).latex; }
 
-// How many characters a piece shows, about: braces and blanks not at all, sin three, dots over letters nothing.
+// Approximate number of visible characters of a piece: braces and blanks count 0, sin counts 3, dots over letters count
+// 0.
 std::size_t visible(const std::string& latex) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < latex.size(); ++i) {
@@ -43,7 +44,7 @@ std::size_t visible(const std::string& latex) {
   return count;
 }
 
-// Brackets grow only around what is tall.
+// Brackets grow only around tall contents.
 std::string in_brackets(const std::string& inside) {
   const bool tall = inside.find("frac") != std::string::npos || inside.find("\\dot") != std::string::npos ||
                     inside.find("\\ddot") != std::string::npos || inside.find("sqrt") != std::string::npos;
@@ -97,7 +98,7 @@ class LatexStyle final : public Style {
   }
   Piece product(const std::vector<Piece>& factors) const override {
     std::string text;
-    bool after_call = false;  // a little space keeps what follows out of its argument
+    bool after_call = false;  // a thin space separates the next factor from the argument
     for (const Piece& factor : factors) {
       if (!text.empty()) text += after_call ? "\\, " : " ";
       text += factor.text;
@@ -113,7 +114,7 @@ class LatexStyle final : public Style {
     return {"\\frac{\\partial " + above.text + "}{\\partial " + below.text + "}", Piece::call};
   }
   Piece dotted(const Piece& base, int dots) const override {
-    // Over the letter, not over its index too.
+    // The accent covers the letter, not its index.
     const std::size_t index = base.text.ends_with('}') ? base.text.find("_{") : std::string::npos;
     const std::string below = index == std::string::npos ? "" : base.text.substr(index);
     return {std::string(dots == 1 ? "\\dot{" : "\\ddot{") + base.text.substr(0, index) + "}" + below, Piece::atom};
@@ -193,7 +194,7 @@ class LatexStyle final : public Style {
     return in_brackets(result);
   }
 
-  std::size_t line_width_;  // printed characters, about
+  std::size_t line_width_;  // visible characters, approximate
 };
 
 }  // namespace

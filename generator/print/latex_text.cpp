@@ -10,9 +10,9 @@ namespace {
 
 using reading::Formula;
 
-constexpr std::size_t page_width = 78;    // printed characters
-constexpr std::size_t most_lines = 24;    // of a formula beside the equations themselves
-constexpr std::size_t longest_word = 24;  // that stands in a sentence unbroken
+constexpr std::size_t page_width = 78;    // visible characters
+constexpr std::size_t most_lines = 24;    // maximum of formulas other than equations
+constexpr std::size_t longest_word = 24;  // longer words may be broken
 
 constexpr const char* begin = R"(\documentclass[10pt,a4paper,fleqn]{article}
 \usepackage{amsmath}
@@ -36,7 +36,7 @@ constexpr const char* preamble = R"(\usepackage{longtable}
 )";
 
 bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
-bool continues(char c) { return (static_cast<unsigned char>(c) & 0xc0u) == 0x80u; }  // a letter of several bytes
+bool continues(char c) { return (static_cast<unsigned char>(c) & 0xc0u) == 0x80u; }  // continuation byte of UTF-8
 
 }  // namespace
 
@@ -114,7 +114,7 @@ void LatexText::display(const std::vector<Formula>& formulas) {
   std::vector<std::string> all;
   for (const Formula& f : formulas) {
     std::vector<std::string> more = lines(f, page_width);
-    // TeX holds a whole display in its memory, which ends at some hundred lines.
+    // TeX keeps a whole display in memory, which overflows at some hundred lines.
     if (!all.empty() && all.size() + more.size() > most_lines) {
       aligned(all);
       all.clear();
@@ -125,14 +125,14 @@ void LatexText::display(const std::vector<Formula>& formulas) {
 }
 
 void LatexText::aligned(const std::vector<std::string>& all) {
-  if (text_.ends_with("\n\n")) text_.pop_back();  // the display is a part of the paragraph
+  if (text_.ends_with("\n\n")) text_.pop_back();  // the display belongs to the paragraph
   text_ += "\\begin{align*}\n";
   for (std::size_t i = 0; i < all.size(); ++i) text_ += all[i] + (i + 1 < all.size() ? " \\\\\n" : "\n");
   text_ += "\\end{align*}\n";
 }
 
 void LatexText::numbered(const std::string& label, const Formula& formula) {
-  constexpr std::size_t room = 8;  // of the number
+  constexpr std::size_t room = 8;  // space for the equation number
   std::vector<std::string> all = lines(formula, page_width - room);
   all.back() += " \\tag*{" + label + "}";
   aligned(all);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Letters of mechanics that a model has not taken for something of its own: a rod of length L leaves the Lagrangian a
+// Letters of mechanics that the model does not use for its own names. If a rod has length L, the Lagrangian becomes a
 // script L.
 #pragma once
 
@@ -22,7 +22,7 @@ inline std::string free_letter(const model::Model& model, const char* letter, co
              : letter;
 }
 
-/// As reading::mark takes them; with a tilde where constraints are built in.
+/// Arguments for reading::mark; with a tilde if constraints are imposed.
 struct Letters {
   std::string T, U, L, psi;
 
@@ -36,7 +36,7 @@ struct Letters {
   }
 };
 
-/// psi of a constraint of Mechanics, with its number where there are several that hold.
+/// psi of a constraint of Mechanics, with its number if several constraints are active.
 inline reading::Formula constraint_letter(const Letters& letters, const mechanics::Mechanics& m,
                                           std::uint32_t constraint) {
   std::size_t held = 0;

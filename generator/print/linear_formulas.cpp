@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// M dq'' + C dq' + K dq = B du, entry by entry; what is zero is left out.
+// M dq'' + C dq' + K dq = B du, entry by entry; zeros are omitted.
 #include <algorithm>
 
 #include "print/formulas.hpp"
@@ -60,7 +60,7 @@ std::vector<Item> render_linear(const mechanics::Mechanics& m, const LinearForm&
   Entries entries(form, out);
   entries.show(form.along, "along a motion");
   for (std::size_t i = 0; i < form.rest.size(); ++i) {
-    if (form.rest[i].is_zero()) continue;  // at rest anywhere
+    if (form.rest[i].is_zero()) continue;  // every configuration is an equilibrium
     const auto& terms = form.rest[i].terms();
     const bool all_are_subtracted =
         std::all_of(terms.begin(), terms.end(), [](const auto& term) { return cln::minusp(term.second); });

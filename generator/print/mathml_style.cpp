@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Presentation MathML. A long formula is one inline <math displaystyle="true"> per top-level term, so that a browser
-// may break the line between them.
+// Presentation MathML. A long formula is one inline <math displaystyle="true"> per top-level term, so that browsers can
+// break lines between terms.
 #include <cln/integer_io.h>
 #include <cln/rational.h>
 
@@ -24,24 +24,24 @@ std::string number_element(const cln::cl_I& value) {
 }
 std::string row(const std::string& inside) { return "<mrow>" + inside + "</mrow>"; }
 std::string op(const std::string& sign) { return "<mo>" + sign + "</mo>"; }
-// Without `form` a browser takes a sign at the beginning of a <math> for a prefix, and closes the gap behind it.
+// Without `form`, browsers treat a sign at the beginning of a <math> as a prefix and drop the space after it.
 std::string infix(const std::string& sign) { return "<mo form=\"infix\">" + sign + "</mo>"; }
 
 constexpr const char* apply_function = "&#x2061;";
-// MathML Core has no gap around the invisible operators; a thin one stands where TeX puts it.
+// MathML Core adds no space around invisible operators; a thin space is added where TeX has one.
 constexpr const char* thin_behind = " lspace=\"0\" rspace=\"0.167em\"";
 std::string invisible(const char* sign, bool gap) {
   return std::string("<mo") + (gap ? thin_behind : "") + ">" + sign + "</mo>";
 }
 
 bool begins(const std::string& text, std::string_view with) { return text.starts_with(with); }
-/// A function with its argument, sin x or sin^2 x; not a fraction or a power that has one inside.
+/// A function with its argument, sin x or sin^2 x; not a fraction or power that contains one.
 bool is_function(const std::string& text) {
   return (begins(text, "<mrow><mi>") || begins(text, "<mrow><msup><mi>")) &&
          text.find(apply_function) < text.find("</mrow>");
 }
 bool ends_with_bracket(const std::string& text) { return text.ends_with(")</mo></mrow></mrow>"); }
-/// A name of several letters, which is upright and would run together with its neighbour.
+/// A name of several letters; it is upright and would run into its neighbour.
 bool is_word(const std::string& text) {
   for (const std::string_view start : {"<mi>", "<msub><mi>", "<msubsup><mi>", "<msup><mi>"}) {
     if (!begins(text, start)) continue;
@@ -54,14 +54,14 @@ bool gap_between(const std::string& left, const std::string& right) {
   return is_function(right) || (is_function(left) && !ends_with_bracket(left)) || is_word(left) || is_word(right);
 }
 
-/// Brackets as high as a line; as high as what is inside only where that has fractions or rows.
+/// Brackets of line height; they stretch only around fractions and rows.
 std::string bracketed(const std::string& inside) {
   const bool high = inside.find("<mfrac") != std::string::npos || inside.find("<mtable") != std::string::npos;
   const std::string attribute = high ? "" : " stretchy=\"false\"";
   return row("<mo" + attribute + ">(</mo>" + inside + "<mo" + attribute + ">)</mo>");
 }
 
-// MathML Core knows no mathvariant but "normal": bold and script letters are characters of their own.
+// MathML Core supports only mathvariant="normal": bold and script letters are separate characters.
 std::string utf8(unsigned code) {
   std::string text;
   if (code < 0x10000) {
@@ -97,7 +97,7 @@ std::string bold(std::string_view word) {
       (static_cast<unsigned char>(letter[0]) & 0x1fu) << 6 | (static_cast<unsigned char>(letter[1]) & 0x3fu);
   return utf8(code < alpha ? bold_capital_alpha + (code - capital_alpha) : bold_alpha + (code - alpha));
 }
-// Some script letters were there before the alphabet, and stand elsewhere in Unicode.
+// Some script letters have older code points outside the alphabet block of Unicode.
 std::string script(std::string_view word) {
   static constexpr unsigned elsewhere[] = {0x212c, 0x2130, 0x2131, 0x210b, 0x2110, 0x2112,
                                            0x2133, 0x211b, 0x212f, 0x210a, 0x2134};
@@ -146,7 +146,7 @@ class MathmlStyle final : public Style {
             Piece::call};
   }
   Piece power(const Piece& base, const std::string& exponent) const override {
-    // An index and an exponent stand above one another.
+    // An index and an exponent are stacked.
     static constexpr std::string_view open = "<msub>", close = "</msub>";
     if (begins(base.text, open) && base.text.ends_with(close)) {
       const std::string inside = base.text.substr(open.size(), base.text.size() - open.size() - close.size());
@@ -208,7 +208,7 @@ class MathmlStyle final : public Style {
     return "<mfrac><mi>d</mi>" + row("<mi>d</mi><mi>t</mi>") + "</mfrac>" + open_bracket();
   }
   std::string close_rate() const override { return close_bracket(); }
-  // What is broken over elements: each would be stretched alone.
+  // Brackets that span several elements: each would stretch separately.
   std::string open_bracket() const override { return "<mo stretchy=\"false\">(</mo>"; }
   std::string close_bracket() const override { return "<mo stretchy=\"false\">)</mo>"; }
 

@@ -89,7 +89,7 @@ std::optional<Formula> NamedForces::spring(std::uint32_t j) {
       square = reading::wrap(Form::power,
                              {reading::sum({std::move(distance), reading::negative(*free)}), reading::number(2)});
     }
-    // One number in front.
+    // A single numeric factor in front.
     if (c->form == Form::number)
       terms.push_back(reading::product({reading::number(c->number / 2), std::move(square)}));
     else
@@ -100,14 +100,14 @@ std::optional<Formula> NamedForces::spring(std::uint32_t j) {
   return reading::sum(std::move(terms));
 }
 
-// As its author wrote it, unless constraints would have to be built into that.
+// As written in the model, unless constraints would have to be imposed on it.
 std::optional<Formula> NamedForces::scalar(model::NodeId node) {
   const Ref lowered = mechanics::lower_scalar(m_, node);
   if (std::optional<Formula> written = words_.as_written(node, lowered)) return written;
   return words_.read(lowered);
 }
 
-// By names, and what these stand for; else along E1, E2, E3.
+// In terms of named vectors with their definitions; else components along E1, E2, E3.
 std::optional<Formula> NamedForces::vector(model::NodeId node) {
   VectorFormula by_names(m_, [this](model::NodeId factor) { return scalar(factor); });
   if (std::optional<Formula> formula = by_names(node)) {
@@ -131,7 +131,7 @@ std::optional<Formula> NamedForces::vector(model::NodeId node) {
   return reading::sum(std::move(sum));
 }
 
-// r of a place that no mass is at.
+// Defines r of a place without a mass.
 bool NamedForces::point(std::uint32_t place) {
   const auto is_there = [place](const mechanics::PointMass& mass) { return mass.place == place; };
   if (std::any_of(m_.masses.begin(), m_.masses.end(), is_there) || std::count(points_.begin(), points_.end(), place))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Generalised forces by names, where they are too long to be written out: F . ds/dq of a force F at a point s or
-// between the ends of a line s, M . domega/dqdot of a moment; energies of springs by their lines; and what these
-// letters stand for.
+// Generalised forces that are too long to write out, in terms of named vectors: F . ds/dq of a force F at a point s or
+// along a line s between two points, M . domega/dqdot of a moment. Also spring energies in terms of their lines, and
+// the definitions of these letters.
 #pragma once
 
 #include <functional>
@@ -17,36 +17,37 @@ namespace eomgen::print {
 
 class NamedForces {
  public:
-  /// How parts are written, and where their definitions go.
+  /// Callbacks that format parts and collect their definitions.
   struct Words {
-    std::function<std::optional<reading::Formula>(symbolic::Ref)> read;  // nothing of what is too long
-    /// Nothing where constraints have to be built in.
+    std::function<std::optional<reading::Formula>(symbolic::Ref)> read;  // nothing if it is too long
+    /// Returns nothing if constraints must be imposed on the expression.
     std::function<std::optional<reading::Formula>(model::NodeId, symbolic::Ref lowered)> as_written;
     std::function<void(const std::string& role, const std::string& name, reading::Formula)> define;
   };
 
   NamedForces(mechanics::Mechanics& mechanics, Words words) : m_(mechanics), words_(std::move(words)) {}
 
-  /// Whether all that a force does is that of vectors, or has a potential.
+  /// Whether all effects of a force are vectors or have a potential.
   static bool are_vectors(const model::Force& force);
 
-  /// The energy of force j, where it is that of springs with a stiffness; nothing of others.
+  /// The energy of force j if it is a spring with a stiffness; else nothing.
   std::optional<reading::Formula> spring(std::uint32_t j);
 
-  /// What effect k of force j does along coordinate i, behind `terms`; false where it cannot be written.
+  /// Appends the generalised force of effect k of force j along coordinate i to `terms`. Returns false if it has no
+  /// such form.
   bool work(std::uint32_t j, std::uint32_t k, std::uint32_t i, std::vector<reading::Formula>& terms);
 
  private:
   std::optional<reading::Formula> scalar(model::NodeId node);
   std::optional<reading::Formula> vector(model::NodeId node);
   bool point(std::uint32_t place);
-  /// s = a - b with a letter of its own, which it gives.
+  /// Defines a letter for the line s = a - b and returns it.
   std::optional<reading::Formula> line(std::uint32_t j, std::uint32_t k);
 
   mechanics::Mechanics& m_;
   Words words_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> effects_;  // of forces, which are defined
-  std::vector<std::uint32_t> points_;                             // places, likewise
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> effects_;  // effects whose letters are defined
+  std::vector<std::uint32_t> points_;                             // places whose letters are defined
 };
 
 }  // namespace eomgen::print

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equations that are too long to be written out, by parts that have names: sum m r_ddot . dr/dq + H_dot . domega/dqdot
-// = -dU/dq + Q + lambda dpsi/dq, eqs. (3.20), (9.39), and what each of these letters stands for. Angular velocities
-// are quasi-velocities: their components along the axes in which the inertia stands have names of their own.
-// Generalised forces that are too long are F . ds/dq of the forces F at points s that they come from, M . domega/dqdot
-// of moments.
+// Equations that are too long to write out, in terms of named parts: sum m r_ddot . dr/dq + H_dot . domega/dqdot =
+// -dU/dq + Q + lambda dpsi/dq, eqs. (3.20), (9.39), with the definition of each letter. Angular velocities are
+// quasi-velocities: their components along the axes of the inertia tensor are named. Long generalised forces are F .
+// ds/dq for forces F at points s, and M . domega/dqdot for moments.
 #include <algorithm>
 #include <optional>
 
@@ -28,11 +27,11 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 using symbolic::Vec3;
 
-constexpr std::size_t longest_numerator = 12;  // terms: beyond, one fraction multiplies out what stands apart
-constexpr std::size_t most_terms = 100;        // of a part that somebody reads
-constexpr std::size_t longest_energy = 24;     // terms: beyond, what forces have names for is shorter
+constexpr std::size_t longest_numerator = 12;  // terms; longer sums are not combined in one fraction
+constexpr std::size_t most_terms = 100;        // terms of a readable part
+constexpr std::size_t longest_energy = 24;     // terms; named forces are shorter than longer energies
 
-/// Of a vector that is 0, 0.
+/// 0 for a zero vector.
 Formula linear_combination(const std::vector<Formula>& components, const std::vector<Formula>& vectors) {
   std::vector<Formula> terms;
   for (std::size_t k = 0; k < components.size(); ++k) {
@@ -90,7 +89,7 @@ class NamedParts {
 
  private:
   bool has_given() { return !m_.dag->is_zero(value(m_.kinetic_given)); }
-  /// With the constraints imposed by approach II.
+  /// Imposes the constraints of approach II.
   Ref value(Ref r) { return imposed_(r); }
   bool depends(Ref r, std::uint32_t i, std::uint8_t order) {
     return !m_.dag->is_zero(symbolic::partial(*m_.dag, {SymbolKind::coordinate, i, order})(value(r)));
@@ -104,7 +103,7 @@ class NamedParts {
     return std::any_of(symbols.begin(), symbols.end(), [kind](const Symbol& s) { return s.kind == kind; });
   }
 
-  /// Force by force where it is long: springs by the lines between their ends.
+  /// A long potential is the sum over forces: springs in terms of the lines between their ends.
   void potential() {
     const Formula letter = mark(letters_.U);
     if (std::optional<Formula> written = read(m_.potential, longest_energy))
@@ -137,7 +136,7 @@ class NamedParts {
     }
   }
 
-  /// One fraction where that is shorter, as of rotations in Euler parameters.
+  /// As one fraction if that is shorter, as for rotations in Euler parameters.
   static Formula arranged(const Sum& sum) {
     const bool fractions = std::all_of(sum.terms().begin(), sum.terms().end(), [](const auto& term) {
       return std::any_of(term.first.begin(), term.first.end(),
@@ -147,7 +146,7 @@ class NamedParts {
                                                                           : reading::arrange(sum);
   }
 
-  /// Q_i, friction among it; in approach II of the eliminated coordinates too that follow this one. `rest`: without
+  /// Q_i with friction; in approach II also Q of the eliminated coordinates that depend on this one. `rest`: without
   /// forces that have a vector.
   Ref generalized_force(std::uint32_t i, bool rest = false) {
     symbolic::Dag& dag = *m_.dag;
@@ -245,7 +244,7 @@ class NamedParts {
     else
       out_.push_back(left_out("parts", name, role, why_));
   }
-  /// Along E1, E2, E3.
+  /// Components along E1, E2, E3.
   void define(const std::string& role, const std::string& name, Formula left, const Vec3& right,
               std::optional<Formula> beside = {}) {
     std::vector<Formula> components, axes;
@@ -263,7 +262,7 @@ class NamedParts {
     define(role, name, reading::relation({std::move(left), std::move(sum)}));
   }
 
-  /// From the particle or body that it is measured from, where it is.
+  /// Relative to the reference particle or body, if there is one.
   void position(const mechanics::PointMass& mass) {
     const Formula letter = mass_letter(m_, mass);
     if (letter.form != Form::symbol) define("mass", mass.name, letter, mass.mass);
@@ -283,7 +282,7 @@ class NamedParts {
     const mechanics::Spin& spin = m_.spins[i];
     const std::uint32_t b = spin.frame;
     std::vector<Formula> axes, w, W, H;
-    const bool carried = spin.carrier != spin.w;  // the axes turn otherwise than the body
+    const bool carried = spin.carrier != spin.w;  // the axes rotate differently from the body
     for (std::uint32_t k = 0; k < 3; ++k) {
       axes.push_back(mark("e", {index(k + 1), index(b)}));
       w.push_back(mark("omega", {index(k + 1), index(b)}));
@@ -306,7 +305,7 @@ class NamedParts {
       define("angular momentum", spin.name, reading::relation({H[k], linear_combination(J, w)}));
     }
     define("angular momentum", spin.name, reading::relation({mark("bold H", {index(b)}), linear_combination(H, axes)}));
-    std::vector<Formula> rate;  // of H along the axes: Euler's equations
+    std::vector<Formula> rate;  // rate of H along the axes: Euler's equations
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t x = (k + 1) % 3, y = (k + 2) % 3;
       rate.push_back(reading::sum(
@@ -322,7 +321,7 @@ class NamedParts {
   Letters letters_;
   symbolic::Substitution imposed_;
   std::vector<Statement>& out_;
-  std::string why_;  // the last that was not read
+  std::string why_;  // reason of the last omitted part
   NamedForces forces_;
 };
 

@@ -44,7 +44,7 @@ std::string mathml_word(std::string_view word) {
 
 namespace {
 
-/// One equation of a joint: "F1", "M2", and what it exerts on the second body.
+/// One equation of a joint: "F1", "M2", and its effect on the second body.
 struct JointDirection {
   std::uint32_t constraint;
   const model::Joint* joint;
@@ -216,7 +216,7 @@ std::string escape_latex(std::string_view text) {
     const char c = text[i];
     const auto byte = static_cast<unsigned char>(c);
     if (byte >= 0x80) {
-      // Letters with accents of U+00C0 .. U+00FF are what every LaTeX sets; anything else would stop it.
+      // LaTeX supports the accented letters U+00C0 .. U+00FF; other characters would stop it.
       const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0u;
       const unsigned code = ((byte & 0x1fu) << 6) | (next & 0x3fu);
       if ((byte & 0xe0u) == 0xc0u && (next & 0xc0u) == 0x80u && code >= 0xc0 && code <= 0xff && code % 0x20 != 0x10 &&

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the names of a model and the letters of mechanics look: theta1_dot is theta with index 1 and a dot over it.
-// Nothing of the user's is copied into LaTeX or MathML but through here (a `tex` override was checked by the reader).
+// Typography of model names and letters of mechanics: theta1_dot is theta with index 1 and a dot. User names reach
+// LaTeX and MathML only through this file (the model reader validates `tex` overrides).
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ struct Glyph {
   std::vector<std::string> index;  // "1", "max"
   int dots = 0;
   std::string name;  // plain, "theta1_dot"
-  std::string tex;   // an override of base and index; empty for none
+  std::string tex;   // override of base and index, or empty
 };
 
 /// "theta1" -> theta, 1; "m_P" -> m, P; "x1_ref" -> x, 1, ref; "length" -> length.
@@ -30,17 +30,17 @@ class Notation {
  public:
   explicit Notation(const mechanics::Mechanics& mechanics);
   Glyph operator()(const symbolic::Symbol& symbol) const;
-  /// What an integral of the model is of; nothing where that cannot be written as one formula.
+  /// The integrand of an integral of the model; nothing if it cannot be written as one formula.
   std::optional<reading::Formula> integrand(std::uint32_t integral) const;
-  /// lambda, or lambda_2 where there are several; of the joint "pin" lambda_pin_F1 (a force), lambda_pin_M2 (a moment).
+  /// lambda, or lambda_2 if there are several. For the joint "pin": lambda_pin_F1 (a force), lambda_pin_M2 (a moment).
   Glyph multiplier(std::uint32_t constraint) const;
 
  private:
   const model::Model* model_;
   std::size_t multipliers_;
   std::vector<std::optional<Glyph>> of_joints_;  // per constraint
-  std::string momentum_letter_ = "p";  // p_theta: the constant of a cyclic coordinate; Pi where a model has a p
-  std::string multiplier_letter_;      // mu where a model has a lambda of its own
+  std::string momentum_letter_ = "p";  // p_theta: momentum of a cyclic coordinate; Pi if the model has a p
+  std::string multiplier_letter_;      // mu if the model has a lambda
 };
 
 /// "\theta_{1}", "\dot{\theta}_{1}", "\mathrm{length}".
@@ -48,19 +48,19 @@ std::string latex(const Glyph& glyph);
 /// "<msub><mi>θ</mi><mn>1</mn></msub>".
 std::string mathml(const Glyph& glyph);
 
-/// What a multiplier is the force of, for a legend: "of the constraint 'wire.2'", "force of the joint 'pin' on 'second'
-/// along E1".
+/// The meaning of a multiplier, for a legend: "of the constraint 'wire.2'", "force of the joint 'pin' on 'second' along
+/// E1".
 struct MultiplierMeaning {
   std::uint32_t constraint;
   std::string text;
 };
-/// Of the constraints that hold; none where there is one alone.
+/// Descriptions for the active constraints; empty if there is only one.
 std::vector<MultiplierMeaning> multiplier_meanings(const mechanics::Mechanics& mechanics);
 
-/// The Greek letter of that name in UTF-8; empty if there is none.
+/// The Greek letter with this name in UTF-8; empty if there is none.
 std::string_view greek(std::string_view name);
 
-/// Text of the user's inside of a LaTeX or HTML document.
+/// Escapes user text for LaTeX or HTML.
 std::string escape_latex(std::string_view text);
 std::string escape_html(std::string_view text);
 

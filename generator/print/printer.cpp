@@ -17,7 +17,7 @@ using reading::Form;
 using reading::Formula;
 using reading::Op;
 
-/// 9.81 rather than 981/100: fractions over hundreds that end within four decimals. Nothing for other numbers.
+/// 9.81 instead of 981/100: fractions with denominators from 100 on that end within four decimals; otherwise nothing.
 std::optional<std::string> as_decimal(const reading::Rational& value) {
   constexpr long most = 10000;
   const cln::cl_I bottom = cln::denominator(value);
@@ -62,8 +62,7 @@ class Walk {
     return relation.word == reading::at_least ? style_.at_least() : style_.equals();
   }
 
-  /// Top-level terms of all sides of a relation, with their signs and the equals signs; after them what abbreviations
-  /// mean.
+  /// Top-level terms of all sides of a relation with signs and equals signs, then the definitions of abbreviations.
   std::string whole(const Formula& f) const {
     std::vector<std::string> all;
     std::vector<Start> starts;
@@ -78,7 +77,7 @@ class Walk {
                       [this](const std::string& text) { return style_.fits(text); });
     const std::vector<Formula> sides = f.form == Form::relation ? f.args : std::vector<Formula>{f};
     for (std::size_t side = 0; side < sides.size(); ++side) {
-      if (side > 0 && reading::is_zero(sides[side])) {  // "= 0" does not stand on a line of its own
+      if (side > 0 && reading::is_zero(sides[side])) {  // "= 0" stays on the last line
         all.back() += between(f) + (*this)(sides[side]).text;
       } else {
         add(broken_terms(sides[side], shorten), side > 0 ? between(f) : "", Start::side);
@@ -159,7 +158,7 @@ class Walk {
     });
     return result;
   }
-  /// Pieces between which a line may be broken: terms, and the terms of a bracket that is too long for a line.
+  /// Pieces between which a line may break: terms, and the terms of a bracket that is too long for a line.
   std::vector<std::string> line_pieces(const Formula& f, Shortener& shorten, bool leads = true) const {
     std::vector<std::string> result;
     add_signed(f, [&](const Formula& term, bool minus) {
@@ -170,7 +169,7 @@ class Walk {
     });
     return result;
   }
-  /// Of a product with one sum as a factor, which is broken where the sum is; empty for all others.
+  /// Pieces of a product with one sum as a factor, broken within the sum; empty for other terms.
   std::vector<std::string> bracket_pieces(const Formula& term, Shortener& shorten) const {
     const auto is_sum = [](const Formula& f) { return f.form == Form::sum; };
     if (term.form != Form::product || std::count_if(term.args.begin(), term.args.end(), is_sum) != 1) return {};
@@ -193,7 +192,7 @@ class Walk {
     for (const std::string& term : terms) result += term;
     return result;
   }
-  // d/dt of a long sum may be broken inside.
+  // d/dt of a long sum may break inside.
   std::vector<std::string> broken_terms(const Formula& side, Shortener& shorten) const {
     if (side.form == Form::relation || side.form == Form::list) return {(*this)(side).text};
     const Formula& first = side.form == Form::sum ? side.args[0] : side;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Formula -> text, LaTeX, MathML. Brackets are decided in one place (walk), what things look like in one file per
-// format.
+// Printing of formulas as text, LaTeX and MathML. One place decides on brackets (Walk); one file per format defines the
+// appearance.
 #pragma once
 
 #include <memory>
@@ -19,22 +19,22 @@ enum class Format {
   language,  // m*d^2*sin(phi)^2*theta_dot: the language of model files
 };
 
-/// Printed text and how tightly it binds.
+/// Printed text and its operator precedence.
 struct Piece {
   enum Binding { relation, sum, product, call, atom };
   std::string text;
   Binding binding = atom;
 };
 
-/// What a piece of a whole formula begins: a side of a relation, or what an abbreviation stands for.
+/// The part of a formula that a piece starts: a side of a relation, or the definition of an abbreviation.
 enum class Start { no, side, abbreviation };
 
-/// One format. Every operation gets operands that already have the brackets that they need, unless it says otherwise.
+/// One output format. Operands already have the brackets that they need, unless stated otherwise.
 class Style {
  public:
   virtual ~Style() = default;
   virtual Piece number(const reading::Rational& value) const = 0;  // not negative
-  virtual Piece literal(const std::string& digits) const = 0;      // a decimal as the author wrote it
+  virtual Piece literal(const std::string& digits) const = 0;      // a decimal number as written in the model
   virtual Piece pi() const = 0;
   virtual Piece symbol(const Glyph& glyph) const = 0;
   virtual Piece mark(const std::string& word, const std::vector<std::string>& lower,
@@ -57,27 +57,27 @@ class Style {
   virtual std::string equals() const = 0;
   virtual std::string at_least() const = 0;
   virtual std::string comma() const = 0;
-  /// A whole formula from its top-level pieces, broken into lines or elements where it is long. `starts[i]`: what
-  /// piece i begins.
+  /// Lays out a formula from its top-level pieces. Long formulas are broken into lines or elements. `starts[i]`: the
+  /// part that piece i starts.
   virtual std::string whole(const std::vector<std::string>& pieces, const std::vector<Start>& starts) const = 0;
-  /// Whether a term is short enough for a line of its own.
+  /// Whether a term fits on a line of its own.
   virtual bool fits(const std::string&) const { return true; }
-  /// Of a bracket that is broken over lines.
+  /// Brackets that span several lines.
   virtual std::string open_bracket() const { return "("; }
   virtual std::string close_bracket() const { return ")"; }
-  /// Opening and closing of a derivative whose inside is broken over lines.
+  /// Opening and closing of a time derivative that spans several lines.
   virtual std::string open_rate() const = 0;
   virtual std::string close_rate() const = 0;
 };
 
 std::unique_ptr<Style> text_style(bool language);
-/// Lines are broken where they show more than `width` characters.
+/// Lines of more than `width` visible characters are broken.
 std::unique_ptr<Style> latex_style(std::size_t width = 80);
 std::unique_ptr<Style> mathml_style();
 
-/// A formula as it stands alone: a display in LaTeX, one or several <math> elements in MathML.
+/// Prints a standalone formula: a display in LaTeX, one or several <math> elements in MathML.
 std::string print(const reading::Formula& formula, const Notation& notation, Format format);
-/// The same in a style of one's own.
+/// The same with a given style.
 std::string print(const reading::Formula& formula, const Notation& notation, const Style& style);
 
 }  // namespace eomgen::print

@@ -26,7 +26,7 @@ std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vecto
 std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
                          const std::vector<std::string>& show, bool* interrupted) {
   std::vector<Statement> all;
-  std::optional<work::Kept> kept;  // what is there is printed, although a stop is asked for
+  std::optional<work::Kept> kept;  // partial results are printed after a stop request
   try {
     add_statements(mechanics, form, show, all);
   } catch (const work::Interrupted&) {

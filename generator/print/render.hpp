@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `derive`, `check` and documents show. In: Mechanics and ReadingForm. Out: printed items.
+// Printed formulas for `derive`, `check` and documents. In: Mechanics and ReadingForm. Out: printed formulas.
 #pragma once
 
 #include <string>
@@ -19,25 +19,24 @@ struct Item {
   std::string coordinate;
   std::string text, latex, mathml;
   std::string role;
-  std::string left_out = {};  // why nothing is shown; empty where it is
+  std::string left_out = {};  // reason if the formula is omitted, else empty
 };
 
-/// The items that `show` names (keys, or "all"); "equations" brings the explicit form along. Where it is interrupted,
-/// it throws work::Interrupted, or tells so in `interrupted` and gives the items that are there.
+/// The formulas that `show` selects (keys, or "all"); "equations" includes the explicit form. On an interruption it
+/// throws work::Interrupted, or, if `interrupted` is given, sets it and returns the formulas so far.
 std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
                          const std::vector<std::string>& show, bool* interrupted = nullptr);
 
-/// M, C, K, B under the key "linear": along a motion, and at rest with the equations of an equilibrium.
+/// M, C, K, B under the key "linear": along a motion, or at rest with the equilibrium equations.
 std::vector<Item> render_linear(const mechanics::Mechanics& mechanics, const reading::LinearForm& form);
 
-/// Routh's reduction under the key "routh": constant momenta, the rates that they give, the Routhian, the reduced
-/// equations.
+/// Routh's reduction under the key "routh": constant momenta, the resulting rates, the Routhian, the reduced equations.
 std::vector<Item> render_routh(const mechanics::Mechanics& mechanics, const reading::RouthForm& form);
 
-/// The singular sets alone, of which `form` knows nothing.
+/// The singular sets, which are not part of `form`.
 std::vector<Item> render_singular(const mechanics::Mechanics& mechanics);
 
-/// Any expression of the Dag, simplified for reading: potentials, conserved quantities.
+/// An expression of the Dag, simplified for display: potentials, conserved quantities.
 Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
                        symbolic::Ref expression);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plain text in the model's names, for terminals; and the language of model files, which can be pasted back.
+// Plain text with the model's names for terminals, and the language of model files, which can be pasted back.
 #include <cln/rational_io.h>
 
 #include <sstream>

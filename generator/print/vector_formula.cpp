@@ -15,7 +15,7 @@ using Terms = std::optional<std::vector<Formula>>;
 
 namespace {
 
-/// factor * term; signs come first, and what is nothing is nothing.
+/// Appends factor * term with the sign in front; zero products are dropped.
 void add(std::vector<Formula>& terms, const Formula& factor, const Formula& term) {
   const bool minus = factor.form == Form::negative, minus_too = term.form == Form::negative;
   const Formula &a = minus ? factor.args[0] : factor, &b = minus_too ? term.args[0] : term;
@@ -38,7 +38,7 @@ std::optional<Formula> VectorFormula::operator()(model::NodeId vector) {
   return reading::sum(std::move(*all));
 }
 
-/// An axis has its letter where the inertia of its body stands along it.
+/// An axis has a letter if the inertia of its body refers to it.
 std::optional<Formula> VectorFormula::axis(const model::Node& node) {
   const std::uint32_t k = node.order % 3;
   for (const mechanics::Spin& spin : m_.spins) {

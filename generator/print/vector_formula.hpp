@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors of the model by names: positions r of places, axes e of bodies, E. In: an expression of the model. Out: a
-// formula, and the places whose positions it names.
+// Vectors of the model in terms of named vectors: positions r of places, axes e of bodies, E. In: an expression of the
+// model. Out: a formula, and the places whose positions it contains.
 #pragma once
 
 #include <functional>
@@ -14,11 +14,11 @@ namespace eomgen::print {
 
 class VectorFormula {
  public:
-  /// `scalar`: how numbers in front of vectors are written; nothing where one is too long.
+  /// `scalar`: the formula of a scalar factor; nothing if it is too long.
   VectorFormula(mechanics::Mechanics& mechanics, std::function<std::optional<reading::Formula>(model::NodeId)> scalar)
       : m_(mechanics), scalar_(std::move(scalar)) {}
 
-  /// Nothing where it is made of something else, such as unit vectors of a chart or a cross product.
+  /// Returns nothing for other vectors, such as unit vectors of a chart or cross products.
   std::optional<reading::Formula> operator()(model::NodeId vector);
 
   const std::vector<std::uint32_t>& places() const { return places_; }
