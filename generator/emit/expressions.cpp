@@ -65,7 +65,7 @@ Expression Expressions::in_lanes(const Operand& operand, bool with_sign) const {
   return {fmt::format("{}all({})", dialect_.lanes, value.text), Expression::atom};
 }
 
-/// What has another form where several states are computed side by side.
+/// Expressions that differ for lanes.
 std::optional<Expression> Expressions::of_lanes(const Instruction& instruction) {
   const auto& o = instruction.operands;
   const auto value = [&](std::size_t i) { return in_lanes(o[i], true).text; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One instruction of a Function as an expression of C or C++.
+// Printing of one instruction of a Function as an expression of C or C++.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@
 
 namespace eomgen::emit {
 
-/// True for operations whose printed form repeats their operands, which must be names then.
+/// Whether the printed form of an operation repeats its operands, which must then be names.
 bool repeats_operands(symbolic::Op op);
 
 class Expressions {
  public:
-  /// A piece of text and how tightly it binds.
+  /// Text and its operator precedence.
   struct Expression {
     enum Binding : std::uint8_t { sum, product, atom };
     std::string text;
@@ -28,12 +28,12 @@ class Expressions {
   Expression of(const program::Instruction& instruction);
   Expression size_of(const program::Operand& operand) const;
   Expression signed_value(const program::Operand& operand) const;
-  /// Where lanes are asked for: numbers too are one for each.
+  /// The operand as a lane vector if the dialect has lanes; numbers are broadcast.
   Expression in_lanes(const program::Operand& operand, bool with_sign = false) const;
-  /// What stands for the value of instruction `index` from now on.
+  /// Sets the text for the value of instruction `index`.
   void set(std::size_t index, Expression value) { value_[index] = std::move(value); }
 
-  const std::set<std::string>& called() const { return called_; }  // functions of the library
+  const std::set<std::string>& called() const { return called_; }  // called functions of the C library
   void call(const std::string& name) { called_.insert(name); }
 
  private:

@@ -51,7 +51,7 @@ class Parts {
   }
 
  private:
-  const Program* next(const Program* p) const {  // the program itself, then its second ones
+  const Program* next(const Program* p) const {  // the program itself, then its chart variants
     if (p == nullptr) return &program_;
     const std::size_t k = p == &program_ ? 0 : static_cast<std::size_t>(p - program_.second.data()) + 1;
     return k < program_.second.size() ? &program_.second[k] : nullptr;
@@ -97,7 +97,7 @@ class Parts {
       std::string calls;
       if (!prepared || find(*p, name) != nullptr) {
         calls = call(*p, name, list, prepared && offset > 0 ? fmt::format(" + {}", offset) : "");
-      } else {  // nothing worth preparing in this chart
+      } else {  // this chart has no prepared values
         calls = call(*p, "rhs", abi_arguments("rhs"));
       }
       if (prepared) offset += p->entries("prepare");
@@ -119,7 +119,7 @@ class Parts {
     add("prepare", purpose("prepare"), argument_list(abi_arguments("prepare"), real_), body + "  return code;\n");
   }
 
-  /// From one chart to another: one bit of `mode` after the other.
+  /// Changes charts, one bit of `mode` at a time.
   void exchange() {
     std::string body =
         fmt::format("  int code = 0;\n  for (int i = 0; i < {}; ++i) y[i] = x[i];\n", program_.state_count());

@@ -14,7 +14,7 @@ namespace {
 
 using program::Slot;
 
-/// The value of a leaf, from the arguments of one state. `takes_inputs`: else inputs are at their defaults.
+/// The value of a leaf from the arguments of one state. Without `takes_inputs`, inputs have their defaults.
 std::string leaf_value(const Dialect& dialect, const ModelNames& names, const EmissionContext& context, Slot slot,
                        std::uint32_t i, bool takes_inputs) {
   switch (slot) {
@@ -23,7 +23,7 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
     case Slot::contact: {
       std::string digit = fmt::format("({} & {})", names.mode, eom::contact_bits);
       for (std::uint32_t j = 0; j < i / 2; ++j) digit += fmt::format("/{}", eom::contact_states);
-      if (!dialect.typed) digit = fmt::format("({} | 0)", digit);  // whole numbers do not divide as such there
+      if (!dialect.typed) digit = fmt::format("({} | 0)", digit);  // JavaScript has no integer division
       const std::string one = dialect.constant(1);
       if (i % 2 == 1)
         return fmt::format("{0} % {1} < {2} ? {3} : -{3}", digit, eom::contact_states, eom::contact_states / 2, one);
@@ -34,7 +34,7 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
       const std::string given = dialect.rounded(fmt::format("{}[{}]", names.u, i));
       return takes_inputs ? fmt::format("{} ? {} : {}", names.u, given, standing) : standing;
     }
-    case Slot::side: {  // two bits for each kink: held above its surface, held below
+    case Slot::side: {  // two bits per kink: frozen above its surface, frozen below
       const std::size_t bit = program::first_kink_bit + 2 * i;
       const std::string side = fmt::format("(({0} >> {1} & 1) - ({0} >> {2} & 1))", names.mode, bit, bit + 1);
       if (!dialect.typed) return side;
@@ -45,12 +45,12 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
   throw std::logic_error("this operand is no leaf");
 }
 
-/// The same for the lanes of `block`.
+/// The value of a leaf from the lanes of `block`.
 std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context, const std::string& block, Slot slot,
                           std::uint32_t i, bool takes_inputs) {
   const auto entry = [&](int array) {
     return fmt::format("{}at({}, {}, {})", dialect.lanes, block, array, i);
-  };  // of the arrays t, x, p, w, u
+  };  // loads an entry of the arrays t, x, p, w, u
   switch (slot) {
     case Slot::time: return entry(0);
     case Slot::state: return entry(1);
@@ -70,7 +70,7 @@ std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context
   throw std::logic_error("this operand is no leaf");
 }
 
-/// Functions of the state that the ABI gives no inputs see the defaults.
+/// Functions of the state without inputs in the ABI use the defaults.
 bool takes_inputs(const std::string& function) {
   const abi::Function* found = abi::find(function);
   return found == nullptr || found->takes(abi::Input::inputs) || !found->takes(abi::Input::state);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a function finds what it does not compute: entries of its arguments, and what `mode` says.
+// Loads of values that a function does not compute: entries of its arguments, and values decoded from `mode`.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace eomgen::emit {
 
-/// The leaves of one kind, and their values.
+/// The leaves of one kind and their values.
 struct Loaded {
   program::Slot slot;
   std::vector<std::pair<std::uint32_t, std::string>> values;  // never empty
 };
 
-/// The leaves of a function that need a name of their own, and what they are loaded from: the arguments of one state,
-/// or the lanes of `block` (templates/batch) where the dialect has lanes.
+/// The leaves of a function that need a name, and the expressions that load them: from the arguments of one state, or
+/// from the lanes of `block` (templates/batch) if the dialect has lanes.
 std::vector<Loaded> loaded(const std::string& function, const Leaves& leaves, const ModelNames& names,
                            const EmissionContext& context, const Dialect& dialect, const std::string& block);
 

@@ -20,7 +20,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr std::size_t contact_values = 5;  // of each contact in the array g
+constexpr std::size_t contact_values = 5;  // values per contact in the array g
 
 std::string rate_unit(const std::string& unit) {
   if (unit.empty()) return "";
@@ -144,7 +144,7 @@ const char* state_name(const program::ContactInfo& contact, int digit) {
   return digit % 3 == 0 ? (contact.rolls ? "rolls" : "sticks") : digit % 3 == 1 ? "slides along" : "slides against";
 }
 
-/// The contacts, and the modes that they can be in: names, and the numbers that stand for them.
+/// The contacts and their modes: names and numbers.
 void add_modes(const program::Program& program, json& info) {
   info["modes"] = {"smooth"};
   if (program.contacts.empty()) return;
@@ -174,7 +174,7 @@ void add_modes(const program::Program& program, json& info) {
   }
 }
 
-/// The charts that can be exchanged, and what `mode` may say of them.
+/// The exchangeable charts and their bits of `mode`.
 void add_charts(const program::Program& program, const EmissionContext& context, json& info) {
   const std::vector<Quantity> state = states(program, context);
   for (std::size_t j = 0; j < program.charts.size(); ++j) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every target of the C family says beside the functions: banner, JSON, defaults.
+// Metadata for every target of the C family: banner, JSON, defaults.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace eomgen::emit {
 
-/// Lines of the banner, fit for any comment.
+/// Lines of the banner, safe in any comment.
 std::vector<std::string> banner_lines(const program::Program& program, const EmissionContext& context);
-/// The same as one comment, `first` before the first line, `next` before the others, `last` at the end.
+/// The banner as one comment: `first` precedes the first line, `next` the others, `last` ends the comment.
 std::string banner(const program::Program& program, const EmissionContext& context, const std::string& first,
                    const std::string& next, const std::string& last);
 
@@ -22,14 +22,14 @@ std::string info_json(const program::Program& program, const EmissionContext& co
 /// Body of NAME_defaults.
 std::string defaults_body(const program::Program& program, const EmissionContext& context, const Dialect& dialect);
 
-/// What a function of the ABI does, in a sentence.
+/// The purpose of a function of the ABI, as a sentence.
 std::string purpose(const std::string& function);
 
-/// A skeleton of templates/, filled in. Nothing is escaped: values are code.
+/// Fills in a skeleton of templates/. Values are code and are not escaped.
 std::string rendered(const std::string& skeleton, const std::vector<std::pair<std::string, std::string>>& values,
                      const std::vector<std::vector<std::pair<std::string, std::string>>>& functions);
 
-/// Throws Error where names and numbers in `context` do not match the program.
+/// Throws Error if names and numbers in `context` do not match the program.
 void require_consistent(const program::Program& program, const EmissionContext& context);
 
 }  // namespace eomgen::emit

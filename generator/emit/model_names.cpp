@@ -9,7 +9,7 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
   NameTable table;
   for (const std::string_view word : taken) table.declare(std::string(word));
   ModelNames names;
-  for (const std::string& prefix : {mangled_id(context.id), std::string("eom")}) {  // of the kernels
+  for (const std::string& prefix : {mangled_id(context.id), std::string("eom")}) {  // names of kernels
     for (const char* name : {"_sincos", "_sincos_near", "_sincos_far", "_sincos_lanes", "_is_near", "_lanes", "_bits",
                              "_rhs_from", "_rhs_far", "_rhs_prepared_from", "_rhs_prepared_far", "_taylor_start",
                              "_taylor_next", "_taylor_sums", "_differs"})

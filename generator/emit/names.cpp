@@ -30,7 +30,7 @@ constexpr std::string_view functions[] = {
     "sincos", "isfinite", "size_t", "signgam", "environ", "timezone", "daylight", "tzname", "program_invocation_name",
     "stdin", "stdout", "stderr", "errno", "main"};
 
-// Macros without arguments, of compilers and of headers that a program of this kind may include before ours.
+// Object-like macros of compilers and of headers that a program may include before the emitted ones.
 constexpr std::string_view macros[] = {
     "NULL", "EOF", "I", "TRUE", "FALSE", "NAN", "INFINITY", "HUGE", "HUGE_VAL", "HUGE_VALF", "HUGE_VALL", "MAXFLOAT", "DOMAIN",
     "SING", "OVERFLOW", "UNDERFLOW", "PLOSS", "TLOSS", "SNAN", "SNANF", "SNANL", "BUFSIZ", "RAND_MAX", "EXIT_SUCCESS", "EXIT_FAILURE",
@@ -50,7 +50,7 @@ constexpr std::string_view own[] = {"Real", "State", "Parameter", "Input", "Outp
 // Names of the runtime, in whose namespace `eom` the emitted header has its own (a test holds this list against lib/eom).
 constexpr std::string_view runtime[] = {
     "EINTR", "EISDIR", "ELOOP", "F_DUPFD_CLOEXEC", "O_CLOEXEC", "O_CREAT", "O_EXCL", "O_NOCTTY", "O_NOFOLLOW", "O_RDONLY", "O_RDWR", "O_WRONLY",
-    "S_ISCHR", "S_ISDIR", "S_ISREG",  // macros of what its headers include
+    "S_ISCHR", "S_ISDIR", "S_ISREG",  // macros of headers that it includes
     "STDERR_FILENO", "STDIN_FILENO", "STDOUT_FILENO", "StepBound", "WholeFile",
     "AtEvent", "Automatic", "ChangeReason", "Choice", "CompiledBatch", "CompiledBatchJacobian", "CompiledBatchSeries", "CompiledModel", "Complex", "Contact", "ContactMotion", "ContactShape", "Contacts",
     "Crossing", "CsvWriter", "Direction", "Drift", "Eligibility", "EnsembleEnd", "EnsembleOptions", "EnsembleRhs", "EnsembleStart", "ErrorEstimate", "EventFunction", "EventLocator", "EventPoint", "Feature", "Features", "Lu",
@@ -64,7 +64,7 @@ constexpr std::string_view runtime[] = {
     "no_jacobian_here", "no_time_derivative_here", "outcome_of_abi_code", "plot", "slips_on", "smallest_step_in_ulps", "svg",
     "system_of", "taylor", "to_text", "variational", "with_contact_digit"};
 
-// Words of Python, its standard library, and what a script that uses a module is likely to import.
+// Keywords of Python, its standard library, and likely imports of a script that uses the module.
 constexpr std::string_view python[] = {
     "False", "None", "True", "and", "as", "assert", "async", "await", "break", "class", "continue", "def", "del", "elif",
     "else", "except", "finally", "for", "from", "global", "if", "import", "in", "is", "lambda", "nonlocal", "not", "or",
@@ -117,10 +117,10 @@ bool is_reserved(const std::string& name) {
                           std::span<const std::string_view>(macros), std::span<const std::string_view>(own)}) {
     if (is_one_of(name, list)) return true;
   }
-  // An underscore and a capital, or two underscores, belong to the compiler.
+  // An underscore and a capital, or two underscores, are reserved for the compiler.
   if (name.starts_with("__") || (name.size() > 1 && name[0] == '_' && name[1] >= 'A' && name[1] <= 'Z')) return true;
   if (is_temporary(name)) return true;
-  // M_PI is a macro; M_12, an entry of the mass matrix, is not, nor is anything with an underscore at the end.
+  // M_PI is a macro. M_12, an entry of the mass matrix, is not, nor are names with a trailing underscore.
   const auto begins = [&name](std::string_view prefix) {
     return name.starts_with(prefix) && name.find_first_not_of("0123456789_", prefix.size()) != std::string::npos;
   };
@@ -142,7 +142,7 @@ std::string identifier(const std::string& text) {
 std::string NameTable::declare(const std::string& wanted) {
   std::string name = identifier(wanted);
   if (name.empty() || (name[0] >= '0' && name[0] <= '9')) name = "_" + name;
-  // What is reserved for how it begins is not freed by an underscore at its end.
+  // A trailing underscore does not help if the beginning of the name is reserved.
   const bool of_the_compiler =
       name.size() > 1 && name[0] == '_' && (name[1] == '_' || (name[1] >= 'A' && name[1] <= 'Z'));
   if (of_the_compiler) name = "n" + name;

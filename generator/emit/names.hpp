@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of the user's become identifiers of C, C++ or JavaScript, each once per scope.
+// Conversion of user names to identifiers of C, C++ or JavaScript that are unique per scope.
 #pragma once
 
 #include <set>
@@ -9,17 +9,17 @@
 
 namespace eomgen::emit {
 
-/// True for what a user's name must not be in emitted code: keywords of C and C++, names and macros of the headers that
-/// it is likely to meet, names that the emitted code itself uses.
+/// Whether a name is reserved in emitted code: keywords of C and C++, names and macros of headers that it is likely to
+/// meet, names that the emitted code itself uses.
 bool is_reserved(const std::string& name);
 
-/// `text` with everything that no identifier may hold replaced by _.
+/// `text` with each character that is invalid in identifiers replaced by _.
 std::string identifier(const std::string& text);
 
-/// Words of JavaScript, and what a page or a module has by name, that C and C++ leave free.
+/// Reserved words of JavaScript, and names in pages and modules, that C and C++ do not reserve.
 std::span<const std::string_view> javascript_words();
 
-/// Identifiers of one scope: `declare` gives the name, or the name with trailing underscores where it is taken.
+/// Identifiers of one scope. `declare` returns the wanted name, with trailing underscores if it is taken.
 class NameTable {
  public:
   std::string declare(const std::string& wanted);

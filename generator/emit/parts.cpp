@@ -6,7 +6,7 @@
 namespace eomgen::emit {
 namespace {
 
-// Instructions of a function that stays whole, and of a part of a longer one.
+// Maximum number of instructions of an undivided function, and of a part.
 constexpr std::size_t longest_function = 3000, longest_part = 1000;
 
 }  // namespace

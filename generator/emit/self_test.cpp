@@ -19,14 +19,14 @@ namespace eomgen::emit {
 namespace {
 
 constexpr int digits = 40;
-// Of the largest entry: what is wrong by less is not looked for.
+// Relative to the largest entry; smaller errors are not detected.
 constexpr double relative_tolerance = 1e-11, single_relative_tolerance = 1e-5;
-// Nothing smaller is a number of single precision, and what is larger may not be.
+// The range of normal numbers of single precision, with a margin.
 constexpr double single_least_number = 1e-37, single_largest_number = 1e37;
-// Of the first-order bound of rounding.
+// Safety factor on the first-order rounding bound.
 constexpr double caution = 16;
 constexpr int taylor_order = 4;
-// Values of one function; the first two vectors are always held where they fit, the second one alone where they do not.
+// Limit of values per function. The second vector is always tested, the others while they fit.
 constexpr std::size_t most_values = 3000;
 
 std::vector<cln::cl_R> exact(const std::vector<double>& values) {
@@ -47,7 +47,7 @@ program::AbiArguments arguments_of(const TestVector& at, const EmissionContext& 
   return arguments;
 }
 
-/// Rounded once, with what rounding may change; nothing where a number is not finite.
+/// Values rounded to double, with tolerances from the rounding bounds; nothing if a number is out of range.
 std::optional<FunctionValues> rounded(const std::string& function, const program::AbiResults& results,
                                       const std::vector<std::vector<double>>& bounds, bool single) {
   const double largest_number = single ? single_largest_number : 1e290;
@@ -63,7 +63,7 @@ std::optional<FunctionValues> rounded(const std::string& function, const program
       largest = std::max(largest, std::fabs(value));
       off = std::max(off, bounds[r][i]);
     }
-    // Two digits say enough; upwards.
+    // Tolerances are rounded up to two digits.
     const double tolerance =
         single ? std::max({single_relative_tolerance * largest, single_by_double * caution * off, single_least_number})
                : std::max({relative_tolerance * largest, caution * off, least_number});
@@ -91,7 +91,7 @@ std::size_t entries(const program::Program& program, const std::string& function
 
 bool is_held(std::size_t count, std::size_t index) { return (index + 1) * count <= most_values || index == 1; }
 
-/// The state in other charts, bit after bit as NAME_chart does.
+/// The state in other charts, bit by bit as in NAME_chart.
 void add_charts(const program::Program& program, const program::AbiArguments& arguments, bool single,
                 TestVector& vector) {
   for (unsigned mask = 0; mask < 1u << program.charts.size(); ++mask) {
@@ -110,12 +110,12 @@ void add_charts(const program::Program& program, const program::AbiArguments& ar
     } catch (const std::domain_error&) {
       continue;
     }
-    // At half a turn rounding decides between pi and -pi, which are the same angle.
+    // At half a turn rounding selects pi or -pi, which are the same angle.
     const auto at_half_a_turn = [](const cln::cl_R& x) {
       return std::fabs(std::fabs(cln::double_approx(x)) - std::numbers::pi) < 1e-6;
     };
     if (std::any_of(at.x.begin(), at.x.end(), at_half_a_turn)) continue;
-    // Formulas of a few sines: what they lose is far below this.
+    // The formulas contain a few sines; their rounding error is far below this.
     const std::vector<std::vector<double>> bounds{std::vector<double>(at.x.size(), 1e-14)};
     if (const auto found = rounded("chart", {at.x}, bounds, single)) {
       vector.functions.push_back(*found);
@@ -128,7 +128,7 @@ std::string comment(const Dialect& dialect, const std::string& text) {
   return dialect.line_comments ? "// " + text : "/* " + text + " */";
 }
 
-/// C++ knows both, and holds its templates in double precision.
+/// C++ has both types and tests its templates in double precision.
 std::string real_of(const EmissionContext& context, const Dialect& dialect) {
   return context.single_error && dialect.real == "float" ? "float" : "double";
 }
@@ -149,7 +149,7 @@ class Body {
   std::string operator()() {
     points();
     defaults();
-    std::vector<std::pair<std::string, int>> keys;  // in the order in which they are met
+    std::vector<std::pair<std::string, int>> keys;  // in order of first occurrence
     for (const TestVector& test : context_.tests) {
       for (const FunctionValues& f : test.functions) {
         const std::pair<std::string, int> key{f.function, f.to};
@@ -199,7 +199,7 @@ class Body {
     return suffix_.empty() ? a == b : static_cast<float>(a) == static_cast<float>(b);
   }
 
-  /// The first state is that of the defaults.
+  /// The first state is the default state.
   void defaults() {
     if (!starts_) return;
     const std::size_t n = program_.state_count(), count = context_.parameters.size();
@@ -292,7 +292,7 @@ class Body {
       case abi::Input::to: return std::to_string(to);
       case abi::Input::inputs: break;
     }
-    // At the first state the inputs are their defaults, as they are where none are given.
+    // At the first state the inputs have their defaults, as with a null pointer.
     const std::string given = fmt::format("point + {}", at_u_);
     return context_.inputs.empty() ? names_.null
            : starts_               ? fmt::format("state > 0 ? {} : {}", given, names_.null)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The vectors of NAME_selftest, and its body. Every function of the file is held against values of high precision at
-// states and parameters that differ from one another.
+// The test vectors and the body of NAME_selftest. It compares every function of the file with high-precision values at
+// several states and parameters.
 #pragma once
 
 #include <functional>
@@ -12,23 +12,24 @@
 
 namespace eomgen::emit {
 
-/// The functions' values at t, x, p, u, mode of `at`, the `index`-th vector; nothing where the right-hand side has none
-/// there. Large functions are held at the first vectors only, so that the size of the self test stays within that of
-/// the code.
+/// The values of all functions at t, x, p, u, mode of `at`, the `index`-th vector. Returns nothing if the right-hand
+/// side has no value there. Large functions are tested at the first vectors only, so that the self-test is not larger
+/// than the code.
 std::optional<TestVector> test_vector(const program::Program& program, const EmissionContext& context, TestVector at,
                                       std::size_t index);
 
 /// Names that differ between C and C++.
 struct SelfTestNames {
-  std::function<std::string(const std::string&)> called;  // how a function of the ABI is called: "NAME_rhs"
-  std::string differs;                                    // of the comparison
+  std::function<std::string(const std::string&)> called;  // name of a function of the ABI in code: "NAME_rhs"
+  std::string differs;                                    // name of the comparison function
   std::string null;
 };
 
 std::string selftest_body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names,
                           const Dialect& dialect);
 
-/// The comparison: whether an array is off its values by more than expected[0]; empty where there are no vectors.
+/// The comparison function: whether an array differs from its expected values by more than expected[0]. Empty if there
+/// are no vectors.
 std::string selftest_comparison(const EmissionContext& context, const SelfTestNames& names, const Dialect& dialect);
 
 }  // namespace eomgen::emit

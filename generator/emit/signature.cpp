@@ -14,7 +14,7 @@ using program::Slot;
 
 namespace {
 
-/// Of the table, and of what emitted code keeps to itself.
+/// Inputs of ABI functions, and of internal functions of emitted code.
 std::vector<abi::Input> inputs_of(const std::string& function) {
   using enum abi::Input;
   if (const abi::Function* found = abi::find(function)) return found->inputs;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The arguments of each function of the ABI (abi/functions.inc), as emitted text.
+// Arguments of each function of the ABI (abi/functions.inc) as emitted text.
 #pragma once
 
 #include <string>
@@ -12,17 +12,17 @@ namespace eomgen::emit {
 
 struct Argument {
   enum class Kind : std::uint8_t { number, input, mode, integer, result } kind;  // Real, const Real*, int, int, Real*
-  program::Slot slot = program::Slot::constant;  // what is read from it; constant: nothing
+  program::Slot slot = program::Slot::constant;  // kind of leaf that is read from it; constant: none
   std::string name;
 };
 
-/// With the names that `text` and `names` give to them.
+/// The arguments with the names from `text` and `names`.
 std::vector<Argument> arguments(const std::string& function, const FunctionText& text, const ModelNames& names);
 
-/// With the names of docs/abi.md, results included.
+/// The arguments with the names of docs/abi.md, results included.
 std::vector<Argument> abi_arguments(const std::string& function);
 
-/// The names of docs/abi.md, whatever the model's own names are.
+/// The names of docs/abi.md, independent of the model's names.
 ModelNames abi_names();
 
 /// "double t, const double* x".
@@ -32,14 +32,14 @@ std::string argument_list(const std::vector<Argument>& arguments, const std::str
 std::string function_head(const std::string& name, const program::Function& function, const FunctionText& text,
                           const ModelNames& names, const std::string& real);
 
-/// "t, x, p, u, mode, dx": to hand them on.
+/// The argument names "t, x, p, u, mode, dx" for a forwarding call.
 std::string argument_names(const program::Function& function, const FunctionText& text, const ModelNames& names);
 
-/// Arguments of a function that is printed whole which it does not read, and results without entries.
+/// Arguments that a function printed in one piece does not read, and results without entries.
 std::vector<std::string> unused(const program::Function& function, const FunctionText& text, const ModelNames& names,
                                 const Leaves& leaves);
 
-/// "  (void)x; (void)p;", a line; nothing where there are no names.
+/// A line "  (void)x; (void)p;" of casts; empty without names.
 std::string ignored(const std::vector<std::string>& names);
 
 }  // namespace eomgen::emit

@@ -25,7 +25,7 @@ constexpr float least_pivot = static_cast<float>(pivot_tolerance);
 
 double rounded(double value) { return static_cast<double>(static_cast<float>(value)); }
 
-/// False where a number is too large.
+/// Rounds all numbers; returns false if one overflows.
 bool round(TestVector& at) {
   at.t = rounded(at.t);
   bool fits = std::isfinite(at.t);
@@ -46,8 +46,8 @@ std::vector<cln::cl_R> exact(const std::vector<double>& values) {
   return result;
 }
 
-/// By the largest entry of each result; nothing where there is no value, or none of single precision; nor where the
-/// code calls a matrix singular.
+/// The error relative to the largest entry of each result. Returns nothing if there is no value, no value in single
+/// precision, or the code reports a singular matrix.
 std::optional<double> error_of(const program::Function& function, const TestVector& at) {
   program::Arguments<cln::cl_R> arguments{numeric::exact(at.t), exact(at.x), exact(at.p), exact(at.u)};
   program::Arguments<float> rounded_ones{static_cast<float>(at.t), single(at.x), single(at.p), single(at.u)};
@@ -126,7 +126,7 @@ Dialect single_dialect() {
   dialect.constant = [](const symbolic::Rational& value) { return literal(nearest_double(value)); };
   dialect.value = literal;
   dialect.pi = "3.14159265f";
-  dialect.absolute = "fabs";  // of tgmath.h, like all functions
+  dialect.absolute = "fabs";  // from tgmath.h, like all functions
   dialect.reach = "2048.0f";
   dialect.pivot_tolerance = pivot_tolerance;
   return dialect;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Code in single precision (emit --real float). In: the context of the same code in double precision. Out: its self
-// test at states that are numbers of single precision, and what that costs, which the certificate tells.
+// Code in single precision (emit --real float). In: the context of the same code in double precision. Out: its
+// self-test at states that are single-precision numbers, and the loss of accuracy, which the certificate reports.
 #pragma once
 
 #include <string>
@@ -9,17 +9,17 @@
 
 namespace eomgen::emit {
 
-/// The unit in the last place of single precision, by that of double precision.
+/// The ratio of the unit in the last place of single precision to that of double precision.
 inline constexpr double single_by_double = 536870912;  // 2^29
 
-/// Sets EmissionContext::single_error: how far results are off at the states of the self test, by the largest entry of
-/// each array. Throws Error{stage "emit"} where the right-hand side has no value in single precision at any of them.
+/// Sets EmissionContext::single_error: the largest error at the states of the self-test, relative to the largest entry
+/// of each array. Throws Error{stage "emit"} if the right-hand side has no value in single precision at any of them.
 void make_single(const program::Program& program, EmissionContext& context);
 
-/// The number of single precision that C takes for this one. Throws Error{stage "emit"} where there is none.
+/// The number to which C rounds this one in single precision. Throws Error{stage "emit"} if it overflows.
 double single_number(double value);
 
-/// C in single precision.
+/// The dialect of C in single precision.
 Dialect single_dialect();
 
 }  // namespace eomgen::emit

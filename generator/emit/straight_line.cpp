@@ -24,10 +24,10 @@ using program::Slot;
 using symbolic::Op;
 using Expression = Expressions::Expression;
 
-// Shorter values that are used once are written where they are used.
+// Shorter values that are used once are printed inline.
 constexpr std::size_t longest_inline = 64;
 
-// Of a function that has been told that its angles are near, and found that they are not.
+// Return code of a function that assumed small angles and found a large one.
 constexpr int code_too_far = -1;
 
 class Printer {
@@ -87,7 +87,7 @@ class Printer {
   }
   void close_part(std::size_t part) {
     const bool last = part + 1 == parts();
-    if (in_lanes()) {  // which lanes are fine is handed on in the first entry of the array
+    if (in_lanes()) {  // the first entry of the array passes the mask of valid lanes on
       const std::string hand_on =
           last ? "" : fmt::format("  {}[0] = ({}){};\n  return 0;\n", text_.work, dialect_.real, fine_);
       text_.parts.push_back(fmt::format("  (void){}; (void){}; (void){};\n", text_.block, text_.now, text_.work) +
@@ -124,7 +124,7 @@ class Printer {
     expressions_.set(index, {name, Expression::atom});
   }
 
-  /// The angles that are ready with that of instruction `first`, and their sines and cosines.
+  /// The angles in the pack of instruction `first`, and their sines and cosines.
   void open_pack(std::size_t first) {
     text_.packs = function_.code[first].pack;
     std::vector<std::string> angles;
@@ -187,7 +187,7 @@ class Printer {
     return dialect_.line_comments ? fmt::format("  // {}\n", safe) : fmt::format("  /* {} */\n", safe);
   }
 
-  /// Tests whose values are known once instruction `last` is (-1: those of parameters and states).
+  /// Prints the tests whose values are known after instruction `last` (-1: those of parameters and states).
   void test_ready(std::ptrdiff_t last) {
     for (const auto& test : function_.pivots) {
       std::ptrdiff_t needs = -1;
@@ -241,13 +241,13 @@ class Printer {
     std::string sum = fmt::format("{}[{}]", dx, n);
     for (std::size_t i = n + 1; i < names_.state.size(); ++i)
       sum = dialect_.rounded(fmt::format("{} + {}[{}]", sum, dx, i));
-    // inf - inf and nan - nan are nan, which equals nothing
+    // inf - inf and nan - nan are nan, which compares false
     const std::string finite = table_.declare("finite");
     line(fmt::format("{} {} = {};", dialect_.declares(), finite, sum));
     line(fmt::format("return {0} - {0} <= {1} ? 0 : 5;", finite, dialect_.constant(0)));
   }
 
-  /// Lanes that fail a test are left to the function of one state, which tells why.
+  /// Lanes that fail a test are recomputed by the function of one state, which returns the code.
   void results_of_lanes() {
     std::string finite;
     for (const program::Result& result : function_.results) {
@@ -310,7 +310,7 @@ class Printer {
 
   bool in_lanes() const { return !dialect_.lanes.empty(); }
   bool is_rhs() const { return function_.name == "rhs" || function_.name == "rhs_prepared"; }
-  /// Of a part, which has all arguments of the function whether it needs them or not.
+  /// Unused-argument casts of a part, which has all arguments of the function.
   std::string all_arguments() const {
     if (!dialect_.typed) return "";
     std::vector<std::string> names;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The registry of targets: one file and one line each (docs/adding-a-target.md).
+// The registry of targets: one file and one line per target (docs/adding-a-target.md).
 #pragma once
 
 #include <span>
@@ -20,13 +20,13 @@ struct TargetEntry {
   const char* name;
   const char* title;
   std::vector<EmittedFile> (*emit)(const program::Program&, const EmissionContext&);
-  std::string (*name_of)(const std::string& id);  // NAME of files and symbols, of the model's id
+  std::string (*name_of)(const std::string& id);  // NAME of files and symbols, from the model's id
 };
 
 std::span<const TargetEntry> targets();
 std::vector<std::string> target_names();
 
-/// Sources for `target`. Throws Error with the names that exist where it is unknown.
+/// Emits the sources for `target`. Throws Error with the list of known targets if it is unknown.
 std::vector<EmittedFile> emit(const program::Program& program, const EmissionContext& context,
                               const std::string& target = "cpp");
 

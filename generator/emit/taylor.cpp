@@ -12,7 +12,8 @@
 namespace eomgen::emit {
 namespace {
 
-// Doubles two at a time where the compiler has types for that; in either case each sum is added up in the same order.
+// Computes two doubles at a time if the compiler has vector types. In either case each sum has the same order of
+// additions.
 constexpr const char* c_sums =
     R"(/* sums[i] = a_1 b_(k-1) + ... + a_(k-1) b_1 of each product i; the factors of one order stand together. */
 static void {0}taylor_sums(int k, const double* a, const double* b, double* sums)
@@ -81,7 +82,7 @@ constexpr const char* driver = R"({{
 }}
 )";
 
-/// The function, and before it the parts that it calls where it is long.
+/// The function, preceded by its parts if it is long.
 std::string helper(const program::Function& function, const ModelNames& names, const EmissionContext& context,
                    const Dialect& dialect, const std::string& prefix, const std::string& remark) {
   FunctionText text = print_function(function, names, context, dialect);

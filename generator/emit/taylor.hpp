@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// NAME_taylor and what it is made of, in C and as a template over the scalar type.
+// NAME_taylor and its helper functions, in C and as a template over the scalar type.
 #pragma once
 
 #include <string>
@@ -13,10 +13,10 @@ struct TaylorText {
   std::string definition;  // helpers and the function itself
 };
 
-/// Of taylor_next, which sees k in place of the time, and x_k under the names of the state.
+/// Names for taylor_next, in which k replaces the time and x_k has the names of the state.
 ModelNames names_of_next(const ModelNames& names);
 
-/// `prefix`: "NAME_", or "" for the template.
+/// Prints NAME_taylor. `prefix`: "NAME_", or "" for the template.
 TaylorText print_taylor(const program::Program& program, const ModelNames& names, const EmissionContext& context,
                         const Dialect& dialect, const std::string& prefix);
 

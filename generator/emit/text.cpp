@@ -18,7 +18,7 @@ std::string comment_text(const std::string& text) {
     const char previous = result.empty() ? ' ' : result.back();
     if (byte < 0x20 || byte >= 0x7f || c == '\\') {
       result += '?';
-      if (previous == '?') result.back() = '.';  // no trigraph
+      if (previous == '?') result.back() = '.';  // breaks trigraphs
     } else if ((c == '/' && previous == '*') || (c == '*' && previous == '/') || (c == '/' && previous == '/')) {
       result += ' ';
       result += c;
@@ -28,7 +28,7 @@ std::string comment_text(const std::string& text) {
       result += c;
     }
   }
-  // The end of a comment must not be completed by what comes after.
+  // The following text must not complete the end of a comment.
   if (!result.empty() && (result.back() == '*' || result.back() == '/')) result += ' ';
   return result;
 }
@@ -71,7 +71,7 @@ double nearest_double(const symbolic::Rational& value) {
   const cln::cl_I numerator = cln::numerator(size), denominator = cln::denominator(size);
   const auto bits =
       static_cast<long>(cln::integer_length(numerator)) - static_cast<long>(cln::integer_length(denominator));
-  // 2^(bits-1) < size < 2^(bits+1); the last place of the result is 2^exponent, not below that of the subnormals.
+  // 2^(bits-1) < size < 2^(bits+1). The last place of the result is 2^exponent, at least that of subnormal numbers.
   if (bits > 1100) return cln::minusp(value) ? -HUGE_VAL : HUGE_VAL;
   long exponent = std::max(bits - 53, -1074L);
   const auto quotient = [&](long e) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Text that cannot break out of where it is put, and numbers.
+// Escaping of text for its context, and formatting of numbers.
 #pragma once
 
 #include <string>
@@ -9,19 +9,20 @@
 
 namespace eomgen::emit {
 
-/// For the inside of a /* comment */ or a // line: printable ASCII without comment ends, trigraphs and backslashes.
+/// Text that is safe inside a /* comment */ or a // line: printable ASCII without comment ends, trigraphs and
+/// backslashes.
 std::string comment_text(const std::string& text);
 
-/// A C string literal with its quotes; long ones are split over lines.
+/// A C string literal with quotes; long literals are split over lines.
 std::string string_literal(const std::string& text, const std::string& indent);
 
-/// The shortest decimal that reads back as this number, with a point: "9.81", "1e-07", "3.0".
+/// The shortest decimal that reads back as this number, with a decimal point or exponent: "9.81", "1e-07", "3.0".
 std::string decimal(double value);
 
 /// The double nearest to an exact number.
 double nearest_double(const symbolic::Rational& value);
 
-/// Lines no longer than `width`, broken at blanks; what goes on is indented by `indent`.
+/// Wraps at blanks to lines of at most `width` characters; continuation lines are indented by `indent`.
 std::string wrapped(const std::string& line, const std::string& indent, std::size_t width = 110);
 
 }  // namespace eomgen::emit

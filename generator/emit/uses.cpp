@@ -29,7 +29,7 @@ Uses uses_of(const program::Function& function) {
   for (std::size_t i = 0; i < code.size(); ++i) {
     const bool same_angle =
         code[i].pack != 0 && i > 0 && code[i - 1].pack == code[i].pack && code[i - 1].lane == code[i].lane;
-    if (same_angle) continue;  // the pack names it once
+    if (same_angle) continue;  // the pack prints the angle once
     for (const Operand& operand : code[i].operands) use(operand, repeats_operands(code[i].op), uses.part[i]);
   }
   for (const program::Result& result : function.results) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the values of a Function are used: by this they get names, places in parts, and loads.
+// Usage of the values of a Function, which determines names, parts and loads.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 
 namespace eomgen::emit {
 
-/// Operands that are no values of instructions.
+/// Operands that are not values of instructions.
 using Leaves = std::set<std::pair<program::Slot, std::uint32_t>>;
 
 struct Uses {
-  std::vector<std::size_t> part;     // of each instruction: the part that it is in (parts.hpp)
-  std::vector<std::uint32_t> count;  // of each instruction: how often its value is written
-  std::vector<bool> kept;            // of each instruction: a later part needs its value
-  std::vector<Leaves> leaves;        // of each part
+  std::vector<std::size_t> part;     // per instruction: its part (parts.hpp)
+  std::vector<std::uint32_t> count;  // per instruction: how often its value is printed
+  std::vector<bool> kept;            // per instruction: whether a later part needs its value
+  std::vector<Leaves> leaves;        // per part
 };
 Uses uses_of(const program::Function& function);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that are there whole or not at all.
+// Atomic writing of files.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@
 
 namespace eomgen::emit {
 
-/// Writes each file beside its place and renames it; makes the folder if need be. Gives the paths. Throws Error
-/// {stage "emit"} that names the path and the system's reason; files already there are then untouched.
+/// Writes each file under a temporary name and renames it; creates the folder if necessary. Returns the paths. Throws
+/// Error{stage "emit"} with the path and the system's reason; existing files are then unchanged.
 std::vector<std::string> write_files(const std::string& folder, const std::vector<EmittedFile>& files);
 
-/// Whose fault it is that something cannot be written: a disk or a pipe that fails half-way is a tool that fails, a
-/// place that cannot be written to is wrong input.
+/// The fault category of a failed write: a disk or pipe that fails midway is a tool failure; a location without write
+/// access is wrong input.
 Fault fault_of_writing(const std::error_code& reason);
 
 }  // namespace eomgen::emit

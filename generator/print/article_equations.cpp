@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t half_width = 33, whole_width = 66;  // visible characters of a cell
 constexpr std::size_t tallest_beside = 5;                 // maximum lines of a cell beside another one
-constexpr std::size_t tallest_row = 30;  // lines on a page: a row cannot span two pages
+constexpr std::size_t tallest_row = 30;                   // lines on a page: a row cannot span two pages
 
 /// Whether a sum contains multipliers or friction.
 bool has_forces_of_constraints(const reading::Sum& sum) {

@@ -39,8 +39,8 @@ class Notation {
   const model::Model* model_;
   std::size_t multipliers_;
   std::vector<std::optional<Glyph>> of_joints_;  // per constraint
-  std::string momentum_letter_ = "p";  // p_theta: momentum of a cyclic coordinate; Pi if the model has a p
-  std::string multiplier_letter_;      // mu if the model has a lambda
+  std::string momentum_letter_ = "p";            // p_theta: momentum of a cyclic coordinate; Pi if the model has a p
+  std::string multiplier_letter_;                // mu if the model has a lambda
 };
 
 /// "\theta_{1}", "\dot{\theta}_{1}", "\mathrm{length}".

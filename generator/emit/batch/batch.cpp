@@ -27,13 +27,13 @@ namespace {
 using program::Function;
 using program::Slot;
 
-// The numbers of one block are on the stack: of so many at most, all entries and results of a state taken together.
+// Limit of the numbers of one block, which are on the stack: all entries and results of a state together.
 constexpr std::size_t most_numbers = 8192;
 
-// In the order of `from` of a block.
+// The arrays of a block, in the order of `from`.
 struct Array {
   Slot slot;
-  const char* name;  // of the argument, and of what says that it is each state's own
+  const char* name;  // of the argument; `own`: flag for one array per state
   const char* own;
 };
 constexpr Array arrays[] = {{Slot::time, "t", "own_time"},
@@ -149,7 +149,7 @@ class File {
     return "size_t count, size_t stride, " + inputs + "int own, " + results + "int* codes";
   }
 
-  /// The function for the lanes of one block.
+  /// Prints the function for the lanes of one block.
   std::string block_function(const std::string& function, const FunctionText& text) {
     const std::string block = name_for_width(function + "_block"),
                       arguments = fmt::format("const struct {}block* {}, size_t {}", prefix_, text.block, text.now),
@@ -202,7 +202,7 @@ class File {
         std::begin(arrays));
   }
 
-  /// NAME_FUNCTION_batch for registers of one width.
+  /// Prints NAME_FUNCTION_batch for one register width.
   std::string driver(const std::string& function, const std::vector<Argument>& list,
                      const std::vector<std::pair<std::string, std::size_t>>& results) {
     std::string body = fmt::format("  struct {}call call;\n", prefix_), numbers;
@@ -254,7 +254,7 @@ class File {
                        prefix_);
   }
 
-  /// Coefficients up to the highest order that a state asks for.
+  /// Coefficients up to the highest order that a state requests.
   std::string rows_asked_for() const {
     return fmt::format(R"(  {{
     int highest = 0;
@@ -276,7 +276,7 @@ class File {
                                "      "));
   }
 
-  /// Of what is compiled for each width of registers: a name that is another one for each.
+  /// Registers a name that differs for each register width.
   std::string name_for_width(const std::string& name) {
     for_width_.insert(name);
     return prefix_ + name;

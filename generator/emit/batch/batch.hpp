@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Target batch: NAME_batch.c and NAME_batch.h beside NAME.c and NAME.h. The functions of the C ABI for any number of
-// states at once, as structures of arrays: some lanes of a register side by side, with the bits that each state has
+// Target batch: NAME_batch.c and NAME_batch.h in addition to NAME.c and NAME.h. The functions of the C ABI for many
+// states as structures of arrays. States are computed in the lanes of SIMD registers, with the same bits as each state
 // alone.
 #pragma once
 

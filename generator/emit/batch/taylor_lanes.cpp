@@ -12,9 +12,9 @@ namespace {
 
 static_assert(program::taylor_lanes % 4 == 0);
 
-constexpr std::size_t most_lanes = 8, stack_budget = std::size_t{1} << 21;  // bytes, as of one state alone
+constexpr std::size_t most_lanes = 8, stack_budget = std::size_t{1} << 21;  // bytes, the same as for one state
 
-// Sums are added up in the order of NAME_taylor_sums, and orders are computed up to the highest that a lane asks for.
+// Sums have the order of additions of NAME_taylor_sums. Orders are computed up to the highest that a lane requests.
 constexpr const char* text = R"(/* sums[i] = a_1 b_(k-1) + ... + a_(k-1) b_1 of each product i. */
 static void {0}taylor_sums(int k, const {0}lanes* a, const {0}lanes* b, {0}lanes* sums)
 {{

@@ -35,13 +35,14 @@ std::string head_of(const std::string& name, const std::string& arguments) {
   return wrapped(fmt::format("int {}({})", name, arguments), std::string(name.size() + 5, ' '));
 }
 
-/// The prototype with the argument names of docs/abi.md, whatever the model's own names are.
+/// The prototype with the argument names of docs/abi.md, independent of the model's names.
 std::string prototype(const std::string& name, const FilePart& part, const std::string& real) {
   if (part.function == nullptr) return head_of(name, part.arguments);
   return head_of(name, argument_list(abi_arguments(part.function->name), real));
 }
 
-/// The function; where it tries near angles first, what it is made of and the one for far angles before it.
+/// The definition of a function, preceded by its parts and, if it tries small angles first, by the version for large
+/// angles.
 std::string definition(const std::string& name, const program::Function& function, FunctionText text,
                        const ModelNames& names, const std::string& real, bool internal) {
   const char* linkage = internal ? "static " : "";

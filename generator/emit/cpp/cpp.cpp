@@ -15,7 +15,7 @@
 namespace eomgen::emit {
 namespace {
 
-// What other types than double take in place of templates/kernels/sincos.
+// Replacement of templates/kernels/sincos for types other than double.
 const std::string generic_sincos = R"(
 template <class Real>
 void eom_sincos(const Real& a, const Real& b, Real* sine, Real* cosine) {

@@ -25,7 +25,7 @@ std::string text_of(const cln::cl_I& value) {
 bool fits_double(const cln::cl_I& value) { return cln::integer_length(value) <= 53; }
 bool fits_int(const cln::cl_I& value) { return cln::integer_length(value) <= 31; }
 
-/// Exact for every Real where a quotient of two exact numbers can say it: Real(981)/Real(100).
+/// Exact for every Real if a quotient of two exact numbers represents it: Real(981)/Real(100).
 std::string real_constant(const symbolic::Rational& value) {
   const cln::cl_I above = cln::numerator(value), below = cln::denominator(value);
   const auto whole = [](const cln::cl_I& n) { return "Real(" + text_of(n) + (fits_int(n) ? ")" : ".0)"); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions as templates over the scalar type: what the targets cpp and cuda share.
+// Functions as templates over the scalar type, shared by the targets cpp and cuda.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,18 @@
 
 namespace eomgen::emit {
 
-inline const std::string template_kernels = "eom_";  // prefix of sines and cosines that are computed together
+inline const std::string template_kernels = "eom_";  // prefix of grouped sines and cosines
 
 Dialect template_dialect();
 
-/// Named indices into the arrays: x[State::theta].
+/// Enumerations of array indices: x[State::theta].
 std::string index_names(const ModelNames& names, std::size_t prepared, const std::optional<program::Taylor>& taylor);
 
 struct TemplateFunctions {
-  std::vector<std::vector<std::pair<std::string, std::string>>> functions;  // purpose, head, body of each
-  bool packs = false;                                                       // some need the kernel
+  std::vector<std::vector<std::pair<std::string, std::string>>> functions;  // purpose, head and body of each
+  bool packs = false;                                                       // whether some need the sincos kernel
 };
-/// `mark`: before the type of what they return.
+/// `mark`: text before the return type.
 TemplateFunctions template_functions(const program::Program& program, const ModelNames& names,
                                      const EmissionContext& context, const Dialect& dialect, const std::string& mark);
 

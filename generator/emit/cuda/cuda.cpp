@@ -15,7 +15,7 @@ namespace {
 
 const std::string mark = "EOM_DEVICE inline ";
 
-// Compilers for accelerators make one call of the sine and the cosine of an angle.
+// GPU compilers merge the sine and the cosine of an angle into one call.
 const std::string sincos = R"(
 template <class Real>
 EOM_DEVICE inline void eom_sincos(const Real& a, const Real& b, Real* sine, Real* cosine) {
@@ -27,7 +27,7 @@ EOM_DEVICE inline void eom_sincos(const Real& a, const Real& b, Real* sine, Real
 }
 )";
 
-/// What an integration without events and projections passes over, as lines of a comment.
+/// Features that an integration without events and projection ignores, as lines of a comment.
 std::string passed_over(const program::Program& program) {
   std::string text;
   if (program.active_constraints > 0)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Target cuda: NAME.cuh, the functions of the ABI for threads of an accelerator, and NAME_ensemble.cu, .h, which
-// integrate many states there. The same text compiles as HIP, and by a C++20 compiler without either.
+// Target cuda: NAME.cuh contains the functions of the ABI as device functions; NAME_ensemble.cu and .h integrate many
+// states on the device. The same text compiles as HIP, and with a plain C++20 compiler.
 #pragma once
 
 #include "emit/targets.hpp"

@@ -31,8 +31,8 @@ std::string number(double value) {
 
 std::string rounded_number(double value) { return number(single_number(value)); }
 
-/// In single precision sums, products, quotients and roots have the bits of C: rounded twice, from 53 bits to 24, they
-/// are what one rounding gives.
+/// In single precision, sums, products, quotients and roots have the same bits as in C: rounding to 53 and then to 24
+/// bits equals one rounding to 24 bits.
 Dialect javascript_dialect(bool single) {
   Dialect dialect;
   dialect.constant = [](const symbolic::Rational& value) { return number(nearest_double(value)); };
@@ -51,7 +51,7 @@ Dialect javascript_dialect(bool single) {
   return dialect;
 }
 
-/// JSON that may stand in a script of a page: no text of the model's ends the script.
+/// JSON that is safe in a script of a page: text of the model cannot end the script.
 std::string literal(const Json& value) {
   std::string result;
   for (const char c : value.dump(-1, ' ', true, Json::error_handler_t::replace)) {
@@ -60,7 +60,7 @@ std::string literal(const Json& value) {
   return result;
 }
 
-/// Of the banner, likewise.
+/// The same for the banner.
 std::string harmless(std::string text) {
   for (char& c : text) {
     if (c == '<' || c == '>') c = '|';
@@ -84,8 +84,8 @@ bool reads_time(const program::Function& function) {
   });
 }
 
-/// The function; a long one as parts that it calls one after the other, since engines do not optimise functions of any
-/// length.
+/// The definition of a function. Long functions are split into parts, since engines do not optimise very long
+/// functions.
 std::string definition(const program::Function& function, const FunctionText& text, const ModelNames& names,
                        const Dialect& dialect) {
   const std::string list = parameter_list(function.name, text, names);
@@ -105,7 +105,7 @@ std::string definition(const program::Function& function, const FunctionText& te
   return fmt::format("{}{}{}  return 0;\n}}\n", parts, head, calls);
 }
 
-/// Sines and cosines one by one: what C computes in vectors has no counterpart.
+/// Ungroups sines and cosines, since JavaScript has no SIMD vectors.
 program::Function without_packs(program::Function function) {
   for (program::Instruction& instruction : function.code) instruction.pack = instruction.lane = 0;
   return function;
@@ -134,7 +134,7 @@ void require_known(const program::Program& program) {
                 "use the target c or cpp, or leave --with charts out");
 }
 
-/// name === "mass" || name === "constraints": those of the state that see neither inputs nor a mode.
+/// The condition name === "mass" || name === "constraints" for functions without inputs and mode.
 std::string without_inputs() {
   std::string condition;
   for (const abi::Function& function : abi::functions()) {

@@ -14,11 +14,11 @@
 namespace eomgen::emit {
 namespace {
 
-// Those that the module wraps.
+// Functions that the module wraps.
 constexpr const char* wrapped_functions[] = {"rhs",         "jac",       "jac_p",   "mass",
                                              "constraints", "reactions", "outputs", "events"};
 
-/// _rhs = _function("rhs", "daaaia"): the types of the arguments, one letter each.
+/// _rhs = _function("rhs", "daaaia"): one letter per argument type.
 std::string functions_of_c() {
   std::string lines;
   for (const char* name : wrapped_functions) {
@@ -32,7 +32,7 @@ std::string functions_of_c() {
   return lines;
 }
 
-/// What the skeletons say of the numbers that the C computes in.
+/// Values for the skeletons that depend on the floating-point type.
 std::vector<std::pair<std::string, std::string>> of_numbers(bool single) {
   if (!single) {
     return {{"real", "double"},          {"cast", ""},

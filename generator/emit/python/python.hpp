@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Target python: NAME.py beside NAME.c, NAME.h of target c and NAME_simulate.c, an integrator. The module compiles the
-// C when it is imported; names, units and defaults are those of NAME_info.
+// Target python: NAME.py, NAME.c and NAME.h of target c, and the integrator NAME_simulate.c. The module compiles the C
+// code on import. Names, units and defaults are those of NAME_info.
 #pragma once
 
 #include "emit/targets.hpp"

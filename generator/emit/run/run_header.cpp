@@ -86,7 +86,7 @@ std::string text(const std::vector<Entry>& list) {
   return "{" + result + "}";
 }
 
-/// A statement for what is not empty.
+/// Assignment statements for nonempty values.
 class Statements {
  public:
   explicit Statements(std::string of) : of_(std::move(of)) {}
@@ -99,7 +99,7 @@ class Statements {
     if (entries.empty()) return;
     if constexpr (std::is_arithmetic_v<Entry>) {
       line(wrapped(fmt::format("{}.{} = {};", of_, member, text(entries)), "      "));
-    } else {  // names may have blanks, at which a line must not be broken
+    } else {  // names may contain blanks, where lines must not break
       std::string all;
       for (const Entry& entry : entries) all += (all.empty() ? "" : ",\n      ") + in_lines(entry);
       line(fmt::format("{}.{} = {{{}}};", of_, member, all));
@@ -118,7 +118,7 @@ class Statements {
   template <class Entry>
   static std::string in_lines(const Entry& entry) {
     if constexpr (std::is_same_v<Entry, eom::expressions::Table> || std::is_same_v<Entry, eom::hybrid::Signal>)
-      return wrapped(text(entry), "      ");  // without names
+      return wrapped(text(entry), "      ");  // contains no names
     else
       return text(entry);
   }
@@ -126,7 +126,7 @@ class Statements {
   std::string of_, lines_;
 };
 
-/// Whether a run calls it.
+/// Whether runs call this function.
 bool is_of_runs(const std::string& function) {
   const auto of = [](const auto& code, const auto& member) { return member(code); };
 #define ABI_FUNCTION(name, takes, gives, comes, purpose)  \
@@ -211,7 +211,7 @@ std::string problem_text(const RunText& run) {
   return s.done();
 }
 
-/// Short names for what expressions are written with.
+/// Using-declarations for names in expressions.
 std::string used_names(const Problem& p) {
   std::string result;
   const bool signals = std::any_of(p.inputs.begin(), p.inputs.end(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// NAME_run.hpp: the compiled functions and the default scene as eom::hybrid::run takes them (docs/abi.md, "Runs").
+// NAME_run.hpp: the compiled functions and the default scene in the form of eom::hybrid::run (docs/abi.md, "Runs").
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace eomgen::emit {
 
-/// Of a context whose `run` is there; nothing else.
+/// Emits the header if the context has a `run`, else nothing.
 std::vector<EmittedFile> emit_run_header(const program::Program& program, const EmissionContext& context);
 
 }  // namespace eomgen::emit

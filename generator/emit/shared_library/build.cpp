@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cache: KEY/ holds the library and its SHA-256, which tells damage. That nobody else has put anything there is
-// seen to by cache_folder. A key's folder is made beside and renamed, so that it is there whole or not at all, whoever
-// else is at it.
+// The cache: KEY/ contains the library and its SHA-256, which detects damage. cache_folder ensures that no other user
+// can write to it. The folder of a key is created under a temporary name and renamed, so that concurrent processes
+// never see a partial entry.
 #include "emit/shared_library/build.hpp"
 
 #include <chrono>
@@ -32,7 +32,7 @@ std::string environment(const char* name) {
 }
 
 struct Compiler {
-  std::vector<std::string> command;  // the program and what it is always given ("ccache gcc")
+  std::vector<std::string> command;  // the program and its fixed arguments ("ccache gcc")
   std::string name, version;
 };
 
@@ -92,7 +92,7 @@ void write_file(const fs::path& path, const std::string& text) {
     fail("cannot write " + path.string(), "set EOMGEN_CACHE_DIR to a folder that you may write to, with space left");
 }
 
-/// The library of a cache entry that is whole.
+/// Whether a cache entry contains an intact library.
 bool is_whole(const fs::path& entry, const std::string& name) {
   if (!is_own_folder(entry) || !is_own_file(entry / (name + ".so"))) return false;
   const auto library = read_file(entry / (name + ".so"));
@@ -120,12 +120,12 @@ void compile_into(const fs::path& folder, const Compiler& compiler, const Recipe
   write_file(folder / "checksum", model::content_hash(read_file(library).value_or("")));
 }
 
-/// Puts `made` in the place of `entry`; another process that was faster has made the same.
+/// Renames `made` to `entry`. If another process was faster, its identical entry is used.
 void put_in_place(const fs::path& made, const fs::path& entry, const std::string& name) {
   std::error_code failed;
   fs::rename(made, entry, failed);
   if (!failed || is_whole(entry, name)) return;
-  // What is there is broken: out of the way, then again.
+  // The existing entry is damaged: it is moved away and replaced.
   fs::path broken = made;
   broken += ".broken";
   std::error_code ignored;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source text into a shared library, kept in a cache by content: the same source, compiler and flags are compiled once.
-// The cache is that of cache_folder.hpp.
+// Compiles source text to a shared library. The cache (cache_folder.hpp) is keyed by content: the same source, compiler
+// and flags are compiled once.
 #pragma once
 
 #include <atomic>
@@ -15,26 +15,27 @@ namespace eomgen::emit {
 class Workplace;
 
 struct Recipe {
-  std::string name;                                        // of the library, without .so
-  std::vector<std::pair<std::string, std::string>> files;  // name and text; the first is compiled
+  std::string name;                                        // name of the library without .so
+  std::vector<std::pair<std::string, std::string>> files;  // name and text; the first file is compiled
   std::vector<std::string> flags, libraries;
-  // Which compiler: of the first variable that is set, or the first of these that runs.
+  // The compiler: the value of the first variable that is set, or the first of these that runs.
   std::string language = "C", package = "gcc libc6-dev";
   std::vector<std::string> variables = {"EOMGEN_CC", "CC"}, compilers = {"cc", "gcc"};
-  std::string what, remedy;                      // of the error where it fails
-  const std::atomic<bool>* interrupt = nullptr;  // ends the compiler
+  std::string what, remedy;                      // parts of the error message on failure
+  const std::atomic<bool>* interrupt = nullptr;  // terminates the compiler
 };
 
 struct Built {
-  std::string path;                              // in the cache
-  bool cached = false;                           // it was there already
-  double seconds = 0;                            // of the compiler
-  std::shared_ptr<const Workplace> folder = {};  // where it is kept for this process alone: as long as this is there
-  std::string note = {};                         // why
+  std::string path;                              // path of the library in the cache
+  bool cached = false;                           // true if it was cached already
+  double seconds = 0;                            // time of the compiler
+  std::shared_ptr<const Workplace> folder = {};  // private folder of this process, which lives as long as this pointer
+  std::string note = {};                         // reason for the private folder
 };
 
-/// `examine` sees a new library before it is kept, and throws where it is not to be. Throws Error{Fault::tool}: no
-/// compiler (with the command that installs one), a failed one (with what it said).
+/// Builds a library or finds it in the cache. `examine` is called on a new library before it enters the cache and
+/// throws to reject it. Throws Error{Fault::tool}: no compiler (with the install command), or a compiler failure (with
+/// its output).
 Built build_library(const Recipe& recipe, const std::function<void(const std::string& path)>& examine = {});
 
 }  // namespace eomgen::emit

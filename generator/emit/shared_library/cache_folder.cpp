@@ -25,7 +25,7 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// TMPDIR where that is a folder, /tmp else.
+/// TMPDIR if it is a writable folder, else /tmp.
 fs::path temporary_folder() {
   const fs::path named = environment("TMPDIR");
   return !named.empty() && ::access(named.c_str(), W_OK | X_OK) == 0 ? named : fs::path("/tmp");
@@ -33,7 +33,7 @@ fs::path temporary_folder() {
 
 struct Wish {
   fs::path path;
-  bool by_name = true;  // a folder that this program has made for itself
+  bool by_name = true;  // a folder that this program created for itself
 };
 
 Wish wished() {
@@ -43,7 +43,7 @@ Wish wished() {
   return {temporary_folder() / ("eomgen-" + std::to_string(::geteuid()))};
 }
 
-/// Why what is in this folder may be another user's; empty where it cannot.
+/// The reason why other users may have written to this folder; empty if they cannot.
 std::string distrust(const fs::path& folder) {
   struct stat found {};
   if (::lstat(folder.c_str(), &found) != 0)
@@ -85,14 +85,14 @@ Workplace::~Workplace() {
 CacheFolder cache_folder() {
   const Wish wish = wished();
   fs::path folder = wish.path;
-  if (!folder.has_filename()) folder = folder.parent_path();  // a slash at its end
+  if (!folder.has_filename()) folder = folder.parent_path();  // trailing slash
   struct stat found {};
   if (::lstat(folder.c_str(), &found) != 0) {
     std::error_code failed;
     if (folder.has_parent_path()) fs::create_directories(folder.parent_path(), failed);
     if (failed || (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)) fail(folder);
   } else if (wish.by_name && S_ISDIR(found.st_mode) && found.st_uid == ::geteuid() && (found.st_mode & 0022) == 0) {
-    ::chmod(folder.c_str(), 0700);  // one of an earlier version: others could look, but not write
+    ::chmod(folder.c_str(), 0700);  // created by an earlier version: readable by others, not writable
   }
   std::string why = distrust(folder);
   if (why.empty()) {
@@ -117,7 +117,7 @@ bool is_own_file(const fs::path& path) {
 bool is_own_folder(const fs::path& path) { return distrust(path).empty(); }
 
 void clear_leftovers(const fs::path& folder, const std::string& name) {
-  constexpr std::time_t just_made = 60;  // s, between the making of a folder and its lock
+  constexpr std::time_t just_made = 60;  // s, between creation and locking of a folder
   std::error_code none;
   std::vector<fs::path> left;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Folders from which code is loaded and run: nobody else can have put anything there.
+// Folders from which code is loaded and run, to which no other user can write.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,10 @@
 
 namespace eomgen::emit {
 
-/// A folder that is removed, with all in it, at the end. As long as it is there it is locked.
+/// A temporary folder that is locked while it exists and removed with its contents by the destructor.
 class Workplace {
  public:
-  /// A new one of unpredictable name in `parent`, for this user alone. Throws std::system_error.
+  /// Creates a folder with an unpredictable name in `parent`, accessible to this user only. Throws std::system_error.
   Workplace(const std::filesystem::path& parent, const std::string& name);
   ~Workplace();
   Workplace(const Workplace&) = delete;
@@ -25,20 +25,20 @@ class Workplace {
 
 struct CacheFolder {
   std::filesystem::path path;
-  std::shared_ptr<Workplace> passing;  // where the cache cannot be trusted: for this process alone
-  std::string why;                     // then
+  std::shared_ptr<Workplace> passing;  // private replacement for this process if the cache is not trusted
+  std::string why;                     // reason for the replacement
 };
 
-/// $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen, ~/.cache/eomgen, or eomgen-UID in the folder of temporary files; made if
-/// it is not there. One that is a link, belongs to another user, or that others may enter, is not used: a private one
-/// takes its place. Throws Error{Fault::tool}.
+/// The cache folder: $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen, ~/.cache/eomgen, or eomgen-UID in the temporary folder.
+/// It is created if missing. A folder that is a link, belongs to another user, or is accessible to others is replaced
+/// by a private one. Throws Error{Fault::tool}.
 CacheFolder cache_folder();
 
-/// Of this user, no link, of the kind that is expected.
+/// Whether the path belongs to this user, is not a link, and is a file or folder respectively.
 bool is_own_file(const std::filesystem::path& path);
 bool is_own_folder(const std::filesystem::path& path);
 
-/// Removes the workplaces called `name` that killed runs left in a folder.
+/// Removes folders with the prefix `name` that killed runs left behind.
 void clear_leftovers(const std::filesystem::path& folder, const std::string& name);
 
 inline constexpr const char* workplace_name = "make-";

@@ -13,16 +13,16 @@
 namespace eomgen::emit {
 namespace {
 
-/// Registers as wide as this processor has them.
+/// Flags for the widest registers of this processor.
 std::vector<std::string> flags_of_processor() {
 #if defined(__x86_64__) && defined(__GNUC__)
   if (__builtin_cpu_supports("avx512f")) return {"-mavx512f"};
-  if (__builtin_cpu_supports("avx2")) return {"-mavx2", "-DEOM_BATCH_LANES=4"};  // no other width is compiled in
+  if (__builtin_cpu_supports("avx2")) return {"-mavx2", "-DEOM_BATCH_LANES=4"};  // compiles this width only
 #endif
   return {};
 }
 
-/// Whether lanes of the default state have the bits of that state alone.
+/// Whether lanes with the default state give the same bits as that state alone.
 bool agrees(const LoadedBatch& batch) {
   const auto info = nlohmann::json::parse(batch.model.info);
   const std::size_t n = info["states"].size(), count = 11, stride = 11;

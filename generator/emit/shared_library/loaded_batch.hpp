@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: what the target batch emitted. Out: its functions for many states, compiled for the processor of this machine and
-// loaded. The same cache as that of loaded_model.hpp; fused multiplications are left out, so that every processor
-// computes the same bits.
+// In: the output of target batch. Out: its functions for many states, compiled for the processor of this machine and
+// loaded. The cache is that of loaded_model.hpp. Fused multiply-add is disabled, so that every processor computes the
+// same bits.
 #pragma once
 
 #include <atomic>
@@ -25,22 +25,22 @@ using BatchSeries = int (*)(std::size_t count, std::size_t stride, const double*
                             const double* u, const int* mode, const int* order, int own, double* coefficients,
                             int* codes);
 
-/// NAME_own_time, ... of every NAME_batch.h (docs/abi.md).
+/// NAME_own_time, ... of NAME_batch.h (docs/abi.md).
 inline constexpr int own_time = 1, own_parameters = 2, own_inputs = 4, own_prepared = 16, own_orders = 32;
 
 class LoadedBatch {
  public:
-  /// Throws Error{Fault::tool} as LoadedModel does, and where a batch of the default state has other bits than that
+  /// Throws Error{Fault::tool} as LoadedModel does, and if a batch of the default state differs in any bit from that
   /// state alone.
   LoadedBatch(const std::string& path, const std::string& name);
 
   LoadedModel model;
   BatchFunction rhs = nullptr;
-  PreparedBatchFunction rhs_prepared = nullptr;  // there with `prepare`
-  BatchJacobian jac = nullptr;                   // these where they are emitted, and not too large for lanes
+  PreparedBatchFunction rhs_prepared = nullptr;  // exists if `prepare` exists
+  BatchJacobian jac = nullptr;                   // null if not emitted or too large for lanes
   BatchSeries taylor = nullptr;
-  int width = 1;                                 // states side by side
-  std::shared_ptr<const Workplace> folder = {};  // of a library that is kept for this process alone
+  int width = 1;                                 // number of lanes
+  std::shared_ptr<const Workplace> folder = {};  // private folder of this process, if used
 
  private:
   struct Close {
@@ -49,7 +49,7 @@ class LoadedBatch {
   std::unique_ptr<void, Close> handle_;
 };
 
-/// `files`: name and text of NAME.c, NAME.h, NAME_batch.c and NAME_batch.h.
+/// Compiles and loads. `files`: name and text of NAME.c, NAME.h, NAME_batch.c and NAME_batch.h.
 LoadedBatch compile_and_load_batch(const std::vector<std::pair<std::string, std::string>>& files,
                                    const std::string& name, const std::atomic<bool>* interrupt);
 

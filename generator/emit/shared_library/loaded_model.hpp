@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: emitted C. Out: its functions, compiled and loaded. Libraries are kept in a cache by content: the same source,
-// compiler and flags are compiled once.
+// In: emitted C. Out: its functions, compiled and loaded. Libraries are cached by content: the same source, compiler
+// and flags are compiled once.
 #pragma once
 
 #include <atomic>
@@ -11,11 +11,11 @@
 
 namespace eomgen::emit {
 
-/// The functions of the C ABI (docs/abi.md); null where a function was not asked for. Unloads the library at the end.
+/// The functions of the C ABI (docs/abi.md); null if a function was not requested. The destructor unloads the library.
 class LoadedModel : public abi::Compiled {
  public:
-  /// `name`: NAME of the symbols; `path`: of a shared library. Throws Error{Fault::tool} if it cannot be loaded, is of
-  /// another ABI, or fails its self test.
+  /// `name`: NAME of the symbols. `path`: a shared library. Throws Error{Fault::tool} if it cannot be loaded, has
+  /// another ABI, or fails its self-test.
   LoadedModel(const std::string& path, const std::string& name);
   ~LoadedModel();
   LoadedModel(LoadedModel&& other) noexcept;
@@ -34,17 +34,17 @@ class Workplace;
 
 struct Compiled {
   LoadedModel model;
-  std::string path;                              // of the library in the cache
-  bool cached = false;                           // it was there already
-  double seconds = 0;                            // of the compiler
-  std::shared_ptr<const Workplace> folder = {};  // of a library that is kept for this process alone
-  std::string note = {};                         // why
+  std::string path;                              // path of the library in the cache
+  bool cached = false;                           // true if it was cached already
+  double seconds = 0;                            // time of the compiler
+  std::shared_ptr<const Workplace> folder = {};  // private folder of this process, if used
+  std::string note = {};                         // reason for the private folder
 };
 
-/// Compiles `c_source` (NAME.c; `header` is NAME.h) into the cache unless it is there whole, and loads it. The cache:
-/// $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen or ~/.cache/eomgen. The compiler: $EOMGEN_CC, $CC, cc or gcc.
-/// Throws Error{Fault::tool}: no compiler (with the command that installs one), a failed one (with what it said).
-/// `interrupt` ends the compiler.
+/// Compiles `c_source` (NAME.c; `header` is NAME.h) into the cache, unless an intact entry exists, and loads it. The
+/// cache: $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen or ~/.cache/eomgen. The compiler: $EOMGEN_CC, $CC, cc or gcc.
+/// Throws Error{Fault::tool}: no compiler (with the install command), or a compiler failure (with its output).
+/// `interrupt` terminates the compiler.
 Compiled compile_and_load(const std::string& c_source, const std::string& header, const std::string& name,
                           const std::atomic<bool>* interrupt = nullptr);
 

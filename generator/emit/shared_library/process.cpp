@@ -16,16 +16,16 @@ extern char** environ;
 namespace eomgen::emit {
 namespace {
 
-constexpr int patience = 50;  // ms, until an interruption is seen
+constexpr int patience = 50;  // ms, polling interval for interruptions
 
-/// Where Ctrl-C does not end this program by itself, the other one is in a group of its own, so that all of it can be
-/// ended.
+/// Whether this program handles Ctrl-C. If so, the child gets its own process group, so that all of it can be
+/// terminated.
 bool outlives_interrupts() {
   struct sigaction now {};
   return ::sigaction(SIGINT, nullptr, &now) == 0 && now.sa_handler != SIG_DFL;
 }
 
-/// Defaults for the signals that this program takes or ignores.
+/// Resets the signals that this program handles or ignores to their defaults.
 void set_attributes(posix_spawnattr_t& attributes, bool own_group) {
   posix_spawnattr_init(&attributes);
   sigset_t defaults;
@@ -37,7 +37,7 @@ void set_attributes(posix_spawnattr_t& attributes, bool own_group) {
                            static_cast<short>(POSIX_SPAWN_SETSIGDEF | (own_group ? POSIX_SPAWN_SETPGROUP : 0)));
 }
 
-/// What it prints, to its end; false where that was cut short.
+/// Reads the output to its end; false if interrupted.
 bool read_all(int pipe, std::string& output, const std::atomic<bool>* interrupt) {
   std::array<char, 4096> buffer{};
   while (true) {
@@ -54,7 +54,7 @@ bool read_all(int pipe, std::string& output, const std::atomic<bool>* interrupt)
 
 void end(pid_t child, bool own_group) {
   const pid_t target = own_group ? -child : child;
-  ::kill(target, SIGTERM);  // compilers remove their temporary files then
+  ::kill(target, SIGTERM);  // lets compilers remove their temporary files
   for (int k = 0; k < 4; ++k) {
     if (::waitpid(child, nullptr, WNOHANG) != 0) break;
     ::poll(nullptr, 0, patience);
@@ -94,7 +94,7 @@ Finished run_process(const std::vector<std::string>& arguments, const std::atomi
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
     result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    result.started = result.status != 127;  // how some systems tell that there is no such program
+    result.started = result.status != 127;  // some systems report a missing program this way
   }
   ::close(pipe[0]);
   return result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Other programs, run without a shell.
+// Execution of other programs without a shell.
 #pragma once
 
 #include <atomic>
@@ -9,14 +9,14 @@
 namespace eomgen::emit {
 
 struct Finished {
-  bool started = false;  // false: there is no such program
-  int status = 0;        // of exit; 128 + signal where one ended it
-  std::string output;    // of both streams
+  bool started = false;  // false: the program was not found
+  int status = 0;        // exit status; 128 + signal after a signal
+  std::string output;    // standard output and standard error
   bool interrupted = false;
 };
 
-/// `arguments[0]` is the program, searched in PATH. Nothing is read from standard input. Where `interrupt` is raised
-/// meanwhile it is ended, with what it has started, and not waited for.
+/// Runs `arguments[0]`, which is searched in PATH. Standard input is empty. If `interrupt` is set meanwhile, the
+/// process and its children are terminated.
 Finished run_process(const std::vector<std::string>& arguments, const std::atomic<bool>* interrupt = nullptr);
 
 }  // namespace eomgen::emit
