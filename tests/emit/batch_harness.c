@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compiled with the header and the sources that target batch wrote, and -DNAME=.., in single precision with
- * -DREAL=float: every state of a batch has the bits, and the code, that it has alone. The line of what is wrong is what
- * is returned. */
+/* Compiled with the header and the sources from target batch and with -DNAME=.., in single precision with -DREAL=float.
+ * Checks that every state of a batch has the same bits and the same code as alone. Returns the line of the first
+ * failure. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,14 +11,14 @@
 #ifndef REAL
 #define REAL double
 #endif
-#define LARGE ((REAL)(sizeof(REAL) == 4 ? 1e30 : 1e200)) /* of single precision too */
+#define LARGE ((REAL)(sizeof(REAL) == 4 ? 1e30 : 1e200)) /* also finite in single precision */
 
 #define JOIN2(a, b) a##b
 #define JOIN(a, b) JOIN2(a, b)
 #define OF(what) JOIN(NAME, what)
 
 enum {
-  count = 29, /* no multiple of any width */
+  count = 29, /* not a multiple of any width */
   stride = count + 3,
   states = OF(_states),
   parameters = OF(_parameters) > 0 ? OF(_parameters) : 1,
@@ -45,11 +45,11 @@ static void entries_of(const REAL* from, int entries, int s, int own, REAL* to) 
   for (int i = 0; i < entries; ++i) to[i] = own ? from[i * stride + s] : from[i];
 }
 
-/* Whether entries i of the results of state s are these. */
+/* Whether the results of state s in the batch have the same bits as alone. */
 static int same(const REAL* batch, const REAL* alone, int entries, int s) {
   for (int i = 0; i < entries; ++i) {
     if (memcmp(&batch[i * stride + s], &alone[i], sizeof(REAL)) == 0) continue;
-    if (isnan(batch[i * stride + s]) && isnan(alone[i])) continue; /* the sign of a NaN is nobody's */
+    if (isnan(batch[i * stride + s]) && isnan(alone[i])) continue; /* the sign of a NaN is unspecified */
     printf("state %d, entry %d: %.17g in the batch, %.17g alone\n", s, i, (double)batch[i * stride + s],
            (double)alone[i]);
     return 0;
@@ -162,7 +162,7 @@ int main(void) {
     const int line = compare(own, own != 5);
     if (line != 0) return line;
   }
-  /* Lanes that nobody else may feel: far and infinite angles, what is no number, singular masses. */
+  /* Lanes that must not affect others: large and infinite angles, NaN, singular masses. */
   for (int i = 0; i < states; ++i) {
     x[i * stride + 3] = (REAL)(1000000 + i);
     x[i * stride + 4] = (REAL)NAN;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batches in the hands of compilers: batch_harness.c compares each state with what it is alone.
+// Batches through compilers: batch_harness.c compares each state with the same state alone.
 #include <doctest/doctest.h>
 
 #include "emit/examples.hpp"
@@ -17,7 +17,7 @@ struct Width {
   std::vector<std::string> flags;
 };
 
-/// What the processor of this machine can run, in single precision twice as many.
+/// Register widths that this processor supports; in single precision twice as many lanes.
 std::vector<Width> widths(const Example& e) {
   const int twice = e.context.single_error ? 2 : 1;
   const auto asked = [](int lanes) { return fmt::format("-DEOM_BATCH_LANES={}", lanes); };
@@ -34,7 +34,7 @@ std::vector<Example> in_single(std::vector<Example> all) {
   return all;
 }
 
-/// What is wrong with the batch of these files; empty where every state has the bits that it has alone.
+/// The failure of the batch of these files; empty if every state has the same bits as alone.
 std::string wrong(const std::string& folder, const Example& e, const Width& width, const std::string& modes) {
   const std::string name = emit::mangled_id(e.context.id), program = folder + "/use";
   const auto has = [&](const char* function) { return e.program.entries(function) > 0; };
@@ -75,8 +75,7 @@ std::string wrong(const Example& e, const std::string& modes = "0") {
 
 }  // namespace
 
-TEST_CASE(
-    "batch: every state has the bits and the code that it has alone, whatever its neighbours are, for every width") {
+TEST_CASE("batch: every state has the same bits and code as alone, independent of its neighbours, for every width") {
   for (const Example& e : examples()) {
     INFO(e.context.id);
     CHECK(wrong(e) == "");
@@ -87,7 +86,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("batch: series of states side by side, each of an order of its own") {
+TEST_CASE("batch: series of several states with different orders") {
   auto list = {example("chain3", chain(3), {"k", "x", "w"}, {"m1", "a", "b", "l1", "z", "dx", "g"}, {}, {"taylor"}),
                example("cart", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"}, {"taylor", "mass"})};
   for (const Example& e : list) {
@@ -97,7 +96,7 @@ TEST_CASE("batch: series of states side by side, each of an order of its own") {
   }
 }
 
-TEST_CASE("batch: what is loaded for an ensemble has its functions, also where it has been moved to") {
+TEST_CASE("batch: a loaded ensemble library keeps its functions after a move") {
   const Example e =
       example("chain3", chain(3), {"a", "b", "c"}, {"m1", "m2", "m3", "l1", "l2", "l3", "g"}, {}, {"taylor", "jac"});
   std::vector<std::pair<std::string, std::string>> files;
@@ -112,12 +111,12 @@ TEST_CASE("batch: what is loaded for an ensemble has its functions, also where i
   CHECK(moved.width >= 1);
 }
 
-TEST_CASE("batch: compiled for any processor of its kind, it takes the widest registers of the one that it meets") {
+TEST_CASE("batch: generic code selects the widest registers of the actual processor") {
   const Example two = example("two", double_pendulum(), {"theta1", "theta2"}, {"m1", "m2", "l1", "l2", "g"});
   for (const Example& e : {two, in_single({two}).front()}) {
     const Folder folder;
     emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
-#ifdef __clang__  // has one width in a file, that of its flags (docs/abi.md)
+#ifdef __clang__  // supports one width per file, that of its flags (docs/abi.md)
     const auto lanes = [&](int bits) { return bits / (e.context.single_error ? 32 : 64); };
 #else
     const auto lanes = [&](int) {
@@ -134,7 +133,7 @@ TEST_CASE("batch: compiled for any processor of its kind, it takes the widest re
   }
 }
 
-TEST_CASE("batch: a function of thousands of operations comes in parts") {
+TEST_CASE("batch: a function with thousands of operations is split into parts") {
   constexpr std::uint32_t n = 22;
   std::vector<std::string> coordinates, parameters;
   for (std::uint32_t i = 1; i <= n; ++i) coordinates.push_back(fmt::format("theta{}", i));
@@ -149,7 +148,7 @@ TEST_CASE("batch: a function of thousands of operations comes in parts") {
   CHECK(wrong(folder.path, e, widths(e).back(), "0") == "");
 }
 
-TEST_CASE("batch: hostile names, and every compiler there is") {
+TEST_CASE("batch: hostile names, and every available compiler") {
   const Example two =
       example("two", double_pendulum(), {"two_batch_sincos", "block"}, {"fine", "place", "now", "w_0", "dx"});
   for (const Example& e : {two, in_single({two}).front()}) {
@@ -166,7 +165,7 @@ TEST_CASE("batch: hostile names, and every compiler there is") {
   }
 }
 
-TEST_CASE("batch: what the other target writes stays as it is") {
+TEST_CASE("batch: the output of target c is unchanged") {
   for (const Example& e : examples()) {
     const auto alone = emit::emit(e.program, e.context, "c"), with = emit::emit(e.program, e.context, "batch");
     REQUIRE(with.size() == 4);

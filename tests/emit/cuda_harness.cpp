@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled with what the targets cuda and c wrote, and -DNAME=..: the functions give what those of C give, and members
-// of an ensemble end with the bits that eom::integrate gives them alone. The line of what is wrong is what is returned.
+// Compiled with the output of the targets cuda and c and with -DNAME=.. Checks that the functions agree with those of
+// C, and that members of an ensemble end with the bits of eom::integrate. Returns the line of the first failure.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -20,7 +20,7 @@
 namespace {
 
 using Model = eom::NAME::device::Model;
-constexpr std::size_t n = Model::states, m = Model::parameters, members = 37;  // no multiple of any block
+constexpr std::size_t n = Model::states, m = Model::parameters, members = 37;  // not a multiple of any block size
 constexpr double t0 = 0.25, t1 = 1.5, rtol = 1e-8, within = 1e-10;
 
 double varied(double value, std::size_t member, std::size_t entry) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Target cuda: its host form is compiled and compared with the target c and with eom::integrate (cuda_harness.cpp);
-// nvcc compiles it where it is installed.
+// Target cuda: its host form is compiled and compared with target c and with eom::integrate (cuda_harness.cpp). nvcc
+// compiles it if installed.
 #include <doctest/doctest.h>
 
 #include "emit/examples.hpp"
@@ -39,8 +39,8 @@ std::string wrong(const Example& e) {
 
 }  // namespace
 
-TEST_CASE("cuda: the host form gives what C gives, and members end with the bits of eom::integrate, of either order") {
-  for (const Example& e : examples()) {  // coordinates that the constraints bind, inputs, equations without inertia
+TEST_CASE("cuda: the host form agrees with C, and members end with the bits of eom::integrate for both orders") {
+  for (const Example& e : examples()) {  // with constraints, inputs, and equations without inertia
     if (e.context.id == "pendulum" || e.context.id == "spherical") continue;
     INFO(e.context.id);
     CHECK(wrong(e) == "");
@@ -52,7 +52,7 @@ TEST_CASE("cuda: hostile names") {
                       {"EOM_DEVICE", "EOM_GPU", "threadIdx", "rhs", "eom_sincos"})) == "");
 }
 
-TEST_CASE("cuda: nvcc compiles it without a word, where it is installed") {
+TEST_CASE("cuda: nvcc compiles it without warnings, if installed") {
   const char* const nvcc = std::filesystem::exists("/usr/local/cuda/bin/nvcc") ? "/usr/local/cuda/bin/nvcc" : "nvcc";
   if (!emit::run_process({nvcc, "--version"}).started) {
     MESSAGE("nvcc is not installed: nothing was compiled for a device");
@@ -67,7 +67,7 @@ TEST_CASE("cuda: nvcc compiles it without a word, where it is installed") {
   CHECK(finished.status == 0);
 }
 
-TEST_CASE("cuda: what it cannot do is refused") {
+TEST_CASE("cuda: unsupported features are rejected") {
   const auto said = [](const program::Program& program, const emit::EmissionContext& context) -> std::string {
     try {
       emit::emit(program, context, "cuda");

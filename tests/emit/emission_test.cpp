@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emission as text and as files: equal bytes, targets, what is written.
+// Emission as text and as files: equal bytes, targets, written files.
 #include <doctest/doctest.h>
 
 #include "emit/examples.hpp"
@@ -9,7 +9,7 @@
 using namespace eomgen;
 using namespace test_systems;
 
-TEST_CASE("emission: the same bytes again, and no more functions than asked for") {
+TEST_CASE("emission: repeated emission gives the same bytes, and only the requested functions") {
   const Example a = examples()[1], b = examples()[1];
   const auto first = emit::emit(a.program, a.context), second = emit::emit(b.program, b.context);
   for (std::size_t i = 0; i < first.size(); ++i) CHECK(first[i].text == second[i].text);
@@ -42,7 +42,7 @@ TEST_CASE("emission: equal bytes in fresh processes") {
   }
 }
 
-TEST_CASE("emission: a target that does not exist is refused with those that do") {
+TEST_CASE("emission: an unknown target is rejected with a list of the known ones") {
   const Example e = examples()[0];
   try {
     emit::emit(e.program, e.context, "fortran");
@@ -53,7 +53,7 @@ TEST_CASE("emission: a target that does not exist is refused with those that do"
   }
 }
 
-TEST_CASE("emission: every target gives files with different names that are not empty") {
+TEST_CASE("emission: every target emits nonempty files with distinct names") {
   const Example e = examples()[3];
   for (const auto& target : emit::targets()) {
     const auto files = target.emit(e.program, e.context);
@@ -67,7 +67,7 @@ TEST_CASE("emission: every target gives files with different names that are not 
   }
 }
 
-TEST_CASE("write_files: whole files or none, and errors that name the path") {
+TEST_CASE("write_files: writes complete files or none, and errors contain the path") {
   const Folder folder;
   const std::string inside = folder.path + "/deep/er";
   const auto paths = emit::write_files(inside, {{"a.txt", "one"}, {"b.txt", "two"}});
@@ -77,7 +77,7 @@ TEST_CASE("write_files: whole files or none, and errors that name the path") {
   CHECK(text.str() == "two");
   CHECK(std::distance(std::filesystem::directory_iterator(inside), {}) == 2);
   try {
-    emit::write_files(paths[0], {{"c.txt", "three"}});  // a file is in the way
+    emit::write_files(paths[0], {{"c.txt", "three"}});  // a file blocks the folder
     FAIL("written");
   } catch (const Error& error) {
     CHECK(error.fault() == Fault::input);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emitted code in the hands of compilers.
+// Emitted code through compilers.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -38,15 +38,14 @@ void compiles_everywhere(const Example& e) {
 
 }  // namespace
 
-TEST_CASE("emitted code: clean under strict warnings as C and as C++, and its self tests agree") {
+TEST_CASE("emitted code: no warnings under strict flags as C and as C++, and its self-tests pass") {
   for (const Example& e : examples()) {
     INFO(e.context.id);
     compiles_everywhere(e);
   }
 }
 
-TEST_CASE(
-    "emitted code: a right-hand side and a series of thousands of operations come in parts that agree with the whole") {
+TEST_CASE("emitted code: right-hand sides and series with thousands of operations are split into correct parts") {
   constexpr std::uint32_t n = 22;
   std::vector<std::string> coordinates, parameters;
   for (std::uint32_t i = 1; i <= n; ++i) coordinates.push_back(fmt::format("theta{}", i));
@@ -73,7 +72,7 @@ TEST_CASE(
   CHECK(emit::run_process({program}).status == 0);
 }
 
-TEST_CASE("emitted code: hostile names and texts stay what they are") {
+TEST_CASE("emitted code: hostile names and texts cause no harm") {
   auto e = example("int", cart_pendulum(), {"I", "NULL"}, {"unix", "linux", "M_PI", "main", "dx"}, {"fabs"});
   e.context.title = "*/ int evil; /* ?\?/ \\";
   e.context.parameters[0].note = "ends in a backslash \\\n#error injected";
@@ -97,8 +96,8 @@ TEST_CASE("emitted code: hostile names and texts stay what they are") {
                               {"angle", "sine", "eom_sincos", "eom_lanes", "two_bits"}));
 }
 
-TEST_CASE("emitted code: no model's name can collide with one of the runtime's") {
-  // Every word of the runtime's headers as the name of a model: where it is kept it can be a namespace beside them.
+TEST_CASE("emitted code: no model name collides with a name of the runtime") {
+  // Every word of the runtime's headers as the name of a model: if it is unchanged, it can be a namespace next to them.
   const std::filesystem::path lib = EOMGEN_TEST_LIB;
   std::set<std::string> words, headers;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(lib / "eom")) {
@@ -128,7 +127,7 @@ TEST_CASE("emitted code: no model's name can collide with one of the runtime's")
                    {folder.path + "/use.cpp"}) == "");
 }
 
-TEST_CASE("emitted code: df/dt may be left out of the Jacobian, in C and in C++") {
+TEST_CASE("emitted code: df/dt may be omitted from the Jacobian, in C and in C++") {
   const Folder folder;
   const Example e = examples()[3];  // its support moves
   emit::write_files(folder.path, emit::emit(e.program, e.context));
@@ -151,7 +150,7 @@ int main() {
   CHECK(emit::run_process({program}).status == 0);
 }
 
-TEST_CASE("emitted code: -ffast-math is refused") {
+TEST_CASE("emitted code: -ffast-math is rejected") {
   const Folder folder;
   const Example e = examples()[0];
   emit::write_files(folder.path, emit::emit(e.program, e.context));
@@ -162,7 +161,7 @@ TEST_CASE("emitted code: -ffast-math is refused") {
   }
 }
 
-TEST_CASE("emitted header: float, long double and a number type of one's own") {
+TEST_CASE("emitted header: float, long double and a user-defined number type") {
   const Folder folder;
   const Example e = examples()[2];
   emit::write_files(folder.path, emit::emit(e.program, e.context));
@@ -251,7 +250,7 @@ int main() {{
   if ({0}_taylor(0, x, p, nullptr, 0, order, c) != 0 || model::taylor<double>(0, x, p, nullptr, 0, order, d) != 0) return 1;
   if (model::taylor<long double>(0, X, P, nullptr, 0, order, C) != 0 || model::rhs<double>(0, x, p, nullptr, 0, dx) != 0) return 2;
   for (int k = 0; k <= order; ++k) {{
-    double largest = 1e-300;  // of one order
+    double largest = 1e-300;  // largest magnitude of one order
     for (int i = 0; i < n; ++i) largest = std::fmax(largest, std::fabs(c[n*k + i]));
     for (int i = 0; i < n; ++i) {{
       if (!(std::fabs(c[n*k + i] - d[n*k + i]) <= 1e-12*largest)) return 3;
@@ -273,7 +272,7 @@ int main() {{
   }
 }
 
-TEST_CASE("emitted code: codes 1 and 5 tell singular and not finite apart") {
+TEST_CASE("emitted code: codes 1 and 5 distinguish singular from not finite") {
   const Folder cache;
   const Setting setting("EOMGEN_CACHE_DIR", cache.path);
   const Example e = examples()[1];
@@ -294,7 +293,7 @@ TEST_CASE("emitted code: codes 1 and 5 tell singular and not finite apart") {
   CHECK(compiled.model.rhs(0, x, p, nullptr, 0, dx) == 5);
 }
 
-TEST_CASE("emitted code: compiled functions give what the interpreter gives in 50 digits") {
+TEST_CASE("emitted code: compiled functions agree with the interpreter in 50 digits") {
   const Folder cache;
   const Setting setting("EOMGEN_CACHE_DIR", cache.path);
   for (const Example& e : examples()) {
@@ -334,7 +333,7 @@ TEST_CASE("emitted code: compiled functions give what the interpreter gives in 5
   }
 }
 
-TEST_CASE("emitted code: right-hand sides of angles that have gone round ten thousand times, and of infinite ones") {
+TEST_CASE("emitted code: right-hand sides at angles after ten thousand revolutions, and at infinite angles") {
   const Folder cache;
   const Setting setting("EOMGEN_CACHE_DIR", cache.path);
   const Example e = examples()[1];

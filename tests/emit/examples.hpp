@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Programs with names and numbers, ready to emit.
+// Programs with names and numbers, ready for emission.
 #pragma once
 
 #include <fmt/format.h>
@@ -72,7 +72,7 @@ inline std::vector<Example> examples() {
 
 using Folder = eomgen::test::TemporaryFolder;
 
-/// Sets an environment variable for a while.
+/// Sets an environment variable within a scope.
 struct Setting {
   std::string name, before;
   bool had;
@@ -105,7 +105,7 @@ inline const std::vector<std::string>& strict() {
   return list;
 }
 
-/// What the compiler says; empty if it is content.
+/// The messages of the compiler; empty if there are none.
 inline std::string complaints(std::vector<std::string> command, const std::vector<std::string>& arguments) {
   command.insert(command.end(), strict().begin(), strict().end());
   command.insert(command.end(), arguments.begin(), arguments.end());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Target javascript in the hands of Node where there is one. Shipped models are compared with their C by
-// tests/models/javascript_test.cpp.
+// Target javascript through Node, if installed. tests/models/javascript_test.cpp compares shipped models with their C
+// code.
 #include <doctest/doctest.h>
 
 #include "emit/examples.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 bool has_node() { return emit::run_process({"node", "--version"}).status == 0; }
 
-/// Loads it and holds its self test, and `more`.
+/// Loads the module, runs its self-test, and then `more`.
 void loads(const Example& e, const std::string& more = "") {
   const Folder folder;
   const auto files = emit::emit(e.program, e.context, "javascript");
@@ -37,14 +37,14 @@ void loads(const Example& e, const std::string& more = "") {
 
 }  // namespace
 
-TEST_CASE("target javascript: every function agrees with its values of high precision") {
+TEST_CASE("target javascript: every function agrees with its high-precision values") {
   for (const Example& e : examples()) {
     INFO(e.context.id);
     loads(e);
   }
 }
 
-TEST_CASE("target javascript: its self test sees a wrong value") {
+TEST_CASE("target javascript: its self-test detects a wrong value") {
   Example e = examples()[1];
   e.context.tests[1].functions[0].values[0].back() *= 1 + 1e-9;
   if (!has_node()) return;
@@ -56,7 +56,7 @@ TEST_CASE("target javascript: its self test sees a wrong value") {
             .status == 2);
 }
 
-TEST_CASE("target javascript: names that JavaScript or a browser has, and hostile texts, stay what they are") {
+TEST_CASE("target javascript: names of JavaScript and browsers, and hostile texts, cause no harm") {
   for (const char* id : {"function", "document", "module", "window", "json", "Math"}) {
     INFO(id);
     auto e =

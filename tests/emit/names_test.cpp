@@ -7,7 +7,7 @@
 
 using namespace eomgen::emit;
 
-TEST_CASE("names: what languages and headers reserve gets a trailing underscore") {
+TEST_CASE("names: reserved names of languages and headers get a trailing underscore") {
   NameTable names;
   CHECK(names.declare("theta") == "theta");
   CHECK(names.declare("int") == "int_");
@@ -19,7 +19,7 @@ TEST_CASE("names: what languages and headers reserve gets a trailing underscore"
   CHECK(names.declare("gamma") == "gamma");
 }
 
-TEST_CASE("names: two wishes for one name give two names") {
+TEST_CASE("names: two requests for one name give two names") {
   NameTable names;
   CHECK(names.declare("x") == "x");
   CHECK(names.declare("x") == "x_");
@@ -35,7 +35,7 @@ TEST_CASE("names: a model's id becomes an identifier") {
   CHECK(mangled_id("") == "model_");
 }
 
-TEST_CASE("names: what begins as the compiler's own names do becomes a legal name at once") {
+TEST_CASE("names: a name that begins like a reserved one becomes a legal name at once") {
   for (const char* wanted : {"\"\"\"", "__x", "_X", "___"}) {
     eomgen::emit::NameTable table;
     const std::string name = table.declare(wanted);
@@ -44,7 +44,7 @@ TEST_CASE("names: what begins as the compiler's own names do becomes a legal nam
   }
 }
 
-TEST_CASE("names: a model called as something of Python or its library gets another module, and keeps its C names") {
+TEST_CASE("names: a model named like a part of Python gets another module name and keeps its C names") {
   for (const char* id : {"json", "numpy", "lambda", "None", "ctypes", "math", "test"}) {
     CAPTURE(id);
     CHECK(module_name(id) == mangled_id(id) + "_");

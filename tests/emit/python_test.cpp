@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Target python: its C in the hands of compilers, its module in those of Python where there is one. What the module
-// computes is compared with `eomgen run` by examples/python, examples/python_run and examples/scipy.
+// Target python: its C code through compilers, its module through Python if installed. examples/python,
+// examples/python_run and examples/scipy compare the results of the module with `eomgen run`.
 #include <doctest/doctest.h>
 
 #include "emit/examples.hpp"
@@ -35,14 +35,14 @@ void compiles_and_imports(const Example& e, const std::string& more = "pass") {
 
 }  // namespace
 
-TEST_CASE("target python: the C is clean under strict warnings, the module imports and integrates") {
+TEST_CASE("target python: the C code has no warnings under strict flags, and the module imports and integrates") {
   for (const Example& e : examples()) {
     INFO(e.context.id);
     compiles_and_imports(e);
   }
 }
 
-TEST_CASE("target python: hostile names and texts stay what they are") {
+TEST_CASE("target python: hostile names and texts cause no harm") {
   auto e = example("int", cart_pendulum(), {"I", "lambda"}, {"rhs", "import", "numpy", "main", "None"}, {"class"});
   e.context.title = "\"\"\" + exit(7) #\n%s {} \\";
   e.context.parameters[0].note = "\nexit(8)";
@@ -50,7 +50,7 @@ TEST_CASE("target python: hostile names and texts stay what they are") {
   compiles_and_imports(e);
 }
 
-TEST_CASE("target python: a dict of parameters changes those that depend on them too, whatever their names") {
+TEST_CASE("target python: a dict of parameters also changes dependent parameters, whatever their names") {
   auto e =
       example("dependent", cart_pendulum(), {"I", "lambda"}, {"rhs", "import", "numpy", "main", "None"}, {"class"});
   e.context.parameters[0].expression = "import^2 + if(numpy < 3, main, sqrt(4))";
@@ -61,7 +61,7 @@ TEST_CASE("target python: a dict of parameters changes those that depend on them
                        "p = m._parameters([1, 2, 3, 4, 5]); assert list(p) == [1, 2, 3, 4, 5], p");
 }
 
-TEST_CASE("target python: compiled code is kept and loaded only where nobody else can have put it") {
+TEST_CASE("target python: compiled code is cached and loaded only in folders that no other user can write to") {
   if (emit::run_process({"python3", "--version"}).status != 0) return;
   const Folder folder, shared;
   const Example e = examples()[0];
@@ -76,7 +76,7 @@ TEST_CASE("target python: compiled code is kept and loaded only where nobody els
   CHECK(emit::run_process({"python3", "-c", use}).output.starts_with(folder.path));
 }
 
-TEST_CASE("target python: models called as Python's words and modules are imported beside these") {
+TEST_CASE("target python: models named like Python keywords and modules can be imported") {
   for (const char* id : {"json", "numpy", "lambda", "None"}) {
     INFO(id);
     auto e = example(id, pendulum(), {"theta"}, {"m", "l", "g"});

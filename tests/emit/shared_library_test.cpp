@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cache of compiled code, also when something is wrong with it.
+// The cache of compiled code, including damaged and untrusted caches.
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -43,7 +43,7 @@ std::string failure(const std::string& c) {
 
 }  // namespace
 
-TEST_CASE("cache: compiled once, found the second time, made again for another source") {
+TEST_CASE("cache: compiled once, found the second time, and compiled again for another source") {
   const Folder cache;
   const Setting setting("EOMGEN_CACHE_DIR", cache.path);
   CHECK_FALSE(load().cached);
@@ -52,13 +52,13 @@ TEST_CASE("cache: compiled once, found the second time, made again for another s
   CHECK((again.model.jac != nullptr));
   CHECK(again.model.info.starts_with("{\"model\":\"pendulum\""));
   CHECK_FALSE(emit::compile_and_load(sources().c + "\n", sources().h, "pendulum").cached);
-  // nothing is left of the making
+  // no temporary files remain
   for (const auto& entry : std::filesystem::directory_iterator(cache.path)) {
     CHECK(entry.path().filename().string().size() == 64);
   }
 }
 
-TEST_CASE("cache: a broken entry is noticed and made again") {
+TEST_CASE("cache: a damaged entry is detected and replaced") {
   const Folder cache;
   const Setting setting("EOMGEN_CACHE_DIR", cache.path);
   const std::string path = load().path;
@@ -105,7 +105,7 @@ TEST_CASE("cache: several processes at once all get their code") {
   CHECK(load().cached);
 }
 
-TEST_CASE("compiler: one that is missing is told with the command that installs one") {
+TEST_CASE("compiler: a missing one is reported with the install command") {
   const Folder cache;
   const Setting folder("EOMGEN_CACHE_DIR", cache.path);
   const Setting compiler("EOMGEN_CC", "no-such-compiler");
@@ -114,7 +114,7 @@ TEST_CASE("compiler: one that is missing is told with the command that installs 
       "the C compiler `no-such-compiler` does not run / sudo apt-get install gcc libc6-dev, or unset EOMGEN_CC and CC");
 }
 
-TEST_CASE("compiler: what it says about code that does not compile is shown, and nothing is kept") {
+TEST_CASE("compiler: its messages about invalid code are shown, and nothing is cached") {
   const Folder cache;
   const Setting folder("EOMGEN_CACHE_DIR", cache.path);
   const std::string said = failure("int pendulum_abi(void) { return mistake; }\n");
@@ -123,7 +123,7 @@ TEST_CASE("compiler: what it says about code that does not compile is shown, and
   CHECK(std::filesystem::is_empty(cache.path));
 }
 
-TEST_CASE("compiled code that fails its self test is refused and not kept") {
+TEST_CASE("compiled code that fails its self-test is rejected and not cached") {
   const Folder cache;
   const Setting folder("EOMGEN_CACHE_DIR", cache.path);
   std::string c = sources().c;
@@ -134,12 +134,12 @@ TEST_CASE("compiled code that fails its self test is refused and not kept") {
   CHECK(std::filesystem::is_empty(cache.path));
 }
 
-TEST_CASE("cache: a folder that cannot be used is told") {
+TEST_CASE("cache: an unusable folder is reported") {
   const Setting folder("EOMGEN_CACHE_DIR", "/proc/no-such-folder");
   CHECK(failure(sources().c).find("cannot use the cache folder /proc/no-such-folder") != std::string::npos);
 }
 
-TEST_CASE("cache: a folder that another user could have filled is not used, and that is told") {
+TEST_CASE("cache: a folder that another user could write to is not used, and this is reported") {
   const Folder place;
   const std::string cache = place.path + "/cache";
   const Setting setting("EOMGEN_CACHE_DIR", cache);
@@ -158,7 +158,7 @@ TEST_CASE("cache: a folder that another user could have filled is not used, and 
       CHECK(std::filesystem::status(std::filesystem::path(path).parent_path()).permissions() ==
             std::filesystem::perms::owner_all);
     }
-    CHECK_FALSE(std::filesystem::exists(path));  // gone with the code
+    CHECK_FALSE(std::filesystem::exists(path));  // removed with the code
   };
   for (const int mode : {0755, 0770, 0701, 0777}) {
     REQUIRE(::chmod(cache.c_str(), static_cast<mode_t>(mode)) == 0);
@@ -182,7 +182,7 @@ TEST_CASE("cache: a folder that another user could have filled is not used, and 
   REQUIRE(::chmod(place.path.c_str(), 0777) == 0);
   refused("others may put another one in its place");
   REQUIRE(::chmod(place.path.c_str(), 0700) == 0);
-  // An entry that is a link, or a library that is one, is made anew.
+  // An entry or library that is a link is replaced.
   const std::filesystem::path library = load().path;
   std::filesystem::rename(library, place.path + "/planted.so");
   std::filesystem::create_symlink(place.path + "/planted.so", library);
@@ -191,8 +191,8 @@ TEST_CASE("cache: a folder that another user could have filled is not used, and 
 }
 
 TEST_CASE(
-    "cache: without a home it is in the folder of temporary files, also where TMPDIR is none, and not one that was "
-    "there before") {
+    "cache: without a home it is in the temporary folder, also if TMPDIR is not a folder, and never in one that "
+    "existed before") {
   const Folder temporary;
   const Setting none("EOMGEN_CACHE_DIR", ""), xdg("XDG_CACHE_HOME", ""), home("HOME", "");
   const Setting there("TMPDIR", temporary.path);
@@ -207,7 +207,7 @@ TEST_CASE(
   CHECK((load().model.rhs != nullptr));
 }
 
-TEST_CASE("cache: what killed runs left is cleared, what others are working on is not") {
+TEST_CASE("cache: leftovers of killed runs are removed, folders in use are not") {
   const Folder cache;
   const Setting setting("EOMGEN_CACHE_DIR", cache.path);
   const auto make = [&](const std::string& name, bool old) {
@@ -229,7 +229,7 @@ TEST_CASE("cache: what killed runs left is cleared, what others are working on i
   ::close(file);
 }
 
-TEST_CASE("processes: one that hangs is ended with all that it has started") {
+TEST_CASE("processes: a hanging process is terminated with its children") {
   const Folder folder;
   const std::atomic<bool> raised{true};
   const auto begin = std::chrono::steady_clock::now();
@@ -238,7 +238,7 @@ TEST_CASE("processes: one that hangs is ended with all that it has started") {
   CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(10));
 }
 
-TEST_CASE("processes: arguments are arguments, never a shell's") {
+TEST_CASE("processes: arguments are never interpreted by a shell") {
   const auto finished = emit::run_process({"echo", "$(id)", "; ls", "*"});
   CHECK(finished.output == "$(id) ; ls *\n");
   CHECK_FALSE(emit::run_process({"no-such-program"}).started);

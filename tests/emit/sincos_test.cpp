@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// templates/kernels/sincos against CLN in 60 digits, through the compiler as users will.
+// templates/kernels/sincos compared with CLN in 60 digits, compiled as users do.
 #include <cln/real.h>
 #include <dlfcn.h>
 #include <doctest/doctest.h>
@@ -17,7 +17,7 @@ using namespace test_systems;
 
 namespace {
 
-/// Beyond it angles are left to the C library.
+/// Limit of angles; larger ones use the C library.
 template <class Real>
 constexpr Real far = sizeof(Real) == 4 ? 2048 : 65536;
 
@@ -26,7 +26,7 @@ bool same_bits(Real a, Real b) {
   return std::isnan(a) ? std::isnan(b) : a == b && std::signbit(a) == std::signbit(b);
 }
 
-/// The kernel compiled with `flags`, its text changed by the caller where another processor or compiler is to be met.
+/// The kernel compiled with `flags`. The caller may change its text to simulate another processor or compiler.
 template <class Real>
 struct Kernel {
   Folder folder;
@@ -40,7 +40,7 @@ struct Kernel {
       text.replace(at, replace.size(), by);
     }
     const std::string source = folder.path + "/kernel.c", library = folder.path + "/kernel.so";
-    // In a header: clang finds fault with what a source has and does not use, and one test does not use all.
+    // In a header, because clang warns about unused functions of a source file, and no test uses all of them.
     std::ofstream(folder.path + "/kernel.h") << "#include <float.h>\n#include <math.h>\n#include <string.h>\n" << text;
     std::ofstream(source) << "#include \"kernel.h\"\n"
                           << fmt::format(
@@ -73,7 +73,7 @@ struct Kernel {
   }
 };
 
-/// The distance from the true value in units of its last place.
+/// The error in units of the last place.
 template <class Real>
 double ulps(Real got, const cln::cl_R& exact) {
   const Real nearest = std::abs(static_cast<Real>(cln::double_approx(exact)));
@@ -96,8 +96,7 @@ std::vector<Real> angles() {
     std::uniform_real_distribution<double> within(-reach, reach);
     for (int i = 0; i < 1500; ++i) list.push_back(static_cast<Real>(within(random)));
   }
-  // Next to multiples of pi/4: where sines and cosines vanish, and where the reduction goes from one quarter to the
-  // next.
+  // Near multiples of pi/4: there sines and cosines vanish, and the reduction changes quarters.
   const cln::cl_R quarter = cln::pi(cln::float_format(60)) / 4;
   for (int k = 1; k * 0.7853981633974483 < static_cast<double>(far<Real>); k += k < 400 ? 1 : 41) {
     const Real x = static_cast<Real>(cln::double_approx(k * quarter));
@@ -132,10 +131,10 @@ std::vector<Real> special() {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("packed sincos: wrong by less than a unit in the last place up to where it leaves off", Real, double,
+TEST_CASE_TEMPLATE("packed sincos: the error is below one unit in the last place up to the limit", Real, double,
                    float) {
   std::vector<std::vector<std::string>> flags = {{"-O2"}};
-  // With fused multiplications and wide registers, where this machine has them.
+  // With fused multiply-add and wide registers if this machine has them.
   if (emit::run_process({EOMGEN_TEST_CC, "-march=native", "-E", "-x", "c", "/dev/null"}).status == 0)
     flags.push_back({"-O3", "-march=native"});
   for (const auto& set : flags) {
@@ -148,7 +147,7 @@ TEST_CASE_TEMPLATE("packed sincos: wrong by less than a unit in the last place u
     }
     CAPTURE(where);
     CHECK(largest < tolerances::packed_sincos_ulps);
-    CHECK(largest > 0.4);  // it is measured at all
+    CHECK(largest > 0.4);  // the measurement is not trivial
   }
 }
 
@@ -163,7 +162,7 @@ TEST_CASE_TEMPLATE(
     if (std::abs(angle) <= far<Real>) {
       CHECK(same_bits(kernel(-angle).first, -sine));
       CHECK(same_bits(kernel(-angle).second, cosine));
-      const bool its_own_sine = std::abs(angle) < std::numeric_limits<Real>::min();  // CLN's floats underflow there
+      const bool its_own_sine = std::abs(angle) < std::numeric_limits<Real>::min();  // CLN's floats underflow here
       CHECK((its_own_sine ? same_bits(sine, angle) && cosine == 1
                           : worst(kernel, angle) < tolerances::packed_sincos_ulps));
     } else {
@@ -173,7 +172,7 @@ TEST_CASE_TEMPLATE(
   }
 }
 
-TEST_CASE_TEMPLATE("packed sincos: the same bits in any company, with and without optimisation", Real, double, float) {
+TEST_CASE_TEMPLATE("packed sincos: the bits do not depend on the other angle or on optimisation", Real, double, float) {
   const Kernel<Real> kernel({"-O2"}), unoptimised({"-O0"});
   std::vector<Real> all = angles<Real>();
   const std::vector<Real> more = special<Real>();

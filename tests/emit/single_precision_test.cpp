@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every target in single precision, in the hands of compilers and interpreters.
+// Every target in single precision, run through compilers and interpreters.
 #include "emit/single_precision.hpp"
 
 #include <doctest/doctest.h>
@@ -23,7 +23,7 @@ std::vector<Example> single_examples() {
 
 bool runs(const char* program) { return emit::run_process({program, "--version"}).status == 0; }
 
-/// The numbers that a command writes.
+/// The numbers in the output of a command.
 std::vector<double> printed(const std::vector<std::string>& command) {
   const emit::Finished finished = emit::run_process(command);
   CHECK_MESSAGE(finished.status == 0, finished.output);
@@ -44,7 +44,7 @@ std::vector<std::string> with(std::vector<std::string> command, const std::vecto
   return command;
 }
 
-/// What is wrong with the self test of the C of this folder; empty if it agrees.
+/// The failure of the self-test of the C code in this folder; empty if it passes.
 std::string wrong_c(const std::string& folder, const Example& e) {
   const std::string name = emit::mangled_id(e.context.id), use = folder + "/use";
   std::ofstream(use + ".c") << fmt::format("#include \"{0}.h\"\nint main(void) {{ return {0}_selftest(); }}\n", name);
@@ -53,7 +53,7 @@ std::string wrong_c(const std::string& folder, const Example& e) {
   return emit::run_process({use}).status == 0 ? "" : "its self test";
 }
 
-/// C++ that calls the templates of `header` with floats, at the start.
+/// C++ source that calls the templates of `header` with floats at the start state.
 std::string wrong_templates(const std::string& folder, const std::string& header, const std::string& space,
                             const std::string& selftest) {
   std::ofstream(folder + "/use.cpp") << fmt::format(
@@ -99,10 +99,11 @@ std::string wrong_script(const std::string& folder, const Example& e) {
   return finished.status == 0 ? "" : finished.output;
 }
 
-/// What is wrong with what a target wrote; empty if it works. A target without an entry fails the test of all.
+/// Checks of the output of each target: a description of the failure, or empty. A target without an entry fails the
+/// test.
 const std::map<std::string, std::string (*)(const std::string& folder, const Example& e)> uses = {
     {"c", wrong_c},
-    {"batch",  // what its lanes compute: batch_test.cpp
+    {"batch",  // batch_test.cpp tests the values of lanes
      [](const std::string& folder, const Example& e) {
        const std::string of_c = wrong_c(folder, e), c = folder + "/" + emit::mangled_id(e.context.id) + "_batch.c";
        return of_c.empty() ? complaints(with(compile_c(), {"-c", "-o", folder + "/batch.o"}), {c}) : of_c;
@@ -127,7 +128,7 @@ const std::map<std::string, std::string (*)(const std::string& folder, const Exa
 
 }  // namespace
 
-TEST_CASE("single precision: every target has it, passes its self test, and tells what it costs") {
+TEST_CASE("single precision: every target supports it, passes its self-test, and reports the loss of accuracy") {
   for (const emit::TargetEntry& target : emit::targets()) {
     INFO(target.name);
     const auto use = uses.find(target.name);
@@ -147,7 +148,7 @@ TEST_CASE("single precision: every target has it, passes its self test, and tell
   }
 }
 
-TEST_CASE("single precision: C computes no double, loses few digits, and its self test finds a wrong one") {
+TEST_CASE("single precision: C uses no doubles and loses few digits, and its self-test detects a wrong digit") {
   for (Example e : examples()) {
     INFO(e.context.id);
     CHECK(file_named(emit::emit(e.program, e.context, "c"), ".c").find("float ") == std::string::npos);
@@ -157,12 +158,12 @@ TEST_CASE("single precision: C computes no double, loses few digits, and its sel
     emit::write_files(folder.path, files);
     const std::string text = file_named(files, ".c");
     CHECK(text.find("double ") == std::string::npos);
-    // 24 bits: not less than a fraction of their last one, and these systems lose two digits at most.
+    // 24 bits: the error is at least a fraction of the last one, and these systems lose at most two digits.
     REQUIRE(e.context.single_error);
     CHECK(*e.context.single_error > 1e-9);
     CHECK(*e.context.single_error < 1e-5);
 
-    // A wrong digit of the fifth place is found.
+    // A wrong fifth digit is detected.
     std::string wrong = text;
     const std::size_t at = wrong.rfind("0.5f*") != std::string::npos ? wrong.rfind("0.5f*") : wrong.rfind("2.0f*");
     if (at == std::string::npos) continue;
@@ -172,7 +173,7 @@ TEST_CASE("single precision: C computes no double, loses few digits, and its sel
   }
 }
 
-TEST_CASE("single precision: JavaScript gives the bits of C, but for functions of the libraries") {
+TEST_CASE("single precision: JavaScript gives the bits of C, except for library functions") {
   if (!runs("node")) {
     MESSAGE("skipped: there is no node");
     return;
@@ -188,7 +189,7 @@ TEST_CASE("single precision: JavaScript gives the bits of C, but for functions o
     for (const char* target : {"c", "javascript"})
       emit::write_files(folder.path, emit::emit(e.program, e.context, target));
     std::string numbers;
-    for (std::size_t i = 0; i < n * states; ++i)  // of no float's decimals: both round what they are given
+    for (std::size_t i = 0; i < n * states; ++i)  // not exact as floats: both languages round their inputs
       numbers += fmt::format("{}{:.17g}", i > 0 ? ", " : "", e.context.start[i % n] + within(random));
     std::ofstream(folder.path + "/use.c") << fmt::format(
         "#include <stdio.h>\n#include \"{0}.h\"\nint main(void) {{\n"
@@ -211,8 +212,8 @@ TEST_CASE("single precision: JavaScript gives the bits of C, but for functions o
                               of_script = printed({"node", folder.path + "/use.js"});
     REQUIRE(of_c.size() == states * (1 + n));
     REQUIRE(of_script.size() == of_c.size());
-    // Sines and cosines of either may be wrong by a unit in the last place, and each result by what its self test
-    // allows of the largest.
+    // Sines and cosines of both languages may be wrong by a unit in the last place, and each result by the tolerance of
+    // the self-test for the largest entry.
     const bool exact = e.program.functions.front().operations.trig + e.program.functions.front().operations.other == 0;
     const double allowed = exact ? 0 : 2e-5;
     without_functions += exact ? 1 : 0;
@@ -229,9 +230,9 @@ TEST_CASE("single precision: JavaScript gives the bits of C, but for functions o
   CHECK(without_functions > 0);
 }
 
-TEST_CASE("single precision: the header of templates holds its self test too, in double precision") {
+TEST_CASE("single precision: the template header passes its self-test too, in double precision") {
   Example e = example("two", double_pendulum(), {"a", "b"}, {"m1", "m2", "l1", "l2", "g"});
-  const emit::TestVector& first = e.context.tests[0];  // the defaults, which are no numbers of single precision
+  const emit::TestVector& first = e.context.tests[0];  // the defaults, which are not exact in single precision
   e.context.start_time = first.t;
   for (std::size_t i = 0; i < first.p.size(); ++i) e.context.parameters[i].value = first.p[i];
   emit::make_single(e.program, e.context);
@@ -240,7 +241,7 @@ TEST_CASE("single precision: the header of templates holds its self test too, in
   CHECK(wrong_templates(folder.path, "two.hpp", "eom::two", " + eom::two::selftest()") == "");
 }
 
-TEST_CASE("single precision: what vanishes in it is 0, and states beyond it are none of the self test") {
+TEST_CASE("single precision: underflow gives 0, and states that overflow are not in the self-test") {
   const Example e = example("two", double_pendulum(), {"a", "b"}, {"m1", "m2", "l1", "l2", "g"});
   const auto made = [&e](double factor) {
     emit::EmissionContext context = e.context;
@@ -248,13 +249,13 @@ TEST_CASE("single precision: what vanishes in it is 0, and states beyond it are 
     emit::make_single(e.program, context);
     return context;
   };
-  CHECK(made(1e-25).tests.size() == e.context.tests.size());  // products of two rates are below the least number
+  CHECK(made(1e-25).tests.size() == e.context.tests.size());  // products of two rates underflow
   CHECK(*made(1e-25).single_error < 1e-5);
   CHECK(made(1e25).tests.size() == e.context.tests.size() - 1);
   CHECK(made(1e60).tests.size() == e.context.tests.size() - 1);
 }
 
-TEST_CASE("single precision: numbers beyond it are refused by every target") {
+TEST_CASE("single precision: every target rejects numbers that overflow") {
   CHECK(emit::single_dialect().value(0.1) == "0.1f");
   CHECK(emit::single_number(0.1) == static_cast<double>(0.1f));
   CHECK_THROWS_AS(emit::single_dialect().value(1e60), Error);

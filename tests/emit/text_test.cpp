@@ -26,7 +26,7 @@ TEST_CASE("text: comments cannot be ended or continued from inside") {
   CHECK(comment_text("m/s^2") == "m/s^2");
 }
 
-TEST_CASE("text: a string literal holds what it was made of") {
+TEST_CASE("text: a string literal preserves its text") {
   CHECK(string_literal("a\"b\\c?\n", "") == "\"a\\\"b\\\\c\\?\\012\"");
   CHECK(string_literal(std::string(200, 'x'), "  ").find("\"\n  \"") != std::string::npos);
 }
@@ -40,7 +40,7 @@ TEST_CASE("text: decimals read back as the same number") {
 }
 
 TEST_CASE("text: exact numbers are rounded to the nearest double") {
-  // strtod is correctly rounded: its reading of a decimal is the judge
+  // strtod is correctly rounded: it is the reference for decimals
   for (const char* text :
        {"9.81", "0.1", "0.3", "6.67430e-11", "1.7976931348623157e308", "4.9e-324", "2.5e-324", "2.4e-324",
         "9007199254740993", "9007199254740995", "0.1000000000000000055511151231257827", "1e-320",

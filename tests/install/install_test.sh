@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The installed tree: complete, movable, and usable without the generator's libraries.
 #   install_test.sh BUILD SOURCE SCRATCH CMAKE CXX [FLAG]
-# FLAG: of the sanitizers with which the build was made; what uses its library needs it too.
+# FLAG: the sanitizer flag of the build; programs that link its library need it too.
 set -euo pipefail
 build=$1 source=$2 scratch=$3 cmake=$4 cxx=$5 sanitizers=${6-}
 
@@ -12,18 +12,18 @@ refuse() {
 
 rm -rf -- "$scratch"
 mkdir -p "$scratch"
-# Outside the source tree, for eomgen looks for models in the folders above the one it is called in.
+# Outside the source tree, because eomgen searches the parent folders for models.
 elsewhere=$(mktemp -d)
 trap 'rm -rf -- "$elsewhere"' EXIT
 "$cmake" --install "$build" --prefix "$scratch/first" >"$scratch/install.log" || { cat "$scratch/install.log"; refuse "cmake --install"; }
-# Used from another folder than it was installed to: an installed tree may be moved.
+# The installed tree is moved first: it must be relocatable.
 prefix="$scratch/prefix"
 mv "$scratch/first" "$prefix"
 
-echo "-- the package holds no path of the source or build tree"
+echo "-- the package contains no path of the source or build tree"
 if grep -rIlF -e "$source" -e "$build" -e "$scratch/first" -- "$prefix"; then refuse "these files name folders of the build"; fi
 
-echo "-- a stranger's program is built with it and links neither GiNaC nor CLN"
+echo "-- a user's program builds with it and links neither GiNaC nor CLN"
 cp -R "$source/tests/install/consumer" "$scratch/source"
 cp "$source/examples/hybrid/rough_sphere.cpp" "$scratch/source/"
 "$cmake" -S "$scratch/source" -B "$scratch/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O0 \
@@ -43,7 +43,7 @@ cmp "$scratch/rough_sphere.csv" "$scratch/run.csv" || refuse "emitted code and t
 grep -q 'int__rhs(' "$scratch/consumer/reserved_equations_eom/int_.h" || refuse "a model called int.toml is not int_"
 if grep -rIlE '#include *<(ginac|cln)/' -- "$prefix/include"; then refuse "these installed headers include computer algebra"; fi
 
-echo "-- a stranger's program makes a model in code with the library, prints its LaTeX, emits C and runs it"
+echo "-- a user's program builds a model with the library, prints its LaTeX, emits C and runs it"
 cp -R "$source/examples/library" "$scratch/library"
 "$cmake" -S "$scratch/library" -B "$scratch/library/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE="-O0 $sanitizers" \
   -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF >"$scratch/library.log" 2>&1 ||
@@ -72,7 +72,7 @@ touch "$prefix/bin/eomgen"
 due=$("$cmake" --build "$scratch/consumer" -- -n | grep -c 'Generating the equations of motion of ') # told, not made: all would be compiled again
 ((due == 4)) || refuse "a newer eomgen would not generate all code"
 
-echo "-- the licence of what is installed lies beside it"
+echo "-- licences are installed with the files"
 [[ -n $(find "$prefix" -path '*doc*' -name 'LICENSE*') ]] || refuse "no licence is installed"
 for page in commands.md model-format.md linking.md schema/run.schema.json; do
   [[ -s "$prefix/share/doc/eomgen/$page" ]] || refuse "the page $page is not installed"
@@ -84,7 +84,7 @@ echo "-- the program runs from the prefix, with its models"
 [[ -x $prefix/bin/eomgen ]] || refuse "there is no bin/eomgen"
 [[ $(cat "$scratch/consumer/cli_path.txt") == "$prefix/bin/eomgen" ]] || refuse "eomgen::cli is not bin/eomgen"
 cd "$elsewhere"
-# Read to the end first: grep -q ends at its match, and what still writes into the pipe then fails.
+# The output is read to the end first: grep -q stops at its match, and the writer would then fail.
 says_format() { [[ $("$@" --json) == *'"format": 1'* ]]; }
 says_format "$prefix/bin/eomgen" list || refuse "eomgen list"
 says_format "$prefix/bin/eomgen" check P7_moving_sphere || refuse "eomgen check of an installed model, by its name"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The Debian package: made, unpacked, complete, and used from where it was unpacked.
+# The Debian package: built, unpacked, complete, and usable from where it was unpacked.
 #   package_test.sh BUILD SCRATCH CPACK
 set -euo pipefail
 build=$1 scratch=$2 cpack=$3
@@ -20,7 +20,7 @@ mkdir -p "$scratch"
 package=("$scratch"/made/eomgen_*.deb)
 [[ ${#package[@]} == 1 && -s ${package[0]} ]] || refuse "cpack made no package, or several"
 
-echo "-- it says what it is, and what it needs"
+echo "-- its metadata describe it and its dependencies"
 field() { dpkg-deb -f "${package[0]}" "$1"; }
 [[ $(field Package) == eomgen && -n $(field Maintainer) && -n $(field Description) ]] || refuse "fields of the package"
 for needed in libginac libcln libfmt libc6; do
@@ -40,7 +40,7 @@ while read -r command _; do
   [[ -s $prefix/share/man/man1/eomgen-$command.1 ]] || refuse "there is no page of the manual about $command"
 done < <("$prefix/bin/eomgen" --help | sed -n '/^Subcommands:/,/^$/p' | sed -e 1d -e '/^$/d')
 
-echo "-- man reads every page without a complaint"
+echo "-- man renders every page without warnings"
 if command -v groff >/dev/null; then
   for page in "$prefix"/share/man/man1/*.1; do
     complaints=$(groff -man -Tutf8 -ww "$page" 2>&1 >"$scratch/page.txt") || refuse "groff on $page"
@@ -49,7 +49,7 @@ if command -v groff >/dev/null; then
 fi
 
 echo "-- bash completes commands, options, and words of an option"
-# completes WORDS...: what stands for the last of them.
+# completes WORDS...: the completions of the last word.
 completes() {
   bash -c 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _eomgen; printf "%s\n" "${COMPREPLY[@]}"' \
     - "$prefix/share/bash-completion/completions/eomgen" "$@"

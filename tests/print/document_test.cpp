@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The LaTeX document: nothing of the user's acts as LaTeX, and it compiles where LaTeX is installed.
+// The LaTeX document: user text never acts as LaTeX, and the document compiles if LaTeX is installed.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -59,7 +59,7 @@ bool compiles(const std::string& text, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("hostile names and texts stay texts") {
+TEST_CASE("hostile names and texts are printed literally") {
   const std::string text = document(hostile());
   const std::string body = text.substr(text.find("\\begin{document}") + 16);
   for (const char* command : {"\\input", "\\write", "\\immediate", "\\csname", "\\catcode"}) {
@@ -70,7 +70,7 @@ TEST_CASE("hostile names and texts stay texts") {
   CHECK(body.find("\\mathrm{write}_{18}") != std::string::npos);
 }
 
-TEST_CASE("the document has both approaches side by side and the constraint force") {
+TEST_CASE("the document shows both approaches side by side, and the constraint force") {
   const std::string text = document(model::read_model(test::source_folder() + "/models/P7_moving_sphere.toml"));
   CHECK(text.find("Approach I}") != std::string::npos);
   CHECK(text.find("Approach II}") != std::string::npos);
@@ -92,7 +92,7 @@ std::string shipped(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("an equation that both approaches give stands once, over both columns") {
+TEST_CASE("an equation that is equal in both approaches is printed once, across both columns") {
   const std::string text = shipped("P7_moving_sphere");
   const std::string phi =
       "\\frac{d}{dt}\\left(m d^{2} \\dot{\\phi}\\right) - m d^{2} \\sin\\phi\\, \\cos\\phi\\, \\dot{\\theta}^{2} - m g "
@@ -100,13 +100,13 @@ TEST_CASE("an equation that both approaches give stands once, over both columns"
   CHECK(count(text, phi) == 1);
   CHECK(text.find("$\\phi$ & \\multicolumn{2}{p{0.84\\linewidth}}{$\\displaystyle " + phi + "$} & (1)") !=
         std::string::npos);
-  // theta of the rolling disk has another one by Approach II, x3 none.
+  // In approach II the equation of theta of the rolling disk differs, and x3 has none.
   const std::string disk = shipped("R6_rolling_disk");
   CHECK(count(disk, "$\\theta$ & \\multicolumn") == 0);
   CHECK(disk.find("$x_{3}$ & $\\displaystyle m \\ddot{x}_{3} + m g = \\lambda_{3}$ & --- & ") != std::string::npos);
 }
 
-TEST_CASE("the document goes from the energies to the equations step by step, as (2.110)") {
+TEST_CASE("the document derives the equations from the energies step by step, as (2.110)") {
   const std::string text = shipped("P7_moving_sphere");
   for (const char* step :
        {"\\frac{\\partial T}{\\partial \\dot{\\phi}} = m R^{2} \\dot{\\phi}",
@@ -119,7 +119,7 @@ TEST_CASE("the document goes from the energies to the equations step by step, as
   }
 }
 
-TEST_CASE("the document says of every constraint what it is, and what decouples") {
+TEST_CASE("the document states the kind of every constraint, and which equations decouple") {
   const std::string sphere = shipped("P7_moving_sphere");
   CHECK(sphere.find("\\textbf{sphere} is holonomic and rheonomic") != std::string::npos);
   CHECK(sphere.find("it fixes $R$:") != std::string::npos);
@@ -133,12 +133,12 @@ TEST_CASE("the document says of every constraint what it is, and what decouples"
   CHECK(shipped("G1_spherical").find("What decouples") == std::string::npos);
 }
 
-TEST_CASE("words that are longer than a line may be broken, letter by letter") {
+TEST_CASE("words that are longer than a line may be broken at every letter") {
   CHECK(print::words("short words & more") == "short words \\& more");
   const std::string broken = print::words(std::string(40, 'x'));
   CHECK(count(broken, "\\hspace{0pt}") == 39);
   CHECK(count(print::words("\xc3\xa4" + std::string(30, 'x')), "\xc3\xa4\\hspace{0pt}") ==
-        1);  // a letter of two bytes is one
+        1);  // a letter of two bytes counts as one
 }
 
 TEST_CASE("the document compiles with pdflatex, if it is installed") {
@@ -152,7 +152,7 @@ TEST_CASE("the document compiles with pdflatex, if it is installed") {
   CHECK(compiles(document(hostile()), "hostile"));
 }
 
-TEST_CASE("the document loads amssymb where a name needs it, and only there") {
+TEST_CASE("the document loads amssymb only if a name needs it") {
   std::string text =
       "format = 1\n[coordinates]\nx = { tex = '\\mathfrak{x}' }\ny = { tex = 'y^2' }\n[parameters]\nk = { value = 1, "
       "tex = '\\mathbb{K}_1' }\n"

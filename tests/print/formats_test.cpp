@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a reader sees: few golden strings, brackets, and MathML that is well-formed.
+// Printed formulas: a few golden strings, brackets, and well-formed MathML.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct Printed {
 
 std::string shipped(const std::string& name) { return test::source_folder() + "/models/" + name + ".toml"; }
 
-// Every element that opens closes, in order.
+// Whether elements open and close in order.
 bool well_formed(const std::string& xml) {
   std::vector<std::string> open;
   for (std::size_t i = xml.find('<'); i != std::string::npos; i = xml.find('<', i + 1)) {
@@ -90,7 +90,7 @@ TEST_CASE("P7 by approach II reads as (2.109), without the constraint force") {
   CHECK(two.of("energies")[0].text == "T~ = 1/2 m (d^2 phi_dot^2 + d^2 sin^2(phi) theta_dot^2 + d_dot^2)");
 }
 
-TEST_CASE("common factors of parameters stand in front") {
+TEST_CASE("common parameter factors come first") {
   const Printed one(model::read_model(shipped("S5_double_pendulum")), system::Approach::two, {"equations"});
   CHECK(one.of("explicit")[0].text ==
         "(m1 + m2) L1^2 theta1_ddot + m2 L1 L2 cos(theta1 - theta2) theta2_ddot + m2 L1 L2 sin(theta1 - theta2) "
@@ -98,7 +98,7 @@ TEST_CASE("common factors of parameters stand in front") {
         " + (m1 + m2) L1 g sin(theta1) = 0");
 }
 
-TEST_CASE("what `all` shows is there in three formats, and MathML is well-formed") {
+TEST_CASE("everything that `all` selects exists in three formats, and MathML is well-formed") {
   for (const char* name : {"P7_moving_sphere", "S5_spherical_double_pendulum", "S5_double_pendulum_cartesian",
                            "P14_kepler_cartesian", "cart_pendulum", "S6_chain_6"}) {
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
@@ -116,7 +116,7 @@ TEST_CASE("what `all` shows is there in three formats, and MathML is well-formed
   }
 }
 
-TEST_CASE("MathML: a gap stands between a function and its argument, and between factors that would run together") {
+TEST_CASE("MathML: a space separates a function from its argument, and factors that would run together") {
   using print::Format;
   const std::string gap = " lspace=\"0\" rspace=\"0.167em\"";
   const std::string applied = "<mo" + gap + ">&#x2061;</mo>", times = "<mo" + gap + ">&#x2062;</mo>";
@@ -126,15 +126,15 @@ TEST_CASE("MathML: a gap stands between a function and its argument, and between
   CHECK(has(expression("a*cos(x)", Format::mathml),
             "<mi>a</mi>" + times + "<mrow><mi>cos</mi>" + applied + "<mi>x</mi></mrow>"));
   CHECK(has(expression("sin(x)*y", Format::mathml), times + "<mrow><mi>sin</mi>"));  // y sin x
-  // Nothing runs together where a bracket or two letters meet.
+  // No space is needed next to a bracket or between single letters.
   CHECK(has(expression("sin(x + y)", Format::mathml), "<mi>sin</mi><mo>&#x2061;</mo><mrow><mo stretchy=\"false\">("));
   CHECK(has(expression("a*b", Format::mathml), "<mi>a</mi><mo>&#x2062;</mo><mi>b</mi>"));
-  // Signs are infix also where a browser begins a line, and a <math>, with them.
+  // Signs are infix even if a line, or a <math>, starts with them.
   CHECK(has(expression("a - b", Format::mathml), "<mo form=\"infix\">−</mo>"));
   CHECK(has(expression("-a", Format::mathml), "<mo form=\"prefix\">−</mo>"));
 }
 
-TEST_CASE("brackets stand where they are needed, and only there") {
+TEST_CASE("brackets appear only if needed") {
   using print::Format;
   CHECK(expression("a/(b*c)", Format::text) == "a/(b c)");
   CHECK(expression("a/b*c", Format::language) == "a*c/b");
@@ -149,7 +149,7 @@ TEST_CASE("brackets stand where they are needed, and only there") {
   CHECK(expression("(x + y)^(a/b)", Format::language) == "(x + y)^(a/b)");
 }
 
-TEST_CASE("lines are broken in brackets, and what cannot be broken is named") {
+TEST_CASE("lines break inside brackets, and unbreakable parts are abbreviated") {
   const auto narrow = print::latex_style(10);
   const model::Model model =
       model::read_model_text("format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n", "text");
@@ -175,7 +175,7 @@ TEST_CASE("the language of model files can be pasted back") {
   }
 }
 
-TEST_CASE("letters of mechanics give way to the model's own") {
+TEST_CASE("letters of mechanics change if the model uses them") {
   const model::Model model = model::read_model_text(R"(format = 1
 [parameters]
 m = 1
@@ -199,7 +199,7 @@ holonomic = "T^2 - L*psi^2"
   CHECK(printed.of("equations")[0].text.find("= 2 mu T") != std::string::npos);
 }
 
-TEST_CASE("quarter turns leave the angles of sines and cosines, with the right sign") {
+TEST_CASE("quarter turns are removed from the angles of sines and cosines, with the right sign") {
   CHECK(expression("sin(pi/2 - x)", print::Format::text) == "cos(x)");
   CHECK(expression("cos(pi/2 - x)", print::Format::text) == "sin(x)");
   CHECK(expression("sin(x + pi/2)", print::Format::text) == "cos(x)");
@@ -211,14 +211,14 @@ TEST_CASE("quarter turns leave the angles of sines and cosines, with the right s
   CHECK(expression("sin(x + pi/3)", print::Format::text) == "sin(x + pi/3)");
 }
 
-TEST_CASE("no minus leads where a bracket or another order avoids it") {
+TEST_CASE("a leading minus is avoided by a bracket or another order") {
   CHECK(expression("x_dot*(b*sin(y)^2 - a*sin(y)^2 + c*cos(y))", print::Format::text).front() != '-');
   CHECK(expression("-(a - b)*x", print::Format::text) == "(b - a) x");
   CHECK(expression("y_dot - a*x_dot*cos(y)", print::Format::text).front() != '-');
   CHECK(expression("-(a - b)*x/(a + b)", print::Format::text) == "(b - a) x/(a + b)");
 }
 
-TEST_CASE("linear: what holds at rest anywhere is no condition, and none begins with a minus that can be left out") {
+TEST_CASE("linear: trivial equilibrium conditions are omitted, and none begins with an avoidable minus") {
   const mechanics::Mechanics m = mechanics::build_mechanics(
       model::read_model_text("format = 1\n[parameters]\nm = \"1 kg\"\nk = \"2 N/m\"\n[[particle]]\nname = \"P\"\nmass "
                              "= \"m\"\nposition = { cartesian "
@@ -231,7 +231,7 @@ TEST_CASE("linear: what holds at rest anywhere is no condition, and none begins 
   CHECK(rest == std::vector<std::string>{"k x = 0"});
 }
 
-TEST_CASE("decimals of the author stay decimals, and what textbooks write as fractions stays a fraction") {
+TEST_CASE("decimals in the model stay decimals, and simple fractions stay fractions") {
   CHECK(expression("9.81*x", print::Format::text) == "9.81 x");
   CHECK(expression("9.81*x", print::Format::latex) == "9.81 x");
   CHECK(expression("0.0125*x", print::Format::text) == "1/80 x");
@@ -240,7 +240,7 @@ TEST_CASE("decimals of the author stay decimals, and what textbooks write as fra
   CHECK(expression("x*pi/6", print::Format::text) == "1/6 pi x");
 }
 
-TEST_CASE("the constraint force on a particle is a vector along its own unit vectors") {
+TEST_CASE("the constraint force on a particle is a vector along the unit vectors of its coordinates") {
   const Printed cone(model::read_model(shipped("P4_moving_cone")), system::Approach::one, {"reactions"});
   const auto is_force = [](const Item& item) { return item.role == "constraint force"; };
   const std::vector<Item> of_cone = cone.of("reactions");
@@ -251,7 +251,7 @@ TEST_CASE("the constraint force on a particle is a vector along its own unit vec
   CHECK(helix.of("reactions").back().text == "N = lambda_1 a^r + lambda_2 a^nu");
 }
 
-TEST_CASE("by approach II no vector holds the multiplier of a constraint that is built in") {
+TEST_CASE("by approach II no vector contains the multiplier of an imposed constraint") {
   for (const char* name : {"P7_moving_sphere", "P4_moving_cone", "P8_smooth_helix"}) {
     CAPTURE(name);
     const model::Model model = model::read_model(shipped(name));
@@ -262,7 +262,7 @@ TEST_CASE("by approach II no vector holds the multiplier of a constraint that is
   CHECK_FALSE(Printed(sphere, system::Approach::one).of("reactions").empty());
 }
 
-TEST_CASE("moments with numbers in them have one number in front") {
+TEST_CASE("numeric factors of moments are combined in front") {
   const model::Model model = model::read_model_text(
       "format = 1\n[parameters]\nm = 1\nl = 1\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = { cylinder = [\"l\", "
       "\"l\"] }\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that `derive` prints of every shipped model, set by pdflatex: no error, and no line that runs over the
-// margin. All in one document, so that it takes seconds; the models' own documents are set in tests/cli.
+// Everything that `derive` prints for every shipped model, typeset by pdflatex without errors and without overfull
+// lines. One document contains all models, so that the test takes seconds; tests/cli typesets the documents of the
+// models.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -28,14 +29,14 @@ std::vector<fs::path> shipped_models() {
 
 }  // namespace
 
-TEST_CASE("a line that runs over the margin is seen") {
+TEST_CASE("an overfull line is detected") {
   if (!test::is_pdflatex_installed()) return;
   const std::string wide =
       "\\documentclass{article}\n\\begin{document}\n% ITEM wide\n\\[\n\\hspace{2\\textwidth}x\n\\]\n\\end{document}\n";
   CHECK(test::typeset(wide, "wide").overruns.size() == 1);
 }
 
-TEST_CASE("all that derive shows of every model fits on a page, in both approaches") {
+TEST_CASE("everything that derive prints for every model fits on a page, in both approaches") {
   if (!test::is_pdflatex_installed()) return;
   std::string text =
       "\\documentclass[10pt,a4paper]{article}\n\\usepackage{amsmath}\n\\usepackage[margin=20mm]{geometry}\n"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equations by named parts: every letter in them is defined, and with these definitions they are the equations of
-// motion: evaluated as they are printed, with finite differences for what has dots and for partial derivatives.
+// Equations by named parts. Every letter is defined, and with the definitions the equations are the equations of
+// motion. The printed formulas are evaluated, with finite differences for time derivatives and partial derivatives.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -27,12 +27,12 @@ using symbolic::SymbolKind;
 
 namespace {
 
-constexpr double step = 1e-4;     // of differences, whose error is its square for rates
-constexpr double allowed = 1e-5;  // relative to the size of the terms, third and fourth derivatives among them
+constexpr double step = 1e-4;     // of differences; for rates the error is its square
+constexpr double allowed = 1e-5;  // relative to the terms, with third and fourth derivatives
 
 struct Value {
   bool vector = false;
-  std::array<double, 3> x{};  // of a number the first
+  std::array<double, 3> x{};  // a scalar uses the first entry
 };
 Value number(double x) { return {false, {x, 0, 0}}; }
 Value combined(const Value& a, const Value& b, double factor) {
@@ -55,7 +55,7 @@ std::string key(const Formula& f) {
   return text;
 }
 
-/// What the statements say, at a state that moves on with constant accelerations.
+/// Evaluates the statements along a motion with constant accelerations.
 class Reader {
  public:
   Reader(const std::vector<Statement>& statements, std::vector<double> q, std::vector<double> v, std::vector<double> a,
@@ -78,7 +78,7 @@ class Reader {
       case Form::product: {
         Value result = number(1);
         for (const Formula& factor : f.args) {
-          if (result.x == std::array<double, 3>{}) return result;  // 0 times what stands elsewhere
+          if (result.x == std::array<double, 3>{}) return result;  // 0 times an undefined vector
           result = times(result, (*this)(factor));
         }
         return result;
@@ -173,7 +173,7 @@ bool is_plain(const model::Model& model) {
 
 }  // namespace
 
-TEST_CASE("named parts: with what they are said to be, the equations are those of motion") {
+TEST_CASE("named parts: with their definitions the equations are the equations of motion") {
   int models = 0, with_axes_of_their_own = 0, by_forces = 0;
   for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() + "/models")) {
     if (entry.path().extension() != ".toml") continue;
@@ -195,7 +195,8 @@ TEST_CASE("named parts: with what they are said to be, the equations are those o
       a.push_back(0.6 * std::cos(3.1 * x + 2));
     }
     const system::EquationSystem s = derive::lagrange(m, system::Approach::two);
-    if (s.free.size() != form.equations.size()) continue;  // constraints among coordinates, imposed by the form alone
+    // constraints of coordinates, imposed by the display form only
+    if (s.free.size() != form.equations.size()) continue;
     std::vector<symbolic::Ref> rows = s.M;
     rows.insert(rows.end(), s.f.begin(), s.f.end());
     const std::vector<double> values = symbolic::evaluate(*s.dag, rows, [&](const Symbol& symbol) -> double {
@@ -227,11 +228,11 @@ TEST_CASE("named parts: with what they are said to be, the equations are those o
     for (const mechanics::Spin& spin : m.spins) with_axes_of_their_own += spin.carrier != spin.w ? 1 : 0;
   }
   CHECK(models > 15);
-  CHECK(with_axes_of_their_own > 2);  // turning otherwise than their bodies
-  CHECK(by_forces > 0);               // whose generalised forces are too long
+  CHECK(with_axes_of_their_own > 2);  // models with axes that rotate differently from their bodies
+  CHECK(by_forces > 0);               // models with long generalised forces
 }
 
-TEST_CASE("named parts: forms that are too long have them, also for the constraint forces of approach I") {
+TEST_CASE("named parts: long forms use them, also for the constraint forces of approach I") {
   const model::Model model = model::read_model(test::source_folder() + "/models/R4_turntable.toml");
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
@@ -251,7 +252,7 @@ TEST_CASE("named parts: forms that are too long have them, also for the constrai
   }
 }
 
-TEST_CASE("named parts: the letters of constraints in equations are those under which the constraints are given") {
+TEST_CASE("named parts: equations and constraints use the same letters for constraints") {
   const std::regex letter(R"(d((?:psi|Psi)(?:_[0-9]+)?(?:_dot)?)/d)");
   std::set<std::string> seen;
   for (const char* name :
@@ -273,13 +274,13 @@ TEST_CASE("named parts: the letters of constraints in equations are those under 
       }
     }
   }
-  CHECK(seen.contains("psi = "));        // of one constraint
-  CHECK(seen.contains("psi_1_dot = "));  // of velocities
+  CHECK(seen.contains("psi = "));        // a single constraint
+  CHECK(seen.contains("psi_1_dot = "));  // a velocity constraint
   CHECK(seen.contains("psi_4 = "));
 }
 
-// A damper, a force, a force and a moment at once, a spring among them, all from a body in a Rodrigues vector.
-TEST_CASE("named parts: generalised forces that are too long are those of forces and moments that have names") {
+// A damper, a force, a force with a moment and a spring, all attached to a body with a Rodrigues vector.
+TEST_CASE("named parts: long generalised forces are written with named forces and moments") {
   const std::string text = R"toml(format = 1
 [parameters]
 m = "1 kg"

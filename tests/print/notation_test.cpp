@@ -49,7 +49,7 @@ TEST_CASE("names that are LaTeX commands stay words") {
   }
 }
 
-TEST_CASE("MathML of names holds nothing but letters, digits and known elements") {
+TEST_CASE("MathML of names contains only letters, digits and known elements") {
   CHECK(mathml(split_name("theta1")) == "<msub><mi>θ</mi><mrow><mn>1</mn></mrow></msub>");
   Glyph rate = split_name("q_1");
   rate.dots = 1;
@@ -75,7 +75,7 @@ TEST_CASE("text of users is escaped") {
         "&lt;script&gt;alert(&#39;x &amp; &quot;y&quot;&#39;)&lt;/script&gt;");
 }
 
-TEST_CASE("multipliers of joints are named by the joint and what they exert, which is what the mechanics says") {
+TEST_CASE("names of joint multipliers contain the joint and the force or moment, as in the mechanics") {
   for (const char* name : {"R15_pin_joint", "four_bar_spatial_pins", "six_bar_spatial"}) {
     CAPTURE(name);
     const model::Model model = model::read_model(test::source_folder() + "/models/" + name + ".toml");
@@ -91,7 +91,7 @@ TEST_CASE("multipliers of joints are named by the joint and what they exert, whi
         REQUIRE(shown.starts_with(begin));
         const bool force = shown[begin.size()] == 'F';
         if (!force) CHECK(shown[begin.size()] == 'M');
-        // A force of the multiplier where it is called one, else a moment alone.
+        // A force if the multiplier is a force, else a pure moment.
         bool exerts_force = false;
         for (std::size_t c = 0; c < 3; ++c) exerts_force = exerts_force || !m.dag->is_zero(reaction.along[c][k]);
         CHECK(exerts_force == force);
@@ -100,7 +100,7 @@ TEST_CASE("multipliers of joints are named by the joint and what they exert, whi
   }
 }
 
-TEST_CASE("a legend tells which multiplier is which, where there are several") {
+TEST_CASE("a legend describes the multipliers if there are several") {
   const auto meanings = [](const char* name) {
     const model::Model model = model::read_model(test::source_folder() + "/models/" + name + ".toml");
     return print::multiplier_meanings(mechanics::build_mechanics(model));

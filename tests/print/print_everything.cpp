@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// print_everything MODEL N: all formulas in all formats, after N of GiNaC's serial numbers were burnt.
+// print_everything MODEL N: prints all formulas in all formats after consuming N serial numbers of GiNaC.
 #include <ginac/ginac.h>
 
 #include <cstdio>

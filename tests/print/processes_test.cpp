@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The same bytes in every process: address randomisation is on, and each burns another number of GiNaC's serials.
+// Every process prints the same bytes, with address randomisation and different GiNaC serial numbers.
 #include <doctest/doctest.h>
 
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr std::size_t long_output = 1000000;  // bytes: seconds of work; two processes are compared
+constexpr std::size_t long_output = 1000000;  // bytes; takes seconds, so only two processes are compared
 
 std::string output_of(const std::string& command) {
   std::string result;

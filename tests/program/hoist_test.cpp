@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is made of parameters only is computed once, and only that.
+// Computations of parameters only are hoisted, and no others.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ bool reads(const program::Function& function, program::Slot slot) {
 
 }  // namespace
 
-TEST_CASE("hoisting: prepare and rhs_prepared give what rhs gives, to 45 digits, and cost less") {
+TEST_CASE("hoisting: prepare and rhs_prepared agree with rhs to 45 digits, and cost less") {
   std::size_t split = 0;
   for (const auto& system :
        {pendulum(), double_pendulum(), cart_pendulum(), spherical_pendulum(), massless(), chain(3), chain(6)}) {
@@ -53,7 +53,7 @@ TEST_CASE("hoisting: prepare and rhs_prepared give what rhs gives, to 45 digits,
   CHECK(split >= 4);
 }
 
-TEST_CASE("hoisting: prepare reads parameters only, and no operation on parameters is left behind") {
+TEST_CASE("hoisting: prepare reads parameters only, and no operation on parameters remains in the rest") {
   for (const auto& system : {double_pendulum(), cart_pendulum(), spherical_pendulum(), chain(3)}) {
     const auto built = build(system);
     const auto* prepare = function_of(built, "prepare");
@@ -74,14 +74,14 @@ TEST_CASE("hoisting: prepare reads parameters only, and no operation on paramete
   }
 }
 
-TEST_CASE("hoisting: parameters that make the mass matrix singular are told by prepare") {
+TEST_CASE("hoisting: prepare reports parameters that make the mass matrix singular") {
   const auto built = build(double_pendulum());
   const auto* prepare = function_of(built, "prepare");
   REQUIRE((prepare != nullptr));
   CHECK_FALSE(prepare->pivots.empty());
 }
 
-TEST_CASE("hoisting: where parameters are numbers there is nothing to prepare") {
+TEST_CASE("hoisting: with fixed parameters nothing is prepared") {
   std::vector<system::EquationSystem> candidates{pendulum()};
   program::Request request;
   for (std::uint32_t i = 0; i < 3; ++i) request.fix[i] = 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kinks: with the sides of the state held the program is what it was, with others the branch goes on beyond its
+// Kinks: with the sides of the actual state the program is unchanged; with other sides the branch continues beyond its
 // surface.
 #include "program/kinks.hpp"
 
@@ -21,7 +21,7 @@ using symbolic::SymbolKind;
 
 namespace {
 
-/// One coordinate of unit mass under the force that `make` gives; x, v, t and a parameter as its arguments.
+/// One coordinate of unit mass under the force from `make`, whose arguments are x, v, t and a parameter.
 template <class Make>
 system::EquationSystem one_mass(Make make) {
   system::EquationSystem s;
@@ -48,11 +48,11 @@ system::EquationSystem all_kinds() {
 
 }  // namespace
 
-TEST_CASE("kinks: four surfaces of five kinks; held on the side where the state is, the right-hand side is the same") {
+TEST_CASE("kinks: five kinks have four surfaces; frozen on the actual side, the right-hand side is unchanged") {
   const auto system = all_kinds();
   const auto plain = build(system), held = build(system, {"events", "jac"});
   CHECK(plain.kinks.empty());
-  REQUIRE(held.kinks.size() == 4);  // |x - 1/2| and sign(x - 1/2) share theirs; max(p, 0) never switches
+  REQUIRE(held.kinks.size() == 4);  // |x - 1/2| and sign(x - 1/2) share one; max(p, 0) never switches
   int negative = 0;
   for (std::uint64_t point = 1; point <= 20; ++point) {
     auto arguments = arguments_at<cln::cl_R>(system, point);
@@ -69,10 +69,10 @@ TEST_CASE("kinks: four surfaces of five kinks; held on the side where the state 
           tolerances::same_value);
   }
   CHECK(negative > 20);
-  CHECK(negative < 60);  // of 80: the points do lie on both sides
+  CHECK(negative < 60);  // of 80: there are points on both sides
 }
 
-TEST_CASE("kinks: a held branch goes on beyond its surface, and so does its Jacobian") {
+TEST_CASE("kinks: a frozen branch continues beyond its surface, and so does its Jacobian") {
   const auto system = one_mass([](symbolic::Dag& dag, Ref x, Ref v, Ref, Ref) {
     return dag.mul(v, dag.call(Op::max, dag.zero(), x));  // g = -x: above its surface x < 0 and the force is 0
   });
@@ -93,7 +93,7 @@ TEST_CASE("kinks: a held branch goes on beyond its surface, and so does its Jaco
   }
 }
 
-TEST_CASE("kinks: more than mode has bits for follow the state") {
+TEST_CASE("kinks: those beyond the bits of mode follow the state") {
   const auto system = one_mass([](symbolic::Dag& dag, Ref x, Ref, Ref, Ref) {
     Ref sum = dag.zero();
     for (long k = 1; k <= 14; ++k)
@@ -107,7 +107,7 @@ TEST_CASE("kinks: more than mode has bits for follow the state") {
                    program::interpret(plain.functions[0], arguments, 60).results[0]) < tolerances::same_value);
 }
 
-TEST_CASE("kinks: those of a contact's law are held, but not the speed whose sign the contact watches itself") {
+TEST_CASE("kinks: those of a contact law are frozen, except the speed whose sign the contact monitors") {
   auto s = one_mass([](symbolic::Dag& dag, Ref x, Ref, Ref, Ref) {
     return dag.sub(dag.symbol({SymbolKind::friction, 0, 0}), x);
   });
@@ -136,7 +136,7 @@ TEST_CASE("kinks: those of a contact's law are held, but not the speed whose sig
   CHECK_FALSE(program::has_kinks(s));
 }
 
-TEST_CASE("system: for_each_expression comes to every expression once") {
+TEST_CASE("system: for_each_expression visits every expression once") {
   system::EquationSystem s;
   s.dag = std::make_shared<symbolic::Dag>();
   std::uint32_t count = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The optimiser against the expressions that it started from, and what it achieves.
+// The optimiser compared with its source expressions, and the operation counts that it achieves.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -101,7 +101,7 @@ TEST_CASE("optimiser: the value of random expressions stays the same to 45 digit
   }
 }
 
-TEST_CASE("optimiser: what is counted is what is in the code") {
+TEST_CASE("optimiser: the operation count is that of the code") {
   for (const auto& [name, system] : systems()) {
     const std::string label(name);
     INFO(label);
@@ -119,16 +119,16 @@ TEST_CASE("optimiser: what is counted is what is in the code") {
   }
 }
 
-TEST_CASE("optimiser: operation counts stay where they are") {
+TEST_CASE("optimiser: operation counts do not increase") {
   const auto flops = [](const system::EquationSystem& s) { return build(s).functions[0].operations.flops(); };
   CHECK(flops(pendulum()) == 1);          // -(g/l) sin theta
-  CHECK(flops(double_pendulum()) <= 24);  // and three divisions; 40 asked for
+  CHECK(flops(double_pendulum()) <= 24);  // and three divisions; limit 40
   CHECK(flops(cart_pendulum()) <= 16);
   CHECK(flops(spherical_pendulum()) <= 32);
-  CHECK(flops(chain(6)) <= 310);  // 315 by the recursive route, 460 asked for
+  CHECK(flops(chain(6)) <= 310);  // 315 by the recursive formulation; limit 460
 }
 
-TEST_CASE("optimiser: factors that cancel are gone before anything is computed") {
+TEST_CASE("optimiser: factors cancel symbolically") {
   const auto built = build(pendulum());
   const auto& function = built.functions[0];
   for (const auto& instruction : function.code) {
@@ -138,7 +138,7 @@ TEST_CASE("optimiser: factors that cancel are gone before anything is computed")
   }
 }
 
-TEST_CASE("optimiser: sin^2 + cos^2 is 1, also inside products that are shared") {
+TEST_CASE("optimiser: sin^2 + cos^2 is 1, also inside shared products") {
   Maker k;
   const Scalar l = k.p(0), c = k.cos(k.q(0)), s = k.sin(k.q(0));
   const Scalar x = l * c, y = l * s;
@@ -149,7 +149,7 @@ TEST_CASE("optimiser: sin^2 + cos^2 is 1, also inside products that are shared")
   CHECK(operations.mul <= 4);  // l l, l c, l s, (l s) s
 }
 
-TEST_CASE("optimiser: a divisor that divides twice is divided by once") {
+TEST_CASE("optimiser: a divisor that is used twice costs one division") {
   Maker k;
   const Scalar d = k.q(0) + k.p(0);
   program::WantedFunction wanted{"outputs", {{"y", {(k.q(1) / d).ref, (k.q(2) / d).ref}}}, {}, {}};
@@ -174,7 +174,7 @@ TEST_CASE("optimiser: huge powers and divisions by zero neither hang nor overflo
   CHECK_FALSE(std::isfinite(y[2]));
 }
 
-TEST_CASE("optimiser: the same system gives the same program, whatever was made before it") {
+TEST_CASE("optimiser: the same system gives the same program, independent of earlier work") {
   const auto text = [](const program::Function& f) {
     std::string result;
     for (const auto& instruction : f.code) {

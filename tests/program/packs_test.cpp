@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which sines and cosines are computed together.
+// Grouping of sines and cosines that are computed together.
 #include <doctest/doctest.h>
 
 #include "program/abi_functions.hpp"
@@ -30,7 +30,7 @@ std::vector<std::size_t> sizes(const program::Function& function) {
   return result;
 }
 
-/// Packs are contiguous, in order; lanes are numbered without gaps, and every angle is there before its pack begins.
+/// Packs are contiguous and ordered. Lanes are numbered without gaps. Every angle is computed before its pack begins.
 void well_formed(const program::Function& function) {
   std::uint32_t pack = 0, lane = 0;
   std::size_t first = 0;
@@ -55,14 +55,14 @@ void well_formed(const program::Function& function) {
 
 }  // namespace
 
-TEST_CASE("packs: all angles of the state and of time are one pack, whatever their sines are used for") {
+TEST_CASE("packs: all angles of state and time form one pack, whatever their sines are used for") {
   const Maker k;
   const auto function = written(k, {k.sin(k.q(0)) * k.cos(k.q(1) - k.q(0)), k.sin(k.p(0) * k.t()) / k.cos(k.q(0))});
   well_formed(function);
   CHECK(sizes(function) == std::vector<std::size_t>{3});
 }
 
-TEST_CASE("packs: angles that need sines are packs of their own") {
+TEST_CASE("packs: angles that depend on sines form further packs") {
   const Maker k;
   const Scalar inner = k.sin(k.q(0)), other = k.cos(k.q(1));
   const auto function = written(k, {k.sin(inner + k.q(2)) + k.cos(other), k.sin(k.cos(inner) * k.q(1))});
@@ -73,7 +73,7 @@ TEST_CASE("packs: angles that need sines are packs of their own") {
   CHECK(alone == 1);
 }
 
-TEST_CASE("packs: one angle alone, and the sine and cosine of one, are left to the library") {
+TEST_CASE("packs: a single angle uses the C library") {
   const Maker k;
   CHECK(sizes(written(k, {k.sin(k.q(0))})).empty());
   CHECK(sizes(written(k, {k.sin(k.q(0)) + k.q(1), k.cos(k.q(0))})).empty());

@@ -11,7 +11,7 @@
 using namespace eomgen;
 using namespace test_systems;
 
-TEST_CASE("program: the Jacobian is that of the right-hand side, to 20 digits of a difference quotient") {
+TEST_CASE("program: the Jacobian agrees with difference quotients of the right-hand side to 20 digits") {
   for (const auto& system : {double_pendulum(), cart_pendulum(), spherical_pendulum(), massless(), chain(3)}) {
     CAPTURE(system.free.size());
     const auto built = build(system, {"jac", "jac_p"});
@@ -87,7 +87,7 @@ TEST_CASE("program: fixed parameters become numbers and fold") {
   CHECK(function.pivots.empty());
 }
 
-TEST_CASE("program: the cheapest of several routes is taken, ties go to the first, dear ones are not optimised") {
+TEST_CASE("program: the cheapest formulation is selected, the first in a tie, and expensive ones are not optimised") {
   std::vector<system::EquationSystem> candidates{chain(2), double_pendulum()};
   candidates[0].route = "first";
   candidates[1].route = "second";
@@ -103,7 +103,7 @@ TEST_CASE("program: the cheapest of several routes is taken, ties go to the firs
   CHECK(program::build_program(candidates, {}).route == "first");
 }
 
-TEST_CASE("program: what does not exist is refused by name") {
+TEST_CASE("program: unknown functions and outputs are rejected by name") {
   const auto message = [](const std::vector<std::string>& with,
                           const std::vector<std::string>& outputs) -> std::string {
     std::vector<system::EquationSystem> candidates{pendulum()};
@@ -124,7 +124,7 @@ TEST_CASE("program: what does not exist is refused by name") {
   CHECK(message({}, {"energie"}) == "there is no output `energie` / outputs of this model: energy, kinetic, potential");
 }
 
-TEST_CASE("program: an expression that the state cannot give is refused") {
+TEST_CASE("program: an expression that does not follow from the state is rejected") {
   auto system = pendulum();
   const Maker k{system.dag};
   system.f[0] = k.s(k.dag->symbol({symbolic::SymbolKind::function, 0, 0})).ref;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A function with fewer results computes these, and nothing else.
+// A restricted function computes its results and nothing else.
 #include "program/restrict.hpp"
 
 #include <doctest/doctest.h>
@@ -11,7 +11,7 @@
 using namespace eomgen;
 using namespace test_systems;
 
-TEST_CASE("restriction: entries in any order have their values, by fewer instructions; of none there is no code") {
+TEST_CASE("restriction: entries in any order keep their values with fewer instructions; no entries need no code") {
   for (const auto& system : {double_pendulum(), cart_pendulum(), chain(4)}) {
     const program::Function whole = build(system).functions[0];
     const std::size_t n = whole.results[0].entries.size();
@@ -24,6 +24,6 @@ TEST_CASE("restriction: entries in any order have their values, by fewer instruc
     REQUIRE(some.size() == places.size());
     for (std::size_t i = 0; i < places.size(); ++i)
       CHECK(difference({all[places[i]]}, {some[i]}) < tolerances::same_value);
-    CHECK(program::restricted(whole, {0}).code.empty());  // a rate is in the state
+    CHECK(program::restricted(whole, {0}).code.empty());  // a rate is an entry of the state
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The unrolled solve against Eigen, at random points.
+// Comparison of the unrolled solve with Eigen at random points.
 #include "program/solve.hpp"
 
 #include <doctest/doctest.h>
@@ -32,7 +32,7 @@ Eigen::MatrixXd matrix(const system::EquationSystem& s, const std::vector<symbol
   return result;
 }
 
-/// Accelerations, then multipliers: [M -A^T; A 0] (qddot, lambda) = (f, -gamma).
+/// Accelerations, then multipliers, from [M -A^T; A 0] (qddot, lambda) = (f, -gamma).
 Eigen::VectorXd reference(const system::EquationSystem& s, std::uint64_t point) {
   const std::size_t n = s.free.size(), m = s.active.size();
   const auto rows = static_cast<Eigen::Index>(n), below = static_cast<Eigen::Index>(m);
@@ -81,13 +81,13 @@ TEST_CASE("solve: with constraints accelerations and multipliers solve the KKT s
   check_against_eigen(spherical_pendulum());
 }
 
-TEST_CASE("solve: a massless coordinate that a constraint determines is solved with the multipliers unchanged") {
+TEST_CASE("solve: a massless coordinate that a constraint determines leaves the multipliers unchanged") {
   const auto system = massless();
   CHECK(program::is_singular_everywhere(*system.dag, system.M, 3));
   check_against_eigen(system);
 }
 
-TEST_CASE("solve: a massless coordinate that nothing determines is refused") {
+TEST_CASE("solve: an undetermined massless coordinate is rejected") {
   auto system = massless();
   system.active.clear();
   system.A.clear();
@@ -97,8 +97,8 @@ TEST_CASE("solve: a massless coordinate that nothing determines is refused") {
   CHECK_THROWS_AS(build(system), Error);
 }
 
-TEST_CASE("solve: structural zeros of M cost nothing") {
-  // Two pendulums side by side are solved as two: no operation couples them.
+TEST_CASE("solve: structural zeros of M cost no operations") {
+  // Two independent pendulums: no operation couples them.
   const Maker k;
   const Scalar half = k.number(1, 2), l = k.p(0), g = k.p(1);
   Scalar T = k.number(0), V = k.number(0);
@@ -112,8 +112,9 @@ TEST_CASE("solve: structural zeros of M cost nothing") {
   CHECK(built.functions[0].operations.mul == 2);
 }
 
-TEST_CASE("solve: an arrow-shaped M keeps its zeros by the order of elimination") {
-  // One cart, four pendulums on it: M is an arrow. In minimum degree order the pendulums go first and nothing fills in.
+TEST_CASE("solve: the order of elimination preserves the zeros of an arrow-shaped M") {
+  // One cart with four pendulums: M is an arrow matrix. In minimum degree order the pendulums come first and there is
+  // no fill-in.
   const Maker k;
   const Scalar half = k.number(1, 2), m = k.p(0), l = k.p(1), g = k.p(2);
   Scalar T = half * m * k.q(0, 1) * k.q(0, 1), V = k.number(0);
@@ -129,8 +130,8 @@ TEST_CASE("solve: an arrow-shaped M keeps its zeros by the order of elimination"
   CHECK(build(system).functions[0].operations.flops() <= 60);
 }
 
-TEST_CASE("solve: the pivot test sees a matrix that is singular, and only then") {
-  // At theta2 - theta1 = 0 with m1 = 0 the double pendulum has no inertia across: exactly singular.
+TEST_CASE("solve: the pivot test detects exactly the singular matrices") {
+  // At theta2 - theta1 = 0 with m1 = 0 the mass matrix of the double pendulum is exactly singular.
   const auto system = double_pendulum();
   const auto built = build(system);
   const auto vanishes = [&](double m1, double difference) {
@@ -150,8 +151,8 @@ TEST_CASE("solve: the pivot test sees a matrix that is singular, and only then")
 }
 
 TEST_CASE(
-    "the null space and Chaplygin forms give what the full system gives, multipliers too, without inertia in one "
-    "direction too") {
+    "the null space and Chaplygin forms agree with the full system, multipliers included, also without inertia in one "
+    "direction") {
   const Maker k;
   const auto square = [](Scalar x) { return x * x; };
   for (const bool massless : {false, true}) {
@@ -172,8 +173,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("dependent columns are chosen where the constraints hold") {
-  // Of the row (q1, q0 + p0) the first entry is the shorter one, and 0 wherever q1 (q0 + p0) = 0 holds near q1 = 0.
+TEST_CASE("dependent columns are chosen at points on the constraints") {
+  // In the row (q1, q0 + p0) the first entry is shorter, and it is 0 wherever q1 (q0 + p0) = 0 holds near q1 = 0.
   const Maker k;
   Scalar T = k.number(0);
   for (std::uint32_t i = 0; i < 3; ++i) T = T + k.p(1) * k.q(i, 1) * k.q(i, 1);
@@ -188,11 +189,11 @@ TEST_CASE("dependent columns are chosen where the constraints hold") {
   without.holonomic = {false};
   const auto free = program::dependent_blocks(without);
   REQUIRE(free.has_value());
-  CHECK(free->front().dependent == std::vector<std::size_t>{0});  // a constraint on velocities holds anywhere
+  CHECK(free->front().dependent == std::vector<std::size_t>{0});  // a velocity constraint holds at every position
 }
 
-TEST_CASE("rows that depend on one another wherever the constraints hold have no columns to choose") {
-  // Away from there every determinant is a multiple of the first psi.
+TEST_CASE("rows that are dependent everywhere on the constraints have no dependent columns") {
+  // Elsewhere every determinant is a multiple of the first psi.
   const Maker k;
   Scalar T = k.number(0);
   for (std::uint32_t i = 0; i < 4; ++i) T = T + k.p(0) * k.q(i, 1) * k.q(i, 1);
@@ -208,7 +209,8 @@ TEST_CASE("rows that depend on one another wherever the constraints hold have no
   }
 }
 
-TEST_CASE("which forms hold everywhere: minors of one column more than rows, or a determinant that cannot vanish") {
+TEST_CASE(
+    "forms that hold everywhere: blocks with one column more than rows, or with a determinant that cannot vanish") {
   const Maker k;
   const auto square = [](Scalar x) { return x * x; };
   const Scalar T = square(k.q(0, 1)) + square(k.q(1, 1)) + square(k.q(2, 1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equations of motion made by hand for the tests of the program and emit stages: no reader, no routes.
+// Hand-made equations of motion for the tests of the program and emit stages, without model reader and formulations.
 #pragma once
 
 #include <memory>
@@ -57,7 +57,7 @@ inline system::EquationSystem lagrange(const Maker& k, std::uint32_t n, Scalar T
   return system;
 }
 
-/// psi = 0 added with its multiplier, as constraint `index`.
+/// Adds psi = 0 with its multiplier as constraint `index`.
 inline void constrain(system::EquationSystem& system, const Maker& k, const std::string& label, Scalar psi) {
   const auto n = static_cast<std::uint32_t>(system.free.size());
   const auto index = static_cast<std::uint32_t>(system.active.size());
@@ -86,7 +86,7 @@ inline system::EquationSystem pendulum() {
   return lagrange(k, 1, T, -(m * g * l * k.cos(k.q(0))), {k.number(0)});
 }
 
-/// Parameters m1, m2, l1, l2, g; absolute angles; the energies as a textbook gives them.
+/// Parameters m1, m2, l1, l2, g; absolute angles; textbook energies.
 inline system::EquationSystem double_pendulum() {
   const Maker k;
   const Scalar m1 = k.p(0), m2 = k.p(1), l1 = k.p(2), l2 = k.p(3), g = k.p(4), w1 = k.q(0, 1), w2 = k.q(1, 1);

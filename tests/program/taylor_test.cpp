@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The recurrences of Taylor series against the right-hand side itself: a polynomial of order p that follows the motion
-// leaves a residual x' - f(t, x) of order p. A wrong coefficient of order k leaves one of order k - 1.
+// The recurrences of Taylor series compared with the right-hand side. A polynomial of order p that follows the motion
+// has a residual x' - f(t, x) of order p. A wrong coefficient of order k causes a residual of order k - 1.
 #include "program/taylor.hpp"
 
 #include <doctest/doctest.h>
@@ -21,7 +21,7 @@ constexpr int digits = 70;
 
 using Number = cln::cl_R;
 
-/// c[k][i], by the interpreter: sums of products as their definition has them.
+/// c[k][i] from the interpreter, with the sums of products from their definition.
 std::vector<std::vector<Number>> coefficients(const program::Taylor& taylor, const program::Arguments<Number>& at,
                                               int order) {
   const auto start = program::interpret(taylor.start, at, digits).results;
@@ -78,7 +78,7 @@ void follows_the_motion(const system::EquationSystem& system, std::uint64_t poin
     CHECK(std::log2(coarse / fine) / 2 == doctest::Approx(order).epsilon(0.02));  // terms of the next order: tau
 }
 
-/// qddot = g of one coordinate.
+/// The right-hand side of qddot = g for one coordinate.
 system::EquationSystem one(const std::function<Scalar(const Maker&)>& g) {
   const Maker k;
   system::EquationSystem system;
@@ -92,7 +92,7 @@ system::EquationSystem one(const std::function<Scalar(const Maker&)>& g) {
 
 }  // namespace
 
-TEST_CASE("taylor: the recurrences of mechanical systems, the solve included") {
+TEST_CASE("taylor: the recurrences of mechanical systems, including the solve") {
   for (const auto& system :
        {pendulum(), double_pendulum(), cart_pendulum(), spherical_pendulum(), massless(), chain(3)}) {
     CAPTURE(system.free.size());
@@ -124,7 +124,7 @@ TEST_CASE("taylor: the recurrence of every operation") {
   }
 }
 
-TEST_CASE("taylor: powers, quotients and branches, of what moves and of what does not") {
+TEST_CASE("taylor: powers, quotients and branches of varying and constant values") {
   const auto pow = [](const Maker& k, Scalar a, Scalar b) { return k.s(k.dag->pow(a.ref, b.ref)); };
   const std::vector<std::function<Scalar(const Maker&)>> list = {
       [&](const Maker& k) { return pow(k, k.q(0), k.p(0)); },
@@ -146,7 +146,7 @@ TEST_CASE("taylor: powers, quotients and branches, of what moves and of what doe
   }
 }
 
-TEST_CASE("taylor: a program that is too large for series is told") {
+TEST_CASE("taylor: a program that is too large for series is rejected") {
   const auto built = build(chain(2));
   program::Function huge = built.functions[0];
   const auto square =

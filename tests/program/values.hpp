@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random points for symbols, the same in every run and for every form of a system.
+// Random values of symbols, equal in every run and for every form of a system.
 #pragma once
 
 #include <cln/real.h>
@@ -11,7 +11,7 @@
 
 namespace test_systems {
 
-/// A number in (0.3, 1.3) for a symbol.
+/// A value in (0.3, 1.3) for a symbol.
 inline symbolic::Rational value_at(const symbolic::Symbol& s, std::uint64_t point) {
   const std::uint64_t key = (static_cast<std::uint64_t>(s.kind) << 40) + (std::uint64_t{s.order} << 32) + s.index;
   return symbolic::Rational(static_cast<long>(program::scramble(key, point + 77) % 1009) + 300) / 1009;
@@ -41,7 +41,7 @@ program::Arguments<Real> arguments_at(const system::EquationSystem& system, std:
   return arguments;
 }
 
-/// Values of expressions at the point, 60 digits.
+/// Values of expressions at the point in 60 digits.
 inline std::vector<cln::cl_R> expressions_at(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& roots,
                                              std::uint64_t point, int digits = 60) {
   const auto value = [point](const symbolic::Symbol& s) -> cln::cl_R { return value_at(s, point); };

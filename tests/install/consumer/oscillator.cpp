@@ -1,4 +1,4 @@
-// A program of somebody else: integrates x'' = -x over one period with the installed runtime.
+// A user's program: integrates x'' = -x over one period with the installed runtime.
 #include <cmath>
 #include <cstdio>
 #include <eom/ode.hpp>

@@ -1,5 +1,4 @@
-// A program of somebody else: generated C and the C++ header beside the installed runtime. The pendulum keeps its
-// energy.
+// A user's program: generated C and the C++ header with the installed runtime. The energy of the pendulum is constant.
 #include "pendulum.h"
 
 #include <cmath>
