@@ -44,16 +44,16 @@
 #error "this code tells numbers that are not finite and singular matrices: compile it without -ffast-math"
 #endif
 
-/* Sines and cosines of two angles at once, wrong by less than one unit in the last place; angles beyond 65536 and those
- * that are not finite are left to the C library. What comes out for an angle does not depend on the other, and only by
- * fused multiplications on the processor. */
+/* Sines and cosines of two angles at once with errors below one unit in the last place. Angles beyond 65536 and angles
+ * that are not finite use the C library. The result for an angle does not depend on the other angle; it depends on the
+ * processor only through fused multiply-add. */
 #if defined(__GNUC__) && defined(FLT_EVAL_METHOD) && \
     (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 16) /* doubles are not kept in wider registers */
 typedef double P7_moving_sphere_lanes __attribute__((vector_size(16)));
 typedef unsigned long long P7_moving_sphere_bits __attribute__((vector_size(16)));
 
-/* One angle in each lane: multiples of pi/2 subtracted in three parts (Cody and Waite), then two polynomials. `size`
- * becomes |angle|; where that is above 65536 or not finite, sine and cosine mean nothing. */
+/* One angle per lane: multiples of pi/2 are subtracted in three parts (Cody and Waite), then two polynomials are evaluated.
+ * `size` becomes |angle|; sine and cosine are invalid if it is above 65536 or not finite. */
 __attribute__((always_inline))
 static inline void P7_moving_sphere_sincos_lanes(const P7_moving_sphere_lanes* angle, P7_moving_sphere_lanes* size, P7_moving_sphere_lanes* sine, P7_moving_sphere_lanes* cosine)
 {
@@ -63,7 +63,7 @@ static inline void P7_moving_sphere_sincos_lanes(const P7_moving_sphere_lanes* a
   s = sign & 0x7fffffffffffffffULL;
   sign ^= s;
   memcpy(&a, &s, sizeof a);
-  /* 1.5*2^52 leaves no digits behind the point: the last bits of `shifted` count quarter turns. */
+  /* Adding 1.5*2^52 removes the fraction: the last bits of `shifted` count quarter turns. */
   const P7_moving_sphere_lanes shifted = a*0.6366197723675814 + 6755399441055744.0;
   const P7_moving_sphere_lanes turns = shifted - 6755399441055744.0;
   memcpy(&quarter, &shifted, sizeof quarter);
@@ -89,7 +89,7 @@ static inline void P7_moving_sphere_sincos_lanes(const P7_moving_sphere_lanes* a
   memcpy(cosine, &c, sizeof c);
 }
 
-/* Adds |a| and |b| to `reach`: all is right while that stays below 65536. */
+/* Adds |a| and |b| to `reach`; results are valid while it stays below 65536. */
 __attribute__((always_inline))
 static inline void P7_moving_sphere_sincos_near(double a, double b, double* sine, double* cosine, P7_moving_sphere_lanes* reach)
 {
@@ -194,7 +194,7 @@ void P7_moving_sphere_defaults(double* x, double* p)
   p[5] = 2.0;  /* w */
 }
 
-/* -1: not guarded, and an angle is too far for that. */
+/* Returns -1 if guarded is 0 and an angle is too large. */
 #if defined(__GNUC__)
 __attribute__((always_inline))
 #endif
@@ -411,7 +411,7 @@ int P7_moving_sphere_outputs(double t, const double* x, const double* p, const d
 }
 
 
-/* Whether values are off the expected ones by more than expected[0]. */
+/* Whether values differ from the expected ones by more than expected[0]. */
 static int P7_moving_sphere_differs(int count, const double* got, const double* expected)
 {
   for (int i = 0; i < count; ++i) {
@@ -440,7 +440,7 @@ int P7_moving_sphere_selftest(void)
       if (!(p[i] == points[0][5 + i])) return 1;
     }
   }
-  {  /* rhs: what rounding explains, then the values, for each array */
+  {  /* rhs: for each array the tolerance, then the values */
     static const int at[3] = {0, 1, 2};
     static const double expected[3][5] = {
         {1.1e-10, 0.0, 2.0, 10.073425214616828, -0.4434814682665637},
@@ -454,7 +454,7 @@ int P7_moving_sphere_selftest(void)
       if (P7_moving_sphere_differs(4, y1, expected[k] + 0)) return state + 1;
     }
   }
-  {  /* jac: what rounding explains, then the values, for each array */
+  {  /* jac: for each array the tolerance, then the values */
     static const int at[3] = {0, 1, 2};
     static const double expected[3][22] = {
         {3.8e-11, 0.0, 0.0, 3.6357782743778815, -0.22891791666978883, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -0.4,
@@ -476,7 +476,7 @@ int P7_moving_sphere_selftest(void)
       if (P7_moving_sphere_differs(4, y2, expected[k] + 17)) return state + 1;
     }
   }
-  {  /* mass: what rounding explains, then the values, for each array */
+  {  /* mass: for each array the tolerance, then the values */
     static const int at[3] = {0, 1, 2};
     static const double expected[3][8] = {
         {1e-11, 1.0, 0.0, 0.0, 0.7080734182735712, 1.1e-10, -10.073425214616828, 0.31401743917648806},
@@ -494,7 +494,7 @@ int P7_moving_sphere_selftest(void)
       if (P7_moving_sphere_differs(2, y2, expected[k] + 5)) return state + 1;
     }
   }
-  {  /* reactions: what rounding explains, then the values, for each array */
+  {  /* reactions: for each array the tolerance, then the values */
     static const int at[3] = {0, 1, 2};
     static const double expected[3][2] = {
         {2.6e-11, 2.468071947472166},
@@ -508,7 +508,7 @@ int P7_moving_sphere_selftest(void)
       if (P7_moving_sphere_differs(1, y1, expected[k] + 0)) return state + 1;
     }
   }
-  {  /* outputs: what rounding explains, then the values, for each array */
+  {  /* outputs: for each array the tolerance, then the values */
     static const int at[3] = {0, 1, 2};
     static const double expected[3][3] = {
         {7.1e-11, 6.7365124571135935, 2.468071947472166},

@@ -41,9 +41,9 @@
 extern "C" {
 #endif
 
-/* Arrays are the caller's; two-dimensional ones are stored by columns. u may be NULL: defaults. Functions have no state
- * and may be called from many threads. They return 0, or 1: singular mass matrix, 2: outside the chart, 3: friction law
- * without a solution, 4: with several, 5: not finite. */
+/* The caller owns all arrays; two-dimensional ones are stored by columns. If u is NULL, inputs have their defaults.
+ * Functions have no state and are thread-safe. They return 0, or 1: singular mass matrix, 2: outside the chart,
+ * 3: friction law without a solution, 4: with several, 5: not finite. */
 enum {
   P7_moving_sphere_states = 4,
   P7_moving_sphere_parameters = 6,
@@ -58,9 +58,9 @@ enum {
 int P7_moving_sphere_abi(void);
 /* JSON: names, units, defaults, verdict of verification, operation counts. */
 const char* P7_moving_sphere_info(void);
-/* The default scene: state at its start, parameter values. */
+/* The default scene: initial state and parameter values. */
 void P7_moving_sphere_defaults(double* x, double* p);
-/* Compares every function with embedded values of high precision: 0, or the number of the first state where one differs. */
+/* Compares every function with embedded high-precision values. Returns 0, or the number of the first wrong state. */
 int P7_moving_sphere_selftest(void);
 /* dx = d/dt of the state x. */
 int P7_moving_sphere_rhs(double t, const double* x, const double* p, const double* u, int mode, double* dx);

@@ -44,9 +44,10 @@
 #error "this code tells numbers that are not finite and singular matrices: compile it without -ffast-math"
 #endif
 
-// Arrays are the caller's; two-dimensional ones are stored by columns. u may be nullptr: defaults. Functions return 0, or
-// 1: singular mass matrix, 2: outside the chart, 3: friction law without a solution, 4: with several, 5: not finite.
-// Real is any type with arithmetic, comparisons and the functions of <cmath>, found by argument where they are not std's.
+// The caller owns all arrays; two-dimensional ones are stored by columns. If u is nullptr, inputs have their defaults.
+// Functions return 0, or 1: singular mass matrix, 2: outside the chart, 3: friction law without a solution, 4: with
+// several, 5: not finite. Real is any type with arithmetic, comparisons and the functions of <cmath>, in namespace std
+// or found by argument-dependent lookup.
 namespace eom::P7_moving_sphere {
 
 inline constexpr int abi = 1;
@@ -87,7 +88,7 @@ inline const char* info() {
 #pragma GCC diagnostic pop
 #endif
 
-// The default scene: state at its start, parameter values.
+// The default scene: initial state and parameter values.
 template <class Real>
 void defaults(Real* x, Real* p) {
   x[0] = Real(1.0);  // phi
@@ -110,16 +111,16 @@ void eom_sincos(const Real& a, const Real& b, Real* sine, Real* cosine) {
   cosine[0] = cos(a);
   cosine[1] = cos(b);
 }
-/* Sines and cosines of two angles at once, wrong by less than one unit in the last place; angles beyond 65536 and those
- * that are not finite are left to the C library. What comes out for an angle does not depend on the other, and only by
- * fused multiplications on the processor. */
+/* Sines and cosines of two angles at once with errors below one unit in the last place. Angles beyond 65536 and angles
+ * that are not finite use the C library. The result for an angle does not depend on the other angle; it depends on the
+ * processor only through fused multiply-add. */
 #if defined(__GNUC__) && defined(FLT_EVAL_METHOD) && \
     (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 16) /* doubles are not kept in wider registers */
 typedef double eom_lanes __attribute__((vector_size(16)));
 typedef unsigned long long eom_bits __attribute__((vector_size(16)));
 
-/* One angle in each lane: multiples of pi/2 subtracted in three parts (Cody and Waite), then two polynomials. `size`
- * becomes |angle|; where that is above 65536 or not finite, sine and cosine mean nothing. */
+/* One angle per lane: multiples of pi/2 are subtracted in three parts (Cody and Waite), then two polynomials are evaluated.
+ * `size` becomes |angle|; sine and cosine are invalid if it is above 65536 or not finite. */
 __attribute__((always_inline))
 inline void eom_sincos_lanes(const eom_lanes* angle, eom_lanes* size, eom_lanes* sine, eom_lanes* cosine)
 {
@@ -129,7 +130,7 @@ inline void eom_sincos_lanes(const eom_lanes* angle, eom_lanes* size, eom_lanes*
   s = sign & 0x7fffffffffffffffULL;
   sign ^= s;
   std::memcpy(&a, &s, sizeof a);
-  /* 1.5*2^52 leaves no digits behind the point: the last bits of `shifted` count quarter turns. */
+  /* Adding 1.5*2^52 removes the fraction: the last bits of `shifted` count quarter turns. */
   const eom_lanes shifted = a*0.6366197723675814 + 6755399441055744.0;
   const eom_lanes turns = shifted - 6755399441055744.0;
   std::memcpy(&quarter, &shifted, sizeof quarter);
@@ -155,7 +156,7 @@ inline void eom_sincos_lanes(const eom_lanes* angle, eom_lanes* size, eom_lanes*
   std::memcpy(cosine, &c, sizeof c);
 }
 
-/* Adds |a| and |b| to `reach`: all is right while that stays below 65536. */
+/* Adds |a| and |b| to `reach`; results are valid while it stays below 65536. */
 __attribute__((always_inline))
 inline void eom_sincos_near(double a, double b, double* sine, double* cosine, eom_lanes* reach)
 {
@@ -405,7 +406,7 @@ int outputs(Real t, const Real* x, const Real* p, const Real* u, int mode, Real*
   return 0;
 }
 
-// Whether values are off the expected ones by more than expected[0].
+// Whether values differ from the expected ones by more than expected[0].
 inline int eom_differs(int count, const double* got, const double* expected) {
   for (int i = 0; i < count; ++i) {
     if (!(std::fabs(got[i] - expected[i + 1]) <= expected[0])) return 1;
@@ -413,7 +414,7 @@ inline int eom_differs(int count, const double* got, const double* expected) {
   return 0;
 }
 
-// Compares every function with embedded values of high precision: 0, or the number of the first state where one differs.
+// Compares every function with embedded high-precision values. Returns 0, or the number of the first wrong state.
 inline int selftest() {
   // t, x, p, u of each state
   static const double points[3][11] = {
@@ -433,7 +434,7 @@ inline int selftest() {
       if (!(p[i] == points[0][5 + i])) return 1;
     }
   }
-  {  // rhs: what rounding explains, then the values, for each array
+  {  // rhs: for each array the tolerance, then the values
     static const int at[3] = {0, 1, 2};
     static const double expected[3][5] = {
         {1.1e-10, 0.0, 2.0, 10.073425214616828, -0.4434814682665637},
@@ -447,7 +448,7 @@ inline int selftest() {
       if (eom_differs(4, y1, expected[k] + 0)) return state + 1;
     }
   }
-  {  // jac: what rounding explains, then the values, for each array
+  {  // jac: for each array the tolerance, then the values
     static const int at[3] = {0, 1, 2};
     static const double expected[3][22] = {
         {3.8e-11, 0.0, 0.0, 3.6357782743778815, -0.22891791666978883, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -0.4,
@@ -469,7 +470,7 @@ inline int selftest() {
       if (eom_differs(4, y2, expected[k] + 17)) return state + 1;
     }
   }
-  {  // mass: what rounding explains, then the values, for each array
+  {  // mass: for each array the tolerance, then the values
     static const int at[3] = {0, 1, 2};
     static const double expected[3][8] = {
         {1e-11, 1.0, 0.0, 0.0, 0.7080734182735712, 1.1e-10, -10.073425214616828, 0.31401743917648806},
@@ -487,7 +488,7 @@ inline int selftest() {
       if (eom_differs(2, y2, expected[k] + 5)) return state + 1;
     }
   }
-  {  // reactions: what rounding explains, then the values, for each array
+  {  // reactions: for each array the tolerance, then the values
     static const int at[3] = {0, 1, 2};
     static const double expected[3][2] = {
         {2.6e-11, 2.468071947472166},
@@ -501,7 +502,7 @@ inline int selftest() {
       if (eom_differs(1, y1, expected[k] + 0)) return state + 1;
     }
   }
-  {  // outputs: what rounding explains, then the values, for each array
+  {  // outputs: for each array the tolerance, then the values
     static const int at[3] = {0, 1, 2};
     static const double expected[3][3] = {
         {7.1e-11, 6.7365124571135935, 2.468071947472166},

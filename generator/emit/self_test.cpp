@@ -244,7 +244,7 @@ class Body {
     std::size_t width = 0;
     for (const auto& array : shape) width += 1 + array.size();
     text_ += fmt::format("  {{  {}\n",
-                         comment(dialect_, function + ": what rounding explains, then the values, for each array"));
+                         comment(dialect_, function + ": for each array the tolerance, then the values"));
     text_ += wrapped(fmt::format("    static const int at[{}] = {{{}}};", rows.size(), states), "        ") + "\n";
     const bool empty = std::all_of(shape.begin(), shape.end(), [](const auto& array) { return array.empty(); });
     if (!empty)
@@ -345,7 +345,7 @@ std::string selftest_comparison(const EmissionContext& context, const SelfTestNa
   return fmt::format(
       "{}\n{} int {}(int count, const {}* got, const {}* expected){}{{\n  for (int i = 0; i < count; ++i) {{\n"
       "    if (!({}(got[i] - expected[i + 1]) <= expected[0])) return 1;\n  }}\n  return 0;\n}}\n\n",
-      comment(dialect, "Whether values are off the expected ones by more than expected[0]."),
+      comment(dialect, "Whether values differ from the expected ones by more than expected[0]."),
       dialect.line_comments ? "inline" : "static", names.differs, real_of(context, dialect), real_of(context, dialect),
       dialect.line_comments ? " " : "\n", dialect.line_comments ? "std::fabs" : "fabs");
 }

@@ -47,7 +47,7 @@ static void silent(int code, const char* module, const char* function, char* mes
   (void)code, (void)module, (void)function, (void)message, (void)data;
 }
 
-/* What all of them have: a context, the state, and for implicit ones a matrix with its solver. */
+/* Common data of the integrators: a context, the state, and for implicit methods a matrix and its solver. */
 struct workplace {
   SUNContext context;
   N_Vector x, xdot;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* One integration that `eomgen bench` asks of another library: of the emitted right-hand side, to the end, for a
+/* One integration by another library for `eomgen bench`: the emitted right-hand side, to the end time, for one
  * tolerance. */
 #pragma once
 
@@ -8,7 +8,7 @@ struct eomgen_task {
   double t0, t1, rtol, atol;
   const double* x0;
   int (*rhs)(double t, const double* x, double* dx, void* data);                 /* not 0: stop */
-  int (*jac)(double t, const double* x, double* dfdx, double* dfdt, void* data); /* by columns; null: there is none */
+  int (*jac)(double t, const double* x, double* dfdx, double* dfdt, void* data); /* stored by columns; may be null */
   void* data;
 };
 

@@ -1,5 +1,5 @@
-// A camera without perspective, so that lengths can be compared, and what all drawing shares.
-const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a6d3b"];  // told apart with any colour vision
+// A camera without perspective, so that lengths can be compared, and common functions of all drawing.
+const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8a6d3b"];  // distinguishable with any colour vision
 
 function styleOf(name) { return getComputedStyle(document.documentElement).getPropertyValue(name).trim(); }
 function mixed(colour, other, share) {
@@ -11,7 +11,8 @@ function mixed(colour, other, share) {
 class Camera {
   constructor() { Object.assign(this, {zoom: 1, pan: [0, 0], azimuth: 0, elevation: 0, width: 1, height: 1}); }
 
-  // Looks along the normal where all is in one plane, else from the side and a little from above; things fall downwards. What is to be seen: balls [x, y, z, radius].
+  // Looks along the normal of a plane motion, else from the side and slightly from above; gravity points down.
+  // Contents: balls [x, y, z, radius].
   find(balls, down) {
     const low = [0, 1, 2].map((k) => Math.min(...balls.map((r) => r[k]))), high = [0, 1, 2].map((k) => Math.max(...balls.map((r) => r[k])));
     this.centre = low.map((value, k) => (value + high[k]) / 2);
@@ -32,7 +33,7 @@ class Camera {
     }
     this.side = cross(this.up, this.front);
     this.home();
-    // In the middle of what this view shows of it.
+    // Centred on the contents in this view.
     const across = balls.map((r) => [dot(this.right, minus(r, this.centre)), dot(this.above, minus(r, this.centre)), r[3]]);
     const [[left, right], [bottom, top]] = [0, 1].map((k) => [Math.min(...across.map((p) => p[k] - p[2])), Math.max(...across.map((p) => p[k] + p[2]))]);
     this.centre = plus(this.centre, plus(scaled(this.right, (left + right) / 2), scaled(this.above, (bottom + top) / 2)));
@@ -56,7 +57,7 @@ class Camera {
     this.above = plus(scaled(this.up, ce), scaled(level, -se));
     this.right = cross(this.above, this.toward);
   }
-  // With room for labels around.
+  // With a margin for labels.
   scale() {
     const room = Math.min(44, 0.12 * Math.min(this.width, this.height)), least = 0.02 * this.size;
     return Math.min((this.width / 2 - room) / Math.max(this.half[0], least), (this.height / 2 - room) / Math.max(this.half[1], least)) * this.zoom;
@@ -68,6 +69,6 @@ class Camera {
     return [this.width / 2 + this.pan[0] + x, this.height / 2 + this.pan[1] + y];
   }
   depth(r) { return dot(this.toward, minus(r, this.centre)); }
-  // The vector in the plane of the screen that a movement of the pointer is.
+  // The vector in the screen plane for a movement of the pointer.
   lift(dx, dy) { return scaled(plus(scaled(this.right, dx), scaled(this.above, -dy)), 1 / this.scale()); }
 }

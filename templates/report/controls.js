@@ -1,4 +1,4 @@
-// What the reader works: play, pause, step, scrub, speed; turn, move, zoom; sliders; by pointer, touch and keys.
+// Controls: play, pause, step, scrub, speed; rotate, move, zoom; sliders; by pointer, touch and keys.
 function button(text, title, action) {
   const node = document.createElement("button");
   node.type = "button";
@@ -66,7 +66,7 @@ class Player {
   }
 }
 
-// Two fingers zoom and move; one turns, or drags what `grab` takes hold of.
+// Two fingers zoom and move; one finger rotates, or drags the object that `grab` selects.
 function pointers(canvas, camera, redraw, grab) {
   const down = new Map();
   let held = null;
@@ -102,7 +102,7 @@ function pointers(canvas, camera, redraw, grab) {
   canvas.addEventListener("pointercancel", release);
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener("wheel", (event) => {
-    if (!event.ctrlKey && document.activeElement !== canvas) return;  // the page scrolls until the drawing is chosen
+    if (!event.ctrlKey && document.activeElement !== canvas) return;  // the page scrolls until the drawing has the focus
     event.preventDefault();
     camera.zoom *= Math.exp(-event.deltaY * 0.0015);
     redraw();
@@ -122,7 +122,7 @@ function keys(canvas, player, camera, redraw) {
   });
 }
 
-// A number with a slider; `change` is called with what the reader sets.
+// A number with a slider; `change` is called with a new value.
 function slider(name, unitText, note, value, low, high, change) {
   const row = document.createElement("div"), label = document.createElement("label"), range = document.createElement("input"), number = document.createElement("input");
   row.className = "slider";

@@ -1,5 +1,5 @@
-// Drags a drawn point by the coordinates: the change of the coordinates that takes the point nearest to the pointer, in the plane of the screen, within
-// the constraints; what the point does not depend on stays, as far as the masses go.
+// Drags a drawn point by changing the coordinates: the change that moves the point nearest to the pointer in the screen
+// plane and satisfies the constraints. Coordinates without influence on the point stay, in the mass norm.
 class Drag {
   constructor(live, at, camera) { Object.assign(this, {live, at, camera}); }
 
@@ -33,7 +33,7 @@ class Drag {
     live.meetPositions(() => false);
     live.meetRates(() => false);
     live.x = saved;
-    for (let i = 0; i < n; ++i) {  // not out of the range of a coordinate
+    for (let i = 0; i < n; ++i) {  // limited to the range of a coordinate
       if (live.lower[i] !== null && x[i] <= live.lower[i]) x[i] = live.lower[i] + 1e-6;
       if (live.upper[i] !== null && x[i] >= live.upper[i]) x[i] = live.upper[i] - 1e-6;
     }

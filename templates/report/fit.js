@@ -1,5 +1,6 @@
-// Formulas break where their printer allows it. One that is still wider than its column is broken before signs inside of brackets too, then between
-// factors; then wide fractions, powers and roots are written on the line, and broken likewise; then it gets smaller letters, as small as they have to be.
+// Formulas break where the printer allows it. A formula that is still wider than its column is also broken before signs
+// inside brackets, then between factors. Then wide fractions, powers and roots are written inline and broken in the
+// same way. Finally the font size is reduced as far as necessary.
 function breakFormula(math, betweenFactors) {
   const pieces = [[]], flat = (node) => {
     for (const child of [...node.children]) {
@@ -17,7 +18,8 @@ function breakFormula(math, betweenFactors) {
   math.replaceWith(...parts.flatMap((part) => [part, document.createTextNode(" ")]));
 }
 
-// What holds a wide part together: a fraction as (a + b)/c, a power of a bracket with its exponent at the closing one, a root as a power. Then they can be broken.
+// Makes wide parts breakable: a fraction becomes (a + b)/c, the exponent of a bracket moves to the closing bracket, a
+// root becomes a power.
 function loosen(line) {
   const element = (name, ...parts) => { const node = document.createElementNS("http://www.w3.org/1998/Math/MathML", name); node.append(...parts); return node; };
   const sign = (text) => { const node = element("mo", text); node.setAttribute("stretchy", "false"); return node; };

@@ -1,6 +1,6 @@
-// Dormand and Prince's pair of orders 5 and 4 with its dense output of order 4 (Hairer, Norsett, Wanner: Solving ordinary differential equations I,
-// II.5 and II.6). Steps are chosen by the error estimate; after each the state may be projected; changes of sign of event functions are located
-// on the dense output.
+// Dormand and Prince's pair of orders 5 and 4 with its dense output of order 4 (Hairer, Norsett, Wanner: Solving
+// ordinary differential equations I, II.5 and II.6). The error estimate controls the step size; the state may be
+// projected after each step; sign changes of event functions are located on the dense output.
 const pair = {
   c: [0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1, 1],
   a: [[], [1 / 5], [3 / 40, 9 / 40], [44 / 45, -56 / 15, 32 / 9], [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729],
@@ -10,7 +10,8 @@ const pair = {
       69997945 / 29380423]};
 
 class Integration {
-  // problem: rhs(t, x, dx) -> code, project(t, x) -> whether x was changed, events(t, x, g), eventKinds: [{name, stop, direction}]
+  // problem: rhs(t, x, dx) -> code, project(t, x) -> whether x was changed, events(t, x, g), eventKinds: [{name, stop,
+  // direction}]
   constructor(problem, t0, t1, x0, rows) {
     this.problem = problem;
     this.t = t0;
@@ -49,7 +50,7 @@ class Integration {
     return Math.min(h, (this.t1 - this.t) / 10);
   }
 
-  // Works for at most so many milliseconds; true once it is done.
+  // Works for at most the given milliseconds; returns true when finished.
   advance(milliseconds) {
     const until = performance.now() + milliseconds;
     while (this.outcome === "" && performance.now() < until) for (let i = 0; i < 20 && this.outcome === ""; ++i) this.step();
@@ -127,7 +128,7 @@ class Integration {
     for (let i = 0; i < out.length; ++i) out[i] = d[0][i] + theta * (d[1][i] + rest * (d[2][i] + theta * (d[3][i] + rest * d[4][i])));
   }
 
-  // Notes events within the step; the time of the first that ends the run, or null.
+  // Records events within the step; returns the time of the first that ends the run, or null.
   watch(t, h, end) {
     const kinds = this.problem.eventKinds;
     if (kinds.length === 0) return null;

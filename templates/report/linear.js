@@ -1,5 +1,5 @@
-// Small dense systems. In: rows with the right-hand side as last entry. Out: a solution; unknowns that nothing determines are 0, equations that
-// follow from others are passed over.
+// Small dense systems. In: rows with the right-hand side as last entry. Out: a solution; undetermined unknowns are 0,
+// redundant equations are skipped.
 function solveRows(rows, unknowns) {
   let top = 0, largest = 0;
   for (const row of rows) for (let j = 0; j < unknowns; ++j) largest = Math.max(largest, Math.abs(row[j]));
@@ -23,7 +23,7 @@ function solveRows(rows, unknowns) {
   return x;
 }
 
-// The smallest d in the sense of d . W d - 2 g . d that satisfies A d = r: W n x n and A m x n by rows, g may be left out.
+// Minimises d . W d - 2 g . d subject to A d = r: W n x n and A m x n by rows, g is optional.
 function smallestCorrection(W, A, r, g) {
   const n = W.length, m = A.length, rows = [];
   for (let i = 0; i < n; ++i) {

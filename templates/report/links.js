@@ -1,10 +1,11 @@
-// What follows from a motion as a whole: which lines are rods, and where something is held by the ground.
+// Properties of a whole motion: lines that are rods, and parts held by the ground.
 function acrossTo(normal) {
   const first = fixedAxes.find((e) => Math.abs(dot(e, normal)) < 0.8);
   return minus(first, scaled(normal, dot(first, normal)));
 }
 
-// Lines between places: rods where their length stays, else the line that a coordinate is measured along. A spring between the same ends stands for it.
+// Lines between places: rods if their length is constant, else lines of a length coordinate. A spring between the same
+// ends replaces the line.
 function linksOf(scene, rows) {
   const {parts} = scene, first = rows[0], near = (a, b) => Math.hypot(...minus(a, b)) < 1e-9 * (1 + Math.hypot(...a));
   const sprung = (a, b) => parts.springs.some((spring) => {
@@ -21,7 +22,8 @@ function linksOf(scene, rows) {
   return [...lines, ...parts.rods.map(([from, to]) => ({from, to, rigid: true}))];
 }
 
-// Origins of rods, ends of springs and dampers that never move, joints with the ground: where each is, and the axis along which it holds what hangs on it.
+// Fixed origins of rods, fixed ends of springs and dampers, joints with the ground: position, and the axis along which
+// each holds its part.
 function supportsOf(scene, rows) {
   const {parts} = scene, found = [], rest = (at) => rows.every((y) => Math.hypot(...minus(scene.position(y, at), scene.position(rows[0], at))) < 1e-9 * (1 + Math.hypot(...scene.position(rows[0], at))));
   const add = (at, others) => {

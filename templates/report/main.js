@@ -1,4 +1,4 @@
-// The page: the drawing with its controls, the model that it runs or the run that it replays, the plots.
+// The page: the drawing with its controls, the live model or the recorded run, the plots.
 const data = JSON.parse(document.getElementById("motion").textContent);
 const stage = document.getElementById("stage"), view = document.createElement("div"), canvas = document.createElement("canvas");
 const bar = document.createElement("div"), tools = document.createElement("div"), told = document.createElement("p");
@@ -30,7 +30,7 @@ function take(next, find) {
   player.jump(Math.min(player.at, player.t1));
 }
 
-// Runs the model from where it stands now; what is under way is given up.
+// Runs the current model; cancels a run in progress.
 function run(play) {
   const mine = ++pending;
   player.play(false);
@@ -84,7 +84,7 @@ function checkbox(text, key) {
   return label;
 }
 
-// What the colours of forces and their heads mean, and which are not there; shown with them.
+// Legend of the colours and heads of forces, and of missing forces; shown with them.
 function legend() {
   const place = document.createElement("span"), kinds = {applied: "applied", constraint: "of constraints", friction: "of friction"}, {arrows, beyond, without_vector} = data.parts;
   const add = (text, colour) => {
@@ -161,5 +161,5 @@ window.addEventListener("resize", () => { redraw(); fitFormulas(); });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
 player.jump(player.t0);
 if (!matchMedia("(prefers-reduced-motion: reduce)").matches) player.play(true);
-// For who looks closer, from the console of a browser.
+// For inspection from the console of the browser.
 window.report = {data, live, scene, player, run, motion: () => motion};

@@ -1,4 +1,4 @@
-// A motion: rows of the run that the page was made of, or of one that the page has made. `at(t)` gives what is drawn and plotted.
+// A motion: rows of the original run, or of a run in the page. `at(t)` returns the values for drawings and plots.
 class Motion {
   constructor(t, x, y, live, events) { Object.assign(this, {t, x, y, live, events}); }
 
@@ -12,7 +12,7 @@ class Motion {
     return low;
   }
 
-  // Coordinates by Hermite's cubics, since their rates are in the state.
+  // Coordinates are interpolated by cubic Hermite polynomials, since their rates are in the state.
   state(t) {
     const k = this.row(t), h = this.t[k + 1] - this.t[k], s = h > 0 ? Math.min(1, Math.max(0, (t - this.t[k]) / h)) : 0;
     const a = this.x[k], b = this.x[k + 1], n = this.live.n, x = new Float64Array(a.length);
@@ -32,7 +32,7 @@ class Motion {
 
   atRow(k) { return this.x ? this.live.outputs(this.t[k], this.x[k]) : this.y[k]; }
 
-  // All rows of what is drawn, computed once.
+  // All rows for the drawing, computed once.
   drawn() {
     if (!this.all) this.all = this.t.map((_, k) => Array.from(this.atRow(k)));
     return this.all;
@@ -40,7 +40,7 @@ class Motion {
   curve(of) { return of.state ? this.x.map((x) => x[of.at]) : this.drawn().map((y) => y[of.at]); }
 }
 
-// The model as it stands: values that the reader has chosen, what depends on them, a start that satisfies the constraints.
+// The current model: values chosen by the user, dependent values, and a start that satisfies the constraints.
 class Live {
   constructor(code, description, data) {
     Object.assign(this, description);
@@ -104,10 +104,10 @@ class Live {
     return Array.from({length: n}, (_, i) => Float64Array.from({length: n}, (_, j) => M[i + n * j]));
   }
   identity() { return Array.from({length: this.n}, (_, i) => Float64Array.from({length: this.n}, (_, j) => (i === j ? 1 : 0))); }
-  // The rows of A as if what is fixed could not move.
+  // The rows of A with fixed coordinates held.
   holding(A, fixed) { return A.map((row) => row.map((a, i) => (fixed(i) ? 0 : a))); }
 
-  // Newton's method for the start, first without moving what is given.
+  // Newton's method for the start, first with the given values held.
   meetPositions(fixed) {
     const place = this.kinds.map((kind, k) => (kind === "holonomic" ? k : -1)).filter((k) => k >= 0);
     if (place.length === 0) return true;
@@ -134,7 +134,7 @@ class Live {
     }
   }
 
-  // After a step: back onto the constraints by the smallest change in the sense of the masses.
+  // Projection onto the constraints after a step, by the smallest change in the mass norm.
   project(t, x) {
     const {n, m} = this;
     if (m === 0) return false;

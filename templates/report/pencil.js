@@ -1,8 +1,9 @@
-// Strokes on the canvas, in the colours of the page. Points of three numbers are in space, of two on the screen; names are written last, over all else.
+// Strokes on the canvas in the colours of the page. Points with three numbers are in space, with two on the screen;
+// names are drawn last, on top.
 class Pencil {
   constructor(canvas, camera) { Object.assign(this, {canvas, camera, draw: canvas.getContext("2d"), names: [], taken: []}); }
 
-  // A new picture: as large as the canvas is now, with nothing on it.
+  // Starts an empty picture with the current size of the canvas.
   begin() {
     const ratio = window.devicePixelRatio || 1, {canvas, camera} = this;
     camera.width = canvas.clientWidth || 640;
@@ -59,7 +60,7 @@ class Pencil {
   head([x, y], [ux, uy], size, colour, width) {
     this.line([[x - size * (ux + 0.45 * uy), y - size * (uy - 0.45 * ux)], [x, y], [x - size * (ux - 0.45 * uy), y - size * (uy + 0.45 * ux)]], colour, width);
   }
-  // Its tip on the screen, and the direction there; null where it is seen from its end.
+  // Tip and direction on the screen; null if the arrow is seen end-on.
   arrow(from, to, colour, width) {
     const a = this.at(from), b = this.at(to), length = Math.hypot(b[0] - a[0], b[1] - a[1]);
     if (!(length >= 3)) return null;
@@ -68,7 +69,7 @@ class Pencil {
     this.head(b, u, Math.min(4 + 2.2 * width, length / 2), colour, width);
     return {tip: b, along: u};
   }
-  // A moment by the rule of the right hand: an arrow of two heads, or where that is seen from its end an arc about it, as wide as the arrow is long.
+  // A moment by the right-hand rule: an arrow with two heads, or, seen end-on, an arc as wide as the arrow is long.
   moment(from, to, colour, width) {
     const {camera} = this, axis = minus(to, from), length = Math.hypot(...axis) * camera.scale(), [x, y] = this.at(from), b = this.at(to), seen = Math.hypot(b[0] - x, b[1] - y);
     if (!(length >= 3)) return null;
@@ -90,7 +91,8 @@ class Pencil {
   name(text, arrow, colour) { if (arrow) this.names.push({text, at: [arrow.tip[0] + 11 * arrow.along[0], arrow.tip[1] + 11 * arrow.along[1] + 5], colour, middle: true}); }
   label(text, at, colour) { this.names.push({text, at, colour, middle: false}); }
 
-  // With the colour of the paper around them; one that would lie on another moves down, and none leaves the canvas where it can be helped.
+  // Labels with a halo in the background colour. Overlapping labels move down, and labels stay on the canvas if
+  // possible.
   finish() {
     const {draw, camera} = this;
     draw.font = "14px system-ui, sans-serif";
@@ -109,7 +111,8 @@ class Pencil {
     }
   }
 
-  // Along a line on the screen: points at a part of it and so many pixels beside it. Null where it is too short to be told.
+  // Points on a line on the screen at a fraction of its length and at a distance in pixels; null if the line is too
+  // short.
   beside(a, b) {
     const p = this.at(a), q = this.at(b), d = [q[0] - p[0], q[1] - p[1]], length = Math.hypot(...d);
     return length < 1 ? null : {length, at: (s, off) => [p[0] + s * d[0] - off * d[1] / length, p[1] + s * d[1] + off * d[0] / length]};
@@ -129,7 +132,7 @@ class Pencil {
     this.line([line.at(0.55, wide - 2), line.at(0.55, 2 - wide)], this.quiet, 2);
     this.line([line.at(0.55, 0), line.at(1, 0)], this.quiet, 2);
   }
-  // The ground: a line with hatches on the side away from what it holds, which is along `toward`.
+  // The ground: a line with hatches on the side opposite to the held part, which is along `toward`.
   support(r, toward) {
     const [x, y] = this.at(r), d = this.camera.flattened(toward), length = Math.hypot(...d);
     if (!(length > 1e-9)) return;
@@ -143,7 +146,7 @@ class Pencil {
     this.trace(points, true);
     draw.fillStyle = fill;
     draw.fill();
-    this.stroke(edge, 0.8);  // that of its own colour closes the seams between smooth faces
+    this.stroke(edge, 0.8);  // an edge in the face colour closes the seams between smooth faces
   }
   ball(centre, axes, radius, colour) {
     const {draw, camera} = this, [x, y] = this.at(centre), size = radius * camera.scale(), light = draw.createRadialGradient(x - 0.35 * size, y - 0.4 * size, 0.1 * size, x, y, size);
@@ -152,7 +155,7 @@ class Pencil {
     draw.globalAlpha = 0.88;
     this.dot(centre, size, light);
     this.stroke(colour, 1);
-    for (let k = 0; k < 3; ++k) {  // great circles, of which the near halves show how it turns
+    for (let k = 0; k < 3; ++k) {  // near halves of great circles show the rotation
       const a = axes[(k + 1) % 3], b = axes[(k + 2) % 3];
       let part = [];
       for (let s = 0; s <= 48; ++s) {

@@ -1,4 +1,4 @@
-// Curves over time, one panel for each unit, as SVG that follows the motion.
+// Curves over time, one panel per unit, as SVG that follows the motion.
 const dashes = ["", "7 4", "2 3", "9 3 2 3"];
 
 function niceTicks(low, high, wanted) {

@@ -1,4 +1,4 @@
-// The drawing: what is seen of a motion, parts sorted from back to front, then what lies over them.
+// The drawing of a motion: parts sorted from back to front, then overlays.
 const fixedAxes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], origin = [0, 0, 0];
 const isPoint = (r) => r.every(Number.isFinite);
 const forceColours = {applied: "#009e73", constraint: "#d55e00", friction: "#cc79a7"};
@@ -12,12 +12,12 @@ class Scene {
   position(y, at) { return [y[at], y[at + 1], y[at + 2]]; }
   placeAt(y, place) { return place < 0 ? origin : this.position(y, this.parts.places[place].at); }
 
-  // Of a new motion: shapes, paths; the view only where it is asked for. `source` has the equations of surfaces, and parameters.
+  // Sets a new motion: shapes, paths, and on request the view. `source` has the equations of surfaces, and parameters.
   take(motion, sizes, find, source) {
     const rows = motion.drawn(), {parts} = this;
     this.motion = motion;
     this.sizes = sizes;
-    // Bodies, and particles that the model gives a shape: these keep the fixed axes.
+    // Bodies, and particles with a shape, which keep the fixed axes.
     this.solids = [...parts.bodies, ...parts.places.map((_, place) => ({place, axes: null})).filter(({place}) => parts.shapes.some((shape) => shape.place === place) && !parts.bodies.some((body) => body.place === place))];
     this.shapes = this.solids.map((body) => {
       const drawn = parts.shapes.filter((shape) => shape.place === body.place);
@@ -28,11 +28,11 @@ class Scene {
     const sample = rows.filter((_, k) => k % Math.max(1, Math.floor(rows.length / 100)) === 0);
     this.longest = null;
     if (find) this.find(sample, []);
-    if (!find && rows.length < 3) return;  // a point that is being dragged: nothing that a motion would tell
+    if (!find && rows.length < 3) return;  // a dragged point: there is no motion
     this.links = linksOf(this, sample);
     this.supports = supportsOf(this, sample);
     this.surfaces = parts.surfaces.map((bound) => new Surface(bound, this, sample, source));
-    // With what the motion is on, unless that leaves the motion small.
+    // Includes the supporting surfaces, unless the motion would become small.
     const before = this.camera.size, ends = this.surfaces.flatMap((surface) => surface.find(motion.t[0], rows[0])).map(([r]) => r);
     if (find && ends.length > 0) this.find(sample, ends);
     if (find && this.camera.size > 2.2 * before) this.find(sample, []);
@@ -50,7 +50,7 @@ class Scene {
     this.camera.find([...balls, ...ends.map((r) => [...r, 0])], this.down);
   }
 
-  // Where a joint or a point is on a body, or else the origin, in its own axes.
+  // Position of a joint or a point on a body, else the origin, in body axes.
   attached(body, y) {
     const {parts} = this, centre = this.placeAt(y, body.place), axes = this.axesOf(body, y);
     const joint = parts.joints.find((j) => j.of.includes(body.place)), point = parts.places.find((place) => place.from === body.place);
@@ -62,7 +62,7 @@ class Scene {
     const e1 = this.position(y, body.axes[0]), e2 = this.position(y, body.axes[1]);
     return [e1, e2, cross(e1, e2)];
   }
-  // From own axes to space.
+  // From body axes to space.
   worldOf(body, y) {
     const centre = this.placeAt(y, body.place), axes = this.axesOf(body, y);
     return (r) => plus(centre, plus(plus(scaled(axes[0], r[0]), scaled(axes[1], r[1])), scaled(axes[2], r[2])));
@@ -76,7 +76,7 @@ class Scene {
       if (shape.kind === "arrow") items.push({depth: camera.depth(world(origin)), paint: () => pencil.arrow(world(shape.at), world(shape.tip), colour, 3)});
       for (const face of shape.faces) {
         const points = face.map(world), outwards = unit(cross(minus(points[1], points[0]), minus(points[2], points[0]))), facing = dot(outwards, camera.toward);
-        if (facing < -1e-9 && !face.open) continue;  // behind what is seen of the same solid
+        if (facing < -1e-9 && !face.open) continue;  // hidden by the same solid
         const normal = facing < 0 ? scaled(outwards, -1) : outwards;
         const middle = scaled(points.reduce(plus, origin), 1 / points.length), fill = mixed(colour, pencil.paper, 0.62 - 0.5 * Math.max(0, dot(normal, lit)));
         items.push({depth: camera.depth(middle), paint: () => pencil.face(points, fill, face.smooth ? fill : colour)});
@@ -93,7 +93,8 @@ class Scene {
     });
   }
 
-  // Two wheels that turn together: kind, centres, radii, the common axis, the direction from one to the other across it; null where the axes are not parallel.
+  // Two coupled wheels: kind, centres, radii, the common axis, the direction from one to the other across it; null if
+  // the axes are not parallel.
   wheels(coupling, y) {
     const {parts, sizes} = this, [a, b] = coupling.of.map((place) => this.placeAt(y, place)), [n, m] = coupling.axes.map((axis) => unit(this.position(y, axis)));
     if (![...a, ...b, ...n, ...m].every(Number.isFinite) || Math.hypot(...cross(n, m)) > 1e-6) return null;
@@ -102,7 +103,7 @@ class Scene {
     const found = wheelsOf(sizes[coupling.ratio] * Math.sign(dot(n, m)), coupling.carried, distance, drawn);
     return found ? {...found, centres: [a, b], axis: n, along: scaled(across, 1 / distance), distance} : null;
   }
-  // Pitch circles, each with a spoke that turns with its body, and the belt.
+  // Pitch circles, each with a spoke that rotates with its body, and the belt.
   coupled(coupling, y) {
     const found = this.wheels(coupling, y), {pencil} = this;
     if (!found) return;
@@ -119,7 +120,7 @@ class Scene {
     for (const [p, q] of beltLines(radii, distance, along, side)) pencil.line([plus(centres[0], p), plus(centres[1], q)], pencil.quiet, 2);
   }
 
-  // The plane that something touches, under the path of the contact.
+  // The contact plane, under the path of the contact.
   ground(contact) {
     if (!contact.tangents) return;
     const rows = this.motion.drawn(), y = rows[0], foot = this.position(y, contact.foot);
@@ -136,7 +137,7 @@ class Scene {
     this.pencil.segments(lines, this.pencil.rule, 1);
   }
 
-  // At the origin where there is room for them, else in the corner: off the canvas, or in the middle of a body.
+  // Axes at the origin if there is room, else in the corner (the origin may be off the canvas or inside a body).
   showAxes() {
     const {pencil, camera} = this, [x, y] = camera.project(origin), length = 40;
     const along = fixedAxes.map((e) => [length * dot(camera.right, e), -length * dot(camera.above, e)]);
@@ -154,7 +155,8 @@ class Scene {
     return Math.hypot(cx - x, cy - y) < 0.5 * shape.radius * this.camera.scale();
   }
 
-  // Forces and moments as arrows from where they act, each of the two in one scale, by which the greatest are a quarter of the picture; a rare peak (an impact) does not make the others vanish.
+  // Forces and moments as arrows from their points of action. Each of the two has one scale: the greatest arrows span a
+  // quarter of the picture. Rare peaks (impacts) do not shrink the others.
   showForces(y) {
     const {parts, pencil, camera} = this, size = (row, arrow) => Math.hypot(...this.position(row, arrow.value));
     if (this.longest === null) {

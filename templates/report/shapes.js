@@ -1,11 +1,12 @@
-// Bodies as polygons in their own axes, with their outsides to the left of their edges, from what the model says of their shape, or from their inertia: of homogeneous bodies with the same mass
-// and moments the sphere, the cylinder about the axis of two equal moments, the box.
+// Bodies as polygons in body axes, with the outside to the left of the edges. The shape is that of the model, or
+// follows from the inertia: the homogeneous body with the same mass and moments that is a sphere, a cylinder about the
+// axis of two equal moments, or a box.
 function boxFaces(a, b, c) {
   const corner = (k) => [(k & 1 ? a : -a) / 2, (k & 2 ? b : -b) / 2, (k & 4 ? c : -c) / 2];
   return [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]].map((face) => face.map(corner));
 }
 
-// About the third axis; the sides are one smooth surface.
+// A solid about the third axis; the sides are one smooth surface.
 function cylinderFaces(radius, length) {
   const sides = 28, ring = (z) => Array.from({length: sides}, (_, k) => [radius * Math.cos(2 * Math.PI * k / sides), radius * Math.sin(2 * Math.PI * k / sides), z]);
   const top = ring(length / 2), bottom = ring(-length / 2), faces = [top, bottom.slice().reverse()];
@@ -16,7 +17,7 @@ function cylinderFaces(radius, length) {
 // Axes as rows (right-handed) with the k-th axis of `axes` third.
 function aboutAxis(axes, k) { return [axes[(k + 1) % 3], axes[(k + 2) % 3], axes[k]]; }
 
-// The same faces elsewhere, as smooth as they were.
+// Moved faces with the same smoothness.
 function moved(faces, to) { return faces.map((face) => Object.assign(face.map(to), {smooth: face.smooth})); }
 function placed(faces, axes) { return moved(faces, (r) => plus(plus(scaled(axes[0], r[0]), scaled(axes[1], r[1])), scaled(axes[2], r[2]))); }
 
@@ -25,7 +26,7 @@ function shapeOfInertia(mass, inertia) {
   const matrix = [inertia.slice(0, 3), inertia.slice(3, 6), inertia.slice(6, 9)].map((row) => Array.from(row));
   const {values, axes} = principalAxes(matrix), largest = Math.max(...values);
   if (!(largest > 0) || Math.min(...values) < -1e-9 * largest) return null;
-  // One moment alone, of a body that turns about one direction: no homogeneous body has it; see barOfInertia.
+  // A single moment, for rotation about one direction: no homogeneous body has it; see barOfInertia.
   if (2 * largest > (1 + 1e-6) * (values[0] + values[1] + values[2])) return null;
   if (dot(cross(axes[0], axes[1]), axes[2]) < 0) axes[2] = scaled(axes[2], -1);
   const same = (i, j) => Math.abs(values[i] - values[j]) < 1e-6 * largest;
@@ -44,7 +45,8 @@ function shapeOfInertia(mass, inertia) {
   return {kind: "box", faces: placed(boxFaces(a, b, c), axes), radius: Math.hypot(a, b, c) / 2};
 }
 
-// A bar towards `spot` (in its own axes), where something is attached to it: as long as a uniform one of its largest moment.
+// A bar towards `spot` (in body axes), where something is attached. Its length is that of a uniform bar with the same
+// largest moment.
 function barOfInertia(mass, inertia, spot) {
   const largest = Math.max(inertia[0], inertia[4], inertia[8]), length = Math.sqrt(12 * largest / mass), reach = Math.hypot(...spot);
   if (!(mass > 0) || !(largest > 0) || !(reach > 1e-9 * length)) return null;
@@ -52,7 +54,7 @@ function barOfInertia(mass, inertia, spot) {
   return {kind: "bar", faces: placed(cylinderFaces(0.025 * length, length), [side, cross(along, side), along]), radius: length / 2};
 }
 
-// The faces of the smallest convex polyhedron around points; of points in a plane the polygon around them.
+// The faces of the convex hull of points; for points in a plane the hull polygon.
 function hullFaces(points) {
   const size = Math.max(...points.map((p) => Math.hypot(...minus(p, points[0])))), least = 1e-9 * size, found = new Set(), faces = [];
   for (let i = 0; i < points.length; ++i) for (let j = i + 1; j < points.length; ++j) for (let k = j + 1; k < points.length; ++k) {
@@ -66,7 +68,7 @@ function hullFaces(points) {
   }
   return faces;
 }
-// Around points of a plane: from the outermost always the next that leaves all others to the left.
+// Convex hull in a plane (gift wrapping): from an outermost point to the next one that has all others on its left.
 function polygonAround(points, normal) {
   const along = acrossTo(normal), first = points.reduce((best, p) => (dot(along, p) < dot(along, best) ? p : best)), ring = [];
   for (let at = first; ring.length <= points.length;) {
@@ -82,7 +84,7 @@ function polygonAround(points, normal) {
   return ring;
 }
 
-// What [draw] says: kind, the place of its lengths among the sizes, the axis that it is about, where its middle is.
+// A [draw] entry: kind, index of its lengths among the sizes, axis, centre.
 function shapeOfModel(drawn, sizes) {
   const lengths = drawn.lengths.map((i) => sizes[i]), at = drawn.at.length === 3 ? drawn.at.map((i) => sizes[i]) : [0, 0, 0];
   if (lengths.some((length) => !Number.isFinite(length))) return null;
@@ -96,7 +98,7 @@ function shapeOfModel(drawn, sizes) {
     case "rod": return made(cylinderFaces(0.02 * lengths[0], lengths[0]), lengths[0] / 2);
     case "mesh": {
       const points = Array.from({length: lengths.length / 3}, (_, k) => plus(at, lengths.slice(3 * k, 3 * k + 3)));
-      // Faces that the model gives have no outside: both sides are seen.
+      // Faces from the model have no outside: both sides are visible.
       const faces = drawn.faces.length > 0 ? drawn.faces.map((face) => Object.assign(face.map((k) => points[k]), {open: true})) : hullFaces(points);
       if (faces.length === 1) faces[0].open = true;
       return {kind: "mesh", faces, radius: Math.max(...points.map((p) => Math.hypot(...p)))};
@@ -106,9 +108,10 @@ function shapeOfModel(drawn, sizes) {
   return null;
 }
 
-// Radii of two wheels that turn together about parallel axes, so far apart; `ratio` is the speed of the first over that of the second. Gears that mesh outside turn
-// against one another and touch between the centres; a gear in a ring, both on a carrier, beyond them. Pulleys of a belt have any size: that of a pair of disks drawn
-// on the two bodies (their radii are `drawn`), else one that leaves the belt to be seen.
+// Radii of two coupled wheels with parallel axes at this distance; `ratio` is the speed of the first divided by that of
+// the second. External gears rotate in opposite directions and touch between the centres; a gear inside a ring touches
+// beyond them. Pulleys of a belt may have any size: that of disks drawn on the two bodies (radii `drawn`), else one at
+// which the belt is visible.
 function wheelsOf(ratio, carried, distance, drawn) {
   const size = Math.abs(ratio);
   if (!(distance > 0) || !(size > 0) || !Number.isFinite(size)) return null;
@@ -119,7 +122,8 @@ function wheelsOf(ratio, carried, distance, drawn) {
   return {kind: "belt", radii: size > 1 ? [larger / size, larger] : [larger, larger * size]};
 }
 
-// The two straight parts of a belt in the plane of `u` (from one centre to the other) and `v`: its ends on the first and on the second wheel.
+// The two straight parts of a belt in the plane of `u` (from centre to centre) and `v`: ends on the first and on the
+// second wheel.
 function beltLines([r1, r2], distance, u, v) {
   const c = (r1 - r2) / distance;
   if (Math.abs(c) >= 1) return [];

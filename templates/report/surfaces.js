@@ -1,5 +1,6 @@
-// What constraints leave to a particle or a body's centre: the lines of a surface where three coordinates are bound once, a curve where one motion is left. In: psi and the position
-// as functions of its own coordinates, and of others that carry the surface along, and where the motion takes these. Lines are pairs of points in its own coordinates.
+// The set that constraints leave to a particle or the centre of a body: lines on a surface for one constraint on three
+// coordinates, a curve for one degree of freedom. In: psi and the position as functions of own coordinates and of
+// coordinates that move the surface, and the motion of these. Lines are pairs of points in own coordinates.
 class Surface {
   // `source`: the code of the equations, of a state of all coordinates, and its parameters.
   constructor(description, scene, rows, source) {
@@ -13,7 +14,7 @@ class Surface {
     this.columns.forEach((_, k) => {
       const least = Math.min(...seen.map((q) => q[k])), most = Math.max(...seen.map((q) => q[k])), middle = (least + most) / 2;
       const margin = this.lengths[k] ? 0.25 * scene.camera.size : Math.max(0.3 * (most - least), 0.2 * Math.abs(middle), 0.1);
-      // Angles go once around, or as far as their chart goes; along a curve as far as the motion does, too.
+      // Angles cover one revolution or the range of their chart; along a curve also the range of the motion.
       let [low, high] = this.angles[k] ? [middle - Math.PI, middle + Math.PI] : [least - margin, most + margin];
       if (this.angles[k] && this.isCurve()) [low, high] = [Math.min(low, least - 0.3), Math.max(high, most + 0.3)];
       if (this.angles[k] && this.lower[k] !== null && this.upper[k] !== null) [low, high] = [this.lower[k], this.upper[k]];
@@ -32,7 +33,7 @@ class Surface {
   }
   point(q) { return Array.from(this.psi(q)).slice(this.bound); }
 
-  // Where psi vanishes in slices across each coordinate: marching squares, with crossings made sharp by the secant.
+  // Zeros of psi in slices across each coordinate: marching squares, with crossings refined by the secant method.
   mesh() {
     const slices = 10, cells = 28, lines = [], at = (k, share) => this.low[k] + share * (this.high[k] - this.low[k]);
     for (let k = 0; k < 3; ++k) {
@@ -67,7 +68,8 @@ class Surface {
     return lines;
   }
 
-  // Along what is left, both ways from where the particle is: a step along the direction in which nothing changes, then back onto the constraints. All in parts of the ranges.
+  // Follows the curve both ways from the particle: a step along the null direction, then a projection onto the
+  // constraints. Scaled by the ranges.
   curve(start) {
     const n = this.count, span = this.low.map((low, k) => this.high[k] - low || 1), from = (u) => u.map((value, k) => this.low[k] + value * span[k]), small = 1e-6;
     const step = Math.min(0.01, 0.08 / Math.max(...span.map((value, k) => (this.angles[k] ? value : 0))));
@@ -85,7 +87,7 @@ class Surface {
       }
       return u;
     };
-    // What may leave its curve can be beside it.
+    // A particle that may leave its curve can be off it.
     const begin = onto(start.map((value, k) => (value - this.low[k]) / span[k]), 8), lines = [];
     for (const sense of [1, -1]) {
       let u = begin, before = null;
@@ -103,7 +105,7 @@ class Surface {
     return lines;
   }
 
-  // Lines anew where their shape changes, their ends where they are carried along.
+  // Recomputes lines if their shape changes, and their ends if they move.
   find(t, y) {
     const here = this.own(y);
     if (!this.is_there || !isPoint(here)) return [];

@@ -67,7 +67,7 @@ std::string definition(const std::string& name, const program::Function& functio
   std::string inner = head(name + "_from");
   inner.insert(inner.find('(') + 1, fmt::format("int {}, ", text.guarded));
   return fmt::format(
-      "/* -1: not guarded, and an angle is too far for that. */\n"
+      "/* Returns -1 if guarded is 0 and an angle is too large. */\n"
       "#if defined(__GNUC__)\n__attribute__((always_inline))\n#endif\nstatic inline {}\n{{\n{}}}\n\n"
       "#if defined(__GNUC__)\n__attribute__((cold, noinline))\n#endif\nstatic {}\n{{\n  return {}_from(1, {});\n}}\n\n"
       "{}{}\n{{\n  const int code = {}_from(0, {});\n  return code >= 0 ? code : {}_far({});\n}}\n",

@@ -28,7 +28,7 @@ void eom_sincos(const Real& a, const Real& b, Real* sine, Real* cosine) {
 )";
 
 const std::string prepared_struct = R"(
-// The right-hand side for given parameters, which have to stay where they are; what needs nothing else is computed once.
+// The right-hand side for given parameters, which must outlive this object. Parameter-only values are computed once.
 template <class Real>
 struct Prepared {
   explicit Prepared(const Real* parameters) : p(parameters), code(prepare(parameters, w)) {}

@@ -32,11 +32,11 @@ std::string passed_over(const program::Program& program) {
   std::string text;
   if (program.active_constraints > 0)
     text +=
-        " * Constraints that keep multipliers hold at the start and drift with the tolerances: nothing is projected "
-        "onto them.\n";
+        " * Constraints with multipliers hold at the start and drift within the tolerances: there is no "
+        "projection.\n";
   if (!program.kinks.empty())
-    text += " * Steps go over kinks (abs, sign, min, max, if) as they come: only the error estimate sees them.\n";
-  if (!program.events.empty()) text += " * Events are not looked at.\n";
+    text += " * Kinks (abs, sign, min, max, if) are not located: only the error estimate responds to them.\n";
+  if (!program.events.empty()) text += " * Events are ignored.\n";
   return text;
 }
 

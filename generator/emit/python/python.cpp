@@ -46,8 +46,8 @@ std::vector<std::pair<std::string, std::string>> of_numbers(bool single) {
           {"tolerances", "rtol=1e-5, atol=1e-7"},
           {"epsilon", "1.192093e-07"},
           {"about_numbers",
-           "\n\nNumbers are of single precision: arrays of numpy are float32. `simulate` counts the time in double "
-           "precision, and\nadds up its sums so; states are rounded at every stage."},
+           "\n\nNumbers are in single precision: numpy arrays are float32. `simulate` keeps the time and its "
+           "sums in\ndouble precision; states are rounded at every stage."},
           {"require_place", R"(    if any(map(math.isinf, array)) and not any(map(math.isinf, values)):
         raise ValueError("%s: a number has no place in single precision" % what)
 )"}};
