@@ -52,8 +52,8 @@
 typedef double P7_moving_sphere_lanes __attribute__((vector_size(16)));
 typedef unsigned long long P7_moving_sphere_bits __attribute__((vector_size(16)));
 
-/* One angle per lane: multiples of pi/2 are subtracted in three parts (Cody and Waite), then two polynomials are evaluated.
- * `size` becomes |angle|; sine and cosine are invalid if it is above 65536 or not finite. */
+/* One angle per lane: multiples of pi/2 are subtracted in three parts (Cody and Waite), then two polynomials are
+ * evaluated. `size` becomes |angle|; sine and cosine are invalid if it is above 65536 or not finite. */
 __attribute__((always_inline))
 static inline void P7_moving_sphere_sincos_lanes(const P7_moving_sphere_lanes* angle, P7_moving_sphere_lanes* size, P7_moving_sphere_lanes* sine, P7_moving_sphere_lanes* cosine)
 {

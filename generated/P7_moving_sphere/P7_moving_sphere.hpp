@@ -119,8 +119,8 @@ void eom_sincos(const Real& a, const Real& b, Real* sine, Real* cosine) {
 typedef double eom_lanes __attribute__((vector_size(16)));
 typedef unsigned long long eom_bits __attribute__((vector_size(16)));
 
-/* One angle per lane: multiples of pi/2 are subtracted in three parts (Cody and Waite), then two polynomials are evaluated.
- * `size` becomes |angle|; sine and cosine are invalid if it is above 65536 or not finite. */
+/* One angle per lane: multiples of pi/2 are subtracted in three parts (Cody and Waite), then two polynomials are
+ * evaluated. `size` becomes |angle|; sine and cosine are invalid if it is above 65536 or not finite. */
 __attribute__((always_inline))
 inline void eom_sincos_lanes(const eom_lanes* angle, eom_lanes* size, eom_lanes* sine, eom_lanes* cosine)
 {

@@ -303,7 +303,7 @@ std::string purpose(const std::string& function) {
 void require_consistent(const program::Program& program, const EmissionContext& context) {
   const auto require = [](bool ok, const char* what) {
     if (!ok)
-      throw Error("emit", {}, fmt::format("what is emitted does not match the program: {}", what),
+      throw Error("emit", {}, fmt::format("the names and numbers to emit do not match the program: {}", what),
                   "this is a defect: please report the model");
   };
   const std::size_t n = program.state_count();

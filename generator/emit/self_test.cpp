@@ -243,8 +243,7 @@ class Body {
     const std::vector<std::vector<double>>& shape = rows.front().values->values;
     std::size_t width = 0;
     for (const auto& array : shape) width += 1 + array.size();
-    text_ += fmt::format("  {{  {}\n",
-                         comment(dialect_, function + ": for each array the tolerance, then the values"));
+    text_ += fmt::format("  {{  {}\n", comment(dialect_, function + ": for each array the tolerance, then the values"));
     text_ += wrapped(fmt::format("    static const int at[{}] = {{{}}};", rows.size(), states), "        ") + "\n";
     const bool empty = std::all_of(shape.begin(), shape.end(), [](const auto& array) { return array.empty(); });
     if (!empty)

@@ -78,7 +78,7 @@ void require_place(double value, const std::string& what = "number") {
   const double size = std::abs(value);
   if (size > static_cast<double>(std::numeric_limits<float>::max()) ||
       (size > 0 && size < static_cast<double>(std::numeric_limits<float>::min()))) {
-    throw Error("emit", {}, fmt::format("the {} {} has no place in single precision", what, decimal(value)),
+    throw Error("emit", {}, fmt::format("the {} {} is outside the range of single precision", what, decimal(value)),
                 "leave --real float out, or take other units");
   }
 }

@@ -162,7 +162,7 @@ WantedFunction wanted_function(AbiFunctions& functions, const std::string& name,
   if (name == "jac_p")
     return functions.jac_p(request.parameters > 0 ? request.parameters : parameter_count(functions.system()));
   throw Error("program", {}, fmt::format("there is no function `{}`", name),
-              fmt::format("functions that can be asked for: {}", fmt::join(abi::asked_for(), ", ")));
+              fmt::format("available functions: {}", fmt::join(abi::asked_for(), ", ")));
 }
 
 }  // namespace

@@ -55,9 +55,9 @@ std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& output
 
 void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<system::ChartChange>& changes) {
   if (program.kinks.size() > most_kinks_with_charts) {
-    throw Error(
-        "program", {}, fmt::format("{} kinks leave no room in `mode` for charts", program.kinks.size()),
-        fmt::format("at most {} can be held beside them: leave the charts or the events out", most_kinks_with_charts));
+    throw Error("program", {}, fmt::format("{} kinks leave no bits of `mode` for charts", program.kinks.size()),
+                fmt::format("at most {} kinks are possible with charts: omit the charts or the events",
+                            most_kinks_with_charts));
   }
   for (const system::ChartChange& change : changes) {
     ChartInfo info{change.of, change.own, change.second, change.regular, {}, 0, change.second_at_sine, {}, {}};
@@ -80,7 +80,7 @@ void add_second(Program& program, Program second, unsigned charts, const std::ve
                     second.event_count() == program.event_count();
   if (!fits) {
     throw Error(
-        "program", {}, "in its second charts this model keeps other coordinates, constraints or kinks",
+        "program", {}, "the coordinates, constraints or kinks of this model differ in its second charts",
         "this is a defect of eomgen: please report it with the model; --no-charts leaves the second charts out");
   }
   second.in_charts = eom::mode_of_charts(charts);

@@ -182,8 +182,8 @@ ConstrainedSolve::ConstrainedSolve(const system::EquationSystem& s, Ties ties)
   const std::optional<std::vector<DependentBlock>> blocks = dependent_blocks(s);
   if (!blocks) {
     throw Error("program", {},
-                "the constraints of this model hang together in blocks that are too large for this form, or "
-                "have no columns that are independent where they hold",
+                "the constraints of this model are coupled in blocks that are too large for this form, or "
+                "they are dependent wherever they hold",
                 "use --form multipliers");
   }
   blocks_ = *blocks;

@@ -101,7 +101,7 @@ class Conversion {
         break;
       default: break;
     }
-    throw Error("program", {}, "an expression uses a quantity that the state does not hold",
+    throw Error("program", {}, "an expression contains a quantity that is not in the state",
                 "this is a defect of the derivation: please report the model");
   }
 

@@ -334,7 +334,7 @@ class File {
 
 std::vector<EmittedFile> emit_batch(const program::Program& program, const EmissionContext& context) {
   if (!program.charts.empty()) {
-    throw Error("emit", {}, "the target batch does not know charts yet",
+    throw Error("emit", {}, "the target batch does not support charts yet",
                 "use the target c or cpp, or leave --with charts out");
   }
   std::vector<EmittedFile> files = emit_c(program, context);

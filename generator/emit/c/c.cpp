@@ -99,7 +99,7 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   dialect.kernels = name + "_";
   dialect.near_first = true;
   if (single && (program.taylor || context.run)) {
-    throw Error("emit", {}, "the Taylor series and the header of a run know double precision alone",
+    throw Error("emit", {}, "Taylor series and run headers support double precision only",
                 "leave taylor and run out of --with, or --real float");
   }
   const ModelNames names = model_names(program, context);

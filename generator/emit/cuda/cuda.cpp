@@ -45,13 +45,13 @@ std::string passed_over(const program::Program& program) {
 std::vector<EmittedFile> emit_cuda(const program::Program& program, const EmissionContext& context) {
   require_consistent(program, context);
   if (!program.charts.empty())
-    throw Error("emit", {}, "the target cuda does not know charts yet",
+    throw Error("emit", {}, "the target cuda does not support charts yet",
                 "use the target c or cpp, or leave --with charts out");
   if (program.taylor)
-    throw Error("emit", {}, "the target cuda has no series", "leave taylor out of --with, or use the target c or cpp");
+    throw Error("emit", {}, "the target cuda does not support Taylor series",
+                "leave taylor out of --with, or use the target c or cpp");
   if (!program.contacts.empty()) {
-    throw Error("emit", {},
-                "the target cuda integrates without events, and contacts have modes that begin and end with them",
+    throw Error("emit", {}, "the target cuda integrates without events, which contacts need for their changes of mode",
                 "use the target c or cpp with eom::integrate_modes, or take the contacts out");
   }
   const Dialect dialect = template_dialect();

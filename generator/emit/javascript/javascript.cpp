@@ -127,10 +127,10 @@ std::string vectors(const EmissionContext& context) {
 
 void require_known(const program::Program& program) {
   if (program.taylor)
-    throw Error("emit", {}, "the JavaScript target does not know Taylor series",
+    throw Error("emit", {}, "the JavaScript target does not support Taylor series",
                 "leave taylor out of --with, or use the target c or cpp");
   if (!program.charts.empty())
-    throw Error("emit", {}, "the JavaScript target does not know charts",
+    throw Error("emit", {}, "the JavaScript target does not support charts",
                 "use the target c or cpp, or leave --with charts out");
 }
 

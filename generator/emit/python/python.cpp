@@ -57,7 +57,7 @@ std::vector<std::pair<std::string, std::string>> of_numbers(bool single) {
 
 std::vector<EmittedFile> emit_python(const program::Program& program, const EmissionContext& context) {
   if (!program.charts.empty()) {
-    throw Error("emit", {}, "the Python target does not know charts yet",
+    throw Error("emit", {}, "the Python target does not support charts yet",
                 "use the target c or cpp, or leave --with charts out");
   }
   std::vector<EmittedFile> files = emit_c(program, context);

@@ -111,7 +111,7 @@ void compile_into(const fs::path& folder, const Compiler& compiler, const Recipe
   command.insert(command.end(), recipe.libraries.begin(), recipe.libraries.end());
   const Finished finished = run_process(command, recipe.interrupt);
   if (finished.interrupted)
-    throw Error("compile", {}, "interrupted while the compiler worked", "nothing was computed that could be kept",
+    throw Error("compile", {}, "interrupted during compilation", "nothing was computed that could be kept",
                 Fault::numerical);
   if (!finished.started || finished.status != 0) {
     constexpr std::size_t shown = 4000;

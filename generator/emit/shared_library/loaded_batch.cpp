@@ -61,12 +61,12 @@ LoadedBatch::LoadedBatch(const std::string& path, const std::string& name) : mod
   const bool whole =
       rhs != nullptr && width_of != nullptr && (model.rhs_prepared == nullptr || rhs_prepared != nullptr);
   if (whole && agrees(*this)) return;
-  throw Error("compile", {},
-              whole ? "a batch of compiled code has other bits than its states alone: " + path
-                    : "compiled code lacks batches: " + path,
-              "remove the cache folder (EOMGEN_CACHE_DIR, or ~/.cache/eomgen) and try again; without --ensemble no "
-              "batch is needed",
-              Fault::tool);
+  throw Error(
+      "compile", {},
+      whole ? "a compiled batch differs from its single states: " + path : "compiled code lacks batches: " + path,
+      "remove the cache folder (EOMGEN_CACHE_DIR, or ~/.cache/eomgen) and try again; without --ensemble no "
+      "batch is needed",
+      Fault::tool);
 }
 
 void LoadedBatch::Close::operator()(void* handle) const { ::dlclose(handle); }
