@@ -294,8 +294,8 @@ class File {
 
   std::string sincos() const {
     constexpr const char* together = R"(
-/* Sines and cosines of the lanes of one angle, valid up to {1}. Adds |angle| to `reach`; lanes in which it stays below the
- * limit are valid. */
+/* Sines and cosines of the lanes of one angle, valid up to {1}. Adds |angle| to `reach`; lanes in which it stays below
+ * the limit are valid. */
 {0}INLINE void {0}sincos({0}lanes angle, {0}lanes* sine, {0}lanes* cosine, {0}lanes* reach)
 {{
   {0}lanes size;
