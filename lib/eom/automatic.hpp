@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The method `auto`: dopri5 for rtol above 1e-6, else dop853; radau5 where the motion turns out to be stiff, and back
-// where it no longer is. What was chosen, when and why is in Options::choice.
+// The method `auto`: dopri5 for rtol above 1e-6, else dop853. It changes to radau5 if the motion becomes stiff, and back
+// when it is no longer stiff. Options::choice records the changes and their reasons.
 //
-// Explicit methods: after each step |h lambda| of what the stages stir up, from the last stage and the end, both at t1
-// (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.2), averaged. Beyond the limit of stability
-// in 15 steps, with no six in a row below it: stiff. That of dop853 is 5.96 along vibrations and 6.39 along decay; that
-// of dopri5 3.3 along decay but 1.0 along vibrations: 50 steps in a row near it lead to dop853 first. Where tolerances
-// are tight, rounding keeps the fast part of a stiff motion alive, and steps end below the limit: 50 of dop853 in a row
-// with three times the |h lambda| that it would have if the motion itself were that fast are a reason too. radau5: h
-// rho(df/dx) by power iteration; 15 steps in a row with half of that lead back. Where that happens soon, twice as many
-// stiff steps are asked for before the next change.
-// With fixed steps the method stays what it is.
+// Explicit methods: after each step |h lambda| is estimated from the last stage and the end, both at t1 (Hairer, Wanner,
+// Solving Ordinary Differential Equations II, section IV.2), and averaged. The motion counts as stiff after 15 steps
+// beyond the stability limit without six in a row below it. The limit of dop853 is 5.96 along vibrations and 6.39 along
+// decay; that of dopri5 is 3.3 along decay but 1.0 along vibrations, so 50 steps in a row near it lead to dop853 first.
+// At tight tolerances rounding keeps the fast part of a stiff motion alive and steps stay below the limit. Therefore 50
+// steps of dop853 in a row with three times the |h lambda| of a motion that is itself that fast also count as stiff.
+// radau5: h rho(df/dx) by power iteration; 15 steps in a row below half of that value lead back. If this happens early,
+// the next change requires twice as many stiff steps.
+// With fixed steps the method does not change.
 #pragma once
 
 #include <cmath>
@@ -127,20 +127,20 @@ class Automatic {
   }
 
  private:
-  static constexpr double rtol_of_dopri5 = 1e-6;  // above it
+  static constexpr double rtol_of_dopri5 = 1e-6;  // above this value of rtol
   static constexpr double limit_of_dopri5 = 3.25, limit_of_dop853 = 5.7;
   static constexpr double vibration_from = 0.75;  // of dopri5
   static constexpr int in_a_row = 50;
   static constexpr double smoothing =
-      0.2;                        // of the logarithm: along a vibration the estimate goes as the tangent of its phase
-  static constexpr int calm = 6;  // steps in a row that are not stiff: those before do not count
+      0.2;                        // of the logarithm: along a vibration the estimate varies like the tangent of its phase
+  static constexpr int calm = 6;  // this many steps in a row that are not stiff reset the count
   static constexpr int patience = Choice::least_patience;
   static constexpr int soon = 4 * patience;
 
   const char* explicit_name() const {
     return options_.rtol > rtol_of_dopri5 ? explicit_rk::Dopri5::name : explicit_rk::Dop853::name;
   }
-  /// |h lambda| at which it is worth to go back, well below what leads to radau5.
+  ///h lambda| below which a change back pays; well below the value that leads to radau5.
   double explicit_limit() const { return options_.rtol > rtol_of_dopri5 ? vibration_from : 0.5 * far_beyond(); }
 
   void make(std::span<const double> x) {
@@ -152,11 +152,10 @@ class Automatic {
   }
 
   double tolerance() const { return std::max(options_.rtol, options_.atol); }
-  /// The same for dopri5: about 4 tol^(1/5). Half more near the limit along vibrations is worth dop853, which has a
-  /// wider one.
+  /// The same for dopri5: about 4 tol^(1/5). At 1.5 times this value dop853 pays, whose limit along vibrations is
+  /// wider.
   double vibrates_beyond() const { return std::max(vibration_from, 1.5 * 4 * std::pow(tolerance(), 0.2)); }
-  /// A motion that is as fast as lambda says, and of the size of the state, is followed by dop853 with |h lambda| about
-  /// 6 tol^(1/8).
+  /// dop853 follows a motion of rate lambda and of the size of the state with |h lambda| about 6 tol^(1/8).
   double far_beyond() const { return std::min(limit_of_dop853, 3 * 6 * std::pow(tolerance(), 0.125)); }
 
   void look_for_stiffness() {
@@ -189,8 +188,7 @@ class Automatic {
          explicit_limit(), calm_);
   }
 
-  /// sqrt(|J J v| / |v|), which is right at once where J J v = -omega^2 v; v turns towards the fastest motion from step
-  /// to step.
+  /// sqrt(|J J v| / |v|): exact at once if J J v = -omega^2 v. v turns towards the fastest motion from step to step.
   double spectral_radius() {
     const implicit::Jacobian& J = radau5_->jacobian();
     const std::size_t m = size() - options_.quadratures;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Callables by address, so that what calls them is compiled once and not for each type. In: references, which have to
-// stay. Out: what a caller keeps of them.
+// Type-erased references to callables, so that callers are compiled once and not for each type. In: callables, which
+// must outlive the references. Out: the references.
 #pragma once
 
 #include <type_traits>
@@ -9,7 +9,7 @@
 
 namespace eom::detail {
 
-/// The address of a callable, of a function too, and back.
+/// The address of a callable or a function, and the inverse.
 template <class F>
 void* address_of(F& callable) {
   if constexpr (std::is_function_v<F>)

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// A run of a one-step method from t0 to t1, whatever its family. In: the method with its start, options, an observer
-// and an after_step. Out: Result. Steps are chosen by the error estimate, or fixed where Options::fixed_step says so.
+// The run loop of one-step methods from t0 to t1. In: the method with its start, options, an observer and an
+// after_step. Out: Result. The error estimate controls the steps, unless Options::fixed_step is set.
 //
 // A Method has the static members order, adaptive, error_uses_end and interpolate, and
 //   size(), x0(), x1(), derivative0(), derivative1(), scratch()   its arrays
-//   evaluate(t, x, dx), evaluate_start(t), evaluate_end()         the right-hand side, at x0, at x1; codes
-//   attempt(t0, t1)                                               a trial step; a code
-//   error_norm(rtol, atol)                                        of it: 1 is just allowed
-//   after_accepted(h, error), after_rejected(h, error), after_failed(h)   the next step's size
-//   accept(moved)                                                 the end becomes the start
-//   end_known(), starting_order()                                 instead of error_uses_end and order where they change
-//   first_step()                                                  left out: from the derivatives at the start
-//   statistics()                                                  but for steps and rejected
+//   evaluate(t, x, dx), evaluate_start(t), evaluate_end()         the right-hand side, at x0, at x1; return codes
+//   attempt(t0, t1)                                               a trial step; returns a code
+//   error_norm(rtol, atol)                                        of the trial step: 1 is just allowed
+//   after_accepted(h, error), after_rejected(h, error), after_failed(h)   the next step size
+//   accept(moved)                                                 makes the end the next start
+//   end_known(), starting_order()                                 replace error_uses_end and order if these vary
+//   first_step()                                                  optional; default: from the derivatives at the start
+//   statistics()                                                  except steps and rejected
 #pragma once
 
 #include <algorithm>
@@ -51,7 +51,7 @@ class Run {
   }
 
  private:
-  /// Derivative and step size at the start; false: the run ends here.
+  /// Computes the derivative and the step size at the start. False: the run ends here.
   bool start() {
     const int code = stepper_.evaluate_start(t_);
     if (code != 0)
@@ -61,11 +61,11 @@ class Run {
       return end(Outcome::not_finite, "the state or its derivative is not finite at the start");
     if (options_.fixed_step > 0) return plan_fixed_steps();
     h_ = options_.initial_step > 0 ? options_.initial_step : first_step();
-    h_ = std::min(std::max(h_, smallest_step(t_)), longest_step());  // a shorter one is lost in the rounding of t
+    h_ = std::min(std::max(h_, smallest_step(t_)), longest_step());  // a shorter step would be lost in the rounding of t
     return true;
   }
 
-  /// As many equal steps as are needed and no more: a quotient that is an integer but for rounding counts as one.
+  /// The smallest sufficient number of equal steps. A quotient that is an integer up to rounding counts as one.
   bool plan_fixed_steps() {
     const double quotient = std::abs(t_end_ - t_start_) / options_.fixed_step;
     fixed_steps_ = std::max(1.0, std::ceil(quotient * (1 - 8 * epsilon)));
@@ -74,7 +74,7 @@ class Run {
     return true;
   }
 
-  /// One trial step; false: the run ends here.
+  /// Makes one trial step. False: the run ends here.
   bool step() {
     if (options_.interrupt != nullptr && options_.interrupt->load(std::memory_order_relaxed))
       return end(Outcome::interrupted, "stopped from outside");
@@ -103,7 +103,7 @@ class Run {
             &Method::interpolate};
   }
 
-  /// Options::admit; the smallest step is always taken.
+  /// Applies Options::admit. The smallest step is always accepted.
   bool admitted(double t_next) {
     const double h = std::abs(t_next - t_), longest = options_.admit(view(t_next));
     if (!adaptive() || !(longest < h) || h <= smallest_step(t_)) return true;
@@ -127,7 +127,7 @@ class Run {
 
   bool adaptive() const { return options_.fixed_step <= 0; }
 
-  /// Where the next step ends: t_end exactly for the last one, which may be stretched by 1 %; what is left for two
+  /// End of the next step. The last step ends exactly at t_end and may be stretched by 1 %. A remainder of at most two
   /// steps is halved, so that no sliver remains.
   double next_time() const {
     if (!adaptive()) {
@@ -139,7 +139,7 @@ class Run {
     return t_ + direction_ * (2 * h > left ? 0.5 * left : h);
   }
 
-  /// A step of at most h that is nowhere longer than the bounds along it allow; it may end where a bound begins.
+  /// The longest step, at most h, that respects the bounds along it. It may end at the beginning of a bound.
   double bounded(double h) const {
     const auto bounds = options_.step_bounds;
     auto bound =
@@ -152,7 +152,7 @@ class Run {
     return h;
   }
 
-  /// after_step and the derivative at the end of the step; returns a code.
+  /// Runs after_step and evaluates the derivative at the end of the step. Returns a code.
   int complete(double t_next, bool& moved) {
     if constexpr (!std::is_same_v<std::remove_cvref_t<AfterStep>, NoProjection>) {
       double* x1 = stepper_.x1();
@@ -190,7 +190,8 @@ class Run {
                "the error estimate asks for a step below 16 units in the last place of t = " + printed(t_));
   }
 
-  /// After a code (or a value that is not finite): a shorter step, down to the smallest; a fixed step ends at once.
+  /// After a code or a value that is not finite: shortens the step, down to the smallest. A fixed step ends the run at
+  /// once.
   bool retry(int code) {
     ++rejected_;
     h_ = stepper_.after_failed(adaptive() ? std::min(h_, std::abs(t_end_ - t_)) : 0);
@@ -210,7 +211,7 @@ class Run {
       return initial_step();
   }
 
-  /// HNW I, section II.4: a step for which an Euler step, and the change of the derivative along it, stay small.
+  /// Step size for which an Euler step, and the change of the derivative along it, are small (HNW I, section II.4).
   double initial_step() {
     const std::size_t n = stepper_.size() - options_.quadratures;
     const double* x = stepper_.x0();
@@ -234,7 +235,7 @@ class Run {
     double sum = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const double scale = options_.atol + options_.rtol * std::abs(stepper_.x0()[i]);
-      if (scale == 0) continue;  // atol 0 and a component that starts at 0: it has no unit yet
+      if (scale == 0) continue;  // atol is 0 and the component starts at 0: it has no scale yet
       const double value = component(i) / scale;
       sum += value * value;
     }

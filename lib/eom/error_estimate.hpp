@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// How far off the end state of a run is. In: the run and its options. Out: an estimate per component, from further
+// Error estimate of the end state of a run. In: the run and its options. Out: an estimate per component, from repeated
 // runs.
 //
-// The second run is tighter: tolerances a hundredth, not below rtol 1e-14, but at most a half; or half the fixed step.
-// With the error proportional to the tolerance (to step^order) the difference of the end states is the first run's
-// error times 1 - ratio (1 - 2^-order), by which it is divided. Where the two agree so well that rounding may be what
-// they differ by, or happen to agree in, a third run with another sequence of steps is made and the largest difference
-// is taken. Of fixed steps, which nothing controls, the third run is always made: where it differs from the second by
-// half as much as that one from the first the steps are too long for the order to show, and no difference says much.
-// Never below a unit in the last place of the component. What all runs get wrong alike (the model, t0, x0, the
-// representation of the parameters, a discontinuity that no step sees) is not in it.
+// The second run is tighter: a hundredth of the tolerances (rtol not below 1e-14, and at most a half of it), or half the
+// fixed step. If the error is proportional to the tolerance (or to step^order), the difference of the end states is the
+// error of the first run times 1 - ratio (1 - 2^-order), and is divided by this factor. If the two runs agree so well
+// that rounding or chance may explain it, a third run with another sequence of steps follows, and the largest
+// difference counts. Fixed steps are not controlled, so the third run is always made. If it differs from the second by
+// half as much as the second from the first, the steps are too long for the order to show and no difference is
+// reliable. The estimate is at least a unit in the last place of the component. It excludes errors that all runs
+// share: the model, t0, x0, the representation of the parameters, a discontinuity that no step detects.
 #pragma once
 
 #include <algorithm>
@@ -26,29 +26,29 @@
 namespace eom {
 
 struct ErrorEstimate {
-  std::vector<double> x;            // per component of the end state, absolute; infinite where a further run failed
+  std::vector<double> x;            // per component of the end state, absolute; infinite if a repeated run failed
   double max = 0;                   // the largest of them
-  Outcome outcome = Outcome::done;  // of the further runs: the first that did not end as the run itself did
+  Outcome outcome = Outcome::done;  // the first outcome of a repeated run that differs from that of the run itself
   bool converging = true;           // false: shorter fixed steps change the end by as much again
-  std::size_t runs = 0;             // further runs made
-  Statistics statistics;            // and what they cost
+  std::size_t runs = 0;             // number of repeated runs
+  Statistics statistics;            // cost of the repeated runs
 };
 
 namespace detail {
 
-/// A further run's options and the fraction of the first run's error that is expected to remain in it.
+/// Options of a repeated run, and the fraction of the first run's error that is expected to remain in it.
 struct Repetition {
   Options options;
   double remaining;
 };
 
-/// The run made anew with another sequence of steps: span is the time it covered in so many steps.
+/// Options that repeat the run with another sequence of steps. span: the time that the run covered in `steps` steps.
 inline Repetition repetition(const Options& first, double span, std::size_t steps, int order, double part) {
   Repetition next{first, 0};
   const double count = static_cast<double>(steps);
   if (first.fixed_step > 0) {
     next.options.fixed_step = part * (steps > 0 ? std::min(first.fixed_step, span / count) : first.fixed_step);
-    // The way to an event that is shorter than all these steps would be the same step in each run.
+    // Without this, an event within the first step would be reached by the same single step in each run.
     next.options.event_parts = static_cast<std::size_t>(std::ceil(static_cast<double>(first.event_parts) / part));
     next.remaining = std::pow(part, order);
     return next;
@@ -59,17 +59,18 @@ inline Repetition repetition(const Options& first, double span, std::size_t step
   next.options.rtol = first.rtol * ratio;
   next.options.atol = first.atol * ratio;
   next.options.initial_step = 0;
-  // Steps bounded by max_step or by their growth (few, or few between restarts) would repeat themselves exactly.
+  // Steps limited by max_step or by their growth (few steps, or few between restarts) would repeat exactly.
   next.options.max_step = part * first.max_step;
   if (span > 0) next.options.max_step = std::min(next.options.max_step, span / (count + 1.5 / part));
   next.remaining = ratio;
   return next;
 }
 
-/// Of the change that half the step makes, what 0.35 of it may add; 0.3 is what order 1 does.
+/// Largest change by the 0.35 step, relative to the change by the half step, that counts as convergence. Order 1 gives
+/// 0.3.
 inline constexpr double still_converging = 0.5;
 
-/// What counts as close enough to rounding for a third run: relative to the largest component.
+/// Differences below this fraction of the largest component may be rounding and require a third run.
 inline constexpr double rounding_suspected = 1e-10;
 
 inline int order_of(std::string_view method) {
@@ -79,8 +80,8 @@ inline int order_of(std::string_view method) {
 
 }  // namespace detail
 
-/// The estimate for a run that may be more than one integrate() (restarts at events, modes): run(options) -> Result
-/// repeats it, from t0 on. order: the method's; it matters for fixed steps only.
+/// Estimates the error of a run that may consist of several integrate() calls (restarts at events, modes). run(options)
+/// -> Result repeats it from t0 on. order: of the method; only relevant for fixed steps.
 template <class Run>
 ErrorEstimate estimate_error(int order, double t0, const Result& first, const Options& options, Run&& run) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -129,8 +130,7 @@ ErrorEstimate estimate_error(int order, const Result& first, const Options& opti
   return estimate_error(order, 0.0, first, options, std::forward<Run>(run));
 }
 
-/// The estimate for a run of integrate(method, rhs, t0, x0, t1, options, ...) that gave `first`, at the time it
-/// reached.
+/// Estimates the error of integrate(method, rhs, t0, x0, t1, options, ...) with result `first`, at the time it reached.
 template <class F, class AfterStep = NoProjection>
 ErrorEstimate estimate_error(std::string_view method, F&& rhs, double t0, std::span<const double> x0,
                              const Result& first, const Options& options, AfterStep&& after_step = {}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a system has that a method may ask for, or may be unable to follow; what a method asks for; whether the two fit.
-// In: features of a system, the needs of a method. Out: Eligibility, the reason as a value.
+// Features of a system that a method may need or may not support; the requirements of a method; the check of one
+// against the other. In: features of a system, the needs of a method. Out: Eligibility, with the reason as a value.
 #pragma once
 
 #include <initializer_list>
@@ -13,18 +13,18 @@ enum class Feature : unsigned {
   series,                // the Taylor series of its solution
   momenta,               // dT/dqdot, their rates, and the mass matrix
   constraints,           // with multipliers: psi, A, b, and the mass matrix
-  velocity_constraints,  // some of them bind velocities only
-  modes,                 // its equations change on the way, at contacts that slip or are left
+  velocity_constraints,  // some of them constrain velocities only
+  modes,                 // its equations change during the run, at contacts that slip or open
   kinks,                 // right-hand sides with abs, sign, min, max, if
-  other_states,          // components that are no coordinates, velocities or quadratures
-  moving_inputs,         // inputs that are functions of time, not steps
-  charts,                // coordinates that are exchanged where they fail
+  other_states,          // components that are not coordinates, velocities or quadratures
+  moving_inputs,         // inputs that are continuous functions of time, not step functions
+  charts,                // coordinates that are exchanged near their singularities
 };
 inline constexpr Feature all_features[] = {
     Feature::jacobian, Feature::series, Feature::momenta,      Feature::constraints,   Feature::velocity_constraints,
     Feature::modes,    Feature::kinks,  Feature::other_states, Feature::moving_inputs, Feature::charts};
 
-/// For "with ..." in a sentence.
+/// The feature as it follows "with ..." in a sentence.
 constexpr const char* name(Feature feature) {
   switch (feature) {
     case Feature::jacobian: return "df/dx";
@@ -41,7 +41,7 @@ constexpr const char* name(Feature feature) {
   return "";
 }
 
-/// A set of them.
+/// A set of features.
 class Features {
  public:
   constexpr Features() = default;
@@ -54,7 +54,7 @@ class Features {
     other.bits_ |= bits_;
     return other;
   }
-  /// With the feature, or without.
+  /// A copy with or without the feature.
   constexpr Features set(Feature feature, bool present = true) const {
     Features changed = *this;
     changed.bits_ = present ? bits_ | bit(feature) : bits_ & ~bit(feature);
@@ -67,19 +67,19 @@ class Features {
   unsigned bits_ = 0;
 };
 
-/// A feature that a method cannot follow; why: a clause, without what it stands behind.
+/// A feature that a method does not support; why: a clause that completes the message.
 struct Refusal {
   Feature feature;
   const char* why;
 };
 
-/// What a method asks of a system; a method says so in a static member `needs`, and one without asks for nothing.
+/// Requirements of a method on a system. A method declares them in a static member `needs`; without it there are none.
 struct Needs {
-  Features required = {};                 // without any of these it cannot run
-  Features used = {};                     // taken where they are there, done without where they are not
-  std::span<const Refusal> refuses = {};  // a system with one of these it cannot integrate
-  const char* instead = "";               // the method to take where it is not eligible, and why that; empty: explicit
-  bool keeps_constraints = false;         // itself, so that nothing is to be projected
+  Features required = {};                 // the method cannot run without these
+  Features used = {};                     // used if available, not required
+  std::span<const Refusal> refuses = {};  // the method cannot integrate a system that has one of these
+  const char* instead = "";               // the method to take if this one is not eligible, and the reason; empty: an explicit one
+  bool keeps_constraints = false;         // the method satisfies the constraints itself; no projection is needed
 
   constexpr const Refusal* refusal(Feature feature) const {
     for (const Refusal& refused : refuses)
@@ -88,16 +88,16 @@ struct Needs {
   }
 };
 
-/// Whether a method can integrate a system, and what stands against it.
+/// Whether a method can integrate a system, and the obstacle if not.
 struct Eligibility {
   enum class Reason { eligible, missing, refused };
   Reason reason = Reason::eligible;
-  Feature feature = {};  // that is missing, or refused
+  Feature feature = {};  // the missing or refused one
   const char* why = "";  // of the refusal
   constexpr explicit operator bool() const { return reason == Reason::eligible; }
 };
 
-/// The first refusal in the method's order, else the first requirement that is missing.
+/// The first refusal in the method's order, else the first missing requirement.
 constexpr Eligibility eligible(const Needs& needs, Features system) {
   for (const Refusal& refused : needs.refuses)
     if (system.has(refused.feature)) return {Eligibility::Reason::refused, refused.feature, refused.why};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Initial value problems x' = f(t, x). In: a method's name, a right-hand side, a start and an end, options.
-// Out: Result. Start reading in docs/runtime.md; the methods are in explicit_rk/, implicit/, constrained/, taylor/ and
+// Initial value problems x' = f(t, x). In: a method's name, a right-hand side, a start and an end, options. Out:
+// Result. Documentation: docs/runtime.md. The methods are in explicit_rk/, implicit/, constrained/, taylor/ and
 // variational/.
 #pragma once
 
@@ -26,7 +26,7 @@ namespace eom {
 
 namespace detail {
 
-/// Throws std::invalid_argument where the problem or the options make no sense, whatever the method.
+/// Throws std::invalid_argument if the problem or the options are invalid for every method.
 inline void check_problem(double t0, std::span<const double> x0, double t1, const Options& options) {
   const auto demand = [](bool holds, const char* what) {
     if (!holds) throw std::invalid_argument(std::string("eom::integrate: ") + what);
@@ -47,7 +47,7 @@ inline void check_problem(double t0, std::span<const double> x0, double t1, cons
   throw std::invalid_argument("eom::integrate: no method is called '" + std::string(method) + "'; there are " + known);
 }
 
-/// whose: what has the features, as it is called in a sentence; header: where they are described.
+/// whose: owner of the features, as named in the message; header: the header that describes them.
 [[noreturn]] inline void throw_ineligible(const char* caller, const MethodInfo& method, const Eligibility& found,
                                           const char* whose, const char* header) {
   const bool missing = found.reason == Eligibility::Reason::missing;
@@ -62,7 +62,7 @@ inline void require_eligible(const MethodInfo& method, const System& system, std
   if (!found) throw_ineligible("eom::integrate", method, found, "right-hand side", "eom/system.hpp");
 }
 
-/// What a run is asked for beside its method and its right-hand side.
+/// The initial values, the end time and the options of a run.
 struct InitialValues {
   double t0;
   std::span<const double> x0;
@@ -70,7 +70,8 @@ struct InitialValues {
   const Options& options;
 };
 
-/// Whether T is the method of this name; throws std::invalid_argument where it is, and needs a step that is not given.
+/// Whether T is the method of this name. Throws std::invalid_argument if it is and needs a fixed step that is not
+/// given.
 template <class T>
 bool is_method(std::string_view method, const Options& options) {
   if (method != T::name) return false;
@@ -79,7 +80,7 @@ bool is_method(std::string_view method, const Options& options) {
   return true;
 }
 
-/// by(T*) for the methods of the registry, until one says that it is the one.
+/// Calls by(T*) for the methods of the registry until one call returns true.
 template <class By>
 bool any_method(By by) {
   return [&]<class... T>(std::tuple<T...>*) {
@@ -95,7 +96,7 @@ Result run(Problem& problem, const InitialValues& values, ObserverOf observer, A
       .run();
 }
 
-/// By the methods that are compiled once for all right-hand sides.
+/// Uses the methods that are compiled once for all right-hand sides.
 template <class AfterStep>
 Result integrate_system(std::string_view method, System system, const InitialValues& values, ObserverOf observer,
                         AfterStep after_step) {
@@ -116,7 +117,7 @@ Result integrate_system(std::string_view method, System system, const InitialVal
   return result;
 }
 
-/// Explicit methods are compiled for each right-hand side, which may then be inlined into the stages.
+/// Explicit methods are compiled for each right-hand side, so that it can be inlined into the stages.
 template <class F, class AfterStep>
 Result integrate_by_name(std::string_view method, F& rhs, const InitialValues& values, ObserverOf observer,
                          AfterStep after_step) {
@@ -135,12 +136,11 @@ Result integrate_by_name(std::string_view method, F& rhs, const InitialValues& v
 
 }  // namespace detail
 
-/// Integrates from (t0, x0) to t1, which may lie before t0.
-/// rhs(t, x, dx) -> int, with what else it has as members (system.hpp); observer(StepView) -> bool, false stops;
-/// after_step(t, x) -> int may move the state at the end of a step (a projection) before the step counts as accepted. A
-/// nonzero code from rhs or after_step is retried with shorter steps before it ends the run.
-/// Throws std::invalid_argument for an unknown method, one that is not eligible for the right-hand side, and senseless
-/// options.
+/// Integrates from (t0, x0) to t1, which may be before t0. rhs(t, x, dx) -> int may have further members (system.hpp).
+/// observer(StepView) -> bool stops the run by returning false. after_step(t, x) -> int may change the state at the end
+/// of a step (a projection) before the step counts as accepted. After a nonzero code from rhs or after_step, shorter
+/// steps are tried before the run ends. Throws std::invalid_argument for an unknown method, for one that is not
+/// eligible for the right-hand side, and for invalid options.
 template <class F, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
                  const Options& options = {}, Observer&& observer = {}, AfterStep&& after_step = {}) {

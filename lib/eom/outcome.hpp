@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How a run ended: an enumeration in the result, never an exception in a hot loop.
-// In: return codes of the emitted C ABI.  Out: Outcome and its spelling, as results and CSV files print it.
+// Outcome of a run: an enumeration in the result, never an exception in a hot loop. In: return codes of the emitted C
+// ABI. Out: Outcome and its spelling, as in results and CSV files.
 #pragma once
 
 #include <limits>
@@ -45,18 +45,18 @@ constexpr const char* name(Outcome outcome) {
   return "not_finite";
 }
 
-/// The C ABI's code of a value that is not finite.
+/// Code of the C ABI for a value that is not finite.
 inline constexpr int code_not_finite = 5;
 
-/// What the step of an implicit method returns where its iteration does not converge: a shorter step may do.
+/// Returned by an implicit step whose iteration does not converge. A shorter step may converge.
 inline constexpr int code_no_convergence = std::numeric_limits<int>::min();
 
-/// What a Taylor step returns whose series ends with another derivative than the right-hand side has there: it jumps
-/// within the step.
+/// Returned by a Taylor step if the derivative of its series at the end differs from the right-hand side: the
+/// right-hand side jumps within the step.
 inline constexpr int code_jump = code_no_convergence + 1;
 
-/// The outcome that a return code of the C ABI stands for; 0 is done. A code outside the ABI (a projection that did
-/// not converge, a caller's own) gives step_too_small: no step, however small, could be completed.
+/// The outcome of a return code of the C ABI; 0 is done. A code outside the ABI (a projection that does not converge, a
+/// caller's own code) gives step_too_small: no step, however small, could be completed.
 constexpr Outcome outcome_of_abi_code(int code) {
   switch (code) {
     case 0: return Outcome::done;

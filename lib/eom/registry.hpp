@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Every method there is. A new one is a file with its class or its tableau, and here its include and its entry; what it
-// needs of a system it says itself (features.hpp). Nothing else lists methods: integrate(), integrate_ensemble() and
-// the programs that offer methods by name loop over this.
+// The registry of methods. A new method is a file with its class or its tableau, plus its include and its entry here;
+// it declares its own requirements (features.hpp). There is no other list: integrate(), integrate_ensemble() and
+// programs that select methods by name iterate over this one.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@
 
 namespace eom {
 
-/// Tableaus of explicit Runge-Kutta methods (explicit_rk/tableau.hpp), and methods as drive.hpp takes them.
+/// Tableaus of explicit Runge-Kutta methods (explicit_rk/tableau.hpp), and methods in the form that drive.hpp expects.
 // clang-format off
 using Registry = std::tuple<
     explicit_rk::Rk4,
@@ -69,7 +69,7 @@ inline constexpr MethodInfo info_of{T::name,          T::order,      T::dense_or
 
 }  // namespace detail
 
-/// The registry's methods in its order; beside them there is `auto` (automatic.hpp), which chooses.
+/// The registered methods in order. In addition there is `auto` (automatic.hpp), which selects among them.
 inline std::span<const MethodInfo> methods() {
   static constexpr auto table = []<class... T>(std::tuple<T...>*) {
     return std::array<MethodInfo, sizeof...(T)>{detail::info_of<T>...};
@@ -77,7 +77,7 @@ inline std::span<const MethodInfo> methods() {
   return table;
 }
 
-/// The method of this name, `auto` too; null where there is none.
+/// The method of this name, `auto` included; null if there is none.
 inline const MethodInfo* find_method(std::string_view name) {
   if (name == Automatic::name) return &detail::info_of<Automatic>;
   for (const MethodInfo& method : methods())
@@ -85,9 +85,9 @@ inline const MethodInfo* find_method(std::string_view name) {
   return nullptr;
 }
 
-/// Whether a method can integrate a system of such features, or what stands against it.
+/// Whether a method can integrate a system with these features, and the obstacle if not.
 constexpr Eligibility eligible(const MethodInfo& method, Features system) { return eligible(method.needs, system); }
-/// The same of a right-hand side whose state has so many components that are no quadratures.
+/// The same for a right-hand side whose state has `states` components that are not quadratures.
 constexpr Eligibility eligible(const MethodInfo& method, const System& system, std::size_t states) {
   return eligible(method.needs, system.features(states));
 }

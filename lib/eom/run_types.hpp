@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What goes into a run and what comes out of it: options, statistics, result, the view of one accepted step.
-// No method is known here; every family of methods (explicit_rk/, ...) shares these types.
+// Types shared by all families of methods (explicit_rk/, ...): options, statistics, the result of a run, the view of
+// one accepted step.
 #pragma once
 
 #include <atomic>
@@ -18,14 +18,15 @@
 
 namespace eom {
 
-/// dx = f(t, x), returning a code of the C ABI (0: fine). The convenience form; integrate() takes any such callable.
+/// dx = f(t, x), returning a code of the C ABI (0: no error). This is the convenience form; integrate() takes any such
+/// callable.
 using Rhs = std::function<int(double t, const double* x, double* dx)>;
 
-/// Why `auto` changes its method.
+/// Reason for a change of method by `auto`.
 enum class ChangeReason : std::uint8_t {
-  beyond_stability,  // |h lambda| was beyond the limit of stability: stiff
-  beyond_accuracy,   // |h lambda| was above what a motion that fast would allow for its accuracy: stiff
-  vibrations,        // |h lambda| was near the limit of stability along vibrations
+  beyond_stability,  // |h lambda| exceeded the stability limit: stiff
+  beyond_accuracy,   // |h lambda| exceeded the value that accuracy would allow for so fast a motion: stiff
+  vibrations,        // |h lambda| was near the stability limit along vibrations
   no_longer_stiff    // h rho(df/dx) was low
 };
 
@@ -34,11 +35,11 @@ struct MethodChange {
   double t;
   const char *from, *to;
   ChangeReason why;
-  double limit;  // of |h lambda|, or of h rho(df/dx)
-  int steps;     // so many were beyond it
+  double limit;  // on |h lambda|, or on h rho(df/dx)
+  int steps;     // number of steps beyond the limit
 };
 
-/// Why, as a clause.
+/// The reason, as a clause.
 inline std::string to_text(const MethodChange& change) {
   const auto text = [&change](const char* words, const char* method) {
     char buffer[200];
@@ -62,27 +63,27 @@ inline std::string to_text(const MethodChange& change) {
   return "";
 }
 
-/// What `auto` (automatic.hpp) integrates with, and how it came to that.
+/// The method that `auto` (automatic.hpp) uses, and the history of its changes.
 struct Choice {
   static constexpr int least_patience = 15;
   const char* method = nullptr;   // null: not chosen yet
-  int patience = least_patience;  // so many stiff steps are asked for before the next change
+  int patience = least_patience;  // stiff steps required before the next change
   std::vector<MethodChange> changes;
 };
 
-/// From t on, until the next bound, no chosen step is to be longer than `step`, wherever in it that lies.
+/// Upper bound on chosen steps: from t to the next bound, no step that overlaps this interval is longer than `step`.
 struct StepBound {
   double t, step;
 };
 
-/// One accepted step with its dense output; valid only during the call that shows it.
+/// One accepted step with its dense output. Valid only during the call that receives it.
 struct StepView {
   double t0, t1;
   std::span<const double> x0, x1;
-  const void* interpolant = nullptr;  // the stepper, seen by evaluate only
+  const void* interpolant = nullptr;  // the stepper; only `evaluate` uses it
   void (*evaluate)(const void* interpolant, double t, double* x) = nullptr;
 
-  /// The state at t between t0 and t1 (x: as long as x0), by the method's dense output.
+  /// The state at t between t0 and t1 by the method's dense output. x is as long as x0.
   void interpolate(double t, std::span<double> x) const { evaluate(interpolant, t, x.data()); }
 };
 
@@ -92,31 +93,31 @@ struct Options {
   double initial_step = 0;  // 0: chosen
   double max_step = std::numeric_limits<double>::infinity();
   std::span<const StepBound> step_bounds =
-      {};  // ascending in t, of chosen steps that go forward in time: what is known to happen there is not stepped over
-  /// Of a step whose error is within the tolerances: the longest that may be taken in its place, infinity where it may
-  /// be taken. For what lies between the places at which a method sees the equations. Of fixed steps it is asked, and
-  /// not heeded.
+      {};  // ascending in t, for chosen steps forward in time: keeps steps from skipping events that are known in advance
+  /// Called for each step whose error is within the tolerances. Returns the longest step that may replace it, infinity
+  /// if the step may be taken as it is. It covers features between the points at which a method evaluates the
+  /// equations. For fixed steps the result is ignored.
   std::function<double(const StepView&)> admit = {};
-  double fixed_step = 0;        // > 0: steps of this size without error control, whatever the method; rk4 needs it
-  std::size_t event_parts = 1;  // so many equal steps to a breaking event that ends a step, instead of one
-  int series_order = 0;         // of `taylor`, and of `radau` (5, 9, 13); 0: chosen, and changed from step to step
+  double fixed_step = 0;        // > 0: steps of this size without error control, for any method; required by rk4
+  std::size_t event_parts = 1;  // number of equal steps up to a breaking event that ends a step
+  int series_order = 0;         // of `taylor`, and of `radau` (5, 9, 13); 0: chosen and adapted from step to step
   std::size_t max_steps = 50'000'000;            // accepted and rejected together
-  std::size_t quadratures = 0;                   // trailing components of x kept out of the error norm
-  const std::atomic<bool>* interrupt = nullptr;  // looked at once per step
-  Choice* choice = nullptr;                      // of `auto`: written, and what the next run begins with
+  std::size_t quadratures = 0;                   // trailing components of x that are excluded from the error norm
+  const std::atomic<bool>* interrupt = nullptr;  // polled once per step
+  Choice* choice = nullptr;                      // of `auto`: output, and the initial value for the next run
 };
 
 struct Statistics {
   std::size_t steps = 0;  // accepted
   std::size_t rejected = 0;
   std::size_t rhs_evaluations = 0;
-  std::size_t dense_fallbacks = 0;  // steps whose dense output fell back to the cubic, since an added stage failed
-  // of implicit methods
-  std::size_t jacobians = 0;               // df/dx evaluated, by the right-hand side's own function or by differences
-  std::size_t difference_evaluations = 0;  // of rhs_evaluations: for differences; 0 where the function was given
+  std::size_t dense_fallbacks = 0;  // steps whose dense output fell back to the cubic because an additional stage failed
+  // implicit methods only
+  std::size_t jacobians = 0;               // evaluations of df/dx, by the right-hand side's own function or by differences
+  std::size_t difference_evaluations = 0;  // part of rhs_evaluations used for differences; 0 if the function was given
   std::size_t factorisations = 0;          // of the matrices of the implicit step
   std::size_t newton_iterations = 0;
-  std::size_t newton_failures = 0;  // iterations given up; the step is then tried with a new df/dx or made shorter
+  std::size_t newton_failures = 0;  // abandoned iterations; the step is retried with a new df/dx or a shorter length
 
   Statistics& operator+=(const Statistics& other) {
     steps += other.steps;
@@ -134,33 +135,34 @@ struct Statistics {
 
 struct Result {
   Outcome outcome = Outcome::done;
-  double t = 0;           // the time reached: t1 exactly when the outcome is done
+  double t = 0;           // the time reached; exactly t1 if the outcome is done
   std::vector<double> x;  // the state at t, the last accepted one
   Statistics statistics;
-  std::string detail;  // one sentence when the outcome is not done, else empty
+  std::string detail;  // one sentence if the outcome is not done, else empty
 };
 
-/// What the registry tells of a method. The dense output's error within one step is O(h^(dense_order + 1)).
+/// Properties of a method in the registry. The dense output has an error of O(h^(dense_order + 1)) within one step.
 struct MethodInfo {
   const char* name;
   int order;
   int dense_order;
   bool adaptive;          // false: needs Options::fixed_step
-  Needs needs = {};       // of a system (features.hpp)
-  bool ensemble = false;  // integrate_ensemble takes it too
+  Needs needs = {};       // requirements on a system (features.hpp)
+  bool ensemble = false;  // supported by integrate_ensemble
 };
 
-/// The observer that looks at nothing.
+/// An observer that does nothing.
 struct NoObserver {
   bool operator()(const StepView&) const { return true; }
 };
 
-/// The after_step that moves nothing.
+/// An after_step that does not change the state.
 struct NoProjection {
   int operator()(double, double*) const { return 0; }
 };
 
-/// A run has diverged when a component of the state leaves this bound: far beyond mechanics, and squares still fit.
+/// A run has diverged if a component of the state exceeds this bound. It is far beyond mechanics, and squares do not
+/// overflow.
 inline constexpr double divergence_bound = 1e150;
 
 /// Steps shorter than this many units in the last place of t are refused (step_too_small).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The state at both ends of a step and its derivatives, for methods on a System; what was counted; the sum x0 +
-// increment with its remainder carried along (compensated summation).
+// The state and its derivative at both ends of a step, for methods on a System; the statistics; the compensated sum x0
+// + increment, whose remainder is carried along.
 #pragma once
 
 #include <algorithm>

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
-// A right-hand side with all that it has beside f, by reference. In: a callable f(t, x, dx) -> code of a state x =
-// (coordinates q, rates v, others, quadratures). What more it has are members, of which any may be left out:
+// A right-hand side with its optional members, by reference. In: a callable f(t, x, dx) -> code of a state x =
+// (coordinates q, rates v, others, quadratures). All further members are optional:
 //
 // jacobian(t, x, dfdx, dfdt)   dfdx[i + m j] = d(dx_i)/d(x_j), m the length of x without Options::quadratures, and the
-//                              derivatives by t (with_jacobian.hpp).
-// taylor(t, x, order, c)       c[i + s k] = the k-th derivative of x_i over k!, k = 0..order, i < s; taylor_order() the
-//                              highest order, taylor_states() s (with_taylor.hpp). Those behind are integrated along.
-// coordinates()                n of q, for what follows; 0: nothing of it is there.
+//                              derivatives with respect to t (with_jacobian.hpp).
+// taylor(t, x, order, c)       c[i + s k] = the k-th derivative of x_i over k!, k = 0..order, i < s; taylor_order() is
+//                              the highest order, taylor_states() is s (with_taylor.hpp). The remaining components are
+//                              integrated as quadratures.
+// coordinates()                n, the length of q, for the functions below; 0: none of these functions is available.
 // mass(t, x, M)                n x n by columns.
-// momenta(t, x, p, rate)       p = dT/dv, M = dp/dv; d/dt p without the forces of constraints, dT/dq and all forces.
-// constrain(t, x, psi, A, b)   psi(q, t) of those on positions; of all A v + b = 0, A m x n by columns. constraints()
-//                              gives m, position_constraints() how many, the first ones, bind positions; left out:
-//                              all. The accelerations of f keep them (the index-1 form). Redundant rows, and rows that
-//                              are 0, are allowed.
-// features()                   what else a method has to know (features.hpp): modes, kinks, ...
+// momenta(t, x, p, rate)       p = dT/dv, with M = dp/dv; rate = dT/dq + all forces = d/dt p without constraint forces.
+// constrain(t, x, psi, A, b)   psi(q, t) of the position constraints; A (m x n by columns) and b of all constraints
+//                              A v + b = 0. constraints() is m. position_constraints() is the number of leading rows
+//                              that constrain positions; without it, all do. The accelerations of f satisfy the
+//                              constraints (the index-1 form). Redundant rows and zero rows are allowed.
+// features()                   further properties that a method has to know (features.hpp): modes, kinks, ...
 //
-// Functions give codes of the C ABI; NAME_rhs, NAME_jac, NAME_taylor, NAME_mass, NAME_momenta, NAME_constraints are
-// such ones. Out: System, for methods that are compiled once for all right-hand sides; a call through a pointer is
-// nothing beside their iterations.
+// Functions return codes of the C ABI. NAME_rhs, NAME_jac, NAME_taylor, NAME_mass, NAME_momenta and NAME_constraints
+// have these forms. Out: System, for methods that are compiled once for all right-hand sides. The cost of a call
+// through a pointer is negligible compared with their iterations.
 #pragma once
 
 #include <cstddef>
@@ -38,11 +39,11 @@ struct System {
   int (*constrain)(void* self, double t, const double* x, double* psi, double* A, double* b) = nullptr;
   int taylor_order = 0;
   std::size_t taylor_states = 0, coordinates = 0, constraints = 0, position_constraints = 0;
-  Features further = {};  // those that the callable tells itself
+  Features further = {};  // those declared by the callable itself
 
   int operator()(double t, const double* x, double* dx) const { return f(self, t, x, dx); }
 
-  /// Of a state with so many components that are no quadratures.
+  /// Features of a state with `states` components that are not quadratures.
   constexpr Features features(std::size_t states) const {
     const bool binds_velocities = coordinates > 0 && constraints > position_constraints;
     const bool has_others = coordinates > 0 && states > 2 * coordinates;
@@ -55,7 +56,7 @@ struct System {
   }
 };
 
-/// rhs: a function or an object, which has to stay. A System is its own.
+/// rhs: a function or an object, which must outlive the result. A System is returned unchanged.
 template <class F>
 System system_of(F& rhs) {
   if constexpr (std::is_same_v<std::remove_const_t<F>, System>) return rhs;

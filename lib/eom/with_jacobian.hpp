@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A right-hand side that knows its derivatives, for the implicit methods. Any callable f(t, x, dx) with a member
-// jacobian(t, x, dfdx, dfdt) -> code is one: dfdx[i + m j] is the derivative of dx[i] by x[j], m the length of x
+// A right-hand side with its derivatives, for the implicit methods. Any callable f(t, x, dx) with a member jacobian(t,
+// x, dfdx, dfdt) -> code is one. dfdx[i + m j] is the derivative of dx[i] with respect to x[j]; m is the length of x
 // without Options::quadratures (the layout of NAME_jac of the C ABI). With modes: jacobian(t, x, mode, dfdx, dfdt).
 #pragma once
 
 namespace eom {
 
-/// What jacobian() may return where it has none: differences are taken there.
+/// Returned by jacobian() if it is not available at this state. Differences are used instead.
 inline constexpr int no_jacobian_here = -2;
-/// The same for df/dt alone: dfdx was written.
+/// The same for df/dt only: dfdx was written.
 inline constexpr int no_time_derivative_here = -3;
 
 template <class F, class J>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A right-hand side that knows the Taylor series of its solution (system.hpp), made of two callables. With modes the
+// A right-hand side with the Taylor series of its solution (system.hpp), composed of two callables. With modes the
 // series is taylor(t, x, mode, order, c).
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether the energy of a run is accounted for. In: a finished run with its error estimate. Out: the outcome
-// balance_open where it is not, by more than the estimate explains.
+// Check of the energy balance of a run. In: a finished run with its error estimate. Out: the outcome balance_open if
+// the energy changes by more than the work and the estimate explain.
 #pragma once
 
 #include <algorithm>
@@ -13,12 +13,12 @@ namespace eom::hybrid {
 
 namespace balance {
 
-inline constexpr double always = 1e-4;       // of the energies: less is no sign of an event that was missed
-inline constexpr double of_tolerance = 1e4;  // an energy follows the states, and adds up over many steps
-inline constexpr double of_estimate = 1e3;   // an end may be nearer the truth than the states on the way
+inline constexpr double always = 1e-4;       // of the energies: a smaller defect does not indicate a missed event
+inline constexpr double of_tolerance = 1e4;  // the energy error follows the states and accumulates over many steps
+inline constexpr double of_estimate = 1e3;   // the end state may be more accurate than the states on the way
 inline constexpr double without_estimate = 0.1;
 
-/// The largest estimate of a state, relative to the largest of its kind.
+/// The largest estimate of a state, relative to the largest state of its kind.
 inline double relative_estimate(const Problem& problem, const RunResult& result) {
   const std::size_t n = problem.n();
   double largest = 0;
@@ -40,7 +40,7 @@ inline void require_balance(const Problem& problem, RunResult& result) {
   for (std::size_t i = 0; i < problem.invariants.size(); ++i) {
     if (problem.invariants[i].output == problem.energy) open = std::max(open, result.invariants[i].max_relative_drift);
   }
-  const bool told = bool(result.error.doubt);  // the estimate itself says that it is not to be trusted
+  const bool told = bool(result.error.doubt);  // the estimate is already marked as unreliable
   if (told || !(open > balance::always)) return;
   double allowed = problem.step > 0 ? 0 : balance::of_tolerance * problem.rtol;
   allowed = std::max(allowed, result.error.states.empty()

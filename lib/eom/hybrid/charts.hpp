@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The charts that one run is in. In: the state at the end of each step. Out: when and how it goes to second charts and
-// back, and the state in the own charts, angles continuous, for whoever reports it (docs/runtime.md, "Charts").
+// The coordinate charts of one run. In: the state at the end of each step. Out: changes to second charts and back; the
+// state in the model's own charts with continuous angles, for output (docs/runtime.md, "Charts").
 #pragma once
 
 #include <algorithm>
@@ -23,39 +23,39 @@ class ChartSwitch {
   explicit ChartSwitch(const Problem& problem);
 
   bool any() const { return !problem_.charts.empty(); }
-  unsigned second() const { return in_; }  // a bit per chart: which are second ones
+  unsigned second() const { return in_; }  // one bit per chart, set for a second chart
   int mode() const;                        // bits of `mode`
   const Code& code() const { return *code_; }
 
-  /// The state of a start, in the own charts; whether it is to be exchanged there.
+  /// Sets the start state, in the own charts. Returns whether it has to be exchanged at once.
   bool start(double t, const double* x);
-  /// 2 where the state is so near to where its chart fails that it must not be asked: a step that gets there is made
-  /// shorter.
+  /// Returns 2 if the state is so close to the singularity of its chart that the equations must not be evaluated. A
+  /// step that gets there is shortened.
   int admits(const double* x) const;
-  /// An accepted step, the first to be told of it; true: the state is to be exchanged at its end.
+  /// Processes an accepted step, before any other observer. Returns true if the state has to be exchanged at its end.
   bool follow(const StepView& step);
-  /// Exchanges what is due; whose charts these are.
+  /// Makes the pending exchange. Returns the names of the owners of the exchanged charts.
   std::vector<std::string> exchange(double t, std::span<double> x);
 
-  /// A state of the last step in the own charts. What has no value exactly where they fail is not a number.
+  /// Converts a state of the last step to the own charts. Components without a value at the singularity are NaN.
   void own(double t, const double* x, std::span<double> own) const;
-  /// Whether a coordinate of the model has another meaning at present.
+  /// Whether a coordinate of the model currently has another meaning.
   bool has_exchanged(std::uint32_t coordinate) const;
-  /// Outputs that the code does not give at present.
+  /// Outputs that the compiled code does not provide in the current charts.
   std::span<const std::uint32_t> own_outputs() const;
 
  private:
   static constexpr double pi = std::numbers::pi;
 
-  // Of the sine or cosine that vanishes where a chart fails. The steps of a run shrink in proportion to it, and its
-  // rounding errors grow with its inverse; the second chart is never below sqrt(1 - 0.4^2) while the own one is below
-  // 0.4.
+  // Thresholds on the sine or cosine that vanishes at the singularity of a chart. Steps shrink in proportion to it, and
+  // rounding errors grow with its inverse. While the own one is below 0.4, that of the second chart is at least sqrt(1
+  // - 0.4^2).
   static constexpr double leaves_below = 0.2;
   static constexpr double returns_above = 0.4;
-  static constexpr double forbidden = 0.02;  // of the angle: beyond what a step may reach in the chart that it began in
+  static constexpr double forbidden = 0.02;  // of the angle: beyond the reach of one step from the chart in which it began
 
-  static constexpr double turns_in_a_sample = 1;  // rad: what an angle may change so that no turn is missed
-  static constexpr int deepest = 14;              // halvings of a step for that
+  static constexpr double turns_in_a_sample = 1;  // rad: largest change of an angle without a missed turn
+  static constexpr int deepest = 14;              // halvings of a step to achieve this
 
   static double regular(bool at_sine, double angle) { return at_sine ? std::sin(angle) : std::cos(angle); }
 
@@ -74,8 +74,8 @@ class ChartSwitch {
   std::size_t n_;
   unsigned in_ = 0, due_ = 0;
   std::vector<double> floor_;    // per chart: the zero of its sine or cosine below the guarded angle
-  std::vector<double> side_;     // 1, -1: the sign of the own sine or cosine where the own chart was left
-  std::vector<Sample> samples_;  // along the last step, while some chart is a second one
+  std::vector<double> side_;     // 1 or -1: the sign of the own sine or cosine when the own chart was left
+  std::vector<Sample> samples_;  // along the last step, while a chart is a second one
 };
 
 inline ChartSwitch::ChartSwitch(const Problem& problem)
@@ -139,8 +139,8 @@ inline bool ChartSwitch::follow(const StepView& step) {
   return due_ != in_;
 }
 
-/// The own charts at a time of the step, after what is between, if an angle turns fast there: near where the own chart
-/// fails the motion is slow in the second one only.
+/// Appends the state in the own charts at `until`. If an angle changes fast, intermediate times are sampled first: near
+/// the singularity of the own chart the motion is slow only in the second chart.
 inline void ChartSwitch::sample(const StepView& step, double until, const double* x, int depth) {
   const Sample& last = samples_.back();
   Sample next{until, std::vector<double>(2 * n_ + problem_.code->integrals)};
@@ -160,7 +160,7 @@ inline void ChartSwitch::sample(const StepView& step, double until, const double
     return;
   }
   for (std::size_t i = 0; i < next.x.size(); ++i) {
-    if (!std::isfinite(next.x[i])) next.x[i] = i < last.x.size() ? last.x[i] : 0;  // exactly where the own chart fails
+    if (!std::isfinite(next.x[i])) next.x[i] = i < last.x.size() ? last.x[i] : 0;  // exactly at the singularity of the own chart
   }
   samples_.push_back(std::move(next));
 }
@@ -177,8 +177,8 @@ inline void ChartSwitch::own(double t, const double* x, std::span<double> result
   }
 }
 
-/// The formulas give the attitude with a positive sine or cosine; the same one has a negative one, and whole turns
-/// more.
+/// The formulas return the attitude with a positive sine or cosine. The same attitude has a representation with a
+/// negative one, and others that differ by whole turns. The one nearest to `near` is selected.
 inline void ChartSwitch::made_continuous(std::size_t j, const std::vector<double>& near, std::span<double> own) const {
   const ExchangedChart& chart = problem_.charts[j];
   for (std::size_t k = 0; k < chart.angles.size(); ++k) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What time alone does in a run: functions of t, also through inputs, cost nothing to look at, and a pulse among them
-// is shorter than the steps that the motion before it allows. In: such functions, numbers for their parameters, a span
-// of time. Out: times at which a kink of one is crossed, and bounds of steps that follow the smooth ones.
+// Analysis of functions of time alone, also through inputs. They are cheap to evaluate, and a pulse among them may be
+// shorter than the steps of the motion before it. In: such functions, values of their parameters, a time span. Out:
+// times at which a kink is crossed, and bounds on steps that resolve the smooth functions.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +23,8 @@ namespace eom::hybrid {
 
 struct Clock {
   std::vector<Break> breaks;                   // inside the span, ascending; without the jumps of tables
-  std::vector<StepBound> bounds;               // none: nothing is narrow beside the span
-  std::optional<double> unfollowed_from = {};  // a condition on time changes too often to be followed from there on
+  std::vector<StepBound> bounds;               // empty: no function is narrow compared with the span
+  std::optional<double> unfollowed_from = {};  // from here on a condition on time changes too often to be resolved
 };
 
 class ClockSearch {
@@ -59,12 +59,12 @@ class ClockSearch {
  private:
   using Code = expressions::Code;
   using Sloped = expressions::Sloped;
-  static constexpr std::size_t most_boxes = 100'000;  // of one search for roots
+  static constexpr std::size_t most_boxes = 100'000;  // in one root search
   static constexpr std::size_t most_breaks = 20'000;
-  static constexpr std::size_t most_cells = 2'000;  // of one smooth function
-  static constexpr double resolved = 0.5;           // change of the slope times the length of a cell, of the range
-  static constexpr double ripple = 1e-3;            // of the largest value of a term: a smaller range is none
-  static constexpr double steps_per_cell = 8;       // a sine is bounded to steps of half a period at least
+  static constexpr std::size_t most_cells = 2'000;  // for one smooth function
+  static constexpr double resolved = 0.5;           // change of the slope times the length of a cell, relative to the range
+  static constexpr double ripple = 1e-3;            // of the largest value of a term: smaller ranges are ignored
+  static constexpr double steps_per_cell = 8;       // bounds a sine to steps of half a period or more
   static constexpr double shortest = 1e-12;         // of the span, in a search
 
   struct Cell {
@@ -84,7 +84,7 @@ class ClockSearch {
     breaks.resize(kept);
   }
 
-  /// The pieces between the cuts; branches of inner kinks are those in their middle.
+  /// Visits the pieces between the cuts. Branches of nested kinks are those at the middle of the piece.
   template <class See>
   void for_each_piece(See&& see) const {
     double from = t0_;
@@ -152,12 +152,12 @@ class ClockSearch {
         continue;
       }
       if (g.value.is(0)) continue;
-      open.push_back({m, b});  // the earlier half is looked at first
+      open.push_back({m, b});  // the earlier half is processed first
       open.push_back({a, m});
     }
   }
 
-  /// A root on the border of two boxes: where the function has a sign on both sides, and another one.
+  /// Adds a root on the border of two boxes if the function has different signs on both sides.
   template <class Value>
   void around(const Value& value, double t, std::vector<Break>& found) const {
     const Break b = clear_of(value, t);
@@ -174,7 +174,7 @@ class ClockSearch {
     return b;
   }
 
-  /// Where a sign changes, to the last digit.
+  /// Locates a change of sign to the last digit.
   template <class Value>
   static Break between(const Value& value, double a, double left, double b) {
     while (true) {
@@ -231,7 +231,7 @@ class ClockSearch {
     bounds_ = lower_of(bounds_, own);
   }
 
-  /// The lower of two bounds, everywhere.
+  /// The minimum of two step bounds at every time.
   static std::vector<StepBound> lower_of(const std::vector<StepBound>& a, const std::vector<StepBound>& b) {
     if (a.empty() || b.empty()) return a.empty() ? b : a;
     std::vector<StepBound> result;
@@ -258,7 +258,8 @@ class ClockSearch {
   std::vector<Sloped> box_;
 };
 
-/// Of functions of time with these parameters and inputs; inputs that are no tables are in the functions.
+/// Analyses functions of time with these parameters and inputs. Only inputs that are tables are variables; others are
+/// part of the functions.
 inline Clock look_at_time(const TimeFunctions& functions, std::span<const double> parameters,
                           const std::vector<Signal>& inputs, double t0, double t1) {
   return ClockSearch(functions, parameters, inputs, t0, t1).run();

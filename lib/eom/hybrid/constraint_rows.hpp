@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a run projects its states onto: constraints on positions, then integrals of constraints on velocities with the
-// constants of the start, then constraints on velocities, then slip 0 of contacts that stick. Rows that the mode has
-// let go are 0. In: the compiled code. Out: rows as eom::Projection takes them.
+// The constraint rows to which a run projects its states. Their order: position constraints, integrals of velocity
+// constraints with the constants of the start, velocity constraints, zero slip of sticking contacts. Rows that are
+// inactive in the current mode are 0. In: the compiled code. Out: rows in the form that eom::Projection expects.
 #pragma once
 
 #include <algorithm>
@@ -21,45 +21,45 @@ class ConstraintRows {
 
   std::size_t size() const { return order_.size() + integrals_.size() + slips_.size(); }
   std::size_t on_positions() const { return holonomic_ + integrals_.size(); }
-  /// Which of the active constraints a row is; their number for one of an integral or of slip.
+  /// The active constraint of a row. For a row of an integral or of slip: the number of active constraints.
   std::size_t constraint_of(std::size_t row) const {
     if (row < holonomic_) return order_[row];
     return row < on_positions() || row - integrals_.size() >= order_.size() ? order_.size()
                                                                             : order_[row - integrals_.size()];
   }
 
-  /// The state whose integrals are kept; u: the inputs there.
+  /// Takes the constants of the integrals from this state; u: the inputs there.
   void start(double t, const double* x, const double* u);
   int operator()(double t, const double* x, const double* u, double* psi, double* A, double* b);
-  /// The mode of the contacts, with all others that touch sliding in slide_all().
+  /// Sets the mode of the contacts. slide_all() treats all other closed contacts as sliding.
   void mode(int contacts) { mode_ = contacts, all_slide_ = false; }
-  /// The charts that states are in from here on.
+  /// Sets the charts of all following states.
   void charts(const Code& code, int bits) { code_ = &code, charts_ = bits; }
   void slide_all(int contacts) { mode_ = contacts, all_slide_ = true; }
-  /// A row is to have this value in place of 0.
+  /// Sets the value that a row has to reach instead of 0.
   void target(std::size_t row, double value) { targets_.at(row) = value; }
   void clear_targets() { targets_.assign(size(), 0.0); }
-  /// The row of a contact that can be left; the first of its slip.
+  /// The row of a unilateral contact; the first row of a contact's slip.
   std::size_t row_of(std::size_t contact) const;
   std::size_t slip_row_of(std::size_t contact) const;
   /// A qdot + b of a row.
   double rate(double t, const double* x, const double* u, std::size_t row);
 
-  /// Largest |psi|, |f . qdot + b| of a state; infinite where one has no value. Integrals are watched as invariants.
+  /// Largest |psi|, |f . qdot + b| of a state; infinite if one has no value. Integrals are monitored as invariants.
   double defect(double t, const double* x);
 
  private:
-  static constexpr double largest_drift = 1e-3;  // of an integral, relative to what its terms may change
+  static constexpr double largest_drift = 1e-3;  // of an integral, relative to the possible change of its terms
 
   struct Integral {
-    std::size_t psi;                  // places among the outputs
-    std::vector<std::size_t> slopes;  // by the free coordinates, then by t
+    std::size_t psi;                  // index among the outputs
+    std::vector<std::size_t> slopes;  // with respect to the free coordinates, then to t
     double constant = 0;
   };
 
   struct Slip {
-    std::size_t contact, slip;        // the contact; place of the slip among the outputs
-    std::vector<std::size_t> slopes;  // by the rates of the free coordinates
+    std::size_t contact, slip;        // the contact; index of the slip among the outputs
+    std::vector<std::size_t> slopes;  // with respect to the rates of the free coordinates
   };
 
   bool is_apart(std::size_t active_constraint) const;
@@ -75,7 +75,7 @@ class ConstraintRows {
   bool all_slide_ = false;
   std::vector<Slip> slips_;
   std::vector<double> targets_;
-  std::vector<std::size_t> order_;  // of the active constraints: those on positions first
+  std::vector<std::size_t> order_;  // of the active constraints: position constraints first
   std::vector<Integral> integrals_;
   std::vector<double> y_, psi_, A_, b_;
   std::vector<double> row_psi_, row_A_, row_b_;  // for rate()
@@ -106,7 +106,7 @@ inline ConstraintRows::ConstraintRows(const Problem& problem)
 inline void ConstraintRows::start(double t, const double* x, const double* u) {
   if (integrals_.empty()) return;
   const int code = problem_.code->outputs(t, x, problem_.parameters.data(), u, apart_mode(code_->contacts), y_.data());
-  if (code != 0) std::fill(y_.begin(), y_.end(), std::numeric_limits<double>::quiet_NaN());  // it says nothing then
+  if (code != 0) std::fill(y_.begin(), y_.end(), std::numeric_limits<double>::quiet_NaN());  // no constant is available then
   for (Integral& integral : integrals_) integral.constant = y_[integral.psi];
 }
 
@@ -120,7 +120,7 @@ inline bool ConstraintRows::is_apart(std::size_t k) const {
 
 inline std::size_t ConstraintRows::row_of(std::size_t contact) const {
   const auto found = std::find(order_.begin(), order_.end(), problem_.contacts[contact].constraint);
-  return static_cast<std::size_t>(found - order_.begin());  // on positions: before the integrals
+  return static_cast<std::size_t>(found - order_.begin());  // position constraints come before the integrals
 }
 
 inline std::size_t ConstraintRows::slip_row_of(std::size_t contact) const {
@@ -171,8 +171,8 @@ inline void ConstraintRows::fill_integrals(const double* x, double* psi, double*
       A[row + rows * i] = y_[integral.slopes[i]];
       finite = finite && std::isfinite(A[row + rows * i]);
     }
-    // Outside of its domain, or on another branch of an arc tangent, an integral says nothing, and its constraint goes
-    // on; the watch reports the drift. A true drift is far smaller than the coordinates.
+    // Outside of its domain, or on another branch of an arc tangent, an integral is not valid. Its constraint remains
+    // active, and the monitor reports the drift. A true drift is far smaller than the coordinates.
     double size = 0;
     for (std::size_t i = 0; i < n_; ++i) size += std::abs(A[row + rows * i]) * std::max(1.0, std::abs(x[i]));
     if (finite && std::abs(psi[row]) <= largest_drift * size) continue;
@@ -203,7 +203,7 @@ inline double ConstraintRows::rate(double t, const double* x, const double* u, s
   const std::size_t rows = size();
   row_psi_.resize(rows), row_b_.resize(rows), row_A_.resize(rows * n_);
   const int mode = mode_;
-  mode_ = 0;  // everything touches
+  mode_ = 0;  // all contacts closed
   const int code = (*this)(t, x, u, row_psi_.data(), row_A_.data(), row_b_.data());
   mode_ = mode;
   if (code != 0) return std::nan("");
@@ -215,7 +215,7 @@ inline double ConstraintRows::rate(double t, const double* x, const double* u, s
 inline double ConstraintRows::defect(double t, const double* x) {
   if (psi_.empty()) return 0;
   const Code& code = *problem_.code;
-  // Where psi has no value the drift is infinite, not what it was a step ago.
+  // Without a value of psi the drift is infinite, not the value of the previous step.
   if (constraints(t, x) != 0) return HUGE_VAL;
   double largest = 0;
   for (std::size_t k = 0; k < psi_.size(); ++k) {

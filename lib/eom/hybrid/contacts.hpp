@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The modes of the contacts during one run: eom::Contacts on compiled code. In: the state where a function of a contact
-// crosses zero. Out: the next mode, velocities after it, what is to be told of it.
+// The modes of the contacts during one run: eom::Contacts on compiled code. In: the state at which a function of a
+// contact crosses zero. Out: the next mode, the velocities after it, the events to record.
 #pragma once
 
 #include <algorithm>
@@ -21,38 +21,38 @@ namespace eom::hybrid {
 
 class ContactModes {
  public:
-  /// `changed`: told where velocities change, with the state before and after.
+  /// `changed`: called after velocities change, with the state before and after.
   using Changed = std::function<void(double t, std::span<const double> before, std::span<const double> after)>;
   ContactModes(const Problem& problem, Model& model, ConstraintRows& rows, Changed changed);
 
-  /// What is not a number is neither within a law nor beyond it.
+  /// NaN is neither inside nor outside of a law.
   static int code_of(const double* g, std::size_t count) {
     return std::any_of(g, g + count, [](double value) { return std::isnan(value); }) ? code_not_finite : 0;
   }
   int mode() const { return switch_ ? switch_->mode : 0; }
-  /// The mode of a start; what slides off at once is told.
+  /// Determines the mode of a start. Returns events of contacts that start to slide or open at once.
   std::vector<ModeEvent> start(double t, std::span<double> x);
-  /// Not 0: what a start needs has no value there, by the codes of the ABI.
+  /// Not 0: a function needed at the start has no value; a code of the ABI.
   int start_code() const { return start_code_; }
   void watch(std::span<EventFunction> functions) const { switch_->watch(functions); }
-  /// Makes the functions those that are watched; sizes of slips are kept in mind.
+  /// Transforms the functions into the monitored ones, and records the slip speeds.
   void adjust(double* g);
-  /// A step begins at (t, x).
+  /// Called at the start (t, x) of each step.
   void hold(double t, const double* x);
   void tolerances(double rtol, double atol) { velocities_.tolerances(rtol, atol); }
-  /// Whether slip in two directions changes in a step h by so much beside its speed that the step follows neither its
-  /// direction nor its end. `now`: the answer before, so that it does not go to and fro.
+  /// Whether slip in two directions changes so much in a step h, relative to its speed, that the step resolves neither
+  /// its direction nor its end. `now`: the previous answer; it adds hysteresis.
   bool slow_slip(double t, const double* x, double h, bool now);
-  /// A crossing of one of the functions; what is to be told of it.
+  /// Handles a crossing of one of the functions and records its events.
   AtEvent take(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions);
   std::span<const ModeEvent> told() const { return told_; }
-  /// Where the run was ended by a contact.
+  /// The outcome, if a contact has ended the run.
   std::optional<Outcome> ended() const;
   const std::string& detail() const { return switch_->detail; }
 
  private:
-  static constexpr double known_gap = 3e-14;       // of the largest: rounding of what it is made of
-  static constexpr double most_restitution = 0.9;  // beyond it bounces go on for long
+  static constexpr double known_gap = 3e-14;       // of the largest gap: rounding of its terms
+  static constexpr double most_restitution = 0.9;  // above this value bounces continue for too long
 
   struct Motion {
     ContactModes* self;
@@ -67,13 +67,13 @@ class ContactModes {
   };
   struct Met {
     std::vector<std::size_t> contacts;
-    bool over = true;  // the bounces of all are as low as gaps are known
+    bool over = true;  // all bounces are lower than the accuracy of the gaps
   };
   bool falls(double t, std::span<double> x, int mode, std::vector<double>& result);
   Met meets(double t, std::span<double> x, std::size_t j, double time);
   void end_bounces(double& t, std::span<double> x, std::size_t j);
 
-  /// As eom::Contacts asks for them: the mode is that of the contacts.
+  /// Callables for eom::Contacts, with the mode of the contacts as argument.
   struct Rhs {
     Model* model;
     int operator()(double t, const double* x, int mode, double* dx) const { return model->rhs_of(mode, t, x, dx); }
@@ -82,7 +82,7 @@ class ContactModes {
     Functions(Model& of, std::size_t before, std::size_t values)
         : model(&of), first(before), count(values), all(before + values) {}
     Model* model;
-    std::size_t first, count;  // of the values of contacts among all event functions
+    std::size_t first, count;  // range of the contact values among all event functions
     std::vector<double> all;
     int operator()(double t, const double* x, int mode, double* g) {
       const int code = model->events_of(mode, t, x, all.data());
@@ -96,10 +96,10 @@ class ContactModes {
   Model& model_;
   ConstraintRows& rows_;
   ContactVelocities velocities_;
-  bool two_directions_ = false;      // some contact slides in two
+  bool two_directions_ = false;      // some contact slides in two directions
   std::vector<double> restitution_;  // of each contact, at the start
-  int start_code_ = 0;               // of what they are computed from
-  double largest_gap_ = 0;           // of contacts that are apart
+  int start_code_ = 0;               // of the evaluation of the restitutions
+  double largest_gap_ = 0;           // of open contacts
   Changed changed_;
   Rhs rhs_;
   Functions functions_;
@@ -155,14 +155,14 @@ inline std::vector<ModeEvent> ContactModes::start(double t, std::span<double> x)
   const std::vector<Contact>& contacts = problem_.code->contacts;
   std::vector<double> g(rule_.functions());
   velocities_.forget();
-  switch_.reset();  // of a run before: what is a force in this mode was a gap in that one
+  switch_.reset();  // of a previous run: a value that is a force in one mode is a gap in another
   largest_gap_ = 0;
   restitution_.assign(contacts.size(), 0.0);
   start_code_ = 0;
-  if (two_directions_) velocities_.hold(t, x.data(), model_.inputs(t));  // how much slip counts, before any is given
+  if (two_directions_) velocities_.hold(t, x.data(), model_.inputs(t));  // sets the least slip before any slip is evaluated
   std::vector<double> slip(contacts.size(), 0.0);
   std::array<bool, max_contacts> apart{};
-  int begins = 0;  // what can be left touches as the start says, all else sticks
+  int begins = 0;  // unilateral contacts as given by the start, all others sticking
   for (std::size_t j = 0; j < contacts.size(); ++j) {
     apart[j] = problem_.apart[j];
     if (apart[j]) begins = with_contact_digit(begins, j, 3);
@@ -218,8 +218,8 @@ inline bool ContactModes::slow_slip(double t, const double* x, double h, bool no
   return slow;
 }
 
-/// Where the slip of contact j vanishes, by the midpoint rule over the short time that is left: the slip along its
-/// direction is all but linear there.
+/// Extrapolates to the time at which the slip of contact j vanishes, by the midpoint rule. The remaining time is so
+/// short that the slip along its direction is almost linear.
 inline int ContactModes::Motion::stop(double& t, std::span<double> x, int mode, std::size_t j) const {
   const auto slip = [&](double at, const double* state) {
     return self->velocities_.slip(at, state, self->model_.inputs(at), j);
@@ -236,7 +236,7 @@ inline int ContactModes::Motion::stop(double& t, std::span<double> x, int mode, 
     const std::array<double, 2> after = slip(t + h, middle.data());
     return (w[0] * after[0] + w[1] * after[1]) / speed;
   };
-  // The rate of the slip from a step in which it changes by a small part of itself.
+  // The rate of the slip, from a step in which it changes by a small fraction of itself.
   double h = 1e-6, rate = (moved(h) - speed) / h;
   if (rate < 0) h = -speed / rate / 8, rate = (moved(h) - speed) / h;
   if (!(rate < 0)) return slips_on;
@@ -255,12 +255,12 @@ inline void ContactModes::adjust(double* g) {
         problem_.code->contacts[j].dimensions == 2 ? std::hypot(value[0], value[2]) : std::abs(value[0]);
     if (problem_.code->contacts[j].dimensions > 0 && std::isfinite(slip)) velocities_.see_slip(slip);
     if (problem_.code->contacts[j].unilateral && contact_digit(mode(), j) >= 3 && std::isfinite(value[3]))
-      largest_gap_ = std::max(largest_gap_, value[3]);  // not what trial steps reach below the surface
+      largest_gap_ = std::max(largest_gap_, value[3]);  // not the values that trial steps reach below the surface
   }
   rule_.shift(g);
 }
 
-/// How fast the speed of each gap falls in `mode`; none where the right-hand side has no value.
+/// Computes the deceleration of each gap in `mode`. False if the right-hand side has no value.
 inline bool ContactModes::falls(double t, std::span<double> x, int mode, std::vector<double>& result) {
   k_.resize(x.size()), middle_.resize(x.size());
   if (rhs_(t, x.data(), mode, k_.data()) != 0) return false;
@@ -275,8 +275,8 @@ inline bool ContactModes::falls(double t, std::span<double> x, int mode, std::ve
   return true;
 }
 
-/// What the last bounces of contact j, over after `time`, meet: other contacts that they lift, or reach by then, as in
-/// a corner.
+/// The other contacts that the last bounces of contact j, over after `time`, either open or reach by then (as in a
+/// corner).
 inline ContactModes::Met ContactModes::meets(double t, std::span<double> x, std::size_t j, double time) {
   Met result;
   const std::vector<Contact>& contacts = problem_.code->contacts;
@@ -303,9 +303,9 @@ inline ContactModes::Met ContactModes::meets(double t, std::span<double> x, std:
   return result;
 }
 
-/// Where the bounce that follows is lower than the gap is known, so are all after it: they are over after the sum of
-/// their times, in which the motion goes on as it begins, and the contact stays. In a corner the others stay too, once
-/// their bounces are as low; until then none is left out.
+/// If the next bounce is lower than the accuracy of the gap, so are all later ones. They end after the sum of their
+/// times, during which the motion continues as it begins, and the contact stays closed. In a corner the other contacts
+/// close too once their bounces are as low; until then no bounce is skipped.
 inline void ContactModes::end_bounces(double& t, std::span<double> x, std::size_t j) {
   const Motion motion{this};
   const double e = restitution_[j], up = -e * motion.approach(t, x, j);
@@ -320,7 +320,7 @@ inline void ContactModes::end_bounces(double& t, std::span<double> x, std::size_
     rule_.close_next(std::move(met.contacts));
     return;
   }
-  // One bounce as long as all of them: it ends at the height 0, where projecting does no work.
+  // One bounce of the total duration: it ends at height 0, so that the projection does no work.
   const double as_one = e / (1 - e);
   if (motion.impact(t, x, with_contact_digit(mode(), j, 0), j, as_one) != 0 ||
       rhs_(t, x.data(), mode(), k_.data()) != 0)

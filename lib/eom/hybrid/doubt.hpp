@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Why an error estimate is not to be trusted, as values and as a sentence.
+// Reasons why an error estimate is unreliable, as values and as sentences.
 #pragma once
 
 #include <string>
@@ -9,18 +9,18 @@
 
 namespace eom::hybrid {
 
-/// What the estimate may miss, or had to be enlarged for; the first that was found.
+/// The first reason found why the estimate may miss an error or had to be enlarged.
 struct Doubt {
   enum class Kind {
     none,
-    passed_over,     // after t fixed steps go over a force that is narrow in the state
+    passed_over,     // after t fixed steps skip a force that is narrow in the state
     rounded_start,   // a start that differs in its last digits ends with another outcome: `other`
-    tighter_run,     // a tighter run ended with it
+    tighter_run,     // a tighter run ended with the outcome `other`
     event_missed,    // a tighter run did not stop at the event
     unresolved,      // fixed steps do not resolve the motion: halving them moves states by `amount` of their size
     impulse,         // near t a force turns within one step, by `amount` of the velocity
     not_converging,  // shorter fixed steps change the end by as much again
-    frozen           // steps of `amount` move positions in their last digits only
+    frozen           // steps of `amount` change positions only in their last digits
   };
   Kind kind = Kind::none;
   double t = 0, amount = 0;
@@ -29,7 +29,7 @@ struct Doubt {
   explicit operator bool() const { return kind != Kind::none; }
 };
 
-/// "" of none.
+/// "" for none.
 inline std::string sentence(const Doubt& doubt) {
   using Kind = Doubt::Kind;
   switch (doubt.kind) {

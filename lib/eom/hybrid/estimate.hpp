@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How far off the end of a run is: further runs, and what fixed steps hide from them.
+// Error estimate of the end of a run: repeated runs, and checks for errors of fixed steps that repetition does not
+// show.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +24,8 @@ namespace eom::hybrid {
 
 class EndEstimate {
  public:
-  /// first: the run, in the model's own charts; adequacy: of fixed steps, else null. error: with a doubt, if there is
-  /// one already.
+  /// first: the run, in the model's own charts; adequacy: for fixed steps, else null; error: the output, which may
+  /// already have a warning.
   EndEstimate(const Problem& problem, const Result& first, const Options& options, StepAdequacy* adequacy,
               EndError& error)
       : problem_(problem),
@@ -67,7 +68,7 @@ class EndEstimate {
     error_.max = std::max(error_.max, error_.states[state]);
   }
 
-  /// Whole turns between two runs are no difference where the angles were read off another chart.
+  /// Removes whole turns between two runs for angles that were read off another chart.
   void align(const std::vector<double>& first, std::vector<double>& other) const {
     constexpr double turn = 2 * std::numbers::pi;
     for (const ExchangedChart& chart : problem_.charts) {
@@ -76,7 +77,7 @@ class EndEstimate {
     }
   }
 
-  /// Further runs; the first of them is compared with the run on the way, if its steps are fixed.
+  /// Makes the repeated runs. If the steps are fixed, the first one is also compared with the run on the way.
   ErrorEstimate repeat() {
     Integration again(problem_);
     Parts& parts = again.parts();
@@ -101,7 +102,7 @@ class EndEstimate {
     });
   }
 
-  /// Of fixed steps: what the last digits of the start do to the end.
+  /// For fixed steps: the effect of the last digits of the start on the end.
   void see_rounding(ErrorEstimate& estimate) {
     Result other = from_rounded_start(problem_, options_);
     ++estimate.runs;
@@ -126,7 +127,8 @@ class EndEstimate {
     }
   }
 
-  /// Where fixed steps do not resolve the motion the ends say little: the differences on the way are the estimate then.
+  /// If fixed steps do not resolve the motion, the end states are not conclusive, and the differences on the way are
+  /// the estimate.
   void see_unresolved() {
     if (!(adequacy_->largest() > StepAdequacy::unresolved)) return;
     const std::vector<double>& differences = adequacy_->differences();
@@ -134,19 +136,19 @@ class EndEstimate {
     doubt({Doubt::Kind::unresolved, 0, adequacy_->largest()});
   }
 
-  /// Where a force turns within one step, what it changes the velocity by in the wrong place is in the end, and not in
-  /// the differences of ends.
+  /// If a force turns within one step, its impulse acts at the wrong place. The resulting error of the velocity is part
+  /// of the end state but not of the differences between end states.
   void see_impulses() {
     double at = 0;
-    const double part = 2 * impulses_.largest(at);  // seen in steps of half the size
+    const double part = 2 * impulses_.largest(at);  // measured with steps of half the size
     if (!(part > 0)) return;
     for (std::size_t i = 0; i < error_.states.size(); ++i) at_least(i, part * std::abs(first_.x[i]));
     if (part < worth_a_note) return;
     doubt({Doubt::Kind::impulse, at, part});
   }
 
-  /// Steps so short that positions move in their last digits only: constraints on positions are then met by rounding,
-  /// and rates follow from that.
+  /// If the steps are so short that positions change only in their last digits, rounding satisfies the position
+  /// constraints and determines the rates.
   void see_frozen() {
     constexpr double digits = 100 * std::numeric_limits<double>::epsilon();
     const std::size_t n = problem_.n();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// All functions whose changes of sign a run watches, in one array g: events of the model, kinks, contact_values of each
-// contact, surfaces where something may jump. In: the compiled model. Out: values, what is watched for, bounds along a
-// step of those that the problem has as expressions.
+// All functions whose sign changes a run monitors, in one array g: events of the model, kinks, contact_values of each
+// contact, surfaces at which something may jump. In: the compiled model. Out: values; the monitored directions; bounds
+// along a step for functions that are available as expressions.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ namespace eom::hybrid {
 
 class EventFunctions {
  public:
-  /// contacts: null where there are none.
+  /// contacts: null if there are none.
   EventFunctions(const Problem& problem, Model& model, const std::unique_ptr<ContactModes>& contacts)
       : problem_(problem), model_(model), contacts_(contacts), ranges_(problem), jumps_(problem) {}
 
@@ -30,7 +30,7 @@ class EventFunctions {
   std::size_t first_jump() const { return first_contact() + contact_values * problem_.code->contacts.size(); }
   std::size_t size() const { return first_jump() + jumps_.surfaces(); }
 
-  /// Of contacts as they are watched.
+  /// Values of all functions; those of contacts in the monitored form.
   int operator()(double t, const double* x, double* g) {
     const int code = model_.events(t, x, g);
     if (code == 0 && jumps_.surfaces() > 0)
@@ -56,7 +56,7 @@ class EventFunctions {
     return functions.subspan(first_contact(), first_jump() - first_contact());
   }
 
-  /// Where in a step function i first leaves its side, though no sample shows it.
+  /// The interval of a step in which function i first leaves its side although no sample shows it.
   std::optional<std::pair<double, double>> hidden(const StepView& step, std::size_t i, int side, double from, double to,
                                                   const Sampling& sampling) const {
     if (charts_of(model_.mode()) != 0) return std::nullopt;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Bounds of event functions along a step: a bump that is narrower than the distances between the places at which a step
-// is sampled changes the sign of none of them. In: functions of the state as expressions, a step with its dense output.
-// Out: the first place where one has crossed zero, unless its bounds show that it nowhere does.
+// Bounds of event functions along a step. A feature that is narrower than the spacing of the samples changes the sign
+// of no sample. In: functions of the state as expressions, a step with its dense output. Out: the first interval in
+// which a function has crossed zero, unless its bounds exclude a crossing.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ class EventRanges {
       codes_.push_back(function.empty() ? expressions::Code() : expressions::Code(function, parameters));
   }
 
-  /// Between which places of the step (from 0 to 1) function i first leaves its side.
+  /// The interval of the step (from 0 to 1) in which function i first leaves its side.
   std::optional<std::pair<double, double>> first(const StepView& step, std::size_t i, int side, double from, double to,
                                                  const Sampling& sampling) const {
     using expressions::Interval;
@@ -49,7 +49,7 @@ class EventRanges {
       if (side < 0) g = {-g.value, -g.slope};
       if (g.value.low > 0) continue;
       const bool start = a.s == from, rises = g.slope.low > 0;
-      if (start && rises) continue;  // from a crossing, or the surface, inward
+      if (start && rises) continue;  // inward from a crossing or from the surface
       if (b.s - a.s < shortest || g.slope.high < 0 || rises) {
         if (inward(b) < 0 && !(start && b.s - a.s < shortest)) return std::pair{a.s, b.s};
         continue;
@@ -61,7 +61,7 @@ class EventRanges {
   }
 
  private:
-  static constexpr std::size_t most_boxes = 300;  // of a function in a step
+  static constexpr std::size_t most_boxes = 300;  // per function and step
   static constexpr double shortest = 1e-7;        // of the step
 
   StepVariables variables_;

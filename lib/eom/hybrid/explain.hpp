@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Why a run ended, where the outcome alone does not say it.
+// The reason for the end of a run, if the outcome alone does not give it.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace eom::hybrid {
 
-/// Whose law of friction has no solution, or several: the margin of that contact is the smallest.
+/// The contact whose friction law has no solution or several: the one with the smallest margin.
 inline Reason explain_friction(Parts& parts, const Result& end) {
   const bool none = end.outcome == Outcome::friction_no_solution;
   if (!none && end.outcome != Outcome::friction_many_solutions) return {};
@@ -22,8 +22,8 @@ inline Reason explain_friction(Parts& parts, const Result& end) {
   return {none ? Reason::Kind::no_friction : Reason::Kind::many_frictions, end.t, 0, contacts[worst].name, worst};
 }
 
-/// Of the end of a segment; its outcome where contacts or a jump ended it. reason: what is known already; jump: what
-/// jumped that nothing says the consequences of, or none.
+/// The reason for the end of a segment. Sets the outcome if contacts or a jump ended it. reason: the one known so far;
+/// jump: a jump with undetermined consequences, or none.
 inline Reason explain(Parts& parts, Reason reason, const Reason& jump, Result& end) {
   if (!end.detail.empty()) reason = {Reason::Kind::method, end.t, 0, end.detail};
   if (end.outcome == Outcome::step_too_small && parts.kinks.at() == end.t)

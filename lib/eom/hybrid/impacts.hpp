@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What happens to velocities where a contact changes its mode: impacts, sliding in two directions that starts or ends.
-// In: the compiled code. Out: the state with the velocities that are nearest in the metric of M, which is what an
-// impulse along the constraints gives.
+// Changes of velocities at mode changes of contacts: impacts, and the start and end of sliding in two directions. In:
+// the compiled code. Out: the state with the nearest admissible velocities in the metric of M. This is the effect of an
+// impulse along the constraints.
 #pragma once
 
 #include <algorithm>
@@ -16,31 +16,31 @@
 
 namespace eom::hybrid {
 
-/// Of the steps in place of fixed ones where slip in two directions changes by too much in one of these.
+/// Tolerances of the adaptive steps that replace fixed ones while slip in two directions changes too much within one.
 inline constexpr double slow_slip_rtol = 1e-12, slow_slip_atol = 1e-15;
 
 class ContactVelocities {
  public:
   ContactVelocities(const Problem& problem, ConstraintRows& rows);
 
-  /// As ContactMotion; u: the inputs there.
+  /// As in ContactMotion; u: the inputs at that time.
   int impact(double t, std::span<double> x, const double* u, int mode, std::size_t contact, double restitution);
   int close(double t, std::span<double> x, const double* u, int mode);
   int stick(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
   int slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
   double approach(double t, std::span<const double> x, const double* u, std::size_t contact);
 
-  /// Slip and gap speeds up to here count as none: within the tolerances of the run.
+  /// Slip and gap speeds up to this value count as zero: within the tolerances of the run.
   double still() const;
   void forget();
-  /// Of the steps that are made.
+  /// Tolerances of the steps of the run.
   void tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
   void see_slip(double speed) { largest_slip_ = std::max(largest_slip_, speed); }
-  /// A step begins at (t, x): how much slip in two directions counts there.
+  /// Called at the start (t, x) of each step: updates the least slip in two directions that counts.
   void hold(double t, const double* x, const double* u);
   double least_slip(std::size_t contact) const { return least_[contact]; }
   std::array<double, 2> slip(double t, const double* x, const double* u, std::size_t contact);
-  /// Into e; returns the code of the outputs.
+  /// Writes the restitution into e. Returns the code of the outputs.
   int restitution(double t, const double* x, const double* u, std::size_t contact, double& e);
 
  private:
@@ -82,7 +82,7 @@ inline void ContactVelocities::forget() {
   least_.assign(problem_.contacts.size(), still());
 }
 
-// Slip is known to the tolerance of the rates that it is made of.
+// The slip is accurate to the tolerance of the rates on which it depends.
 inline void ContactVelocities::hold(double t, const double* x, const double* u) {
   constexpr double tolerances = 30;
   const std::size_t n = problem_.code->free.size();
@@ -127,7 +127,7 @@ inline double ContactVelocities::approach(double t, std::span<const double> x, c
   return rows_.rate(t, x.data(), u, rows_.row_of(contact));
 }
 
-// Contacts that touch and would be driven into one another by the impulse take part in it; others are left alone.
+// Closed contacts whose bodies would be driven into one another by the impulse take part in it. Others do not.
 inline int ContactVelocities::impact(double t, std::span<double> x, const double* u, int mode, std::size_t contact,
                                      double restitution) {
   const std::vector<double> before(x.begin(), x.end());
@@ -165,7 +165,8 @@ inline int ContactVelocities::stick(double t, std::span<double> x, const double*
   return move(t, x, u);
 }
 
-// Sliding starts against the friction that held. Where none held, along the tangents' sum: any direction is as good.
+// Sliding starts against the friction force of the sticking contact. If there is none, it starts along the sum of the
+// tangents: any direction is equally good.
 inline int ContactVelocities::slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact) {
   if (const int code = problem_.code->outputs(t, x.data(), problem_.parameters.data(), u, mode, y_.data()); code != 0)
     return code;

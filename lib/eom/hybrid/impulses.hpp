@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A kink of time at which the velocity of a support or a potential jumps. In: the state before it, what jumps there.
-// Out: the state after it, the event with its work; or a sentence where no equation says what the impulse does.
+// A kink in time at which the velocity of a support or a potential jumps. In: the state before it, the jumping
+// quantities. Out: the state after it and the event with its work, or a reason if the equations do not determine the
+// effect of the impulse.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +23,7 @@ inline bool any_contact_touches(const Parts& parts) {
   return false;
 }
 
-/// Names of the rates that an impulse changes, from x to what `end` has; "" where it changes none.
+/// Names of the rates that an impulse changes between x and `end`; "" if it changes none.
 inline std::string changed_rates(const Problem& problem, const std::vector<double>& x, const Result& end) {
   const std::size_t n = problem.n();
   std::string names;
@@ -35,8 +36,8 @@ inline std::string changed_rates(const Problem& problem, const std::vector<doubl
   return names;
 }
 
-/// From the end of a segment to the start of the next one. Returns what is not determined, or none: `total` is as it
-/// was then.
+/// Continues from the end of a segment to the start of the next one. Returns the undetermined jump, in which case
+/// `total` is unchanged, or none.
 inline Reason cross_impulse(Parts& parts, const Segment& before, Result& total, const OnEvent& event) {
   const Problem& problem = parts.problem;
   const double from = parts.outputs.energy(before.end, total.x.data());
@@ -74,8 +75,8 @@ inline Reason cross_impulse(Parts& parts, const Segment& before, Result& total, 
   return {};
 }
 
-/// Beyond what lies between two segments: sides of kinks are counted, and what jumps is told. Returns what is not
-/// determined there, or none.
+/// Crosses the gap between two segments: counts changed sides of kinks and reports jumps. Returns an undetermined jump,
+/// or none.
 inline Reason begin_segment(Parts& parts, const Segment& before, Result& total, const OnEvent& event) {
   const int sides = parts.model.mode();
   const bool kink = before.next > before.end;

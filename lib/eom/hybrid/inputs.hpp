@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The inputs of a run at a time. In: a Problem. Out: one number for each.
+// The inputs of a run as functions of time. In: a Problem. Out: one number per input.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ class Inputs {
 
   std::size_t size() const { return signals_.size(); }
 
-  /// Input i at t. Of a table: the value of the segment that `side` (a time inside the current segment) lies in.
+  /// Input i at t. For a table: the value of the segment that contains `side`, a time inside the current segment.
   double operator()(std::size_t i, double t, double side) const {
     const Signal& signal = signals_[i];
     if (codes_[i].roots() > 0) return codes_[i].value({&t, 1});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// One integration of a Problem, restarted where inputs jump, charts are exchanged, or steps over a place of lost rank
-// are made; hybrid::run makes one for the result and others for the error estimate. In: a Problem. Out: the end, what
-// happened on the way to whoever asks.
+// One integration of a Problem. It restarts at jumps of inputs, at exchanges of charts and at steps across
+// rank-deficient configurations. hybrid::run makes one integration for the result and others for the error estimate.
+// In: a Problem. Out: the end; the events on the way.
 #pragma once
 
 #include <algorithm>
@@ -30,21 +30,21 @@ namespace eom::hybrid {
 
 class Integration {
  public:
-  /// The problem has to stay. Its solver needs what it calls in the code.
+  /// The problem must outlive this object. Its code must have the functions that its solver needs.
   explicit Integration(const Problem& problem);
   Integration(const Integration&) = delete;
   Integration& operator=(const Integration&) = delete;
 
-  /// observer, event may be empty. May be called again.
+  /// observer and event may be empty. May be called again.
   Result run(const Options& options, const Observer& observer, const OnEvent& event = {});
 
   Parts& parts() { return parts_; }
-  const Choice& choice() const { return choice_; }  // of the solver auto, and its changes in the run
-  /// Why it ended, where the outcome alone does not say it.
+  const Choice& choice() const { return choice_; }  // of the solver auto, with its changes in the run
+  /// The reason for the end, if the outcome alone does not give it.
   const Reason& reason() const { return reason_; }
-  /// Where fixed steps first went over a force that is narrow in the state.
+  /// The time at which fixed steps first skipped a force that is narrow in the state.
   std::optional<double> passed_over() const { return passed_over_; }
-  /// Where it could first not be told whether a step goes over one.
+  /// The first time at which a narrow force in a step could not be excluded.
   std::optional<double> unsure_from() const { return narrow_.unsure(); }
 
  private:
@@ -59,21 +59,21 @@ class Integration {
 
   const Problem& problem_;
   Parts parts_;
-  bool keeps_constraints_;  // the solver itself
+  bool keeps_constraints_;  // the solver satisfies the constraints itself
   SlowSlip slow_slip_;
-  std::unique_ptr<Passage> passage_;  // where constraints without contacts may lose their rank
+  std::unique_ptr<Passage> passage_;  // for constraints without contacts, which may lose rank
   Sampling sampling_;
   NarrowForces narrow_;
   Choice choice_;
   std::optional<double> passed_over_;
   double fixed_step_ = 0;  // of the run
   bool stopped_ = false, exchange_due_ = false;
-  Reason jump_;             // what jumped that nothing says the consequences of
+  Reason jump_;             // a jump with undetermined consequences
   Reason reason_;           // of the end
-  double last_step_ = 0;    // with its sign
-  double passage_due_ = 0;  // length of a step over a place of lost rank, with its sign
-  bool passing_ = false;    // it is being made
-  int idle_ = 0;            // restarts without time going on
+  double last_step_ = 0;    // signed
+  double passage_due_ = 0;  // signed length of a pending step across a rank-deficient configuration
+  bool passing_ = false;    // this step is being made
+  int idle_ = 0;            // restarts without progress in time
 };
 
 inline Integration::Integration(const Problem& problem)
@@ -105,7 +105,8 @@ inline Result Integration::run(const Options& options, const Observer& observer,
   segment.choice = &choice_;
   segment.step_bounds = problem_.bounds;
   if (narrow_.any()) segment.admit = [this](const StepView& step) { return longest_step(step); };
-  // Where contacts stick the state may stand still, and the steps would see nothing of the work of what moves them.
+  // With sticking contacts the state may not change at all, and steps would not resolve the work of what moves the
+  // contacts.
   segment.quadratures = problem_.power && problem_.code->contacts.empty() ? 1 : 0;
   Result total;
   if (!start(total, event)) return total;
@@ -142,7 +143,7 @@ inline bool Integration::start(Result& total, const OnEvent& event) {
     total.detail = sentence(reason_);
     return false;
   }
-  // It has to begin on the constraints, to rounding.
+  // The start must satisfy the constraints to rounding.
   if (requires_feature(problem_.solver, Feature::constraints) && parts_.projection(total.t, total.x.data()) != 0) {
     total.outcome = Outcome::inconsistent_start;
     reason_ = {Reason::Kind::start, total.t};
@@ -153,7 +154,7 @@ inline bool Integration::start(Result& total, const OnEvent& event) {
   return true;
 }
 
-/// One segment: its end, or why the run ends before.
+/// Integrates one segment, to its end or to an earlier end of the run.
 inline void Integration::integrate_until(double end, Options options, const Observer& observer, const OnEvent& event,
                                          Result& total) {
   const Motion f{parts_, keeps_constraints_};
@@ -184,7 +185,7 @@ inline void Integration::integrate_until(double end, Options options, const Obse
   }
 }
 
-/// An accepted step; false: the integration stops at its end, for good or to go on in another way.
+/// Processes an accepted step. False: the integration stops at its end, either for good or to continue in another way.
 inline bool Integration::see(const StepView& step, const Observer& observer, const OnEvent& event, bool fixed) {
   parts_.projection.accept(step);
   last_step_ = step.t1 - step.t0;
@@ -200,7 +201,7 @@ inline bool Integration::see(const StepView& step, const Observer& observer, con
   return wanted && !exchange_due_ && !slow_slip_.due() && passage_due_ == 0;
 }
 
-/// Whether the step over a place of lost rank that is due is to be made.
+/// Whether the pending step across a rank-deficient configuration is made.
 inline bool Integration::go_over(const Result& from, double end, const Options& options, std::size_t& evaluations) {
   const double length = std::exchange(passage_due_, 0.0);
   if (length == 0) return false;
@@ -209,7 +210,7 @@ inline bool Integration::go_over(const Result& from, double end, const Options& 
   return made;
 }
 
-/// After an integration that ended somewhere in the segment: false where the segment ends, or the run.
+/// Continues after an integration that ended inside the segment. False if the segment or the run ends here.
 inline bool Integration::go_on(const Result& part, double begin, double end, const OnEvent& event, Result& total) {
   const Statistics before = total.statistics;
   total = part;
@@ -266,7 +267,7 @@ inline AtEvent Integration::change_contact(const EventPoint& point, const OnEven
   return slow_slip_.due() ? AtEvent::stop : answer;
 }
 
-/// Of a step of the method: infinity, unless a force that is narrow in the state lies in it unseen.
+/// The longest admissible step: infinity, unless the step misses a force that is narrow in the state.
 inline double Integration::longest_step(const StepView& step) {
   if (parts_.charts.second() != 0) return std::numeric_limits<double>::infinity();
   const double longest = narrow_.longest(step, sampling_);

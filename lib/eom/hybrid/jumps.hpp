@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Where energies, momenta or constraints jump: the velocity of a support at a kink of its motion, a step of a
-// potential. In: functions that may jump, and numbers for their parameters. Out: at a kink of time, velocities without
-// the impulses of constraints: the momenta dL/dqdot are the same before and after; at a kink of the state, what jumps
-// there, which the equations leave open.
+// Jumps of energies, momenta or constraints: the velocity of a support at a kink of its motion, a step of a potential.
+// In: functions that may jump, values of their parameters. Out, at a kink in time: the velocities without the impulses
+// of constraints, with the same momenta dL/dqdot before and after. Out, at a kink in the state: the jumping quantity,
+// whose effect the equations leave undetermined.
 #pragma once
 
 #include <Eigen/QR>
@@ -21,7 +21,7 @@ namespace eom::hybrid {
 
 class Jumps {
  public:
-  /// n free coordinates and so many integrals and inputs; breaks: there are kinks of time in the span.
+  /// n free coordinates, and the numbers of integrals and inputs. breaks: whether there are kinks in time in the span.
   Jumps(const JumpFunctions& of, std::size_t n, std::size_t integrals, std::size_t inputs,
         std::span<const double> parameters, bool breaks)
       : of_(of), n_(n), integrals_(integrals), inputs_(inputs) {
@@ -43,12 +43,11 @@ class Jumps {
       : Jumps(problem.jumps, problem.n(), problem.code->integrals, problem.inputs.size(), problem.parameters,
               !problem.breaks.empty()) {}
 
-  /// Nothing jumps anywhere, whatever the motion.
+  /// No function jumps, whatever the motion.
   bool none() const { return !by_time_ && surfaces_.empty(); }
   bool by_time() const { return by_time_; }
 
-  /// From just before a kink of time to just after it: changes velocities in `x` to what they are without impulses of
-  /// constraints.
+  /// Crosses a kink in time: changes the velocities in `x` to those after it without impulses of constraints.
   Impulse cross(const Place& before, double after, const double* u_after, std::span<double> x) const {
     Impulse told;
     const double later = after + far * (std::abs(after) > 0 ? std::abs(after) : 1);
@@ -92,14 +91,14 @@ class Jumps {
     return told;
   }
 
-  /// Surfaces in the state where something may jump: above 0 on one side.
+  /// Number of surfaces in the state at which a function may jump. Their values are positive on one side.
   std::size_t surfaces() const { return surfaces_.size(); }
   void values(const Place& at, double* g) const {
     code_.values(variables(at), {});
     for (std::size_t i = 0; i < surfaces_.size(); ++i) g[i] = code_.surface(surfaces_[i]);
   }
 
-  /// What jumps at one of them, or none.
+  /// The jump at a surface, or none.
   Reason cross(const Place& at, std::size_t surface) {
     std::array<std::vector<double>, 2> sides;
     for (const int side : {0, 1}) {
@@ -124,9 +123,9 @@ class Jumps {
   using What = JumpFunctions::What;
   static constexpr std::size_t kinds = 7;
   using Sizes = std::array<double, kinds>;
-  static constexpr double rounding = 1e-9;     // of what jumps: a smaller difference is none
-  static constexpr double far = 1e-6;          // of the time: a change over so much
-  static constexpr double part_of_far = 1e-4;  // what changes by less than this part of it at the kink does not jump
+  static constexpr double rounding = 1e-9;     // of the jumping quantity: smaller differences are ignored
+  static constexpr double far = 1e-6;          // of the time: the distance over which a regular change is measured
+  static constexpr double part_of_far = 1e-4;  // a change at the kink below this fraction of the regular change is not a jump
 
   const std::vector<double>& variables(const Place& at) const {
     variables_.assign(1, at.t);
@@ -146,8 +145,8 @@ class Jumps {
     }
   }
 
-  /// Of each kind beside what its values are made of: a potential beside the kinetic energy, a constraint beside the
-  /// coordinates and rates.
+  /// Size of each kind of function, including its reference: the kinetic energy for a potential, coordinates and rates
+  /// for a constraint.
   Sizes sizes(const std::vector<double>& one, const std::vector<double>& other, std::span<const double> x) const {
     Sizes size{};
     const auto of = [&](What what) -> double& { return size[static_cast<std::size_t>(what)]; };
@@ -173,7 +172,7 @@ class Jumps {
   std::size_t n_, integrals_, inputs_;
   bool by_time_ = false;
   expressions::Code code_, mass_;
-  std::vector<std::size_t> surfaces_;  // kinks of code_, one of each surface
+  std::vector<std::size_t> surfaces_;  // kinks of code_, one per surface
   mutable std::vector<double> variables_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Sides of kinks (abs, sign, min, max, if) during one run. A branch is held during a step, so that the right-hand side
-// is smooth there, and changes where the surface is crossed. In: values of the surfaces. Out: bits of `mode`, counts.
+// Branches of kinks (abs, sign, min, max, if) during one run. A branch is frozen during a step, so that the right-hand
+// side is smooth there, and changes when its surface is crossed. In: values of the surfaces. Out: bits of `mode`,
+// counts of crossings.
 #pragma once
 
 #include <algorithm>
@@ -24,20 +25,21 @@ class Kinks {
     at_ = std::nan("");
   }
 
-  /// Whether every branch is held: nothing is left to find out.
+  /// Whether every branch is frozen, so that no surface has to be evaluated.
   bool all_held() const {
     for (std::size_t k = 0; k < size_.size(); ++k)
       if ((model_.mode() >> bit(k) & 3) == 0) return false;
     return true;
   }
 
-  /// Holds each kink on the side where the state is; where it is on the surface itself its branch follows the state.
-  /// anew: at the start of a segment, or after a change of mode. surfaces: their values there.
+  /// Freezes each kink on the side of the state. On the surface itself the branch follows the state. anew: at the start
+  /// of a segment, or after a change of mode. surfaces: their values.
   void hold(const double* surfaces, bool anew) {
     for (std::size_t k = 0; k < size_.size(); ++k) {
       const double g = surfaces[k];
       if (std::isfinite(g)) size_[k] = std::max(size_[k], std::abs(g));
-      // What is small beside former values may be rounding, and the side another than the locator of events will find.
+      // A value that is small compared with earlier ones may be rounding, and its side may differ from that found by
+      // the event locator.
       if ((model_.mode() >> bit(k) & 3) != 0 || !(std::abs(g) > (anew ? 0 : beyond_rounding * size_[k]))) continue;
       model_.mode(model_.mode() | 1 << (g > 0 ? bit(k) : bit(k) + 1));
     }
@@ -50,7 +52,7 @@ class Kinks {
     model_.mode((model_.mode() & ~(3 << bit(k))) | 1 << (up ? bit(k) : bit(k) + 1));
   }
 
-  /// Between two segments, from the mode `before` to that of now.
+  /// Counts the changes between two segments, from the mode `before` to the current one.
   void count(int before) {
     for (std::size_t k = 0; k < size_.size(); ++k) {
       const int was = before >> bit(k) & 3, is = model_.mode() >> bit(k) & 3;
@@ -59,17 +61,17 @@ class Kinks {
   }
 
   const std::vector<std::size_t>& crossings() const { return crossings_; }
-  /// The kink that was crossed last, and when; not a number where none was.
+  /// The kink crossed last, and the time; NaN if there was none.
   std::size_t last() const { return last_; }
   double at() const { return at_; }
 
  private:
-  static constexpr double beyond_rounding = 1e-6;  // of the largest value seen
+  static constexpr double beyond_rounding = 1e-6;  // of the largest value so far
   std::size_t bit(std::size_t k) const { return problem_.code->first_kink_bit + 2 * k; }
 
   const Problem& problem_;
   Model& model_;
-  std::vector<double> size_;  // largest |g| seen of each
+  std::vector<double> size_;  // largest |g| of each so far
   std::vector<std::size_t> crossings_;
   std::size_t last_ = 0;
   double at_ = 0;

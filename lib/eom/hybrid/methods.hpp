@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is known of the solver of a run, by its name, and whether it can integrate what the code has.
+// Properties of the solver of a run, by name, and its eligibility for the compiled code.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +13,18 @@
 
 namespace eom::hybrid {
 
-/// The method of this name, or auto; throws std::invalid_argument where there is none.
+/// The method of this name, or auto. Throws std::invalid_argument if there is none.
 inline const MethodInfo& method_named(std::string_view name) {
   if (const MethodInfo* method = find_method(name)) return *method;
   eom::detail::throw_unknown(name);
 }
 
-/// Whether it cannot run without that feature.
+/// Whether the method cannot run without this feature.
 inline bool requires_feature(std::string_view name, Feature feature) {
   return method_named(name).needs.required.has(feature);
 }
 
-/// What a method may ask for, or cannot follow, of compiled code.
+/// Features of compiled code that a method may need or may not support.
 inline Features features_of(const Code& code) {
   const std::vector<bool>& holonomic = code.holonomic;
   return Features{}
@@ -38,7 +38,7 @@ inline Features features_of(const Code& code) {
       .set(Feature::other_states, code.integrals > 0);
 }
 
-/// Throws std::invalid_argument where the code has not what the run calls, or the solver is not for it.
+/// Throws std::invalid_argument if the code lacks functions that the run calls, or the solver is not eligible.
 inline void require_functions(const Problem& problem) {
   const Code& code = *problem.code;
   const auto demand = [&](bool holds, const char* what) {

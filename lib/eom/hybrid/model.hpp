@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The compiled model at work in one run: its functions in the mode, the charts and the segment of the inputs that the
-// run is in. In: a Problem. Out: codes of the C ABI, arrays of the caller's.
+// The compiled model during one run: its functions in the current mode, charts and segment of the inputs. In: a
+// Problem. Out: codes of the C ABI; arrays of the caller.
 #pragma once
 
 #include <algorithm>
@@ -29,12 +29,12 @@ class Model {
         inputs_move_(std::any_of(problem.inputs.begin(), problem.inputs.end(), moves)),
         h_(n_),
         y_(problem.code->output_names.size()) {
-    // Before the first segment starts: just inside it, so that a table gives its value right of t0.
+    // Before the first segment: a time just inside it, so that a table returns its value right of t0.
     side_ = std::nextafter(problem.t0, problem.t1);
     prepare();
   }
 
-  const Code& code() const { return *code_; }  // knows all charts that the run is or was in
+  const Code& code() const { return *code_; }  // includes all charts of the run so far
   void use(const Code& code) {
     if (code_ == &code) return;
     code_ = &code;
@@ -48,7 +48,7 @@ class Model {
   void charts(int bits) { mode_ = (mode_ & ~chart_bits) | bits; }
   void forget_sides() { mode_ &= contact_bits | chart_bits; }
 
-  /// A time inside the segment of the inputs that is being integrated.
+  /// A time inside the current segment of the inputs.
   double side() const { return side_; }
   double side(double t) { return std::exchange(side_, t); }
   /// Valid until the next call.
@@ -61,17 +61,18 @@ class Model {
   int rhs(double t, const double* x, double* dx) {
     const double* u = inputs(t);
     const int code = motion(t, x, u, mode_, dx);
-    // A branch that is held beyond its surface may have no value there (a root); what the surface separates always has.
+    // A branch that is frozen beyond its surface may have no value there (a root). The unfrozen expression always has
+    // one.
     return code != 0 && mode_ != live() ? motion(t, x, u, live(), dx) : code;
   }
 
-  /// In a mode of the contacts.
+  /// In a given mode of the contacts.
   int rhs_of(int contacts, double t, const double* x, double* dx) {
     return motion(t, x, inputs(t), (mode_ & ~contact_bits) | contacts, dx);
   }
 
-  /// Of the states without the work, which is a quadrature; partial, with the inputs held: where these move between
-  /// their jumps, df/dt along them is not told.
+  /// For the states without the work, which is a quadrature. The derivatives are partial, at fixed inputs. If inputs
+  /// vary between their jumps, df/dt is not available.
   int jacobian(double t, const double* x, double* dfdx, double* dfdt) {
     if (code_->jac == nullptr) return no_jacobian_here;
     const double* u = inputs(t);
@@ -80,7 +81,7 @@ class Model {
     return code == 0 && inputs_move_ ? no_time_derivative_here : code;
   }
 
-  /// Of the states without the work, which is integrated along them.
+  /// For the states without the work, which is integrated as a quadrature.
   int taylor(double t, const double* x, int order, double* coefficients) {
     const double* u = inputs(t);
     const int code = code_->taylor(t, x, parameters(), u, mode_, order, coefficients);
@@ -96,12 +97,12 @@ class Model {
                                  : code_->mass(t, x, parameters(), M, h_.data());
   }
 
-  /// Entries that only the own charts have are left alone in second ones.
+  /// In second charts, entries that exist only in the own charts remain unchanged.
   int outputs(double t, const double* x, double* y) const {
     return code_->outputs(t, x, parameters(), inputs(t), mode_, y);
   }
 
-  /// Of the model's events, kinks and contacts; nothing where there are none.
+  /// Values of the model's events, kinks and contacts. Does nothing if there are none.
   int events(double t, const double* x, double* g) {
     return code_->events == nullptr ? 0 : code_->events(t, x, parameters(), inputs(t), mode_, g);
   }
@@ -114,7 +115,7 @@ class Model {
 
   void prepare() {
     w_.assign(code_->prepare != nullptr ? code_->prepared : 0, 0.0);
-    // A code of prepare is told by rhs, which is asked then.
+    // An error of prepare is reported by rhs, which is then called instead.
     if (code_->prepare != nullptr && code_->prepare(parameters(), w_.data()) != 0) w_.clear();
   }
 
@@ -130,12 +131,12 @@ class Model {
   const Problem& problem_;
   const Code* code_;
   std::size_t n_;
-  int mode_ = 0;  // of the step that is being made: contacts, sides of kinks, charts
+  int mode_ = 0;  // of the current step: contacts, sides of kinks, charts
   double side_ = 0;
   Inputs inputs_;
   mutable std::vector<double> u_;
-  bool inputs_move_;       // between their jumps
-  std::vector<double> w_;  // of Code::prepare
+  bool inputs_move_;       // some input varies between its jumps
+  std::vector<double> w_;  // output of Code::prepare
   std::vector<double> h_, y_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The right-hand side of a run, with its derivatives, as eom::integrate takes them; event functions with their bounds.
+// The right-hand side of a run with its derivatives, in the form that eom::integrate expects; event functions with
+// their bounds.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +14,7 @@ namespace eom::hybrid {
 
 struct Motion {
   Parts& of;
-  bool keeps_constraints = false;  // the method itself
+  bool keeps_constraints = false;  // the method satisfies the constraints itself
 
   int operator()(double t, const double* x, double* dx) const { return of.rhs(t, x, dx); }
   int jacobian(double t, const double* x, double* dfdx, double* dfdt) const {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Forces that are narrow in the state: a barrier exp(-(x/w)^2) far below a step lies between the places at which the
-// step sees the equations, and its tails are below any tolerance. In: the functions of a system without tails, a step
-// with its dense output, the right-hand side. Out: a shorter step, where bounds of such a function leave room for
-// values that no sample has, and the path of the step does not satisfy the equations at one.
+// Forces that are narrow in the state. A barrier exp(-(x/w)^2) far narrower than a step lies between the points at
+// which the step evaluates the equations, and its tails are below any tolerance. In: functions without tails, a step
+// with its dense output, the right-hand side. Out: a shorter step, if the bounds of a function allow values that no
+// sample has and the path of the step violates the equations at such a point.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ class NarrowForces {
 
   bool any() const { return !codes_.empty(); }
 
-  /// The longest step that may be taken in its place; infinity where it may be taken as it is.
+  /// The longest step that may replace this one; infinity if it may be taken as it is.
   double longest(const StepView& step, const Sampling& sampling) const {
     const double h = std::abs(step.t1 - step.t0);
     double first = 1;
@@ -35,29 +35,29 @@ class NarrowForces {
     return std::numeric_limits<double>::infinity();
   }
 
-  /// The first step for which the bounds were too wide to tell; since the last call.
+  /// Start of the first step since the last call for which the bounds were too wide to decide.
   std::optional<double> unsure() const { return std::exchange(unsure_, std::nullopt); }
 
  private:
-  static constexpr std::size_t most_boxes = 200;  // of a function in a step
+  static constexpr std::size_t most_boxes = 200;  // per function and step
   static constexpr double shortest = 1e-9;        // of the step
   static constexpr double nothing = 1e-100;       // in the units of the function
   static constexpr double everything = 1e100;
-  static constexpr double of_values = 1e-3;   // beyond the samples: what smooth functions do between them
-  static constexpr double of_tolerance = 30;  // a path between the ends of a step is less accurate than these
+  static constexpr double of_values = 1e-3;   // beyond the samples: variation of smooth functions between them
+  static constexpr double of_tolerance = 30;  // the path inside a step is less accurate than its end
   static constexpr double difference = 1e-3;  // of a width, for slopes of the path
   static constexpr double nearest = 1e-3;     // of a box
 
   static double bounded(double v) { return std::clamp(v, -everything, everything); }
 
-  /// Where a function has a value that no sample of the step has, and the equations are not satisfied.
+  /// The first point at which a function has a value outside of the samples and the equations are violated.
   std::optional<double> hidden(const expressions::Code& code, const StepView& step, const Sampling& sampling) const {
     using expressions::Interval;
     const auto value = [&](const StepPlace& at) { return bounded(code.value(at.variables)); };
     std::vector<std::pair<StepPlace, StepPlace>> open(1);
     open[0].second.s = 1;
     for (StepPlace* at : {&open[0].first, &open[0].second}) variables_.at(step, sampling, *at);
-    // The ends alone are what every method sees.
+    // Every method evaluates the end points only.
     Interval seen =
         expressions::hull({value(open[0].first), value(open[0].first)}, {value(open[0].second), value(open[0].second)});
     for (std::size_t boxes = 0; !open.empty() && boxes < most_boxes; ++boxes) {
@@ -76,7 +76,7 @@ class NarrowForces {
       if (shown(range.value.low) && shown(range.value.high)) continue;
       if (!shown(middle)) {
         if (unsatisfied(step, sampling, m.s, width)) return m.s;
-        // A bump has no slope at its top: its sides, however steep they are.
+        // The slope vanishes at the top of a feature, so its sides are tested, however steep they are.
         for (double beside = width / 4; beside > width * nearest; beside /= 4) {
           if (unsatisfied(step, sampling, m.s - beside, beside) || unsatisfied(step, sampling, m.s + beside, beside))
             return m.s - beside;
@@ -91,8 +91,8 @@ class NarrowForces {
     return std::nullopt;
   }
 
-  /// Whether the accelerations of the step's path at s differ from those of the equations by more than tolerances
-  /// allow, if they do so for `width` of the step.
+  /// Whether the accelerations of the step's path at s differ from the equations by more than the tolerances, if this
+  /// holds for `width` of the step.
   bool unsatisfied(const StepView& step, const Sampling& sampling, double s, double width) const {
     const double h = step.t1 - step.t0, reach = difference * width, from = std::max(0.0, s - reach),
                  to = std::min(1.0, s + reach);
@@ -109,7 +109,7 @@ class NarrowForces {
     if (sampling.derivative(step.t0 + s * h, x_.data(), dx_.data()) != 0) return true;
     for (std::size_t i = n_; i < 2 * n_; ++i) {
       const double slope = (after_[i] - before_[i]) / ((to - from) * h);
-      // Of a one-sided difference the path's own curvature is taken for a part of it.
+      // For a one-sided difference the curvature of the path counts as part of the difference.
       const double size = std::max(std::abs(step.x0[i]), std::abs(step.x1[i]));
       const double bend = from < s && to > s ? 0 : difference * std::abs(step.x1[i] - step.x0[i]);
       if (!(std::abs(dx_[i] - slope) * width * std::abs(h) <=

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Outputs of a state of the run, whatever charts it is in. In: the compiled model. Out: the array y.
+// Outputs of a state of the run in any charts. In: the compiled model. Out: the array y.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ class Outputs {
   Outputs(const Problem& problem, const Model& model, const ChartSwitch& charts)
       : problem_(problem), model_(model), charts_(charts), y_(problem.code->output_names.size()) {}
 
-  /// A code of the compiled function.
+  /// Returns a code of the compiled function.
   int operator()(double t, const double* x, std::span<double> y) const {
     const int result = model_.outputs(t, x, y.data());
     if (charts_.second() != 0) own_values(t, x, y);
@@ -32,7 +32,8 @@ class Outputs {
   }
 
  private:
-  /// What second charts do not give: the coordinates, and what is conserved or defined in the own charts only.
+  /// Outputs that second charts do not provide: the coordinates, and quantities defined or conserved in the own charts
+  /// only.
   void own_values(double t, const double* x, std::span<double> y) const {
     const Code& code = model_.code();
     const std::size_t n = problem_.n();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What one run is made of, each concern in a file of its own, and the few steps in which several take part: the start,
-// an exchange of charts, sides of kinks found anew.
+// The components of one run, each in a file of its own, and the operations that involve several of them: the start, an
+// exchange of charts, new sides of kinks.
 #pragma once
 
 #include <cmath>
@@ -42,7 +42,7 @@ struct Parts {
           impulse_work += outputs.energy(t, after.data()) - energy;
         });
     std::vector<double> x = start;
-    start_contacts(problem.t0, x);  // who looks at the start sees its mode
+    start_contacts(problem.t0, x);  // sets the mode for observers of the start
   }
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
@@ -54,7 +54,7 @@ struct Parts {
     return x;
   }
 
-  /// dx/dt in the mode of now. 2 where the state is too near to where its chart fails.
+  /// dx/dt in the current mode. Returns 2 if the state is too close to the singularity of its chart.
   int rhs(double t, const double* x, double* dx) {
     if (charts.any()) {
       if (const int code = charts.admits(x); code != 0) return code;
@@ -79,13 +79,13 @@ struct Parts {
   std::vector<ModeEvent> start_contacts(double t, std::span<double> x) {
     if (!contacts) return {};
     impulse_work = 0;
-    model.mode(0);  // a model with contacts keeps its charts
+    model.mode(0);  // a model with contacts does not exchange charts
     std::vector<ModeEvent> told = contacts->start(t, x);
     model.mode(contacts->mode());
     return told;
   }
 
-  /// Holds each kink on the side where the state is. anew: whatever was held before.
+  /// Freezes each kink on the side of the state. anew: whether earlier sides are discarded.
   void hold_sides(double t, const double* x, bool anew) {
     if (!kinks.any()) return;
     if (anew) model.forget_sides();
@@ -110,11 +110,11 @@ struct Parts {
   ConstraintRows rows;
   StateProjection projection;
   Kinks kinks;
-  std::unique_ptr<ContactModes> contacts;  // where there are any
+  std::unique_ptr<ContactModes> contacts;  // null if there are none
   EventFunctions events;
-  std::vector<double> start;  // near where a chart fails: in the second one
+  std::vector<double> start;  // in the second chart if the own one is near its singularity
   std::vector<double> g;      // event functions
-  double impulse_work = 0;    // of impacts, of supports, and where sliding in two directions starts or ends
+  double impulse_work = 0;    // of impacts, of supports, and of the start or end of sliding in two directions
 };
 
 }  // namespace eom::hybrid

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A step over a place where active constraints lose rank (singular_passage.hpp): whether it is accurate enough to be
-// taken, and what is told of it.
+// A step across a configuration at which active constraints lose rank (singular_passage.hpp): the test whether it is
+// accurate enough, and the event that reports it.
 #pragma once
 
 #include <algorithm>
@@ -31,13 +31,13 @@ class Passage {
 
   static constexpr const char* solver = SingularPassage::solver;
 
-  /// Length (> 0) of a step over a place that is near, after an accepted step; else 0.
+  /// Length (> 0) of a step across a nearby rank-deficient configuration, after an accepted step; else 0.
   double due(const StepView& step) { return place_.due(step); }
-  /// Such a step was not accurate enough; or it has been made.
+  /// To be called if the step was not accurate enough.
   void refused() { place_.refused(); }
 
-  /// Whether one step over the place of lost rank and two, whose stages lie otherwise, agree within the tolerances and
-  /// rounding. evaluations: what the trial costs, added.
+  /// Whether one step across the rank-deficient configuration and two steps with other stages agree within the
+  /// tolerances and rounding. evaluations: incremented by the cost of the trial.
   bool passable(const Result& from, double length, const Options& options, std::size_t& evaluations) {
     const Motion f{parts_};
     const auto after = [this](double t, double* x) { return parts_.projection(t, x); };
@@ -47,7 +47,7 @@ class Passage {
       one.choice = nullptr;
       return integrate(solver, f, t, x, t_end, one, NoObserver{}, after);
     };
-    const StateProjection::Corrections largest = parts_.projection.largest();  // of steps that are made
+    const StateProjection::Corrections largest = parts_.projection.largest();  // of the accepted steps
     const double t_end = from.t + length,
                  middle = from.t + length * SingularPassage::place / SingularPassage::place_of_check;
     const Result whole = step(from.t, from.x, t_end), half = step(from.t, from.x, middle);
@@ -58,7 +58,7 @@ class Passage {
     return whole.outcome == Outcome::done && other.outcome == Outcome::done && agree(whole.x, other.x, options);
   }
 
-  /// Tells of an accepted step over the place whether rank was lost in it.
+  /// Reports an event if rank was lost in an accepted step across the configuration.
   void tell(const StepView& step, const OnEvent& event) {
     const double h = step.t1 - step.t0, t = step.t0 + SingularPassage::place * h;
     std::vector<double> x(step.x0.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Why a run ended before its end, or its end is none, as values beside the outcome; and as a sentence.
+// The reason why a run ended early or has no valid end, as a value beside the outcome and as a sentence.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +12,21 @@ namespace eom::hybrid {
 struct Reason {
   enum class Kind {
     none,
-    method,               // in the words of the method: `what`
-    start,                // it cannot be moved onto the constraints
-    parameter,            // one is infinite or not a number
+    method,               // `what`: message of the method
+    start,                // it cannot be projected onto the constraints
+    parameter,            // one is infinite or NaN
     rows,                 // interrupted while rows were written
-    range,                // the coordinate `what` leaves its range: lower to upper, between the times from and until
-    place_jumps,          // `what` by `amount`, with an unbounded velocity
-    branch_jumps,         // `what` by `amount`, at a surface in the state
-    support_and_contact,  // the velocity of a support jumps while a contact touches
-    support_alone,        // it does, and no velocities satisfy the constraints after it
-    no_friction,          // the law at the contact `what` has no solution
-    many_frictions,       // several
+    range,                // the coordinate `what` leaves its range (lower, upper) between the times from and until
+    place_jumps,          // `what` jumps by `amount`, with an unbounded velocity
+    branch_jumps,         // `what` jumps by `amount`, at a surface in the state
+    support_and_contact,  // the velocity of a support jumps while a contact is closed
+    support_alone,        // the velocity of a support jumps, and no velocities satisfy the constraints after it
+    no_friction,          // the friction law at the contact `what` has no solution
+    many_frictions,       // the friction law at the contact `what` has several solutions
     surface,              // the motion slides along a surface of the function `what`
-    slip,                 // slip starts and ends without time going on
-    chart,                // a step leads past where the coordinates fail
-    balance               // the energy changes by `amount` of itself more than the forces account for
+    slip,                 // slip starts and ends without progress in time
+    chart,                // a step leads beyond the singularity of the coordinates
+    balance               // the energy changes by the fraction `amount` more than the forces account for
   };
   Kind kind = Kind::none;
   double t = 0, amount = 0;
@@ -37,7 +37,7 @@ struct Reason {
   explicit operator bool() const { return kind != Kind::none; }
 };
 
-/// "" of none.
+/// "" for none.
 inline std::string sentence(const Reason& reason) {
   using Kind = Reason::Kind;
   const std::string at = " at t = " + printed(reason.t);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What rounding alone does to a run with fixed steps. In: a run. Out: the same from a start whose last digit differs,
-// which tells how far the end is from what binary64 can know: near places where coordinates fail, or where motions
-// part, shorter steps do not show it.
+// The effect of rounding alone on a run with fixed steps. In: a run. Out: the end of the same run from a start whose
+// last digits differ. It bounds the attainable accuracy in binary64 near singularities of coordinates and near points
+// where motions separate; shorter steps do not show this.
 #pragma once
 
 #include <Eigen/Dense>
@@ -14,7 +14,7 @@
 
 namespace eom::hybrid {
 
-/// The momenta of a model at a place, and what rates they give. In the model's own charts.
+/// The momenta of a model at a state, and the rates that follow from them. In the model's own charts.
 class Momenta {
  public:
   Momenta(const Problem& problem, double t, const std::vector<double>& x)
@@ -31,7 +31,7 @@ class Momenta {
     force_ = scratch_;
     if (!valid_) return;
     size_ = M_.diagonal().unaryExpr(
-        [](double m) { return m > 0 ? 1 / std::sqrt(m) : 1; });  // of one coordinate beside another says nothing
+        [](double m) { return m > 0 ? 1 / std::sqrt(m) : 1; });  // the size of one coordinate relative to another has no meaning
     solver_.compute(size_.asDiagonal() * M_ * size_.asDiagonal());
   }
 
@@ -42,7 +42,7 @@ class Momenta {
   }
   const Eigen::VectorXd& value() const { return p_; }
   const Eigen::VectorXd& force() const { return force_; }  // dL/dq
-  /// Zero where there is no value.
+  /// Zero if there is no value.
   Eigen::VectorXd rates(const Eigen::VectorXd& p) const {
     if (!valid_) return Eigen::VectorXd::Zero(n_);
     const Eigen::VectorXd scaled = size_.cwiseProduct(p), v = size_.cwiseProduct(solver_.solve(scaled));
@@ -68,8 +68,9 @@ inline double sign(std::size_t i) { return i % 2 == 0 ? 1 : -1; }
 
 }  // namespace rounding
 
-/// The end of a run from there, in the model's own charts. Every component of the start is moved by a unit in its last
-/// place; for a variational solver the momenta are, which it integrates: the rates move by M^-1 of it.
+/// The end of a run from a perturbed start, in the model's own charts. Every component of the start changes by a unit
+/// in its last place. A variational solver integrates momenta, so these change by a unit in the last place and the
+/// rates by M^-1 times this.
 inline Result from_rounded_start(const Problem& problem, const Options& options) {
   const std::size_t n = problem.n();
   Problem moved = problem;
@@ -99,15 +100,15 @@ inline Result from_rounded_start(const Problem& problem, const Options& options)
   return end;
 }
 
-/// Of a variational solver, whose rates follow from positions and momenta: by how much those of a state move with the
-/// last digits of these, and of the forces on the way.
+/// For a variational solver, whose rates follow from positions and momenta: the change of the rates of a state caused
+/// by the last digits of these and of the accumulated forces.
 inline std::vector<double> rounding_of_rates(const Problem& problem, double t, std::vector<double> x) {
   const std::size_t n = problem.n();
   Momenta momenta(problem, t, x);
   Eigen::VectorXd moved(static_cast<Eigen::Index>(n)), sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
   for (std::size_t i = 0; i < n; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    // Where positions hardly move, forces are rounded in the same way in each step.
+    // If positions hardly change, forces are rounded the same way in each step.
     const double q = x[i], p = std::abs(momenta.value()(k)) + std::abs(momenta.force()(k) * (t - problem.t0));
     x[i] = q + rounding::unit * std::abs(q);
     if (momenta.at(x, moved)) sum += momenta.rates(moved - momenta.value()).cwiseAbs();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A run with events, contacts, kinks, exchanged charts and projection: all that `eomgen run` does, for compiled models
-// (docs/runtime.md, "Runs of models"). In: a Problem. Out: its RunResult, and rows to whoever wants them.
+// A run with events, contacts, kinks, exchanged charts and projection: everything that `eomgen run` does, for compiled
+// models (docs/runtime.md, "Runs of models"). In: a Problem. Out: its RunResult, and rows through its callbacks.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ inline Options options_of(const Problem& problem) {
   return options;
 }
 
-/// Of a parameter that is no number nothing follows, also where no number that the run gives shows it (a comparison is
+/// A parameter that is not finite makes the result invalid, even if no number of the result shows it (comparisons are
 /// false then).
 inline void require_parameters(const Problem& problem, RunResult& result) {
   if (!result.ended() || std::all_of(problem.parameters.begin(), problem.parameters.end(),
@@ -43,8 +43,8 @@ inline void require_parameters(const Problem& problem, RunResult& result) {
   result.reason = {Reason::Kind::parameter, result.t};
 }
 
-/// Throws std::invalid_argument for a solver that is not there, or that the code has not what it needs for (a series,
-/// momenta, constraints), or options that make no sense. Where t1 is t0 nothing is integrated.
+/// Throws std::invalid_argument for an unknown solver, for one whose functions the code lacks (a series, momenta,
+/// constraints), and for invalid options. If t1 equals t0, nothing is integrated.
 inline RunResult run(const Problem& problem) {
   require_functions(problem);
   if (!problem.time.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a run gives: its end, what happened on the way, how far off it may be.
+// The result of a run: its end, the events on the way, the error estimate.
 #pragma once
 
 #include <cstddef>
@@ -14,43 +14,43 @@
 
 namespace eom::hybrid {
 
-/// How an invariant of the problem held; relative as eom::Drift has it.
+/// The drift of an invariant of the problem; relative in the sense of eom::Drift.
 struct Drifted {
   double initial = 0, max_relative_drift = 0;
 };
 
-/// An estimate of the error at the end; empty where none was asked for, or the run did not come to its end.
+/// Error estimate at the end. Empty if none was requested or the run did not reach its end.
 struct EndError {
-  std::vector<double> states;       // absolute, per component of the state but for the work
+  std::vector<double> states;       // absolute, per component of the state except the work
   std::optional<double> t = {};     // of an event that stopped the run
   double max = 0;                   // the largest of the states
-  std::size_t rhs_evaluations = 0;  // of the further runs
+  std::size_t rhs_evaluations = 0;  // of the repeated runs
   double seconds = 0;
   Doubt doubt;
-  std::string note;  // the doubt as a sentence, or ""
+  std::string note;  // the warning as a sentence, or ""
 };
 
 struct RunResult {
   std::string solver;  // the method that ended the run
   Choice choice;       // of auto: its changes
   Outcome outcome = Outcome::done;
-  Reason reason;       // where the outcome alone does not say it
+  Reason reason;       // if the outcome alone does not give it
   std::string detail;  // the reason as a sentence, or ""
   double t = 0;
   Statistics statistics;
   double seconds = 0;
-  std::vector<double> state;    // at the end, in the model's own charts; with the work, where it is integrated
+  std::vector<double> state;    // at the end, in the model's own charts; with the work, if it is integrated
   std::vector<double> outputs;  // at the end
   EndError error;
   std::vector<Drifted> invariants;  // per Problem::invariants
   double power_balance = 0;         // largest |E - E(0) - W| relative to the energies exchanged
-  double constraint_drift = 0;  // largest |psi|, or |f . qdot + b| of a constraint on velocities, at the end of a step
+  double constraint_drift = 0;  // largest |psi|, or |f . qdot + b| of a velocity constraint, at the end of a step
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
   double impulse_work = 0;  // of impacts
   std::vector<Event> events;
   std::vector<std::size_t> kink_crossings;  // per Code::kinks
-  std::optional<double> unsure_from = {};   // where it could first not be told whether a narrow force lies in a step
-  std::optional<double> time_unfollowed_from = {};  // Clock::unfollowed_from, where the run looked at time itself
+  std::optional<double> unsure_from = {};   // first time at which a narrow force in a step could not be excluded
+  std::optional<double> time_unfollowed_from = {};  // Clock::unfollowed_from, if the run analysed the functions of time itself
 
   bool ended() const { return outcome == Outcome::done || outcome == Outcome::stopped_by_event; }
 };

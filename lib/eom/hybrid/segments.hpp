@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a run knows beforehand: times at which inputs jump or a kink of time is crossed, and where fixed steps have to
-// be shorter. In: a Problem. Out: segments between such times.
+// Segments of a run that are known in advance. They end at jumps of inputs and at kinks in time, and fixed steps may be
+// shorter in some. In: a Problem. Out: the segments.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 
 namespace eom::hybrid {
 
-/// Where fixed steps have to be shorter than asked for to follow a function of time.
+/// An interval in which fixed steps have to be shorter than requested to resolve a function of time.
 struct FinerSteps {
   double begin, end, step;
 };
-inline constexpr double steps_of_bound = 0.03125;  // of a bound of chosen steps
+inline constexpr double steps_of_bound = 0.03125;  // of a bound on adaptive steps
 
 inline std::vector<FinerSteps> finer_steps(const Problem& problem) {
   std::vector<FinerSteps> result;
@@ -27,9 +27,9 @@ inline std::vector<FinerSteps> finer_steps(const Problem& problem) {
   return result;
 }
 
-/// Between two times at which something jumps, or fixed steps change their size.
+/// An interval between two times at which something jumps or fixed steps change their size.
 struct Segment {
-  double end, next;  // the one after it begins at `next`, a rounding behind the end where a kink of time lies between
+  double end, next;  // the following segment begins at `next`, which differs from `end` by rounding if a kink in time lies between
   double step;       // of fixed steps
 };
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Where active constraints lose rank for an instant (the bars of a mechanism that lie flat). The motion goes on
-// smoothly there, but stages beside the constraints see forces too large by one over the distance, so that a solver
-// that chooses its steps makes them ever shorter before the place, or passes it in one that its projection spoils. In:
-// accepted steps. Out: whether such a place is ahead and near, and a step over it whose stages keep their distance.
+// Detection of configurations at which active constraints lose rank for an instant (the bars of a mechanism that are
+// aligned). The motion is smooth there. However, stages slightly off the constraints have force errors inversely
+// proportional to the distance. An adaptive solver then makes ever shorter steps before the configuration, or crosses
+// it in a step that its projection spoils. In: accepted steps. Out: whether such a configuration is ahead and near, and
+// a step across it whose stages keep their distance.
 #pragma once
 
 #include <Eigen/Dense>
@@ -19,42 +20,42 @@ namespace eom::hybrid {
 
 class SingularPassage {
  public:
-  /// A of a state, rows x n in column order; a code.
+  /// Writes A of a state, rows x n in column order; returns a code.
   using Rows = std::function<int(double t, const double* x, double* A)>;
 
   SingularPassage(std::size_t n, std::size_t rows, Rows evaluate);
 
-  /// After an accepted step: the length (> 0) of a step over a place of lost rank that is near, else 0. Not looked at
-  /// after every step.
+  /// After an accepted step: the length (> 0) of a step across a nearby rank-deficient configuration, else 0. It is not
+  /// evaluated after every step.
   double due(const StepView& step);
-  /// The passage that was due has been made; or was not accurate enough, and is tried again from half as far.
+  /// Called after the step across has been made; or after it was not accurate enough, so that it is tried again at half
+  /// the distance.
   void passed(double length);
   void refused() { nearest_ = 0.5 * distance_; }
 
-  /// Whether rank is lost in a step from x to the place of its length that the passage aimed at: there, of the state
-  /// `at`.
+  /// Whether rank is lost in the step across. `at`: the state at its target.
   bool lost(double t, const double* at) { return rank_measure(t, at) < 0.2 * measure_; }
-  /// The row of A that follows from others where the rank is lost, as last measured.
+  /// The row of A that depends on others at the loss of rank, as last measured.
   std::size_t row() const { return row_; }
-  /// Relative rounding of a step over the place from where it was due.
+  /// Relative rounding of a step across from its starting point.
   double rounding() const { return 8 * std::numeric_limits<double>::epsilon() / (measure_ * measure_); }
 
   static constexpr const char* solver = "dop853";
-  /// Where in a step over it the place lies: midway between the stages of DOP853 at 1/3 and 3/5; and between those at
-  /// 0.65 and 0.86, for the shorter step of the check.
+  /// The position of the configuration within the step across it: midway between the stages of DOP853 at 1/3 and 3/5.
+  /// For the shorter step of the check: between those at 0.65 and 0.86.
   static constexpr double place = 0.4667, place_of_check = 0.754;
 
  private:
-  static constexpr double near = 0.1;        // of the measure: rank is lost soon, and its decrease is close to linear
-  static constexpr double soon = 0.3;        // from here on it is looked at after every step
-  static constexpr int look_every = 8;       // steps, else
-  static constexpr double redundant = 1e-9;  // below it rows follow from others all the time
+  static constexpr double near = 0.1;        // of the measure: rank is lost soon, and the measure decreases almost linearly
+  static constexpr double soon = 0.3;        // below this value the rank is measured after every step
+  static constexpr int look_every = 8;       // steps, otherwise
+  static constexpr double redundant = 1e-9;  // below this value rows are permanently dependent
   static constexpr double shorter =
-      0.7;  // than the longest step so far: the solver has met something, and it is looked at at once
+      0.7;  // of the longest step so far: after a shorter step the rank is measured at once
   static constexpr double look_ahead = 1e-3;  // of the step, for the slope of the measure
 
-  /// The last pivot of a pivoted QR of A^T relative to the first, rows of A relative to the longest that they were: 0
-  /// where one follows from others.
+  /// The last pivot of a pivoted QR of A^T relative to the first, with rows of A scaled by their longest lengths so
+  /// far. 0 if a row depends on others.
   double rank_measure(double t, const double* x);
 
   std::size_t n_;
@@ -62,11 +63,11 @@ class SingularPassage {
   Eigen::MatrixXd A_, transposed_;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
   Eigen::VectorXd longest_row_, ahead_;
-  double longest_ = 0;  // step since the start or the last passage
+  double longest_ = 0;  // step since the start or the last crossing
   double measure_ = 0, distance_ = 0;
-  double nearest_ = 0;  // only from nearer than this; 0: from anywhere
+  double nearest_ = 0;  // only from a smaller distance than this; 0: from any
   std::size_t row_ = 0;
-  int unseen_ = 0;  // steps since it was looked at
+  int unseen_ = 0;  // steps since the last measurement
 };
 
 inline SingularPassage::SingularPassage(std::size_t n, std::size_t rows, Rows evaluate)
@@ -81,7 +82,7 @@ inline double SingularPassage::rank_measure(double t, const double* x) {
   if (A_.rows() == 0 || A_.rows() > A_.cols() || evaluate_(t, x, A_.data()) != 0 || !A_.allFinite())
     return std::numeric_limits<double>::quiet_NaN();
   for (Eigen::Index i = 0; i < A_.rows(); ++i) {
-    longest_row_(i) = std::max(longest_row_(i), A_.row(i).norm());  // a row may vanish, as where bars lie flat
+    longest_row_(i) = std::max(longest_row_(i), A_.row(i).norm());  // a row may vanish, for example for aligned bars
     transposed_.col(i) = A_.row(i).transpose() / (longest_row_(i) > 0 ? longest_row_(i) : 1);
   }
   qr_.compute(transposed_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Steps that are chosen in place of fixed ones, where slip in two directions is so slow that fixed ones follow neither
-// its direction nor its end. In: the state at the end of a step. Out: whether the steps are to be others from there on.
+// Adaptive steps in place of fixed ones while slip in two directions is so slow that fixed steps resolve neither its
+// direction nor its end. In: the state at the end of a step. Out: whether the kind of steps changes there.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ class SlowSlip {
  public:
   explicit SlowSlip(Parts& parts) : parts_(parts) {}
 
-  /// A run begins; fixed_step: 0 where steps are chosen anyway.
+  /// Starts a run; fixed_step: 0 if steps are adaptive anyway.
   void start(double fixed_step) {
     fixed_step_ = fixed_step;
     finer_ = due_ = false;
@@ -27,7 +27,7 @@ class SlowSlip {
   void change() { finer_ = !finer_; }
   bool finer() const { return finer_; }
 
-  /// Whether a change is to be made at the end of the step.
+  /// Whether a change is pending at the end of the step.
   bool due() const { return due_; }
   void due(bool due) { due_ = due; }
 
@@ -35,7 +35,8 @@ class SlowSlip {
     Options options = asked;
     options.fixed_step = options.initial_step = 0;
     options.max_step = asked.fixed_step;
-    // Tighter in a further run, as its steps are shorter, so that the estimate sees the error of these steps too.
+    // Tighter in a repeated run, in proportion to its shorter steps, so that the estimate includes the error of these
+    // steps.
     const double part = std::min(1.0, asked.fixed_step / parts_.problem.step);
     options.rtol = slow_slip_rtol * std::max(0.01, std::pow(part, 4));
     options.atol = slow_slip_atol;

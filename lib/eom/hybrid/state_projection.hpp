@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// States put back onto their constraints at the end of steps, and what that does. In: rows of the constraints, M. Out:
-// the state that is nearest in the metric of M, the largest corrections, the work of the projections of accepted steps.
+// Projection of states onto their constraints at the end of steps, with its statistics. In: rows of the constraints, M.
+// Out: the nearest state in the metric of M, the largest corrections, the work of the projections of accepted steps.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class StateProjection {
   StateProjection(const Problem& problem, Model& model, ConstraintRows& rows, Outputs& outputs)
       : model_(model), rows_(rows), outputs_(outputs), projection_(problem.n(), rows.size(), rows.on_positions()) {}
 
-  /// The code of a callback, or of a projection that does not converge; the state is as it was then.
+  /// Returns the code of a callback or of a projection that does not converge. In both cases the state is unchanged.
   int operator()(double t, double* x) {
     const double before = outputs_.energy(t, x);
     const ProjectionResult moved = projection_(
@@ -37,7 +37,7 @@ class StateProjection {
     return 0;
   }
 
-  /// Of an accepted step: the work of its projection; others were made on trial.
+  /// Adds the work of the projection of an accepted step and discards those of trial steps.
   void accept(const StepView& step) {
     const auto made = std::find_if(trials_.rbegin(), trials_.rend(), [&](const auto& p) { return p.first == step.t1; });
     if (made != trials_.rend()) work_ += made->second;
@@ -50,9 +50,9 @@ class StateProjection {
   };
   const Corrections& largest() const { return largest_; }
   double work() const { return work_; }
-  /// A run begins; or only the start was moved.
+  /// Called at the start of a run, and after the projection of the start.
   void forget() { largest_ = {}, work_ = 0, trials_.clear(); }
-  /// What was moved since `before` were no steps of the run.
+  /// Restores the corrections `before`: later projections did not belong to steps of the run.
   void undo(const Corrections& before) { largest_ = before, trials_.clear(); }
 
  private:

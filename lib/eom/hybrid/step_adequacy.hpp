@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether steps of a fixed size resolve a motion. Where they do not, runs with different steps may still end alike: a
-// method that damps what it cannot follow damps it in all of them. So the states on the way are compared, not the ends
-// alone.
+// Test whether steps of a fixed size resolve a motion. If they do not, runs with different steps may still end alike: a
+// method that damps an unresolved motion damps it in all of them. Therefore the states on the way are compared as well.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +16,14 @@ namespace eom::hybrid {
 
 class StepAdequacy {
  public:
-  /// impacts: differences count as far as two states in a row have them, since one alone may lie between two times of
-  /// the same impact.
+  /// impacts: a difference counts only if two consecutive states have it, since a single one may lie between two times
+  /// of the same impact.
   explicit StepAdequacy(bool impacts) : impacts_(impacts) {}
 
-  /// Of the run itself: some of its states.
+  /// Records some states of the run itself.
   void see(const StepView& step);
 
-  /// Of a run with other steps: differences there. `align` may turn angles of the second state by whole turns.
+  /// Compares a run with other steps. `align` may change angles of the second state by whole turns.
   using Align = std::function<void(const std::vector<double>& first, std::vector<double>& other)>;
   void compare(const StepView& step, const Align& align);
 
@@ -32,11 +31,11 @@ class StepAdequacy {
   double largest() const;
   const std::vector<double>& differences() const { return difference_; }
 
-  /// From here on nothing can be said of the end: a tenth of what moves.
+  /// At a tenth of the moving quantities the end is no longer conclusive.
   static constexpr double unresolved = 0.1;
 
  private:
-  static constexpr std::size_t most = 729;  // states kept
+  static constexpr std::size_t most = 729;  // stored states
   struct Seen {
     double t;
     std::vector<double> x;
@@ -55,7 +54,8 @@ inline void StepAdequacy::see(const StepView& step) {
   if (++steps_ % stride_ != 0) return;
   seen_.push_back({step.t1, {step.x1.begin(), step.x1.end()}});
   if (seen_.size() < most) return;
-  // Every third one stays: of every other one a state that changes its sign with each step would show nothing.
+  // Every third state is kept. With every second one, a state that changes its sign in each step would show no
+  // difference.
   for (std::size_t i = 0; 3 * i + 2 < seen_.size(); ++i) std::swap(seen_[i], seen_[3 * i + 2]);
   seen_.resize(seen_.size() / 3);
   stride_ *= 3;
@@ -84,7 +84,7 @@ inline double StepAdequacy::largest() const {
   double largest = 0, size = 0;
   for (const double s : size_) size = std::max(size, s);
   for (std::size_t i = 0; i < difference_.size(); ++i) {
-    const double s = std::max(size_[i], 1e-9 * size);  // what stays 0 beside the others is 0 to their rounding
+    const double s = std::max(size_[i], 1e-9 * size);  // components that stay 0 relative to the others are 0 up to their rounding
     if (s > 0) largest = std::max(largest, difference_[i] / s);
   }
   return largest;

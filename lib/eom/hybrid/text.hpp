@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers in the sentences that results carry.
+// Formatting of numbers in the sentences of results.
 #pragma once
 
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 namespace eom::hybrid {
 
-/// With so many significant digits; 17 give the number back.
+/// The number with `digits` significant digits; 17 reproduce it exactly.
 inline std::string printed(double value, int digits = 17) {
   char text[48];
   std::snprintf(text, sizeof text, "%.*g", digits, value);

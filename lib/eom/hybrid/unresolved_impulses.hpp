@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Forces that turn within one step: a particle that passes a centre at a small distance gets most of its impulse in a
-// time that fixed steps leap over. Their ends depend on where in the step the passage falls, and may agree by chance
-// whatever their number. In: the steps of a run and its right-hand side. Out: the largest such impulse, relative to the
-// velocity that it changes.
+// Detection of forces that turn within one step. A particle that passes a centre at a small distance receives most of
+// its impulse in a time shorter than fixed steps. The end of the run then depends on the position of the passage within
+// the step, and runs with different steps may agree by chance. In: the steps of a run and its right-hand side. Out: the
+// largest such impulse, relative to the velocity that it changes.
 //
-// The second difference of the acceleration over a step, divided by h^2, is its second derivative where steps resolve
-// the motion, and changes little over two steps. Where it stands out among the second steps before and after, something
-// happened within that step.
+// The second difference of the acceleration over a step, divided by h^2, is its second derivative if the steps resolve
+// the motion, and changes little over two steps. If it stands out among those of the second steps before and after, the
+// force changed within that step.
 #pragma once
 
 #include <algorithm>
@@ -22,23 +22,23 @@ namespace eom::hybrid {
 
 class UnresolvedImpulses {
  public:
-  /// f(t, x, dx): a code, or 0; first, count: of the velocities in the state.
+  /// f(t, x, dx): returns a code, or 0; first, count: range of the velocities in the state.
   using Derivative = std::function<int(double t, const double* x, double* dx)>;
   UnresolvedImpulses(std::size_t first, std::size_t count) : first_(first), largest_(count), velocity_(count) {}
 
-  /// Three evaluations.
+  /// Costs three evaluations.
   void see(const StepView& step, const Derivative& f);
-  /// After the last step.
+  /// To be called after the last step.
   void finish();
   std::size_t evaluations() const { return evaluations_; }
 
-  /// 0 where no acceleration stands out in one step. `at`: when the largest was.
+  /// 0 if no acceleration stands out in one step. `at`: the time of the largest impulse.
   double largest(double& at) const;
 
  private:
-  static constexpr double inside = 1e-3;   // of the step: at its ends another branch or mode may begin
-  static constexpr double stands_out = 8;  // times as large as around
-  static constexpr double at_rest = 1e-6;  // of the largest velocity: what stays below moves by rounding
+  static constexpr double inside = 1e-3;   // of the step: another branch or mode may begin at its ends
+  static constexpr double stands_out = 8;  // ratio to the neighbouring steps
+  static constexpr double at_rest = 1e-6;  // of the largest velocity: smaller velocities are rounding
 
   static constexpr std::size_t around = 2;  // steps before and after
   struct Step {
@@ -82,10 +82,10 @@ inline void UnresolvedImpulses::see(const StepView& step, const Derivative& f) {
   if (seen_ >= steps_.size())
     look(around, &steps_.front(), &steps_.back());
   else if (seen_ > around)
-    look(steps_.size() - 1 - around, nullptr, &steps_.back());  // one of the first: none before it
+    look(steps_.size() - 1 - around, nullptr, &steps_.back());  // one of the first steps: none before it
 }
 
-/// The step at `place` among the last ones.
+/// Examines the step at `place` among the last ones.
 inline void UnresolvedImpulses::look(std::size_t place, const Step* before, const Step* after) {
   const Step& here = steps_[place];
   for (std::size_t i = 0; i < largest_.size(); ++i) {

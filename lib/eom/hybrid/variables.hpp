@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the variables of a run's expressions are: t, free coordinates, their rates, integrals, inputs. In: places of one
-// step. Out: numbers there, and boxes between three of them.
+// Values of the variables of a run's expressions: t, free coordinates, their rates, integrals, inputs. In: points of
+// one step. Out: values at a point, and boxes that contain the path between three points.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace eom::hybrid {
 
-/// From 0 to 1 in the step.
+/// s: position in the step, from 0 to 1.
 struct StepPlace {
   double s = 0;
   std::vector<double> variables;
@@ -22,7 +22,7 @@ struct StepPlace {
 
 class StepVariables {
  public:
-  /// Of a model with so many states, without the work that a run integrates, and inputs.
+  /// states: components without the work that a run integrates.
   StepVariables(std::size_t states, std::size_t inputs) : states_(states), inputs_(inputs) {}
 
   void at(const StepView& step, const Sampling& sampling, StepPlace& place) const {
@@ -41,9 +41,9 @@ class StepVariables {
     place.variables.insert(place.variables.end(), u, u + inputs_);
   }
 
-  /// Between a and b, with m midway: the control points of the parabola through the three, and some more.
+  /// Box between a and b, with m midway: the control points of the parabola through the three, with a margin.
   const std::vector<expressions::Sloped>& box(const StepPlace& a, const StepPlace& m, const StepPlace& b) const {
-    constexpr double beyond = 0.05;  // of its width: what is not of second order within a box
+    constexpr double beyond = 0.05;  // of its width: terms beyond second order within a box
     box_.resize(a.variables.size());
     for (std::size_t v = 0; v < box_.size(); ++v) {
       const double x = a.variables[v], z = b.variables[v], control = 2 * m.variables[v] - (x + z) / 2;
@@ -62,7 +62,7 @@ class StepVariables {
   mutable std::vector<expressions::Sloped> box_;
 };
 
-/// The variables of a model's expressions at the places of its steps.
+/// The variables of a model's expressions at points of its steps.
 inline StepVariables step_variables(const Problem& problem) {
   return {2 * problem.n() + problem.code->integrals, problem.inputs.size()};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is looked at after every step of a run: invariants, power balance, constraints, ranges of coordinates; and the
-// rows in between. In: accepted steps, events. Out: rows to whoever wants them, what is told at the end.
+// Quantities monitored after every step of a run (invariants, power balance, constraints, ranges of coordinates), and
+// the output of rows. In: accepted steps, events. Out: rows through the callback, the monitored results at the end.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 namespace eom::hybrid {
 
-/// Rows at multiples of the interval, at recorded events, and at the end.
+/// Writes a row at multiples of the interval, at recorded events, and at the end.
 class Rows {
  public:
   Rows(const Problem& problem, Parts& parts)
@@ -27,15 +27,15 @@ class Rows {
 
   bool any() const { return problem_.every > 0; }
 
-  /// The time of the last row where the run was interrupted meanwhile: it ends there.
+  /// Writes the rows of a step. Returns the time of the last row if the run was interrupted meanwhile and ends there.
   std::optional<double> within(const StepView& view) {
-    // Multiples of the interval, counted, so that the grid does not drift; a last sliver belongs to the end.
+    // Multiples of the interval are counted, so that the grid does not drift. A last sliver belongs to the end.
     while (true) {
       const double t = problem_.t0 + static_cast<double>(next_) * problem_.every;
       of_events(std::min(t, view.t1));
       if (t > view.t1 || t > problem_.t1) return std::nullopt;
       if (t == last_) {
-        // an event's row stands there already
+        // the row of an event has this time
       } else if (t == view.t1) {
         row(t, view.x1.data());
       } else {
@@ -47,7 +47,7 @@ class Rows {
     }
   }
 
-  /// Put in order when the rest of its step is written.
+  /// Queues the row of an event until the remaining rows of its step are written.
   void event(double t, std::span<const double> x) { pending_.emplace_back(t, std::vector<double>(x.begin(), x.end())); }
 
   void row(double t, const double* x) {
@@ -57,7 +57,7 @@ class Rows {
     last_ = t;
   }
   double last() const { return last_; }
-  const std::vector<double>& last_state() const { return between_; }  // of an interruption
+  const std::vector<double>& last_state() const { return between_; }  // at an interruption
 
  private:
   void of_events(double until) {
@@ -71,7 +71,7 @@ class Rows {
   const Problem& problem_;
   Parts& parts_;
   std::vector<double> y_, between_;
-  std::vector<std::pair<double, std::vector<double>>> pending_;  // of the step that is being made
+  std::vector<std::pair<double, std::vector<double>>> pending_;  // of the current step
   std::uint64_t next_ = 1;
   double last_ = std::numeric_limits<double>::quiet_NaN();
 };
@@ -106,15 +106,15 @@ class RunWatch {
     return true;
   }
 
-  /// An event: told, and a row of its own.
+  /// Records an event; a custom event also gets a row.
   void event(const Event& event, std::span<const double> x) {
     events_.push_back(event);
     if (event.kind == "impulse") shift_invariants(event.t, x.data());
     if (rows_.any() && event.kind == "custom") rows_.event(event.t, x);
   }
 
-  /// Where a coordinate left its range, the run ends with the step before; where it was interrupted between two rows,
-  /// with the last one. The end is a last row, unless it is on the grid already.
+  /// Ends the result with the previous step if a coordinate left its range, or with the last row if the run was
+  /// interrupted between two rows. The end is the last row, unless it is already on the grid.
   void finish(Result& end, Reason& reason) {
     if (interrupted_) {
       end.outcome = Outcome::interrupted;
@@ -133,7 +133,7 @@ class RunWatch {
 
   void report(RunResult& result) const {
     result.events = events_;
-    if (left_) {  // what lay in the step that left the range is no result
+    if (left_) {  // events in the step that left the range are discarded
       std::erase_if(result.events, [&](const Event& event) { return event.t > end_t_; });
     }
     for (const Drift& drift : drifts_) result.invariants.push_back({drift.initial(), drift.max_relative_drift()});
@@ -153,7 +153,7 @@ class RunWatch {
     const std::span<const std::uint32_t> own = parts_.charts.own_outputs();
     for (std::size_t i = 0; i < drifts_.size(); ++i) {
       const Invariant& invariant = problem_.invariants[i];
-      // Near where the own chart fails its formulas say little.
+      // Near the singularity of the own chart its formulas are inaccurate.
       if (std::find(own.begin(), own.end(), invariant.output) != own.end()) continue;
       const double terms = invariant.magnitude ? y_[*invariant.magnitude] : 0;
       last_[i] = y_[invariant.output];
@@ -165,7 +165,7 @@ class RunWatch {
     for (const std::size_t i : problem_.redundant) defect_ = std::max(defect_, std::abs(y_[i]));
   }
 
-  // An energy is conserved between the impulses of supports; momenta are, through them.
+  // An energy is conserved only between the impulses of supports; momenta are conserved through them.
   void shift_invariants(double t, const double* x) {
     parts_.outputs(t, x, y_);
     for (std::size_t i = 0; i < drifts_.size(); ++i) {
@@ -173,7 +173,7 @@ class RunWatch {
     }
   }
 
-  // Every coordinate, eliminated ones too, comes first among the outputs, with its rate.
+  // The outputs begin with every coordinate, also eliminated ones, followed by its rate.
   bool left_range(const StepView& view) {
     for (std::size_t i = 0; i < problem_.ranges.size(); ++i) {
       const Range& range = problem_.ranges[i];
@@ -198,7 +198,7 @@ class RunWatch {
   Rows rows_;
   std::vector<double> y_;
   std::vector<Drift> drifts_;
-  std::vector<double> last_, shift_;  // of invariants: where the last step ended; by which impulses changed them
+  std::vector<double> last_, shift_;  // of invariants: value at the end of the last step; change by impulses
   PowerBalance balance_;
   double defect_ = 0;
   std::vector<Event> events_;
