@@ -5,20 +5,20 @@
 // Computational and Applied Mathematics 12 (1985); Hairer, Wanner, Solving Ordinary Differential Equations II, sections
 // VII.1 and VII.4.
 //
-// f are the accelerations of the index-1 form: the multipliers lambda_1 that keep A v' + ... = 0 are in them. In the
-// GGL form lambda is an unknown, so that with lambda = lambda_1 + nu it is the above for D1 = D2 = M^-1 A^T (A of the
-// constraints on positions in D1). The motion keeps psi and A v + b by f alone, so mu = nu = 0 along it, whatever D is:
-// each D with C D regular, C = d(psi, A v + b)/dx, gives a system of index 2 with the same solutions. Here D is that of
-// the state where df/dx was last evaluated, and constant in between. (M + A^T S A)^-1 A^T has the same range as M^-1
-// A^T, for any S > 0, and needs M positive on the motions that A allows only.
+// f are the accelerations of the index-1 form, which contain the multipliers lambda_1 that satisfy A v' + ... = 0. In
+// the GGL form lambda is an unknown. With lambda = lambda_1 + nu it becomes the system above with D1 = D2 = M^-1 A^T (D1
+// with the A of the position constraints). The motion satisfies psi = 0 and A v + b = 0 by f alone, so mu = nu = 0 along
+// it for any D. Each D with C D regular, C = d(psi, A v + b)/dx, gives a system of index 2 with the same solutions. Here
+// D is evaluated together with df/dx and constant in between. It is (M + A^T S A)^-1 A^T, which has the same range as
+// M^-1 A^T for any S > 0 and requires M to be positive only on the motions that A allows.
 //
-// Radau IIA ends steps with a stage: psi = 0 and A v + b = 0 hold there, without projection. Newton's iteration ends at
-// its tolerance; the last stage is then corrected with the same matrix until the constraints are at rounding. Of
-// redundant rows an independent set is kept as unknowns, chosen anew with each df/dx; the others are looked at in the
-// end of each step. The error estimate is that of radau5 through the bordered matrix, so that it lies along the
-// constraints. The multipliers enter linearly: the iteration ends when x has converged. Dense output: as in radau5,
-// order 4. Across the constraints, where the stages are right themselves and not their slopes, it is another quartic
-// that brings the polynomial to the slope at the start.
+// Radau IIA ends steps with a stage, so psi = 0 and A v + b = 0 hold there without projection. Newton's iteration ends
+// at its tolerance. The last stage is then corrected with the same matrix until the constraints hold to rounding. An
+// independent set of rows is selected with each df/dx; redundant rows are only checked at the end of each step. The
+// error estimate is that of radau5 through the bordered matrix, so that it is tangent to the constraints. The
+// multipliers enter linearly, so the iteration ends when x has converged. Dense output: as in radau5, order 4. Across
+// the constraints the stages are accurate but not their slopes; there a different quartic adapts the polynomial to the
+// slope at the start.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +38,7 @@ namespace eom::constrained {
 inline constexpr Refusal refusals[] = {
     {Feature::modes, ": which constraints hold changes on the way, and it keeps one set of them"}};
 
-/// The quartic that is 0 at 0, at the three stages, and has slope 1 at 0.
+/// The quartic with value 0 at 0 and at the three stages, and slope 1 at 0.
 inline constexpr double bump_across(double s) { return s * (1 - s) * (1 + s * (-8 + 10 * s)); }
 
 class Ggl : public implicit::Collocation<Ggl, 3> {
@@ -54,7 +54,7 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
                                .instead = "radau5, which projects where there is something to keep",
                                .keeps_constraints = true};
 
-  /// Throws std::invalid_argument where the state cannot be that of the system, or does not meet its constraints.
+  /// Throws std::invalid_argument if the state does not match the system or violates its constraints.
   static void check(const System& system, double t0, std::span<const double> x0, const Options& options) {
     if (2 * system.coordinates + options.quadratures > x0.size())
       throw std::invalid_argument("eom::integrate: ggl needs a state that begins with coordinates and velocities");
@@ -89,7 +89,7 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
     }
   }
 
-  /// C, D and the set of rows, at the start of the step.
+  /// Evaluates C and D and selects the rows at the start of the step.
   int linearise() {
     if (const int code = rows_.evaluate(t0_, x0_); code != 0) return code;
     rows_.select();
@@ -129,7 +129,7 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
       for (std::size_t i = 0; i < m_ && rows_.chosen(a); ++i) w[m_ + a] += std::abs(C_[a + extra_ * i]) * size(i);
   }
 
-  /// The last stage onto its constraints, as far as rounding lets it; the part of the slope at the start across them.
+  /// Moves the last stage onto its constraints, to rounding. Computes the part of the start slope across them.
   int settle() {
     double* z = z_ + 2 * length_;
     double before = std::numeric_limits<double>::infinity();
@@ -150,16 +150,16 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
  private:
   static constexpr int most_rounds = 40;
   static constexpr double allowed_at_start = 1e-6;    // of the coordinates or rates
-  static constexpr double resting = 0.9;              // of a residual: it shrinks no more
+  static constexpr double resting = 0.9;              // of a residual: above this ratio it no longer decreases
   static constexpr double at_rounding = 4 * epsilon;  // of the terms of a constraint
   static constexpr double allowed =
-      1e-10;  // of the coordinates or rates: a row that was not chosen, and contradicts those that were, is told
+      1e-10;  // of the coordinates or rates: a larger residual of a row that is not selected is a contradiction
   static constexpr double shift = 1.5e-8;  // of a coordinate, for differences
 
-  /// Where the components start that g_a has its multiplier in, and its row of A.
+  /// First of the components that receive the multiplier of g_a and belong to its row of A.
   std::size_t velocity(std::size_t a) const { return a < rows_.on_positions() ? 0 : c_; }
 
-  /// D by columns (M + A^T S A)^-1 A^T S, S the mean of the masses.
+  /// D by columns: (M + A^T S A)^-1 A^T S, S the mean of the masses.
   int directions() {
     if (const int code = of_.mass(of_.self, t0_, x0_, M_.data()); code != 0) return code;
     double mean = 0;
@@ -197,7 +197,7 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
     return 0;
   }
 
-  /// g at scratch_ into right_, as a right-hand side; the largest in units of its terms.
+  /// Writes g at scratch_ into right_, as a right-hand side. Returns the largest residual relative to its terms.
   double residual() {
     double worst = 0;
     std::fill(right_.begin(), right_.end(), 0.0);
@@ -209,7 +209,7 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
     return worst;
   }
 
-  /// The y along D with C y = C (h f0 + defect).
+  /// The vector y along D with C y = C (h f0 + defect).
   void slope_across() {
     std::fill(across_.begin(), across_.end(), 0.0);
     for (std::size_t i = 0; i < m_; ++i) {

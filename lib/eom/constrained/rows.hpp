@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The equations g = (psi of the constraints on positions, A v + b of all) that a method keeps, each in units of the
-// length of its row of A. In: a system, states. Out: values, their rounding, an independent set of them.
+// The constraint equations g = (psi of the position constraints, A v + b of all constraints) of a method, each scaled
+// by the length of its row of A. In: a system, states. Out: values, their rounding, an independent set of rows.
 #pragma once
 
 #include <algorithm>
@@ -26,16 +26,16 @@ class Rows {
         rest_(k_ * c_),
         chosen_(k_) {}
 
-  /// Of g.
+  /// Number of equations.
   std::size_t size() const { return positions_ + k_; }
   std::size_t on_positions() const { return positions_; }
   /// The row of A that belongs to g_a.
   std::size_t row(std::size_t a) const { return a < positions_ ? a : a - positions_; }
   bool chosen(std::size_t a) const { return chosen_[row(a)]; }
-  /// Entries of that row, in its units.
+  /// Entries of that row, scaled.
   double slope(std::size_t a, std::size_t i) const { return A_[row(a) + k_ * i] / length_[row(a)]; }
 
-  /// psi, A and b at a state; a code.
+  /// Evaluates psi, A and b at a state. Returns a code.
   int evaluate(double t, const double* x) {
     const int code = of_.constrain(of_.self, t, x, psi_.data(), A_.data(), b_.data());
     const auto finite = [](double value) { return std::isfinite(value); };
@@ -46,8 +46,8 @@ class Rows {
                : code_not_finite;
   }
 
-  /// Lengths and a largest independent set of rows, those on positions first: Gram and Schmidt, each time the row of
-  /// which most is left.
+  /// Computes the lengths and selects a maximal independent set of rows, position constraints first: Gram-Schmidt, with
+  /// the largest remaining row as pivot.
   void select() {
     for (std::size_t r = 0; r < k_; ++r) {
       double sum = 0;
@@ -71,7 +71,7 @@ class Rows {
     return sum / length_[r];
   }
 
-  /// The size of the terms whose sum g_a is: |A| |q| stands for those of psi.
+  /// The size of the terms of g_a; |A| |q| replaces those of psi.
   double terms(std::size_t a, const double* x) const {
     const std::size_t r = row(a);
     double sum = a < positions_ ? 0 : std::abs(b_[r]);
@@ -79,7 +79,8 @@ class Rows {
     return sum / length_[r];
   }
 
-  /// Whether all of g, rows that were not chosen too, is 0 but for such a part of the coordinates or rates.
+  /// Whether all of g, including rows that are not selected, is 0 up to the fraction `part` of the coordinates or
+  /// rates.
   bool met(const double* x, double part) const {
     double sizes[2]{1, 1};
     for (std::size_t i = 0; i < 2 * c_; ++i) sizes[i / c_] = std::max(sizes[i / c_], std::abs(x[i]));
@@ -90,7 +91,7 @@ class Rows {
 
  private:
   static constexpr double independent =
-      1e-10;  // of a row's length: less is left of one that others make up, by their rounding
+      1e-10;  // of a row's length: a smaller remainder is rounding of a dependent row
 
   bool choose_among(std::size_t begin, std::size_t end) {
     std::size_t best = end;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Projection of a state x = (q, v) onto its constraints psi(q, t) = 0 and A(q, t) v + b(q, t) = 0, in the metric of M.
-// In: callbacks for psi, A, b and for M.  Out: x moved, a code, iterations, sizes of the corrections.
+// In: callbacks for psi, A, b and for M. Out: the projected x, a code, iterations, sizes of the corrections.
 //
-// Positions, Newton's method: dq minimises dq^T M dq among the least-squares solutions of A dq = -psi; velocities, one
-// linear solve: the same with the defect A v + b. Where M is regular and A has full rank this is
+// Positions by Newton's method: dq minimises dq^T M dq among the least-squares solutions of A dq = -psi. Velocities by
+// one linear solve: the same with the defect A v + b. If M is regular and A has full rank, this is
 //   dq = -M^-1 A^T (A M^-1 A^T)^-1 psi,
-// the solution of the KKT system [M A^T; A 0] (dq, lambda) = (0, -psi). M may be singular as long as it is positive
-// definite on the null space of A; a direction that has no mass even there is left unmoved. Redundant rows of A are
-// found by a column-pivoted QR of A^T and met in the sense of least squares.
+// the solution of the KKT system [M A^T; A 0] (dq, lambda) = (0, -psi). M may be singular if it is positive definite on
+// the null space of A. Directions without mass even there do not move. A column-pivoted QR of A^T detects redundant
+// rows, which are satisfied in the least-squares sense.
 #pragma once
 
 #include <Eigen/Dense>
@@ -19,10 +19,10 @@
 namespace eom {
 
 struct ProjectionOptions {
-  double tolerance = 1e-14;       // of the correction relative to the largest coordinate, of psi to its terms |A||q|
+  double tolerance = 1e-14;       // of the correction relative to the largest coordinate; of psi relative to its terms |A||q|
   double rank_tolerance = 1e-11;  // of a pivot relative to the largest, rows of A scaled to length 1
   int max_iterations = 25;
-  double rounding = 1e-11;  // a correction that stops shrinking below this times max(1, |q|) counts as converged
+  double rounding = 1e-11;  // a correction that stagnates below this times max(1, |q|) counts as converged
 };
 
 struct ProjectionResult {
@@ -30,19 +30,19 @@ struct ProjectionResult {
 
   int code = 0;                    // 0, the code of a callback, or not_converged
   int iterations = 0;              // Newton corrections of the positions
-  int rank = -1;                   // of A, where last solved with; -1: the state was consistent as it was
+  int rank = -1;                   // of A in the last solve; -1: the state was already consistent
   double position_correction = 0;  // largest component of q - q before
   double velocity_correction = 0;  // largest component of v - v before
 };
 
-/// The work space and the method for n coordinates and m constraints; allocates in the constructor only.
+/// The method with its work space for n coordinates and m constraints. Allocates in the constructor only.
 class Projection {
  public:
   using Index = Eigen::Index;
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
 
-  /// The first `holonomic` of the m rows have a psi; the others bind velocities only (their psi is not looked at).
+  /// The first `holonomic` of the m rows have a psi. The others constrain velocities only; their psi is ignored.
   Projection(std::size_t n, std::size_t m, std::size_t holonomic, const ProjectionOptions& options = {})
       : options_(options),
         n_(static_cast<Index>(n)),
@@ -60,8 +60,9 @@ class Projection {
 
   Projection(std::size_t n, std::size_t m) : Projection(n, m, m) {}
 
-  /// Moves x (2n components; further ones stay). constraints(t, x, psi, A, b) -> int, with A m x n column-major, and
-  /// mass(t, x, M, h) -> int, with M n x n, as in the C ABI; h is not used. Where the code is not 0, x is as it was.
+  /// Projects x (2n components; further ones do not change). constraints(t, x, psi, A, b) -> int, with A m x n
+  /// column-major, and mass(t, x, M, h) -> int, with M n x n, as in the C ABI; h is not used. If the code is not 0, x
+  /// is unchanged.
   template <class Constraints, class Mass>
   ProjectionResult operator()(double t, double* x, Constraints&& constraints, Mass&& mass) {
     Eigen::Map<Vector> state(x, 2 * n_);
@@ -96,7 +97,7 @@ class Projection {
     Matrix scaled_transpose;  // A^T, rows of A scaled to length 1
     Vector right;             // the right-hand side, scaled and permuted
     Eigen::ColPivHouseholderQR<Matrix> qr;
-    Matrix rows;    // R^T, m x rank in its first columns; then its own QR
+    Matrix rows;    // R^T, m x rank in its first columns; later its own QR
     Matrix metric;  // Q^T M Q, and the system for the part of the solution in the null space of A
     Vector w;       // the solution in the basis Q
     Eigen::ColPivHouseholderQR<Matrix> metric_qr;
@@ -114,7 +115,7 @@ class Projection {
       if (!psi_.head(rows).allFinite()) return code_not_finite;
       if (psi_small(q, rows)) break;
       if (result.iterations == options_.max_iterations) return ProjectionResult::not_converged;
-      if (result.iterations == 0)  // the metric is that of the state handed over
+      if (result.iterations == 0)  // the metric is that of the initial state
         if (const int code = evaluate_mass(); code != 0) return code;
       ++result.iterations;
       defect_.head(rows) = psi_.head(rows);
@@ -136,7 +137,7 @@ class Projection {
     if (const int code = evaluate_constraints(); code != 0) return code;
     if (defect_small(v)) return 0;
     if (const int code = evaluate_mass(); code != 0) return code;
-    for (int pass = 0; pass < 2; ++pass) {  // the second removes the rounding of the first
+    for (int pass = 0; pass < 2; ++pass) {  // the second one removes the rounding of the first
       if (!std::isfinite(solve(velocities_, result))) return code_not_finite;
       v -= correction_;
       if (defect_small(v)) return 0;
@@ -144,7 +145,7 @@ class Projection {
     return met(defect_, m_, v) ? 0 : ProjectionResult::not_converged;
   }
 
-  /// defect_ = A v + b; whether it is within the rounding of its terms.
+  /// Computes defect_ = A v + b. Returns whether it is within the rounding of its terms.
   bool defect_small(const Eigen::Map<Vector>& v) {
     bool small = true;
     for (Index i = 0; i < m_; ++i) {
@@ -161,7 +162,7 @@ class Projection {
     return small;
   }
 
-  /// |psi_i| within the rounding of its terms, for which |A| |q| stands.
+  /// Whether psi_i is within the rounding of its terms, estimated by |A| |q|.
   bool psi_small(const Eigen::Map<Vector>& q, Index rows) const {
     for (Index i = 0; i < rows; ++i) {
       double terms = 0;
@@ -171,7 +172,8 @@ class Projection {
     return true;
   }
 
-  /// Contradicting rows are met in the sense of least squares only, where corrections come to rest too: that is told.
+  /// Contradictory rows are satisfied in the least-squares sense only, so corrections converge as well. This is an
+  /// error.
   bool met(const Vector& residual, Index rows, const Eigen::Map<Vector>& y) const {
     const double scale = std::max(1.0, y.lpNorm<Eigen::Infinity>());
     for (Index i = 0; i < rows; ++i)
@@ -180,7 +182,7 @@ class Projection {
   }
 
   /// correction_ = the smallest in the metric M_ among the least-squares solutions of A correction = defect, for the
-  /// first rows of A_ and defect_ that s is made for. Returns its largest component.
+  /// first rows of A_ and defect_, as many as s has. Returns its largest component.
   double solve(Solver& s, ProjectionResult& result) {
     factor_rows(s);
     const Index rank = rank_of(s.qr, options_.rank_tolerance);
@@ -192,7 +194,7 @@ class Projection {
     return correction_.lpNorm<Eigen::Infinity>();
   }
 
-  /// A^T P = Q R with rows of A scaled to length 1 (a row of zeros stays one and is redundant).
+  /// A^T P = Q R with rows of A scaled to length 1. A row of zeros does not change and is redundant.
   void factor_rows(Solver& s) const {
     const Index rows = s.right.size();
     for (Index i = 0; i < rows; ++i) {
@@ -203,7 +205,7 @@ class Projection {
     s.qr.compute(s.scaled_transpose);
   }
 
-  /// The part w_1..rank of Q^T dq: R^T w = P^T defect, by Householder reflections, in the sense of least squares.
+  /// The part w_1..rank of Q^T dq: R^T w = P^T defect, by Householder reflections, in the least-squares sense.
   void solve_range_part(Solver& s, Index rank) const {
     const Index rows = s.right.size();
     const auto& permutation = s.qr.colsPermutation().indices();
@@ -233,7 +235,7 @@ class Projection {
     }
   }
 
-  /// The part of w in the null space of A: with S = Q^T M Q, S22 w2 = -S21 w1; no motion where S22 is singular.
+  /// The part of w in the null space of A: S22 w2 = -S21 w1 with S = Q^T M Q; zero if S22 is singular.
   void solve_null_part(Solver& s, Index rank) {
     s.metric = M_;
     for (Index k = 0; k < std::min(n_, s.right.size()); ++k) {
@@ -248,7 +250,7 @@ class Projection {
     }
     const double largest = free > 0 ? s.metric.bottomRightCorner(free, free).lpNorm<Eigen::Infinity>() : 0;
     const double scale = largest > 0 ? 1 / largest : 0;
-    s.metric.topRows(rank).setZero();  // the first rows say w1 = w1, so that the size stays n x n
+    s.metric.topRows(rank).setZero();  // the first rows are w1 = w1, so that the size remains n x n
     s.metric.leftCols(rank).setZero();
     s.metric.topLeftCorner(rank, rank).diagonal().setOnes();
     s.metric.bottomRightCorner(free, free) *= scale;
@@ -257,7 +259,7 @@ class Projection {
     solve_by(s.metric_qr, s.w);
   }
 
-  /// Basic solution of (the square matrix of qr) y = right, in place; correction_ serves as work space.
+  /// Basic solution of (the square matrix of qr) y = right, in place; correction_ is work space.
   void solve_by(const Eigen::ColPivHouseholderQR<Matrix>& qr, Vector& right) {
     const Index rank = rank_of(qr, options_.rank_tolerance);
     for (Index k = 0; k < n_; ++k) reflect(qr, k, right);
@@ -279,7 +281,7 @@ class Projection {
     return rank;
   }
 
-  /// Applies the k-th Householder reflection of qr (it is its own inverse) to a vector, without work space.
+  /// Applies the k-th Householder reflection of qr (its own inverse) to a vector, without work space.
   template <class Target>
   static void reflect(const Eigen::ColPivHouseholderQR<Matrix>& qr, Index k, Target&& y) {
     const Index n = qr.rows();
@@ -290,7 +292,7 @@ class Projection {
     for (Index i = k + 1; i < n; ++i) y(i) -= sum * qr.matrixQR()(i, k);
   }
 
-  static constexpr int code_not_finite = 5;  // the C ABI's
+  static constexpr int code_not_finite = 5;  // as in the C ABI
 
   ProjectionOptions options_;
   Index n_, m_;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Ensembles on an accelerator, one member per thread, each with steps of its own; CUDA, HIP, or any C++20 compiler as
-// the host form. In: a model, a type with
+// Ensembles on an accelerator, one member per thread, each with its own steps; CUDA, HIP, or any C++20 compiler for the
+// host. In: a model, a type with
 //   static constexpr std::size_t states, parameters;
 //   template <class Real> static EOM_DEVICE int rhs(Real t, const Real* x, const Real* p, Real* dx);   a code of the C
 //   ABI
-// as target cuda of eomgen writes it. Out: where each member ends. Decisions and sums are those of eom::integrate: in
-// binary64, compiled without contraction of products and sums, a member ends with its bits. No allocation, no library.
+// as emitted by target cuda of eomgen. Out: the end of each member. Decisions and sums are those of eom::integrate. In
+// binary64, compiled without contraction of products and sums, the results are bitwise equal. No allocation, no library.
 #pragma once
 
 #include <cmath>
@@ -24,11 +24,11 @@
 
 namespace eom::device {
 
-/// Of a member: codes 1 to 5 are those of the C ABI.
+/// Codes of a member; 1 to 5 are those of the C ABI.
 inline constexpr int done = 0, not_finite = 5, too_many_steps = 6, step_too_small = 7, diverged = 8;
 
 struct Settings {
-  double rtol = 1e-9, atol = 1e-12;  // of single precision: not below 1e-6
+  double rtol = 1e-9, atol = 1e-12;  // in single precision: not below 1e-6
   double max_step = std::numeric_limits<double>::infinity();
   double initial_step = 0;                    // 0: chosen
   unsigned long long max_steps = 50'000'000;  // accepted and rejected together
@@ -60,7 +60,7 @@ EOM_DEVICE inline bool finite(const Real* x, std::size_t n) {
   return true;
 }
 
-// Numbers of a tableau as variables: code for a device may not call the operators of std::array.
+// Coefficients of a tableau as variables: device code may not call the operators of std::array.
 template <const auto& Rows, std::size_t Row, std::size_t J>
 inline constexpr double weight_of = Rows[Row][J];
 template <class T, std::size_t Row>
@@ -83,14 +83,14 @@ EOM_DEVICE inline Real weighted(const Real* k, std::size_t n, std::index_sequenc
 
 }  // namespace detail
 
-/// One member; T: a tableau of eom/explicit_rk whose error estimate is of one row or two.
+/// One member; T: a tableau of eom/explicit_rk with an error estimate of one or two rows.
 template <class T, class Model, class Real>
 class Member {
  public:
   EOM_DEVICE Member(const Real* p, const Settings& settings)
       : p_(p), settings_(settings), rtol_(static_cast<Real>(settings.rtol)), atol_(static_cast<Real>(settings.atol)) {}
 
-  /// From x at t0 to t1, x the last accepted state; a code.
+  /// Integrates from x at t0 to t1. x becomes the last accepted state. Returns a code.
   EOM_DEVICE int run(Real t0, Real t1, Real* x, Counts& counts) {
     for (std::size_t i = 0; i < n; ++i) x0_[i] = x[i], carry_[i] = 0;
     t_ = t_start_ = t0, t_end_ = t1, direction_ = t1 < t0 ? Real(-1) : Real(1);
@@ -153,7 +153,7 @@ class Member {
     for (std::size_t i = 0; i < n; ++i) stage_[i] = x0_[i] + h * sum_of<T::a, Row, explicit_rk::columns<T>>(i);
     return rhs(t_ + static_cast<Real>(detail::time_of<T, Row>) * h, stage_, k_ + Row * n, counts);
   }
-  /// Over the columns that are there: those of the dense output have no weight in a stage.
+  /// Sums over the stored columns: columns of the dense output have no weight in a stage.
   template <const auto& Rows, std::size_t Row, std::size_t Columns>
   EOM_DEVICE Real sum_of(std::size_t i) const {
     constexpr std::size_t there = Columns < T::stages + 1 ? Columns : T::stages + 1;
@@ -164,7 +164,7 @@ class Member {
     for (std::size_t i = 0; i < n; ++i) {
       const Real increment = h * sum_of<T::a, T::stages, explicit_rk::columns<T>>(i) + carry_[i];
       const Real sum = x0_[i] + increment;
-      const Real taken = sum - x0_[i];  // Knuth's two-sum: what rounding left out of x0 + increment
+      const Real taken = sum - x0_[i];  // Knuth's two-sum: the rounding error of x0 + increment
       new_carry_[i] = (x0_[i] - (sum - taken)) + (increment - taken);
       x1_[i] = sum;
     }
@@ -216,7 +216,7 @@ class Member {
     return h_ >= smallest_step(t_) ? done : code;
   }
 
-  // As explicit_rk::Controller.
+  // See explicit_rk::Controller.
   static EOM_DEVICE Real exponent() {
     constexpr double value = 1.0 / T::order - 0.75 * T::control.beta;
     return static_cast<Real>(value);
@@ -297,9 +297,9 @@ class Member {
   bool rejected_before_ = false;
 };
 
-/// Member `member` of `members`, in structures of arrays: entry i of x lies at x[i * members + member], and so does
-/// each member's own entry of p; one p for all is as it is. t: where it ended; counts: steps, rejected, evaluations,
-/// one array after the other; both may be null.
+/// Integrates member `member` of `members`, in structures of arrays. Entry i of x is x[i * members + member], and so
+/// are the entries of p if each member has its own; a shared p is contiguous. t: the end time; counts: arrays of steps,
+/// rejected steps and evaluations, one after the other; both may be null.
 template <class T, class Model, class Real>
 EOM_DEVICE void integrate_member(std::size_t member, std::size_t members, Real t0, Real t1, Real* x, const Real* p,
                                  bool own_parameters, const Settings& settings, int* codes, Real* t,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Some members of an ensemble side by side, each with its own time, step, error and end. In: a method for lanes,
-// members, who watches them. Out: the end of each, with the bits that the method and drive.hpp give it alone. A lane
-// whose member has ended gets the next one. Allocates in the constructor only.
+// Members of an ensemble that are integrated side by side, each with its own time, step, error and end. In: a method
+// for lanes, members, an observer. Out: the end of each member, bitwise equal to that of the method with drive.hpp. A
+// free lane takes the next member. Allocates in the constructor only.
 #pragma once
 
 #include <algorithm>
@@ -16,17 +16,17 @@
 
 namespace eom::ensemble {
 
-/// Watches nothing.
+/// An observer that does nothing.
 struct Unwatched {
   static constexpr bool dense = false;
 };
 
-/// Lanes: on LaneRows, with adaptive_method, end_known and order, steps() of a lane at its start, attempt(),
-/// interpolate(lane, t, x), and where it likes first_step(lane), begin_slopes(), end_slopes(), prepare_accepted(),
-/// move(), accept(). Next: (size_t& member) -> bool. Start: (size_t member, EnsembleStart&). Done: (const
-/// EnsembleEnd&). Watch: Unwatched, or what has begin(slot, start, member) -> Outcome, step(slot, StepView) -> bool,
-/// false where the member ends there, and end(slot, EnsembleEnd&, t), which may change the end; a member keeps its
-/// slot, of which there are as many as lanes.
+/// Lanes: a method based on LaneRows, with adaptive_method, end_known and order, steps() of a lane at its start,
+/// attempt(), interpolate(lane, t, x), and optionally first_step(lane), begin_slopes(), end_slopes(),
+/// prepare_accepted(), move(), accept(). Next: (size_t& member) -> bool. Start: (size_t member, EnsembleStart&). Done:
+/// (const EnsembleEnd&). Watch: Unwatched, or a type with begin(slot, start, member) -> Outcome, step(slot, StepView)
+/// -> bool (false ends the member) and end(slot, EnsembleEnd&, t), which may change the end. A member keeps its slot;
+/// there are as many slots as lanes.
 template <class Lanes, class Next, class Start, class Done, class Watch = Unwatched>
 class Block : Lanes {
   static constexpr bool watched = Watch::dense;
@@ -90,8 +90,7 @@ class Block : Lanes {
 
   bool adaptive() const { return adaptive_method && options_.fixed_step <= 0; }
 
-  /// The first lanes are the ones under way: a new member comes behind them, and the last one takes the place of one
-  /// that has ended.
+  /// The first lanes are active. A new member is appended, and the last lane replaces one that has ended.
   void refill() {
     for (bool more = true; more && lane_.size() < lanes_;) {
       const std::size_t first = lane_.size();
@@ -149,14 +148,15 @@ class Block : Lanes {
     return true;
   }
 
-  /// Derivative and step size of the lanes from `first` on: Run::start and Run::initial_step (HNW I, section II.4).
+  /// Derivative and step size of the lanes from `first` on, as in Run::start and Run::initial_step (HNW I, section
+  /// II.4).
   void begin(std::size_t first) {
     const std::size_t count = lane_.size() - first;
     for (std::size_t l = first; l < lane_.size(); ++l) t_[l] = lane_[l].t();
     this->begin_slopes(first, count);
     for (std::size_t l = first; l < lane_.size(); ++l) {
       failed_[l] = 0;
-      if (lane_[l].at_end() || lane_[l].outcome() != Outcome::done) {  // nothing is to be done: nothing was evaluated
+      if (lane_[l].at_end() || lane_[l].outcome() != Outcome::done) {  // start and end coincide: nothing was evaluated
         lane_[l].count(static_cast<std::size_t>(-1));
         failed_[l] = 1;
       } else if (codes_[l] != 0) {
@@ -295,8 +295,8 @@ class Block : Lanes {
   Done& done_;
   Watch& watch_;
   std::vector<char> goes_on_;
-  std::vector<std::size_t> slot_, free_;   // of watched members: where each lane's is; those that nobody has
-  std::vector<double> view_x0_, view_x1_;  // of a step that is looked at
+  std::vector<std::size_t> slot_, free_;   // of observed members: slots of the lanes; free slots
+  std::vector<double> view_x0_, view_x1_;  // of an observed step
 };
 
 }  // namespace eom::ensemble

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// NAME_rhs_batch of emitted code as integrate_ensemble() takes it. In: the function, inputs, a mode. Nothing is copied.
+// NAME_rhs_batch of emitted code in the form that integrate_ensemble() expects. In: the function, inputs, a mode.
+// Nothing is copied.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +22,7 @@ struct CompiledBatch {
   }
 };
 
-/// With NAME_jac_batch: `rodas` takes members side by side.
+/// With NAME_jac_batch, for `rodas` with members side by side.
 struct CompiledBatchJacobian : CompiledBatch {
   using JacobianFunction = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x,
                                    const double* p, const double* u, const int* mode, int own, double* dfdx,
@@ -34,7 +35,7 @@ struct CompiledBatchJacobian : CompiledBatch {
   }
 };
 
-/// With NAME_taylor_batch and NAME_taylor_order: `taylor` takes members side by side.
+/// With NAME_taylor_batch and NAME_taylor_order, for `taylor` with members side by side.
 struct CompiledBatchSeries : CompiledBatch {
   using SeriesFunction = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x,
                                  const double* p, const double* u, const int* mode, const int* order, int own,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Events of members that are integrated side by side: each has its own locator, and a crossing is made exact by the
-// functions of one state, as integrate_events() does alone. In: steps of a member, its functions. Out: crossings to
-// whoever is told; a breaking one ends the member.
+// Events of members that are integrated side by side. Each member has its own locator, and crossings are refined with
+// its own functions, as integrate_events() does. In: steps of a member, its functions. Out: crossings, passed to a
+// callback; a breaking one ends the member.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@
 
 namespace eom::ensemble {
 
-/// Alone: (size_t member, const double* p) -> what has operator()(t, x, dx), events(t, x, values) and, where it likes,
-/// hidden() of EventLocator. Told: (size_t member, const EventPoint&).
+/// The first parameter: (size_t member, const double* p) -> an object with operator()(t, x, dx), events(t, x, values)
+/// and optionally hidden() of EventLocator. The second: (size_t member, const EventPoint&).
 template <class Alone, class Told>
 class EventWatch {
  public:
@@ -38,7 +38,7 @@ class EventWatch {
     return slots_[slot]->run.begin() ? Outcome::done : slots_[slot]->run.total().outcome;
   }
   bool step(std::size_t slot, const StepView& view) { return slots_[slot]->run.observe(view); }
-  /// x: what end.x shows.
+  /// x: the storage of end.x.
   void end(std::size_t slot, EnsembleEnd& end, std::span<double> x) {
     Options piece;
     slots_[slot]->run.go_on({end.outcome, end.t, {x.begin(), x.end()}, end.statistics, ""}, piece);

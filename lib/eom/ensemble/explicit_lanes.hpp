@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Steps of an explicit Runge-Kutta method for some members side by side, with the bits that explicit_rk/step.hpp gives
-// each alone. In: a tableau, derivatives of many states, where each lane stands and how far it is to go. Out: trial
-// states, error norms, dense output. Allocates in the constructor only.
+// Steps of an explicit Runge-Kutta method for members side by side, bitwise equal to those of explicit_rk/step.hpp. In:
+// a tableau, derivatives of many states, the state and step of each lane. Out: trial states, error norms, dense output.
+// Allocates in the constructor only.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@
 
 namespace eom::ensemble {
 
-/// T: a tableau. Rhs: as EnsembleRhs. dense: whether the dense output of every accepted step is asked for.
+/// T: a tableau. Rhs: as EnsembleRhs. dense: whether the dense output of every accepted step is required.
 template <class T, class Rhs, bool dense, std::size_t width>
 class ExplicitLanes : public LaneRows<Rhs, explicit_rk::Controller, width> {
   using Rows = LaneRows<Rhs, explicit_rk::Controller, width>;
@@ -28,7 +28,7 @@ class ExplicitLanes : public LaneRows<Rhs, explicit_rk::Controller, width> {
     f1_ = k_ + T::stages * n_ * stride_;
   }
 
-  /// The dense output of the step that lane l has just made; 0 < (t - t0)/(t1 - t0) < 1.
+  /// The dense output of the last step of lane l; 0 < (t - t0)/(t1 - t0) < 1.
   void interpolate(std::size_t l, double t, double* x) const {
     const double s = (t - lane_[l].t()) / h_[l];
     for (std::size_t i = 0; i < n_; ++i) {
@@ -67,7 +67,7 @@ class ExplicitLanes : public LaneRows<Rhs, explicit_rk::Controller, width> {
   static constexpr int order = T::order;
   explicit_rk::Controller steps() const { return {T::control, T::order}; }
 
-  /// Trial states at t1 of all lanes; failed_ has the first code of each.
+  /// Computes trial states at t1 of all lanes; failed_ receives the first code of each.
   void attempt() {
     stages_from<1>();
     for (std::size_t i = 0; i < n_; ++i) {
@@ -78,7 +78,8 @@ class ExplicitLanes : public LaneRows<Rhs, explicit_rk::Controller, width> {
     if constexpr (adaptive_method) errors();
   }
 
-  /// The stages and corrections of the dense output of lanes whose step was accepted; where one fails, none.
+  /// Computes the stages and corrections of the dense output of lanes with an accepted step; no corrections if a stage
+  /// fails.
   void prepare_accepted() {
     if constexpr (dense_rows > 0) {
       for (std::size_t l = 0; l < lane_.size(); ++l) failed_[l] = accepted_[l] == 0 ? code_not_finite : 0;
@@ -166,7 +167,7 @@ class ExplicitLanes : public LaneRows<Rhs, explicit_rk::Controller, width> {
     }
   }
 
-  double *k_, *corrections_;  // stages; of the dense output
+  double *k_, *corrections_;  // stages; rows of the dense output
 };
 
 template <explicit_rk::Tableau T, class Rhs, bool dense>

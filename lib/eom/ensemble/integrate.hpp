@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Many runs of one right-hand side at once. In: derivatives of many states, where each member starts. Out: where each
-// ends, with the bits that integrate() gives it alone, whatever the number of lanes and threads.
+// Many runs of one right-hand side at once. In: derivatives of many states, the start of each member. Out: the end of
+// each member, bitwise equal to that of integrate(), for any number of lanes and threads.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,8 @@ inline void check(const EnsembleOptions& options, std::size_t states) {
         "eom::integrate_ensemble: tolerances and steps must not be negative, nor both tolerances 0");
 }
 
-/// By the method of this name, if it has lanes; false where it has none. make_watch() -> Unwatched, EventWatch.
+/// Integrates in lanes if the method of this name supports them; else returns false. make_watch() -> Unwatched,
+/// EventWatch.
 template <class Rhs, class Start, class Done, class MakeWatch>
 bool in_lanes(std::string_view method, Rhs& rhs, std::size_t members, std::size_t states, std::size_t parameters,
               const EnsembleOptions& options, Start& start, Done& done, const MakeWatch& make_watch) {
@@ -58,7 +59,7 @@ bool in_lanes(std::string_view method, Rhs& rhs, std::size_t members, std::size_
   return eom::detail::any_method(by);
 }
 
-/// Whether this method takes members of such a right-hand side side by side.
+/// Whether this method integrates members of such a right-hand side side by side.
 template <class Rhs>
 bool has_lanes(std::string_view method, const EnsembleOptions& options) {
   return eom::detail::any_method([&]<class T>(T*) {
@@ -68,7 +69,7 @@ bool has_lanes(std::string_view method, const EnsembleOptions& options) {
   });
 }
 
-/// Each member after the other in its thread, by any method, where no lanes are known.
+/// Integrates one member after the other in each thread, by any method, if lanes are not supported.
 template <class Rhs, class Start, class Done>
 void one_by_one(std::string_view method, Rhs& rhs, std::size_t members, std::size_t states, std::size_t parameters,
                 const EnsembleOptions& options, Start& start, Done& done) {
@@ -89,11 +90,11 @@ void one_by_one(std::string_view method, Rhs& rhs, std::size_t members, std::siz
 }  // namespace ensemble
 
 /// Integrates `members` runs. rhs: as EnsembleRhs; start(member, EnsembleStart&) writes x, p, t0, t1; done(const
-/// EnsembleEnd&) sees each end, in no particular order. All three are called from `threads` threads at once. Explicit
-/// Runge-Kutta methods take many members side by side, `rodas` where rhs has jacobian() (rosenbrock_lanes.hpp) and
-/// `taylor` where it has taylor() (series_lanes.hpp); others take them one by one in each thread, where
-/// rhs.alone(member, p) gives what integrate() takes for one. Throws std::invalid_argument for a method that is none of
-/// them, and for options that make no sense.
+/// EnsembleEnd&) receives each end, in no particular order. `threads` threads call all three at once. Explicit
+/// Runge-Kutta methods integrate many members side by side. So does `rodas` if rhs has jacobian()
+/// (rosenbrock_lanes.hpp), and `taylor` if it has taylor() (series_lanes.hpp). Other methods integrate them one by one
+/// in each thread if rhs.alone(member, p) returns the right-hand side of one member. Throws std::invalid_argument for
+/// any other method, and for invalid options.
 template <class Rhs, class Start, class Done>
 void integrate_ensemble(std::string_view method, Rhs&& rhs, std::size_t members, std::size_t states,
                         std::size_t parameters, const EnsembleOptions& options, Start&& start, Done&& done) {
@@ -108,9 +109,9 @@ void integrate_ensemble(std::string_view method, Rhs&& rhs, std::size_t members,
                               "for others");
 }
 
-/// The same with events, by a method that takes members side by side: rhs.alone(member, p) has events(t, x, values) ->
-/// code too, of as many as there are `functions`. told(member, const EventPoint&) hears of each crossing, from several
-/// threads at once; at a breaking one the member ends, as stopped_by_event.
+/// The same with events, for methods that integrate members side by side. The result of rhs.alone(member, p) also has
+/// events(t, x, values) -> code, with as many values as there are `functions`. The callback (member, const EventPoint&)
+/// receives each crossing, from several threads at once. A breaking one ends the member as stopped_by_event.
 template <class Rhs, class Told, class Start, class Done>
 void integrate_ensemble_events(std::string_view method, Rhs&& rhs, std::size_t members, std::size_t states,
                                std::size_t parameters, const EnsembleOptions& options,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The steps of one member among others: what drive.hpp does for a run alone, decision by decision, so that a member
-// takes the steps that it would take alone, to the last bit. In: what a trial step came to. Out: the next one, or the
-// end.
+// The step sequence of one member, with the decisions of drive.hpp, so that its steps are bitwise equal to those of a
+// single run. In: the result of a trial step. Out: the next step, or the end.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +37,7 @@ class Lane {
   void start_with(double h, const EnsembleOptions& options) {
     h_ = std::min(std::max(h, smallest_step(t_)), longest_step(options));
   }
-  /// As many equal steps as are needed and no more; false: the run ends here.
+  /// The smallest sufficient number of equal steps. False: the run ends here.
   bool plan_fixed_steps(const EnsembleOptions& options) {
     const double quotient = std::abs(t_end_ - t_start_) / options.fixed_step;
     fixed_steps_ = std::max(1.0, std::ceil(quotient * (1 - 8 * std::numeric_limits<double>::epsilon())));
@@ -47,7 +46,7 @@ class Lane {
     return true;
   }
 
-  /// Whether there may be another step.
+  /// Whether another step is allowed.
   bool go_on(const EnsembleOptions& options) {
     return statistics_.steps + statistics_.rejected < options.max_steps || end(Outcome::max_steps);
   }
@@ -62,7 +61,7 @@ class Lane {
     return t_ + direction_ * (2 * h_ > left ? 0.5 * left : h_);
   }
 
-  /// Whether the run goes on.
+  /// Whether the run continues.
   bool accept(double t_next, double error, const EnsembleOptions& options) {
     if (fixed_steps_ == 0) h_ = std::min(steps_.after_accepted(std::abs(t_next - t_), error), longest_step(options));
     t_ = t_next;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The numbers of some members side by side, in rows of lanes, and what every method does with them, with the bits that
-// drive.hpp and step_ends.hpp give each alone. In: derivatives of many states. Out: where each lane stands, trial
-// states. Allocates in the constructor only.
+// Storage of members side by side, in rows of lanes, and the operations common to all methods, bitwise equal to those
+// of drive.hpp and step_ends.hpp. In: derivatives of many states. Out: the state of each lane, trial states. Allocates
+// in the constructor only.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,13 @@
 
 namespace eom::ensemble {
 
-/// The lanes of a method, as `type`, with takes(options): whether they can do what these ask for. Specialised beside
-/// each; a method for which there is none is made by members alone.
+/// The lanes of a method as `type`, and takes(options): whether they support these options. Specialised for each method
+/// with lanes; other methods integrate members one by one.
 template <class Method, class Rhs, bool dense>
 struct LanesOf;
 
-/// Rhs: as EnsembleRhs. Steps: of one lane, as Lane takes it. A method takes its own rows, f0_ and f1_ among them.
+/// Rhs: as EnsembleRhs. Steps: step size control of one lane, as for Lane. A method allocates its own rows, f0_ and f1_
+/// included.
 template <class Rhs, class Steps, std::size_t width>
 class LaneRows {
  public:
@@ -33,7 +34,7 @@ class LaneRows {
         n_error_(states - options.quadratures),
         p_count_(parameters),
         lanes_(slots_of(options, width)),
-        stride_(lanes_ % 64 == 0 ? lanes_ + 8 : lanes_),  // rows a power of two apart displace one another in the cache
+        stride_(lanes_ % 64 == 0 ? lanes_ + 8 : lanes_),  // rows at distances of a power of two would collide in the cache
         work_((rows + 6 * n_ + p_count_ + 8) * stride_ + n_ + p_count_),
         free_(work_.data()),
         codes_(stride_),
@@ -52,17 +53,17 @@ class LaneRows {
   double* take(std::size_t rows) { return std::exchange(free_, free_ + rows * stride_); }
   std::size_t padded() const { return (lane_.size() + width - 1) / width * width; }
 
-  /// Derivatives of lanes from `first` on.
+  /// Evaluates derivatives of `count` lanes from `first` on.
   int evaluate(std::size_t first, std::size_t count, const double* t, const double* x, double* dx) {
     for (std::size_t l = first; l < first + count; ++l) lane_[l].count(1);
     return rhs_(count, stride_, t + first, x + first, p_ + first, dx + first, codes_.data() + first);
   }
-  /// Of all lanes; failed_ has the first code of each.
+  /// Evaluates derivatives of all lanes; failed_ receives the first code of each.
   void evaluate_all(const double* t, const double* x, double* dx) {
     for (std::size_t l = 0; l < lane_.size(); ++l) lane_[l].count(failed_[l] == 0 ? 1 : 0);
     fail_by(rhs_(lane_.size(), stride_, t, x, p_, dx, codes_.data()));
   }
-  /// The codes of a call that returned `any`.
+  /// Distributes the codes of a call that returned `any`.
   void fail_by(int any) {
     if (any == 0) return;
     for (std::size_t l = 0; l < lane_.size(); ++l) {
@@ -70,9 +71,9 @@ class LaneRows {
     }
   }
 
-  /// Derivatives where lanes from `first` on start.
+  /// Evaluates derivatives at the starts of lanes from `first` on.
   void begin_slopes(std::size_t first, std::size_t count) { evaluate(first, count, t_, x0_, f0_); }
-  /// Derivatives where the trial steps end, of lanes that will not be accepted too, for which nothing is counted.
+  /// Evaluates derivatives at the ends of trial steps, also for lanes that will be rejected, without counting.
   void end_slopes() { rhs_(lane_.size(), stride_, t_, x1_, p_, f1_, codes_.data()); }
 
   void move_rows(double* array, std::size_t count, std::size_t to, std::size_t from) {
@@ -83,7 +84,7 @@ class LaneRows {
     move_rows(p_, p_count_, to, from);
   }
 
-  /// StepEnds::advance of the lanes from l on in component i.
+  /// StepEnds::advance for the lanes from l on in component i.
   [[gnu::always_inline]] void advance(std::size_t i, std::size_t l, Pack increment) {
     const std::size_t at = i * stride_ + l;
     const Pack x = load(x0_ + at);
@@ -94,7 +95,7 @@ class LaneRows {
     store(x1_ + at, sum);
   }
 
-  /// Of the trial states: 0 where all is finite, else no number; and the largest component.
+  /// Checks the trial states: 0 if all components are finite, else NaN; and computes the largest component.
   void examine() {
     for (std::size_t l = 0; l < padded(); l += width) {
       Pack state{}, slope{}, size{};
@@ -110,10 +111,10 @@ class LaneRows {
     }
   }
 
-  /// What is to be known of accepted steps before they are looked at: nothing.
+  /// Hook before accepted steps are observed; does nothing by default.
   void prepare_accepted() {}
 
-  /// Of lanes whose step was accepted the end is the start of the next.
+  /// Makes the end the next start, for lanes with an accepted step.
   void accept() {
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t l = 0; l < padded(); l += width) {
@@ -135,8 +136,8 @@ class LaneRows {
   std::vector<Lane<Steps>> lane_;
   double *x0_, *x1_, *stage_, *carry_, *new_carry_, *scratch_, *p_;  // rows of lanes, stride_ apart
   double *f0_ = nullptr, *f1_ = nullptr;                             // derivatives at both ends
-  double *t_, *h_, *stage_t_, *error_;                               // t_: where the trial step ends
-  double *state_, *slope_, *size_, *accepted_;                       // of examine() and the decisions
+  double *t_, *h_, *stage_t_, *error_;                               // t_: the end of the trial step
+  double *state_, *slope_, *size_, *accepted_;                       // for examine() and the decisions
   double *one_x_, *one_p_;                                           // of one member
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Small dense linear systems of some members side by side: LU with partial pivoting, each lane with its own pivots and
-// with the bits that linalg/lu.hpp gives it alone. In: rows of lanes, entry (i, j) of all lanes in row i + n j. Out:
-// solutions. Allocates nothing.
+// Small dense linear systems of members side by side: LU with partial pivoting, each lane with its own pivots and
+// bitwise equal to linalg/lu.hpp. In: rows of lanes, entry (i, j) of all lanes in row i + n j. Out: solutions.
+// Allocates nothing.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@ class LuLanes {
 
   double* entry(std::size_t i, std::size_t j) const { return a_ + (i + n_ * j) * stride_; }
 
-  /// Lanes from l on, as many as a pack holds. Those whose matrix is singular, or not finite, get 0 at `regular`.
+  /// Factors a pack of lanes from l on. Lanes with a singular or not finite matrix get 0 at `regular`.
   void factor(std::size_t l, double* regular) {
     const Pack zero{};
     Pack fine = zero + 1.0;
@@ -42,7 +42,7 @@ class LuLanes {
     store(regular + l, fine);
   }
 
-  /// b: n rows, which become the solution.
+  /// b: n rows; replaced by the solution.
   void solve(std::size_t l, double* b) const {
     for (std::size_t k = 0; k < n_; ++k) {
       for (std::size_t lane = l; lane < l + width; ++lane)
@@ -66,7 +66,7 @@ class LuLanes {
     return static_cast<std::size_t>(pivots_[k * stride_ + lane]);
   }
 
-  /// Brings the largest entry of column k, of those that are left, to row k.
+  /// Moves the largest remaining entry of column k to row k.
   void choose_pivots(std::size_t l, std::size_t k) {
     Pack place = Pack{} + static_cast<double>(k), largest = size_of(load(entry(k, k) + l));
     for (std::size_t i = k + 1; i < n_; ++i) {

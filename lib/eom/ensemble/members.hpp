@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an ensemble is made of. In: where each member starts. Out: where it ended. Plain data and callables.
+// Plain data of an ensemble. In: the start of each member. Out: its end.
 #pragma once
 
 #include <algorithm>
@@ -14,23 +14,23 @@
 
 namespace eom {
 
-/// How one member starts; x and p are there to be written.
+/// The start of one member; x and p are outputs.
 struct EnsembleStart {
   double t0 = 0, t1 = 0;
   std::span<double> x, p;
 };
 
-/// How one member ended; valid only during the call.
+/// The end of one member. Valid only during the call.
 struct EnsembleEnd {
   std::size_t member = 0;
   Outcome outcome = Outcome::done;
-  double t = 0;                  // the time reached: t1 exactly when the outcome is done
+  double t = 0;                  // the time reached; exactly t1 if the outcome is done
   std::span<const double> x, p;  // the state at t, and the parameters
   Statistics statistics;
 };
 
-/// Derivatives of `count` states, entry i of state s at [i*stride + s] of x, p and dx, its time t[s]; writes a code of
-/// the C ABI for each and returns one that is not 0, if there is any.
+/// Derivatives of `count` states. Entry i of state s is at [i*stride + s] of x, p and dx, its time is t[s]. Writes a
+/// code of the C ABI for each and returns one of the nonzero codes, if there is any.
 using EnsembleRhs = std::function<int(std::size_t count, std::size_t stride, const double* t, const double* x,
                                       const double* p, double* dx, int* codes)>;
 
@@ -38,22 +38,22 @@ struct EnsembleOptions {
   double rtol = 1e-9, atol = 1e-12;
   double initial_step = 0;  // 0: chosen
   double max_step = std::numeric_limits<double>::infinity();
-  double fixed_step = 0;  // > 0: steps of this size without error control; rk4 needs it
+  double fixed_step = 0;  // > 0: steps of this size without error control; required by rk4
   std::size_t max_steps = 50'000'000;
-  std::size_t quadratures = 0;  // trailing components of x kept out of the error norm
+  std::size_t quadratures = 0;  // trailing components of x that are excluded from the error norm
   const std::atomic<bool>* interrupt = nullptr;
-  std::size_t lanes = 32;   // members that a thread has under way
-  std::size_t threads = 1;  // 0: one for each processor
+  std::size_t lanes = 32;   // members integrated side by side in each thread
+  std::size_t threads = 1;  // 0: one per processor
 };
 
 namespace ensemble {
 
-/// Lanes of a thread: whole packs.
+/// Number of lanes of a thread: a multiple of the pack width.
 inline std::size_t slots_of(const EnsembleOptions& options, std::size_t width = pack_width) {
   return (std::max<std::size_t>(options.lanes, 1) + width - 1) / width * width;
 }
 
-/// Of a member alone.
+/// Options of a single member.
 inline Options options_of(const EnsembleOptions& options) {
   Options alone;
   alone.rtol = options.rtol;

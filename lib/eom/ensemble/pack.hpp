@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// So many doubles side by side as a register holds, where the compiler has vector types (GCC, Clang); one elsewhere.
-// Each of them has the bits that a double alone would have.
+// A pack of doubles as wide as a register, if the compiler has vector types (GCC, Clang); else one double. Each element
+// is bitwise equal to a scalar computation.
 #pragma once
 
 #include <cstddef>
@@ -20,14 +20,14 @@ inline constexpr std::size_t pack_width = 4;
 inline constexpr std::size_t pack_width = 2;
 #endif
 using Pack = double __attribute__((vector_size(8 * pack_width)));
-// A typedef: in an alias declaration clang forgets `aligned`.
+// A typedef, because clang ignores `aligned` in alias declarations.
 typedef double PackInMemory __attribute__((vector_size(8 * pack_width), aligned(8), may_alias));
 #endif
 
 [[gnu::always_inline]] inline Pack load(const double* at) { return *reinterpret_cast<const PackInMemory*>(at); }
 [[gnu::always_inline]] inline void store(double* at, Pack a) { *reinterpret_cast<PackInMemory*>(at) = a; }
 
-/// std::max, also of what is no number.
+/// std::max, also for NaN.
 [[gnu::always_inline]] inline Pack larger(Pack a, Pack b) { return a < b ? b : a; }
 [[gnu::always_inline]] inline Pack size_of(Pack a) {
   const Pack zero{};

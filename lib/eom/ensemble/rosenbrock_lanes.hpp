@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Steps of the Rosenbrock method for some members side by side, with the bits that implicit/rodas.hpp gives each alone.
-// In: derivatives and Jacobians of many states, where each lane stands and how far it is to go. Out: trial states,
-// error norms, dense output. Allocates in the constructor only.
+// Steps of the Rosenbrock method for members side by side, bitwise equal to those of implicit/rodas.hpp. In:
+// derivatives and Jacobians of many states, the state and step of each lane. Out: trial states, error norms, dense
+// output. Allocates in the constructor only.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace eom::ensemble {
 
 /// Rhs: as EnsembleRhs, with jacobian(count, stride, t, x, p, dfdx, dfdt, codes): entry (i, j) of df/dx of state s at
-/// [(i + m*j)*stride + s], m the components that are no quadratures.
+/// [(i + m*j)*stride + s], m the number of components that are not quadratures.
 template <class Rhs, std::size_t width>
 class RosenbrockLanes : public LaneRows<Rhs, explicit_rk::Controller, width> {
   using Rows = LaneRows<Rhs, explicit_rk::Controller, width>;
@@ -35,13 +35,13 @@ class RosenbrockLanes : public LaneRows<Rhs, explicit_rk::Controller, width> {
     f1_ = this->take(n_);
     u_ = this->take(T::stages * n_);
     dense_ = this->take(3 * n_);
-    rates_ = this->take(3 * n_);  // and the derivative of a stage, before
+    rates_ = this->take(3 * n_);  // and, before that, the derivative of a stage
     dfdt_ = this->take(n_);
     dfdx_ = this->take(m_ * m_);
     regular_ = this->take(1);
   }
 
-  /// The dense output of the step that lane l has just made; 0 < (t - t0)/(t1 - t0) < 1.
+  /// The dense output of the last step of lane l; 0 < (t - t0)/(t1 - t0) < 1.
   void interpolate(std::size_t l, double t, double* x) const {
     const double s = (t - lane_[l].t()) / h_[l];
     const auto of = [&](const double* rows, std::size_t i) { return rows[i * stride_ + l]; };
@@ -115,7 +115,7 @@ class RosenbrockLanes : public LaneRows<Rhs, explicit_rk::Controller, width> {
     return states - options.quadratures;
   }
 
-  /// After a rejected step df/dx is that of the step before, and is not counted again.
+  /// After a rejected step df/dx is unchanged and not counted again.
   void jacobians() {
     for (std::size_t l = 0; l < lane_.size(); ++l) {
       if (known_[l] == 0) lane_[l].count_matrix();
@@ -231,8 +231,8 @@ class RosenbrockLanes : public LaneRows<Rhs, explicit_rk::Controller, width> {
   }
 
   std::size_t m_;
-  std::vector<char> known_;      // per lane: df/dx is that of where it stands
-  bool of_these_lanes_ = false;  // and all stand in their rows
+  std::vector<char> known_;      // per lane: df/dx belongs to its current state
+  bool of_these_lanes_ = false;  // all of them are stored in their rows
   LuLanes<width> lu_;
   double *u_, *dense_, *rates_, *dfdt_, *dfdx_;  // stages, dense output, derivatives at Lobatto's nodes
   double* regular_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Steps of Taylor series for some members side by side, each of an order of its own, with the bits that
-// taylor/series.hpp gives each alone. In: series of many states, where each lane stands and how far it is to go. Out:
-// trial states, error norms, dense output. Allocates in the constructor only.
+// Steps of Taylor series for members side by side, each with its own order, bitwise equal to those of
+// taylor/series.hpp. In: series of many states, the state and step of each lane. Out: trial states, error norms, dense
+// output. Allocates in the constructor only.
 #pragma once
 
 #include <algorithm>
@@ -16,18 +16,18 @@
 
 namespace eom::ensemble {
 
-/// Of one lane: its series where it stands and where the trial step ends.
+/// The series of one lane at the start and at the end of the trial step.
 struct SeriesSteps {
   taylor::Measured here, there;
-  int trend = 0;  // of the order
+  int trend = 0;  // change of the order
 
   double after_accepted(double, double) const { return taylor::length(there); }
   double after_rejected(double h, double error) const { return taylor::after_rejected(here, h, error); }
   double after_failed(double h) const { return taylor::after_failed(h); }
 };
 
-/// Rhs: as EnsembleRhs, with taylor(count, stride, t, x, p, orders, coefficients, codes), of each state as many orders
-/// as it asks for: the coefficient of order k of x_i at [(i + n*k)*stride + s]; and taylor_order(), the highest.
+/// Rhs: as EnsembleRhs, with taylor(count, stride, t, x, p, orders, coefficients, codes), up to the requested order of
+/// each state: the coefficient of order k of x_i at [(i + n*k)*stride + s]; and taylor_order(), the highest.
 template <class Rhs, std::size_t width>
 class SeriesLanes : public LaneRows<Rhs, SeriesSteps, width> {
   using Rows = LaneRows<Rhs, SeriesSteps, width>;
@@ -44,7 +44,7 @@ class SeriesLanes : public LaneRows<Rhs, SeriesSteps, width> {
     there_ = this->take(rows(rhs) * n_);
   }
 
-  /// The series of the step that lane l has just made.
+  /// The series of the last step of lane l.
   void interpolate(std::size_t l, double t, double* x) const {
     const double d = t - lane_[l].t();
     const int highest = lane_[l].steps().here.order;
@@ -79,7 +79,7 @@ class SeriesLanes : public LaneRows<Rhs, SeriesSteps, width> {
   static constexpr int order = taylor::Series::order;
   SeriesSteps steps() const { return {}; }
 
-  /// The series where lanes start, of an order by the size of the state.
+  /// Computes the series at the starts of lanes, with an order based on the size of the state.
   void begin_slopes(std::size_t first, std::size_t count) {
     for (std::size_t l = first; l < first + count; ++l) {
       lane_[l].count(1);
@@ -107,7 +107,7 @@ class SeriesLanes : public LaneRows<Rhs, SeriesSteps, width> {
     for (std::size_t l = 0; l < padded(); l += width) {
       const Pack h = load(h_ + l), zero{};
       for (int k = highest; k > 0; --k) {
-        const Pack after = load(stage_t_ + l) - static_cast<double>(k);  // below 0: of a lower order
+        const Pack after = load(stage_t_ + l) - static_cast<double>(k);  // below 0: for a lower order
         for (std::size_t i = 0; i < n_; ++i) {
           const Pack term = load(here_ + row(i, k) + l), sum = load(scratch_ + i * stride_ + l);
           store(scratch_ + i * stride_ + l, (after > zero ? sum + term : term) * h);
@@ -117,7 +117,7 @@ class SeriesLanes : public LaneRows<Rhs, SeriesSteps, width> {
     }
   }
 
-  /// The series at the ends decide how long the next steps are, of lanes that will not be accepted too.
+  /// Computes the series at the ends, which determine the next step lengths, also for lanes that will be rejected.
   void end_slopes() {
     for (std::size_t l = 0; l < lane_.size(); ++l) {
       SeriesSteps& steps = lane_[l].steps();
@@ -190,11 +190,11 @@ class SeriesLanes : public LaneRows<Rhs, SeriesSteps, width> {
   taylor::Order control_;
   std::vector<int> orders_;
   double *weight_, *here_,
-      *there_;  // 1 over the tolerance of each component; coefficients where a step begins and ends
+      *there_;  // 1 over the tolerance of each component; coefficients at both ends of a step
 };
 
-/// Fixed steps, whose order rises until their error is small, and quadratures beside the series are made by members
-/// alone.
+/// Fixed steps, which raise the order until the error is small, and quadratures beside the series require single
+/// members.
 template <class Rhs, bool dense>
 requires requires(Rhs& rhs, const double* a, double* b, const int* orders, int* codes) {
   rhs.taylor(std::size_t{}, std::size_t{}, a, a, a, orders, b, codes);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Members from one counter by some threads. In: how many, what each thread does. What one of them throws is thrown to
-// the caller when all have ended.
+// Distribution of members to threads by a shared counter. In: the number of members, the work of each thread. An
+// exception of a thread is rethrown in the caller after all threads have ended.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace eom::ensemble {
 
-/// work(next) in each of `threads` threads (0: one for each processor), next(member&) -> bool giving it the next one.
+/// Runs work(next) in each of `threads` threads (0: one per processor). next(member&) -> bool returns the next member.
 template <class Work>
 void in_threads(std::size_t threads, std::size_t members, const Work& work) {
   std::atomic<std::size_t> counter{0};

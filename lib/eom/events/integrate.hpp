@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// integrate() with events. In: what integrate() takes, event functions g(t, x, values) -> code, and a handler that
-// decides at each event. Out: Result, as if of one run.
+// integrate() with events. In: the arguments of integrate(), event functions g(t, x, values) -> code, and a handler that
+// decides at each event. Out: a Result as of a single run.
 //
-// A crossing is found on the dense output of the step and then made exact: the step is taken anew from its start to the
-// crossing, by the method itself, and the crossing is corrected by the value found there until it moves by no more than
-// 1e-12 of the step. State and time of an event so have the accuracy of the step, not that of the dense output, and
-// after_step (a projection) has seen the state. The next step starts there.
+// A crossing is located on the dense output of the step and then refined: the method repeats the step from its start to
+// the crossing, and the crossing is corrected with the value found there until it moves by at most 1e-12 of the step.
+// State and time of an event therefore have the accuracy of the step, not of the dense output, and after_step (a
+// projection) has been applied to the state. The next step starts there.
 #pragma once
 
 #include <algorithm>
@@ -26,21 +26,21 @@
 namespace eom {
 
 enum class AtEvent {
-  go_on,    // the state is as it was: functions keep their sides, the step size is kept
-  restart,  // the state, the right-hand side or what is watched has changed: sides and step size are found anew
+  go_on,    // the state is unchanged: functions keep their sides, the step size is kept
+  restart,  // the state, the right-hand side or the monitored functions changed: new sides and step size
   stop,     // the run ends here: stopped_by_event
 };
 
-/// What a handler is given. At a passing crossing it is to be left alone and the answer is not asked. At a breaking one
-/// the handler may change x, and move t on by a part of the step that is not worth an integration.
+/// Argument of a handler. At a passing crossing the handler must not change it, and its return value is ignored. At a
+/// breaking one the handler may change x, and advance t by a part of the step that is too short for an integration.
 struct EventPoint {
   double& t;
   std::span<double> x;
   Crossing crossing;
-  std::span<EventFunction> functions;  // of all events: which are watched from here on
+  std::span<EventFunction> functions;  // of all events: which are monitored from here on
 };
 
-/// So many breaking events in a row without time going on end the run: the solution slides along a surface.
+/// This many breaking events in a row without progress in time end the run: the solution slides along a surface.
 inline constexpr int events_without_progress = 32;
 
 namespace events {
@@ -79,9 +79,9 @@ class Run {
     }
   }
 
-  // Its parts, for who integrates the pieces himself.
+  // The following functions are for callers that integrate the pieces themselves.
 
-  /// False: the run ends where it starts.
+  /// False: the run ends at its start.
   bool begin() {
     const int code = locator_.start(total_.t, total_.x.data(), g_, t1_ >= total_.t);
     if (code == 0) return true;
@@ -90,7 +90,7 @@ class Run {
     return false;
   }
 
-  /// After each accepted step: passing events are told, a breaking one ends the piece.
+  /// To be called after each accepted step. Passing events are reported; a breaking one ends the piece.
   bool observe(const StepView& view) {
     if (values_.empty()) return observer_(view);
     locator_.open(view, g_);
@@ -100,7 +100,7 @@ class Run {
         cut_t_ = view.t0;
         cut_h_ = view.t1 - view.t0;
         std::copy(view.x0.begin(), view.x0.end(), cut_x_.begin());
-        view.interpolate(crossing->t, total_.x);  // where the step cannot be taken anew
+        view.interpolate(crossing->t, total_.x);  // used if the step cannot be repeated
         return false;
       }
       Crossing exact = *crossing;
@@ -115,7 +115,8 @@ class Run {
     return observer_(view);
   }
 
-  /// With a piece that has ended; false: the run has, with total(). Else the next piece begins there, with `piece`.
+  /// To be called after a piece has ended. False: the run has ended, with total(). Else the next piece begins there,
+  /// with the options `piece`.
   bool go_on(const Result& part, Options& piece) {
     total_.statistics += part.statistics;
     if (!cut_) {
@@ -125,7 +126,7 @@ class Run {
       total_.x = part.x;
       return false;
     }
-    --total_.statistics.steps;  // the one that was cut
+    --total_.statistics.steps;  // the truncated step
     const bool goes_on = take_event(piece);
     cut_.reset();
     return goes_on;
@@ -133,8 +134,8 @@ class Run {
   const Result& total() const { return total_; }
 
  private:
-  /// Goes from (t0, x0) to the crossing, in so many `parts`, until it stays where it is; `last` sees the final ones. x
-  /// is the state there.
+  /// Integrates from (t0, x0) to the crossing in `parts` steps until the crossing converges. `last` receives the final
+  /// steps; x is the state there.
   template <class Last>
   bool refine(double t0, std::span<const double> x0, double h, std::size_t parts, Crossing& crossing,
               std::vector<double>& x, Last&& last) {
@@ -144,7 +145,7 @@ class Run {
     one.atol = options_.atol;
     one.quadratures = options_.quadratures;
     one.choice = options_.choice;
-    // A step of radau may be of any of its orders, and only the highest is as accurate as all of them.
+    // A step of radau may have any of its orders. Only the highest is as accurate as all of them.
     if (method_ == implicit::Radau::name) one.series_order = options_.series_order != 0 ? options_.series_order : 13;
     const std::size_t i = crossing.function;
     const double limit =
@@ -172,11 +173,11 @@ class Run {
       };
       const Result step = integrate(method_, rhs_, t0, x0, t, one, look, after_step_);
       total_.statistics += step.statistics;
-      if (step.outcome != Outcome::done) return go_on;  // the dense output's state stays
+      if (step.outcome != Outcome::done) return go_on;  // the state of the dense output is used
       total_.statistics.steps -= final ? 0 : step.statistics.steps;
       crossing.t = t;
       x = step.x;
-      if (final && parts > 1) {  // the parts anew, now that the last is known to end where it should
+      if (final && parts > 1) {  // repeats the parts, now that the end of the last one is known
         const auto show = [&](const StepView& view) {
           go_on = last(view) && go_on;
           return true;
@@ -203,7 +204,7 @@ class Run {
     return slope;
   }
 
-  /// The breaking event that ended a piece; false: the run ends with it.
+  /// Handles the breaking event that ended a piece. False: the run ends with it.
   bool take_event(Options& piece) {
     Crossing crossing = *cut_;
     const double h = cut_h_;
@@ -237,7 +238,7 @@ class Run {
 
   static constexpr int most_corrections = 6;
   static constexpr double smallest_parts = 1e-13;  // of the time
-  static constexpr double farthest = 0.01;         // of the step: a correction that is larger is none
+  static constexpr double farthest = 0.01;         // of the step: larger corrections are rejected
 
   std::string_view method_;
   F& rhs_;
@@ -258,16 +259,16 @@ class Run {
 
 }  // namespace events
 
-/// integrate() with event functions: g(t, x, values) -> int gives as many values as there are `functions`;
-/// handler(EventPoint) -> AtEvent. Passing events are told before the observer sees the step that holds them, a
-/// breaking one after the observer saw the step that ends there, also where that ends the run. What is thrown is what
-/// integrate() throws.
+/// integrate() with event functions. g(t, x, values) -> int writes as many values as there are `functions`;
+/// handler(EventPoint) -> AtEvent. Passing events are reported before the observer receives the step that contains
+/// them. A breaking event is reported after the observer received the step that ends there, also if it ends the run.
+/// Throws what integrate() throws.
 template <class F, class G, class Handler, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate_events(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
                         const Options& options, G&& g, std::vector<EventFunction> functions, Handler&& handler,
                         Observer&& observer = {}, AfterStep&& after_step = {}) {
   detail::check_problem(t0, x0, t1, options);
-  Choice choice;  // of `auto`, which goes on after an event with what it went by before
+  Choice choice;  // state of `auto`, which continues after an event
   Options kept = options;
   if (kept.choice == nullptr) kept.choice = &choice;
   return events::Run<std::remove_reference_t<F>, std::remove_reference_t<G>, std::remove_reference_t<Handler>,

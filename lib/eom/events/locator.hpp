@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Where event functions g_i(t, x) change their signs within a step. In: the step with its dense output, and
+// Location of sign changes of event functions g_i(t, x) within a step. In: the step with its dense output, and
 // g(t, x, values) -> code. Out: crossings in the order of the run, each to 1e-12 of the step on the dense output.
 //
-// An event function keeps a side (the sign it had last). A crossing flips it, so that the residual of a root that was
-// just found is not found again. A side that is not known (at the start of a run on the surface itself, or after a
-// state was changed there) is the sign of the first value beyond rounding, looked for on a geometric sequence of
-// points. g may have hidden(view, i, side, from, to): between which two places of the step function i first leaves its
-// side, whatever samples show. Each step is sampled at nine points; between samples of one sign a double root is looked
-// for wherever they show a dip that may reach zero: three of them by the parabola through them, four by the lines
-// through the outer two on either side, below which a convex function, with a kink or not, cannot come. Where a
-// crossing is found all functions are looked at: one that is beyond zero there has crossed before, however short that
-// is and whatever the samples say. A zero without a change of sign is no event.
+// Each event function has a side: its last sign. A crossing flips it, so that the residual of a root does not give the
+// same root again. The side may be unknown, at the start of a run on the surface or after a change of the state there.
+// Then it is the sign of the first value beyond rounding on a geometric sequence of points. g may have a member
+// hidden(view, i, side, from, to), which returns an interval of the step in which function i first leaves its side,
+// whatever the samples show. Each step is sampled at nine points. Between samples of one sign a double root is searched
+// for if they indicate a dip that may reach zero: three samples by the parabola through them, four by the lines through
+// the two outer samples on each side, which bound a convex function, with or without a kink, from below. At each
+// crossing all functions are evaluated. One that is beyond zero there has crossed before, however short the interval
+// and whatever the samples show. A zero without a change of sign is not an event.
 #pragma once
 
 #include <algorithm>
@@ -28,27 +28,27 @@
 
 namespace eom {
 
-/// Of the value as a function of time, whichever way time runs in the integration.
+/// Direction of the value as a function of time, independent of the direction of integration.
 enum class Direction { any, up, down };
 
 enum class Watch {
   off,
-  passing,   // told, and the integration goes on as if nothing had been
-  breaking,  // the step ends at the crossing, and whoever is told decides how to go on
+  passing,   // reported, and the integration continues unchanged
+  breaking,  // the step ends at the crossing, and the handler decides how to continue
 };
 
 struct EventFunction {
   Direction direction = Direction::any;
   Watch watch = Watch::breaking;
   bool guard =
-      false;  // of a direction up or down: to start beyond the surface, or to leave it that way, is a crossing too
+      false;  // for a direction up or down: starting beyond the surface, or leaving it on that side, is a crossing too
 };
 
 struct Crossing {
   std::size_t function = 0;
   double t = 0;
   bool up = false;                                         // the value rises with t
-  double value = std::numeric_limits<double>::infinity();  // the function's there, before a handler changed anything;
+  double value = std::numeric_limits<double>::infinity();  // value of the function at the crossing, before a handler changed anything;
                                                            // infinite: not known
 };
 
@@ -68,11 +68,11 @@ class EventLocator {
 
   std::span<EventFunction> functions() { return functions_; }
   std::span<const EventFunction> functions() const { return functions_; }
-  /// -1, 0 (not known) or 1 of a function's value where the run stands.
+  /// Current side of a function: -1, 0 (unknown) or 1.
   int side(std::size_t function) const { return side_[function]; }
 
-  /// Takes the sides at (t, x) afresh; those within rounding of zero are not known, nor those of `crossed` functions
-  /// that are as near zero as they were at the crossing (a mode may give the function another meaning).
+  /// Determines the sides at (t, x). Values within rounding of zero have an unknown side, and so do `crossed` functions
+  /// that are as close to zero as at the crossing (a mode may give a function another meaning).
   template <class G>
   int start(double t, const double* x, G& g, bool forward = true, std::span<const Crossing> crossed = {}) {
     if (functions_.empty()) return 0;
@@ -91,7 +91,7 @@ class EventLocator {
     return 0;
   }
 
-  /// Samples a new step. What next() gives belongs to it until close().
+  /// Samples a new step. The results of next() refer to it until close().
   template <class G>
   void open(const StepView& view, G& g) {
     for (std::size_t k = 0; k < places.size(); ++k) {
@@ -106,7 +106,7 @@ class EventLocator {
       if (functions_[i].watch != Watch::off && side_[i] == 0) find_side(view, i, g);
   }
 
-  /// The next crossing of the step that is watched for, in the order of the run; nothing when there are no more.
+  /// The next monitored crossing of the step, in the order of the run; none if there are no more.
   template <class G>
   std::optional<Crossing> next(const StepView& view, G& g) {
     while (true) {
@@ -131,7 +131,8 @@ class EventLocator {
     }
   }
 
-  /// The step was accepted in full: sides of functions that had none, or had no value somewhere in it.
+  /// To be called after the step was accepted in full: determines the sides of functions that had none, or had no value
+  /// somewhere in the step.
   void close() {
     for (std::size_t i = 0; i < functions_.size(); ++i) {
       bool known = functions_[i].watch != Watch::off && side_[i] != 0;
@@ -151,14 +152,14 @@ class EventLocator {
     int side;  // before the crossing
   };
 
-  // Close to both ends too, so that a dip between the last of one step and the first of the next is seen.
+  // Points close to both ends reveal a dip between the last sample of one step and the first of the next.
   static constexpr std::array<double, 9> places{0, 1e-4, 0.067, 0.25, 0.5, 0.75, 0.933, 1 - 1e-4, 1};
   static constexpr double tolerance = 1e-12;  // of the step
-  static constexpr double rounding = 1e-13;   // of the largest value seen: smaller ones have no sign
+  static constexpr double rounding = 1e-13;   // of the largest value so far: smaller values have no sign
   static constexpr double crossed_rounding =
-      1e-10;  // the same of a function that has just crossed: its place is corrected, not exact
+      1e-10;  // the same for a function that has just crossed: its root is corrected, not exact
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  static constexpr double dip_worth_a_look = 0.5;  // of the smallest sample: where a parabola's vertex lies lower
+  static constexpr double dip_worth_a_look = 0.5;  // of the smallest sample: a parabola with a lower vertex is examined
 
   /// The side from which a function with a direction may be crossed.
   static int inner_side(const EventFunction& f, bool forward) {
@@ -192,8 +193,8 @@ class EventLocator {
     return values_[i];
   }
 
-  /// The side of a function that starts on its surface: that of its first value beyond rounding. What grows steadily
-  /// over three decades of time is no rounding, however small it is.
+  /// Determines the side of a function that starts on its surface: that of its first value beyond rounding. A value
+  /// that grows steadily over three decades of time is not rounding, however small it is.
   template <class G>
   void find_side(const StepView& view, std::size_t i, G& g) {
     constexpr std::size_t decades = 12;
@@ -222,8 +223,8 @@ class EventLocator {
     position_[i] = beyond_guard ? 0 : s;
   }
 
-  /// The first crossing after the function's position: by samples, or before that one where bounds of the function, if
-  /// g has them, do not exclude it.
+  /// The first crossing after the function's position: by samples, or earlier if the function has bounds that do not
+  /// exclude it.
   template <class G>
   std::optional<Candidate> crossing(const StepView& view, std::size_t i, G& g) {
     const std::optional<Candidate> sampled = between_samples(view, i, g);
@@ -242,7 +243,7 @@ class EventLocator {
     return sampled;
   }
 
-  /// Beyond a place without a value nothing is looked for.
+  /// The search ends at a point without a value.
   template <class G>
   std::optional<Candidate> between_samples(const StepView& view, std::size_t i, G& g) {
     const int side = side_[i];
@@ -269,7 +270,7 @@ class EventLocator {
     return std::nullopt;
   }
 
-  /// Of the other functions the first that has crossed before a crossing that was found: it is beyond zero there.
+  /// The first of the other functions that has crossed before the given crossing: it is beyond zero there.
   template <class G>
   std::optional<Candidate> crossed_before(const StepView& view, const Candidate& found, G& g) {
     evaluate(view, found.s, g);
@@ -292,8 +293,8 @@ class EventLocator {
     return first;
   }
 
-  /// A point between b and c where the function is negative though not at the four samples; NaN where the lines through
-  /// the outer two meet above zero, or there is none.
+  /// A point between b and c at which the function is negative although the four samples are not; NaN if the lines
+  /// through the outer samples meet above zero, or if there is no such point.
   template <class F>
   double dipped(Point a, Point b, Point c, Point d, F& inward) {
     if (!(a.value > 0 && b.value > 0 && c.value > 0 && d.value > 0)) return none;
@@ -308,7 +309,7 @@ class EventLocator {
     return events::find_negative(inward, s, c.s, c.value, d.s, 1e-9);
   }
 
-  /// A point where the function is negative between three samples that are not, the middle one the lowest; else NaN.
+  /// A point at which the function is negative between three samples that are not, the middle one the lowest; else NaN.
   template <class F>
   double dipped(F& inward, double a, double fa, double b, double fb, double c, double fc) {
     if (!std::isfinite(fa)) fa = inward(a);
@@ -321,11 +322,12 @@ class EventLocator {
     return events::find_negative(inward, a, b, fb, c, 1e-9);
   }
 
-  /// The root between left (on the function's side, or the place of its last crossing) and right (beyond it).
+  /// The root between left (on the function's side, or its last crossing) and right (beyond it).
   template <class F>
   double root(F& inward, double left, double at_left, double right, double at_right) {
     if (!(at_left > 0)) {
-      // On the surface but for rounding: the first point beyond it that is on the function's side; else it is here.
+      // At the surface up to rounding: takes the first point beyond it that is on the function's side; else the root is
+      // here.
       double found = std::numeric_limits<double>::quiet_NaN();
       for (double part = tolerance; part < 1 && !(found > 0); part *= 10) {
         const double s = left + part * (right - left);
@@ -341,8 +343,8 @@ class EventLocator {
   std::vector<EventFunction> functions_;
   std::vector<int> side_;
   std::vector<double> position_;  // fraction of the step up to which crossings are known
-  std::vector<double> size_;      // largest value seen
-  std::vector<double> residual_;  // value at the start, of a function that started on its surface
+  std::vector<double> size_;      // largest value so far
+  std::vector<double> residual_;  // value at the start, for a function that starts on its surface
   std::vector<double> values_;
   std::vector<double> there_;  // values at a crossing
   std::vector<double> samples_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A root of a function of one variable between two points where its signs differ, and the dip of one whose signs agree.
-// In: the function, a bracket, a tolerance. Out: the place. No allocation; a value that is not finite ends the search.
+// Roots of a function of one variable between two points with different signs, and negative values between points with
+// equal signs. In: the function, a bracket, a tolerance. Out: the argument. No allocation; a value that is not finite
+// ends the search.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +10,8 @@
 
 namespace eom::events {
 
-/// Where f changes its sign between a and b (f(a) f(b) < 0), to within `tolerance`: Chandrupatla's method (Advances in
-/// Engineering Software 28, 1997): inverse quadratic interpolation where it is safe, bisection elsewhere.
+/// The root of f between a and b (f(a) f(b) < 0) to within `tolerance`: Chandrupatla's method (Advances in Engineering
+/// Software 28, 1997) with inverse quadratic interpolation if it is safe, else bisection.
 template <class F>
 double find_root(F&& f, double a, double fa, double b, double fb, double tolerance) {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -35,8 +36,8 @@ double find_root(F&& f, double a, double fa, double b, double fb, double toleran
   }
 }
 
-/// A point between a and c where f, positive at both and smaller at b in between, is negative; NaN where its minimum is
-/// not. Golden section, ended as soon as a negative value is seen.
+/// A point between a and c at which f is negative; f is positive at both and smaller at b in between. NaN if the
+/// minimum is not negative. Golden section, ended at the first negative value.
 template <class F>
 double find_negative(F&& f, double a, double b, double fb, double c, double tolerance) {
   constexpr double golden = 0.38196601125010515;

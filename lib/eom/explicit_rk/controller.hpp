@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Step sizes from error estimates. In: the error norm of a trial step (1: just allowed). Out: accept or not, next step.
+// Step size control by error estimates. In: the error norm of a trial step (1: just allowed). Out: the next step size.
 // PI control after Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, section II.4, and Hairer,
 // Wanner, part II, section IV.2: h_new = h safety err^-(1/p - 3/4 beta) err_before^beta, within [shrink, grow] h.
 #pragma once
@@ -15,7 +15,7 @@ class Controller {
  public:
   Controller(const StepControl& control, int order) : control_(control), exponent_(1.0 / order - 0.75 * control.beta) {}
 
-  /// The step to take after an accepted one of size h whose error norm was error; never longer after a rejection.
+  /// The next step after an accepted one of size h with the given error norm; never longer after a rejection.
   double after_accepted(double h, double error) {
     double factor = std::pow(error, exponent_);
     if (control_.beta > 0) factor /= std::pow(error_before_, control_.beta);

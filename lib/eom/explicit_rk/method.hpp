@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An explicit Runge-Kutta method as drive.hpp takes it: the stepper of a tableau, with its step size control.
+// An explicit Runge-Kutta method in the form that drive.hpp expects: the stepper of a tableau, with its step size
+// control.
 #pragma once
 
 #include <span>

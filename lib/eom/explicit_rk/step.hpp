@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One step of any explicit Runge-Kutta method. In: a tableau, a right-hand side, the state and its derivative at t0.
 // Out: a trial state at t1, its error norm, and the dense output between. Allocates in the constructor only.
-// The state is advanced with a carried remainder (compensated summation), so that many small steps do not add up
-// rounding errors of the sum x0 + h(...).
+// Compensated summation advances the state, so that many small steps do not accumulate rounding errors of the sum x0 +
+// h(...).
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace eom::explicit_rk {
 template <class T, class F>
 class Stepper {
  public:
-  /// x: n components, the last `quadratures` of which stay out of the error norm.
+  /// x: n components; the last `quadratures` are excluded from the error norm.
   Stepper(F& rhs, std::span<const double> x, std::size_t quadratures)
       : rhs_(&rhs), n_(x.size()), n_error_(x.size() - quadratures), work_((columns<T> + 5 + dense_rows) * n_) {
     double* next = work_.data();
@@ -54,11 +54,11 @@ class Stepper {
   }
 
   int evaluate_start(double t) { return evaluate(t, x0_, k_); }
-  /// Instead of evaluate_start, where the derivative at x0 is known.
+  /// Replaces evaluate_start if the derivative at x0 is known.
   void start_with_derivative(const double* f) { std::copy_n(f, n_, k_); }
   int evaluate_end() { return evaluate(t1_, x1_, k_ + T::stages * n_); }
 
-  /// Trial state at t1 from (t0, x0) and the derivative there; returns the first code that is not 0.
+  /// Computes the trial state at t1 from (t0, x0) and the derivative there. Returns the first code that is not 0.
   int attempt(double t0, double t1) {
     t0_ = t0;
     t1_ = t1;
@@ -92,8 +92,9 @@ class Stepper {
     }
   }
 
-  /// |h lambda| of what the stages stir up: the change of the derivative between the last stage and the end, both at
-  /// t1, by that of the state (HW II, section IV.2). Before accept(), for methods whose last stage is at t1.
+  /// Estimate of |h lambda| for the fastest motion: the change of the derivative between the last stage and the end,
+  /// both at t1, divided by that of the state (HW II, section IV.2). To be called before accept(), for methods whose
+  /// last stage is at t1.
   double stiffness() const {
     static_assert(T::c[T::stages - 1] == 1);
     double change = 0, distance = 0;
@@ -104,7 +105,7 @@ class Stepper {
     return distance > 0 ? std::abs(h_) * std::sqrt(change / distance) : 0;
   }
 
-  /// Makes the end of the accepted step the start of the next. moved: x1 is no longer what attempt() gave.
+  /// Makes the end of the accepted step the start of the next. moved: x1 was changed after attempt().
   void accept(bool moved) {
     std::swap(x0_, x1_);
     std::copy_n(k_ + T::stages * n_, n_, k_);
@@ -114,7 +115,7 @@ class Stepper {
       std::swap(carry_, new_carry_);
   }
 
-  /// Dense output of the step last tried, before accept(): for StepView.
+  /// Dense output of the last trial step, before accept(); for StepView.
   static void interpolate(const void* stepper, double t, double* x) {
     static_cast<const Stepper*>(stepper)->interpolate(t, x);
   }
@@ -148,7 +149,7 @@ class Stepper {
     return weighted_sum<T::error, Row>(k_ + i, n_, std::make_index_sequence<T::stages + 1>{});
   }
 
-  /// Columns Row, Row + 1, ... up to the last one before the end derivative.
+  /// Evaluates columns Row, Row + 1, ... up to the last one before the end derivative.
   template <std::size_t Row>
   int stages_from() {
     if constexpr (Row < T::stages) {
@@ -169,13 +170,13 @@ class Stepper {
     for (std::size_t i = 0; i < n_; ++i) {
       const double increment = h_ * stage_sum<T::stages>(i) + carry_[i];
       const double sum = x0_[i] + increment;
-      const double taken = sum - x0_[i];  // Knuth's two-sum: what rounding left out of x0 + increment
+      const double taken = sum - x0_[i];  // Knuth's two-sum: the rounding error of x0 + increment
       new_carry_[i] = (x0_[i] - (sum - taken)) + (increment - taken);
       x1_[i] = sum;
     }
   }
 
-  /// The stages and corrections of the dense output, computed when first asked for in a step.
+  /// Computes the stages and corrections of the dense output at the first call in a step.
   void prepare_corrections() const {
     if (corrections_ready_ || dense_rows == 0) return;
     corrections_ready_ = true;

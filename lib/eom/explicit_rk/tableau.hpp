@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What an explicit Runge-Kutta method is, as data. In: nothing. Out: the shapes that a tableau has to have.
+// Explicit Runge-Kutta methods as data: the required form of a tableau.
 //
 // A tableau T has S = stages columns of stages, one column for the derivative at the end of the step, f(t1, x1),
-// which is the first stage of the next one, and D = dense_stages columns that only the dense output needs:
+// which is the first stage of the next one, and D = dense_stages columns for the dense output only:
 //   a      (S+1+D) x (S+1+D), strictly lower triangular; row S holds the weights of x1
 //   c      the times of the columns in units of the step; c[i] = sum_j a[i][j]
-//   error  0, 1 or 2 rows of weights over the first S+1 columns: none, an estimator, an estimator with the second one
+//   error  0, 1 or 2 rows of weights over the first S+1 columns: none, an estimator, an estimator with a second one
 //          that guards it (Hairer, Norsett, Wanner: Solving Ordinary Differential Equations I, eq. (II.10.17))
 //   dense  R rows of weights over all columns. With s = (t - t0)/h and r = 1 - s the dense output is
 //          x0 + s(d1 + r(d2 + s(d3 + r(d4 + s(d5 + ...))))),   d1 = x1 - x0,  d2 = h f0 - d1,  d3 = d1 - h f1 - d2,
@@ -21,15 +21,15 @@ namespace eom::explicit_rk {
 template <std::size_t Rows, std::size_t Columns>
 using Weights = std::array<std::array<double, Columns>, Rows>;
 
-/// How far and how boldly the step size may change from step to step (controller.hpp).
+/// Parameters of the step size control (controller.hpp).
 struct StepControl {
-  double safety;  // aim at this fraction of the step that would just do
+  double safety;  // fraction of the step that would just meet the tolerance
   double beta;    // weight of the previous error (PI control); 0: none
-  double shrink;  // a step is at least this fraction of the one before
-  double grow;    // and at most this multiple
+  double shrink;  // smallest ratio to the previous step
+  double grow;    // largest ratio to the previous step
 };
 
-/// Whether T is one.
+/// Whether T has the form of a tableau.
 template <class T>
 concept Tableau = requires {
   T::a.size(), T::c.size(), T::error.size(), T::dense.size();
@@ -47,7 +47,7 @@ constexpr bool error_uses_end() {
   return false;
 }
 
-/// sum_j w_j k_j for one component: k points at it in column 0, columns are n apart. Zero weights cost nothing.
+/// sum_j w_j k_j for one component. k points at it in column 0; columns are n apart. Zero weights are skipped.
 template <const auto& Rows, std::size_t Row, std::size_t... J>
 double weighted_sum(const double* k, std::size_t n, std::index_sequence<J...>) {
   double sum = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Expressions as data, evaluated in numbers, or in intervals along one variable. In: a table of operations, the
-// parameters. Out: values at a place; bounds of values and slopes between two places. Branches of kinks (abs, sign,
-// min, max, if) can be held.
+// parameters. Out: values at a point; bounds of values and slopes between two points. Branches of kinks (abs, sign,
+// min, max, if) can be frozen.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace eom::expressions {
 
-/// An operation: operands are places of operations before it, or what Op says.
+/// An operation. Operands are indices of earlier operations, unless Op specifies otherwise.
 struct Step {
   Op op = Op::number;
   std::array<std::int32_t, 4> a = {};
@@ -27,10 +27,10 @@ struct Step {
 struct Table {
   std::vector<Step> steps = {};
   std::vector<double> numbers = {};
-  std::vector<std::int32_t> roots = {};  // places of operations
+  std::vector<std::int32_t> roots = {};  // indices of operations
 
   bool empty() const { return roots.empty(); }
-  /// Whether nothing depends on a variable.
+  /// Whether no root depends on a variable.
   bool constant() const {
     return std::none_of(steps.begin(), steps.end(), [](const Step& step) { return step.op == Op::variable; });
   }
@@ -39,7 +39,7 @@ struct Table {
 class Code {
  public:
   Code() = default;
-  /// Parameters: those that the table names have a place there.
+  /// Parameters: values of those that the table refers to.
   Code(Table table, std::span<const double> parameters)
       : steps_(std::move(table.steps)), numbers_(std::move(table.numbers)), roots_(std::move(table.roots)) {
     for (Step& step : steps_) {
@@ -57,22 +57,22 @@ class Code {
   }
 
   std::size_t roots() const { return roots_.size(); }
-  /// Kinks, in the order in which they are met: their surfaces are one operand, or two that are compared.
+  /// Kinks in order of evaluation. The surface of a kink is one operand, or two that are compared.
   std::size_t kinks() const { return kinks_.size(); }
-  /// Whether a function jumps there (sign, if), and not its slope alone.
+  /// Whether the function itself jumps there (sign, if), not only its slope.
   bool jumps(std::size_t kink) const { return expressions::jumps(at(kink).op); }
-  /// Whether what is compared depends on another variable than the first.
+  /// Whether the surface depends on a variable other than the first.
   bool moves(std::size_t kink) const {
     const Step& step = at(kink);
     return moves_[place(step.a[0])] || (!of_one(step.op) && moves_[place(step.a[1])]);
   }
-  /// Whether two kinks compare the same.
+  /// Whether two kinks have the same surface.
   bool same_surface(std::size_t kink, std::size_t other) const {
     const Step &one = at(kink), &two = at(other);
     return one.a[0] == two.a[0] && of_one(one.op) == of_one(two.op) && (of_one(one.op) || one.a[1] == two.a[1]);
   }
 
-  /// Values of the roots; branches that are held stay so.
+  /// Values of the roots. Frozen branches remain frozen.
   void values(std::span<const double> variables, std::span<double> out) const {
     for (std::size_t i = 0; i < steps_.size(); ++i) work_[i] = value_of(i, variables);
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = work_[place(roots_[i])];
@@ -81,22 +81,22 @@ class Code {
     values(variables, {});
     return work_[place(roots_[root])];
   }
-  /// What is above 0 on one side of a kink's surface: after values().
+  /// A value that is positive on one side of a kink's surface; to be called after values().
   double surface(std::size_t kink) const {
     const Step& step = at(kink);
     return work_[place(step.a[0])] - (of_one(step.op) ? 0 : work_[place(step.a[1])]);
   }
-  /// Holds every branch as it is there, or none any more.
+  /// Freezes every branch as at this point, or releases all branches.
   void hold(std::span<const double> variables) {
     release();
     values(variables, {});
     for (std::size_t k = 0; k < kinks_.size(); ++k) held_[k] = sign(surface(k));
   }
   void release() { held_.assign(held_.size(), 0); }
-  /// Holds one kink above (1) or below (-1) its surface.
+  /// Freezes one kink above (1) or below (-1) its surface.
   void hold(std::size_t kink, int side) { held_[kink] = side; }
 
-  /// Bounds of a root where variables lie between bounds, with their slopes.
+  /// Bounds of a root and of its slope for variables between bounds.
   Sloped range(std::span<const Sloped> variables, std::size_t root = 0) const {
     ranges_.resize(steps_.size());
     const std::size_t last = place(roots_[root]);
@@ -199,8 +199,8 @@ class Code {
   std::vector<Step> steps_;
   std::vector<double> numbers_;
   std::vector<std::int32_t> roots_;
-  std::vector<bool> moves_;                   // with another variable than the first
-  std::vector<std::size_t> kink_of_, kinks_;  // per step: its place among the kinks; the steps of kinks
+  std::vector<bool> moves_;                   // on a variable other than the first
+  std::vector<std::size_t> kink_of_, kinks_;  // per step: its index among the kinks; the steps of kinks
   std::vector<int> held_;                     // per kink
   mutable std::vector<double> work_;
   mutable std::vector<Sloped> ranges_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Intervals of values with intervals of slopes: where a function of one variable can be between two of its values. In:
-// operands. Out: bounds of the result and of its derivative, as wide as rounding is small beside them: they serve to
-// look closer, not to prove.
+// Intervals of values with intervals of slopes, which bound a function of one variable between two points. In:
+// operands. Out: bounds of the result and of its derivative, up to rounding. They guide a search; they are not a proof.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +26,7 @@ struct Interval {
 
 namespace detail {
 
-// 0 times what is unbounded is 0: the slope of a constant factor.
+// 0 times an unbounded value is 0: the slope of a constant factor.
 inline double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
 inline Interval valid(Interval a) { return std::isnan(a.low) || std::isnan(a.high) ? Interval::all() : a; }
@@ -47,7 +46,7 @@ inline Interval operator/(Interval a, Interval b) {
   return a * Interval{1 / b.high, 1 / b.low};
 }
 inline Interval hull(Interval a, Interval b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }
-/// What both allow; a where they allow nothing together, which is rounding.
+/// The intersection; a if it is empty, which is due to rounding.
 inline Interval common(Interval a, Interval b) {
   const Interval both{std::max(a.low, b.low), std::min(a.high, b.high)};
   return both.low <= both.high ? both : a;
@@ -92,7 +91,7 @@ inline bool has_pole_of_tan(Interval a) {
 
 inline Interval within_one(Interval a) { return {std::clamp(a.low, -1.0, 1.0), std::clamp(a.high, -1.0, 1.0)}; }
 
-/// The values of a function of one argument; none where it has a pole or is not defined.
+/// The values of a function of one argument; none if it has a pole or is undefined.
 inline std::optional<Interval> values(Op function, Interval a) {
   const auto at = [function](double x) { return call(function, x); };
   switch (function) {
@@ -126,7 +125,7 @@ struct IntervalNumbers {
 
 }  // namespace detail
 
-/// A value, and its slope along the one variable; slopes of what jumps are unbounded.
+/// A value and its slope along the one variable. Slopes of jumping functions are unbounded.
 struct Sloped {
   Interval value, slope;
 };
@@ -142,7 +141,7 @@ inline Sloped quotient(const Sloped& a, const Sloped& b) {
   return {value, (a.slope - value * b.slope) / b.value};
 }
 
-/// A function of one argument; not abs and sign, whose branch may be known.
+/// A function of one argument, except abs and sign, whose branches may be known.
 inline Sloped call(Op function, const Sloped& a) {
   const std::optional<Interval> value = detail::values(function, a.value);
   if (!value) return {Interval::all(), Interval::all()};
@@ -153,7 +152,7 @@ inline Sloped call(Op function, const Sloped& a) {
   return {*value, falls ? -slope : slope};
 }
 
-/// exponent: 2 and more.
+/// exponent: 2 or more.
 inline Sloped power(const Sloped& a, int exponent) {
   const double factor = exponent;
   return {detail::whole_power(a.value, exponent),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The operations of expressions that a run evaluates by itself: inputs, event functions, what may jump. What they are
-// in binary64, and the forms of their derivatives.
+// The operations of expressions that a run evaluates itself: inputs, event functions, functions that may jump. Their
+// values in binary64 and the forms of their derivatives.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace eom::expressions {
 
-/// The operations after the leaves, each with its number of operands. The generator's graph is made of the same list
-/// (symbolic/dag.hpp). power: a[0] to the integer a[1], 2 and more; pow: a[0] ^ a[1], general;
-/// select: a[0] < a[1] ? a[2] : a[3].
+/// The operations after the leaves, each with its number of operands. The generator's graph uses the same list
+/// (symbolic/dag.hpp). power: a[0] to the integer a[1], 2 or more; pow: a[0] ^ a[1], general; select: a[0] < a[1] ?
+/// a[2] : a[3].
 // clang-format off
 #define EOM_OPERATIONS(OPERATION)                                                             \
   OPERATION(add, 2) OPERATION(sub, 2) OPERATION(mul, 2) OPERATION(div, 2) OPERATION(neg, 1)   \
@@ -28,13 +28,13 @@ namespace eom::expressions {
 #define EOM_OPERATION_OPERANDS(name, operands) operands,
 
 enum class Op : std::uint8_t {
-  number,     // a[0]: place among the numbers of the table
-  variable,   // a[0]: place among the variables
-  parameter,  // a[0]: place among the parameters of the model
+  number,     // a[0]: index into the numbers of the table
+  variable,   // a[0]: index into the variables
+  parameter,  // a[0]: index into the parameters of the model
   EOM_OPERATIONS(EOM_OPERATION_ENUMERATOR)
 };
 
-/// Its name as above.
+/// The name of an operation as above.
 constexpr const char* name_of(Op op) {
   constexpr std::array names{"number", "variable", "parameter", EOM_OPERATIONS(EOM_OPERATION_TEXT)};
   return names.at(static_cast<std::size_t>(op));
@@ -45,16 +45,16 @@ constexpr std::size_t operands(Op op) {
   return counts.at(static_cast<std::size_t>(op));
 }
 
-/// The value or the slope jumps where the operands say so: another expression on either side of that surface.
+/// Whether the value or the slope jumps at a surface given by the operands, with different expressions on its sides.
 constexpr bool is_kink(Op op) {
   return op == Op::abs || op == Op::sign || op == Op::min || op == Op::max || op == Op::select;
 }
-/// Kinks whose surface is one operand, not two that are compared.
+/// Kinks whose surface is one operand, not a comparison of two.
 constexpr bool of_one(Op op) { return op == Op::abs || op == Op::sign; }
-/// The function jumps there, and not its slope alone.
+/// Whether the function itself jumps there, not only its slope.
 constexpr bool jumps(Op op) { return op == Op::sign || op == Op::select; }
 
-/// A function of one argument in binary64; not-a-number or infinite where there is no value.
+/// A function of one argument in binary64. NaN or infinite if it has no value.
 inline double call(Op op, double x) {
   switch (op) {
     case Op::sqrt: return std::sqrt(x);
@@ -75,7 +75,7 @@ inline double call(Op op, double x) {
   }
 }
 
-/// The form of dv/dx of v = f(x), beside its sign.
+/// The form of dv/dx of v = f(x), up to its sign.
 enum class Slope : std::uint8_t {
   none,             // several arguments, or constant away from a kink
   other,            // g(x), g being `Derivative::other`
@@ -90,7 +90,7 @@ enum class Slope : std::uint8_t {
 
 struct Derivative {
   Slope form = Slope::none;
-  bool falls = false;  // it is minus what `form` says
+  bool falls = false;  // the derivative is minus `form`
   Op other = Op::pow;  // of Slope::other
 };
 
@@ -113,14 +113,14 @@ constexpr Derivative derivative_of(Op op) {
   }
 }
 
-/// dv/dx is `size`, or 1/`size`; and minus that.
+/// dv/dx is `size` or 1/`size`, or minus that.
 template <class Number>
 struct SlopeOf {
   Number size;
   bool divides, falls;
 };
 
-/// The derivative of v = f(x), a function of one argument that has one. `numbers` gives one(), two() and square(a);
+/// The derivative of v = f(x), a differentiable function of one argument. `numbers` has one(), two() and square(a);
 /// call(op, a) is a function of one argument. Number has + - *.
 template <class Number, class Numbers, class Call>
 SlopeOf<Number> slope_of(const Derivative& derivative, const Number& x, const Number& v, const Numbers& numbers,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the implicit methods have in common beside the ends of a step: df/dx, and norms in units of the tolerance.
+// Common parts of the implicit methods: df/dx, and norms in units of the tolerance.
 #pragma once
 
 #include <algorithm>
@@ -21,14 +21,15 @@ class Base : public StepEnds {
         m_(x.size() - options.quadratures),
         jacobian_(system, n_, m_, options.rtol > 0 ? options.atol / options.rtol : 0, differences) {}
 
-  /// Instead of evaluate_start, where the derivative at x0 is known.
+  /// Replaces evaluate_start if the derivative at x0 is known.
   void start_with_derivative(const double* f) { std::copy_n(f, n_, f0_); }
   const Jacobian& jacobian() const { return jacobian_; }
 
  protected:
   static constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-  /// Root mean square of m components in units of `scale`; one without a unit (atol 0 at 0) counts only where it moves.
+  /// Root mean square of m components in units of `scale`. A component without a unit (atol 0 at 0) counts only if it
+  /// changes.
   template <class Component, class Scale>
   double norm(Component component, Scale scale) const {
     double sum = 0;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Steps of Radau IIA with error control, for stiff systems: what radau5, radau and ggl share. Source: Hairer, Wanner,
-// Solving Ordinary Differential Equations II, section IV.8: stage increments by simplified Newton iterations,
-// transformed so that one real and (s - 1)/2 complex matrices are factored; an error estimate of order s, filtered by
-// the real matrix; step sizes predicted from two steps (Gustafsson); df/dx and its factors kept while Newton converges.
+// Steps of Radau IIA with error control, for stiff systems: the common part of radau5, radau and ggl. Source: Hairer,
+// Wanner, Solving Ordinary Differential Equations II, section IV.8. Simplified Newton iterations compute the stage
+// increments, transformed so that one real and (s - 1)/2 complex matrices are factored. The error estimate has order s
+// and is filtered by the real matrix. Step sizes are predicted from two steps (Gustafsson). df/dx and its factors are
+// kept as long as Newton converges.
 //
-// The estimate is of lower order than the method; stage_tolerances.hpp says what it is compared with, so that the
-// step's own error stays in proportion to the tolerance. With fixed steps there is none: the iteration goes on to
-// rounding. A Method has name, order, dense_order, interpolate. One with algebraic equations 0 = g(x, u) has hidden the
-// hooks below; u and g stand behind the state in each stage, and behind its motion in matrices.
+// The estimate has a lower order than the method. stage_tolerances.hpp determines its tolerance, so that the error of
+// the step remains proportional to the requested tolerance. With fixed steps there is no estimate, and the iteration
+// continues to rounding. A Method has name, order, dense_order, interpolate. A method with algebraic equations
+// 0 = g(x, u) overrides the hooks below; u and g follow the state in each stage, and the motion in matrices.
 #pragma once
 
 #include <algorithm>
@@ -26,13 +27,13 @@
 
 namespace eom::implicit {
 
-/// most: stages; where that is 3, loops over them are written out.
+/// most: largest number of stages; for 3 the loops over stages are unrolled.
 template <class Method, std::size_t most>
 class Collocation : public Base, public CollocationHooks {
  public:
   static constexpr bool adaptive = true, error_uses_end = false;
 
-  /// Trial state at t1; a code of the right-hand side, or code_no_convergence.
+  /// Computes the trial state at t1. Returns a code of the right-hand side, or code_no_convergence.
   int attempt(double t0, double t1) {
     open(t0, t1);
     if (jacobian_wanted_ || !jacobian_known_)
@@ -59,7 +60,7 @@ class Collocation : public Base, public CollocationHooks {
       return tolerances_.atol + tolerances_.rtol * std::max(std::abs(x0_[i]), std::abs(x1_[i]));
     };
     double error = norm([&](std::size_t i) { return estimate_[i]; }, scale);
-    if (error >= 1 && (rejected_ || !accepted_)) {  // once more through the filter: less is asked of a stiff start
+    if (error >= 1 && (rejected_ || !accepted_)) {  // filtered again: a stiff start has a weaker requirement
       for (std::size_t i = 0; i < n_; ++i) scratch_[i] = x0_[i] + (i < m_ ? estimate_[i] : 0);
       if (evaluate(t0_, scratch_, f_) == 0) {
         filter(f_, right_.data());
@@ -85,7 +86,7 @@ class Collocation : public Base, public CollocationHooks {
     rejected_ = false;
     accepted_ = true;
     if (!stages_changed_ && contraction_ <= keep_jacobian && next >= h && next <= 1.2 * h)
-      return h;  // the factors stay
+      return h;  // the factors are kept
     return next;
   }
 
@@ -114,7 +115,7 @@ class Collocation : public Base, public CollocationHooks {
     static_cast<const Method*>(method)->interpolate(t, x);
   }
 
-  /// Of the step that comes.
+  /// Number of stages of the next step.
   std::size_t stages() const {
     if constexpr (most == 3) return 3;
     return stages_;
@@ -123,8 +124,8 @@ class Collocation : public Base, public CollocationHooks {
  protected:
   static constexpr double safety = 0.9, most_growth = 8, most_shrinking = 5;
   static constexpr double keep_jacobian = 1e-3;  // of Newton's contraction
-  // Times |lambda| of the fastest motion: in a longer one the filter of the estimate takes an impact for a motion that
-  // has died away.
+  // Limit on h |lambda| of the fastest motion. In longer steps the filter of the estimate would treat an impact like a
+  // motion that has decayed.
   static constexpr double first_step = 1, same_step = 1e-9;
 
   Collocation(System& system, std::span<const double> x, const Options& options, std::size_t stages,
@@ -150,7 +151,7 @@ class Collocation : public Base, public CollocationHooks {
   double exponent() const { return 1 / static_cast<double>(stages() + 1); }
   int most_iterations() const { return 7 + 5 * static_cast<int>(stages() - 3) / 2; }
 
-  /// act(place in a stage, row of the matrices) for the motion, then for algebraic unknowns.
+  /// act(index in a stage, row of the matrices) for the motion, then for algebraic unknowns.
   template <class Act>
   void each_unknown(Act act) const {
     for (std::size_t i = 0; i < m_; ++i) act(i, i);
@@ -192,13 +193,13 @@ class Collocation : public Base, public CollocationHooks {
     return factored_;
   }
 
-  /// The iteration is given up; such a part of the step is tried next.
+  /// Gives up the iteration; the next trial has the fraction `part` of the step.
   bool fail(double part) {
     after_failure_ = part;
     return false;
   }
 
-  /// The collocation polynomial of the step made; moved: towards x1, by after_step and by rounding.
+  /// The collocation polynomial of the last step; moved: towards x1, by after_step and by rounding.
   double polynomial(const RadauTableau::Row& weight, double s, std::size_t i) const {
     double sum = 0;
     each_stage<most>(*made_with_, [&](std::size_t k) { sum += weight[k] * z_[k * length_ + i]; });
@@ -206,7 +207,7 @@ class Collocation : public Base, public CollocationHooks {
     return sum + s * moved;
   }
 
-  /// The polynomial of the step before, continued; zero where there is none, and for algebraic unknowns.
+  /// Extrapolates the polynomial of the previous step. Zero if there is none, and for algebraic unknowns.
   void start_values() {
     RadauTableau::Row weight;
     std::fill_n(z_, stages() * length_, 0.0);
@@ -247,7 +248,7 @@ class Collocation : public Base, public CollocationHooks {
     return finite ? 0 : code_not_finite;
   }
 
-  /// One simplified Newton iteration from stage derivatives in f_; returns the size of the correction.
+  /// Makes one simplified Newton iteration from stage derivatives in f_. Returns the size of the correction.
   double correct() {
     transform(tableau_->T_inverse, f_, f_);
     const double inverse = 1 / h_;
@@ -285,7 +286,7 @@ class Collocation : public Base, public CollocationHooks {
     return scale > 0 ? scale : std::max(std::abs(h_ * f0_[i]), 1e-300);
   }
 
-  /// Newton's iteration; false with a code of the right-hand side, or 0 where it does not converge.
+  /// Newton's iteration. False with a code of the right-hand side, or with 0 if it does not converge.
   bool iterate(int& code) {
     remaining_ = std::pow(std::max(remaining_, epsilon), 0.8);
     contraction_ = keep_jacobian;
@@ -323,7 +324,7 @@ class Collocation : public Base, public CollocationHooks {
     return fail(0.5);
   }
 
-  /// x1, the quadratures and the filtered estimate.
+  /// Computes x1, the quadratures and the filtered estimate.
   int finish() {
     made_with_ = tableau_;
     if (const int code = method().settle(); code != 0) return code;
@@ -342,7 +343,8 @@ class Collocation : public Base, public CollocationHooks {
     return 0;
   }
 
-  /// What f at the start differs by from the slope of the collocation polynomial there, through the real matrix.
+  /// The difference between f at the start and the slope of the collocation polynomial there, filtered by the real
+  /// matrix.
   void filter(const double* f, double* result) {
     for (std::size_t i = 0; i < m_; ++i) result[i] = f[i] + defect(i) / h_;
     std::fill_n(result + m_, extra_, 0.0);
@@ -362,17 +364,17 @@ class Collocation : public Base, public CollocationHooks {
     return std::clamp(std::pow(error, exponent()) / factor, 1 / most_growth, most_shrinking);
   }
 
-  std::size_t extra_, length_;  // algebraic unknowns; of a stage
+  std::size_t extra_, length_;  // number of algebraic unknowns; length of a stage
   Lu<double> real_;
   std::vector<Lu<Complex>> complex_;
   Units units_;
   StageTolerances tolerances_;
   std::vector<double> work_, estimate_, right_;
   std::vector<Complex> pair_;
-  // Of the step that comes, the last, the one before.
+  // Of the next step, the last one and the one before.
   const RadauTableau *tableau_ = nullptr, *made_with_ = nullptr, *of_before_ = nullptr;
   std::size_t stages_ = 3;
-  double *z_, *w_, *f_, *z_before_;  // stage increments, transformed, stage derivatives; of the step before
+  double *z_, *w_, *f_, *z_before_;  // stage increments, transformed, stage derivatives; of the previous step
   double h_factored_ = 0, h_of_before_ = 0;
   double contraction_ = 0, remaining_ = 1;
   double h_before_ = 0, error_before_ = 1;

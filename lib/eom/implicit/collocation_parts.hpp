@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Loops over the stages of a collocation method, its polynomial, and the hooks of methods that are more than that.
+// Loops over the stages of a collocation method, its polynomial, and the hooks of methods that extend it.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace eom::implicit {
 
-/// act(k) for each stage; most: stages at most, and where that is 3 the loop is written out.
+/// act(k) for each stage; most: largest number of stages; for 3 the loop is unrolled.
 template <std::size_t most, class Act>
 void each_stage(const RadauTableau& tableau, Act act) {
   if constexpr (most == 3)
@@ -17,7 +17,7 @@ void each_stage(const RadauTableau& tableau, Act act) {
     for (std::size_t k = 0; k < tableau.stages; ++k) act(k);
 }
 
-/// What the values at the nodes weigh at s, with 0 at 0: Lagrange's polynomials.
+/// Weights of the values at the nodes at s, with value 0 at 0: Lagrange's polynomials.
 template <std::size_t most>
 void stage_weights(const RadauTableau& tableau, double s, RadauTableau::Row& weight) {
   each_stage<most>(tableau, [&](std::size_t k) {
@@ -26,18 +26,18 @@ void stage_weights(const RadauTableau& tableau, double s, RadauTableau::Row& wei
   });
 }
 
-/// Hooks of what has algebraic equations, or chooses its stages: a Method hides those that it needs.
+/// Hooks of methods with algebraic equations or a variable number of stages. A Method overrides those that it needs.
 struct CollocationHooks {
-  int linearise() { return 0; }  // at the step's start, with df/dx; returns a code
+  int linearise() { return 0; }  // at the start of a step, with df/dx; returns a code
   template <class Matrix>
   void border(Matrix&) const {}  // rows and columns beyond the motion
   int add_algebraic(double, const double*, const double*, double*) {
     return 0;
-  }  // t, x, u, derivatives in which g stands too; a code
+  }  // t, x, u, derivatives followed by g; returns a code
   template <class Size>
-  void border_units(double*, const Size&) const {}  // right-hand sides for Units
-  int settle() { return 0; }                        // after the iteration: of the last stage; returns a code
-  void choose_stages(double) {}                     // after an accepted step; growth of the next
+  void border_units(double*, const Size&) const {}  // right-hand sides for the correction units
+  int settle() { return 0; }                        // after the iteration: corrects the last stage; returns a code
+  void choose_stages(double) {}                     // after an accepted step; argument: growth of the next
 };
 
 }  // namespace eom::implicit

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The cubic with the values and slopes of a step's two ends: dense output of methods of which no more is known.
+// The cubic Hermite polynomial of a step: dense output of methods without a better one.
 #pragma once
 
 #include <cstddef>
 
 namespace eom::implicit {
 
-/// x at the part s of a step h, n components; x0, f0 and x1, f1: states and derivatives at its ends.
+/// x at the fraction s of a step h, n components; x0, f0 and x1, f1: states and derivatives at its ends.
 inline void hermite(double s, double h, std::size_t n, const double* x0, const double* f0, const double* x1,
                     const double* f1, double* x) {
   for (std::size_t i = 0; i < n; ++i) {

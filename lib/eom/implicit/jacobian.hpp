@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// df/dx and df/dt: from the right-hand side's own function, or by differences. In: a system, a state and its
-// derivative. Out: matrix and vector, what they cost. The last components of x, quadratures, stay out: nothing depends
-// on them.
+// df/dx and df/dt, from the right-hand side's own function or by differences. In: a system, a state and its derivative.
+// Out: matrix and vector, and their cost. Quadratures, the last components of x, are excluded: nothing depends on them.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +18,7 @@ class Jacobian {
  public:
   enum class Differences { one_sided, central };  // central: for methods whose order needs the derivatives
 
-  /// n components, the first m of which count; smallest: a size below which a component is not told from 0.
+  /// n components, of which the first m count; smallest: components below this size are treated as 0.
   Jacobian(const System& system, std::size_t n, std::size_t m, double smallest, Differences differences)
       : system_(system),
         n_(n),
@@ -35,8 +34,8 @@ class Jacobian {
   double operator()(std::size_t i, std::size_t j) const { return dfdx_[i + m_ * j]; }
   double dfdt(std::size_t i) const { return dfdt_[i]; }
 
-  /// |lambda| of the fastest motion, about: power iteration on the square, which is right where the fastest ones are a
-  /// pair. v, w: work space, m each.
+  /// Estimate of |lambda| of the fastest motion: power iteration on the square, which is exact for a pair of
+  /// eigenvalues. v, w: work space, m each.
   double fastest(double* v, double* w) const {
     for (std::size_t i = 0; i < m_; ++i) v[i] = 1 + 0.5 * static_cast<double>(i % 3);
     const auto times = [&](const double* from, double* to) {
@@ -59,7 +58,7 @@ class Jacobian {
     return std::sqrt(after / before);
   }
 
-  /// At (t, x), where the right-hand side is f; h: the step in which it will be used. Returns a code.
+  /// Evaluates at (t, x) with right-hand side f; h: the step in which it will be used. Returns a code.
   int evaluate(double t, const double* x, const double* f, double h, Statistics& counts) {
     ++counts.jacobians;
     bool given = false;
@@ -74,13 +73,13 @@ class Jacobian {
     std::copy_n(x, n_, x_.data());
     int code = given ? 0 : in_state(t, x, f, h, counts);
     if (code == 0 && differences_ == Differences::central)
-      code = in_time(t, f, h, counts);  // the others do not ask for it
+      code = in_time(t, f, h, counts);  // not needed by the others
     counts.difference_evaluations += counts.rhs_evaluations - before;
     return code != 0 || all_finite() ? code : code_not_finite;
   }
 
  private:
-  /// Of what is moved: the cube and the square root of the rounding.
+  /// Relative sizes of differences: the cube root and the square root of the rounding.
   double part() const { return differences_ == Differences::central ? 6e-6 : 1.5e-8; }
 
   int in_state(double t, const double* x, const double* f, double h, Statistics& counts) {
@@ -115,7 +114,8 @@ class Jacobian {
         [&] { return at; });
   }
 
-  /// (f at +size less f at -size, or less f itself) by the distance; move(by) gives what was moved in binary64.
+  /// The difference quotient: f at +size minus f at -size, or minus f itself. move(by) returns the actual displacement
+  /// in binary64.
   template <class Move, class Time>
   int quotient(double size, const double* f, double* result, Statistics& counts, Move move, Time time) {
     const double ahead = move(size);
@@ -124,7 +124,7 @@ class Jacobian {
     const double back = move(-size);
     const int code_down = evaluate(time(), down_.data(), counts);
     if (code_up != 0 && code_down != 0) return code_up;
-    if (code_up != 0) return divide(down_.data(), f, back, result);  // at the edge of what has a value
+    if (code_up != 0) return divide(down_.data(), f, back, result);  // at the boundary of the domain
     if (code_down != 0) return divide(up_.data(), f, ahead, result);
     return divide(up_.data(), down_.data(), ahead - back, result);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The implicit midpoint rule, x1 = x0 + h f(t0 + h/2, (x0 + x1)/2): order 2, fixed steps, symmetric in time, symplectic
-// for Hamiltonian systems; keeps every quadratic invariant. Source: Hairer, Lubich, Wanner, Geometric Numerical
-// Integration, chapters II, IV, VI. All this holds as far as the equation is solved, so Newton's iteration goes on to
-// rounding. Dense output: the Hermite cubic, whose error is that of the step.
+// for Hamiltonian systems. It preserves every quadratic invariant. Source: Hairer, Lubich, Wanner, Geometric Numerical
+// Integration, chapters II, IV, VI. These properties require an accurate solution of the equation, so Newton's
+// iteration continues to rounding. Dense output: the Hermite cubic, whose error is that of the step.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class Midpoint : public Base {
     right_ = f_ + n_;
   }
 
-  /// Trial state at t1; a code of the right-hand side, or code_no_convergence.
+  /// Computes the trial state at t1. Returns a code of the right-hand side, or code_no_convergence.
   int attempt(double t0, double t1) {
     open(t0, t1);
     for (bool anew = jacobian_wanted_;; anew = true) {
@@ -50,7 +50,7 @@ class Midpoint : public Base {
     }
   }
 
-  // no error estimate, no choice of steps: the driver does not ask where steps are fixed
+  // no error estimate and no step size control: with fixed steps the driver does not use them
   double error_norm(double, double) { return 0; }
   double after_accepted(double h, double) { return h; }
   double after_rejected(double h, double) { return h; }
@@ -75,7 +75,7 @@ class Midpoint : public Base {
     return factored_ = lu_.factor();
   }
 
-  /// f_ at the middle, x0 + z.
+  /// Evaluates f_ at the middle, x0 + z.
   int evaluate_middle() {
     for (std::size_t i = 0; i < n_; ++i) scratch_[i] = x0_[i] + z_[i];
     const int code = evaluate(t0_ + 0.5 * h_, scratch_, f_);
@@ -83,7 +83,7 @@ class Midpoint : public Base {
     return std::all_of(f_, f_ + n_, [](double value) { return std::isfinite(value); }) ? 0 : code_not_finite;
   }
 
-  /// z = h/2 f(t0 + h/2, x0 + z).
+  /// Solves z = h/2 f(t0 + h/2, x0 + z).
   int iterate() {
     for (std::size_t i = 0; i < n_; ++i) z_[i] = i < m_ ? 0.5 * h_ * f0_[i] : 0;
     units_.see(

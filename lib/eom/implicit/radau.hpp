@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Radau IIA of orders 5, 9 and 13 (collocation.hpp), chosen from step to step, for stiff systems to tight tolerances.
-// Source: Hairer, Wanner, Stiff differential equations solved by Radau methods, Journal of Computational and Applied
-// Mathematics 111 (1999). The order goes up where Newton's iteration converges fast (contraction below 0.002) in steps
-// of steady length, and down where it converges slowly (above 0.8) or not at all, but not within ten steps of the last
-// change. It starts with 5. Options::series_order fixes it; with fixed steps it is 5 unless told. Dense output: the
-// collocation polynomial, of order s.
+// Radau IIA of orders 5, 9 and 13 (collocation.hpp) with variable order, for stiff systems at tight tolerances. Source:
+// Hairer, Wanner, Stiff differential equations solved by Radau methods, Journal of Computational and Applied
+// Mathematics 111 (1999). The order increases if Newton's iteration converges fast (contraction below 0.002) in steps
+// of steady length. It decreases if the iteration converges slowly (above 0.8) or not at all. It does not change within
+// ten steps of the last change. The first order is 5. Options::series_order fixes it; with fixed steps the default is
+// 5. Dense output: the collocation polynomial, of order s.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +37,7 @@ class Radau : public Collocation<Radau, RadauTableau::most> {
     return Collocation::after_failed(h);
   }
 
-  /// growth: of the step that comes.
+  /// growth: of the next step.
   void choose_stages(double growth) {
     if (!chooses_) return;
     ++since_change_;
@@ -62,8 +62,8 @@ class Radau : public Collocation<Radau, RadauTableau::most> {
   }
 
  private:
-  static constexpr double fast = 2e-3, slow = 0.8;  // contractions at which the order goes up and down
-  static constexpr double steady = 0.8;             // of the step before, or its inverse
+  static constexpr double fast = 2e-3, slow = 0.8;  // contractions at which the order increases and decreases
+  static constexpr double steady = 0.8;             // ratio to the previous step, or its inverse
   static constexpr int settled = 10;                // steps after a change of order
 
   void change_to(std::size_t s) {
@@ -73,7 +73,7 @@ class Radau : public Collocation<Radau, RadauTableau::most> {
 
   bool chooses_;
   int since_change_ = 0;
-  std::size_t failures_ = 0;  // of Newton's iteration, up to the last accepted step
+  std::size_t failures_ = 0;  // of Newton's iteration, since the last accepted step
 };
 
 }  // namespace eom::implicit

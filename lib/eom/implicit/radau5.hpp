@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Radau IIA of order 5 for stiff systems (collocation.hpp) with three stages. Source: Hairer, Wanner, Solving Ordinary
-// Differential Equations II, section IV.8. Dense output: the collocation polynomial (order 3) and, towards the
-// derivative at the start, the filtered estimate times a quartic; this makes it order 4 at no cost, and leaves it where
-// the filter damps.
+// Differential Equations II, section IV.8. Dense output: the collocation polynomial (order 3) plus a quartic times the
+// filtered estimate, which adapts it to the derivative at the start. This gives order 4 at no cost, and no change for
+// damped components.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace eom::implicit {
 
-/// The quartic that is 0 at 0 and 1, has slope 1 at 0 and slope 0 at the three stages.
+/// The quartic with value 0 at 0 and 1, slope 1 at 0 and slope 0 at the three stages.
 inline constexpr double bump(double s) { return s * (1 + s * (-4.5 + s * (6 - 2.5 * s))); }
 
 class Radau5 : public Collocation<Radau5, 3> {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Radau IIA with s = 3, 5, 7 stages, orders 5, 9, 13, worked out once in long double from what defines it. Source:
-// Hairer, Wanner, Solving Ordinary Differential Equations II, sections IV.3, IV.5 and IV.8.
-//   c      the zeros of P_s(2x - 1) - P_(s-1)(2x - 1), the last is 1;  A[i][j] = integral of the j-th Lagrange
-//   polynomial up to c[i] gamma, alpha +- i beta   the eigenvalues of A^-1: zeros of the denominator of the Pade
-//   approximation (s - 1, s) of exp T      brings A^-1 to the block form [gamma, (alpha, -beta; beta, alpha), ...]; the
-//   first column has length 1, in the last row then 1, 0 node   1/(c[i] times the product of c[i] - c[j]), of
-//   Lagrange's polynomials through 0 as well slope  slope . Z = minus the derivative at 0 of the polynomial through 0
-//   at 0 and Z[i] at c[i]
+// Radau IIA with s = 3, 5, 7 stages, orders 5, 9, 13, computed once in long double from its definition. Source: Hairer,
+// Wanner, Solving Ordinary Differential Equations II, sections IV.3, IV.5 and IV.8.
+//   c        the zeros of P_s(2x - 1) - P_(s-1)(2x - 1); the last is 1
+//   A[i][j]  the integral of the j-th Lagrange polynomial up to c[i]
+//   gamma, alpha +- i beta   the eigenvalues of A^-1: zeros of the denominator of the Pade approximation (s - 1, s) of
+//            exp
+//   T        transforms A^-1 to the block form [gamma, (alpha, -beta; beta, alpha), ...]. The first column has length 1.
+//            The last row is then 1, 0.
+//   node     1/(c[i] times the product of c[i] - c[j]), of Lagrange's polynomials with the additional node 0
+//   slope    slope . Z = minus the derivative at 0 of the polynomial with value 0 at 0 and Z[i] at c[i]
 #pragma once
 
 #include <array>
@@ -99,7 +101,7 @@ struct RadauTableau {
     return here - before;
   }
 
-  /// Sign changes on a grid, bisected to rounding; and 1.
+  /// Finds sign changes on a grid and bisects them to rounding; adds 1.
   Reals find_nodes() const {
     Reals nodes{};
     std::size_t found = 0;
@@ -129,7 +131,7 @@ struct RadauTableau {
     return l;
   }
 
-  /// Derivative at 0 of the polynomial that is 1 at node i, 0 at 0 and at the other nodes.
+  /// Derivative at 0 of the polynomial with value 1 at node i and 0 at 0 and the other nodes.
   Real slope_at_start(const Reals& nodes, std::size_t i) const {
     Real slope_there = 1 / nodes[i];
     for (std::size_t k = 0; k < stages; ++k)
@@ -170,7 +172,7 @@ struct RadauTableau {
     return v;
   }
 
-  /// right = m^-1 right, by Gauss and Jordan with pivots; m is a copy.
+  /// right = m^-1 right, by Gauss-Jordan elimination with pivots; m is a copy.
   template <class Scalar>
   static void solve(Matrix<Scalar> m, Matrix<Scalar>& right, std::size_t n) {
     for (std::size_t k = 0; k < n; ++k) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A Rosenbrock method for stiff systems: each stage is one linear solve with df/dx of the step's start, no iteration.
-// Coefficients: rodas5p.hpp. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.7.
-// Its order needs df/dx and df/dt themselves: where they are not given, central differences are taken.
-// Quadratures are integrated by the rule of Lobatto along the dense output, so that df/dx need not hold them.
+// A Rosenbrock method for stiff systems: each stage is one linear solve with df/dx at the start of the step, without
+// iteration. Coefficients: rodas5p.hpp. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, section
+// IV.7. Its order requires accurate df/dx and df/dt; if they are not given, central differences are used. Quadratures
+// are integrated by Lobatto's rule along the dense output, so that df/dx does not contain them.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +42,8 @@ class Rodas : public Base {
     rates_ = next;
   }
 
-  /// Trial state at t1; a code of the right-hand side, or code_no_convergence for a singular matrix.
+  /// Computes the trial state at t1. Returns a code of the right-hand side, or code_no_convergence for a singular
+  /// matrix.
   int attempt(double t0, double t1) {
     open(t0, t1);
     if (!jacobian_here_)
@@ -87,11 +88,11 @@ class Rodas : public Base {
 
   static explicit_rk::Controller control() { return {{0.9, 0, 0.2, 6}, order}; }
 
-  /// The dense output of one component at s = (t - t0)/h; bend: of the three rows of its weights.
+  /// The dense output of one component at s = (t - t0)/h; bend: its three weighted rows.
   static double motion(double s, double x0, double x1, const std::array<double, 3>& bend) {
     return (1 - s) * x0 + s * (x1 + (1 - s) * (bend[0] + s * (bend[1] + s * bend[2])));
   }
-  /// Of a quadrature: the integral of the cubic through its derivatives at Lobatto's nodes 0, node, 1 - node, 1.
+  /// For a quadrature: the integral of the cubic through its derivatives at Lobatto's nodes 0, node, 1 - node, 1.
   static double quadrature(double s, double x0, double h, const double (&g)[4]) {
     const double d01 = (g[1] - g[0]) / node, d12 = (g[2] - g[1]) / (1 - 2 * node), d23 = (g[3] - g[2]) / node;
     const double d012 = (d12 - d01) / (1 - node), d123 = (d23 - d12) / (1 - node), d = d123 - d012;

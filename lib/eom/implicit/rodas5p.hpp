@@ -46,8 +46,8 @@ struct Rodas5p {
       {37.80277123390563, -3.2571969029072276, 112.26918849496327, 66.9347231244047, -40.06618937091002,
        -54.66780262877968, -9.48861652309627},
   };
-  // published to 16 digits (b_5 is a_65), these make x1 too large by 6.0e-15 h f, a drift of that size in every run:
-  // made up for in b_5
+  // With the published 16 digits (b_5 is a_65) x1 is too large by 6.0e-15 h f, a drift of that size in every run; b_5
+  // is corrected.
   static constexpr std::array<double, 8> b{
       -7.502846399306121, 2.561846144803919, -11.627539656261098, -0.18268767659942256, 0.03019817200837536, 1, 1, 1};
   static constexpr double dense[3][8]{

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tolerances of Radau IIA with s stages (collocation.hpp): of its estimate, which is of order s and compared with
-// r^((s+1)/(2s))/10 in place of r, and of Newton's iteration. In: options, the start. Out: numbers, for each s.
+// Tolerances of Radau IIA with s stages (collocation.hpp). The estimate has order s, so r is replaced by
+// r^((s+1)/(2s))/10. Newton's iteration has its own tolerance. In: options, the start. Out: the tolerances for each s.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace eom::implicit {
 class StageTolerances {
  public:
   double rtol = 0, atol = 0;  // of the estimate
-  double newton = 0;          // of the iteration, in units of these
+  double newton = 0;          // of the iteration, in units of the above
 
   /// x: the components that count.
   StageTolerances(const Options& options, std::span<const double> x)

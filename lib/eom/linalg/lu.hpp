@@ -11,7 +11,7 @@
 
 namespace eom {
 
-/// A complex number whose products are four multiplications: std::complex looks for NaN in each of them.
+/// A complex number whose products are four multiplications; std::complex checks for NaN in each of them.
 struct Complex {
   double re = 0, im = 0;
 
@@ -34,10 +34,10 @@ class Lu {
  public:
   explicit Lu(std::size_t n) : n_(n), a_(n * n), pivots_(n) {}
 
-  /// Entry (i, j), to be filled before factor(), which overwrites it.
+  /// Entry (i, j), to be set before factor(), which overwrites it.
   Scalar& operator()(std::size_t i, std::size_t j) { return a_[i + n_ * j]; }
 
-  /// false: singular, or not finite.
+  /// Returns false if the matrix is singular or not finite.
   bool factor() {
     for (std::size_t k = 0; k < n_; ++k) {
       std::size_t p = k;
@@ -58,7 +58,7 @@ class Lu {
     return true;
   }
 
-  /// b becomes the solution.
+  /// Replaces b by the solution.
   void solve(Scalar* b) const {
     for (std::size_t k = 0; k < n_; ++k) std::swap(b[k], b[pivots_[k]]);
     for (std::size_t k = 0; k < n_; ++k)

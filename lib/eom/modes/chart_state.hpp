@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The argument `mode` of the C ABI: one bit per chart that can be exchanged, from bit 28 on (docs/abi.md, "Charts").
-// Set: the state is in the second chart.
+// The argument `mode` of the C ABI: one bit per exchangeable chart, from bit 28 on (docs/abi.md, "Charts"). A set bit:
+// the state is in the second chart.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 namespace eom {
 
 inline constexpr int first_chart_bit = 28;
-inline constexpr std::size_t max_charts = 3;  // that can be exchanged: bit 31 is the sign
+inline constexpr std::size_t max_charts = 3;  // exchangeable ones: bit 31 is the sign
 inline constexpr int chart_bits = 7 << first_chart_bit;
 
 constexpr int charts_of(int mode) { return mode >> first_chart_bit & 7; }

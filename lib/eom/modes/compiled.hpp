@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Functions of the C ABI of emitted code as integrate() and integrate_modes() take them. In: pointers to NAME_rhs,
-// NAME_events and NAME_jac, parameters, inputs. Out: callables; nothing is copied, so the arrays have to stay.
+// Functions of the C ABI of emitted code in the forms that integrate() and integrate_modes() expect. In: pointers to
+// NAME_rhs, NAME_events and NAME_jac, parameters, inputs. Out: callables. Nothing is copied, so the arrays must outlive
+// them.
 #pragma once
 
 #include "eom/with_jacobian.hpp"
@@ -19,21 +20,21 @@ struct CompiledModel {
   const double* u = nullptr;  // null: the defaults
   Derivatives jac_function = nullptr;
 
-  /// The right-hand side, and the event functions, with the mode as the caller's.
+  /// The right-hand side and the event functions, with the mode as an argument.
   auto rhs() const {
     return [*this](double t, const double* x, int mode, double* dx) { return rhs_function(t, x, p, u, mode, dx); };
   }
   auto events() const {
     return [*this](double t, const double* x, int mode, double* g) { return events_function(t, x, p, u, mode, g); };
   }
-  /// The right-hand side with its derivatives, NAME_jac, for implicit methods; without it they take differences.
+  /// The right-hand side with its derivatives NAME_jac for implicit methods. They use differences if it is null.
   auto rhs_and_jacobian() const {
     return WithJacobian{rhs(), [*this](double t, const double* x, int mode, double* dfdx, double* dfdt) {
                           return jac_function == nullptr ? no_jacobian_here
                                                          : jac_function(t, x, p, u, mode, dfdx, dfdt);
                         }};
   }
-  /// The same in one mode.
+  /// The same for a fixed mode.
   auto rhs(int mode) const {
     return [*this, mode](double t, const double* x, double* dx) { return rhs_function(t, x, p, u, mode, dx); };
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The argument `mode` of the C ABI: one digit to the base 6 per contact, the first contact lowest, in bits 0 to 7
-// (docs/abi.md, "Modes"). digit % 3: 0 sticks, 1 slides along the tangent, 2 against it; in two directions 1 slides.
-// digit / 3: of a surface that holds both ways, 0 the multiplier presses as positive, 1 as negative; of one that can be
-// left, 0 touches, 1 apart.
+// (docs/abi.md, "Modes"). digit % 3: 0 sticking, 1 sliding along the tangent, 2 sliding against it; with two
+// directions, 1 sliding. digit / 3: for a bilateral surface 0 for a positive multiplier, 1 for a negative one; for a
+// unilateral contact 0 closed, 1 open.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 namespace eom {
 
 inline constexpr int contact_states = 6;
-inline constexpr int contact_bits = 255;        // sides of kinks are above
+inline constexpr int contact_bits = 255;        // the sides of kinks are in higher bits
 inline constexpr std::size_t max_contacts = 3;  // 6^3 <= 256
 
 constexpr int contact_digit(int mode, std::size_t contact) {
@@ -25,24 +25,24 @@ constexpr int with_contact_digit(int mode, std::size_t contact, int digit) {
   for (std::size_t j = 0; j < contact; ++j) weight *= contact_states;
   return mode + (digit - contact_digit(mode, contact)) * weight;
 }
-/// What the leaf 2 contact + order is in a mode: order 0: 1, -1 sliding, 0 sticking; order 1: 1, -1 by digit / 3.
+/// Sign of leaf 2 contact + order in a mode. Order 0: 1 or -1 sliding, 0 sticking. Order 1: 1 or -1 by digit / 3.
 constexpr int contact_leaf(int mode, std::size_t index) {
   const int digit = contact_digit(mode, index / 2);
   if (index % 2 == 1) return digit < 3 ? 1 : -1;
   return digit % 3 == 2 ? -1 : digit % 3;
 }
 
-/// What decides which modes a contact has.
+/// Properties of a contact that determine its modes.
 struct ContactShape {
-  std::size_t dimensions = 1;  // directions in which it slides, 0 to 2
-  bool surface = false;        // its normal force has a sign
-  bool unilateral = false;     // it can be left
+  std::size_t dimensions = 1;  // number of sliding directions, 0 to 2
+  bool surface = false;        // its friction depends on the sign of the normal force
+  bool unilateral = false;     // it can open
   bool sticks = true;          // Coulomb's law; false: no friction, or a smooth law
   bool rolls = false;          // sticking is rolling
 };
 
-/// The mode in which all that can be left is apart and all else sticks. Forces are determined there; where everything
-/// touches they may not be, as of a ball between a floor and a ceiling, and functions have no values.
+/// The mode in which all unilateral contacts are open and all others stick. Forces are determined there. With all
+/// contacts closed they may be undetermined (a ball between a floor and a ceiling), and functions have no values.
 template <class Contacts>
 int apart_mode(const Contacts& contacts) {
   int mode = 0;
@@ -51,7 +51,7 @@ int apart_mode(const Contacts& contacts) {
   return mode;
 }
 
-/// Whether a contact of this shape can be in a state.
+/// Whether a contact of this shape can be in this state.
 constexpr bool contact_allows(const ContactShape& shape, int digit) {
   const bool high = digit >= 3;
   if (high && shape.unilateral) return digit == 3;
@@ -60,7 +60,7 @@ constexpr bool contact_allows(const ContactShape& shape, int digit) {
   return digit % 3 < 2 || shape.dimensions == 1;
 }
 
-/// The modes in which contacts of these shapes can be, ascending by the last one; `most` at most.
+/// The possible modes of contacts of these shapes, ascending by the last contact; at most `most`.
 inline std::vector<int> contact_modes(const std::vector<ContactShape>& shapes, std::size_t most = 1000) {
   std::vector<int> modes{0};
   int weight = 1;

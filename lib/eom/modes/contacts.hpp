@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Contacts as modes: sticking, sliding and apart; which functions bound each, and what follows where one of them is
-// crossed. In: the contacts of a model, its functions rhs(t, x, mode, dx) and contacts(t, x, mode, g) in the numbering
-// of the C ABI (docs/abi.md, "Modes"), five values per contact:
+// Contacts as modes (sticking, sliding, open): the functions that bound each mode, and the transitions at their zeros.
+// In: the contacts of a model, its functions rhs(t, x, mode, dx) and contacts(t, x, mode, g) in the numbering of the
+// C ABI (docs/abi.md, "Modes"), five values per contact:
 //   slip    the slip speed along the (first) tangent
-//   above   mu_s |N| - phi of one direction, mu_s |N| - |phi| of two
-//   below   mu_s |N| + phi of one direction; of two the slip speed along the second tangent
-//   hold    the normal force as it presses; of a contact that is apart the gap
-//   margin  of the law's solution: where it is negative there is none, or several
-// and what changes velocities (ContactMotion below). Out: the table and the rule of integrate_modes(), and the mode of
+//   above   one direction: mu_s |N| - phi; two: mu_s |N| - |phi|
+//   below   one direction: mu_s |N| + phi; two: the slip speed along the second tangent
+//   hold    the normal force, positive in compression; for an open contact the gap
+//   margin  of the solution of the friction law: if it is negative there is none, or several
+// and the changes of velocities (ContactMotion below). Out: the table and the rule of integrate_modes(), and the mode of
 // a start.
 //
-// Sliding in two directions has no value at slip 0. It ends at the least slip that counts, from where the little that
-// is left is extrapolated, and starts with twice as much in the direction in which friction gives way.
+// Sliding in two directions has no direction at slip 0. It ends at the least slip that counts, from which the end is
+// extrapolated. It starts with twice that slip, in the direction in which friction yields.
 #pragma once
 
 #include <algorithm>
@@ -32,32 +32,32 @@ namespace eom {
 
 struct Contact : ContactShape {
   std::string name;
-  double restitution = 0;  // of impacts where it can be left: speed after over speed before
+  double restitution = 0;  // of impacts of a unilateral contact: speed after / speed before
 };
 
-/// For contacts with one direction of sliding that cannot be left: nothing changes velocities.
+/// For contacts with one sliding direction that cannot open: velocities never change.
 struct ContactMotion {
-  /// Velocities after an impact at contact j, with the contacts that touch in `mode`. Returns a code of the ABI.
+  /// Velocities after an impact at contact j, with the closed contacts of `mode`. Returns a code of the ABI.
   int impact(double, std::span<double>, int, std::size_t, double) { return 0; }
-  /// Gap speeds 0 of all contacts that touch in `mode`.
+  /// Sets the gap speeds of all closed contacts of `mode` to 0.
   int close(double, std::span<double>, int) { return 0; }
-  /// Slip 0 at contact j in `mode`.
+  /// Sets the slip at contact j to 0, in `mode`.
   int stick(double, std::span<double>, int, std::size_t) { return 0; }
-  /// Goes on from (t, x), where contact j slides slowly, to where it stops; slips_on where it does not: its slip grows.
+  /// Advances from (t, x), where contact j slides slowly, to its stop. Returns slips_on if the slip grows instead.
   int stop(double&, std::span<double>, int, std::size_t) { return 0; }
-  /// Twice the least slip, in the direction in which contact j gives way; `mode` as it still sticks.
+  /// Sets twice the least slip, in the direction in which contact j yields. In `mode` it still sticks.
   int slide(double, std::span<double>, int, std::size_t) { return 0; }
   /// The least slip in two directions that counts.
   double least_slip(std::size_t) const { return 1e-12; }
   /// d(gap)/dt of contact j.
   double approach(double, std::span<const double>, std::size_t) { return 0; }
-  /// Slip and gap speeds up to here count as none.
+  /// Slip and gap speeds up to this value count as zero.
   double still() const { return 1e-12; }
 };
 
 inline constexpr std::size_t contact_values = 5;
 
-/// Of ContactMotion::stop, in place of a code.
+/// Returned by ContactMotion::stop in place of a code.
 inline constexpr int slips_on = -1;
 
 template <class Rhs, class Functions, class Motion = ContactMotion>
@@ -82,11 +82,11 @@ class Contacts {
   std::size_t functions() const { return g_.size(); }
   std::span<const Mode> table() const { return table_; }
   void restitution(std::size_t contact, double e) { contacts_[contact].restitution = e; }
-  /// The next hit closes these contacts, whose bounces are over, at once: one after the other would lift the one
-  /// before.
+  /// The next impact closes all of these contacts, whose bounces have ended. Closing one after the other would open the
+  /// earlier ones.
   void close_next(std::vector<std::size_t> contacts) { close_next_ = std::move(contacts); }
 
-  /// Makes the functions those that are watched: the speed of slip in two directions, beyond the least one.
+  /// Transforms the functions into the monitored ones: the slip speed in two directions, minus the least one.
   void shift(double* g) const {
     for (std::size_t j = 0; j < contacts_.size(); ++j) {
       if (contacts_[j].dimensions != 2) continue;
@@ -96,9 +96,9 @@ class Contacts {
     }
   }
 
-  /// The mode of a start: what slips slides; what does not sticks if the static law allows, else slides off; what is
-  /// apart (of contacts that can be left), or leaves at once, stays apart. `apart`: per contact; empty: all touch. x
-  /// changes where something hits at the start.
+  /// The mode of a start. A contact with slip slides. Without slip it sticks if the static law allows, else it starts
+  /// to slide. Unilateral contacts that are open, or open at once, are open. `apart`: per contact; empty: all are
+  /// closed. x changes if an impact occurs at the start.
   int start(double t, std::span<double> x, std::span<const bool> apart = {}) {
     int mode = 0;
     for (std::size_t j = 0; j < apart.size(); ++j)
@@ -116,7 +116,7 @@ class Contacts {
     const std::size_t j = point.crossing.function / contact_values;
     switch (point.crossing.function % contact_values) {
       case 0: return stop_sliding(point, j);
-      // Friction at its limit along the tangent gives way against it, and the other way round.
+      // If friction reaches its limit along the tangent, sliding starts against it, and vice versa.
       case 1: return start_sliding(point, j, contacts_[j].dimensions == 2 ? 1 : 2);
       case 2: return start_sliding(point, j, 1);
       case 3: return change_hold(point, j);
@@ -127,7 +127,8 @@ class Contacts {
             code == 4 ? Outcome::friction_many_solutions : Outcome::friction_no_solution};
   }
 
-  /// Bounces that accumulate end with contact: of all that took turns, as in a corner.
+  /// An infinite sequence of ever smaller bounces ends with lasting contact of all contacts that took turns, as in a
+  /// corner.
   std::optional<Transition> settle(const ModePoint& point) {
     const std::size_t j = point.crossing.function / contact_values;
     if (point.crossing.function % contact_values != 3 || !contacts_[j].unilateral) return std::nullopt;
@@ -195,7 +196,7 @@ class Contacts {
     return {with_contact_digit(point.mode, j, 3), "lose_contact", contacts_[j].name};
   }
 
-  /// Names of others than j that are apart in one mode and touch in the next.
+  /// Names of the contacts other than j that are open in one mode and closed in the next.
   std::vector<std::string> closed_beside(std::size_t j, int before, int after) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -205,7 +206,7 @@ class Contacts {
     return names;
   }
 
-  /// An impact at contact j, which is apart; it stays so if it bounces.
+  /// Handles an impact at contact j, which is open. It remains open if it bounces.
   Transition hit(double t, std::span<double> x, int mode, std::size_t j, bool bounces = true) {
     hits_[hit_++ % hits_.size()] = j;
     if (const std::vector<std::size_t> all = std::exchange(close_next_, {}); !all.empty()) {
@@ -214,7 +215,7 @@ class Contacts {
       for (const std::size_t i : all) closed = with_contact_digit(closed, i, 0);
       if (motion_.close(t, x, closed) == 0)
         return {settled(t, x, closed), "contact", contacts_[j].name, Outcome::done, closed_beside(j, mode, closed)};
-      std::copy(before.begin(), before.end(), x.begin());  // more contacts than directions to move in
+      std::copy(before.begin(), before.end(), x.begin());  // more contacts than degrees of freedom
     }
     const double speed = motion_.approach(t, x, j), e = bounces ? contacts_[j].restitution : 0;
     const bool away = e > 0 && -speed * e > motion_.still();
@@ -226,11 +227,11 @@ class Contacts {
     return {settled(t, x, after), "contact", contacts_[j].name};
   }
 
-  /// The mode with the contacts that touch in `mode` sliding or sticking as the velocities say.
+  /// The mode in which the closed contacts of `mode` slide or stick according to the velocities.
   int settled(double t, std::span<double> x, int mode) {
     const auto touches = [&](std::size_t j) { return !contacts_[j].unilateral || contact_digit(mode, j) < 3; };
     const auto evaluate = [&] { return functions_(t, x.data(), mode, g_.data()) == 0; };
-    for (std::size_t j = 0; j < contacts_.size(); ++j) {  // what an impact elsewhere has lifted
+    for (std::size_t j = 0; j < contacts_.size(); ++j) {  // contacts that an impact elsewhere has opened
       if (contacts_[j].unilateral && touches(j) && motion_.approach(t, x, j) > motion_.still())
         mode = with_contact_digit(mode, j, 3);
     }
@@ -243,7 +244,7 @@ class Contacts {
       const bool back = contacts_[j].dimensions == 1 && g_[contact_values * j] < 0;
       mode = with_contact_digit(mode, j, high + (back ? 2 : 1));
     }
-    // One change may call for another; contacts that do not settle are left to the rule.
+    // One change may require another. Contacts that do not settle are left to the rule.
     for (std::size_t round = 0; round < 4 * contacts_.size(); ++round) {
       if (!evaluate()) return mode;
       const int next = better(t, x, mode);
@@ -258,7 +259,8 @@ class Contacts {
       const int digit = contact_digit(mode, j);
       const double* g = g_.data() + contact_values * j;
       if (contacts_[j].unilateral && digit == 3) continue;
-      // With a margin below 0 it would be driven back at once: neither obeys the law, which the right-hand side tells.
+      // With a negative margin it would close again at once: neither state obeys the law. The right-hand side reports
+      // this.
       if (contacts_[j].unilateral && g[3] < 0 && contacts_[j].dimensions > 0 && g[4] < 0) continue;
       if (contacts_[j].unilateral && g[3] < 0) return with_contact_digit(mode, j, 3);
       if (contacts_[j].surface && g[3] < 0) return with_contact_digit(mode, j, (digit + 3) % 6);
@@ -305,7 +307,7 @@ class Contacts {
   std::vector<double> dx_, g_;
   std::vector<Mode> table_;
   std::array<std::size_t, 8> hits_{no_contact, no_contact, no_contact, no_contact,
-                                   no_contact, no_contact, no_contact, no_contact};  // the last ones
+                                   no_contact, no_contact, no_contact, no_contact};  // the most recent impacts
   std::size_t hit_ = 0;
   std::vector<std::size_t> close_next_;
   Rhs rhs_;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Systems with modes (sliding and sticking, contact and flight): one right-hand side per mode, and surfaces that lead
-// from one to another. In: rhs(t, x, mode, dx) -> code, events(t, x, mode, values) -> code, what is watched in each
-// mode, a rule for the transitions. Out: ModeResult: how the run ended, in which mode, and what happened when.
+// Systems with modes (sliding and sticking, contact and flight): one right-hand side per mode, and surfaces at which
+// the mode changes. In: rhs(t, x, mode, dx) -> code, events(t, x, mode, values) -> code, the monitored surfaces of each
+// mode, a rule for the transitions. Out: ModeResult: the end of the run, its mode, and the recorded transitions.
 //
-// What is watched in a mode bounds it: a function watched `down` has to be positive there, one watched `up` negative.
-// Where a mode is entered beyond one of its surfaces, or leaves it the wrong way at once, the rule is asked again at
-// the same time, so that several changes at one instant follow one another and no motion goes on in a mode that does
-// not hold. A surface on which a mode is entered is not met again until the motion has left it.
+// The monitored functions bound a mode: one with direction `down` has to be positive there, one with `up` negative. If
+// a mode is entered beyond one of its surfaces, or left the wrong way at once, the rule is called again at the same
+// time. Several changes can thus follow one another in an instant, and no motion continues in an invalid mode. A surface
+// on which a mode is entered is not crossed again before the motion has left it.
 //
-// Chattering (Zeno): transitions that follow one another ever faster, down to 1e-7 of the first interval, accumulate at
-// a time that is extrapolated; there the rule's settle(point), if it has one, says how to go on, and otherwise the run
-// ends as step_too_small with that time in `detail`.
+// Chattering (Zeno): transitions with ever shorter intervals, down to 1e-7 of the first one, accumulate at an
+// extrapolated time. If the rule has a member settle(point), it determines the next mode there. Otherwise the run ends
+// as step_too_small with that time in `detail`.
 #pragma once
 
 #include <cmath>
@@ -29,8 +29,8 @@
 namespace eom {
 
 struct WatchedSurface {
-  std::size_t function;  // of the array that events() fills
-  Direction direction;   // any: no bound of the mode, only a place where the rule is asked
+  std::size_t function;  // index in the array that events() fills
+  Direction direction;   // any: not a bound of the mode, the rule is called at each crossing
 };
 
 struct Mode {
@@ -38,8 +38,8 @@ struct Mode {
   std::vector<WatchedSurface> watched;
 };
 
-/// What the rule is given; it may change x (an impact), puts it onto the surface where that matters, and may move t on
-/// to where what little was left of the mode has ended.
+/// Argument of the rule. The rule may change x (an impact), projects it onto the surface if necessary, and may advance
+/// t to the end of a remainder of the mode.
 struct ModePoint {
   double& t;
   std::span<double> x;
@@ -47,12 +47,12 @@ struct ModePoint {
   Crossing crossing;
 };
 
-/// What the rule answers.
+/// Result of the rule.
 struct Transition {
   int mode = 0;                        // the next one; may be the same
-  std::string kind = {}, name = {};    // recorded: "slip", "stick", "contact", ... and whose; kind empty: not recorded
-  Outcome outcome = Outcome::done;     // another one ends the run here: stopped_by_event, friction_no_solution, ...
-  std::vector<std::string> also = {};  // of what else the same is recorded
+  std::string kind = {}, name = {};    // recorded: "slip", "stick", "contact", ... and the name; empty kind: not recorded
+  Outcome outcome = Outcome::done;     // any other outcome ends the run here: stopped_by_event, friction_no_solution, ...
+  std::vector<std::string> also = {};  // further names recorded with the same kind
 };
 
 struct ModeEvent {
@@ -65,15 +65,15 @@ struct ModeResult : Result {
   int mode = 0;
   std::vector<ModeEvent> events;
   std::size_t transitions = 0;
-  double accumulation = std::numeric_limits<double>::quiet_NaN();  // where chattering that ended the run would end
+  double accumulation = std::numeric_limits<double>::quiet_NaN();  // accumulation time of the chattering that ended the run
 };
 
 namespace modes {
 
-/// Times of transitions, and whether they accumulate.
+/// Detects accumulation of the times of transitions.
 class Chatter {
  public:
-  /// The time at which the transitions seen so far accumulate, once they are fast enough to tell.
+  /// Adds a transition. Returns the time at which the transitions accumulate, once their intervals are short enough.
   std::optional<double> see(double t) {
     const double interval = std::abs(t - last_), sum = interval + interval_, before = sum_, second_before = sum_before_;
     const double direction = t < last_ ? -1 : 1;
@@ -81,7 +81,7 @@ class Chatter {
     sum_before_ = before;
     sum_ = sum;
     last_ = t;
-    if (!(sum < before)) {  // also the first, and after NaN
+    if (!(sum < before)) {  // also for the first one, and after NaN
       first_ = sum;
       shrinking_ = 0;
       return std::nullopt;
@@ -98,14 +98,14 @@ class Chatter {
   static constexpr int fewest = 10;
   static constexpr double smallest = 1e-7;
   double last_ = std::numeric_limits<double>::quiet_NaN();
-  // Sums of two intervals: between two walls long ones and short ones take turns.
+  // Sums of two intervals: between two walls long and short ones alternate.
   double interval_ = std::numeric_limits<double>::quiet_NaN();
   double sum_ = std::numeric_limits<double>::quiet_NaN(), sum_before_ = std::numeric_limits<double>::quiet_NaN();
   double first_ = 0;
   int shrinking_ = 0;
 };
 
-/// The mode that a run is in, and what becomes of it at the surfaces that bound it.
+/// The current mode of a run, and its transitions at the surfaces that bound it.
 template <class Rule>
 class Switch {
  public:
@@ -144,7 +144,7 @@ class Switch {
   std::vector<ModeEvent> events;
   std::size_t transitions = 0;
   double accumulation = std::numeric_limits<double>::quiet_NaN();
-  Outcome ended = Outcome::done;  // another one: the run was ended here
+  Outcome ended = Outcome::done;  // any other outcome: the run ended here
   std::string detail;
 
  private:
@@ -193,7 +193,7 @@ class Machine {
   }
 
  private:
-  /// The right-hand side in the mode of the time, with what it knows of its derivatives.
+  /// The right-hand side in the current mode, with its derivatives.
   struct InMode {
     F& rhs;
     const int& mode;
@@ -238,8 +238,8 @@ struct NoProjection {
 
 }  // namespace modes
 
-/// Integrates from (t0, x0) in `mode`. functions: how many values events() fills; table: what is watched in each mode.
-/// rule(ModePoint) -> Transition; observer(StepView, mode) -> bool; after_step(t, x, mode) -> code. Throws what
+/// Integrates from (t0, x0) in `mode`. functions: number of values of events(); table: the monitored surfaces of each
+/// mode. rule(ModePoint) -> Transition; observer(StepView, mode) -> bool; after_step(t, x, mode) -> code. Throws what
 /// integrate() throws.
 template <class F, class G, class Rule, class Observer = modes::NoObserver, class AfterStep = modes::NoProjection>
 ModeResult integrate_modes(std::string_view method, F&& rhs, double t0, std::span<const double> x0, int mode, double t1,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One axis of a plot. In: the values' range, linear or logarithmic. Out: a range with a margin, and ticks at round
+// One axis of a plot. In: the range of values, linear or logarithmic. Out: a range with a margin, and ticks at round
 // numbers.
 #pragma once
 
@@ -12,26 +12,26 @@
 
 namespace eom::plot {
 
-/// A tick: where it is, what it says (a number, a power of ten, or their product), and whether it is a lesser one.
+/// A tick: its position, its label (a number, a power of ten, or their product), and whether it is a minor one.
 struct Tick {
   double value;
-  std::string label;     // "2.5"; empty for a bare power or a lesser tick
+  std::string label;     // "2.5"; empty for a bare power or a minor tick
   std::string exponent;  // "-6" for 10 to the -6; empty: none
   bool minor = false;
 };
 
-/// Whether a value can be shown at all; beyond 1e300 the differences of two would overflow.
+/// Whether a value can be drawn. Beyond 1e300 differences of values would overflow.
 inline bool showable(double value, bool logarithmic) { return std::abs(value) <= 1e300 && (!logarithmic || value > 0); }
 
 struct Axis {
   double low = 0, high = 1;
   bool logarithmic = false;
-  double offset = 0;  // what a linear axis's labels leave out: value = offset + label times 10 to the power
+  double offset = 0;  // omitted from the labels of a linear axis: value = offset + label times 10 to the power
   int power = 0;
   std::string offset_label;
   std::vector<Tick> ticks;
 
-  /// Where a value lies: 0 at low, 1 at high.
+  /// Position of a value: 0 at low, 1 at high.
   double fraction(double value) const {
     if (logarithmic) return std::log(value / low) / std::log(high / low);
     return (value - low) / (high - low);
@@ -48,7 +48,7 @@ inline std::string fixed(double value, double step) {
   return text;
 }
 
-/// The number 1, 2 or 5 times a power of ten nearest above size.
+/// The smallest number 1, 2 or 5 times a power of ten above size.
 inline double round_step(double size) {
   const double power = std::pow(10, std::floor(std::log10(size)));
   for (const double multiple : {1.0, 2.0, 5.0})
@@ -56,8 +56,8 @@ inline double round_step(double size) {
   return 10 * power;
 }
 
-/// What all labels share is said once: an offset where the digits that differ come late, a power of ten where labels
-/// would be long.
+/// Common parts of all labels are factored out: an offset if the labels differ only in late digits, a power of ten if
+/// the labels would be long.
 inline void linear_ticks(Axis& axis, int about) {
   const double step = round_step((axis.high - axis.low) / about);
   const double first = std::ceil(axis.low / step - 1e-9);
@@ -105,8 +105,8 @@ inline void logarithmic_ticks(Axis& axis, int about) {
 
 }  // namespace detail
 
-/// The axis for values from low to high (both showable), widened a little, with about so many
-/// labelled ticks. Where there is no extent, or no value at all (low > high), some range about them is taken.
+/// The axis for values from low to high (both showable), with a margin and about `about` labelled ticks. An empty or
+/// missing range (low > high) is replaced by some range about the values.
 inline Axis make_axis(double low, double high, bool logarithmic, int about) {
   Axis axis;
   axis.logarithmic = logarithmic;

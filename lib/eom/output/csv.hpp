@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A table of numbers in a file. In: column names, rows of (t, values). Out: F.csv, whole or not at all.
-// Rows go to F.csv.partial-XXXXXX (whole_file.hpp); finish(outcome) adds the line "# outcome: NAME" and renames it to
-// F.csv in one go, after an interruption or a failure too. Without finish the partial file stays, with whole lines (a
-// kill that falls into the middle of a write may cut the last one). Numbers have 17 significant digits, as printf's
-// %.17g gives in the C locale, whatever the locale is; -0 is 0.
+// A table of numbers in a file, complete or not at all. In: column names, rows of (t, values). Out: F.csv. Rows are
+// written to F.csv.partial-XXXXXX (whole_file.hpp). finish(outcome) adds the line "# outcome: NAME" and renames the
+// file to F.csv atomically, also after an interruption or a failure. Without finish the partial file remains, with
+// whole lines (a kill during a write may truncate the last one). Numbers have 17 significant digits, like printf's
+// %.17g in the C locale, in any locale; -0 is written as 0.
 #pragma once
 
 #include <charconv>
@@ -43,11 +43,11 @@ class CsvWriter {
     if (finished_) return;
     try {
       file_.write(lines_);
-    } catch (const std::exception&) {  // cannot be told any more
+    } catch (const std::exception&) {  // a destructor cannot report errors
     }
   }
 
-  /// One line: t and as many values as there are columns. Throws std::invalid_argument for another number of values.
+  /// Writes one line: t and one value per column. Throws std::invalid_argument for another number of values.
   void row(double t, std::span<const double> values) {
     if (values.size() != columns_)
       throw std::invalid_argument(path_.string() + ": a row of " + std::to_string(values.size()) + " values for " +
@@ -62,15 +62,16 @@ class CsvWriter {
     if (lines_.size() >= flush_size) flush();
   }
 
-  /// Hands the lines written so far to the operating system.
+  /// Passes the lines written so far to the operating system.
   void flush() {
     if (finished_) throw std::logic_error(path_.string() + ": written to after finish");
-    const std::string lines = std::exchange(lines_, {});  // what fails is not tried again
+    const std::string lines = std::exchange(lines_, {});  // failed writes are not repeated
     file_.write(lines);
     lines_.reserve(2 * flush_size);
   }
 
-  /// The trailing line, then the rename. Throws std::system_error with the path; the partial file then stays.
+  /// Writes the trailing line and renames the file. Throws std::system_error with the path; the partial file then
+  /// remains.
   void finish(Outcome outcome) {
     lines_ += "# outcome: ";
     lines_ += name(outcome);
@@ -80,7 +81,7 @@ class CsvWriter {
     file_.finish();
   }
 
-  /// Where the rows are until finish; empty where they are written through.
+  /// Path of the rows until finish; empty if they are written directly.
   const std::string& partial() const { return partial_; }
   std::uint64_t rows() const { return rows_; }
   std::uint64_t bytes() const { return file_.bytes(); }
@@ -94,7 +95,7 @@ class CsvWriter {
     lines_.append(text, end.ptr);
   }
 
-  /// A comma and the name, in quotes where RFC 4180 asks for them.
+  /// Appends a comma and the name, in quotes if RFC 4180 requires them.
   void append_name(std::string_view column) {
     lines_ += ',';
     if (column.find_first_of(",\"\r\n") == std::string_view::npos) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A line plot as a self-contained SVG document. In: named series, labels, linear or logarithmic axes. Out: a string.
-// Values that cannot be shown (not finite, beyond 1e300, not positive on a logarithmic axis) interrupt the line. All
+// Values that cannot be drawn (not finite, beyond 1e300, not positive on a logarithmic axis) interrupt the line. All
 // text is escaped.
 #pragma once
 
@@ -21,13 +21,13 @@ namespace eom {
 
 struct PlotSeries {
   std::string name;          // empty: not in the legend
-  std::vector<double> x, y;  // of one length
+  std::vector<double> x, y;  // of equal length
   bool line = true;
   bool markers = false;
-  double error_at_end = 0;  // of the last value: a bar where that is more than the line
+  double error_at_end = 0;  // of the last value: drawn as a bar if longer than the line width
 };
 
-/// A place on the horizontal axis, such as an event.
+/// A mark on the horizontal axis, such as an event.
 struct PlotMark {
   double x = 0;
   std::string name;
@@ -37,14 +37,14 @@ struct Plot {
   std::string title, x_label, y_label;
   std::vector<PlotSeries> series;
   bool log_x = false, log_y = false;
-  bool equal_scales = false;  // one unit as long on both axes, for paths in space (linear axes only)
+  bool equal_scales = false;  // equal units on both axes, for paths in space (linear axes only)
   int width = 760, height = 460;
   std::vector<PlotMark> marks;
 };
 
 namespace plot {
 
-// dark enough on white, told apart with any kind of colour vision as far as eight colours can be
+// dark enough on white, and as distinguishable as eight colours can be with any kind of colour vision
 inline constexpr std::array<const char*, 8> colours{"#0b6ab0", "#d1495b", "#1f8a5b", "#e08e0b",
                                                     "#7a4fb5", "#12889a", "#a0527a", "#5b6770"};
 inline constexpr std::array<const char*, 3> dashes{"", "7 4", "2 3"};  // for the second and third eight
@@ -58,13 +58,13 @@ inline std::string escaped(std::string_view text) {
       case '>': out += "&gt;"; break;
       case '"': out += "&quot;"; break;
       case '\'': out += "&#39;"; break;
-      default: out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;  // XML allows hardly any control characters
+      default: out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;  // XML forbids most control characters
     }
   }
   return out;
 }
 
-/// A coordinate in the drawing, to a hundredth.
+/// A coordinate in the drawing, rounded to a hundredth.
 inline std::string number(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.2f", std::clamp(value, -1e6, 1e6));
@@ -74,7 +74,7 @@ inline std::string number(double value) {
   return out == "-0" ? "0" : out;
 }
 
-/// The whole drawing: builds up the document from axes to legend.
+/// Builds the document from axes to legend.
 class Drawing {
  public:
   explicit Drawing(const Plot& given) : plot_(given) {
@@ -85,7 +85,7 @@ class Drawing {
     top_ = (plot_.title.empty() ? 16 : 44) + legend_height;
     const double below = plot_.x_label.empty() ? 36 : 56;
     height_ = plot_.height;
-    // A legend of many rows makes the drawing higher, not the axes lower than can be read.
+    // A legend of many rows increases the height of the drawing; it does not shrink the axes.
     if (legend_rows_ > 1) height_ = std::max(height_, static_cast<int>(top_ + least_height + below));
     bottom_ = height_ - below;
     if (right_ - left_ < 40 || bottom_ - top_ < 40) throw std::invalid_argument("svg plot: too small for its legend");
@@ -131,7 +131,7 @@ class Drawing {
     y_ = make_axis(y.low, y.high, plot_.log_y, static_cast<int>((bottom_ - top_) / 50));
   }
 
-  /// Widens the shorter range about its middle until a unit has the same length on both axes.
+  /// Widens the shorter range about its middle until units have the same length on both axes.
   void equalise(Range& x, Range& y) const {
     const double per_x = (x.high - x.low) / (right_ - left_);
     const double per_y = (y.high - y.low) / (bottom_ - top_);
@@ -181,7 +181,7 @@ class Drawing {
     return (tick.label.empty() ? "" : with_minus(tick.label) + "\u00b7") + power_of_ten(tick.exponent);
   }
 
-  /// What the labels of an axis leave out: "2.5 + ... 10^-7".
+  /// The parts factored out of the labels of an axis: "2.5 + ... 10^-7".
   static std::string note(const Axis& axis) {
     std::string out;
     if (axis.power != 0) out = "\u00d7 " + power_of_ten(std::to_string(axis.power));
@@ -231,7 +231,7 @@ class Drawing {
            (dash.empty() ? "" : " stroke-dasharray=\"" + dash + "\"");
   }
 
-  /// Those within the axis; of many as many as can be told apart.
+  /// Draws the marks within the axis; of many only as many as can be distinguished.
   void draw_marks() {
     double last = -1e300;
     for (const PlotMark& mark : plot_.marks) {
@@ -245,7 +245,7 @@ class Drawing {
     }
   }
 
-  /// The estimated error of the last value, where it is longer than the line is wide.
+  /// Draws the estimated error of the last value if it exceeds the line width.
   void draw_error(const PlotSeries& series, std::size_t k) {
     if (!(series.error_at_end > 0) || series.x.empty() || !x_.shows(series.x.back()) || !y_.shows(series.y.back()))
       return;
@@ -259,7 +259,7 @@ class Drawing {
             escaped(series.name) + "</title></path>\n";
   }
 
-  /// Points nearer than a third of a pixel to the one drawn before are left out: long runs stay small files.
+  /// Points closer than a third of a pixel to the previous one are skipped, so that long runs give small files.
   void draw_series(std::size_t k) {
     const PlotSeries& series = plot_.series[k];
     std::string path;
@@ -290,7 +290,7 @@ class Drawing {
       out_ += std::string("<g stroke=\"#fff\" fill=\"") + colours[k % colours.size()] + "\">" + marks + "</g>\n";
   }
 
-  /// Legend entries in rows above the plot; widths are estimated, since nobody measures text here.
+  /// Places legend entries in rows above the plot. Text widths are estimated.
   void place_legend() {
     double x = 0;
     for (std::size_t k = 0; k < plot_.series.size(); ++k) {
@@ -305,7 +305,7 @@ class Drawing {
     }
   }
 
-  static std::size_t characters(const std::string& text) {  // of UTF-8: bytes that do not continue one
+  static std::size_t characters(const std::string& text) {  // in UTF-8: bytes that are not continuation bytes
     return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
   }
 
@@ -343,7 +343,7 @@ class Drawing {
 
 }  // namespace plot
 
-/// The plot as an SVG document. Throws std::invalid_argument where a series has x and y of different lengths.
+/// The plot as an SVG document. Throws std::invalid_argument if x and y of a series have different lengths.
 inline std::string svg(const Plot& given) { return plot::Drawing(given).document(); }
 
 }  // namespace eom

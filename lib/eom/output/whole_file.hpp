@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A file that is there whole or not at all. In: a path, bytes. Out: the file, replaced in one go by finish().
-// Bytes go to a new file of unpredictable name beside the result, PATH.partial-XXXXXX, made with O_EXCL: nobody can
-// have put a link there, and two writers never share one. Without finish it stays, so that what a killed program had
-// written can be found. Symbolic links are followed: what they point to is replaced, the link stays. What is no regular
-// file (a terminal, a pipe, /dev/full), and what is open as this process's standard output or error, is written
-// through.
+// A file that is written completely or not at all. In: a path, bytes. Out: the file, replaced atomically by finish().
+// Bytes go to a new file with an unpredictable name beside the result, PATH.partial-XXXXXX. It is created with O_EXCL,
+// so it cannot be a link planted by others, and two writers never share one. Without finish it remains, so that the
+// output of a killed program can be found. Symbolic links are followed: their target is replaced, the link remains.
+// Terminals, pipes, devices (/dev/full), and files open as this process's standard output or error are written to
+// directly.
 #pragma once
 
 #include <fcntl.h>
@@ -26,7 +26,7 @@ namespace eom {
 
 class WholeFile {
  public:
-  /// Throws std::system_error with the path and the system's reason, as every other function here.
+  /// Throws std::system_error with the path and the system's reason, like every other function here.
   explicit WholeFile(const std::filesystem::path& path) : path_(path) {
     struct stat found {};
     const bool there = ::stat(path.c_str(), &found) == 0;
@@ -71,7 +71,7 @@ class WholeFile {
     }
   }
 
-  /// Puts the file in its place; where that fails, the partial one stays.
+  /// Renames the partial file to its final name. If that fails, the partial file remains.
   void finish() {
     if (::close(std::exchange(file_, -1)) != 0) fail("close", path_, errno);
     if (partial_.empty()) return;
@@ -79,21 +79,21 @@ class WholeFile {
     partial_.clear();
   }
 
-  /// Nothing stays of it.
+  /// Removes the partial file.
   void discard() {
     if (file_ >= 0) ::close(std::exchange(file_, -1));
     if (!partial_.empty()) ::unlink(std::exchange(partial_, {}).c_str());
   }
 
   const std::filesystem::path& path() const { return path_; }
-  /// Where the bytes are until finish; empty where they are written through.
+  /// Path of the bytes until finish; empty if they are written directly.
   const std::string& partial() const { return partial_; }
   std::uint64_t bytes() const { return bytes_; }
   int descriptor() const { return file_; }
 
-  /// Where `path` leads to: links are followed, also one to what is not there yet.
+  /// The target of `path` with all links followed, even if it does not exist yet.
   static std::filesystem::path followed(std::filesystem::path path) {
-    constexpr int most_links = 40;  // as the system has it
+    constexpr int most_links = 40;  // the limit of the system
     for (int links = 0;; ++links) {
       std::error_code none;
       const std::filesystem::path next = std::filesystem::read_symlink(path, none);
@@ -103,7 +103,7 @@ class WholeFile {
     }
   }
 
-  /// The name of a file, cut so that ".partial-XXXXXX" fits behind it.
+  /// A file name, truncated so that ".partial-XXXXXX" can be appended.
   static std::string shortened(const std::string& name) {
     constexpr std::size_t longest = 255 - 15;
     return name.substr(0, longest);
@@ -112,12 +112,12 @@ class WholeFile {
  private:
   WholeFile() = default;
 
-  /// Opens what is not to be replaced; false where it is a file like any other.
+  /// Opens a file that must not be replaced. False if it is a regular file.
   bool open_through(const struct stat& found) {
     for (const int own : {STDOUT_FILENO, STDERR_FILENO}) {
       struct stat standard {};
       if (::fstat(own, &standard) != 0 || standard.st_dev != found.st_dev || standard.st_ino != found.st_ino) continue;
-      if (S_ISCHR(found.st_mode)) continue;  // the same device, opened anew, is as good
+      if (S_ISCHR(found.st_mode)) continue;  // a new descriptor of the same device is equivalent
       file_ = ::fcntl(own, F_DUPFD_CLOEXEC, 3);
       if (file_ < 0) fail("open", path_, errno);
       return true;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Order and length of the steps of a Taylor series, from the size of its terms. In: coefficients, the state, the
-// tolerances. Out: what a step of some length is off by, how long the next may be, whether its order is to rise.
-// Source: Jorba, Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods,
-// Experimental Mathematics 14 (2005).
+// Control of order and step length of a Taylor series by the size of its terms. In: coefficients, the state, the
+// tolerances. Out: the error of a step, the length of the next one, the change of the order. Source: Jorba, Zou, A
+// software package for the numerical integration of ODEs by means of high-order Taylor methods, Experimental Mathematics
+// 14 (2005).
 //
 // term(i, k): the coefficient of order k of component i, of which the first `components` count; weight(i): 1 over the
 // tolerance of that component.
@@ -15,21 +15,21 @@
 
 namespace eom::taylor {
 
-/// A series as its last terms tell of it.
+/// The last terms of a series.
 struct Measured {
   int order = 0;                // 0: not computed
-  double last = 0, before = 0;  // log2 of the last two terms at h = 1, as far as they count for the error
+  double last = 0, before = 0;  // log2 of the last two terms at h = 1, including their effect on the error
 };
 
 inline constexpr double aim = 0.5;  // of the tolerance that a step may use
 
-/// Of a step h: 1 is just allowed.
+/// Error of a step h: 1 is just allowed.
 inline double error_of(const Measured& series, double h) {
   const double log2_h = std::log2(std::abs(h));
   return std::exp2(std::max(series.last + series.order * log2_h, series.before + (series.order - 1) * log2_h));
 }
 
-/// Of the step at which the last terms use what may be used of the tolerance.
+/// log2 of the step at which the last terms reach their share of the tolerance.
 inline double log2_length(const Measured& series) {
   constexpr double log2_aim = -1;
   return -std::max((series.last - log2_aim) / series.order, (series.before - log2_aim) / (series.order - 1));
@@ -51,7 +51,7 @@ class Order {
   int lowest() const { return std::min(lowest_order, highest_); }
   int after(int order, int trend) const { return std::clamp(order + trend, lowest(), highest_); }
 
-  /// Where the terms of a series that loses e^-1.6 from one to the next reach the tolerance; x(i): the state.
+  /// The order at which the terms of a series with ratio e^-1.6 reach the tolerance; x(i): the state.
   template <class State>
   int first(const State& x) const {
     double largest = 0;
@@ -61,18 +61,18 @@ class Order {
     return std::clamp(wanted, lowest(), highest_);
   }
 
-  /// Of a state that moves on by about `move` times its rate.
+  /// Weight for a state that changes by about `move` times its rate.
   double weight(double x, double slope, double move) const {
     return 1 / (atol_ + rtol_ * (std::abs(x) + 0.5 * std::abs(slope * move)));
   }
 
-  /// The last terms of a series of this order.
+  /// Measures the last terms of a series.
   template <class Term, class Weight>
   void measure(Measured& series, const Term& term, const Weight& weight) const {
     series.last = tail + size_of_term(series.order, term, weight);
     series.before = 2 * tail + size_of_term(series.order - 1, term, weight);
   }
-  /// By how much the next order is to change: an order p costs about (p + 6)^2.
+  /// The change of the next order; an order p costs about (p + 6)^2.
   template <class Term, class Weight>
   int trend(const Measured& series, const Term& term, const Weight& weight) const {
     const int p = series.order;
@@ -83,9 +83,9 @@ class Order {
     return gain > 1e-3 ? 1 : gain < -1e-3 ? -1 : 0;
   }
 
-  /// Whether the series ends, after h, with the derivative f1(i) that the right-hand side has there. Where it jumps, or
-  /// bends within less than the series sees (dry friction in a plane as the slip passes by zero), the coefficients know
-  /// nothing of it, nor does their size.
+  /// Whether the derivative of the series after h agrees with f1(i), that of the right-hand side. If the right-hand
+  /// side jumps, or changes faster than the series resolves (dry friction in a plane near zero slip), neither the
+  /// coefficients nor their size show it.
   template <class Term, class Weight, class Slope>
   bool goes_on(int order, double h, const Term& term, const Weight& weight, const Slope& f1) const {
     double off = 0, size = 0;
@@ -102,11 +102,11 @@ class Order {
 
  private:
   static constexpr int lowest_order = 4;
-  // log2 of what is left out, in units of the last terms: the next ones are shorter by h/radius
+  // log2 of the remainder in units of the last terms: later terms are smaller by h/radius
   static constexpr double tail = -2.3;
-  // times the order, of the tolerance: what the derivative at the end may be off by, over the step
+  // times the order, of the tolerance: allowed error of the derivative at the end, over the step
   static constexpr double jump = 4;
-  static constexpr double smooth = 1e-9;  // of the derivative: what is off by less is rounding
+  static constexpr double smooth = 1e-9;  // of the derivative: smaller deviations are rounding
   static constexpr double overhead = 6;   // an order p costs (p + overhead)^2, measured
 
   /// log2 of the root mean square of the terms of order k at h = 1, in units of the tolerance.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Gauss-Legendre quadrature on [0, 1] with eight nodes: of degree 15. Nodes and weights from the Legendre polynomial by
-// Newton's iteration, once.
+// Gauss-Legendre quadrature on [0, 1] with eight nodes, of degree 15. Nodes and weights are computed once from the
+// Legendre polynomial by Newton's iteration.
 #pragma once
 
 #include <array>

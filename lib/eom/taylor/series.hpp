@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Taylor series of adaptive order: the coefficients at the start of a step give its end, its error, its length and, as
-// they are, the dense output. Steps are chosen before they are made, so that nearly none is rejected. The length comes
-// from the last two coefficients, the order is one that is worth its cost (order.hpp).
+// Taylor series of adaptive order. The coefficients at the start of a step give its end, its error, its length and the
+// dense output. The length of a step is chosen before it is made, so that almost none is rejected. The length follows
+// from the last two coefficients, the order from its cost (order.hpp).
 //
-// An order p costs about (p + 6)^2 and allows the step h_p at which the last two terms are of the size of the
-// tolerance: the order goes where h_p / (p + 6)^2 is largest, by 1 from step to step. With fixed steps, or where a step
-// is made anew with an end that others have chosen, the order rises until the last terms are below the tolerance.
+// An order p costs about (p + 6)^2 and allows the step h_p at which the last two terms reach the tolerance. The order
+// moves by 1 from step to step to the largest h_p / (p + 6)^2. With fixed steps, or if a step is repeated with a given
+// end, the order increases until the last terms are below the tolerance.
 #pragma once
 
 #include <algorithm>
@@ -48,7 +48,7 @@ class Series : public StepEnds {
   static constexpr bool error_uses_end = false;
   static constexpr Needs needs{.required = {Feature::series}, .refuses = refusals};
 
-  /// Throws std::invalid_argument where the state or the order asked for cannot be those of the series.
+  /// Throws std::invalid_argument if the state or the requested order does not match the series.
   static void check(const System& system, double, std::span<const double> x0, const Options& options) {
     if (system.taylor_states > x0.size())
       throw std::invalid_argument("eom::integrate: the series has more components than the state");
@@ -78,7 +78,7 @@ class Series : public StepEnds {
     if (code == 0) measure(here_, x0_, 0);
     return code;
   }
-  /// The series at the end too: it decides the length of the next step.
+  /// Also computes the series at the end, which determines the length of the next step.
   int evaluate_end() {
     if (fixed_) return evaluate(t1_, x1_, f1_);
     const int code = expand(t1_, x1_, f1_, there_, next_order());
@@ -89,7 +89,7 @@ class Series : public StepEnds {
 
   double first_step() { return length(here_); }
 
-  /// Trial state at t1; a code of the right-hand side.
+  /// Computes the trial state at t1. Returns a code of the right-hand side.
   int attempt(double t0, double t1) {
     open(t0, t1);
     for (int terms = order_;
@@ -104,7 +104,7 @@ class Series : public StepEnds {
     return s_ < n_ ? quadratures() : 0;
   }
 
-  /// Of the terms as they were measured when the step was chosen.
+  /// From the terms that were measured when the step was chosen.
   double error_norm(double, double) const { return error_of(here_, h_); }
   double after_accepted(double h, double) {
     measure(there_, x1_, h);
@@ -145,16 +145,15 @@ class Series : public StepEnds {
     return code;
   }
 
-  /// The last terms, for a state that moves on by about `move` times its rate; and whether the next series is worth
-  /// another order.
+  /// Measures the last terms for a state that changes by about `move` times its rate, and the change of the next order.
   void measure(At& at, const double* x, double move) {
     for (std::size_t i = 0; i < error_; ++i) weight_[i] = control_.weight(x[i], at.c[s_ + i], move);
     control_.measure(at, terms_of(at), weights());
     if (!order_is_given_ && !fixed_) trend_ = control_.trend(at, terms_of(at), weights());
   }
 
-  /// Ends the series of a fixed step at its smallest terms, where they do not become small: the step is longer than the
-  /// radius of convergence, or rounding grows from term to term (near a place where constraints lose rank).
+  /// Truncates the series of a fixed step at its smallest terms if these do not become small. Then the step exceeds the
+  /// radius of convergence, or rounding grows from term to term (near a rank-deficient configuration).
   void cut() {
     int best = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -186,7 +185,7 @@ class Series : public StepEnds {
     std::copy(x0_ + s_, x0_ + n_, x + s_);
   }
 
-  /// What has no series: integrated along the one that the others have.
+  /// Components without a series: integrated along the series of the others.
   int quadratures() {
     std::fill(scratch_ + s_, scratch_ + n_, 0.0);
     for (std::size_t g = 0; g < Gauss::count; ++g) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Symmetric compositions of a symmetric step of order 2: its substeps, in units of the step. Source: Hairer, Lubich,
+// Symmetric compositions of a symmetric step of order 2: the substeps, in units of the step. Source: Hairer, Lubich,
 // Wanner, Geometric Numerical Integration, section V.3.2: order 4 after Suzuki (five substeps, eq. (II.4.5)), order 6
-// after Yoshida (seven). The tests check the sums that the orders demand and measure the orders.
+// after Yoshida (seven). The tests check the order conditions and measure the orders.
 #pragma once
 
 #include <array>

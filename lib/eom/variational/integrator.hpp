@@ -4,10 +4,10 @@
 // and 3.5. The discrete Lagrangian is L_d(q0, q1) = h L((q0 + q1)/2, (q1 - q0)/h) at the time of the middle. With p and
 // its rate g = dL/dq there
 //   p0 + A(q0)^T l = p - h/2 g,   psi(q1) = 0,   p1 = p + h/2 g + A(q1)^T l1,   A(q1) qdot1 + b = 0;
-// forces without a potential are in g (d'Alembert's principle in discrete form). Orders 4 and 6 are compositions of
-// such steps. Newton's iteration goes on to rounding; its matrix, by differences, is kept as long as it converges fast.
-// Momenta are carried from step to step with their rounding, velocities follow from them. Dense output: the Hermite
-// cubic, of order 3 within a step.
+// g includes forces without a potential (d'Alembert's principle in discrete form). Orders 4 and 6 are compositions of
+// such steps. Newton's iteration continues to rounding. Its matrix, by differences, is kept as long as it converges
+// fast. Momenta are carried from step to step with their rounding; velocities follow from them. Dense output: the
+// Hermite cubic, of order 3 within a step.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ inline constexpr Refusal refusals[] = {
     {Feature::other_states, ", which has no momentum"},
     {Feature::charts, "an exchange is not symplectic"}};
 
-/// A vector whose sums carry along what rounding leaves out.
+/// A vector with compensated summation.
 class Summed {
  public:
   Summed(double* values, double* rest) : values_(values), rest_(rest) {}
@@ -65,7 +65,7 @@ class Integrator : public implicit::Base {
                                .instead = "midpoint, which is symplectic as well",
                                .keeps_constraints = true};
 
-  /// Throws std::invalid_argument where the state cannot be that of the system.
+  /// Throws std::invalid_argument if the state does not match the system.
   static void check(const System& system, double, std::span<const double> x0, const Options& options) {
     if (2 * system.coordinates + options.quadratures != x0.size())
       throw std::invalid_argument("eom::integrate: " + std::string(name) +
@@ -91,7 +91,7 @@ class Integrator : public implicit::Base {
     l_.resize(k_);
   }
 
-  /// Trial state at t1; a code of the right-hand side, or code_no_convergence.
+  /// Computes the trial state at t1. Returns a code of the right-hand side, or code_no_convergence.
   int attempt(double t0, double t1) {
     open(t0, t1);
     Summed q(q_, q_rest_), p(p_, p_rest_);
@@ -112,7 +112,7 @@ class Integrator : public implicit::Base {
     return 0;
   }
 
-  // no error estimate, no choice of steps
+  // no error estimate and no step size control
   double error_norm(double, double) { return 0; }
   double after_accepted(double h, double) { return h; }
   double after_rejected(double h, double) { return h; }
@@ -134,10 +134,10 @@ class Integrator : public implicit::Base {
   static constexpr double keep_matrix = 1e-2;  // of the contraction of Newton's iteration
   static constexpr int most_iterations = 50;
   static constexpr double at_rounding = 1e-8, sure_rounding = 1e-15;
-  // What is left out has the same sign in every step, so that it adds up; sums with remainders resolve more than a
+  // The neglected remainder has the same sign in every step and accumulates. Compensated sums resolve more than a
   // rounding of q.
   static constexpr double negligible = epsilon / 1024;
-  static constexpr double still = 1e-6;  // of the largest coordinate: below it one is not told from 0
+  static constexpr double still = 1e-6;  // of the largest coordinate: smaller coordinates are treated as 0
 
   int momenta(double t, const double* x, double* p, double* rate) {
     ++counts_.rhs_evaluations;
@@ -157,7 +157,7 @@ class Integrator : public implicit::Base {
     return k_ == 0 ? 0 : of_.constrain(of_.self, t, x, psi_, A, b_);
   }
 
-  /// The state in the middle, where q goes by d in the time h; momentum_ and rate_ there.
+  /// Evaluates the state in the middle, with momentum_ and rate_, for a displacement d of q in the time h.
   int evaluate_middle(double t, double h, const Summed& q, double* p, double* rate) {
     for (std::size_t i = 0; i < c_; ++i) middle_[i] = q[i] + 0.5 * d_[i], middle_[c_ + i] = d_[i] / h;
     for (std::size_t i = 2 * c_; i < n_; ++i) middle_[i] = q[i];
@@ -181,7 +181,7 @@ class Integrator : public implicit::Base {
     return finish(t, t_end, h, q, p);
   }
 
-  /// With the velocity at the start; the iteration mends the rest.
+  /// Start values from the velocity at the start; the iteration corrects them.
   void start_values(double h, const Summed& q) {
     for (std::size_t i = 0; i < c_; ++i) d_[i] = h * q[c_ + i];
     std::fill(l_.begin(), l_.end(), 0.0);
@@ -237,7 +237,7 @@ class Integrator : public implicit::Base {
   int iterate(double t, double t_end, double h, const Summed& q, const Summed& p) {
     double before = 0, least = 0;
     int grown = 0;
-    int stalled = 0;  // corrections that did not halve the least one; at rounding they may go round for ever
+    int stalled = 0;  // corrections that did not halve the smallest one; at rounding they may cycle
     for (int iteration = 1; iteration <= most_iterations; ++iteration) {
       if (const int code = evaluate_middle(t, h, q, momentum_, rate_); code != 0) return code;
       ++counts_.newton_iterations;
@@ -263,9 +263,9 @@ class Integrator : public implicit::Base {
         if (iteration == 2) matrix_wanted_ = ratio > keep_matrix;
         if (ratio < 0.5 && ratio / (1 - ratio) * size <= negligible) return 0;
         if (size > 0.5 * least && ++stalled >= (least < sure_rounding ? 2 : 6) && least < at_rounding)
-          return 0;  // rounding is what is left
-        // One correction may grow: coordinates that have gone far count for little in `size`, and what is mended of
-        // them moves others.
+          return 0;  // only rounding remains
+        // One correction may grow: coordinates that have moved far contribute little to `size`, and their corrections
+        // move others.
         if (ratio > 2 && size > at_rounding && ++grown == 3) return code_no_convergence;
       }
       before = size;
@@ -274,7 +274,7 @@ class Integrator : public implicit::Base {
     return code_no_convergence;
   }
 
-  /// q, p, quadratures and velocities at the end of the substep.
+  /// Computes q, p, quadratures and velocities at the end of the substep.
   int finish(double t, double t_end, double h, Summed& q, Summed& p) {
     if (const int code = evaluate_middle(t, h, q, momentum_, rate_); code != 0) return code;
     if (n_ > 2 * c_) {
@@ -288,7 +288,7 @@ class Integrator : public implicit::Base {
     return velocities(t_end, h, q, p);
   }
 
-  /// p(q, qdot) = p + A^T l, A qdot + b = 0: linear in qdot, but solved twice for the sake of rounding.
+  /// Solves p(q, qdot) = p + A^T l, A qdot + b = 0: linear in qdot, but solved twice to reduce rounding.
   int velocities(double t, double h, Summed& q, Summed& p) {
     for (std::size_t i = 0; i < c_; ++i) q.set(c_ + i, d_[i] / h);
     if (const int code = of_.mass(of_.self, t, q.data(), M_); code != 0) return code;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Invariants and the power balance, watched along a run. In: values at the observed times. Out: how far they drifted.
+// Drift of invariants, and the power balance, along a run. In: values at the observed times. Out: the largest
+// deviations.
 //
 // Drift of a quantity v that should stay at v0:
 //   max_abs_drift      = max_t |v(t) - v0|
-//   max_relative_drift = max_abs_drift / scale,  scale = max(|v0|, largest magnitude handed over)
-// where a magnitude is the size of the terms whose sum v is (for an energy: T + |U|), so that a v0 that is zero or
-// small by cancellation does not make rounding look like a defect. Where the scale is 0 (v0 is 0 and no magnitude was
-// given) max_relative_drift is max_abs_drift itself, in the units of v.
+//   max_relative_drift = max_abs_drift / scale,  scale = max(|v0|, largest magnitude passed)
+// The magnitude is the size of the terms whose sum is v (for an energy: T + |U|). If v0 is zero or small by
+// cancellation, rounding is therefore not reported as a drift. If the scale is 0 (v0 is 0 and no magnitude was passed),
+// max_relative_drift is max_abs_drift, in the units of v.
 //
-// Power balance of the energy E and the work W done since the start by what is not in E:
+// Power balance of the energy E and the work W since the start of the forces that are not part of E:
 //   max_abs_defect      = max_t |E(t) - E(0) - W(t)|
-//   max_relative_defect = max_abs_defect / scale,  scale = max over t of |E|, |W| and the magnitude handed over;
-// where the scale is 0, max_abs_defect itself. Values that are not finite make the drift infinite; it never shrinks
-// back.
+//   max_relative_defect = max_abs_defect / scale,  scale = max over t of |E|, |W| and the magnitude passed;
+// if the scale is 0, max_abs_defect. A value that is not finite makes the drift infinite for the rest of the run.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ inline double distance(double a, double b) {
   return std::isnan(difference) ? std::numeric_limits<double>::infinity() : difference;
 }
 
-/// value / scale; the value itself where the scale is 0, infinite where either is not finite.
+/// value / scale; value if the scale is 0; infinite if either is not finite.
 inline double relative_to(double value, double scale) {
   if (!std::isfinite(value) || !std::isfinite(scale)) return std::numeric_limits<double>::infinity();
   return scale > 0 ? value / scale : value;
@@ -43,7 +43,7 @@ class Drift {
  public:
   explicit Drift(std::string name) : name_(std::move(name)) {}
 
-  /// A value in order of time, the first one the initial; magnitude: size of the terms that it is the sum of.
+  /// Adds a value, in order of time; the first one is the initial value. magnitude: size of the terms whose sum it is.
   void see(double value, double magnitude = 0) {
     if (!started_) initial_ = value;
     started_ = true;
@@ -64,10 +64,10 @@ class Drift {
   double max_abs_drift_ = 0;
 };
 
-/// Energy against the work of what is not in the energy.
+/// Balance of the energy and the work of forces that are not part of the energy.
 class PowerBalance {
  public:
-  /// Values in order of time; energy_magnitude: T + |U|, say, where E = T + U cancels.
+  /// Adds values, in order of time. energy_magnitude: for example T + |U|, if E = T + U cancels.
   void see(double energy, double work, double energy_magnitude = 0) {
     if (!started_) offset_ = energy - work;
     started_ = true;
