@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time of a right-hand side per state: one state at a time and in batches, emitted and written by hand, in turn, in one
+// Time of a right-hand side per state: single states and batches, emitted and handwritten code, alternating in one
 // process.
 #include <fmt/format.h>
 
@@ -24,8 +24,8 @@ using namespace eomgen::bench;
 
 constexpr int repeats = 41;
 constexpr std::size_t count = 64,
-                      stride = 72;   // no power of two: rows that are one apart would share a place in the cache
-constexpr double agreement = 1e-10;  // relative, of two ways to round a linear solve of condition below 1e3
+                      stride = 72;   // not a power of two: adjacent rows would collide in the cache
+constexpr double agreement = 1e-10;  // relative difference of two roundings of a linear solve of condition below 1e3
 
 using Prepare = int (*)(const double* p, double* w);
 using Prepared = int (*)(double t, const double* x, const double* p, const double* w, const double* u, int mode,
@@ -41,17 +41,17 @@ struct Case {
   void (*defaults)(double*, double*);
   eomgen::bench::Rhs rhs;
   Batch batch;
-  std::size_t prepared;  // 0: there is no such function
+  std::size_t prepared;  // 0: no such function
   Prepare prepare;
   Prepared rhs_prepared;
   PreparedBatch batch_prepared;
-  const Handwritten* by_hand;  // null: nobody wrote it
+  const Handwritten* by_hand;  // null: no handwritten version
   const HandwrittenBatch* batch_by_hand;
 };
 
 template <class Run>
 double nanoseconds_per_state(std::size_t calls, const Run& run) {
-  run();  // what ran before it is out of the caches
+  run();  // data of earlier calls has left the caches
   const double start = processor_seconds();
   for (std::size_t k = 0; k < calls; ++k) run();
   const double seconds = processor_seconds() - start;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time of one right-hand side of the planar chain: emitted against written by hand, in turn, in one process.
+// Time of one right-hand side of the planar chain: emitted and handwritten code, alternating in one process.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using namespace eomgen::bench;
 
 constexpr double p[] = {1.0, 1.0, 9.81};  // m, L, g
 constexpr int repeats = 31;
-constexpr double agreement = 1e-10;  // relative, of two ways to round a linear solve of condition below 1e3
+constexpr double agreement = 1e-10;  // relative difference of two roundings of a linear solve of condition below 1e3
 
 using eomgen::bench::Handwritten;
 using eomgen::bench::handwritten;
@@ -38,7 +38,7 @@ struct Case {
 
 constexpr int states = 64;
 
-// A different state with every call, so that nothing can be hoisted out of the loop, and none waits for the last
+// Each call has a different state, so that nothing can be hoisted out of the loop and no call waits for the previous
 // result.
 double nanoseconds(int n, int calls, Rhs rhs) {
   const auto size = 2 * static_cast<std::size_t>(n);

@@ -1,7 +1,7 @@
-// Twelve digits of a double pendulum: this project's solvers beside Odeint's and GSL's, on the same emitted right-hand
-// side, in turn in one process. Unit masses and lengths, g = 9.81, absolute angles 0.5 and -0.3 from rest, t = 10
-// (scene released of S5_double_pendulum). Each contender's tolerance is the loosest of a ladder with a true error of
-// 1e-12 or less in every component of the end.
+// Twelve digits of a double pendulum: the solvers of this project, Odeint and GSL on the same emitted right-hand side,
+// alternating in one process. Unit masses and lengths, g = 9.81, absolute angles 0.5 and -0.3 from rest, t = 10 (scene
+// released of S5_double_pendulum). Each solver uses the loosest tolerance of a ladder with a true error of at most
+// 1e-12 in every component of the end.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using State = std::array<double, 4>;
 
 constexpr State start{0.5, -0.3, 0, 0};
 constexpr double end_time = 10;
-// eomgen bench S5_double_pendulum --scene released --json: reference.end, of 33 digits
+// eomgen bench S5_double_pendulum --scene released --json: reference.end, 33 digits
 constexpr State exact{-0.10754233262236046, 0.3879371483852759, 1.8000472748245735, -1.734236997103355};
 constexpr double wanted = 1e-12;
 constexpr int repeats = 101;
@@ -107,7 +107,7 @@ struct Contender {
   std::vector<double> seconds = {};
 };
 
-/// The loosest tolerance that does, in steps of a quarter of a decade; false: none does.
+/// Finds the loosest sufficient tolerance, in steps of a quarter of a decade. False if there is none.
 bool choose(Contender& contender) {
   for (int k = 0; k <= 28; ++k) {
     contender.tolerance = std::pow(10.0, -9 - 0.25 * k);

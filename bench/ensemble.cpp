@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many double pendulums over 10 s: one after the other by integrate(), and as an ensemble, in one process and on one
-// core each.
+// Many double pendulums over 10 s: one after the other by integrate(), and as an ensemble, in one process on one core.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +37,7 @@ double seconds(const Work& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// One pendulum with what the method needs of it.
+/// One pendulum with the functions that the method needs.
 struct One {
   const double* p;
   int operator()(double t, const double* x, double* dx) const {

@@ -24,7 +24,7 @@ namespace {
 
 using Rhs = std::function<void(Quad t, const State& x, State& dx)>;
 
-/// Gragg's modified midpoint rule over H in n steps, n even: an expansion in even powers of H/n.
+/// Gragg's modified midpoint rule over H in n steps, n even. Its error has an expansion in even powers of H/n.
 State midpoint(const Rhs& rhs, const State& x, const State& slope, Quad t, Quad H, int n) {
   const std::size_t size = x.size();
   const Quad h = H / n;
@@ -83,7 +83,7 @@ State integrate(const Rhs& rhs, State x, Quad t1, int columns, Quad tolerance) {
     Quad largest = 0;
     for (const Quad value : x) largest = fmaxq(largest, fabsq(value));
     for (std::size_t i = 0; i < x.size(); ++i)
-      scale[i] = fmaxq(fmaxq(scale[i], fabsq(x[i])), 1e-2Q * largest);  // not of what passes 0
+      scale[i] = fmaxq(fmaxq(scale[i], fabsq(x[i])), 1e-2Q * largest);  // excludes components that pass through 0
   };
   for (Quad& s : scale) s = 0;
   note_sizes();

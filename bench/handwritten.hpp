@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The right-hand side of a planar chain of N equal point masses m on massless rods of length L, absolute angles from
-// the downward vertical, written by hand as a specialist would, who knows that all masses and all lengths are equal.
-// Emitted code is measured against these, behind the same prototype: every way of solving with every way to sines and
-// cosines.
+// the downward vertical, handwritten by a specialist who knows that all masses and all lengths are equal. Emitted code
+// is compared with these versions, which have the same prototype: each method of solution with each method for sines
+// and cosines.
 //
 // `dense`: handwritten_chain.hpp.
 // `tensions`: along the rods, k_i = T_i/(m L), a tridiagonal system and N divisions;
@@ -20,7 +20,7 @@ struct Handwritten {
   Rhs rhs;
 };
 constexpr int variants = 6;
-/// All of them for N links: 1, 2, 3, 6, 10, 20 or 30.
+/// All versions for N links: 1, 2, 3, 6, 10, 20 or 30.
 template <int N>
 const Handwritten (&handwritten())[variants];
 

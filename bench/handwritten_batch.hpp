@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The chain of handwritten.hpp for as many states at once as a register holds, written by hand: entry i of state s at
-// [i*stride + s], all parameters the same, `count` a multiple of the lanes, no tests and no codes.
+// The chain of handwritten.hpp for as many states at once as a register holds, handwritten. Entry i of state s is at
+// [i*stride + s]; all parameters are equal; `count` is a multiple of the lanes; no checks and no codes.
 #pragma once
 
 #include <cstddef>

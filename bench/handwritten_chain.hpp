@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The right-hand side of a planar chain of N equal point masses m on massless rods of length L, absolute angles from
-// the downward vertical, written by hand as a specialist would: composite masses, each sine and cosine once, the
-// differences of angles from products, an unrolled LDL^T, libm. Emitted code is measured against it.
+// the downward vertical, handwritten by a specialist: composite masses, each sine and cosine once, the differences of
+// angles from products, an unrolled LDL^T, libm. Emitted code is compared with it.
 //   sum_j mu_ij (cos(th_i - th_j) w_j' + sin(th_i - th_j) w_j^2) = -(N - i) (g/L) sin th_i,  mu_ij = N - max(i, j)
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace eomgen::bench {
 
-/// Sines and cosines of the C library; the arrays have room for an even number. False: start again with `Library`.
+/// Sines and cosines of the C library; the arrays have an even length. False: to be repeated with `Library`.
 struct Library {
   template <int N>
   [[gnu::always_inline]] static bool sincos(const double* angle, double* s, double* c) {

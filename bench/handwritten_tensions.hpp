@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `tensions` and `differences` of handwritten.hpp share, over double or a vector of them.
+// Common part of `tensions` and `differences` of handwritten.hpp, over double or a vector of doubles.
 #pragma once
 
 namespace eomgen::bench {

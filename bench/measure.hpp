@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What programs that time code have in common.
+// Common part of the programs that measure times.
 #pragma once
 
 #include <fmt/format.h>
@@ -19,14 +19,14 @@ inline double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Ends the program where what it timed is wrong.
+/// Ends the program if the timed code gives a wrong result.
 inline void require(bool holds, const char* what) {
   if (holds) return;
   fmt::print(stderr, "{}\n", what);
   std::exit(1);
 }
 
-/// Of this program: others may use the processor too.
+/// Time of this process only, since others may use the processor too.
 inline double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 inline std::string processor() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A million double pendulums over 10 s at 1e-9: as an ensemble, and a sample of them one after the other by integrate()
-// and by Boost's Odeint where it is installed, in turn in one process, in time of the processor. Errors of members
-// drawn at random are measured against the reference route.
+// and by Boost's Odeint, if it is installed, alternating in one process, in processor time. Errors of randomly drawn
+// members are measured against the reference solution.
 //   bench_million [MEMBERS [REFERENCES]]
 #include <fmt/format.h>
 
@@ -33,7 +33,7 @@ using namespace eomgen::bench;
 
 constexpr std::size_t states = S5_double_pendulum_states, parameters = S5_double_pendulum_parameters;
 constexpr double t_end = 10, tolerance = 1e-9;
-constexpr std::size_t rounds = 50, in_sample = 4000;  // members of the sample, at most
+constexpr std::size_t rounds = 50, in_sample = 4000;  // largest number of members in the sample
 
 using State = std::array<double, states>;
 using Parameters = std::array<double, parameters>;
@@ -43,7 +43,7 @@ struct Member {
   Parameters p;
 };
 
-/// Angles and masses of its own, by sequences that fill their ranges evenly.
+/// Individual angles and masses, from sequences that fill their ranges evenly.
 Member member(std::size_t i) {
   Member m;
   S5_double_pendulum_defaults(m.x.data(), m.p.data());
@@ -112,11 +112,11 @@ double difference(const State& a, const State& b) {
   return largest;
 }
 
-/// The member's end to 13 digits and more.
+/// The member's end to at least 13 digits.
 State exact(const eomgen::pipeline::Simulation& model, const Member& m) {
   eomgen::reference::Problem problem{
       model.program.functions.front(), {m.x.begin(), m.x.end()}, {m.p.begin(), m.p.end()}, 0, {{t_end, {}}}, {t_end}};
-  // Fewer digits than bench takes: a thousand of them in some minutes.
+  // Fewer digits than in bench: a thousand members take a few minutes.
   const eomgen::reference::Solution solution = eomgen::reference::solve(problem, {26, 30}, {32, 36});
   require(solution.digits_at_end >= 13, "the reference has less than 13 digits");
   State x;

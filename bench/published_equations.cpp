@@ -26,7 +26,7 @@ Problem kepler(const std::string& scene, const std::string& eccentricity, const 
     const Quad GM = at(p, "GM"), r = at(start, "x"), v = at(start, "y_dot");
     const Quad a = 1 / (2 / r - v * v / GM), e = 1 - r / a, n = sqrtq(GM / (a * a * a));
     const Quad turns = roundq(n * t / (2 * M_PIq)), mean = n * t - 2 * M_PIq * turns;
-    Quad low = mean - e, high = mean + e, E = mean;  // Newton, kept between bounds
+    Quad low = mean - e, high = mean + e, E = mean;  // Newton's method with bounds
     for (int i = 0; i < 300; ++i) {
       const Quad f = E - e * sinq(E) - mean;
       (f > 0 ? high : low) = E;
@@ -156,7 +156,7 @@ Problem pendulum() {
   return problem;
 }
 
-/// All cranks turn alike, and couplers keep level: (N/3 + 1/3 + N) L a'' = (N/2 + 1/2 + N) g sin(a).
+/// All cranks move alike and couplers remain level: (N/3 + 1/3 + N) L a'' = (N/2 + 1/2 + N) g sin(a).
 Problem four_bars(int windows, const std::string& t1, bool beyond) {
   Problem problem{"n_four_bar_" + std::to_string(windows),
                   "default",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The published problems by hand: their equations as a textbook or a test set states them, in quadruple precision,
-// integrated by extrapolation. Nothing of the generator is in here, so that agreement with it says something.
+// The published problems by hand: their equations from a textbook or a test set, in quadruple precision, integrated by
+// extrapolation. They use nothing of the generator, so that agreement is significant.
 #pragma once
 
 #include <functional>
@@ -16,17 +16,17 @@ using Values = std::map<std::string, Quad>;  // by the names of the model: param
 
 struct Problem {
   std::string model, scene;
-  std::string literature;                                            // where the values are from, or what is compared
+  std::string literature;                                            // source of the values, or the quantity compared
   std::vector<std::pair<std::string, std::string>> parameters;       // exact decimals
-  std::function<Values(const Values& p)> start;                      // exact, by the model's names
-  std::function<State(const Values& p, const Values& start)> begin;  // to the state of the equations by hand
+  std::function<Values(const Values& p)> start;                      // exact, by names of the model
+  std::function<State(const Values& p, const Values& start)> begin;  // to the state of the handwritten equations
   std::function<void(const Values& p, Quad t, const State& x, State& dx)> rhs;
-  std::function<Values(const Values& p, const State& x)> end;  // and back
+  std::function<Values(const Values& p, const State& x)> end;  // the inverse
   std::string t1;                                              // decimal, or "2 pi"
   std::vector<std::pair<std::string, std::string>>
-      values;  // of the literature at t1; those not given are not published
-  std::function<Values(const Values& p, const Values& start, Quad t)> closed_form = {};  // in place of rhs
-  bool start_is_binary64 = false;  // that start is taken, not what a run solves for
+      values;  // of the literature at t1; missing entries are not published
+  std::function<Values(const Values& p, const Values& start, Quad t)> closed_form = {};  // replaces rhs
+  bool start_is_binary64 = false;  // uses the given start instead of the one that a run computes
   bool by_hand_alone = false;
 };
 
@@ -35,8 +35,8 @@ const std::vector<Problem>& problems();
 Quad number(const std::string& decimal);  // "2 pi" too
 std::string text(Quad x, int digits);
 
-/// The state at t1 by Gragg's method with extrapolation of `columns` columns; each step to `tolerance` of the largest
-/// value of each component along the run, or of 1e-2 of the largest of all.
+/// The state at t1 by Gragg's method with extrapolation of `columns` columns. The error of each step is below
+/// `tolerance` of the largest value of each component along the run, or of 1e-2 of the largest of all.
 State integrate(const std::function<void(Quad t, const State& x, State& dx)>& rhs, State x, Quad t1, int columns,
                 Quad tolerance);
 

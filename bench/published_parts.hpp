@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the files of the published problems share.
+// Common part of the files of the published problems.
 #pragma once
 
 #include <string>

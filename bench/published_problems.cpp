@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The published problems to many digits, by two formulations: the reference route on the shipped model, and equations
-// written by hand in quadruple precision; and against the digits of the literature. Prints the tables of
-// docs/benchmark-problems.md.
+// The published problems to many digits by two formulations: the reference solution of the shipped model, and
+// handwritten equations in quadruple precision. Both are compared with the digits of the literature. Prints the tables
+// of docs/benchmark-problems.md.
 //   bench_published_problems [MODEL [SCENE]]
 #include <cln/dfloat.h>
 #include <cln/float_io.h>
@@ -27,8 +27,8 @@ using published::Problem;
 using published::Quad;
 using published::Values;
 
-constexpr int looks = 100;                      // at the size of each component along the run
-constexpr int columns = 9, other_columns = 11;  // of the two extrapolations, whose agreement is what is claimed
+constexpr int looks = 100;                      // relative to the size of each component along the run
+constexpr int columns = 9, other_columns = 11;  // of the two extrapolations, whose agreement is claimed
 
 Quad quad(const cln::cl_F& x) {
   std::ostringstream out;
@@ -38,7 +38,7 @@ Quad quad(const cln::cl_F& x) {
   return published::number(out.str());
 }
 
-/// Digits that a and b agree in, relative to b, or to `scale` if that is larger.
+/// Number of digits in which a and b agree, relative to b, or to `scale` if that is larger.
 int digits(Quad a, Quad b, Quad scale = 0) {
   const Quad size = fmaxq(fabsq(b), scale);
   if (a == b) return 33;
@@ -47,7 +47,7 @@ int digits(Quad a, Quad b, Quad scale = 0) {
 
 struct ByHand {
   Values end;
-  Values other;  // by more columns and a tighter tolerance
+  Values other;  // with more columns and a tighter tolerance
 };
 
 ByHand by_hand(const Problem& problem, const Values& p, const Values& start, Quad t1) {
@@ -71,7 +71,7 @@ pipeline::Simulation prepare(const Problem& problem) {
   return pipeline::simulate(request);
 }
 
-/// Where the reference route cannot follow.
+/// For models that the reference solution does not support.
 void by_hand_alone(const Problem& problem) {
   Values exact;
   for (const auto& [name, value] : problem.parameters) exact[name] = published::number(value);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time of a right-hand side per state in double and in single precision, one state at a time and in batches, in turn,
-// in one process.
+// Time of a right-hand side per state in double and in single precision: single states and batches, alternating in one
+// process.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace {
 using namespace eomgen::bench;
 
 constexpr int repeats = 41;
-constexpr std::size_t count = 64, stride = 72;  // as in batch.cpp
+constexpr std::size_t count = 64, stride = 72;  // see batch.cpp
 constexpr double agreement = 1e-2;  // of the largest entry: 24 bits, of a linear solve of condition below 1e3
 
 template <class Real>
@@ -87,7 +87,7 @@ class Run {
 
 template <class Call>
 double nanoseconds_per_state(std::size_t calls, const Call& call) {
-  call();  // what ran before it is out of the caches
+  call();  // data of earlier calls has left the caches
   const double start = processor_seconds();
   for (std::size_t k = 0; k < calls; ++k) call();
   return 1e9 * (processor_seconds() - start) / static_cast<double>(calls * count);

@@ -1,5 +1,5 @@
-// A particle on a rough sphere, which it leaves: generated code and the runtime alone. Writes the table that
-// `eomgen run P5_rough_sphere --out F.csv` writes, to the last byte.
+// A particle that leaves a rough sphere: generated code with only the runtime. Writes the table of `eomgen run
+// P5_rough_sphere --out F.csv`, byte for byte.
 #include <cstdio>
 #include <eom/hybrid/run.hpp>
 #include <eom/output/csv.hpp>
@@ -15,7 +15,7 @@ int main(int count, char** arguments) {
     return 2;
   }
   const eom::hybrid::Code code = P5_rough_sphere_code();
-  eom::hybrid::Problem problem = P5_rough_sphere_problem(code);  // anything in it may be changed
+  eom::hybrid::Problem problem = P5_rough_sphere_problem(code);  // all members may be changed
 
   const std::vector<std::size_t> columns = P5_rough_sphere_columns();
   std::vector<std::string> names;

@@ -1,4 +1,4 @@
-// A spherical pendulum made in code: its equations, its C, a run.
+// A spherical pendulum built in code: its equations, its C, a run.
 #include <cstdio>
 #include <eomgen/eomgen.hpp>
 #include <fstream>

@@ -1,4 +1,4 @@
-// The cart and its pendulum with Boost.Odeint: the header of templates, so that any number type would do.
+// The cart and its pendulum with Boost.Odeint. The header contains templates, so that any number type would work.
 #include <array>
 #include <boost/numeric/odeint.hpp>
 #include <cstdio>

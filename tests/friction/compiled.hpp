@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model with friction, derived and made into a program that is read in binary64.
+// A model with friction, derived and compiled to a program that is interpreted in binary64.
 #pragma once
 
 #include <string>

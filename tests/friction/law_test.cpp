@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Friction in the equations and the law that closes them, against d'Alembert's principle, Newton's law and a count of
-// solutions.
+// Friction in the equations, and the friction law that closes them, against d'Alembert's principle, Newton's law and a
+// count of solutions.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -22,7 +22,7 @@ void check_routes(const std::string& text) {
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   verify::Subjects subjects;
   subjects.systems = verify::all_routes(m);
-  // The program in CLN in every mode against Newton's iteration on the law.
+  // Compares the program in CLN, in every mode, with Newton's iteration on the law.
   program::Program program = program::build_program(subjects.systems, {});
   const program::Function& rhs = program.functions[0];
   subjects.programs.push_back(
@@ -41,7 +41,7 @@ double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] 
 
 }  // namespace
 
-TEST_CASE("friction: the equations take up forces of any size, and the program obeys the law in every mode") {
+TEST_CASE("friction: the equations contain forces of any size, and the program satisfies the law in every mode") {
   for (const std::string* text :
        {&test::belt, &test::dry, &test::rough_line, &test::sphere, &test::helix, &test::dumbbell, &test::floor,
         &test::drop, &test::dome, &test::creeping, &test::hinge, &test::wires}) {
@@ -70,7 +70,7 @@ TEST_CASE("friction: on the helix the force is mu |N| against the motion, with N
     CHECK(std::sqrt(dot(F, F)) == doctest::Approx(mu * std::sqrt(dot(N, N))).epsilon(rounding));
     CHECK(dot(F, along) * rate < 0);
   }
-  // Sticking: gravity m g alpha / sqrt(1 + alpha^2) along the wire is what friction holds, (2.149).
+  // Sticking: friction balances gravity m g alpha / sqrt(1 + alpha^2) along the wire, (2.149).
   const double still[2] = {0.8, 0};
   double dx[2];
   REQUIRE(rough.rhs(0, still, 0, dx) == 0);
@@ -79,10 +79,10 @@ TEST_CASE("friction: on the helix the force is mu |N| against the motion, with N
   CHECK(along_wire == doctest::Approx(m * g * alpha / std::sqrt(1 + alpha * alpha)).epsilon(rounding));
 }
 
-TEST_CASE("friction: the dumbbell on a rough floor has its Painleve situations beyond mu = 2 sqrt 2") {
+TEST_CASE("friction: the dumbbell on a rough floor has Painleve configurations only beyond mu = 2 sqrt 2") {
   const double theta = std::atan(std::sqrt(2.0)), g = 9.81;
   for (const double mu : {2.8, 3.0}) {
-    std::string curve = test::dumbbell;  // the same floor with a wall behind it, as one contact of two equations
+    std::string curve = test::dumbbell;  // the same floor and a wall behind it, as one contact of two equations
     curve.replace(curve.find("[\"x\", \"y\"]"), 10, "[\"x\", \"y\", \"z\"]");
     curve.replace(curve.find("holonomic = \"y\""), 15, "holonomic = [\"y\", \"z\"]");
     const test::RoughProgram rail(curve, {1, 1, mu, g});
@@ -114,7 +114,7 @@ TEST_CASE("friction: the dumbbell on a rough floor has its Painleve situations b
   }
 }
 
-TEST_CASE("friction: coefficients that make no sense are refused with their place") {
+TEST_CASE("friction: invalid coefficients are refused with their location") {
   const auto message = [](const std::string& from, const std::string& to) {
     std::string text = test::belt;
     text.replace(text.find(from), from.size(), to);

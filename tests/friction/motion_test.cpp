@@ -41,8 +41,8 @@ TEST_CASE("friction: a block on a belt sticks for 5 and slips for 2(pi - atan 2.
   const eom::ModeResult end = run(rough, {0, 0.2}, 4 * (stick + slip));
   REQUIRE(end.outcome == eom::Outcome::done);
   REQUIRE(end.events.size() >= 6);
-  // The block is carried from x = 0 to the limit x = 1, and sticks again at x = 0 (sticking starts at the mirror image
-  // 1 - 2 * 0.5).
+  // The belt carries the block from x = 0 to the limit x = 1. It sticks again at x = 0 (sticking starts at the mirror
+  // image 1 - 2 * 0.5).
   double t = 5;
   for (std::size_t i = 0; i < end.events.size(); ++i) {
     CHECK(end.events[i].kind == (i % 2 == 0 ? "slip" : "stick"));
@@ -52,9 +52,7 @@ TEST_CASE("friction: a block on a belt sticks for 5 and slips for 2(pi - atan 2.
   }
 }
 
-TEST_CASE(
-    "friction: an oscillator with dry friction stops where and when the closed form says, and loses what friction "
-    "takes") {
+TEST_CASE("friction: an oscillator with dry friction stops as in the closed form, and loses the work of friction") {
   const test::RoughProgram rough(test::dry, {1, 1, 0.25, 1});
   const eom::ModeResult end = run(rough, {1.6, 0}, 20);
   REQUIRE(end.outcome == eom::Outcome::done);
@@ -69,14 +67,14 @@ TEST_CASE(
 
 TEST_CASE("friction: of two masses on rough lines one may stick while the other slides") {
   const test::RoughProgram rough(test::rough_line, {1, 1.5, 10, 8, 0.3, 0.2, 9.81});
-  bool apart = false;  // at first: A is held by 2.6 of 2.94, B is pulled with 5.6 of 4.41
+  bool apart = false;  // at first A sticks with 2.6 of 2.94, B is pulled with 5.6 of 4.41
   const eom::ModeResult end = run(rough, {1.3, 3.0, 0, 0}, 20, [&](const eom::StepView&, int mode) {
     apart = apart || ((mode % 6 % 3 == 0) != (mode / 6 % 3 == 0));
     return true;
   });
   CHECK(end.outcome == eom::Outcome::done);
   CHECK(apart);
-  // In the end both stick, held within their cones.
+  // At the end both stick, within their cones.
   CHECK(end.mode % 3 == 0);
   CHECK(end.mode / 6 % 3 == 0);
   double g[10];

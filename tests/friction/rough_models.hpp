@@ -8,7 +8,8 @@
 
 namespace eomgen::test {
 
-// A block on a belt, held by a spring: sticks for 5 and slips for 2(pi - atan 2.5) with these numbers, again and again.
+// A block on a belt, attached to a spring: with these numbers it sticks for 5 and slips for 2(pi - atan 2.5),
+// periodically.
 inline const std::string belt = R"toml(format = 1
 [parameters]
 m = "1 kg"
@@ -31,7 +32,7 @@ holonomic = "y"
 friction = { static = "mu_s", dynamic = "mu_d", surface_velocity = "v*E1" }
 )toml";
 
-// The same with the law on the coordinate.
+// The same with the law applied to the coordinate.
 inline const std::string dry = R"toml(format = 1
 [parameters]
 m = 1
@@ -49,7 +50,7 @@ name = "floor"
 dry = { coordinate = "x", normal = "F", static = "mu", dynamic = "mu" }
 )toml";
 
-// (3.68): each mass on a rough line of its own.
+// (3.68): each mass on its own rough line.
 inline const std::string rough_line = R"toml(format = 1
 [parameters]
 m1 = 1
@@ -83,7 +84,7 @@ holonomic = ["y2", "z2"]
 friction = { static = "mu_s", dynamic = "mu_d" }
 )toml";
 
-// A particle inside a rough sphere that breathes: two tangents.
+// A particle inside a rough sphere of variable radius: two tangents.
 inline const std::string sphere = R"toml(format = 1
 [parameters]
 m = 1
@@ -145,7 +146,7 @@ holonomic = "y"
 friction = { static = "mu", dynamic = "mu" }
 )toml";
 
-// A ball on a rough floor that it can leave.
+// A ball on a rough floor, with a unilateral contact.
 inline const std::string floor = R"toml(format = 1
 title = "Bouncing ball"
 [parameters]
@@ -160,7 +161,7 @@ restitution = "e"
 friction = { static = 0.4, dynamic = 0.3 }
 )toml";
 
-// A ball that falls on a floor: one coordinate, and nothing left to move while it touches.
+// A ball that falls on a floor: one coordinate, and no freedom in contact.
 inline const std::string drop = R"toml(format = 1
 [parameters]
 m = "1 kg"
@@ -180,7 +181,7 @@ holds = "unilateral"
 restitution = 0.5
 )toml";
 
-// A particle on a rough sphere that it can leave, in space.
+// A particle on a rough sphere with a unilateral contact, in space.
 inline const std::string dome = R"toml(format = 1
 title = "Particle on a rough sphere, with a spring"
 [parameters]
@@ -211,7 +212,7 @@ holds = "unilateral"
 friction = { static = "mu_s", dynamic = "mu_d" }
 )toml";
 
-// The smooth law.
+// The smooth friction law.
 inline const std::string creeping = R"toml(format = 1
 [parameters]
 m = 1
@@ -229,7 +230,7 @@ holonomic = "z"
 friction = { dynamic = "mu", law = "smooth", width = "1e-3 m/s" }
 )toml";
 
-// The normal force on a wire that feels the friction in a hinge: one quadratic equation.
+// The normal force on a wire that depends on the friction in a hinge: one quadratic equation.
 inline const std::string hinge = R"toml(format = 1
 title = "Bead on a rough rod, a pendulum on a rough hinge"
 [parameters]
@@ -260,7 +261,7 @@ holonomic = ["y1", "z1"]
 friction = { static = "mu", dynamic = "mu" }
 )toml";
 
-// Two wires whose normal forces feel the friction of one another: Newton's iteration.
+// Two wires whose normal forces depend on each other's friction: Newton's iteration.
 inline const std::string wires = R"toml(format = 1
 title = "Two beads on rough wires, a mass between them on two rods"
 [parameters]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs of emitted code with the runtime alone give the bytes of `eomgen run`, where they evaluate expressions by
-// themselves: inputs, what time does, what jumps, bounds along a step.
+// Runs of emitted code with only the runtime produce the bytes of `eomgen run`, also if they evaluate expressions:
+// inputs, functions of time, jumps, bounds along a step.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 
 namespace {
 
-const std::string made = EOMGEN_EMITTED_RUNS;  // by the build: code, and tables of `eomgen run`
+const std::string made = EOMGEN_EMITTED_RUNS;  // from the build: code, and tables of `eomgen run`
 
 std::string bytes_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -28,7 +28,7 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Runs it with its rows in a table, and compares that with the one of this name, to the last byte.
+/// Runs the problem, writes its rows to a table, and compares this byte for byte with the table of the given name.
 eom::hybrid::RunResult same_bytes(const std::string& table, eom::hybrid::Problem problem,
                                   const std::vector<std::size_t>& columns) {
   std::vector<std::string> names;
@@ -48,19 +48,20 @@ eom::hybrid::RunResult same_bytes(const std::string& table, eom::hybrid::Problem
 
 }  // namespace
 
-TEST_CASE("emitted runs: an input that is a function of t, a narrow barrier, an event between the samples of a step") {
+TEST_CASE(
+    "emitted runs: an input as a function of t, a narrow barrier and an event between samples give the bytes of run") {
   const eom::hybrid::Code code = driven_code();
   const eom::hybrid::RunResult result = same_bytes("driven", driven_problem(code), driven_columns());
   CHECK(result.outcome == eom::Outcome::done);
   REQUIRE(result.events.size() == 2);
   CHECK(result.events[1].t - result.events[0].t < 1e-5);
-  // Its series would not follow the input.
+  // The series would ignore the input.
   eom::hybrid::Problem series = driven_problem(code);
   series.solver = "taylor";
   CHECK_THROWS_AS(eom::hybrid::run(series), std::invalid_argument);
 }
 
-TEST_CASE("emitted runs: the velocity of a support jumps, a pulse is followed, with other parameters too") {
+TEST_CASE("emitted runs: a jump of a support's velocity and a pulse are resolved, also with other parameters") {
   const eom::hybrid::Code code = support_code();
   const eom::hybrid::RunResult result = same_bytes("support", support_problem(code), support_columns());
   REQUIRE(result.events.size() == 1);
@@ -81,7 +82,7 @@ TEST_CASE("emitted runs: a potential that jumps ends the run with its reason") {
   CHECK(result.detail.find("the potential energy jumps by -3") != std::string::npos);
 }
 
-TEST_CASE("emitted runs: a coordinate leaves its range where the equations hold beyond it") {
+TEST_CASE("emitted runs: a coordinate may leave its range if the equations hold beyond it") {
   const eom::hybrid::Code code = wire_code();
   const eom::hybrid::RunResult result = same_bytes("wire", wire_problem(code), wire_columns());
   CHECK(result.outcome == eom::Outcome::done);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs of models that are written by hand after the C ABI: what the runtime does without the generator.
+// Runs of handwritten models in the form of the C ABI: the runtime without the generator.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -72,7 +72,7 @@ Problem problem(const Code& code, double restitution) {
 
 }  // namespace ball
 
-/// x'' = -sign(x), the kink's branch held; g: an event at x_dot, then the kink.
+/// x'' = -sign(x) with a frozen branch of the kink; g: an event at x_dot, then the kink.
 namespace corner {
 
 int rhs(double, const double* x, const double*, const double*, int mode, double* dx) {
@@ -132,7 +132,7 @@ std::size_t count(const RunResult& result, const std::string& kind) {
 
 }  // namespace
 
-TEST_CASE("hybrid: a ball bounces at the times of its closed form, and lies still where they accumulate") {
+TEST_CASE("hybrid: a ball bounces at the times of its closed form, and rests after their accumulation") {
   const Code code = ball::code();
   Problem problem = ball::problem(code, 0.5);
   const RunResult result = run(problem);
@@ -155,7 +155,7 @@ TEST_CASE("hybrid: a ball bounces at the times of its closed form, and lies stil
   CHECK(result.impulse_work == doctest::Approx(-gravity));  // all of the energy
 }
 
-TEST_CASE("hybrid: a ball without restitution stays where it falls") {
+TEST_CASE("hybrid: a ball without restitution does not bounce") {
   const Code code = ball::code();
   Problem problem = ball::problem(code, 0);
   const RunResult result = run(problem);
@@ -165,7 +165,7 @@ TEST_CASE("hybrid: a ball without restitution stays where it falls") {
   CHECK(result.error.max < 1e-8);
 }
 
-TEST_CASE("hybrid: a kink is crossed where it lies, and counted; recorded events have rows of their own") {
+TEST_CASE("hybrid: a kink is crossed at its surface and counted; recorded events have their own rows") {
   const Code code = corner::code();
   Problem problem = corner::problem(code);
   problem.every = 0.7;
@@ -185,7 +185,7 @@ TEST_CASE("hybrid: a kink is crossed where it lies, and counted; recorded events
   CHECK(result.invariants[0].max_relative_drift < 1e-12);
 }
 
-TEST_CASE("hybrid: an event may stop the run, whose end then has an error in time too") {
+TEST_CASE("hybrid: if an event stops the run, the error estimate includes the time") {
   const Code code = corner::code();
   Problem problem = corner::problem(code);
   problem.events[0].stop = true;
@@ -197,7 +197,7 @@ TEST_CASE("hybrid: an event may stop the run, whose end then has an error in tim
   CHECK(*result.error.t < 1e-9);
 }
 
-TEST_CASE("hybrid: segments end where a table jumps, and each side has its value") {
+TEST_CASE("hybrid: segments end at the jumps of a table, with the value of each side") {
   Code code = corner::code();
   code.kinks.clear();
   code.events = nullptr;
@@ -216,7 +216,7 @@ TEST_CASE("hybrid: segments end where a table jumps, and each side has its value
   CHECK(segments(problem)[1].end == 1.5);
 }
 
-TEST_CASE("hybrid: df/dt is that of the code where inputs stand still or jump, and has differences where they move") {
+TEST_CASE("hybrid: df/dt is that of the code for constant or jumping inputs, and by differences for varying ones") {
   Code code = corner::code();
   code.kinks.clear();
   code.events = nullptr;
@@ -246,7 +246,7 @@ TEST_CASE("hybrid: df/dt is that of the code where inputs stand still or jump, a
   CHECK(moves.state[1] == doctest::Approx(1 - std::cos(2.0)).epsilon(1e-8));
 }
 
-TEST_CASE("hybrid: a coordinate that leaves its range ends the run with the step before") {
+TEST_CASE("hybrid: a coordinate that leaves its range ends the run with the previous step") {
   const Code code = corner::code();
   Problem problem = corner::problem(code);
   problem.ranges = {{-0.25, 1}};
@@ -259,7 +259,7 @@ TEST_CASE("hybrid: a coordinate that leaves its range ends the run with the step
   CHECK(result.state[0] >= -0.25);
 }
 
-TEST_CASE("hybrid: a solver that does not exist, and one that needs what the code has not, are told") {
+TEST_CASE("hybrid: an unknown solver, and one whose functions the code lacks, are refused") {
   const Code code = corner::code();
   Problem problem = corner::problem(code);
   problem.solver = "dopri9";

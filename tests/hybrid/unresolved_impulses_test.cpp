@@ -8,7 +8,7 @@
 
 namespace {
 
-/// Steps of size h along a motion that is known: position and velocity by its formula, acceleration by f.
+/// Steps of size h along a known motion: position and velocity by formula, acceleration by f.
 double largest_impulse(double h, int steps, const std::function<void(double, double*)>& motion,
                        const std::function<double(double)>& f, double& at) {
   eom::hybrid::UnresolvedImpulses impulses(1, 1);
@@ -33,7 +33,8 @@ double largest_impulse(double h, int steps, const std::function<void(double, dou
 
 }  // namespace
 
-TEST_CASE("unresolved impulses: vibrations with ten steps a period have none, at their start and end neither") {
+TEST_CASE(
+    "unresolved impulses: vibrations with ten steps a period have none, neither at their start nor at their end") {
   double at = 0;
   for (const double phase : {0.0, 0.4, 1.1, 2.0, 2.9}) {
     CHECK(largest_impulse(
@@ -43,10 +44,9 @@ TEST_CASE("unresolved impulses: vibrations with ten steps a period have none, at
 }
 
 TEST_CASE(
-    "unresolved impulses: a centre that is passed within one step changes the velocity by up to the force times the "
-    "step, wherever "
-    "in it") {
-  // q'' = -K sign(q) as a force that turns within 1e-9, seen along q = t - s, which the step leaps over.
+    "unresolved impulses: a centre passed anywhere within one step changes the velocity by up to the force times "
+    "the step") {
+  // q'' = -K sign(q) as a force that turns within 1e-9, along q = t - s, narrower than the step.
   constexpr double h = 0.01, K = 3;
   for (const double s : {0.003, 0.5037, 0.9937}) {  // in the first step, in between, in the last
     double at = -1;
@@ -54,7 +54,7 @@ TEST_CASE(
         h, 100, [&](double t, double* x) { x[0] = t - s, x[1] = 1; }, [](double q) { return -K * std::tanh(q / 1e-9); },
         at);
     CAPTURE(s);
-    CHECK(impulse >= K * h);  // what is in doubt is at most 2 K h, and at least as much where the middle is on one side
+    CHECK(impulse >= K * h);  // the unresolved impulse is at most 2 K h, and equal to it if the middle is on one side
     CHECK(impulse <= 2.01 * K * h);
     CHECK(at <= s);
     CHECK(at + h >= s);

@@ -1,4 +1,4 @@
-// A run allocates at its start and end only: operator new is counted over a short and a long run.
+// A run allocates at its start and end only: counts calls of operator new in a short and a long run.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -39,7 +39,8 @@ struct Kepler : problems::KeplerSeries {
   int constrain(double, const double*, double*, double*, double*) const { return 0; }
 };
 
-/// Held on a circle of radius 1, for the methods that keep constraints: without forces, so that x' and y' turn.
+/// Constrained to a circle of radius 1, for the methods that satisfy constraints: without forces, so that x' and y'
+/// rotate.
 struct Circle {
   problems::State start{1, 0, 0, 1};
   int operator()(double, const double* x, double* dx) const {
@@ -61,7 +62,7 @@ struct Circle {
   }
 };
 
-TEST_CASE("all methods: a run of 100 periods allocates as often as one of a tenth of a period") {
+TEST_CASE("all methods: a run of 100 periods makes as many allocations as one of a tenth of a period") {
   const auto check = [](const eom::MethodInfo& method, const auto& problem) {
     CAPTURE(std::string(method.name));
     eom::Options options;
@@ -91,7 +92,7 @@ TEST_CASE("all methods: a run of 100 periods allocates as often as one of a tent
   check(*eom::find_method(eom::Automatic::name), Kepler{});
 }
 
-/// Many states of it, with what methods for lanes ask for.
+/// The same for many states, with the functions that methods for lanes need.
 struct ManyKepler {
   Kepler one;
 
@@ -127,7 +128,7 @@ struct ManyKepler {
   int taylor_order() const { return one.taylor_order(); }
 };
 
-TEST_CASE("ensembles: a hundred members over 100 periods allocate as often as one over a tenth of a period") {
+TEST_CASE("ensembles: a hundred members over 100 periods make as many allocations as one over a tenth of a period") {
   const ManyKepler rhs;
   const problems::State& first = rhs.one.start;
   for (const char* method : {"dopri5", "tsit5", "dop853", "rodas", "taylor"}) {

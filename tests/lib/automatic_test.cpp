@@ -1,5 +1,5 @@
-// `auto`: what it chooses, when it changes to the method for stiff systems and back, what it says of that, and that
-// events, projections and restarts go on with what was chosen.
+// `auto`: its choice of method, its changes to the stiff method and back, its reports, and its continuation after
+// events, projections and restarts.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using eom::Options;
 using eom::Result;
 using problems::State;
 
-/// x' = -1e5 (x - cos t) - sin t: cos t, along which everything else decays fast.
+/// x' = -1e5 (x - cos t) - sin t: solution cos t, to which all others decay fast.
 struct Decay {
   int operator()(double t, const double* x, double* dx) const {
     dx[0] = -1e5 * (x[0] - std::cos(t)) - std::sin(t);
@@ -40,7 +40,7 @@ int elastic_pendulum(double, const double* x, double* dx) {
 }
 const State hanging{1 + 9.81e-8 * std::cos(1.0), 1, 0, 0};
 
-/// Van der Pol's equation with epsilon = 1e-4: stiff but for two jumps in 0 <= t <= 2.
+/// Van der Pol's equation with epsilon = 1e-4: stiff except in two jumps in 0 <= t <= 2.
 int van_der_pol(double, const double* x, double* dx) {
   dx[0] = x[1];
   dx[1] = ((1 - x[0] * x[0]) * x[1] - x[0]) / 1e-4;
@@ -57,7 +57,7 @@ Options options_for(double tolerance, Choice& choice) {
 }  // namespace
 
 TEST_CASE(
-    "auto: where nothing is stiff it is dopri5 or dop853 to the last bit, in both directions of time, and says so") {
+    "auto: without stiffness it is bitwise dopri5 or dop853, in both directions of time, and reports the method") {
   const problems::Kepler kepler(0.9);
   for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13})
     for (const double end : {40.0, -40.0}) {
@@ -74,7 +74,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("auto: a decay a hundred thousand times faster than the motion is handed to radau5, with the reason") {
+TEST_CASE("auto: a decay a hundred thousand times faster than the motion leads to radau5, with the reason") {
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
     CAPTURE(tolerance);
     Choice choice, backwards;
@@ -87,22 +87,22 @@ TEST_CASE("auto: a decay a hundred thousand times faster than the motion is hand
     CHECK(eom::integrate("auto", mirrored, 0, State{1}, -5, options_for(tolerance, backwards)).outcome ==
           eom::Outcome::done);
     CHECK(backwards.method == std::string("radau5"));
-    CHECK(backwards.changes.size() == 1);  // it stays
+    CHECK(backwards.changes.size() == 1);  // no change back
     CHECK(found.outcome == eom::Outcome::done);
     CHECK(choice.method == std::string("radau5"));
     REQUIRE(choice.changes.size() == 1);
     CHECK(choice.changes[0].to == std::string("radau5"));
     CHECK(choice.changes[0].t < 5e-3);
     CHECK(eom::to_text(choice.changes[0]).find("stiff") != std::string::npos);
-    CHECK(found.statistics.steps < 400);  // 80000 and more for stability alone
+    CHECK(found.statistics.steps < 400);  // explicit methods need 80000 for stability alone
     CHECK(found.statistics.jacobians > 0);
     CHECK(found.statistics.difference_evaluations == 0);  // the right-hand side has df/dx
     CHECK(std::abs(found.x[0] - std::cos(5.0)) <
-          5 * std::pow(tolerance, 2.0 / 3));  // of radau5 where all is stiff (docs/runtime.md)
+          5 * std::pow(tolerance, 2.0 / 3));  // steps of radau5 on a permanently stiff problem (docs/runtime.md)
   }
 }
 
-TEST_CASE("auto: vibrations that are not part of the motion are stiff as well") {
+TEST_CASE("auto: vibrations that are not part of the motion count as stiff") {
   for (const double tolerance : {1e-5, 1e-8}) {
     CAPTURE(tolerance);
     Choice choice, of_reference;
@@ -115,7 +115,7 @@ TEST_CASE("auto: vibrations that are not part of the motion are stiff as well") 
   }
 }
 
-TEST_CASE("auto: it goes back where the motion is fast itself, and over again") {
+TEST_CASE("auto: it changes back while the motion itself is fast, repeatedly") {
   for (const double tolerance : {1e-5, 1e-8}) {
     CAPTURE(tolerance);
     Choice choice;
@@ -124,14 +124,14 @@ TEST_CASE("auto: it goes back where the motion is fast itself, and over again") 
     CHECK(choice.changes.size() >= 5);
     CHECK(choice.changes.size() <= 8);
     CHECK(found.statistics.steps < 600);  // dop853: 6000
-    // of dop853 at 1e-13
+    // steps of dop853 at 1e-13
     CHECK(std::abs(found.x[0] - 1.71858720802) < 20 * tolerance);
     const auto estimate = eom::estimate_error("auto", van_der_pol, 0, State{2, 0}, found, options);
     CHECK(estimate.x[0] > 0.1 * std::abs(found.x[0] - 1.71858720802));
   }
 }
 
-TEST_CASE("auto: dense output and events go through changes; what was chosen is kept after an event") {
+TEST_CASE("auto: dense output and events work across changes; the method is kept after an event") {
   Choice choice;
   double worst = 0;
   State x(1);
@@ -147,18 +147,18 @@ TEST_CASE("auto: dense output and events go through changes; what was chosen is 
   const auto g = [](double, const double* at, double* values) { return values[0] = at[0], 0; };
   const auto handler = [&](const eom::EventPoint& point) { return times.push_back(point.t), eom::AtEvent::restart; };
   Options options = options_for(1e-9, choice);
-  options.max_step = 0.1;  // radau5 interpolates by a cubic what is stiff
+  options.max_step = 0.1;  // radau5 interpolates stiff components by a cubic
   const Result found = eom::integrate_events("auto", Decay{}, 0, State{1}, 10, options, g,
                                              {{eom::Direction::any, eom::Watch::breaking}}, handler, see);
   CHECK(found.outcome == eom::Outcome::done);
   REQUIRE(times.size() == 3);
   for (std::size_t k = 0; k < 3; ++k)
     CHECK(std::abs(times[k] - std::numbers::pi * (static_cast<double>(k) + 0.5)) < 1e-7);
-  CHECK(choice.changes.size() == 1);  // without memory: once more after each event
+  CHECK(choice.changes.size() == 1);  // without memory the change would repeat after each event
   CHECK(worst < 1e-6);
 }
 
-TEST_CASE("auto: fixed steps are those of the method chosen; an unknown name is told with auto among the known ones") {
+TEST_CASE("auto: fixed steps do not change the method; the error for an unknown name lists auto") {
   const problems::Kepler kepler;
   Options options;
   options.fixed_step = 0.05;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// integrate() of a System, compiled once for all tests of this folder (compiled.cpp) and not in each file anew.
+// integrate() of a System, compiled once for all tests of this folder (compiled.cpp) instead of in each file.
 #pragma once
 
 #include "eom/ode.hpp"

@@ -1,4 +1,4 @@
-// The CSV file appears whole, with its outcome, or not at all; what is written reads back to the same bits.
+// The CSV file appears complete, with its outcome, or not at all. Its numbers are read back to the same bits.
 #include "eom/output/csv.hpp"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own for one test case, removed at the end.
+/// A temporary folder of one test case.
 struct Folder {
   fs::path path;
   explicit Folder(const char* name) : path(fs::temp_directory_path() / ("eomgen_csv_test_" + std::string(name))) {
@@ -52,14 +52,14 @@ TEST_CASE("csv: t first, 17 significant digits, a trailing line with the outcome
   CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);
 }
 
-TEST_CASE("csv: every number reads back to the same bits, but for the sign of 0") {
+TEST_CASE("csv: every number is read back to the same bits, except the sign of 0") {
   const Folder folder("bits");
   const std::vector<double> values{1.0 / 3, std::numeric_limits<double>::denorm_min(), -1.7976931348623157e308,
                                    123456789.123456789, -0.0};
   eom::CsvWriter csv(folder.path / "run.csv", std::vector<std::string>{"a", "b", "c", "d", "e"});
   csv.row(0.1, values);
   csv.finish(eom::Outcome::done);
-  CHECK(text_of(folder.path / "run.csv").find(",-0") == std::string::npos);  // a result 0 has no sign
+  CHECK(text_of(folder.path / "run.csv").find(",-0") == std::string::npos);  // a result of 0 has no sign
   std::istringstream lines(text_of(folder.path / "run.csv"));
   std::string line;
   std::getline(lines, line);
@@ -73,7 +73,7 @@ TEST_CASE("csv: every number reads back to the same bits, but for the sign of 0"
   }
 }
 
-TEST_CASE("csv: an interrupted run keeps its lines, marked so") {
+TEST_CASE("csv: an interrupted run keeps its lines and records the interruption") {
   const Folder folder("interrupted");
   const fs::path path = folder.path / "run.csv";
   eom::CsvWriter csv(path, columns);
@@ -82,7 +82,7 @@ TEST_CASE("csv: an interrupted run keeps its lines, marked so") {
   CHECK(text_of(path) == "t,theta,theta_dot\n0,1,2\n# outcome: interrupted\n");
 }
 
-TEST_CASE("csv: without finish the .partial file stays with whole lines, and an older file is untouched") {
+TEST_CASE("csv: without finish the .partial file remains with whole lines, and an older file is unchanged") {
   const Folder folder("partial");
   const fs::path path = folder.path / "run.csv";
   std::ofstream(path) << "older\n";
@@ -93,7 +93,7 @@ TEST_CASE("csv: without finish the .partial file stays with whole lines, and an 
     partial_path = csv.partial();
     CHECK(partial_path.starts_with(path.string() + ".partial-"));
     const std::string so_far = text_of(partial_path);
-    CHECK(so_far.size() > 100000);  // written along the way, not kept to the end
+    CHECK(so_far.size() > 100000);  // written during the run, not kept until the end
     CHECK(so_far.back() == '\n');
   }
   CHECK(text_of(path) == "older\n");
@@ -102,7 +102,7 @@ TEST_CASE("csv: without finish the .partial file stays with whole lines, and an 
   CHECK(std::count(partial.begin(), partial.end(), '\n') == 10001);
 }
 
-TEST_CASE("csv: names with commas and quotes are quoted as RFC 4180 asks") {
+TEST_CASE("csv: names with commas and quotes are quoted as in RFC 4180") {
   const Folder folder("names");
   eom::CsvWriter csv(folder.path / "run.csv", std::vector<std::string>{"a,b", "say \"q\"", "plain"});
   csv.finish(eom::Outcome::done);
@@ -125,20 +125,20 @@ TEST_CASE("csv: errors of the file system are thrown with the path") {
   const fs::path folder_there = folder.path / "folder.csv";
   fs::create_directories(folder_there);
   CHECK(message([&] { eom::CsvWriter(folder_there, columns); }).find("folder.csv") != std::string::npos);
-  const fs::path blocked = folder.path / "blocked.csv";  // a folder of that name is in the way of the rename
+  const fs::path blocked = folder.path / "blocked.csv";  // a folder of that name prevents the rename
   eom::CsvWriter csv(blocked, columns);
   fs::create_directories(blocked / "inside");
   CHECK(message([&] { csv.finish(eom::Outcome::done); }).find("blocked.csv") != std::string::npos);
   CHECK(fs::exists(csv.partial()));
 
-  if (fs::exists("/dev/full")) {  // a device that is always full, written through a link
+  if (fs::exists("/dev/full")) {  // a device that is always full, through a link
     fs::create_symlink("/dev/full", folder.path / "full.csv");
     CHECK(message([&] { eom::CsvWriter(folder.path / "full.csv", columns); }).find("full.csv") != std::string::npos);
     CHECK(fs::is_symlink(folder.path / "full.csv"));
   }
 }
 
-TEST_CASE("csv: two writers to one file do not share what they write, nor follow links that were put there") {
+TEST_CASE("csv: two writers to one file do not share a partial file, and do not follow planted links") {
   const Folder folder("two");
   const fs::path path = folder.path / "run.csv";
   std::ofstream(folder.path / "victim") << "mine\n";
@@ -154,7 +154,7 @@ TEST_CASE("csv: two writers to one file do not share what they write, nor follow
   CHECK(text_of(folder.path / "victim") == "mine\n");
 }
 
-TEST_CASE("whole file: links are followed, what is no regular file is written through, and modes stay") {
+TEST_CASE("atomic file: links are followed, pipes and devices are written to directly, and file modes are kept") {
   const Folder folder("kinds");
   fs::create_directories(folder.path / "elsewhere");
   const fs::path target = folder.path / "elsewhere" / "run.csv", link = folder.path / "run.csv";
@@ -169,7 +169,7 @@ TEST_CASE("whole file: links are followed, what is no regular file is written th
   CHECK(text_of(target) == "new\n");
   CHECK(fs::is_symlink(link));
   CHECK(fs::status(target).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
-  // A link to what is not there yet.
+  // A link to a file that does not exist yet.
   fs::create_symlink(fs::path("elsewhere") / "later.csv", folder.path / "later");
   eom::WholeFile later(folder.path / "later");
   later.write("x");
@@ -177,13 +177,13 @@ TEST_CASE("whole file: links are followed, what is no regular file is written th
   CHECK(text_of(folder.path / "elsewhere" / "later.csv") == "x");
   fs::create_symlink("circle", folder.path / "circle");
   CHECK_THROWS_AS(eom::WholeFile(folder.path / "circle"), std::system_error);
-  // A device stays one.
+  // A device is not replaced.
   eom::WholeFile null("/dev/null");
   CHECK(null.partial().empty());
   null.write("away");
   null.finish();
   CHECK(fs::is_character_file("/dev/null"));
-  // The longest name that a file can have has room for its partial one.
+  // The longest possible file name leaves room for the partial name.
   eom::WholeFile longest(folder.path / std::string(255, 'n'));
   longest.write("x");
   longest.finish();

@@ -1,4 +1,4 @@
-// docs/runtime.md shows the example that the tests compile and run, byte for byte, and names every method and outcome.
+// docs/runtime.md contains the compiled and tested example byte for byte, and names every method and outcome.
 #include <doctest/doctest.h>
 
 #include <fstream>
@@ -25,7 +25,7 @@ TEST_CASE("docs/runtime.md: its example is examples/runtime/pendulum.cpp") {
   CHECK(text_of("docs/runtime.md").find("```cpp\n" + code + "```\n") != std::string::npos);
 }
 
-TEST_CASE("docs/runtime.md: the table of what methods need says what they say") {
+TEST_CASE("docs/runtime.md: the table of requirements agrees with the methods") {
   const std::string text = text_of("docs/runtime.md");
   const std::string section = text.substr(text.find("| method | requires |"));
   for (const eom::MethodInfo& method : eom::methods()) {

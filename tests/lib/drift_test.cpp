@@ -1,4 +1,4 @@
-// Invariants and the power balance: the scales are those the header defines, and nothing shrinks back or hides.
+// Drift of invariants and the power balance: the scales defined in the header. The maxima never decrease.
 #include "eom/watch/drift.hpp"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ TEST_CASE("drift: the largest distance from the initial value, relative to it") 
   CHECK(drift.max_relative_drift() == 0.125);
 }
 
-TEST_CASE("drift: an initial value that is zero by cancellation is judged by the magnitude of its terms") {
+TEST_CASE("drift: an initial value that is zero by cancellation is compared with the magnitude of its terms") {
   eom::Drift drift("energy");
   drift.see(0, 100);
   drift.see(1e-12, 200);
@@ -30,7 +30,7 @@ TEST_CASE("drift: an initial value that is zero by cancellation is judged by the
   CHECK(without.max_relative_drift() == 1e-12);  // no scale: absolute
 }
 
-TEST_CASE("drift: a value that is not finite makes it infinite for good") {
+TEST_CASE("drift: a value that is not finite makes it permanently infinite") {
   eom::Drift drift("energy");
   for (const double value : {1.0, std::numeric_limits<double>::quiet_NaN(), 1.0}) drift.see(value);
   CHECK(std::isinf(drift.max_abs_drift()));

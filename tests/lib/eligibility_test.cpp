@@ -1,5 +1,5 @@
-// Methods and what they need, over the registry: each integrates the smallest system that has it, and refuses, with the
-// reason, one where a part is missing, and one that has what it cannot follow.
+// Requirements of all registered methods. Each one integrates the smallest system that meets them. It refuses, with the
+// reason, a system that lacks a part and one with an unsupported feature.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -30,7 +30,7 @@ concept Momenta = (Parts & 2U) != 0;
 template <unsigned Parts>
 concept Constraints = (Parts & 4U) != 0;
 
-/// x'' = -x in the plane, held on y = 0, with some of the parts.
+/// x'' = -x in the plane, constrained to y = 0, with a subset of the optional functions.
 template <unsigned Parts>
 struct Slider {
   Features further = {};
@@ -77,7 +77,7 @@ double end_of(const eom::MethodInfo& method, Features further) {
   return result.x[0];
 }
 
-/// x(1) of a slider that has just these parts.
+/// x(1) of an oscillator with exactly these functions.
 double slide(const eom::MethodInfo& method, Features features, Features further = {}) {
   unsigned chosen = 0;
   for (unsigned k = 0; k < std::size(parts); ++k) chosen |= features.has(parts[k]) ? 1U << k : 0U;
@@ -101,7 +101,7 @@ bool says(const std::string& text, const std::string& part) { return text.find(p
 
 }  // namespace
 
-TEST_CASE("eligibility: every method integrates a system that has what it needs, and no more") {
+TEST_CASE("eligibility: every method integrates a system with exactly its requirements") {
   for (const eom::MethodInfo& method : eom::methods()) {
     CAPTURE(std::string(method.name));
     CHECK(eom::eligible(method, method.needs.required));
@@ -109,7 +109,7 @@ TEST_CASE("eligibility: every method integrates a system that has what it needs,
   }
 }
 
-TEST_CASE("eligibility: every method refuses a system without one of its needs, and says which") {
+TEST_CASE("eligibility: every method refuses a system without one of its requirements, and names it") {
   std::size_t refused = 0;
   for (const eom::MethodInfo& method : eom::methods()) {
     for (const Feature part : parts) {
@@ -130,7 +130,7 @@ TEST_CASE("eligibility: every method refuses a system without one of its needs, 
   CHECK(refused == 5);  // ggl, taylor, and three variational ones
 }
 
-TEST_CASE("eligibility: every method refuses a system that it says it cannot follow, with its reason") {
+TEST_CASE("eligibility: every method refuses a system with a feature on its list of refusals, with the reason") {
   for (const eom::MethodInfo& method : eom::methods()) {
     for (const Feature feature : eom::all_features) {
       const eom::Refusal* const expected = method.needs.refusal(feature);
@@ -151,7 +151,7 @@ TEST_CASE("eligibility: every method refuses a system that it says it cannot fol
   }
 }
 
-TEST_CASE("eligibility: the features of a right-hand side are read off its members and its state") {
+TEST_CASE("eligibility: the features of a right-hand side follow from its members and its state") {
   Slider<0> plain;
   CHECK(eom::system_of(plain).features(4) == Features{});
   Slider<7> full{{Feature::kinks}};
@@ -167,7 +167,7 @@ TEST_CASE("eligibility: the features of a right-hand side are read off its membe
   CHECK(eom::system_of(with).features(4) == Features{Feature::jacobian});
 }
 
-TEST_CASE("eligibility: a system with modes is refused by the methods that keep one set of constraints") {
+TEST_CASE("eligibility: methods with a fixed set of constraints refuse a system with modes") {
   const auto rhs = [](double, const double* x, int, double* dx) { return dx[0] = -x[0], 0; };
   const auto events = [](double, const double*, int, double*) { return 0; };
   const auto rule = [](const eom::ModePoint& point) { return eom::Transition{point.mode}; };
@@ -189,7 +189,7 @@ TEST_CASE("eligibility: a system with modes is refused by the methods that keep 
   }
 }
 
-TEST_CASE("registry: names are found, once each; ensembles take those that say so") {
+TEST_CASE("registry: names are unique and found; ensembles accept the methods that declare it") {
   std::set<std::string> names{eom::Automatic::name};
   std::string all = eom::Automatic::name;
   for (const eom::MethodInfo& method : eom::methods()) {

@@ -1,4 +1,4 @@
-// Events of many runs at once: each member has those of integrate_events() alone, to the last bit, and its end.
+// Events of many runs at once: events and end of each member are bitwise equal to those of integrate_events().
 #include <doctest/doctest.h>
 
 #include <string>
@@ -79,7 +79,7 @@ void events_as_alone(const char* method, const Rhs& rhs, const eom::EnsembleOpti
 
 }  // namespace
 
-TEST_CASE("ensemble: events of every member are those that it has alone, to the last bit, and so is its end") {
+TEST_CASE("ensemble: events and end of every member are bitwise those of a single run") {
   for (const char* method : {"rk4", "dopri5", "tsit5", "dop853"}) {
     eom::EnsembleOptions options;
     if (std::string(method) == "rk4") options.fixed_step = 0.02;

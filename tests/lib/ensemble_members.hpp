@@ -1,5 +1,5 @@
-// Members of an ensemble for tests: many states at once by the functions of one, where each starts, where each ended
-// and what it counted. In: nothing. Out: right-hand sides as integrate_ensemble() takes them, comparisons.
+// Members of an ensemble for tests: many states by the functions of one state, starts, ends and statistics. In:
+// nothing. Out: right-hand sides in the form that integrate_ensemble() expects, comparisons.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -29,17 +29,17 @@ int each(std::size_t count, std::size_t stride, const double* x, const double* p
   return first;
 }
 
-/// What a function of one state wrote, to the place of state s.
+/// Stores the results of a function of one state at the position of state s.
 inline void put(const double* from, std::size_t entries, std::size_t s, std::size_t stride, double* to) {
   for (std::size_t i = 0; i < entries; ++i) to[i * stride + s] = from[i];
 }
 
 constexpr std::size_t states = 4, parameters = 2;
 
-/// Kepler's problem with a mass and a place of its own for the centre; further parameters give codes and values that
-/// are not finite.
+/// Kepler's problem with its own mass and centre per member. Further parameters cause codes and values that are not
+/// finite.
 inline int slopes(double t, const double* x, const double* p, double* dx) {
-  if (p[1] == 2 && t > 1.5) return 1;  // a place that no step crosses
+  if (p[1] == 2 && t > 1.5) return 1;  // a region that no step skips
   if (p[1] == 3 && x[0] < 0.5) return 3;
   const double r2 = x[0] * x[0] + x[1] * x[1], r3 = r2 * std::sqrt(r2);
   dx[0] = x[2];
@@ -76,7 +76,7 @@ inline int event_functions(const double* x, const double* p, double* values) {
   return p[1] == 3 ? 4 : 0;
 }
 
-/// The right-hand side of the members, alone too.
+/// The right-hand side of the members, also of a single one.
 struct Plain {
   struct One {
     const double* p;
@@ -96,7 +96,7 @@ struct Plain {
   One alone(std::size_t, const double* p) const { return {p}; }
 };
 
-/// With Jacobians; m components are no quadratures.
+/// With Jacobians; m components are not quadratures.
 struct WithJacobians : Plain {
   explicit WithJacobians(std::size_t components = states) : m(components) {}
   std::size_t m;
@@ -121,8 +121,8 @@ struct WithJacobians : Plain {
   One alone(std::size_t, const double* p) const { return {{p}, m}; }
 };
 
-/// Kepler's problem with its series; a place without a value, one that no step crosses, and a jump of the slopes at
-/// t = 1.5 that no series sees.
+/// Kepler's problem with its series; a region without a value, a region that no step skips, and a jump of the slopes at
+/// t = 1.5 that no series detects.
 struct WithSeries {
   struct One {
     const double* p;
@@ -141,7 +141,7 @@ struct WithSeries {
       return 0;
     }
     int events(double, const double* x, double* values) const { return event_functions(x, p, values); }
-    int taylor_order() const { return 22; }  // less than some ask for
+    int taylor_order() const { return 22; }  // less than some members need
     std::size_t taylor_states() const { return states; }
   };
   int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
@@ -168,7 +168,8 @@ struct WithSeries {
   One alone(std::size_t, const double* p) const { return {p}; }
 };
 
-/// Ellipses of many shapes, circles of many sizes, some that fail, some that end where they begin, both ways in time.
+/// Ellipses of many shapes, circles of many sizes, some that fail, some with equal start and end, in both directions of
+/// time.
 inline void start_of(std::size_t member, eom::EnsembleStart& start) {
   const double e = 0.1 + 0.03 * static_cast<double>(member % 23);
   start.x[0] = 1 - e;
@@ -181,7 +182,7 @@ inline void start_of(std::size_t member, eom::EnsembleStart& start) {
   start.t1 = member % 13 == 12 ? start.t0 : (member % 5 == 4 ? -1 : 1) * (2 + static_cast<double>(member % 17));
 }
 
-/// One of them where it starts.
+/// The start of one member.
 struct Member {
   problems::State x, p;
   eom::EnsembleStart start;
@@ -214,7 +215,7 @@ std::vector<End> ends_of(const char* method, const Rhs& rhs, std::size_t count, 
   return ends;
 }
 
-/// To the last bit.
+/// Bitwise comparison.
 inline void check_same(const End& end, const eom::Result& alone) {
   CHECK(end.times == 1);
   CHECK(end.outcome == alone.outcome);
@@ -228,7 +229,7 @@ inline void check_same(const End& end, const eom::Result& alone) {
   CHECK(end.statistics.dense_fallbacks == alone.statistics.dense_fallbacks);
 }
 
-/// Every member against its run alone; how many steps were rejected.
+/// Compares every member with its single run. Returns the number of rejected steps.
 template <class Rhs>
 std::size_t check_as_alone(const char* method, const Rhs& rhs, const eom::EnsembleOptions& options, std::size_t count) {
   const std::vector<End> ends = ends_of(method, rhs, count, options);

@@ -1,4 +1,4 @@
-// Many runs at once: each member has the bits, the outcome and the statistics of integrate() alone.
+// Many runs at once: state, outcome and statistics of each member are bitwise equal to those of integrate().
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -10,7 +10,7 @@
 
 using namespace members;
 
-TEST_CASE("ensemble: every member ends as it does alone, to the last bit, whatever the number of lanes and threads") {
+TEST_CASE("ensemble: every member ends bitwise as a single run, for any number of lanes and threads") {
   for (const char* method : {"dopri5", "tsit5", "dop853"}) {
     eom::EnsembleOptions options;
     for (const auto& [lanes, threads] : {std::pair<std::size_t, std::size_t>{32, 1}, {1, 3}, {13, 2}, {64, 4}}) {
@@ -33,7 +33,7 @@ TEST_CASE("ensemble: fixed steps, of every method") {
   for (const char* method : {"rk4", "dopri5", "tsit5", "dop853"}) check_as_alone(method, Plain{}, options, 60);
 }
 
-TEST_CASE("ensemble: Rosenbrock steps of members side by side have the bits that they have alone") {
+TEST_CASE("ensemble: Rosenbrock steps of members side by side are bitwise those of single runs") {
   struct Case {
     double rtol, fixed_step;
     std::size_t quadratures, lanes, threads;
@@ -55,8 +55,7 @@ TEST_CASE("ensemble: Rosenbrock steps of members side by side have the bits that
   }
 }
 
-TEST_CASE(
-    "ensemble: Taylor series of members side by side, each of its own order, have the bits that they have alone") {
+TEST_CASE("ensemble: Taylor series of members side by side, each of its own order, are bitwise those of single runs") {
   struct Case {
     double rtol;
     std::size_t lanes;
@@ -68,7 +67,7 @@ TEST_CASE(
     options.atol = 1e-2 * c.rtol;
     options.lanes = c.lanes;
     options.threads = c.lanes == 13 ? 2 : 1;
-    options.max_steps = 3000;  // at the finest tolerance a jump takes all of them
+    options.max_steps = 3000;  // at the finest tolerance the steps to a jump use up all of them
     if (c.lanes == 64) options.initial_step = 0.3, options.max_step = 0.4;
     CHECK(eom::ensemble::has_lanes<WithSeries>("taylor", options));
     CHECK(check_as_alone("taylor", WithSeries{}, options, 200) > 100);
@@ -79,7 +78,7 @@ TEST_CASE(
   check_as_alone("taylor", WithSeries{}, options, 200);
 }
 
-TEST_CASE("ensemble: the members of the test end in many ways") {
+TEST_CASE("ensemble: the members of the test have many different outcomes") {
   std::vector<int> seen(16);
   for (const End& end : ends_of("dop853", Plain{}, 300, {})) ++seen[static_cast<std::size_t>(end.outcome)];
   for (const eom::Outcome outcome : {eom::Outcome::done, eom::Outcome::singular_mass_matrix,
@@ -89,7 +88,7 @@ TEST_CASE("ensemble: the members of the test end in many ways") {
   }
 }
 
-TEST_CASE("ensemble: one member, none, and all that fail at the start") {
+TEST_CASE("ensemble: one member, no member, and members that all fail at the start") {
   CHECK(ends_of("dop853", Plain{}, 0, {}).empty());
   check_as_alone("tsit5", Plain{}, {}, 1);
   std::size_t ended = 0;
@@ -107,8 +106,7 @@ TEST_CASE("ensemble: one member, none, and all that fail at the start") {
 }
 
 TEST_CASE(
-    "ensemble: what is thrown in a thread is thrown to the caller, an interruption ends all, unknown methods are "
-    "refused") {
+    "ensemble: exceptions of threads reach the caller, an interruption ends all members, unknown methods are refused") {
   eom::EnsembleOptions options;
   options.threads = 3;
   const auto done = [](const eom::EnsembleEnd& end) {
@@ -127,7 +125,7 @@ TEST_CASE(
   CHECK_THROWS_AS(ends_of("rk4", Plain{}, 1, {}), std::invalid_argument);
 }
 
-TEST_CASE("ensemble: methods that know no lanes integrate each member by its functions of one state") {
+TEST_CASE("ensemble: methods without lanes integrate each member by its functions of one state") {
   for (const char* method : {"rodas", "radau5"}) {
     eom::EnsembleOptions options;
     options.rtol = 1e-6;

@@ -1,4 +1,4 @@
-// The estimate of the end state's error against closed forms: within a factor of 10, both ways.
+// The estimate of the end state's error against closed forms: within a factor of 10 in both directions.
 #include "eom/error_estimate.hpp"
 
 #include <doctest/doctest.h>
@@ -16,7 +16,7 @@ void check_estimate(double estimate, double error) {
   CAPTURE(estimate);
   CAPTURE(error);
   CHECK(estimate * tolerances::estimate_factor > error);
-  // below some roundings an estimate may be higher: it does not claim what binary64 cannot carry
+  // near rounding the estimate may be too high: it claims no more accuracy than binary64 has
   CHECK(estimate < tolerances::estimate_factor * std::max(error, tolerances::rounding));
 }
 
@@ -46,7 +46,7 @@ TEST_CASE("estimate: within a factor of 10 of the error for rtol 1e-4 to 1e-15 (
   check_tolerances(problems::Pendulum{}, 30);
 }
 
-TEST_CASE("estimate: within a factor of 10 for fixed steps, down to where rounding takes over") {
+TEST_CASE("estimate: within a factor of 10 for fixed steps, down to rounding") {
   const problems::Kepler kepler;
   for (double step = 0.1; step > 1e-4; step /= 4) {
     CAPTURE(step);
@@ -58,8 +58,8 @@ TEST_CASE("estimate: within a factor of 10 for fixed steps, down to where roundi
   }
 }
 
-TEST_CASE("estimate: a run of so few steps that a tighter one would take the same is repeated with others") {
-  const problems::Pendulum slow(3.1);  // released near the upper equilibrium: steps grow as fast as they may
+TEST_CASE("estimate: a run of so few steps that a tighter one would repeat them is repeated with other steps") {
+  const problems::Pendulum slow(3.1);  // released near the upper equilibrium: steps grow at the largest allowed rate
   eom::Options options;
   options.rtol = 1e-3;
   options.atol = 1e-6;
@@ -69,7 +69,7 @@ TEST_CASE("estimate: a run of so few steps that a tighter one would take the sam
     const auto estimate = eom::estimate_error("dop853", slow, 0, slow.start, result, options);
     check_estimate(estimate.max, problems::largest_difference(result.x, slow.exact(end)));
   }
-  options.fixed_step = 10;  // longer than the run: one step, and a half of 10 would be the same one
+  options.fixed_step = 10;  // longer than the run: a single step, which half of 10 would repeat
   const auto result = eom::integrate("rk4", slow, 0, slow.start, 0.5, options);
   const auto estimate = eom::estimate_error("rk4", slow, 0, slow.start, result, options);
   check_estimate(estimate.max, problems::largest_difference(result.x, slow.exact(0.5)));
@@ -87,7 +87,7 @@ TEST_CASE("estimate: a run whose steps are all bounded by max_step is repeated w
   check_estimate(estimate.max, problems::largest_difference(result.x, pendulum.exact(10)));
 }
 
-TEST_CASE("estimate: where two runs agree up to rounding a third one is made, and its cost is told") {
+TEST_CASE("estimate: if two runs agree up to rounding a third one is made, and its cost is reported") {
   const problems::Oscillator oscillator;
   eom::Options options;
   options.rtol = 1e-6;
@@ -102,7 +102,7 @@ TEST_CASE("estimate: where two runs agree up to rounding a third one is made, an
   CHECK(estimate.max >= tolerances::epsilon * std::abs(result.x[1]));
 }
 
-TEST_CASE("estimate: of a run that stopped early it is that at the time reached") {
+TEST_CASE("estimate: for a run that stopped early it is the error at the time reached") {
   const problems::Pendulum pendulum;
   eom::Options options;
   options.rtol = 1e-6;
@@ -113,7 +113,7 @@ TEST_CASE("estimate: of a run that stopped early it is that at the time reached"
   check_estimate(estimate.max, problems::largest_difference(result.x, pendulum.exact(result.t)));
 }
 
-TEST_CASE("estimate: infinite, with the outcome told, where the further run fails") {
+TEST_CASE("estimate: infinite, with the outcome reported, if the repeated run fails") {
   const problems::Oscillator oscillator;
   eom::Options options;
   const auto result = eom::integrate("dopri5", oscillator, 0, oscillator.start, 3, options);

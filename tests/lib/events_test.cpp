@@ -1,4 +1,4 @@
-// Events: crossings where the closed forms say, with every method, both ways in time; what is found once is found once.
+// Events: crossings at the times of closed forms, with every method, in both directions of time, each found once.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ struct Seen {
   std::vector<double> x;
 };
 
-/// The oscillator from (1, 0): x = cos t, with all events it meets; `watch` of all functions.
+/// The oscillator from (1, 0): x = cos t, with all of its events; `watch` of all functions.
 template <class G>
 std::vector<Seen> crossings(const eom::MethodInfo& method, double t1, G g, std::vector<EventFunction> functions,
                             eom::Options options) {
@@ -59,7 +59,7 @@ const auto position = [](double, const double* x, double* g) { return g[0] = x[0
 
 }  // namespace
 
-TEST_CASE("all methods: the zeros of cos t and no others, passing or breaking, both ways in time") {
+TEST_CASE("all methods: the zeros of cos t and no others, passing or breaking, in both directions of time") {
   for (const eom::MethodInfo& method : problems::methods())
     for (const Watch watch : {Watch::passing, Watch::breaking})
       for (const double t1 : {20.0, -20.0}) {
@@ -71,13 +71,13 @@ TEST_CASE("all methods: the zeros of cos t and no others, passing or breaking, b
           const double exact = std::copysign((static_cast<double>(k) + 0.5) * pi, t1);
           CHECK(std::abs(seen[k].t - exact) < problems::coarser(method) * tolerances::event_time);
           CHECK(std::abs(seen[k].x[0]) < problems::coarser(method) * tolerances::event_time);
-          // cos falls through its zero at pi/2; going back from 0 it is met at -pi/2, where it rises with t.
+          // cos decreases through its zero at pi/2. Backwards from 0 the zero is at -pi/2, where cos increases with t.
           CHECK(seen[k].up == ((k % 2 == 1) != (t1 < 0)));
         }
       }
 }
 
-TEST_CASE("all methods: directions are those of time, whichever way the run goes") {
+TEST_CASE("all methods: event directions refer to increasing time, for both directions of the run") {
   for (const eom::MethodInfo& method : problems::methods())
     for (const double t1 : {20.0, -20.0}) {
       CAPTURE(std::string(method.name));
@@ -115,7 +115,7 @@ TEST_CASE("all methods: several functions in one step come in the order of the r
     }
 }
 
-TEST_CASE("all methods: a double root inside one step is two events, and one that is missed by a hair is none") {
+TEST_CASE("all methods: a double root inside one step gives two events, and a narrowly missed one gives none") {
   // x = cos t, and a level just below its maximum at 2 pi: crossed at 2 pi -+ acos(level), 0.0014 apart from it.
   for (const double level : {1 - 1e-6, 1 + 1e-6}) {
     const auto g = [level](double, const double* x, double* value) { return value[0] = x[0] - level, 0; };
@@ -137,7 +137,7 @@ TEST_CASE("all methods: a double root inside one step is two events, and one tha
   }
 }
 
-TEST_CASE("an event function that starts at zero is not found at the start, but when it comes back") {
+TEST_CASE("an event function that starts at zero has no event at the start, only at its return to zero") {
   const auto velocity = [](double, const double* x, double* g) { return g[0] = x[1], 0; };  // -sin t: 0 at the start
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
@@ -148,7 +148,7 @@ TEST_CASE("an event function that starts at zero is not found at the start, but 
   }
 }
 
-TEST_CASE("a passing event leaves the run as it was, to the last bit") {
+TEST_CASE("a passing event does not change a bit of the run") {
   const problems::Pendulum pendulum;
   for (const eom::MethodInfo& method : problems::methods()) {
     const eom::Options options = tight(method);
@@ -175,7 +175,7 @@ TEST_CASE("events are as accurate as the steps: the time of a stop has the order
       CHECK(r.outcome == eom::Outcome::stopped_by_event);
       return std::abs(r.t - pendulum.period() / 4);
     };
-    // A mean over neighbouring steps: where in the last step the event lies changes with the step.
+    // A mean over neighbouring steps, since the position of the event within the last step varies with the step.
     const auto mean = [&](double step) {
       double sum = 0;
       for (int k = 0; k < 16; ++k) sum += std::log(error(step * (1 + 0.01 * k)) + 1e-300);
@@ -187,7 +187,7 @@ TEST_CASE("events are as accurate as the steps: the time of a stop has the order
   }
 }
 
-TEST_CASE("the observer sees steps that join, the last before an event ending there") {
+TEST_CASE("the observer receives adjacent steps, the last one ending at the event") {
   const problems::Oscillator oscillator{{1, 0}};
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
@@ -212,8 +212,8 @@ TEST_CASE("the observer sees steps that join, the last before an event ending th
   }
 }
 
-TEST_CASE("a motion that would slide along the surface ends told, not in an endless loop") {
-  // x' = -sign x: both sides lead to x = 0. The side is switched at the surface.
+TEST_CASE("a motion that would slide along the surface ends with a report, not in an endless loop") {
+  // x' = -sign x: both sides lead to x = 0. The handler switches the side at the surface.
   double side = 1;
   const auto f = [&side](double, const double*, double* dx) { return dx[0] = -side, 0; };
   const auto handler = [&side](const EventPoint& point) {
@@ -228,7 +228,7 @@ TEST_CASE("a motion that would slide along the surface ends told, not in an endl
   CHECK(r.detail.find("without time going on") != std::string::npos);
 }
 
-TEST_CASE("an event function without a value is no event; one that fails at the start ends the run") {
+TEST_CASE("an event function without a value gives no event; one that fails at the start ends the run") {
   const auto root = [](double t, const double*, double* g) { return g[0] = std::sqrt(t - 1) - 1, 0; };  // 0 at t = 2
   const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
   const std::vector<double> start{0};
@@ -248,7 +248,7 @@ TEST_CASE("an event function without a value is no event; one that fails at the 
 }
 
 TEST_CASE(
-    "a dip between two samples is found: of a function with a kink, and of a short one by what crosses within it") {
+    "a dip between two samples is found: of a function with a kink, and a short one by another crossing within it") {
   const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
   const std::vector<double> start{0};
   eom::Options options;
@@ -263,13 +263,13 @@ TEST_CASE(
             .outcome == eom::Outcome::done);
     return events;
   };
-  // As a friction limit about N = 0: the parabola through three of the nine samples stays above zero.
+  // Like a friction limit near N = 0: the parabola through three of the nine samples remains positive.
   const auto kink =
       met([](double t, const double*, double* g) { return g[0] = std::abs(t - 0.4) - 0.01, g[1] = 1, 0; });
   REQUIRE(kink.size() == 2);
   CHECK(std::abs(kink[0].second - 0.39) < tolerances::event_time);
   CHECK(std::abs(kink[1].second - 0.41) < tolerances::event_time);
-  // Flat at all samples; where the other function crosses it is below zero, so it has crossed before.
+  // Flat at all samples. At the crossing of the other function it is negative, so it has crossed before.
   const auto pulse = met([](double t, const double*, double* g) {
     g[0] = t - 0.4;
     g[1] = 1 - 2 * std::exp(-1e6 * (t - 0.4) * (t - 0.4));
@@ -282,7 +282,7 @@ TEST_CASE(
   CHECK(pulse[1].first == 0);
 }
 
-TEST_CASE("a function that has another meaning after an event is watched from where it is then") {
+TEST_CASE("a function with another meaning after an event is monitored from its new value on") {
   int part = 0;
   const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
   const auto g = [&part](double t, const double*, double* value) { return value[0] = (part == 0 ? 1 : 3) - t, 0; };
@@ -299,7 +299,7 @@ TEST_CASE("a function that has another meaning after an event is watched from wh
   CHECK(std::abs(times[1] - 3) < tolerances::event_time);
 }
 
-TEST_CASE("estimate: sees the error of a way to an event that is shorter than any of its fixed steps") {
+TEST_CASE("estimate: includes the error of a path to an event that is shorter than all fixed steps") {
   // v' = -1 - v until v = 0: x has gone v0 - log(1 + v0), and stands.
   const double v0 = 0.4, exact = v0 - std::log(1 + v0);
   const std::vector<double> start{0, v0};

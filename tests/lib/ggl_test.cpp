@@ -1,5 +1,5 @@
-// What the stabilised index-2 form promises: order 5 and a dense output of order 4 in both directions of time,
-// constraints at rounding without projection, redundant and nonholonomic ones, events; and what it refuses.
+// Properties of the stabilised index-2 form: order 5 and dense output of order 4 in both directions of time;
+// constraints to rounding without projection, also redundant and nonholonomic ones; events; refusals.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -16,8 +16,8 @@ using eom::Options;
 using eom::Result;
 using problems::State;
 
-/// A pendulum in Cartesian coordinates, its rod 1 + stretch sin t long, with masses that differ along x and y (an
-/// anisotropic metric); the constraint as many times as `rows` says, in other units; the last one missed by
+/// A pendulum in Cartesian coordinates with rod length 1 + stretch sin t and different masses along x and y (an
+/// anisotropic metric). The constraint is repeated `rows` times in other units; the last copy is violated by
 /// `contradiction` t.
 struct Rod {
   double stretch = 0.1, heavy = 1;
@@ -61,7 +61,7 @@ struct Rod {
   }
 };
 
-/// A skate that turns with rate 2 at speed 3: a circle. sin(theta) x' = cos(theta) y' binds velocities only.
+/// A skate that turns with rate 2 at speed 3: a circle. sin(theta) x' = cos(theta) y' constrains velocities only.
 struct Skate {
   static constexpr double turning = 2, speed = 3;
   int operator()(double, const double* x, double* dx) const {
@@ -133,11 +133,11 @@ TEST_CASE(
         });
         return inside;
       };
-      CHECK(std::abs(std::log2(dense(0.2) / dense(0.05)) / 2 - 5) < 0.4);  // one more within a step
+      CHECK(std::abs(std::log2(dense(0.2) / dense(0.05)) / 2 - 5) < 0.4);  // plus one within a step
     }
 }
 
-TEST_CASE("ggl: a constraint on velocities alone, to order 5 against a closed form") {
+TEST_CASE("ggl: order 5 for a velocity constraint alone, against a closed form") {
   const Skate f;
   for (const double end : {2.0, -2.0}) {
     const auto error = [&](double h) {
@@ -158,7 +158,7 @@ TEST_CASE("ggl: constraints stay at rounding for 1000 steps and under error cont
     CHECK(found.outcome == eom::Outcome::done);
     return largest;
   };
-  CHECK(drift("ggl", 50, fixed(0.05)) < 1e-14);  // rounding of terms of size 1, not growing
+  CHECK(drift("ggl", 50, fixed(0.05)) < 1e-14);  // rounding of terms of size 1, without growth
   CHECK(drift("radau5", 50, fixed(0.05)) > 1e-10);
   for (const double r : {1e-4, 1e-8}) {
     CHECK(drift("ggl", 50, tolerance(r)) < 1e-14);
@@ -196,11 +196,11 @@ TEST_CASE("ggl: events of a pendulum in Cartesian coordinates at the times of th
 }
 
 TEST_CASE(
-    "ggl: rows that contradict one another end the run; a start beside the constraints, and a problem without, are "
+    "ggl: contradictory rows end the run; a start that violates the constraints, and a problem without any, are "
     "refused") {
   const Result found = eom::integrate("ggl", Rod{0.1, 1, 2, 1e-3}, 0, Rod{}.start(), 1, tolerance(1e-8));
   CHECK(found.outcome == eom::Outcome::step_too_small);
-  CHECK(found.t < 1e-4);  // where the contradiction is seen
+  CHECK(found.t < 1e-4);  // at which the contradiction is detected
   const problems::Kepler kepler;
   CHECK_THROWS_WITH_AS(eom::integrate("ggl", kepler, 0, kepler.start, 1), doctest::Contains("constraints"),
                        std::invalid_argument);

@@ -1,4 +1,4 @@
-// What only the implicit methods promise: their coefficients, stiff problems, the use of df/dx, failures that are told.
+// Properties of the implicit methods only: coefficients, stiff problems, the use of df/dx, reported failures.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -50,7 +50,7 @@ struct VanDerPol {
 
 }  // namespace
 
-TEST_CASE("radau5: the tableau worked out is the published one (Hairer, Wanner, section IV.8)") {
+TEST_CASE("radau5: the computed tableau is the published one (Hairer, Wanner, section IV.8)") {
   const eom::implicit::RadauTableau& r = eom::implicit::RadauTableau::of(3);
   const double root6 = std::sqrt(6.0);
   const double T[3][3]{{0.091232394870892942792, -0.14125529502095420843, -0.030029194105147424492},
@@ -72,14 +72,14 @@ TEST_CASE("radau5: the tableau worked out is the published one (Hairer, Wanner, 
   }
 }
 
-TEST_CASE("radau5: the bump of its dense output has its slopes; what gives the slope at the start is right") {
+TEST_CASE("radau5: the quartic of its dense output has the required slopes; the weights of the start slope are right") {
   const eom::implicit::RadauTableau& r = eom::implicit::RadauTableau::of(3);
   using eom::implicit::bump;
   const auto slope = [](double s) { return 1 - 9 * s + 18 * s * s - 10 * s * s * s; };
   for (std::size_t i = 0; i < 3; ++i) CHECK(std::abs(slope(r.c[i])) < tolerances::order_condition);
   for (const double s : {0.2, 0.7, 1.0}) CHECK(std::abs((bump(s + 1e-5) - bump(s - 1e-5)) / 2e-5 - slope(s)) < 1e-8);
   CHECK(std::abs(bump(1)) < tolerances::order_condition);
-  // slope at 0 of the polynomial that is s, s^2, s^3 at the stages: 1, 0, 0
+  // slope at 0 of the polynomial with values s, s^2, s^3 at the stages: 1, 0, 0
   for (int k = 1; k <= 3; ++k) {
     double slope_at_start = 0;
     for (std::size_t i = 0; i < 3; ++i) slope_at_start -= r.slope[i] * std::pow(r.c[i], k);
@@ -87,7 +87,7 @@ TEST_CASE("radau5: the bump of its dense output has its slopes; what gives the s
   }
 }
 
-TEST_CASE("implicit methods: van der Pol with epsilon = 1e-6 in steps that accuracy asks for") {
+TEST_CASE("implicit methods: van der Pol with epsilon = 1e-6 in steps determined by accuracy") {
   const VanDerPol problem;
   for (const eom::MethodInfo& method : adaptive_implicit())
     for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
@@ -101,7 +101,7 @@ TEST_CASE("implicit methods: van der Pol with epsilon = 1e-6 in steps that accur
       CHECK(result.statistics.jacobians > 0);
     }
   Options options = with_tolerance(1e-4);
-  options.max_steps = 100'000;  // the explicit ones need ten times as many for stability alone
+  options.max_steps = 100'000;  // explicit methods need ten times as many for stability alone
   CHECK(eom::integrate("dopri5", problem, 0, problem.start, 2, options).outcome == eom::Outcome::max_steps);
 }
 
@@ -122,14 +122,15 @@ TEST_CASE("implicit methods: x' = lambda (x - cos t) - sin t follows cos t for l
         const Result result = eom::integrate(method.name, eom::WithJacobian{rhs, jacobian}, 0, problems::State{start},
                                              10, with_tolerance(1e-8));
         CHECK(result.outcome == eom::Outcome::done);
-        // radau5 compares with 1e-8^(2/3) / 10 = 5e-7, and what lambda damps is of no higher order than its estimate
+        // radau5 compares with 1e-8^(2/3) / 10 = 5e-7. For components that lambda damps, the order is that of the
+        // estimate.
         CHECK(std::abs(result.x[0] - std::cos(10.0) - (start - 1) * std::exp(10 * lambda)) < 5e-6);
         CHECK(result.statistics.steps < 1000);
       }
     }
 }
 
-TEST_CASE("implicit methods: differences stand in for df/dx, and are told") {
+TEST_CASE("implicit methods: differences replace df/dx, and are reported") {
   const VanDerPol problem;
   const auto plain = [&](double t, const double* x, double* dx) { return problem(t, x, dx); };
   const auto has_none = [](double, const double*, double*, double*) { return eom::no_jacobian_here; };
@@ -149,7 +150,7 @@ TEST_CASE("implicit methods: differences stand in for df/dx, and are told") {
   }
 }
 
-TEST_CASE("radau5: df/dx and factors are kept while they serve") {
+TEST_CASE("radau5: df/dx and its factors are kept while the iteration converges") {
   const problems::Pendulum pendulum;
   const Result result = eom::integrate("radau5", pendulum, 0, pendulum.start, 30, with_tolerance(1e-11));
   CHECK(2 * result.statistics.jacobians < result.statistics.steps);
@@ -157,7 +158,7 @@ TEST_CASE("radau5: df/dx and factors are kept while they serve") {
   CHECK(result.statistics.newton_iterations < 3 * result.statistics.steps);
 }
 
-TEST_CASE("implicit methods: a code of the jacobian ends the run as one of the right-hand side does") {
+TEST_CASE("implicit methods: a code of the jacobian ends the run like one of the right-hand side") {
   const auto rhs = [](double, const double* x, double* dx) { return dx[0] = -x[0], 0; };
   const auto jacobian = [](double t, const double*, double* dfdx, double* dfdt) {
     dfdx[0] = -1;
@@ -172,7 +173,7 @@ TEST_CASE("implicit methods: a code of the jacobian ends the run as one of the r
   }
 }
 
-TEST_CASE("radau5: an iteration that cannot converge ends the run, and the reason is told") {
+TEST_CASE("radau5: an iteration that cannot converge ends the run, and the reason is reported") {
   std::mt19937 noise(7);
   const auto rough = [&](double, const double* x, double* dx) {
     return dx[0] = x[0] + 1e3 * std::uniform_real_distribution<double>(-1, 1)(noise), 0;

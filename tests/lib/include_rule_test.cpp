@@ -1,5 +1,4 @@
-// The runtime includes the standard library and itself; Eigen where it projects and where it runs models with
-// constraints; every header is MIT.
+// The runtime includes the standard library and itself, and Eigen for projection and constraints. Every header is MIT.
 #include <doctest/doctest.h>
 
 #include <cctype>
@@ -16,9 +15,8 @@ bool allowed(const std::string& included, const std::string& header) {
   if (included.starts_with("\"eom/")) return true;
   if (included.starts_with("<Eigen/"))
     return header == "projection.hpp" || header == "singular_passage.hpp" || header == "rounding.hpp" ||
-           header == "jumps.hpp";  // least steps and momenta, where M may be singular
-  // A file that nobody else can have put there, and that follows no link, is opened by POSIX: the standard library
-  // cannot.
+           header == "jumps.hpp";  // least-norm steps and momenta for singular M
+  // Only POSIX can create a file exclusively and without following links; the standard library cannot.
   const std::set<std::string> posix{"<fcntl.h>", "<stdlib.h>", "<sys/stat.h>", "<unistd.h>"};
   if (posix.contains(included)) return header == "whole_file.hpp";
   if (!included.starts_with("<")) return false;

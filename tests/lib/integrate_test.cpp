@@ -1,4 +1,4 @@
-// What integrate() promises: closed forms, both directions, exact ends, steps, observers, projections, quadratures.
+// Properties of integrate(): closed forms, both directions, exact ends, steps, observers, projections, quadratures.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -39,13 +39,14 @@ void check_closed_form(const Problem& problem, double t1) {
 
 }  // namespace
 
-TEST_CASE("all methods: harmonic oscillator, Kepler and pendulum end where their closed forms say, both ways in time") {
+TEST_CASE(
+    "all methods: harmonic oscillator, Kepler and pendulum agree with their closed forms, in both directions of time") {
   check_closed_form(problems::Oscillator{}, 20);
   check_closed_form(problems::Kepler{0.5}, 4 * std::numbers::pi);
   check_closed_form(problems::Pendulum{}, 20);
 }
 
-TEST_CASE("pendulum: after the period of the arithmetic-geometric mean it is back at its start") {
+TEST_CASE("pendulum: after the period from the arithmetic-geometric mean it returns to its start") {
   const problems::Pendulum pendulum;
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
@@ -54,7 +55,7 @@ TEST_CASE("pendulum: after the period of the arithmetic-geometric mean it is bac
   }
 }
 
-TEST_CASE("fixed steps: as many as the quotient says, no sliver from rounding, the last one shortened") {
+TEST_CASE("fixed steps: their number is the quotient, without a sliver from rounding; the last one is shortened") {
   const problems::Oscillator oscillator;
   const auto steps = [&](double t1, double step) {
     eom::Options options;
@@ -72,7 +73,7 @@ TEST_CASE("fixed steps: as many as the quotient says, no sliver from rounding, t
   CHECK(steps(-1, 0.25) == 4);
 }
 
-TEST_CASE("rk4: 4 evaluations a step and one at the start; dopri5: 6; dop853: 12 when nobody interpolates, else 15") {
+TEST_CASE("rk4: 4 evaluations a step and one at the start; dopri5: 6; dop853: 12 without interpolation, else 15") {
   const problems::Oscillator oscillator;
   eom::Options options;
   options.fixed_step = 0.1;
@@ -92,7 +93,7 @@ TEST_CASE("rk4: 4 evaluations a step and one at the start; dopri5: 6; dop853: 12
   CHECK(evaluations("dopri5", interpolate_twice) == 61);
 }
 
-TEST_CASE("observer: sees adjoining steps from t0 to t1, and the dense output meets both ends") {
+TEST_CASE("observer: receives adjacent steps from t0 to t1, and the dense output agrees with both ends") {
   const problems::Kepler kepler;
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
@@ -142,9 +143,9 @@ TEST_CASE("dense output: between the steps it is as accurate as the steps themse
   }
 }
 
-TEST_CASE("after_step: the run goes on from the moved state, with its derivative evaluated anew") {
-  // x' = c x with c in the state: after_step changes c from 1 to 2 at the first step past t = 1; then x' = 2 x exactly
-  // as a run restarted there.
+TEST_CASE("after_step: the run continues from the changed state, with its derivative evaluated again") {
+  // x' = c x with c in the state. after_step changes c from 1 to 2 at the first step past t = 1. Then x' = 2 x exactly
+  // as in a run restarted there.
   const auto rhs = [](double, const double* x, double* dx) {
     dx[0] = x[1] * x[0];
     dx[1] = 0;
@@ -166,8 +167,8 @@ TEST_CASE("after_step: the run goes on from the moved state, with its derivative
   }
 }
 
-TEST_CASE("quadratures: trailing components are integrated, but do not choose the steps") {
-  // the second component's derivative is huge and rough in size, so that it would choose the steps if it were asked
+TEST_CASE("quadratures: trailing components are integrated, but do not affect the steps") {
+  // the second component's derivative is large and rough, so that it would determine the steps if it were not excluded
   const auto with = [](double, const double* x, double* dx) {
     dx[0] = -x[0];
     dx[1] = 1e9 * x[0];
@@ -190,7 +191,7 @@ TEST_CASE("quadratures: trailing components are integrated, but do not choose th
   }
 }
 
-TEST_CASE("options: max_step and initial_step are kept to") {
+TEST_CASE("options: max_step and initial_step are respected") {
   const problems::Oscillator oscillator;
   eom::Options options;
   options.rtol = 1e-3;
@@ -209,8 +210,8 @@ TEST_CASE("options: max_step and initial_step are kept to") {
 }
 
 TEST_CASE(
-    "options: admit is asked of every step that would be taken, with its dense output, and heeded where steps are "
-    "chosen") {
+    "options: the step limit is called for every acceptable step, with its dense output, and applied to adaptive "
+    "steps") {
   for (const eom::MethodInfo& info : problems::methods()) {
     CAPTURE(info.name);
     const auto rhs = [](double, const double* x, double* dx) {
@@ -248,9 +249,9 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("dense output: where an added stage fails it falls back to the cubic of the step, and says how often") {
+TEST_CASE("dense output: if an additional stage fails it falls back to the cubic of the step, and counts the cases") {
   for (const double bad : {2.0, std::numeric_limits<double>::infinity()}) {
-    // x = t^3, which the cubic has exactly; t = 0.1 is met by an added stage of the step from 0 to 1 alone
+    // The cubic reproduces x = t^3 exactly. Only an additional stage of the step from 0 to 1 evaluates t = 0.1.
     const auto rhs = [bad](double t, const double*, double* dx) {
       const bool fails = std::abs(t - 0.1) < 1e-9;
       dx[0] = fails ? bad : 3 * t * t;
@@ -270,7 +271,7 @@ TEST_CASE("dense output: where an added stage fails it falls back to the cubic o
   }
 }
 
-TEST_CASE("tolerances: purely relative ones work for components that start at zero, or stay there") {
+TEST_CASE("tolerances: purely relative ones work for components that start or remain at zero") {
   const problems::Kepler kepler;
   const auto rhs = [&](double t, const double* x, double* dx) {
     dx[4] = 0;
@@ -285,7 +286,7 @@ TEST_CASE("tolerances: purely relative ones work for components that start at ze
     CAPTURE(std::string(method));
     auto result = eom::integrate(method, rhs, 0, start, 3, options);
     CHECK(result.outcome == eom::Outcome::done);
-    // Error per step h^(order + 1): some turns of steps rtol^(-1/order), and no collapse where a component is 0.
+    // Error per step h^(order + 1): many steps of rtol^(-1/order), without collapse if a component is 0.
     const int order = std::max(1, eom::find_method(method)->order);
     CHECK(static_cast<double>(result.statistics.steps) < std::max(1000.0, 10 * std::pow(options.rtol, -1.0 / order)));
     result.x.pop_back();
@@ -293,14 +294,15 @@ TEST_CASE("tolerances: purely relative ones work for components that start at ze
   }
 }
 
-TEST_CASE("start and end at one time: done at once, with the start") {
+TEST_CASE("equal start and end times: done at once, with the start state") {
   const problems::Oscillator oscillator;
   const auto result = eom::integrate("dop853", oscillator, 2, oscillator.start, 2);
   CHECK(result.outcome == eom::Outcome::done);
   CHECK(result.x == oscillator.start);
 }
 
-TEST_CASE("many small steps: rounding of the sum does not add up, a million steps of rk4 stay within 100 roundings") {
+TEST_CASE(
+    "many small steps: rounding of the sum does not accumulate; a million steps of rk4 stay within 100 roundings") {
   const problems::Oscillator oscillator;
   eom::Options options;
   options.fixed_step = 1e-5;
@@ -308,7 +310,7 @@ TEST_CASE("many small steps: rounding of the sum does not add up, a million step
   CHECK(problems::largest_difference(result.x, oscillator.exact(10)) < 100 * tolerances::epsilon);
 }
 
-TEST_CASE("bad input is refused, and the message names what is wrong") {
+TEST_CASE("invalid input is refused, and the message names the cause") {
   const problems::Oscillator oscillator;
   const auto refuses = [&](const char* method, const eom::Options& options, std::string_view word) {
     try {

@@ -1,4 +1,4 @@
-// LU with partial pivoting: solutions against the products they have to give; singular matrices are told.
+// LU with partial pivoting: residuals of solutions; singular matrices are reported.
 #include "eom/linalg/lu.hpp"
 
 #include <doctest/doctest.h>
@@ -20,7 +20,8 @@ Complex random_complex(std::mt19937& generator) {
   return {value(generator), value(generator)};
 }
 
-/// Largest entry of A x - b for a random complex system of n unknowns, zeros on its diagonal so that it needs pivots.
+/// Largest entry of A x - b for a random complex system of n unknowns, with zeros on the diagonal, so that pivoting is
+/// needed.
 double residual(std::size_t n, unsigned seed) {
   std::mt19937 generator(seed);
   eom::Lu<Complex> lu(n);
@@ -44,7 +45,7 @@ double residual(std::size_t n, unsigned seed) {
 
 }  // namespace
 
-TEST_CASE("complex numbers: products and quotients, without overflow on the way") {
+TEST_CASE("complex numbers: products and quotients without intermediate overflow") {
   const Complex p = Complex{1, 2} * Complex{3, -1};
   CHECK(p.re == 5);
   CHECK(p.im == 5);
@@ -53,7 +54,7 @@ TEST_CASE("complex numbers: products and quotients, without overflow on the way"
   CHECK(q.im == doctest::Approx(2));
 }
 
-TEST_CASE("lu: the residual of complex systems that cannot do without pivots is one of rounding") {
+TEST_CASE("lu: the residual of complex systems that require pivoting is at rounding") {
   for (const std::size_t n : std::initializer_list<std::size_t>{1, 2, 3, 7, 20})
     for (unsigned seed = 1; seed <= 5; ++seed) {
       CAPTURE(n);
@@ -61,7 +62,7 @@ TEST_CASE("lu: the residual of complex systems that cannot do without pivots is 
     }
 }
 
-TEST_CASE("lu: a real system with its known solution; a singular matrix and one that is not finite are told") {
+TEST_CASE("lu: a real system with its known solution; singular and not finite matrices are reported") {
   eom::Lu<double> lu(2);
   const auto fill = [&](double a, double b, double c, double d) {
     lu(0, 0) = a, lu(0, 1) = b, lu(1, 0) = c, lu(1, 1) = d;
@@ -78,7 +79,7 @@ TEST_CASE("lu: a real system with its known solution; a singular matrix and one 
   CHECK_FALSE(lu.factor());
 }
 
-TEST_CASE("lu: lanes have the bits that each system has alone, with pivots of their own, and singular ones are told") {
+TEST_CASE("lu: lanes are bitwise equal to single systems, with their own pivots, and singular ones are reported") {
   constexpr std::size_t width = eom::ensemble::pack_width, lanes = 3 * width;
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> value(-1, 1);

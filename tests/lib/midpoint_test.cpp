@@ -1,5 +1,4 @@
-// What the implicit midpoint rule claims: time symmetry, quadratic invariants, symplecticity; as far as rounding lets
-// it.
+// Properties of the implicit midpoint rule to rounding: time symmetry, quadratic invariants, symplecticity.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -43,7 +42,7 @@ double drift(const char* method, int steps) {
 
 }  // namespace
 
-TEST_CASE("midpoint: there and back again is the identity but for rounding; rk4 is not") {
+TEST_CASE("midpoint: a step forward and back is the identity up to rounding; for rk4 it is not") {
   const problems::Pendulum pendulum;
   const auto miss = [&](const char* method) {
     const eom::Result there = eom::integrate(method, pendulum, 0, pendulum.start, 100, fixed(0.125));
@@ -54,12 +53,12 @@ TEST_CASE("midpoint: there and back again is the identity but for rounding; rk4 
   CHECK(miss("rk4") > 1e-6);
 }
 
-TEST_CASE("midpoint: both quadratic invariants of a free body stay for 100000 steps; rk4 loses them") {
+TEST_CASE("midpoint: both quadratic invariants of a free body are preserved for 100000 steps; rk4 loses them") {
   CHECK(drift("midpoint", 100'000) < 1e-11);  // a quarter of a rounding per step
   CHECK(drift("rk4", 100'000) > 1e-5);
 }
 
-TEST_CASE("midpoint: the area of a triangle of neighbouring states of a pendulum is kept (symplectic)") {
+TEST_CASE("midpoint: the area of a triangle of neighbouring states of a pendulum is preserved (symplectic)") {
   const problems::Pendulum pendulum;
   const auto mapped = [&](double theta, double rate) {
     return eom::integrate("midpoint", pendulum, 0, problems::State{theta, rate}, 10, fixed(0.25)).x;
@@ -71,7 +70,7 @@ TEST_CASE("midpoint: the area of a triangle of neighbouring states of a pendulum
   CHECK(std::abs(determinant - 1) < 1e-6);
 }
 
-TEST_CASE("midpoint: with the jacobian given no differences are taken") {
+TEST_CASE("midpoint: no differences are computed if the jacobian is given") {
   const problems::Oscillator oscillator;
   const auto jacobian = [](double, const double*, double* dfdx, double* dfdt) {
     dfdx[0] = dfdx[3] = dfdt[0] = dfdt[1] = 0;
@@ -87,10 +86,10 @@ TEST_CASE("midpoint: with the jacobian given no differences are taken") {
 }
 
 TEST_CASE(
-    "fixed implicit steps: components at rounding level, or 0, end no iteration; small ones beside large ones keep "
-    "their digits") {
-  // a pendulum near its lowest point in Cartesian coordinates, with a spin and a slow one beside it: x stays at 1e-17,
-  // z at 0
+    "fixed implicit steps: components at rounding level or 0 do not stop the iteration; small ones beside large "
+    "ones keep their digits") {
+  // a pendulum near its lowest point in Cartesian coordinates, with a spin and a slow component: x remains at 1e-17, z
+  // at 0
   const auto f = [](double, const double* x, double* dx) {
     const double lambda = -(x[4] * x[4] + x[5] * x[5] - 9.81 * x[1]) / (x[0] * x[0] + x[1] * x[1]);
     dx[0] = x[4];
@@ -98,7 +97,7 @@ TEST_CASE(
     dx[2] = x[6];
     dx[3] = x[7];
     dx[4] = lambda * x[0] +
-            0.3 * (x[1] + std::cos(std::acos(-1.0) / 3) * 2);  // a force whose terms cancel but for rounding
+            0.3 * (x[1] + std::cos(std::acos(-1.0) / 3) * 2);  // a force whose terms cancel up to rounding
     dx[5] = -9.81 + lambda * x[1];
     dx[6] = 0;
     dx[7] = -1e18 * x[3];  // 1e-6 with 1e3
@@ -110,7 +109,7 @@ TEST_CASE(
     const double h = 1e-12;  // along the fast vibration
     const eom::Result fast = eom::integrate(method, f, 0, start, 1000 * h, fixed(h));
     CHECK(fast.outcome == eom::Outcome::done);
-    // of 1e9 in 1e-9: a phase of 1, in 1000 steps, by an error of h^2/12 per phase for order 2
+    // 1e9 in 1e-9: a phase of 1 in 1000 steps, with an error of h^2/12 per phase for order 2
     CHECK(std::abs(fast.x[3] - 1e-6 * std::cos(1.0)) < 1e-6 * (method == std::string("midpoint") ? 1e-7 : 1e-12));
     const eom::Result slow = eom::integrate(
         method,

@@ -1,4 +1,4 @@
-// The mode machine on systems whose closed forms are known: stick and slip, Coulomb friction, impacts.
+// The mode machine on systems with closed forms: stick and slip, Coulomb friction, impacts.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -29,8 +29,8 @@ eom::Options tight(const eom::MethodInfo& method) {
   return options;
 }
 
-/// A block on a belt, as emitted code would give it: m = k = 1; p = (belt speed, static, dynamic friction force).
-/// Modes: 0 sticks, 1 slides back (slower than the belt), 2 slides ahead of it.
+/// A block on a belt in the form of emitted code: m = k = 1; p = (belt speed, static, dynamic friction force). Modes: 0
+/// sticks, 1 slides back (slower than the belt), 2 slides ahead of it.
 int belt_rhs(double, const double* x, const double* p, const double*, int mode, double* dx) {
   dx[0] = x[1];
   dx[1] = mode == 0 ? 0 : -x[0] + (mode == 1 ? p[2] : -p[2]);
@@ -38,7 +38,7 @@ int belt_rhs(double, const double* x, const double* p, const double*, int mode, 
 }
 int belt_events(double, const double* x, const double* p, const double*, int, double* g) {
   g[0] = x[1] - p[0];  // slip speed
-  g[1] = p[1] - x[0];  // what is left of the static friction when the spring pulls back, and when it pushes
+  g[1] = p[1] - x[0];  // margin of the static friction if the spring pulls back, and if it pushes
   g[2] = p[1] + x[0];
   return 0;
 }
@@ -67,7 +67,8 @@ TEST_CASE("all methods: a block on a belt sticks for 5 and slips for 2(pi - atan
                              [&](const ModePoint& point) { return belt_rule(point, p); });
     CHECK(r.outcome == eom::Outcome::done);
     REQUIRE(r.events.size() >= 10);
-    // Slip swings about x = 0.5, from x = 1 to x = 0 at belt speed; to be carried back to x = 1 takes 1/0.2 = 5.
+    // Slip oscillates about x = 0.5, from x = 1 to x = 0 at belt speed. The way back to x = 1 on the belt takes 1/0.2 =
+    // 5.
     double expected = 0;
     for (std::size_t k = 0; k < r.events.size(); ++k) {
       expected += k % 2 == 0 ? stick : slip;
@@ -77,7 +78,7 @@ TEST_CASE("all methods: a block on a belt sticks for 5 and slips for 2(pi - atan
   }
 }
 
-TEST_CASE("implicit methods: df/dx of the mode that holds is what they are given") {
+TEST_CASE("implicit methods: they receive df/dx of the current mode") {
   const std::array<double, 3> p{0.2, 1, 0.5};
   const auto jacobian = [](double, const double*, const double*, const double*, int mode, double* dfdx, double* dfdt) {
     dfdx[0] = dfdx[3] = dfdt[0] = dfdt[1] = 0;
@@ -109,9 +110,9 @@ TEST_CASE("implicit methods: df/dx of the mode that holds is what they are given
   }
 }
 
-TEST_CASE("all methods: an oscillator with Coulomb friction stops where and when the closed form says") {
-  // x'' = -x -+ F, F = 0.3 both static and dynamic, from 4.1: amplitudes about -+F shrink by 2F each half period:
-  // 4.1, -3.5, 2.9, -2.3, 1.7, -1.1, 0.5, and |0.5| > 0.3: -(0.5 - 2 * 0.3) = 0.1, where it stays, after 7 pi.
+TEST_CASE("all methods: an oscillator with Coulomb friction stops as in the closed form") {
+  // x'' = -x -+ F, F = 0.3 both static and dynamic, from 4.1. Amplitudes about -+F decrease by 2F each half period:
+  // 4.1, -3.5, 2.9, -2.3, 1.7, -1.1, 0.5. |0.5| > 0.3: -(0.5 - 2 * 0.3) = 0.1, at which it stops, after 7 pi.
   const std::array<double, 3> p{0, 0.3, 0.3};
   const eom::CompiledModel model{belt_rhs, belt_events, p.data(), nullptr};
   for (const eom::MethodInfo& method : problems::methods()) {
@@ -123,7 +124,7 @@ TEST_CASE("all methods: an oscillator with Coulomb friction stops where and when
     CHECK(r.outcome == eom::Outcome::done);
     CHECK(r.mode == 0);
     REQUIRE(r.events.size() == 8);
-    CHECK(r.events[0].kind == "slip");  // it cannot stick at the start: the first mode does not hold there
+    CHECK(r.events[0].kind == "slip");  // it cannot stick at the start: the first mode is invalid there
     CHECK(r.events[0].t == 0);
     for (std::size_t k = 1; k < 7; ++k) {
       CHECK(r.events[k].kind == "reverse");
@@ -163,7 +164,7 @@ struct BounceAndRest : Bounce {
 
 }  // namespace
 
-TEST_CASE("all methods: a bouncing ball ends told, where its bounces accumulate") {
+TEST_CASE("all methods: a bouncing ball ends with a report at the accumulation of its bounces") {
   const std::vector<Mode> flight{{"flight", {{0, Direction::down}}}, {"rest", {}}};
   const std::vector<double> start{1, 0};
   const double fall = std::sqrt(2 / gravity);
@@ -191,7 +192,7 @@ TEST_CASE("all methods: a bouncing ball ends told, where its bounces accumulate"
     }
 }
 
-TEST_CASE("a ball on a table of height 1 never falls through it, down to where rounding hides its bounces") {
+TEST_CASE("a ball on a table of height 1 never falls through it, down to bounces at rounding") {
   const std::vector<Mode> flight{{"flight", {{0, Direction::down}}}};
   const auto above_table = [](double, const double* x, int, double* g) { return g[0] = x[0] - 1, 0; };
   const auto bounce = [](const ModePoint& point) {
@@ -211,7 +212,7 @@ TEST_CASE("a ball on a table of height 1 never falls through it, down to where r
   }
 }
 
-TEST_CASE("a rule may end the run with an outcome of its own") {
+TEST_CASE("a rule may end the run with its own outcome") {
   const std::vector<Mode> flight{{"flight", {{0, Direction::down}}}};
   const std::vector<double> start{1, 0};
   const auto refuse = [](const ModePoint& point) {

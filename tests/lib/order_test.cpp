@@ -11,10 +11,10 @@
 
 namespace {
 
-constexpr double start_time = 0.7;  // not a symmetric point of the motion, so that forwards and backwards differ
+constexpr double start_time = 0.7;  // not a symmetric point of the motion, so that both directions differ
 
-/// Largest error along a run of length 6 of a pendulum of moderate amplitude: nonlinear, and smooth enough for clean
-/// slopes before rounding sets in at order 8 (the end state alone, or an eccentric orbit, gives slopes that oscillate).
+/// Largest error along a run of length 6 of a pendulum of moderate amplitude. It is nonlinear, and smooth enough for
+/// clean slopes above rounding at order 8. The end state alone, or an eccentric orbit, gives oscillating slopes.
 double run_error(const char* method, double direction, double step) {
   const problems::Pendulum pendulum(1);
   eom::Options options;
@@ -53,7 +53,8 @@ double dense_error(const char* method, double direction, double step) {
   return largest;
 }
 
-/// A step size at which a method of this order is in its asymptotic range, and at a quarter of it well above rounding.
+/// A step size in the asymptotic range of a method of this order, for which a quarter of it is still well above
+/// rounding.
 double coarse_step(int order) { return order >= 8 ? 0.4 : order == 5 ? 0.05 : 0.02; }
 
 /// log4 of the ratio of the errors at a step and at a quarter of it.
@@ -64,7 +65,7 @@ double measured_order(Error error, const eom::MethodInfo& method, double directi
 
 }  // namespace
 
-TEST_CASE("all methods: the measured order is the stated one, forwards and backwards") {
+TEST_CASE("all methods: the measured order is the stated one, in both directions of time") {
   for (const eom::MethodInfo& method : problems::methods())
     for (const double direction : {1.0, -1.0}) {
       CAPTURE(std::string(method.name));

@@ -1,4 +1,4 @@
-// Every outcome that integrate() can give is reached and told with a sentence; the last accepted state is kept.
+// Every outcome of integrate() is reached and reported with a sentence. The last accepted state is kept.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -37,7 +37,7 @@ TEST_CASE("names: the spelling of the enumerators") {
   CHECK(std::string(eom::name(eom::Outcome::not_finite)) == "not_finite");
 }
 
-TEST_CASE("codes: the outcomes of the C ABI, told by every method just before the time where they begin") {
+TEST_CASE("codes: every method reports the outcomes of the C ABI just before the time at which the codes begin") {
   const eom::Outcome expected[] = {eom::Outcome::singular_mass_matrix, eom::Outcome::chart_left,
                                    eom::Outcome::friction_no_solution, eom::Outcome::friction_many_solutions,
                                    eom::Outcome::not_finite,           eom::Outcome::step_too_small};
@@ -55,8 +55,8 @@ TEST_CASE("codes: the outcomes of the C ABI, told by every method just before th
     }
 }
 
-TEST_CASE("codes: one that only too long a step meets does not end the run") {
-  // the stage states of a long step leave the chart |x| < 1, the motion x = sin(t) itself does not
+TEST_CASE("codes: one that occurs only in too long steps does not end the run") {
+  // the stage states of a long step leave the chart |x| < 1, but not the motion x = sin(t)
   const auto rhs = [](double t, const double* x, double* dx) {
     dx[0] = std::cos(t);
     return std::abs(x[0]) > 1.0001 ? 2 : 0;
@@ -96,7 +96,7 @@ TEST_CASE("not_finite: at the start, and later with the last finite state kept")
   }
 }
 
-TEST_CASE("diverged: beyond the stated bound; max_steps: when these are used up") {
+TEST_CASE("diverged: beyond the stated bound; max_steps: after that many steps") {
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     const eom::Result grown = run(
@@ -126,7 +126,7 @@ TEST_CASE("step_too_small: a pole of the motion, x' = x^2, and a fixed step lost
   CHECK(run("rk4", FailsFromOne{0}, 0.5, options).outcome == eom::Outcome::step_too_small);
 }
 
-TEST_CASE("stopped_by_event: at the end of the step at which the observer says so") {
+TEST_CASE("stopped_by_event: at the end of the step at which the observer returns false") {
   const problems::Oscillator oscillator;
   const auto below_zero = [](const eom::StepView& view) { return view.x1[0] > 0; };
   const auto result = eom::integrate("dopri5", oscillator, 0, oscillator.start, 10, {}, below_zero);

@@ -13,8 +13,8 @@
 
 namespace problems {
 
-/// The methods that take any right-hand side; those that need its series, momenta or constraints have tests of their
-/// own (taylor_test.cpp, variational_test.cpp, ggl_test.cpp).
+/// The methods for any right-hand side. Those that need its series, momenta or constraints have their own tests
+/// (taylor_test.cpp, variational_test.cpp, ggl_test.cpp).
 inline std::vector<eom::MethodInfo> methods() {
   std::vector<eom::MethodInfo> result;
   for (const eom::MethodInfo& method : eom::methods())
@@ -22,7 +22,7 @@ inline std::vector<eom::MethodInfo> methods() {
   return result;
 }
 
-/// The names of those that choose their steps.
+/// The names of the methods with step size control.
 inline std::vector<const char*> adaptive_methods() {
   std::vector<const char*> names;
   for (const eom::MethodInfo& method : methods())
@@ -30,7 +30,7 @@ inline std::vector<const char*> adaptive_methods() {
   return names;
 }
 
-/// By how much a method of order 2 with the fixed steps of the tests is coarser than the others (rk4 is not).
+/// Ratio of the error of a method of order 2 with the fixed steps of the tests to the others (not needed for rk4).
 inline double coarser(const eom::MethodInfo& method) { return method.order < 4 ? 2e5 : 1; }
 
 using State = std::vector<double>;

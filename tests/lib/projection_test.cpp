@@ -1,9 +1,9 @@
-// Projection onto constraints: on the constraints to rounding, in the metric of M, also where M is singular or rows of
-// A are redundant; without allocations; told where it does not converge.
+// Projection onto constraints: to rounding, in the metric of M, also for singular M or redundant rows of A; without
+// allocations; failures of convergence are reported.
 #include <doctest/doctest.h>
 
 #include <stdexcept>
-#define EIGEN_RUNTIME_NO_MALLOC  // Eigen then asserts where it would allocate; the assertion is made to throw
+#define EIGEN_RUNTIME_NO_MALLOC  // Eigen then asserts on allocation; the assertion throws
 #define eigen_assert(condition)                                     \
   do {                                                              \
     if (!(condition)) throw std::logic_error("Eigen: " #condition); \
@@ -19,7 +19,7 @@
 
 namespace {
 
-/// A pendulum of length 1 in (x, y), the constraint written `copies` times; mass differs by direction.
+/// A pendulum of length 1 in (x, y) with the constraint written `copies` times. The mass depends on the direction.
 struct CartesianPendulum {
   int copies = 1;
   double mass_x = 1, mass_y = 1;
@@ -51,7 +51,7 @@ void check_on_pendulum(const std::array<double, 4>& x) {
   CHECK(std::abs(x[0] * x[2] + x[1] * x[3]) < tolerances::on_constraint);
 }
 
-/// Linear constraints A q = c in n coordinates, so that one Newton step is the whole projection.
+/// Linear constraints A q = c in n coordinates, so that one Newton step is sufficient.
 struct Linear {
   Eigen::MatrixXd A, M;
   Eigen::VectorXd c, b;
@@ -110,7 +110,7 @@ Linear random_problem(Eigen::Index n, Eigen::Index m) {
 
 }  // namespace
 
-TEST_CASE("projection: the pendulum comes back to its circle, positions and velocities") {
+TEST_CASE("projection: the pendulum returns to its circle, in positions and velocities") {
   std::array<double, 4> x{0.6 + 1e-3, -0.8, 0.8, 0.6 + 2e-3};
   const CartesianPendulum pendulum;
   eom::Projection projection(2, 1);
@@ -124,7 +124,7 @@ TEST_CASE("projection: the pendulum comes back to its circle, positions and velo
   check_on_pendulum(x);
 }
 
-TEST_CASE("projection: a state on the constraints stays where it is, to the bit") {
+TEST_CASE("projection: a state on the constraints does not change by a bit") {
   std::array<double, 4> x{0, -1, 2, 0};
   const CartesianPendulum pendulum;
   eom::Projection projection(2, 1);
@@ -135,7 +135,7 @@ TEST_CASE("projection: a state on the constraints stays where it is, to the bit"
   CHECK(x == std::array<double, 4>{0, -1, 2, 0});
 }
 
-TEST_CASE("projection: it is the one of the KKT system with M as the metric") {
+TEST_CASE("projection: it solves the KKT system with the metric M") {
   check_against_reference(random_problem(5, 2));
   check_against_reference(random_problem(6, 5));
   check_against_reference(random_problem(4, 4));
@@ -163,7 +163,7 @@ TEST_CASE("projection: redundant constraints, rows repeated and rows of zeros, c
   CHECK((a - b).norm() < tolerances::same_correction);
 }
 
-TEST_CASE("projection: a nonlinear constraint written three times is met as if written once") {
+TEST_CASE("projection: three copies of a nonlinear constraint have the effect of one") {
   const CartesianPendulum once;
   const CartesianPendulum thrice{3};
   std::array<double, 4> a{0.7, -0.8, 0.8, 0.5};
@@ -178,10 +178,10 @@ TEST_CASE("projection: a nonlinear constraint written three times is met as if w
   for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(a[i] - b[i]) < tolerances::on_constraint);
 }
 
-TEST_CASE("projection: M may be singular as long as it is positive definite where the constraints leave freedom") {
+TEST_CASE("projection: M may be singular if it is positive definite on the null space of the constraints") {
   Linear problem = random_problem(5, 2);
   problem.M.setZero();
-  problem.M.diagonal() << 1, 2, 3, 0, 0;  // null space of dimension 2, crossed by the two constraints
+  problem.M.diagonal() << 1, 2, 3, 0, 0;  // null space of dimension 2, transversal to the two constraints
   check_against_reference(problem);
 }
 
@@ -194,7 +194,7 @@ TEST_CASE("projection: a coordinate with more mass is moved less") {
   CHECK(std::abs(x[0] - 0.6) < 1e-5);
 }
 
-TEST_CASE("projection: a direction without any mass is left unmoved, and no number goes wrong") {
+TEST_CASE("projection: a direction without any mass does not move, and all numbers are finite") {
   const CartesianPendulum massless{1, 0, 0};
   std::array<double, 4> x{0.7, -0.8, 0.8, 0.61};
   eom::Projection projection(2, 1);
@@ -202,8 +202,8 @@ TEST_CASE("projection: a direction without any mass is left unmoved, and no numb
   check_on_pendulum(x);
 }
 
-TEST_CASE("projection: velocity constraints have no psi and leave the positions alone") {
-  // a blade: the velocity across its heading, psi not written
+TEST_CASE("projection: velocity constraints have no psi and do not change the positions") {
+  // a blade: the velocity across its heading; psi is not written
   const auto constraints = [](double, const double* x, double*, double* A, double* b) {
     A[0] = -std::sin(x[2]);
     A[1] = std::cos(x[2]);
@@ -224,7 +224,7 @@ TEST_CASE("projection: velocity constraints have no psi and leave the positions 
   CHECK(x[0] == 1);
 }
 
-TEST_CASE("projection: contradicting constraints and codes of the callbacks are told, and the state is as it was") {
+TEST_CASE("projection: contradictory constraints and codes of the callbacks are reported, and the state is unchanged") {
   const auto contradicting = [](double, const double* x, double* psi, double* A, double* b) {
     psi[0] = x[0] - 1;
     psi[1] = x[0] - 2;
@@ -269,7 +269,7 @@ TEST_CASE("projection: no allocation after construction, also when the rank chan
   CHECK(at_centre.code == eom::ProjectionResult::not_converged);
 }
 
-TEST_CASE("projection in a run: the Cartesian pendulum stays on its circle, where it drifts off without") {
+TEST_CASE("projection in a run: the Cartesian pendulum stays on its circle; without projection it drifts off") {
   const CartesianPendulum pendulum;
   const auto rhs = [](double, const double* x, double* dx) {
     // lambda from x . x'' + v . v = 0 with gravity (0, -1)

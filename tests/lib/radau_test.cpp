@@ -1,4 +1,4 @@
-// `radau`: its tableaux are what defines them, its three orders are measured, and choosing among them pays.
+// `radau`: its tableaus satisfy their definition, its three orders are measured, and variable order reduces the cost.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ struct VanDerPol {
 }  // namespace
 
 TEST_CASE(
-    "radau: stages integrate polynomials of degree s - 1, the last one of degree 2s - 2; T brings A^-1 to its blocks") {
+    "radau: stages integrate polynomials of degree s - 1, the last one of degree 2s - 2; T block-diagonalises A^-1") {
   for (const std::size_t s : {3u, 5u, 7u}) {
     CAPTURE(s);
     const RadauTableau& r = RadauTableau::of(s);
@@ -94,7 +94,7 @@ TEST_CASE("radau: orders 5, 9 and 13 in both directions of time, dense output of
       const double h = order == 5 ? 0.1 : order == 9 ? 0.75 : 3;
       const double coarse = error(h), dense_coarse = inside, fine = error(h / 2), dense_fine = inside;
       CHECK(std::abs(std::log2(coarse / fine) - order) < 0.4);
-      CHECK(std::log2(dense_coarse / dense_fine) > (order + 1) / 2 + 0.5);  // one more within a step
+      CHECK(std::log2(dense_coarse / dense_fine) > (order + 1) / 2 + 0.5);  // plus one within a step
     }
   Options options;
   options.series_order = 7;
@@ -102,7 +102,7 @@ TEST_CASE("radau: orders 5, 9 and 13 in both directions of time, dense output of
                        std::invalid_argument);
 }
 
-TEST_CASE("radau: tight tolerances cost a fifth of the steps of radau5, to the same accuracy") {
+TEST_CASE("radau: at tight tolerances it needs a fifth of the steps of radau5 for the same accuracy") {
   const VanDerPol f;
   for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
     CAPTURE(tolerance);
@@ -118,11 +118,10 @@ TEST_CASE("radau: tight tolerances cost a fifth of the steps of radau5, to the s
   }
 }
 
-// A mass that has just met a spring of k/m = 3e14 1/s^2: in a step that is long beside its contact the filtered
-// estimate sees nothing of it, and the mass would be left at rest.
+// A mass in contact with a spring of k/m = 3e14 1/s^2. In a step much longer than the contact the filtered estimate
+// vanishes, and the mass would be left at rest.
 TEST_CASE(
-    "radau5, radau: the first step resolves the fastest motion, so that an impact on a stiff spring is not damped "
-    "away") {
+    "radau5, radau: the first step resolves the fastest motion, so that an impact on a stiff spring is not damped") {
   const double omega = std::sqrt(3e14);
   const auto spring = [&](double, const double* x, double* dx) {
     dx[0] = x[1];
@@ -138,9 +137,9 @@ TEST_CASE(
     eom::integrate(method, spring, 0, State{0, -0.5}, 1, options, [&](const eom::StepView& step) {
       if (first == 0) first = step.t1 - step.t0;
       fastest = std::max(fastest, std::abs(step.x1[1]));
-      return step.t1 < 3.2 / omega;  // over the impact
+      return step.t1 < 3.2 / omega;  // across the impact
     });
-    CHECK(first * omega <= 1.1);                           // power iteration from a start that is not the motion itself
-    CHECK(fastest == doctest::Approx(0.5).epsilon(1e-3));  // it comes back as fast as it came
+    CHECK(first * omega <= 1.1);                           // power iteration from a start that differs from the motion
+    CHECK(fastest == doctest::Approx(0.5).epsilon(1e-3));  // it returns with its speed reversed
   }
 }

@@ -1,4 +1,4 @@
-// Rooted trees, over which the order conditions of one-step methods run (Hairer, Norsett, Wanner I, section II.2).
+// Rooted trees, which index the order conditions of one-step methods (Hairer, Norsett, Wanner I, section II.2).
 #pragma once
 
 #include <cstddef>
@@ -6,14 +6,14 @@
 
 namespace trees {
 
-/// A rooted tree: its order, its density gamma, and which trees hang on its root.
+/// A rooted tree: its order, its density gamma, and the subtrees of its root.
 struct Tree {
   int order;
   double density;
   std::vector<std::size_t> branches;
 };
 
-/// Adds all trees of the given order whose branches are taken from trees[0..last], largest index first.
+/// Adds all trees of the given order with branches from trees[0..last], largest index first.
 inline void grow(std::vector<Tree>& trees, int order, int missing, std::size_t last,
                  std::vector<std::size_t>& branches) {
   if (missing == 0) {

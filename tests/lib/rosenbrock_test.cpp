@@ -41,7 +41,7 @@ Vector times_gamma(const Row& row) {
   return result;
 }
 
-/// Per tree the elementary weights of the stages: alpha from a vertex with several branches, beta from one with one.
+/// Per tree the elementary weights of the stages: alpha at a vertex with several branches, beta at one with one.
 std::vector<Vector> stage_weights(const std::vector<Tree>& all) {
   const Matrix gamma = gamma_matrix();
   Matrix alpha{};
@@ -60,7 +60,7 @@ std::vector<Vector> stage_weights(const std::vector<Tree>& all) {
   return weights;
 }
 
-/// Largest order up to which the weights of the stages give s^order / density for all trees; 0 instead for s = 0.
+/// Largest order up to which the weights of the stages give s^order / density for all trees; for s = 0 they give 0.
 int order_met(const Vector& row, double s, int highest) {
   const std::vector<Tree> all = trees::rooted_trees(highest);
   const std::vector<Vector> weights = stage_weights(all);
@@ -75,14 +75,14 @@ int order_met(const Vector& row, double s, int highest) {
 
 }  // namespace
 
-TEST_CASE("rodas: order 5, and no more; the estimate is that of an embedded method of order 4") {
+TEST_CASE("rodas: order 5 exactly; the estimate is that of an embedded method of order 4") {
   CHECK(order_met(times_gamma(T::b), 1, 6) == 5);
   Vector last{};
   last[n - 1] = 1;
   CHECK(order_met(times_gamma(last), 0, 6) == 4);
 }
 
-TEST_CASE("rodas: a constant derivative is integrated as exactly as binary64 can, so that no run drifts") {
+TEST_CASE("rodas: a constant derivative is integrated to rounding, so that no run drifts") {
   std::array<long double, n> u{};
   long double sum = -1;
   for (std::size_t i = 0; i < n; ++i) {
@@ -117,7 +117,7 @@ TEST_CASE("rodas: times of the stages and weights of df/dt are row sums of alpha
   }
 }
 
-TEST_CASE("rodas: the order holds where the right-hand side depends on time, df/dt given or by differences") {
+TEST_CASE("rodas: the order holds for time-dependent right-hand sides, with df/dt given or by differences") {
   // x' = -x sin t, x = exp(cos t - 1)
   const auto rhs = [](double t, const double* x, double* dx) { return dx[0] = -x[0] * std::sin(t), 0; };
   const auto jacobian = [](double t, const double* x, double* dfdx, double* dfdt) {

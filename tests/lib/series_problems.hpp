@@ -1,5 +1,5 @@
-// Problems of problems.hpp with their Taylor series, by recurrences written by hand. In: nothing. Out: right-hand sides
-// for `taylor`.
+// Problems of problems.hpp with their Taylor series by handwritten recurrences. In: nothing. Out: right-hand sides for
+// `taylor`.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The SVG is well-formed XML whatever the text and the numbers are, and shows what it was given.
+// The SVG is well-formed XML for any text and numbers, and contains the data.
 #include "eom/output/svg_plot.hpp"
 
 #include <doctest/doctest.h>
@@ -12,8 +12,7 @@
 
 namespace {
 
-/// Empty for well-formed XML of the kind drawn here (elements, quoted attributes, the five entities); else what is
-/// wrong.
+/// Empty for well-formed XML of the kind drawn here (elements, quoted attributes, the five entities); else the error.
 std::string defect_of(const std::string& xml) {
   std::vector<std::string> open;
   std::size_t i = 0;
@@ -107,7 +106,7 @@ TEST_CASE("svg: well-formed and finite for ranges that are empty, flat, huge, ti
     }
 }
 
-TEST_CASE("svg: a value that cannot be shown interrupts the line") {
+TEST_CASE("svg: a value that cannot be drawn interrupts the line") {
   eom::Plot plot;
   plot.series = {{"", {0, 1, 2, 3, 4}, {0, 1, std::nan(""), 1, 0}}};
   const std::string svg = eom::svg(plot);
@@ -115,7 +114,7 @@ TEST_CASE("svg: a value that cannot be shown interrupts the line") {
   CHECK(count(svg.substr(path, svg.find("/>", path) - path), "M") == 2);
 }
 
-TEST_CASE("svg: a million points that fall on each other stay a small file") {
+TEST_CASE("svg: a million coincident points give a small file") {
   eom::PlotSeries series{"sine", {}, {}};
   for (int i = 0; i < 1000000; ++i) {
     series.x.push_back(1e-5 * i);
@@ -145,7 +144,7 @@ TEST_CASE("axis: ticks are at 1, 2 or 5 times powers of ten, and zero is labelle
   CHECK(axis.ticks[3].label == "1.0");
 }
 
-TEST_CASE("svg: a legend of a hundred names makes the drawing higher") {
+TEST_CASE("svg: a legend of a hundred names increases the height of the drawing") {
   eom::Plot plot;
   plot.height = 320;
   for (int k = 0; k < 100; ++k) plot.series.push_back({"coordinate" + std::to_string(k), {0, 1}, {0, double(k)}});

@@ -17,7 +17,7 @@ using namespace eom::explicit_rk;
 using trees::rooted_trees;
 using trees::Tree;
 
-/// Those of the registry.
+/// The registered tableaus.
 template <class... T>
 auto tableaux_of(std::tuple<T...>*)
     -> decltype(std::tuple_cat(std::declval<std::conditional_t<Tableau<T>, std::tuple<T>, std::tuple<>>>()...));
@@ -45,7 +45,7 @@ double dot(const Row& row, const std::vector<double>& weights) {
   return sum;
 }
 
-/// Largest order up to which the weights meet all conditions: sum_j row_j Phi_j(tree) = target(tree).
+/// Largest order up to which the weights satisfy all conditions: sum_j row_j Phi_j(tree) = target(tree).
 template <class Row, class Target>
 int order_met(const Row& row, const std::vector<Tree>& trees, const std::vector<std::vector<double>>& weights,
               double tolerance, Target target) {
@@ -54,7 +54,7 @@ int order_met(const Row& row, const std::vector<Tree>& trees, const std::vector<
   return trees.back().order;
 }
 
-/// The weights of the dense output at s, as tableau.hpp defines it.
+/// The weights of the dense output at s, as defined in tableau.hpp.
 template <class T>
 std::vector<double> dense_weights(double s) {
   const double r = 1 - s;
@@ -72,7 +72,7 @@ std::vector<double> dense_weights(double s) {
 
 }  // namespace
 
-TEST_CASE("trees: there are 1, 1, 2, 4, 9, 20, 48, 115 and 286 of order 1 to 9") {
+TEST_CASE("trees: orders 1 to 9 have 1, 1, 2, 4, 9, 20, 48, 115 and 286 of them") {
   const std::vector<Tree> trees = rooted_trees(9);
   std::vector<int> count(10, 0);
   for (const Tree& tree : trees) ++count[static_cast<std::size_t>(tree.order)];

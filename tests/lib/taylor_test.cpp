@@ -1,4 +1,4 @@
-// The method `taylor` on series written by hand: measured order, dense output, tolerances, steps, events, modes,
+// The method `taylor` on handwritten series: measured order, dense output, tolerances, steps, events, modes,
 // quadratures.
 #include <doctest/doctest.h>
 
@@ -40,7 +40,9 @@ std::pair<double, double> errors(int order, double direction, double step) {
 
 }  // namespace
 
-TEST_CASE("taylor: the measured order is that of the series, at the ends of the steps and between them, both ways") {
+TEST_CASE(
+    "taylor: the measured order is that of the series, at the ends of steps and between them, in both directions of "
+    "time") {
   for (const int order : {4, 6, 9})
     for (const double direction : {1.0, -1.0}) {
       CAPTURE(order);
@@ -52,7 +54,7 @@ TEST_CASE("taylor: the measured order is that of the series, at the ends of the 
     }
 }
 
-TEST_CASE("taylor: the tolerance is kept, by orders that grow with its digits, with hardly a step rejected") {
+TEST_CASE("taylor: the tolerance is met by orders that grow with its digits, with almost no rejected step") {
   const problems::KeplerSeries kepler;
   double steps_before = 0;
   for (const double rtol : {1e-4, 1e-7, 1e-10, 1e-13}) {
@@ -63,23 +65,23 @@ TEST_CASE("taylor: the tolerance is kept, by orders that grow with its digits, w
     const auto result = eom::integrate("taylor", kepler, 0, kepler.start, 20, options);
     REQUIRE(result.outcome == eom::Outcome::done);
     const double error = problems::largest_difference(result.x, kepler.exact(20));
-    CHECK(error < 3000 * rtol);  // the phase of an orbit is wrong by its energy's error times 3 t/2 and times 1/(1 -
+    CHECK(error < 3000 * rtol);  // the phase error of an orbit is its energy error times 3 t/2 and times 1/(1 -
                                  // e), over some 50 steps
     const double steps = static_cast<double>(result.statistics.steps);
-    if (steps_before > 0) CHECK(steps < 2.2 * steps_before);  // of a method of order 5: 4 times
+    if (steps_before > 0) CHECK(steps < 2.2 * steps_before);  // for a method of order 5: 4 times
     CHECK(static_cast<double>(result.statistics.rejected) < 0.1 * steps);
     steps_before = steps;
   }
 }
 
-TEST_CASE("taylor: from a start to an end and back, and through its own estimate of the error") {
+TEST_CASE("taylor: integration to an end and back, and its own error estimate") {
   const problems::PendulumSeries pendulum;
   eom::Options options;
   options.rtol = options.atol = 1e-13;
   const auto there = eom::integrate("taylor", pendulum, 0, pendulum.start, 30, options);
   const auto back = eom::integrate("taylor", pendulum, 30, there.x, 0, options);
   CHECK(problems::largest_difference(back.x, pendulum.start) <
-        1e-10);  // the phase is off by the error of the energy times the time
+        1e-10);  // the phase error is the energy error times the time
   options.rtol = options.atol = 1e-6;
   const auto rough = eom::integrate("taylor", pendulum, 0, pendulum.start, 30, options);
   const auto estimate = eom::estimate_error("taylor", pendulum, 0, pendulum.start, rough, options);
@@ -100,7 +102,7 @@ TEST_CASE("taylor: fixed steps raise the order until the tolerance is met") {
   }
 }
 
-TEST_CASE("taylor: events lie where the closed form has them") {
+TEST_CASE("taylor: events agree with the closed form") {
   const problems::PendulumSeries pendulum;
   const double quarter = pendulum.period() / 4;
   eom::Options options;
@@ -121,7 +123,7 @@ TEST_CASE("taylor: events lie where the closed form has them") {
 
 namespace {
 
-/// A ball that bounces: one mode, an impact at x = 0. Its series ends with order 2.
+/// A bouncing ball: one mode, an impact at x = 0. Its series ends with order 2.
 struct Ball {
   int operator()(double, const double* x, int, double* dx) const { return dx[0] = x[1], dx[1] = -9.81, 0; }
   int taylor(double, const double* x, int, int order, double* c) const {
@@ -133,7 +135,7 @@ struct Ball {
   std::size_t taylor_states() const { return 2; }
 };
 
-/// x' = -x with its integral beside it, whose series is not told.
+/// x' = -x with its integral as an additional component, which has no series.
 struct Decay {
   int operator()(double, const double* x, double* dx) const { return dx[0] = -x[0], dx[1] = x[0] * x[0], 0; }
   int taylor(double, const double* x, int order, double* c) const {
@@ -155,7 +157,7 @@ TEST_CASE("taylor: modes, with the series of the mode") {
     point.x[1] = -0.5 * point.x[1];
     return eom::Transition{0, "contact", "floor"};
   };
-  const std::vector<double> start{9.81 / 2, 0};  // falls for 1 s, then flies 1 s, then 1/2 s
+  const std::vector<double> start{9.81 / 2, 0};  // falls for 1 s, then flies for 1 s, then for 1/2 s
   const auto result = eom::integrate_modes("taylor", Ball{}, 0, start, 0, 2.25, eom::Options{}, g, 1, table, bounce);
   REQUIRE(result.events.size() == 2);
   CHECK(std::abs(result.events[0].t - 1) < tolerances::event_time);
@@ -163,7 +165,7 @@ TEST_CASE("taylor: modes, with the series of the mode") {
   CHECK(std::abs(result.x[0] - 9.81 / 2 * 0.25 * 0.25) < tolerances::event_state);
 }
 
-TEST_CASE("taylor: components without a series are integrated along the others") {
+TEST_CASE("taylor: components without a series are integrated as quadratures") {
   eom::Options options;
   options.quadratures = 1;
   options.rtol = options.atol = 1e-12;
@@ -180,7 +182,7 @@ TEST_CASE("taylor: components without a series are integrated along the others")
   CHECK(worst < 1e-12);
 }
 
-TEST_CASE("taylor: a right-hand side without a series, and orders that it does not have, are told") {
+TEST_CASE("taylor: a right-hand side without a series, and unavailable orders, are refused") {
   const problems::Pendulum plain;
   CHECK_THROWS_WITH_AS(eom::integrate("taylor", plain, 0, plain.start, 1), doctest::Contains("Taylor series"),
                        std::invalid_argument);

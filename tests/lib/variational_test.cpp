@@ -1,6 +1,5 @@
-// What the variational integrators promise: the sums that compositions need, orders in both directions of time, free
-// and with constraints, symmetry, a flow that is symplectic in (q, p), energies that stay bounded, constraints kept, no
-// allocation in steps.
+// Properties of the variational integrators: composition conditions, orders in both directions of time, free and with
+// constraints, symmetry, symplecticity in (q, p), bounded energy, satisfied constraints, no allocation in steps.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -53,7 +52,7 @@ struct DoublePendulum {
   }
 };
 
-/// A pendulum in Cartesian coordinates whose rod is 1 + 0.1 sin t long; rate: with a drag of -0.1 v where there is one.
+/// A pendulum in Cartesian coordinates with rod length 1 + 0.1 sin t; rate: optionally with a drag of -0.1 v.
 struct Rod {
   double drag = 0;
   static double length(double t) { return 1 + 0.1 * std::sin(t); }
@@ -154,8 +153,8 @@ TEST_CASE("variational: the substeps are symmetric, and their odd powers add up 
 }
 
 TEST_CASE(
-    "variational: the order is the one claimed, in both directions of time, without and with a constraint, forces and "
-    "work") {
+    "variational: the order is the stated one, in both directions of time, without and with a constraint, forces "
+    "and work") {
   check_order(DoublePendulum{}, swinging, 0);
   check_order(Rod{}, rod_start, 1);
   check_order(Rod{0.3}, rod_start, 1);
@@ -172,11 +171,11 @@ TEST_CASE("variational: a step back undoes a step, and constraints hold to round
     CHECK(std::abs(A[0] * there.x[2] + A[1] * there.x[3] + b) < 1e-13);
     const Result back = eom::integrate(method.name, rod, 20, there.x, 0, fixed(0.1, 1));
     CHECK(problems::largest_difference(back.x, rod_start) <
-          1e-10);  // 400 steps, each of some roundings, of a motion that spreads them
+          1e-10);  // 400 steps, each with several roundings, of a motion that amplifies them
   }
 }
 
-TEST_CASE("variational: the map of a step keeps dq ^ dp; that of dopri5 does not") {
+TEST_CASE("variational: the map of a step preserves dq ^ dp; that of dopri5 does not") {
   const DoublePendulum f;
   const auto to_momenta = [&](const State& x) {
     State z = x;
@@ -218,7 +217,7 @@ TEST_CASE("variational: the map of a step keeps dq ^ dp; that of dopri5 does not
   CHECK(defect("dopri5") > 1e-5);
 }
 
-TEST_CASE("variational: energy swings within bounds that do not grow, also along a chaotic motion") {
+TEST_CASE("variational: energy errors are bounded and do not grow, also along a chaotic motion") {
   const DoublePendulum f;
   for (const eom::MethodInfo& method : variational()) {
     CAPTURE(std::string(method.name));
