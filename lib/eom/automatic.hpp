@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The method `auto`: dopri5 for rtol above 1e-6, else dop853. It changes to radau5 if the motion becomes stiff, and back
-// when it is no longer stiff. Options::choice records the changes and their reasons.
+// The method `auto`: dopri5 for rtol above 1e-6, else dop853. It changes to radau5 if the motion becomes stiff, and
+// back when it is no longer stiff. Options::choice records the changes and their reasons.
 //
-// Explicit methods: after each step |h lambda| is estimated from the last stage and the end, both at t1 (Hairer, Wanner,
-// Solving Ordinary Differential Equations II, section IV.2), and averaged. The motion counts as stiff after 15 steps
-// beyond the stability limit without six in a row below it. The limit of dop853 is 5.96 along vibrations and 6.39 along
-// decay; that of dopri5 is 3.3 along decay but 1.0 along vibrations, so 50 steps in a row near it lead to dop853 first.
-// At tight tolerances rounding keeps the fast part of a stiff motion alive and steps stay below the limit. Therefore 50
-// steps of dop853 in a row with three times the |h lambda| of a motion that is itself that fast also count as stiff.
-// radau5: h rho(df/dx) by power iteration; 15 steps in a row below half of that value lead back. If this happens early,
-// the next change requires twice as many stiff steps.
-// With fixed steps the method does not change.
+// Explicit methods: after each step |h lambda| is estimated from the last stage and the end, both at t1 (Hairer,
+// Wanner, Solving Ordinary Differential Equations II, section IV.2), and averaged. The motion counts as stiff after 15
+// steps beyond the stability limit without six in a row below it. The limit of dop853 is 5.96 along vibrations and 6.39
+// along decay; that of dopri5 is 3.3 along decay but 1.0 along vibrations, so 50 steps in a row near it lead to dop853
+// first. At tight tolerances rounding keeps the fast part of a stiff motion alive and steps stay below the limit.
+// Therefore 50 steps of dop853 in a row with three times the |h lambda| of a motion that is itself that fast also count
+// as stiff. radau5: h rho(df/dx) by power iteration; 15 steps in a row below half of that value lead back. If this
+// happens early, the next change requires twice as many stiff steps. With fixed steps the method does not change.
 #pragma once
 
 #include <cmath>
@@ -132,7 +131,7 @@ class Automatic {
   static constexpr double vibration_from = 0.75;  // of dopri5
   static constexpr int in_a_row = 50;
   static constexpr double smoothing =
-      0.2;                        // of the logarithm: along a vibration the estimate varies like the tangent of its phase
+      0.2;                        // of the logarithm: in a vibration the estimate varies like the tangent of its phase
   static constexpr int calm = 6;  // this many steps in a row that are not stiff reset the count
   static constexpr int patience = Choice::least_patience;
   static constexpr int soon = 4 * patience;
@@ -140,7 +139,7 @@ class Automatic {
   const char* explicit_name() const {
     return options_.rtol > rtol_of_dopri5 ? explicit_rk::Dopri5::name : explicit_rk::Dop853::name;
   }
-  ///h lambda| below which a change back pays; well below the value that leads to radau5.
+  /// A change back pays below this |h lambda|. It is well below the value that leads to radau5.
   double explicit_limit() const { return options_.rtol > rtol_of_dopri5 ? vibration_from : 0.5 * far_beyond(); }
 
   void make(std::span<const double> x) {

@@ -61,7 +61,7 @@ class Run {
       return end(Outcome::not_finite, "the state or its derivative is not finite at the start");
     if (options_.fixed_step > 0) return plan_fixed_steps();
     h_ = options_.initial_step > 0 ? options_.initial_step : first_step();
-    h_ = std::min(std::max(h_, smallest_step(t_)), longest_step());  // a shorter step would be lost in the rounding of t
+    h_ = std::min(std::max(h_, smallest_step(t_)), longest_step());  // a shorter step is lost in the rounding of t
     return true;
   }
 

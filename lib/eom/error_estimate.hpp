@@ -2,10 +2,10 @@
 // Error estimate of the end state of a run. In: the run and its options. Out: an estimate per component, from repeated
 // runs.
 //
-// The second run is tighter: a hundredth of the tolerances (rtol not below 1e-14, and at most a half of it), or half the
-// fixed step. If the error is proportional to the tolerance (or to step^order), the difference of the end states is the
-// error of the first run times 1 - ratio (1 - 2^-order), and is divided by this factor. If the two runs agree so well
-// that rounding or chance may explain it, a third run with another sequence of steps follows, and the largest
+// The second run is tighter: a hundredth of the tolerances (rtol not below 1e-14, and at most a half of it), or half
+// the fixed step. If the error is proportional to the tolerance (or to step^order), the difference of the end states is
+// the error of the first run times 1 - ratio (1 - 2^-order), and is divided by this factor. If the two runs agree so
+// well that rounding or chance may explain it, a third run with another sequence of steps follows, and the largest
 // difference counts. Fixed steps are not controlled, so the third run is always made. If it differs from the second by
 // half as much as the second from the first, the steps are too long for the order to show and no difference is
 // reliable. The estimate is at least a unit in the last place of the component. It excludes errors that all runs

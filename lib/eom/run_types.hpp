@@ -93,7 +93,7 @@ struct Options {
   double initial_step = 0;  // 0: chosen
   double max_step = std::numeric_limits<double>::infinity();
   std::span<const StepBound> step_bounds =
-      {};  // ascending in t, for chosen steps forward in time: keeps steps from skipping events that are known in advance
+      {};  // ascending in t, for chosen steps forward in time: keeps steps from skipping events known in advance
   /// Called for each step whose error is within the tolerances. Returns the longest step that may replace it, infinity
   /// if the step may be taken as it is. It covers features between the points at which a method evaluates the
   /// equations. For fixed steps the result is ignored.
@@ -111,9 +111,9 @@ struct Statistics {
   std::size_t steps = 0;  // accepted
   std::size_t rejected = 0;
   std::size_t rhs_evaluations = 0;
-  std::size_t dense_fallbacks = 0;  // steps whose dense output fell back to the cubic because an additional stage failed
+  std::size_t dense_fallbacks = 0;  // steps whose dense output fell back to the cubic because an added stage failed
   // implicit methods only
-  std::size_t jacobians = 0;               // evaluations of df/dx, by the right-hand side's own function or by differences
+  std::size_t jacobians = 0;               // df/dx evaluated, by the right-hand side's own function or by differences
   std::size_t difference_evaluations = 0;  // part of rhs_evaluations used for differences; 0 if the function was given
   std::size_t factorisations = 0;          // of the matrices of the implicit step
   std::size_t newton_iterations = 0;

@@ -96,8 +96,8 @@ TEST_CASE(
     dx[1] = x[5];
     dx[2] = x[6];
     dx[3] = x[7];
-    dx[4] = lambda * x[0] +
-            0.3 * (x[1] + std::cos(std::acos(-1.0) / 3) * 2);  // a force whose terms cancel up to rounding
+    dx[4] =
+        lambda * x[0] + 0.3 * (x[1] + std::cos(std::acos(-1.0) / 3) * 2);  // a force whose terms cancel up to rounding
     dx[5] = -9.81 + lambda * x[1];
     dx[6] = 0;
     dx[7] = -1e18 * x[3];  // 1e-6 with 1e3

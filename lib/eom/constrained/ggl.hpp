@@ -6,11 +6,11 @@
 // VII.1 and VII.4.
 //
 // f are the accelerations of the index-1 form, which contain the multipliers lambda_1 that satisfy A v' + ... = 0. In
-// the GGL form lambda is an unknown. With lambda = lambda_1 + nu it becomes the system above with D1 = D2 = M^-1 A^T (D1
-// with the A of the position constraints). The motion satisfies psi = 0 and A v + b = 0 by f alone, so mu = nu = 0 along
-// it for any D. Each D with C D regular, C = d(psi, A v + b)/dx, gives a system of index 2 with the same solutions. Here
-// D is evaluated together with df/dx and constant in between. It is (M + A^T S A)^-1 A^T, which has the same range as
-// M^-1 A^T for any S > 0 and requires M to be positive only on the motions that A allows.
+// the GGL form lambda is an unknown. With lambda = lambda_1 + nu it becomes the system above with D1 = D2 = M^-1 A^T
+// (D1 with the A of the position constraints). The motion satisfies psi = 0 and A v + b = 0 by f alone, so mu = nu = 0
+// along it for any D. Each D with C D regular, C = d(psi, A v + b)/dx, gives a system of index 2 with the same
+// solutions. Here D is evaluated together with df/dx and constant in between. It is (M + A^T S A)^-1 A^T, which has the
+// same range as M^-1 A^T for any S > 0 and requires M to be positive only on the motions that A allows.
 //
 // Radau IIA ends steps with a stage, so psi = 0 and A v + b = 0 hold there without projection. Newton's iteration ends
 // at its tolerance. The last stage is then corrected with the same matrix until the constraints hold to rounding. An

@@ -90,8 +90,7 @@ class Rows {
   }
 
  private:
-  static constexpr double independent =
-      1e-10;  // of a row's length: a smaller remainder is rounding of a dependent row
+  static constexpr double independent = 1e-10;  // of a row's length: a smaller remainder is rounding of a dependent row
 
   bool choose_among(std::size_t begin, std::size_t end) {
     std::size_t best = end;

@@ -19,7 +19,7 @@
 namespace eom {
 
 struct ProjectionOptions {
-  double tolerance = 1e-14;       // of the correction relative to the largest coordinate; of psi relative to its terms |A||q|
+  double tolerance = 1e-14;       // of the correction relative to the largest coordinate, of psi to its terms |A||q|
   double rank_tolerance = 1e-11;  // of a pivot relative to the largest, rows of A scaled to length 1
   int max_iterations = 25;
   double rounding = 1e-11;  // a correction that stagnates below this times max(1, |q|) counts as converged

@@ -5,7 +5,7 @@
 //   template <class Real> static EOM_DEVICE int rhs(Real t, const Real* x, const Real* p, Real* dx);   a code of the C
 //   ABI
 // as emitted by target cuda of eomgen. Out: the end of each member. Decisions and sums are those of eom::integrate. In
-// binary64, compiled without contraction of products and sums, the results are bitwise equal. No allocation, no library.
+// binary64, compiled without contraction of products and sums, results are bitwise equal. No allocation, no library.
 #pragma once
 
 #include <cmath>

@@ -34,7 +34,7 @@ class LaneRows {
         n_error_(states - options.quadratures),
         p_count_(parameters),
         lanes_(slots_of(options, width)),
-        stride_(lanes_ % 64 == 0 ? lanes_ + 8 : lanes_),  // rows at distances of a power of two would collide in the cache
+        stride_(lanes_ % 64 == 0 ? lanes_ + 8 : lanes_),  // rows a power of two apart would collide in the cache
         work_((rows + 6 * n_ + p_count_ + 8) * stride_ + n_ + p_count_),
         free_(work_.data()),
         codes_(stride_),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// integrate() with events. In: the arguments of integrate(), event functions g(t, x, values) -> code, and a handler that
-// decides at each event. Out: a Result as of a single run.
+// integrate() with events. In: the arguments of integrate(), event functions g(t, x, values) -> code, and a handler
+// that decides at each event. Out: a Result as of a single run.
 //
 // A crossing is located on the dense output of the step and then refined: the method repeats the step from its start to
 // the crossing, and the crossing is corrected with the value found there until it moves by at most 1e-12 of the step.

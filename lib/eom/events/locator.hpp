@@ -48,7 +48,7 @@ struct Crossing {
   std::size_t function = 0;
   double t = 0;
   bool up = false;                                         // the value rises with t
-  double value = std::numeric_limits<double>::infinity();  // value of the function at the crossing, before a handler changed anything;
+  double value = std::numeric_limits<double>::infinity();  // at the crossing, before a handler changed anything;
                                                            // infinite: not known
 };
 

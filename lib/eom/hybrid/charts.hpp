@@ -52,7 +52,7 @@ class ChartSwitch {
   // - 0.4^2).
   static constexpr double leaves_below = 0.2;
   static constexpr double returns_above = 0.4;
-  static constexpr double forbidden = 0.02;  // of the angle: beyond the reach of one step from the chart in which it began
+  static constexpr double forbidden = 0.02;  // of the angle: beyond the reach of one step from its initial chart
 
   static constexpr double turns_in_a_sample = 1;  // rad: largest change of an angle without a missed turn
   static constexpr int deepest = 14;              // halvings of a step to achieve this
@@ -160,7 +160,7 @@ inline void ChartSwitch::sample(const StepView& step, double until, const double
     return;
   }
   for (std::size_t i = 0; i < next.x.size(); ++i) {
-    if (!std::isfinite(next.x[i])) next.x[i] = i < last.x.size() ? last.x[i] : 0;  // exactly at the singularity of the own chart
+    if (!std::isfinite(next.x[i])) next.x[i] = i < last.x.size() ? last.x[i] : 0;  // exactly at the singularity
   }
   samples_.push_back(std::move(next));
 }

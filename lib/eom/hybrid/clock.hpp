@@ -62,7 +62,7 @@ class ClockSearch {
   static constexpr std::size_t most_boxes = 100'000;  // in one root search
   static constexpr std::size_t most_breaks = 20'000;
   static constexpr std::size_t most_cells = 2'000;  // for one smooth function
-  static constexpr double resolved = 0.5;           // change of the slope times the length of a cell, relative to the range
+  static constexpr double resolved = 0.5;           // change of slope times length of a cell, relative to the range
   static constexpr double ripple = 1e-3;            // of the largest value of a term: smaller ranges are ignored
   static constexpr double steps_per_cell = 8;       // bounds a sine to steps of half a period or more
   static constexpr double shortest = 1e-12;         // of the span, in a search

@@ -106,7 +106,7 @@ inline ConstraintRows::ConstraintRows(const Problem& problem)
 inline void ConstraintRows::start(double t, const double* x, const double* u) {
   if (integrals_.empty()) return;
   const int code = problem_.code->outputs(t, x, problem_.parameters.data(), u, apart_mode(code_->contacts), y_.data());
-  if (code != 0) std::fill(y_.begin(), y_.end(), std::numeric_limits<double>::quiet_NaN());  // no constant is available then
+  if (code != 0) std::fill(y_.begin(), y_.end(), std::numeric_limits<double>::quiet_NaN());  // no constant available
   for (Integral& integral : integrals_) integral.constant = y_[integral.psi];
 }
 

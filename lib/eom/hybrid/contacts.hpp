@@ -159,7 +159,7 @@ inline std::vector<ModeEvent> ContactModes::start(double t, std::span<double> x)
   largest_gap_ = 0;
   restitution_.assign(contacts.size(), 0.0);
   start_code_ = 0;
-  if (two_directions_) velocities_.hold(t, x.data(), model_.inputs(t));  // sets the least slip before any slip is evaluated
+  if (two_directions_) velocities_.hold(t, x.data(), model_.inputs(t));  // sets the least slip, before it is used
   std::vector<double> slip(contacts.size(), 0.0);
   std::array<bool, max_contacts> apart{};
   int begins = 0;  // unilateral contacts as given by the start, all others sticking

@@ -125,7 +125,7 @@ class Jumps {
   using Sizes = std::array<double, kinds>;
   static constexpr double rounding = 1e-9;     // of the jumping quantity: smaller differences are ignored
   static constexpr double far = 1e-6;          // of the time: the distance over which a regular change is measured
-  static constexpr double part_of_far = 1e-4;  // a change at the kink below this fraction of the regular change is not a jump
+  static constexpr double part_of_far = 1e-4;  // a change below this fraction of the regular change is not a jump
 
   const std::vector<double>& variables(const Place& at) const {
     variables_.assign(1, at.t);

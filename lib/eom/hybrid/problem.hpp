@@ -139,7 +139,7 @@ struct Problem {
 
   // Indices of outputs.
   std::size_t kinetic = 0, potential = 0, energy = 0;
-  std::optional<std::size_t> power = {};    // if it is not identically zero: its work is integrated along with the state
+  std::optional<std::size_t> power = {};    // if not identically zero: its work is integrated with the state
   std::vector<std::size_t> redundant = {};  // 0 as long as the constraints that were left out hold
   std::vector<Invariant> invariants = {};
   std::vector<IntegralOutputs> integrals = {};  // preserved by the projection
@@ -153,7 +153,7 @@ struct Problem {
   JumpFunctions jumps = {};
   BoundedFunctions bounded = {};
   std::vector<ExchangedChart> charts = {};                     // empty: the run does not exchange coordinates
-  std::function<const Code&(unsigned charts)> in_charts = {};  // returns code with these second charts and all earlier ones
+  std::function<const Code&(unsigned charts)> in_charts = {};  // code with these second charts and all earlier ones
   std::vector<Range> ranges = {};                              // of the coordinates of the model; empty: not monitored
   /// Whether the equations hold outside of a coordinate's range; empty: they do not.
   std::function<bool(std::uint32_t coordinate, double t, std::span<const double> x)> beyond_range = {};

@@ -31,7 +31,7 @@ class Momenta {
     force_ = scratch_;
     if (!valid_) return;
     size_ = M_.diagonal().unaryExpr(
-        [](double m) { return m > 0 ? 1 / std::sqrt(m) : 1; });  // the size of one coordinate relative to another has no meaning
+        [](double m) { return m > 0 ? 1 / std::sqrt(m) : 1; });  // sizes of coordinates are not comparable
     solver_.compute(size_.asDiagonal() * M_ * size_.asDiagonal());
   }
 

@@ -44,13 +44,13 @@ struct RunResult {
   EndError error;
   std::vector<Drifted> invariants;  // per Problem::invariants
   double power_balance = 0;         // largest |E - E(0) - W| relative to the energies exchanged
-  double constraint_drift = 0;  // largest |psi|, or |f . qdot + b| of a velocity constraint, at the end of a step
+  double constraint_drift = 0;      // largest |psi|, or |f . qdot + b| of a velocity constraint, at the end of a step
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
   double impulse_work = 0;  // of impacts
   std::vector<Event> events;
   std::vector<std::size_t> kink_crossings;  // per Code::kinks
   std::optional<double> unsure_from = {};   // first time at which a narrow force in a step could not be excluded
-  std::optional<double> time_unfollowed_from = {};  // Clock::unfollowed_from, if the run analysed the functions of time itself
+  std::optional<double> time_unfollowed_from = {};  // Clock::unfollowed_from, if the run analysed functions of time
 
   bool ended() const { return outcome == Outcome::done || outcome == Outcome::stopped_by_event; }
 };

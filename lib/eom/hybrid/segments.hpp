@@ -29,7 +29,7 @@ inline std::vector<FinerSteps> finer_steps(const Problem& problem) {
 
 /// An interval between two times at which something jumps or fixed steps change their size.
 struct Segment {
-  double end, next;  // the following segment begins at `next`, which differs from `end` by rounding if a kink in time lies between
+  double end, next;  // `next`: start of the following segment, beyond `end` by rounding at a kink in time
   double step;       // of fixed steps
 };
 

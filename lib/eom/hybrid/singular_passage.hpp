@@ -46,7 +46,7 @@ class SingularPassage {
   static constexpr double place = 0.4667, place_of_check = 0.754;
 
  private:
-  static constexpr double near = 0.1;        // of the measure: rank is lost soon, and the measure decreases almost linearly
+  static constexpr double near = 0.1;        // of the measure: rank is lost soon, almost linearly in time
   static constexpr double soon = 0.3;        // below this value the rank is measured after every step
   static constexpr int look_every = 8;       // steps, otherwise
   static constexpr double redundant = 1e-9;  // below this value rows are permanently dependent

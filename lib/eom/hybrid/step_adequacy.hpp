@@ -84,7 +84,7 @@ inline double StepAdequacy::largest() const {
   double largest = 0, size = 0;
   for (const double s : size_) size = std::max(size, s);
   for (std::size_t i = 0; i < difference_.size(); ++i) {
-    const double s = std::max(size_[i], 1e-9 * size);  // components that stay 0 relative to the others are 0 up to their rounding
+    const double s = std::max(size_[i], 1e-9 * size);  // components that stay 0 are 0 to rounding
     if (s > 0) largest = std::max(largest, difference_[i] / s);
   }
   return largest;

@@ -72,8 +72,7 @@ class Jacobian {
     const std::size_t before = counts.rhs_evaluations;
     std::copy_n(x, n_, x_.data());
     int code = given ? 0 : in_state(t, x, f, h, counts);
-    if (code == 0 && differences_ == Differences::central)
-      code = in_time(t, f, h, counts);  // not needed by the others
+    if (code == 0 && differences_ == Differences::central) code = in_time(t, f, h, counts);  // not needed by the others
     counts.difference_evaluations += counts.rhs_evaluations - before;
     return code != 0 || all_finite() ? code : code_not_finite;
   }

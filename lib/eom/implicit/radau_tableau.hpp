@@ -5,8 +5,8 @@
 //   A[i][j]  the integral of the j-th Lagrange polynomial up to c[i]
 //   gamma, alpha +- i beta   the eigenvalues of A^-1: zeros of the denominator of the Pade approximation (s - 1, s) of
 //            exp
-//   T        transforms A^-1 to the block form [gamma, (alpha, -beta; beta, alpha), ...]. The first column has length 1.
-//            The last row is then 1, 0.
+//   T        transforms A^-1 to the block form [gamma, (alpha, -beta; beta, alpha), ...]. The first column has length
+//            1. The last entries of the following columns are 1, 0.
 //   node     1/(c[i] times the product of c[i] - c[j]), of Lagrange's polynomials with the additional node 0
 //   slope    slope . Z = minus the derivative at 0 of the polynomial with value 0 at 0 and Z[i] at c[i]
 #pragma once

@@ -7,8 +7,8 @@
 //   below   one direction: mu_s |N| + phi; two: the slip speed along the second tangent
 //   hold    the normal force, positive in compression; for an open contact the gap
 //   margin  of the solution of the friction law: if it is negative there is none, or several
-// and the changes of velocities (ContactMotion below). Out: the table and the rule of integrate_modes(), and the mode of
-// a start.
+// and the changes of velocities (ContactMotion below). Out: the table and the rule of integrate_modes(), and the mode
+// of a start.
 //
 // Sliding in two directions has no direction at slip 0. It ends at the least slip that counts, from which the end is
 // extrapolated. It starts with twice that slip, in the direction in which friction yields.

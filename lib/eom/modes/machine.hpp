@@ -5,8 +5,8 @@
 //
 // The monitored functions bound a mode: one with direction `down` has to be positive there, one with `up` negative. If
 // a mode is entered beyond one of its surfaces, or left the wrong way at once, the rule is called again at the same
-// time. Several changes can thus follow one another in an instant, and no motion continues in an invalid mode. A surface
-// on which a mode is entered is not crossed again before the motion has left it.
+// time. Several changes can thus follow one another in an instant, and no motion continues in an invalid mode. A
+// surface on which a mode is entered is not crossed again before the motion has left it.
 //
 // Chattering (Zeno): transitions with ever shorter intervals, down to 1e-7 of the first one, accumulate at an
 // extrapolated time. If the rule has a member settle(point), it determines the next mode there. Otherwise the run ends
@@ -50,8 +50,8 @@ struct ModePoint {
 /// Result of the rule.
 struct Transition {
   int mode = 0;                        // the next one; may be the same
-  std::string kind = {}, name = {};    // recorded: "slip", "stick", "contact", ... and the name; empty kind: not recorded
-  Outcome outcome = Outcome::done;     // any other outcome ends the run here: stopped_by_event, friction_no_solution, ...
+  std::string kind = {}, name = {};    // recorded: "slip", "stick", "contact", ... and whose; empty kind: not recorded
+  Outcome outcome = Outcome::done;     // any other one ends the run here: stopped_by_event, friction_no_solution, ...
   std::vector<std::string> also = {};  // further names recorded with the same kind
 };
 
@@ -65,7 +65,7 @@ struct ModeResult : Result {
   int mode = 0;
   std::vector<ModeEvent> events;
   std::size_t transitions = 0;
-  double accumulation = std::numeric_limits<double>::quiet_NaN();  // accumulation time of the chattering that ended the run
+  double accumulation = std::numeric_limits<double>::quiet_NaN();  // of chattering that ended the run: its limit
 };
 
 namespace modes {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Control of order and step length of a Taylor series by the size of its terms. In: coefficients, the state, the
 // tolerances. Out: the error of a step, the length of the next one, the change of the order. Source: Jorba, Zou, A
-// software package for the numerical integration of ODEs by means of high-order Taylor methods, Experimental Mathematics
-// 14 (2005).
+// software package for the numerical integration of ODEs by means of high-order Taylor methods, Experimental
+// Mathematics 14 (2005).
 //
 // term(i, k): the coefficient of order k of component i, of which the first `components` count; weight(i): 1 over the
 // tolerance of that component.
