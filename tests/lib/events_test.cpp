@@ -225,7 +225,7 @@ TEST_CASE("a motion that would slide along the surface ends with a report, not i
                                               {EventFunction{}}, handler);
   CHECK(r.outcome == eom::Outcome::step_too_small);
   CHECK(std::abs(r.t - 1) < tolerances::event_time);
-  CHECK(r.detail.find("without time going on") != std::string::npos);
+  CHECK(r.detail.find("without progress in time") != std::string::npos);
 }
 
 TEST_CASE("an event function without a value gives no event; one that fails at the start ends the run") {

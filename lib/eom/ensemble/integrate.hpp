@@ -25,8 +25,7 @@ namespace ensemble {
 
 inline void check(const EnsembleOptions& options, std::size_t states) {
   if (states == 0 || options.quadratures >= states)
-    throw std::invalid_argument(
-        "eom::integrate_ensemble: there is no component of the state that steps could be chosen by");
+    throw std::invalid_argument("eom::integrate_ensemble: no component of the state is left for the control of steps");
   if (!(options.rtol >= 0) || !(options.atol >= 0) || (!(options.fixed_step > 0) && options.rtol + options.atol == 0) ||
       !(options.max_step > 0) || !(options.initial_step >= 0) || !(options.fixed_step >= 0))
     throw std::invalid_argument(
@@ -105,8 +104,8 @@ void integrate_ensemble(std::string_view method, Rhs&& rhs, std::size_t members,
   if constexpr (requires(const double* p) { rhs.alone(std::size_t{}, p); })
     return ensemble::one_by_one(method, rhs, members, states, parameters, options, start, done);
   throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) +
-                              " knows no members side by side, or not with this right-hand side, which has no alone() "
-                              "for others");
+                              " cannot integrate members of this right-hand side side by side, and one by one it needs "
+                              "alone()");
 }
 
 /// The same with events, for methods that integrate members side by side. The result of rhs.alone(member, p) also has
@@ -123,7 +122,7 @@ void integrate_ensemble_events(std::string_view method, Rhs&& rhs, std::size_t m
   };
   if (!ensemble::in_lanes(method, rhs, members, states, parameters, options, start, done, watch))
     throw std::invalid_argument("eom::integrate_ensemble_events: " + std::string(method) +
-                                " knows no members side by side, or not with this right-hand side");
+                                " cannot integrate members of this right-hand side side by side");
 }
 
 }  // namespace eom

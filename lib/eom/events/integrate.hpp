@@ -219,7 +219,7 @@ class Run {
     if (!go_on) return end(Outcome::stopped_by_event, answer == AtEvent::stop ? "" : "stopped by the observer");
     if (answer == AtEvent::stop) return end(Outcome::stopped_by_event, "");
     if (crowded_ >= events_without_progress)
-      return end(Outcome::step_too_small, "events follow one another without time going on");
+      return end(Outcome::step_too_small, "events follow one another without progress in time");
     piece.initial_step = answer == AtEvent::go_on ? std::abs(h) : options_.initial_step;
     if (answer == AtEvent::go_on) return true;
     const int code = locator_.start(total_.t, total_.x.data(), g_, h > 0, {&crossing, 1});

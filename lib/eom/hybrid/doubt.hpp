@@ -36,15 +36,14 @@ inline std::string sentence(const Doubt& doubt) {
     case Kind::none: return "";
     case Kind::passed_over:
       return "a step after t = " + printed(doubt.t, 6) +
-             " goes over a force that is narrow in the state, and sees nothing of it: the estimate says nothing; give "
+             " goes over a force that is narrow in the state and misses it, so that the estimate is not valid; give "
              "shorter steps, or let them be chosen";
     case Kind::rounded_start:
       return std::string("from a start that differs in its last digits the run ends with '") + name(doubt.other) +
              "'; the estimate is not to be trusted";
     case Kind::tighter_run:
       return std::string("a tighter run ended with '") + name(doubt.other) + "'; the estimate is not to be trusted";
-    case Kind::event_missed:
-      return "a tighter run did not stop at the event: the ends that are compared are not of the same time";
+    case Kind::event_missed: return "a tighter run did not stop at the event: the compared ends are at different times";
     case Kind::unresolved:
       return "steps of this size do not resolve the motion: halving them moves states on the way by " +
              printed(doubt.amount, 2) + " of their size; take shorter ones, or a solver that chooses its steps";
@@ -57,7 +56,7 @@ inline std::string sentence(const Doubt& doubt) {
              "again; the estimate is not to be trusted";
     case Kind::frozen:
       return "steps of " + printed(doubt.amount, 3) +
-             " move the positions by less than their last digits, so that the constraints say nothing about rates; "
+             " change the positions by less than their last digits, so that constraints do not determine the rates; "
              "the estimate is not to be trusted";
   }
   return "";

@@ -44,7 +44,7 @@ inline std::string sentence(const Reason& reason) {
   switch (reason.kind) {
     case Kind::none: return "";
     case Kind::method: return reason.what;
-    case Kind::start: return "the start cannot be moved onto the constraints";
+    case Kind::start: return "the start cannot be projected onto the constraints";
     case Kind::parameter: return "a parameter is infinite or not a number";
     case Kind::rows: return "while rows were written";
     case Kind::range:
@@ -55,12 +55,13 @@ inline std::string sentence(const Reason& reason) {
              ", with an unbounded velocity: make it a motion that takes some time";
     case Kind::branch_jumps:
       return reason.what + " jumps by " + printed(reason.amount, 6) + " at t = " + printed(reason.t, 15) +
-             ", where a branch of `if` or `sign` changes: the equations do not say what the impulse does there; make "
-             "it a steep but smooth step, tanh((x - a)/w) say, or a constraint with unilateral = true";
+             ", where a branch of `if` or `sign` changes: the equations do not determine the effect of the impulse; "
+             "make "
+             "it a steep but smooth step, for example tanh((x - a)/w), or a constraint with unilateral = true";
     case Kind::support_and_contact:
       return "the velocity of a support jumps" + at +
-             " while a contact touches: the equations do not say what the impulse does there; make it a motion that "
-             "takes some time";
+             " while a contact is closed: the equations do not determine the effect of the impulse; make it a motion "
+             "that takes some time";
     case Kind::support_alone:
       return "the velocity of a support jumps" + at + ", and no velocities satisfy the constraints after it";
     case Kind::no_friction:
@@ -71,10 +72,10 @@ inline std::string sentence(const Reason& reason) {
     case Kind::surface:
       return "the motion slides along a surface of " + reason.what + ": on both sides it leads back to it," + at +
              "; for dry friction use a constraint with friction, or a smooth law";
-    case Kind::slip: return "slip starts and ends" + at + " without time going on";
+    case Kind::slip: return "slip starts and ends" + at + " without progress in time";
     case Kind::chart:
       return "a step just after t = " + printed(reason.t) +
-             " leads past where the coordinates fail: choose a shorter one";
+             " leads beyond the singularity of the coordinates: choose a shorter one";
     case Kind::balance:
       return "the energy changes by " + printed(reason.amount, 2) +
              " of itself more than the forces account for, and the error estimate does not explain it: something "

@@ -48,7 +48,7 @@ class ToRounding {
   double before_ = 0, contraction_ = 0;
 };
 
-/// Units in which the components of a correction are small. The unit is a component's own size if it exceeds the
+/// The units in which the components of a correction are small. The unit is a component's own size if it exceeds the
 /// rounding of the other components. Their rounding contributes eps w_i to component i, where (I - h J) w = |h J| |x|:
 /// it enters through the arguments of f, and the matrix of the iteration distributes it. In a unit of 1e-6 w_i this is
 /// 2e-10. 50000 times this value, by cancellation within f, still counts as stagnation (ToRounding::stagnant). A
