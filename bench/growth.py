@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How cost grows with a model's size: the table of docs/benchmarks.md.
+"""The growth of cost with a model's size: the table of docs/benchmarks.md.
 
     bench/growth.py EOMGEN [--write] [FAMILY ...]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models of any size, as texts: those of docs/benchmarks.md, "How cost grows". Every mass, length and inertia is a parameter of its own, so that nothing cancels by chance.
+"""Models of any size, as texts: those of docs/benchmarks.md, "How cost grows". Every mass, length and inertia is a separate parameter, so that nothing cancels by chance.
 
     python3 bench/growth_models.py FAMILY N > model.toml
 """
@@ -117,7 +117,7 @@ rotation = {{ axis = "{parent}.e3", angle = "q{k}" }}
             text += body(k, f"{base} + c{k}*b{k}.e1", f'{{ axis = "{parent}.e{axis}", angle = "q{k}" }}', parent)
             joints += 1
         end = f"{base} + L{k}*b{k}.e1"
-        if len(end) > 120:  # a name of its own keeps expressions short
+        if len(end) > 120:  # a separate name keeps expressions short
             text += point(f"P{k}", end)
             end = f"P{k}"
         ends[(k - 1) % 4] = (f"b{k}", end)

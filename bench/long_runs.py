@@ -13,9 +13,9 @@ import sys
 BEGIN, END = "<!-- tables: written by bench/long_runs -->", "<!-- end of the tables -->"
 COUNTS = [10**k for k in range(7)]
 SHOWN = (1, 100, 10**4, 10**6)
-SATURATED = 0.05  # a drift above it grows no more as theory says
+SATURATED = 0.05  # a larger drift no longer grows as in theory
 
-# title, arguments, period in s, fixed steps in it, what the period is
+# title, arguments, period in s, fixed steps in it, meaning of the period
 SCENES = [
     ("Pendulum, one angle", ["P2_planar_pendulum"], 2.1391376005586884, 50, "that of the swing of 1 rad"),
     ("Kepler, e = 0.5, Cartesian coordinates", ["kepler_eccentric", "--set", "e=0.5"], 2 * math.pi, 200, "one revolution"),
@@ -38,7 +38,7 @@ def settings(solvers, period, steps):
 
 
 def run(command, path):
-    """The document of one run, with the memory that it took; a reason (str) where the solver is not for the scene."""
+    """The document of one run, with its memory; a reason (str) if the solver is not eligible for the scene."""
     if path.exists():
         return json.loads(path.read_text())
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:

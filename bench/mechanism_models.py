@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mechanisms as others write them, as texts: those of docs/benchmarks.md, "Mechanisms written as others write them". Numbers stand in place of names where one would write them so.
+"""Mechanisms as others write them, as texts: those of docs/benchmarks.md, "Mechanisms written as others write them". They contain numbers in place of names, as such files do.
 
     python3 bench/mechanism_models.py NAME > model.toml
 """
@@ -72,7 +72,7 @@ def free_body(constraints="", omega="[0.3, 0.2, 1]"):
 
 
 def suslov():
-    """Suslov's problem, with a position besides: omega . e3 = 0."""
+    """Suslov's problem, with an additional position: omega . e3 = 0."""
     return free_body(constraint("s", velocity="dot(omega(B), B.e3)"), "[0.3, 0.2, 0]")
 
 
@@ -87,7 +87,7 @@ def rattleback():
 
 
 def eccentric_ellipsoid():
-    """An ellipsoid whose centre of mass and axes of inertia are anywhere."""
+    """An ellipsoid with arbitrary centre of mass and axes of inertia."""
     text = rattleback()
     inertia = 'inertia = [["0.01 kg*m^2", "0.001 kg*m^2", "0.0004 kg*m^2"], ["0.001 kg*m^2", "0.02 kg*m^2", "-0.0015 kg*m^2"], ["0.0004 kg*m^2", "-0.0015 kg*m^2", "0.022 kg*m^2"]]'
     text = "\n".join(inertia if line.startswith("inertia") else line for line in text.split("\n"))
@@ -102,7 +102,7 @@ def bicycle():
 
 
 def bicycle_of_four_bodies():
-    """The same, each body with coordinates of its own, on three pins."""
+    """The same, each body with its own coordinates, on three pins."""
     return kept("bicycle_of_four_bodies")
 
 
@@ -122,7 +122,7 @@ def bar(k):
 
 
 def bricard_of_bodies():
-    """Five bars in Euler parameters with positions of their own, six pins."""
+    """Five bars in Euler parameters with their own positions, six pins."""
     text, start = "format = 1\n", {}
     for k in range(1, 6):
         middle, along = bar(k)
@@ -188,7 +188,7 @@ def bowl_in_spherical_coordinates():
 
 
 def bowl_in_cartesian_coordinates():
-    """The middle of the ball on a sphere, and no slip in three components, one of which follows."""
+    """The middle of the ball on a sphere, and no slip in three components, one of which is redundant."""
     rest = constraint("on_bowl", holonomic="x^2 + y^2 + z^2 - 0.9^2") + constraint("rolls", velocity="velocity(ball) + cross(omega(ball), ball/9)")
     return ball_in_a_bowl(cartesian("xyz"), "BALL" + rest, {"x": 0.4, "y": 0.1}, "z = -0.8")
 
@@ -235,7 +235,7 @@ def rocket_car():
 
 
 def wheels_on_one_axle(height="z"):
-    """Two wheels on an axle, by rolling; what the second says of height and slip sideways, the first has said."""
+    """Two wheels on an axle, by rolling. The conditions of the second for height and sideways slip repeat those of the first."""
     text = f'format = 1\n\n[[point]]\nname = "hub"\nposition = {cartesian(["x", "y", height])}\n' + body("axle", 5, (0.1, 0.5, 0.5), "hub + 0.1*axle.e1", about("E3", "th"))
     for name, side in (("left", "+"), ("right", "-")):
         text += body(name, 2, (0.05, 0.09, 0.05), f"hub {side} 0.5*axle.e2", about("axle.e2", "p_" + name), "axle") + rolling("roll_" + name, name, "-0.3*E3")
@@ -254,7 +254,7 @@ def upright_disk():
 
 
 def on_ball_joints(turn):
-    """Five bodies with coordinates of their own on ball joints."""
+    """Five bodies with their own coordinates on ball joints."""
     text = "format = 1\n"
     for k in range(1, 6):
         text += body(f"b{k}", 1, (0.1, 0.12, 0.02), own_place(f"b{k}"), turn(f"b{k}"))

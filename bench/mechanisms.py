@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What mechanisms cost that are written as others write them: the table of docs/benchmarks.md.
+"""The cost of mechanisms written as others write them: the table of docs/benchmarks.md.
 
     bench/mechanisms.py EOMGEN [--write] [NAME ...]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How sweeps scale: runs per second by threads of one process, and by ranks of MPI where there are any.
+"""How sweeps scale: runs per second by threads of one process, and by MPI ranks if MPI is available.
 
     bench/scaling.py EOMGEN [RUNS [REPEATS]]
 

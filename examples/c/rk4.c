@@ -1,4 +1,4 @@
-/* The cart and its pendulum with the classical method of Runge and Kutta: plain C, nothing but the generated function.
+/* The cart and its pendulum with the classical method of Runge and Kutta: plain C with the generated function only.
  */
 #include <stdio.h>
 

@@ -1,4 +1,4 @@
-/* The cart and its pendulum with GSL's implicit multistep method, which wants the Jacobian. */
+/* The cart and its pendulum with GSL's implicit multistep method, which requires the Jacobian. */
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 #include <stdio.h>

@@ -41,8 +41,8 @@ static int residual(realtype t, N_Vector unknowns, N_Vector rates, N_Vector resu
   return 0;
 }
 
-/* A consistent start: the generated functions know the accelerations and the multipliers. The multipliers get a coarse
- * absolute tolerance: no error control is asked for them, but IDA scales its difference quotients by it. */
+/* A consistent start: the generated functions return accelerations and multipliers. The multipliers get a coarse
+ * absolute tolerance: they have no error control, but IDA scales its difference quotients by it. */
 static int start(double* y, double* dy, double* is_differential, double* tolerance, double* p) {
   for (int i = 0; i < size; ++i) {
     y[i] = dy[i] = 0;

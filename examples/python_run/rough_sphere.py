@@ -1,4 +1,4 @@
-"""A particle on a rough sphere from Python: the default scene, which leaves the sphere, and one that comes to rest. Both have
+"""A particle on a rough sphere from Python: the default scene, which leaves the sphere, and one that comes to rest. Both reproduce
 the numbers of `eomgen run`, whose tables are the arguments."""
 import csv
 import sys
@@ -27,7 +27,7 @@ stops = model.run(3, x0={"phi": 0.15, "theta": 3.5, "phi_dot": 0, "theta_dot": 3
 compare(stops, sys.argv[2])
 assert "stick" in [kind for _, kind, _ in stops.events]
 
-# The functions know the modes: sliding along the velocity the particle is slowed down, apart from the sphere it is not.
+# The functions depend on the mode: friction decelerates the sliding particle, but not away from the sphere.
 x = model.defaults["x"]
 assert list(model.rhs(0, x, mode=model.info["mode_numbers"][-1])) != list(model.rhs(0, x, mode=1))
 
