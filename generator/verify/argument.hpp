@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the author of a force wrote, by key. The judge is linked without the model stage and looks it up on its own.
+// Arguments of a force in the model file, by key. The oracle has its own lookup: it is linked without the model stage.
 #pragma once
 
 #include <string_view>
@@ -8,10 +8,10 @@
 
 namespace eomgen::verify {
 
-/// The argument of a force; nullptr where it is not given.
+/// The argument of a force; nullptr if it is not given.
 const model::Argument* argument(const model::Force& force, std::string_view key);
 
-/// The expression of an argument; no_node where it is not given.
+/// The expression of an argument; no_node if it is not given.
 model::NodeId given(const model::Force& force, std::string_view key);
 
 }  // namespace eomgen::verify

@@ -17,9 +17,9 @@
 namespace eomgen::verify {
 namespace {
 
-// Rejections that are allowed before the search for states is given up: some, and some per point.
+// Rejections before the search for states ends: a base number, and a number per state.
 constexpr std::size_t rejections_at_least = 200, rejections_per_point = 20;
-// Fewer say nothing; differences are kept as binary64, which end at 1e-308.
+// Fewer digits prove nothing. Differences are stored as binary64, which ends at 1e-308.
 constexpr int least_digits = 10, most_digits = 300;
 
 std::string describe(const Comparison& c) {
@@ -38,7 +38,7 @@ std::vector<std::size_t> leavable(const mechanics::Mechanics& mechanics) {
   return result;
 }
 
-// The mode in which the contacts that are open at this state are apart.
+// The mode of the contacts that are open in this state.
 int mode_at(const mechanics::Mechanics& mechanics, const State& state) {
   int mode = 0;
   for (std::size_t j = 0; j < mechanics.contacts.size(); ++j) {
@@ -49,7 +49,8 @@ int mode_at(const mechanics::Mechanics& mechanics, const State& state) {
   return mode;
 }
 
-/// Code that says of every state that its law of friction is undecided is compared nowhere: it is wrong.
+/// Records a failure for code that is compared at no state, because it reports an undecided friction law at every
+/// state.
 void note_uncompared(const Subjects& subjects, Tally& tally) {
   const auto note = [&](const std::string& name, Kind kind) {
     const auto& rows = tally.comparisons();
@@ -64,7 +65,7 @@ void note_uncompared(const Subjects& subjects, Tally& tally) {
 }  // namespace
 
 int digits_of_range(const mechanics::Mechanics& mechanics) {
-  constexpr int usual = 30, most = 1500;  // of binary64 and their squares
+  constexpr int usual = 30, most = 1500;  // decades of binary64 numbers and their squares
   constexpr int coarse = 30;
   const Judge judge(*mechanics.model, coarse);
   const double largest = Points(judge, 0, 0).decades();
@@ -79,7 +80,7 @@ std::size_t Certificate::rejections() const {
 
 std::string Certificate::summary() const {
   std::vector<Comparison> shown;
-  // What fails; otherwise what means most: the pairs that share no code.
+  // The failures; if there are none, the strongest evidence: the pairs that share no code.
   const auto wanted = [&](const Comparison& c) { return pass ? !c.shares_code : !c.pass; };
   std::copy_if(comparisons.begin(), comparisons.end(), std::back_inserter(shown), wanted);
   std::string text = fmt::format("{}: {} points, {} digits", verdict(), points, options.digits);
@@ -113,7 +114,7 @@ std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics, 
   std::vector<system::EquationSystem> systems;
   for (const derive::RouteEntry& route : derive::routes())
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
-      // With nothing to eliminate the approaches are one: a large system is not looked at twice.
+      // Without eliminated coordinates both approaches coincide: a large system is derived only once.
       if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
       derive::Outcome outcome = derive::derive_where_worth(route, mechanics, approach);
       if (outcome.system)

@@ -17,8 +17,8 @@ namespace {
 
 using system::EquationSystem;
 
-/// Relative differences of dx = (qdot, qddot): the velocities as they stand, the accelerations by their scale; all of
-/// them by what rounding may do, where that is known.
+/// Relative differences of dx = (qdot, qddot): velocities relative to themselves, accelerations relative to their
+/// scale, both with the rounding error added to the scale, if it is known.
 double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, const EquationSystem& s,
                       const SystemValues& v, const std::vector<Real>& rounding = {}) {
   const std::size_t n = s.free.size();
@@ -45,7 +45,7 @@ std::vector<double> rounded(const std::vector<Real>& values) {
   return result;
 }
 
-/// The state as binary64 has it.
+/// The state rounded to binary64.
 State in_binary64(const State& state, const Judge& judge) {
   const auto exactly = [&](const Real& value) { return judge.precision().round(exact(to_binary64(value))); };
   State at = state;
@@ -55,7 +55,7 @@ State in_binary64(const State& state, const Judge& judge) {
   return at;
 }
 
-/// What rounding may change in dx at a state, as sizes; none where it is not known.
+/// Scales of dx at a state that correspond to its rounding errors; empty if these are unknown.
 std::vector<Real> rounding_of_rhs(const ProgramForm& program, const At& at, const Judge& judge) {
   std::vector<Real> sizes;
   if (!program.bounds) return sizes;
@@ -74,7 +74,7 @@ bool overflows(const Subjects& subjects, const At& at) {
   return std::any_of(bounds[0].begin(), bounds[0].end(), [](double bound) { return !std::isfinite(bound); });
 }
 
-/// Code in binary64 against the system at the same binary64 numbers.
+/// Compares code in binary64 with the system at the same binary64 numbers.
 double compiled_difference(const CompiledForm& form, const Subjects& subjects, State at, const SystemValues& v,
                            const Judge& judge, int mode) {
   const EquationSystem& s = subjects.systems.front();
@@ -87,20 +87,20 @@ double compiled_difference(const CompiledForm& form, const Subjects& subjects, S
       subjects.programs.empty() ? std::vector<Real>{} : rounding_of_rhs(subjects.programs.front(), arguments, judge);
   const bool finite = dx && std::all_of(dx->begin(), dx->end(), [](double value) { return std::isfinite(value); });
   if (!finite) {
-    // Where its bounds are not finite either, it is a value on the way that is too large.
+    // If the bounds are not finite either, an intermediate value overflows.
     if (rounding.empty() && overflows(subjects, arguments)) throw std::domain_error(beyond_binary64);
     return 1;
   }
   std::vector<Real> precise;
   for (const double value : *dx) precise.push_back(exact(value));
   const double difference = rhs_difference(precise, reference, s, v, rounding);
-  // Beside times of 1e300 a sine is what rounding makes of it, whatever the code: nothing can be compared.
+  // A sine at a time of 1e300 is pure rounding error in any code: no comparison is possible.
   if (difference > tolerance_binary64 && rounding.empty() && overflows(subjects, arguments))
     throw std::domain_error("what rounding does in binary64 has no bound");
   return difference;
 }
 
-/// Compiled functions against those of the first program at the same binary64 numbers.
+/// Compares compiled functions with those of the first program at the same binary64 numbers.
 void compare_compiled_functions(const Subjects& subjects, const State& rounded, const Judge& judge, int mode,
                                 Tally& tally) {
   if (subjects.programs.empty() || !subjects.programs.front().call) return;
@@ -115,7 +115,7 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
       const std::vector<std::vector<double>> bounds = program.bounds(function, at);
       const std::optional<std::vector<std::vector<double>>> got = form.call(function, at);
       double largest = got ? 0 : 1;
-      bool known = true;  // what binary64 cannot hold has no code that is wrong
+      bool known = true;  // values beyond binary64 are not compared
       for (std::size_t r = 0; r < expected->size() && known; ++r) {
         for (std::size_t i = 0; i < (*expected)[r].size() && known; ++i) {
           const Real& value = (*expected)[r][i];
@@ -140,13 +140,13 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
 
 void compare_code(const Subjects& subjects, const SystemValues& v, const Judge& judge, int mode, Tally& tally) {
   const EquationSystem& first = subjects.systems.front();
-  bool undecided = false;  // the law of friction has no solution here, or several
+  bool undecided = false;  // the friction law has no solution here, or several
   for (const ProgramForm& form : subjects.programs) {
     const At arguments = arguments_at(first, v.state, mode);
     const std::vector<Real> dx = form.rhs(v.state.t, arguments.x, v.state.parameters, v.state.inputs, mode);
     undecided = undecided || (dx.empty() && !first.contacts.empty());
     if (undecided) continue;
-    // An acceleration may be 0 because the terms of its form cancel: they are what it is compared with.
+    // An acceleration may be 0 because its terms cancel: it is compared relative to these terms.
     const std::vector<Real> rounding = rounding_of_rhs(form, arguments, judge);
     tally.note(form.name, name_of(first), true,
                rhs_difference(dx, right_hand_side(first, judge, v.state), first, v, rounding));

@@ -22,7 +22,7 @@ namespace {
 using symbolic::Ref;
 using system::EquationSystem;
 
-// Points are rejected where the solve loses more than 8 digits; the guard digits and these make up for it.
+// A state is rejected if the solve loses more than 8 digits; the guard digits and these cover the loss.
 constexpr int digits_given_up = 5;
 
 double worst(const std::vector<double>& values) {
@@ -42,9 +42,9 @@ double difference(const SystemValues& a, const SystemValues& b) {
   return largest;
 }
 
-/// What is nothing beside a motion, whatever the equation's units: rounding of an equation that holds by itself, whose
-/// slopes cancel to the last digit, has no other size. It is far above rounding in 20 digits and more, and far below
-/// any slope that says something.
+/// Absolute tolerance of a constraint acceleration. The rounding error of an equation that holds identically, and whose
+/// derivatives cancel to the last digit, has no other scale. The tolerance is far above rounding in 20 or more digits,
+/// and far below any significant derivative.
 Real nothing_beside(const State& state) {
   Real fastest = 0;
   for (std::size_t i = 0; i < state.qddot.size(); ++i) {
@@ -60,7 +60,7 @@ double motion_residual(const SystemValues& v) {
   for (const Residual& row : v.rows) largest = std::max(largest, row.relative());
   for (std::size_t k = 0; k < v.constraints.psi_ddot.size(); ++k) {
     if (v.state.apart.contains(k)) continue;
-    Residual along;  // A qddot and what remains of psi_ddot
+    Residual along;  // A qddot and the remaining terms of psi_ddot
     for (std::size_t i = 0; i < v.state.qddot.size(); ++i) {
       const Real& slope = v.constraints.gradient[k][i];
       along.add(slope * v.state.qddot[i], cln::abs(slope) * cln::max(cln::abs(v.state.qddot[i]), v.scale[i]));
@@ -72,8 +72,8 @@ double motion_residual(const SystemValues& v) {
   return largest;
 }
 
-/// psi = 0, A = dpsi/dq (of velocities: their coefficients) and A qdot + b = 0 of the constraints that keep a
-/// multiplier.
+/// psi = 0, A = dpsi/dq (for velocity constraints: their coefficients) and A qdot + b = 0 of the constraints that keep
+/// a multiplier.
 double constraint_residual(const EquationSystem& s, const SystemValues& v) {
   double largest = 0;
   const std::size_t n = s.free.size();
@@ -93,7 +93,7 @@ double constraint_residual(const EquationSystem& s, const SystemValues& v) {
     }
     rate.add(v.b[k]);
     rate.add(Real(0),
-             length * fastest);  // a rate that is 0 but for the rounding of slopes that cancel has no size of its own
+             length * fastest);  // a rate that is 0 up to rounding of cancelled derivatives has no scale of its own
     largest = std::max({largest, relative(v.psi[k] - v.constraints.psi[s.active[k]], size + length),
                         relative(rate.value - v.constraints.psi_dot[s.active[k]], rate.scale)});
     if (!v.state.apart.contains(s.active[k]))
@@ -108,7 +108,7 @@ void compare_energies(const EquationSystem& s, const SystemValues& v, const Judg
   tally.note("energies of " + name, judge_name, false,
              worst({relative(v.kinetic - e.kinetic, e.scale), relative(v.potential - e.potential, e.scale),
                     relative(v.energy - e.kinetic - e.potential, e.scale)}));
-  Real scale = e.rate_scale + cln::abs(v.power);  // and the power of every term of the equations
+  Real scale = e.rate_scale + cln::abs(v.power);  // plus the power of every term of the equations
   for (std::size_t i = 0; i < v.rows.size(); ++i) scale = scale + cln::abs(v.state.qdot[i]) * v.rows[i].scale;
   tally.note("power of " + name, judge_name, false, relative(v.power - e.kinetic_rate - e.potential_rate, scale));
   const Real rate = energy_rate(s, judge, v, judge.digits() - guard_digits);
@@ -117,7 +117,7 @@ void compare_energies(const EquationSystem& s, const SystemValues& v, const Judg
   tally.note("power of " + name, "its energy along the path", true, relative(v.power - rate, scale + noise));
 }
 
-/// Outputs that the judge can compute from the model: coordinates, positions, velocities, scalar definitions.
+/// Outputs that the oracle can compute from the model: coordinates, positions, velocities, scalar definitions.
 void compare_outputs(const EquationSystem& s, const SystemValues& v, const Judge& judge, Tally& tally) {
   const model::Model& m = judge.model();
   Interpreter now = judge.interpreter(v.state);
@@ -160,7 +160,7 @@ void compare_outputs(const EquationSystem& s, const SystemValues& v, const Judge
   tally.note("outputs of " + name_of(s), judge_name, false, largest);
 }
 
-/// Closed forms against quadrature; the rates of integrals that are states against their integrands.
+/// Compares closed forms with quadrature, and the rates of integrals that are states with their integrands.
 void compare_integrals(const mechanics::Mechanics& mechanics, const EquationSystem& s, const SystemValues& v,
                        const Judge& judge, Tally& tally) {
   const model::Model& m = judge.model();
@@ -201,8 +201,8 @@ void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
   }
 }
 
-/// The largest residual, each relative to the sum of the absolute values of its terms, at unknowns of the size of their
-/// scale.
+/// The largest residual, each relative to the sum of the absolute values of its terms, with unknowns as large as their
+/// scales.
 double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const Lookup& at, const Motion& motion,
                         const Judge& judge) {
   Lookup sized = at;
@@ -228,8 +228,8 @@ double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const
   return largest;
 }
 
-/// Whether an acceleration enters d'Alembert's principle; that of a coordinate without inertia follows from the
-/// constraints alone.
+/// Whether an acceleration enters d'Alembert's principle; the acceleration of a coordinate without inertia follows from
+/// the constraints alone.
 bool has_inertia(const Judge& judge, State at, const std::vector<Real>& lambda, std::uint32_t coordinate,
                  const Real& wrong) {
   const std::vector<Residual> before = judge.dalembert(at, lambda);
@@ -241,8 +241,8 @@ bool has_inertia(const Judge& judge, State at, const std::vector<Real>& lambda, 
   return false;
 }
 
-/// Residuals of the reading form for the motion by the judge. It also has to notice when an acceleration is wrong:
-/// 0 = 0 holds for every motion.
+/// Residuals of the display form for the motion by the oracle. The form also has to detect a wrong acceleration: 0 = 0
+/// holds for every motion.
 double reading_residual(const ReadingForm& form, const mechanics::Mechanics& mechanics, const Motion& motion,
                         const Judge& judge, bool try_wrong_ones) {
   Lookup lookup(judge, motion.state);
@@ -251,7 +251,7 @@ double reading_residual(const ReadingForm& form, const mechanics::Mechanics& mec
   for (const std::uint32_t i : mechanics.free) {
     if (!try_wrong_ones) break;
     const Real right = lookup.state.qddot[i];
-    // By as much as its terms, or a small wrong one drowns among them.
+    // The error is as large as the terms, so that it is not lost among them.
     const Real wrong = right + cln::abs(right) + motion.scale[i] + 1;
     lookup.state.qddot[i] = wrong;
     const bool noticed = largest_residual(form, *mechanics.dag, lookup, motion, judge) > 1e-9;
@@ -261,7 +261,7 @@ double reading_residual(const ReadingForm& form, const mechanics::Mechanics& mec
   return largest;
 }
 
-/// Friction forces of sizes that no law gives: the equations must hold with them all the same.
+/// A state with arbitrary friction forces: the equations must hold for any of them.
 State with_any_friction(const mechanics::Mechanics& mechanics, const Judge& judge, const State& at) {
   State state = at;
   std::vector<Real> phi;
@@ -274,7 +274,8 @@ State with_any_friction(const mechanics::Mechanics& mechanics, const Judge& judg
   return state;
 }
 
-/// A state in `mode`: what is apart is moved off its constraint, along the coordinate that does so fastest.
+/// The state in `mode`: open contacts are moved off their constraints, along the coordinate with the largest
+/// derivative.
 State in_mode(const EquationSystem& s, const SystemValues& at, const State& state, int mode) {
   State result = state;
   result.mode = mode;
@@ -292,7 +293,7 @@ State in_mode(const EquationSystem& s, const SystemValues& at, const State& stat
   return result;
 }
 
-/// The modes that can be at a state: what is open there does not touch.
+/// The possible modes of a state: contacts that are open in it are not closed.
 std::vector<int> modes_of(const EquationSystem& s, const State& state) {
   std::vector<eom::ContactShape> shapes;
   for (const system::Contact& contact : s.contacts) shapes.push_back(contact.shape());

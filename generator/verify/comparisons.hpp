@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: the subjects and one state. Out: by how much each pair differs there, collected over the states by a Tally.
+// In: the subjects and one state. Out: the difference of each pair there; a Tally collects the largest over all states.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ enum class Kind { precise, binary64 };
 
 inline constexpr const char* judge_name = "d'Alembert";
 
-/// Binary64 has 16 digits; some thousand operations and terms that cancel leave 11 of them, relative to the terms.
+/// Binary64 has 16 digits. A thousand operations and cancellation leave 11 of them, relative to the terms.
 inline constexpr double tolerance_binary64 = 1e-11;
 
 /// The largest difference of each pair so far.
@@ -34,7 +34,8 @@ class Tally {
   std::vector<Comparison> rows_;
 };
 
-/// Throws std::domain_error where one of the subjects has no value or is too nearly singular.
+/// Compares all subjects at one state. Throws std::domain_error if one of them has no value or is nearly singular
+/// there.
 void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Judge& judge, const State& state,
                 Tally& tally);
 

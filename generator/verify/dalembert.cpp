@@ -14,8 +14,8 @@ namespace eomgen::verify {
 
 namespace {
 
-// Highest derivative of a function of time that an expression can ask for: a residual needs the second, an expression
-// such as ddt(d_ddot) two more.
+// Highest derivative of a function of time that an expression can need: a residual needs the second, an expression such
+// as ddt(d_ddot) two more.
 constexpr std::size_t function_orders = 4;
 
 /// All mixed slopes of `jet` on the levels 1 .. top: the top-th time derivative.
@@ -49,7 +49,7 @@ Judge::Judge(const model::Model& model, int digits) : model_(model), digits_(dig
     psi_.insert(psi_.end(), constraint.psi.begin(), constraint.psi.end());
     for (std::size_t k = 0; k < constraint.psi.size(); ++k) holonomic_.push_back(!constraint.binds_velocities(k));
   }
-  constexpr int rounding = 5;  // digits that sums of many terms may lose
+  constexpr int rounding = 5;  // digits that large sums may lose
   if (!model.integrals.empty()) quadrature_.emplace(digits - rounding, precision_);
 }
 
@@ -68,7 +68,7 @@ std::vector<Real> Judge::default_parameters() const {
   return values;
 }
 
-// Parameters may use one another in any order of the file, without cycles: each round settles some.
+// Parameters may depend on one another in any order of the file, without cycles: each round computes some.
 std::vector<Real> Judge::parameters(std::vector<Real> given) const {
   given.resize(model_.parameters.size(), Real(0));
   std::vector<bool> known;
@@ -103,7 +103,7 @@ void Judge::add_functions(Environment& environment, const std::vector<Real>& int
       try {
         found.push_back(nested_slope(at->scalar(expression), k));
       } catch (const Error&) {
-        break;  // it uses a derivative of another function: fewer of its own are known
+        break;  // it depends on a derivative of another function: fewer of its own derivatives are known
       }
     }
     known = std::move(found);
@@ -135,7 +135,7 @@ Interpreter Judge::interpreter(const State& state, Margin* margin) const {
   return Interpreter(model_, std::move(environment), precision_, margin);
 }
 
-// Whether it or a function or integral in it asks for a time derivative.
+// Whether the expression, or a function or integral in it, contains a time derivative.
 bool Judge::needs_derivatives(model::NodeId expression) const {
   bool found = false;
   std::vector<model::NodeId> open{expression};
@@ -221,8 +221,8 @@ std::vector<Residual> Judge::dalembert(const State& state, const std::vector<Rea
   std::vector<Residual> sums = at.inertia().at(state.qddot);
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(at.rest()[i].value, at.rest()[i].scale);
   subtract_friction(state, at.now(), sums);
-  // A joint may keep a body from turning that nothing turns: then every term of an equation is rounding, which is 0
-  // beside the others.
+  // A joint may prevent a rotation that no load drives. Every term of that equation is then rounding error; the least
+  // force makes it count as 0 relative to the other equations.
   Real least = 0;
   if (!model_.joints.empty())
     for (const Real& force : lambda) least = cln::max(least, cln::abs(force) / 10000000000u);
@@ -255,8 +255,8 @@ void Judge::subtract_friction(const State& state, Interpreter& now, std::vector<
   }
 }
 
-// A force where a body is touched: at its centre of mass, with its moment about that, F . dr/dq_i + (p x F) .
-// dw/dqdot_i; what it touches bears the opposite.
+// A contact force on a body: at its centre of mass, with its moment about it, F . dr/dq_i + (p x F) . dw/dqdot_i. The
+// other body has the opposite force.
 void Judge::subtract_contact(const model::BodyContact& contact, const std::array<Real, 3>& force, Interpreter& now,
                              std::vector<Residual>& sums) const {
   Interpreter& by_q = now.by_coordinates(false);
@@ -284,7 +284,7 @@ ConstraintValues Judge::constraint_values(const State& state, Margin* margin) co
     values.psi_dot.push_back(along.rate);
     values.gradient.push_back(at.row(k));
     if (state.qddot.empty()) continue;
-    Real second = at.second(k);  // with no accelerations
+    Real second = at.second(k);  // at zero acceleration
     for (std::size_t i = 0; i < state.qddot.size(); ++i) {
       const Real& slope = values.gradient.back()[i];
       if (!cln::zerop(slope)) second = second + slope * state.qddot[i];

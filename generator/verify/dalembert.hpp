@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The independent judge. In: a Model and a state with accelerations and multipliers. Out: by how much d'Alembert's
-// principle fails there, per coordinate,
+// The independent oracle. In: a Model and a state with accelerations and multipliers. Out: the residual of d'Alembert's
+// principle for each coordinate,
 //   sum_masses (d(m v)/dt - F) . dr/dq_i + sum_bodies (dH/dt - M) . dw/dqdot_i - Q_i - sum_k lambda_k f_ki ((2.74),
 //   (2.163), (2.31), (2.50), (3.20)),
-// f_ki = dpsi_k/dq_i, or de_k/dqdot_i of a constraint e_k = 0 on velocities,
-// with the Euler-Lagrange residual d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of energies that are given as such; the
-// constraints and their rates; and the energies with theirs.
+// f_ki = dpsi_k/dq_i, or de_k/dqdot_i of a constraint e_k = 0 on velocities. Energies that the model states directly
+// add the Euler-Lagrange residual d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i. The oracle also computes the constraints and
+// the energies with their rates.
 //
-// Forces are plain forces read from the Model. It may include the Model and jets only: no graph, no computer algebra,
-// no mechanics. That is what makes its agreement mean something (docs/verification.md).
+// The oracle reads the forces from the Model. It includes the Model and jets only: no graph, no computer algebra, no
+// mechanics. This independence gives its agreement weight (docs/verification.md).
 #pragma once
 
 #include <array>
@@ -24,12 +24,12 @@
 
 namespace eomgen::verify {
 
-/// A friction force of any size: the equations must take it up whatever the law says of it.
+/// A friction force of arbitrary size: the equations must hold for any value, independent of the friction law.
 struct FrictionForce {
-  std::uint32_t place = 0;                         // of the particle; 0 where a coordinate rubs
-  std::uint32_t coordinate = 0;                    // that rubs
+  std::uint32_t place = 0;                         // of the particle; 0 for friction along a coordinate
+  std::uint32_t coordinate = 0;                    // with friction
   std::array<Real, 3> force{};                     // on the particle; force[0] on the coordinate
-  std::optional<std::uint32_t> body_contact = {};  // on a body where this constraint of the model says that it touches
+  std::optional<std::uint32_t> body_contact = {};  // on a body, at the contact of this constraint of the model
 };
 
 struct State {
@@ -37,36 +37,36 @@ struct State {
   std::vector<Real> q, qdot, qddot;  // every coordinate of the model
   std::vector<Real> parameters, inputs;
   std::vector<Real> integrals;  // of functions of time, from the start of the run; empty: not computed yet
-  std::vector<Real> phi;        // components of friction along the tangents, and what they amount to
-  std::vector<FrictionForce> friction;
-  int mode = 0;                 // of the contacts (eom/modes/contact_state.hpp)
-  std::set<std::size_t> apart;  // scalar constraints that are open here: they bind nothing and have no force
+  std::vector<Real> phi;        // components of friction along the tangents
+  std::vector<FrictionForce> friction;  // the forces that belong to phi
+  int mode = 0;                         // of the contacts (eom/modes/contact_state.hpp)
+  std::set<std::size_t> apart;          // scalar constraints that are open in this state: inactive and without force
 };
 
-/// A sum that should vanish, and the sum of the sizes of its terms, from which its rounding comes.
+/// A sum that should vanish, and the sum of the absolute values of its terms, which determines its rounding error.
 struct Residual {
   Real value = 0;
   Real scale = 0;
   void add(const Real& term) { add(term, cln::abs(term)); }
   void add(const Real& term, const Real& size);
-  double relative() const;  // |value| / scale; 0 where both are 0
+  double relative() const;  // |value| / scale; 0 if both are 0
 };
 
-/// Of all scalar equations in the order of the model; N coordinates, K equations. A constraint e = 0 on velocities has
-/// psi = 0, psi_dot = e.
+/// Values of all K scalar constraints in the order of the model, for N coordinates. A constraint e = 0 on velocities
+/// has psi = 0, psi_dot = e.
 struct ConstraintValues {
   std::vector<Real> psi, psi_dot, psi_ddot;  // along the path
   std::vector<std::vector<Real>> gradient;   // K x N: dpsi_k/dq_i, de_k/dqdot_i
 };
 
 struct EnergyValues {
-  Real kinetic = 0, potential = 0;            // T; U of everything that has a potential
+  Real kinetic = 0, potential = 0;            // T; U of all forces that have a potential
   Real kinetic_rate = 0, potential_rate = 0;  // along the path
   Real scale = 0;                             // sum of the absolute values of their terms
   Real rate_scale = 0;
 };
 
-/// A number of the model that does not exist, as log(0), and where the file has it.
+/// An undefined number of the model, such as log(0), with its position in the file.
 struct NoValue : Singular {
   NoValue(const char* what, Where place) : Singular(what), where(std::move(place)) {}
   Where where;
@@ -84,23 +84,23 @@ class Judge {
   int digits() const { return digits_; }
   const std::vector<model::NodeId>& constraints() const { return psi_; }
   bool holonomic(std::size_t constraint) const { return holonomic_[constraint]; }
-  /// This constraint holds where the others do, and has no force: looked at, but not solved for.
+  /// Marks a constraint as implied by the others: it has no force; it is checked, but not solved for.
   void imply(std::size_t constraint) { implied_.insert(constraint); }
   bool implied(std::size_t constraint) const { return implied_.contains(constraint); }
   bool any_implied() const { return !implied_.empty(); }
 
   std::vector<Real> default_parameters() const;
-  /// Every parameter, those that are expressions of others computed; `given` holds the independent ones.
+  /// All parameters. `given` holds the independent ones; the dependent ones are computed.
   std::vector<Real> parameters(std::vector<Real> given) const;
   bool is_independent_parameter(std::size_t index) const;
 
   std::vector<Residual> dalembert(const State& state, const std::vector<Real>& lambda, Margin* margin = nullptr) const;
   ConstraintValues constraint_values(const State& state, Margin* margin = nullptr) const;
   EnergyValues energy_values(const State& state) const;
-  /// Value of an expression of the model, such as a start of a scene.
+  /// Value of an expression of the model, such as an initial value of a scene.
   Real value(model::NodeId expression, const State& state) const;
 
-  /// Of an expression of parameters alone. Throws NoValue where it has none, as log(0).
+  /// Value of an expression of parameters alone. Throws NoValue if it is undefined, such as log(0).
   Real constant(model::NodeId expression, const std::vector<Real>& parameters) const;
   /// Every integral of the model at the state's time and parameters, by quadrature of its integrand.
   std::vector<Real> integrals(const State& state) const;
@@ -115,7 +115,7 @@ class Judge {
   void subtract_friction(const State& state, Interpreter& now, std::vector<Residual>& sums) const;
   void subtract_contact(const model::BodyContact& contact, const std::array<Real, 3>& force, Interpreter& now,
                         std::vector<Residual>& sums) const;
-  /// What does not depend on accelerations and constraint forces, kept for the last state that was asked about.
+  /// The terms that are independent of accelerations and constraint forces, cached for the last state.
   Standing& standing(const State& state) const;
 
   const model::Model& model_;
@@ -124,7 +124,7 @@ class Judge {
   std::vector<model::NodeId> psi_;
   std::vector<bool> holonomic_;
   std::set<std::size_t> implied_;
-  std::optional<GaussLegendre> quadrature_;  // where the model has integrals
+  std::optional<GaussLegendre> quadrature_;  // if the model has integrals
   mutable std::unique_ptr<Standing> standing_;
 };
 

@@ -19,7 +19,7 @@ At with_digits(const At& at, const Precision& precision) {
   return result;
 }
 
-// What is as faint as exp(-1e11) has no fraction, and digits enough.
+// A number as small as exp(-1e11) is not converted to a fraction; it gets enough digits instead.
 Real exactly(const Real& value) {
   constexpr std::intptr_t faint = 1 << 20;
   constexpr int plenty = 1500;  // digits, more than any sum here has
@@ -55,8 +55,8 @@ std::optional<Slope> slope(const ProgramForm& program, const std::string& functi
       any_small = any_small || (!cln::zerop(value) && cln::abs(value) < small);
     }
   }
-  // So small a slope may be what the third order leaves of one that is 0, as of x^3 at 0, and the second is 0 there
-  // too.
+  // Such a small difference may be the third-order remainder of a zero derivative, as of x^3 at 0; the second
+  // difference is 0 there too.
   if (!any_small) return result;
   At beyond = here, before = here;
   shift(beyond, 2 * h);

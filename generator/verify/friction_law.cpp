@@ -32,7 +32,7 @@ class Law {
     }
   }
 
-  /// Per tangent: what vanishes where `phi` obeys the law.
+  /// The residual of the law for each tangent: it vanishes if `phi` obeys the law.
   std::vector<Real> residual(const std::vector<Real>& phi) const {
     State state = state_;
     state.phi = phi;
@@ -51,7 +51,7 @@ class Law {
       const std::vector<Real> gram = take(c.gram.size()), slip = take(c.slip.size()), rate = take(c.slip.size());
       const Real given = take(1)[0], mu = take(1)[0], width = take(1)[0];
       const std::vector<Real> lambda = take(c.reactions.size());
-      std::vector<std::vector<Real>> held;  // by what touches
+      std::vector<std::vector<Real>> held;  // by closed contacts
       for (const system::HeldDirection& direction : c.held) {
         std::vector<Real> along = take(direction.along.size());
         const bool touches = !s_.contacts[direction.by].unilateral || presses(direction.by) >= 0;
@@ -79,7 +79,7 @@ class Law {
   }
 
  private:
-  /// Friction that sticks has no part along what other contacts hold.
+  /// Sticking friction has no component along directions that other contacts constrain.
   static void add_held(const std::vector<std::vector<Real>>& held, const Real* phi, const std::vector<Real>& rate,
                        std::vector<Real>& result) {
     if (rate.size() == 2 && held.size() == 1) {
@@ -145,7 +145,7 @@ std::vector<Real> lawful_friction(const system::EquationSystem& s, const Judge& 
   std::vector<Real> phi(n, judge.precision().round(Real(0)));
   const Real h = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge.digits() / 2));
   const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge.digits()));
-  // Linear but for the size of a normal force of two components: a few rounds.
+  // Linear except for the magnitude of a normal force of two components: a few iterations suffice.
   for (int round = 0; round < 60; ++round) {
     const std::vector<Real> r = law.residual(phi);
     std::vector<Real> matrix(n * n), right;

@@ -36,11 +36,11 @@ class Functions {
 
   void operator()() {
     for (const std::string& function : program_.functions) {
-      if (function == "rhs" || function == "prepare") continue;  // held elsewhere, and by what is made of it
+      if (function == "rhs" || function == "prepare") continue;  // compared elsewhere, or through other functions
       const std::optional<Arrays> values = program_.call(function, at_, judge_.digits());
       if (!values) continue;
       sizes_ = sizes(function, *values);
-      if (sizes_.empty()) continue;  // too near another branch
+      if (sizes_.empty()) continue;  // too close to another branch
       (this->*statement_of(function))(*values);
     }
   }
@@ -48,7 +48,7 @@ class Functions {
  private:
   using Statement = void (Functions::*)(const Arrays&);
 
-  /// What a function is held against.
+  /// The comparison for a function.
   static Statement statement_of(const std::string& function) {
     static const std::map<std::string_view, Statement> statements{
         {"rhs_prepared", &Functions::prepared}, {"jac", &Functions::jacobian},
@@ -61,7 +61,7 @@ class Functions {
     return found->second;
   }
 
-  /// The system of the program's route.
+  /// The system of the program's formulation.
   const EquationSystem& system_of(const Subjects& subjects) const {
     for (const EquationSystem& s : subjects.systems) {
       if (s.route == program_.route && s.approach == program_.approach) return s;
@@ -70,7 +70,7 @@ class Functions {
   }
 
   Arrays sizes(const std::string& function, const Arrays& values) const {
-    constexpr double least_number = 1e-290;  // smaller numbers have fewer digits in binary64, which bounds are in
+    constexpr double least_number = 1e-290;  // bounds are binary64, and smaller numbers have fewer digits there
     const std::vector<std::vector<double>> bounds = program_.bounds(function, at_);
     Arrays result;
     for (std::size_t r = 0; r < values.size(); ++r) {
@@ -92,9 +92,9 @@ class Functions {
     return symbolic::evaluate(*s_.dag, roots, lookup, judge_.digits());
   }
 
-  /// Values of the system's expressions, each with the size of what is summed in it: by what its last digits lose, and
-  /// by what accelerations, multipliers and friction of the size of their scales would make of it. Friction that holds
-  /// something is what the other forces leave, which may be nothing: it has the scale of these.
+  /// Values of the system's expressions, each with the size of its terms. The size comes from the digits lost in the
+  /// sum, and from the value for accelerations, multipliers and friction as large as their scales. Sticking friction
+  /// balances the other forces and may vanish: its scale is that of these forces.
   struct Sized {
     std::vector<Real> values, sizes;
   };
@@ -119,7 +119,7 @@ class Functions {
     return result;
   }
 
-  /// Array `r` against these expressions of the system.
+  /// Difference of array `r` from these expressions of the system.
   double against(const Arrays& values, std::size_t r, const std::vector<Ref>& roots, const Lookup& lookup) const {
     const Sized expected = sized(roots, lookup);
     double largest = 0;
@@ -129,12 +129,12 @@ class Functions {
     return largest;
   }
 
-  /// Steps of differences are small beside 1/range: beside rates of 1e300 a time of 1e-50 is long.
+  /// Steps of differences are small relative to 1/range: with rates of 1e300 a time of 1e-50 is long.
   int step_digits() const { return judge_.digits() - guard_digits; }
   std::optional<Slope> slope(const std::string& function, const Shift& shift) const {
     return verify::slope(program_, function, at_, shift, step_digits());
   }
-  /// The sizes of the right-hand side, as far as its differences lose digits of them.
+  /// The rounding error of differences of the right-hand side.
   std::vector<Real> noise(const std::string& function) const {
     const std::optional<Arrays> values = program_.call(function, at_, judge_.digits());
     if (!values) return {};
@@ -148,7 +148,7 @@ class Functions {
   void prepared(const Arrays& values) {
     const std::optional<Arrays> rhs = program_.call("rhs", at_, judge_.digits());
     if (!rhs) return;
-    // What is 0 in one of them may be what a sum leaves in the other.
+    // An exact 0 in one of them may be a rounded sum in the other.
     const Arrays own = sizes("rhs", *rhs);
     if (own.empty()) return;
     double largest = 0;
@@ -157,7 +157,7 @@ class Functions {
     note("rhs_prepared", "its rhs", largest);
   }
 
-  /// Columns of array `r`, each times its component of the direction, against the slope along it.
+  /// Compares the columns of array `r`, times the components of a direction, with the central difference along it.
   void along(const std::string& function, const Arrays& values, std::size_t r, const std::vector<Real>& direction,
              const std::optional<Slope>& slope) {
     const std::vector<Real> lost = noise("rhs");
@@ -193,7 +193,7 @@ class Functions {
           }));
   }
 
-  /// Without friction, and with inputs at their defaults, as the functions without a mode are.
+  /// Symbol values without friction and with inputs at their defaults, as in the functions without a mode.
   Lookup without_mode() const {
     Lookup lookup = lookup_;
     std::fill(lookup.state.phi.begin(), lookup.state.phi.end(), Real(0));
@@ -229,7 +229,7 @@ class Functions {
     note("reactions", name_of(s_), against(values, 0, roots, lookup_));
   }
 
-  /// Those that the system has; what is conserved is offered by the program's own one only.
+  /// Compares the outputs that the system has; only the program's own system has conserved quantities.
   void outputs(const Arrays& values) {
     std::vector<Ref> roots;
     std::vector<std::size_t> places;
@@ -255,8 +255,8 @@ class Functions {
     if (!roots.empty()) note("events", name_of(s_), against(values, 0, roots, lookup_));
   }
 
-  /// dL/dqdot along a direction of the rates; and their rates along the path, where the constraints and friction have
-  /// their part.
+  /// Compares dL/dqdot along a direction of the rates, and the rates of the momenta along the path, which include
+  /// constraint forces and friction.
   void momenta(const Arrays& values) {
     const std::size_t n = s_.free.size();
     const int digits = step_digits(), more = 3 * digits + 10;
@@ -301,12 +301,12 @@ class Functions {
         expected.back().add(slope * v_.lambda[s_.active[k]],
                             cln::abs(slope) * v_.scale[v_.state.qddot.size() + s_.active[k]]);
       }
-      // A momentum that is conserved changes by M qddot, whose terms may cancel to nothing.
+      // For a conserved momentum the terms of M qddot may cancel to zero.
       for (std::size_t j = 0; j < n; ++j)
         expected.back().scale = expected.back().scale + cln::abs(M[i * n + j] * (*rhs)[0][n + j]);
       most = cln::max(most, expected.back().scale);
     }
-    // Friction that slides along one direction leaves nothing of the others but roundings of its size.
+    // Sliding friction along one direction leaves only rounding errors of its size in the others.
     constexpr int digits_of_none = 20;
     double largest = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -316,8 +316,8 @@ class Functions {
     note("rates of momenta", "momenta along the path", largest);
   }
 
-  /// The polynomial X of order K obeys X' = f(X) but for terms of h^K: h is so small that these are beyond the digits
-  /// compared.
+  /// The polynomial X of order K satisfies X' = f(X) except for terms of h^K: h is so small that they are below the
+  /// compared digits.
   void taylor(const Arrays&) {
     constexpr int order = 4, beyond = 20;
     const int exponent = step_digits() + beyond, more = order * exponent + 60;
@@ -343,7 +343,7 @@ class Functions {
     at.t = at.t + h;
     const std::optional<Arrays> rhs = program_.call("rhs", at, more);
     if (!rhs) return;
-    // Where the last coefficients vanish there is what rounding leaves of the others, and of what is summed in dx.
+    // If the last coefficients vanish, the rounding errors of the others and of the sums in dx remain.
     const Arrays summed = sizes("rhs", *rhs);
     if (summed.empty()) return;
     const Real size = last * order * cln::expt(h, order - 1) + most * ten_to(exponent - more);

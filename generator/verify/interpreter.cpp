@@ -35,7 +35,7 @@ Interpreter Interpreter::for_spring(const model::Force& spring) const {
   return Interpreter(model_, environment_, precision_, margin_, &spring);
 }
 
-// ---- environments a small step away
+// ---- environments with one variable on a new level
 
 Interpreter& Interpreter::along_time() {
   if (later_) return *later_;
@@ -93,13 +93,13 @@ Interpreter& Interpreter::by_leaf(const Node& node) {
     case Op::function: vary_order(seeded.functions[node.index]); break;
     case Op::parameter: vary(seeded.parameters[node.index]); break;
     case Op::input: vary(seeded.inputs[node.index]); break;
-    case Op::time:  // at fixed coordinates; functions of time go on
+    case Op::time:  // at fixed coordinates; functions of time vary
       vary(seeded.t);
       for (auto* group : {&seeded.functions, &seeded.integrals})
         for (std::vector<Jet>& orders : *group) {
           for (std::size_t k = 0; k + 1 < orders.size(); ++k)
             orders[k] = Jet::on_level(level, orders[k], {orders[k + 1]});
-          if (!orders.empty()) orders.pop_back();  // a function whose own formula this is has none yet
+          if (!orders.empty()) orders.pop_back();  // the function whose own formula is evaluated has none yet
         }
       break;
     default: refuse(node, "diff is by a coordinate, a function, a parameter, an input or t");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // In: the expressions of a Model and an environment (time, coordinates and their rates, parameters, inputs as jets).
-// Out: values as jets. ddt(e) re-reads e with time on a new level, q -> q + qdot eps, qdot -> qdot + qddot eps; diff(e,
-// x) and the basis vectors a_i = dr/dq_i (1.20) re-read theirs with x on a new level. Nothing is differentiated as a
-// formula, and nothing here is shared with mechanics, derive or the reading form.
+// Out: values as jets. ddt(e) evaluates e again with time on a new level, q -> q + qdot eps, qdot -> qdot + qddot eps.
+// diff(e, x) and the basis vectors a_i = dr/dq_i (1.20) evaluate their argument with x on a new level. No formula is
+// differentiated. The interpreter shares no code with mechanics, derive or the display form.
 #pragma once
 
 #include <array>
@@ -31,14 +31,14 @@ Jet norm(const Vector& a, const Precision& p);
 
 struct Environment {
   Jet t;
-  std::vector<std::vector<Jet>> coordinates;  // [coordinate][order]: as many orders as are known
+  std::vector<std::vector<Jet>> coordinates;  // [coordinate][order], up to the highest known order
   std::vector<std::vector<Jet>> functions;    // [function][order]
   std::vector<std::vector<Jet>> integrals;    // [integral]: its value, the integrand and the integrand's derivatives
   std::vector<Jet> parameters, inputs;
   unsigned level = 0;  // the highest level in use
 };
 
-/// How near a state is to a kink (abs, sign, min, max, if): the least relative distance met so far.
+/// The least relative distance of a state from a kink (abs, sign, min, max, if) so far.
 struct Margin {
   double kink = 1;
 };
@@ -52,24 +52,24 @@ class Interpreter {
   Vector vector(model::NodeId id);
   Vector place(std::uint32_t index);                // position of Model::places[index]
   Vector axis(std::uint32_t frame, std::size_t k);  // e_(k+1) of Model::frames[frame]
-  /// Axial vector of dQ Q^T, eq. (5.26): how the axes of a frame turn along the path, or with a coordinate
+  /// Axial vector of dQ Q^T, eq. (5.26): the rotation of the axes of a frame along the path, or with a coordinate
   /// (by_coordinates(false)).
   Vector angular_velocity(std::uint32_t frame);
   Vector virtual_rotation(std::uint32_t frame, std::size_t coordinate);
-  /// |b - a| - length of the spring that Op::extension means here.
+  /// |b - a| - length of the spring, the value of Op::extension.
   Jet extension(const model::Force& spring);
 
   const Environment& environment() const { return environment_; }
   unsigned level() const { return environment_.level; }
 
-  /// The same a moment later: d/dt is slope(level(), 0) of what it gives.
+  /// An interpreter with time on a new level: d/dt of its values is slope(level(), 0).
   Interpreter& along_time();
-  /// Every coordinate (and, if `rates`, every velocity) on a new level: d/dq_i is slope(level(), i), d/dqdot_i is
-  /// slope(level(), n + i).
+  /// An interpreter with every coordinate (and, if `rates`, every velocity) on a new level: d/dq_i is
+  /// slope(level(), i), d/dqdot_i is slope(level(), n + i).
   Interpreter& by_coordinates(bool rates);
-  /// Every velocity alone on a new level: d/dqdot_i is slope(level(), i).
+  /// An interpreter with the velocities alone on a new level: d/dqdot_i is slope(level(), i).
   Interpreter& by_rates();
-  /// The same environment, in which Op::extension is that of `spring`.
+  /// The same environment; Op::extension is the extension of `spring`.
   Interpreter for_spring(const model::Force& spring) const;
 
  private:
@@ -101,7 +101,7 @@ class Interpreter {
   std::map<Leaf, std::unique_ptr<Interpreter>> by_leaf_;
 };
 
-/// Where the file writes it; the judge reads the model with nothing of the reader's.
+/// The position of a node in the file. The oracle shares no code with the reader.
 Where place_of(const model::Model& model, const model::Node& node);
 
 }  // namespace eomgen::verify

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vectors of the judge's interpreter: places, their velocities and accelerations, and the bases of their coordinates.
+// Vectors of the oracle's interpreter: places, their velocities and accelerations, and the bases of their coordinates.
 #include "verify/interpreter.hpp"
 
 namespace eomgen::verify {
@@ -33,7 +33,7 @@ Vector Interpreter::axis(std::uint32_t frame, std::size_t k) {
   return e;
 }
 
-// e_k x de_k, summed over the three axes, is twice the axial vector; it is the skew part of dQ Q^T that counts.
+// The sum of e_k x de_k over the three axes is twice the axial vector of the skew part of dQ Q^T.
 Vector Interpreter::turning(std::uint32_t frame, Interpreter& varied, std::size_t direction) {
   Vector sum;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -95,7 +95,7 @@ Vector Interpreter::read_basis(const Node& node) {
   switch (node.op) {
     case Op::covariant_basis: return tangent(node.index, *coordinate, false);
     case Op::unit_basis: {
-      // a unit vector of the chart stays one where the origin of the chart moves with the same coordinate
+      // relative: a unit vector of the chart keeps its length if the chart's origin moves with the same coordinate
       const Vector a = tangent(node.index, *coordinate, names(node.index, *coordinate));
       return (Jet(1) / norm(a, precision_)) * a;
     }
@@ -116,7 +116,7 @@ bool Interpreter::names(std::uint32_t index, const Node& coordinate) const {
   return false;
 }
 
-/// a_i = dr/dq_i (1.20); `relative`: r measured from where the chart of the place measures it.
+/// a_i = dr/dq_i (1.20); `relative`: r is measured from the origin of the place's chart.
 Vector Interpreter::tangent(std::uint32_t index, const Node& coordinate, bool relative) {
   Interpreter& near = by_leaf(coordinate);
   Vector r = near.place(index);
@@ -124,8 +124,8 @@ Vector Interpreter::tangent(std::uint32_t index, const Node& coordinate, bool re
   return map_slope(r, near.level());
 }
 
-/// a^i = grad q_i (1.22): a^i . a_k = delta_ik over the coordinates that the place's chart names; with fewer than
-/// three, within the surface or along the line that they span.
+/// a^i = grad q_i (1.22): a^i . a_k = delta_ik over the coordinates of the place's chart; with fewer than three, within
+/// the surface or along the line that they span.
 Vector Interpreter::dual(std::uint32_t index, const Node& coordinate) {
   const Vector own = tangent(index, coordinate, false);
   std::vector<Vector> others;

@@ -25,7 +25,7 @@ const Jet& zero_jet() {
   return zero;
 }
 
-/// exp of it is beyond the exponents that CLN's floats have: 0.
+/// Whether exp(x) is below the exponent range of CLN's floats and counts as 0.
 bool is_faint(const Real& exponent) {
   static const cln::cl_I faintest = -cln::expt_pos(cln::cl_I(10), 18);
   return exponent < faintest;

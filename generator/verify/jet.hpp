@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arithmetic of the independent judge: numbers with infinitesimals, over CLN reals of any precision.
+// Arithmetic of the independent oracle: numbers with infinitesimals, over CLN reals of any precision.
 //
 // A jet is value + sum_i slope_i eps_i with eps_i eps_k = 0. Value and slopes are jets of a lower level, so that jets
 // nest: with time on level 1 and again on level 2 a position carries r, v and a (a Taylor series to second order);
 // with the coordinates on the level above it also carries d(.)/dq_i, all directions in one pass. A derivative is a
-// coefficient that is read off; no formula is ever differentiated. Levels are tags: a jet of a lower level is constant
-// for the higher ones, so nested derivatives cannot be confused with one another.
+// coefficient; no formula is ever differentiated. Levels are tags: a jet of a lower level is constant for the higher
+// ones, so nested derivatives cannot be confused with one another.
 //
-// Exact rationals stay exact, and what is exactly 0 costs nothing: slopes are kept by direction, those that are exactly
-// 0 are not kept.
+// Exact rationals stay exact. Exact zeros cost nothing: slopes are stored by direction, and exact zeros are omitted.
 #pragma once
 
 #include <cln/float.h>
@@ -32,10 +31,10 @@ struct Precision {
   cln::float_format_t format;
 };
 
-/// What a binary64 is, exactly; of subnormal ones too, which CLN does not convert.
+/// The exact value of a binary64, also of subnormal ones, which CLN does not convert.
 Real exact(double value);
 
-/// There is no (differentiable) value at this point: a division by zero, the root of a negative number, a kink.
+/// No (differentiable) value exists at this point: a division by zero, the root of a negative number, a kink.
 struct Singular : std::domain_error {
   using std::domain_error::domain_error;
 };
@@ -55,7 +54,7 @@ class Jet {
   const Jet& value(unsigned level) const;  // without the eps of `level`
   const Jet& slope(unsigned level, std::size_t direction) const;
   const Real& real() const;  // without any eps
-  /// The directions of `level` along which it has a slope, ascending.
+  /// The directions of `level` along which the slope is not exactly 0, ascending.
   std::vector<std::size_t> directions(unsigned level) const;
   bool exactly_zero() const;
 
@@ -69,7 +68,7 @@ class Jet {
   using Slopes = std::vector<std::pair<std::uint32_t, Jet>>;  // ascending by direction, none exactly 0
   static Jet with(unsigned level, Jet value, Slopes slopes);
   const Slopes& slopes(unsigned level) const;
-  /// a.slope * ka + b.slope * kb along every direction of either; a factor that is null counts as 1.
+  /// a.slope * ka + b.slope * kb along every direction of either; a null factor counts as 1.
   static Slopes combine(const Jet& a, const Jet* ka, const Jet& b, const Jet* kb, unsigned level);
 
   unsigned level_ = 0;
@@ -83,7 +82,7 @@ Jet operator*(const Jet& a, const Jet& b);
 Jet operator/(const Jet& a, const Jet& b);  // throws Singular
 inline Jet operator-(const Jet& a) { return Jet(0) - a; }
 
-/// f(x) of which f and f' at x.value are known: one step of the chain rule on the level of x.
+/// f(x) from f and f' at x.value: one step of the chain rule on the level of x.
 Jet chain(const Jet& x, Jet value, const Jet& derivative);
 
 // Elementary functions; all throw Singular outside the open domain in which they are differentiable.

@@ -16,8 +16,8 @@
 namespace eomgen::verify {
 
 Real power_of_two_near(const Real& x, int sign) {
-  constexpr long exact = 1 << 16;  // beyond, a power of two as a fraction has too many digits
-  // Of a long float: beyond the range of binary64 its infinity would have an exponent of its own.
+  constexpr long exact = 1 << 16;  // a larger power of two has too many digits as a fraction
+  // From a long float: a conversion to binary64 would overflow to infinity.
   const long exponent = cln::float_exponent(cln::cl_float(x, cln::float_format(20)));
   const long wanted = sign > 0 ? exponent : 1 - exponent;
   if (std::abs(wanted) < exact) return cln::expt(Real(2), cln::cl_I(wanted));
@@ -26,7 +26,7 @@ Real power_of_two_near(const Real& x, int sign) {
 
 namespace {
 
-/// Scaling by it rounds nothing.
+/// A power of two; scaling by it is exact.
 Real inverse_magnitude(const Real& x) { return cln::zerop(x) ? Real(1) : power_of_two_near(x, -1); }
 
 /// Complete pivoting of a matrix that is scaled by powers of two; the same for CLN reals and for binary64.
@@ -34,7 +34,7 @@ template <class Number>
 struct Elimination {
   std::size_t n;
   std::vector<Number> A;
-  std::vector<std::size_t> row, column;  // of the matrix, in each place
+  std::vector<std::size_t> row, column;  // of the original matrix, by position
   double largest = 0, smallest = std::numeric_limits<double>::infinity();
 
   Elimination(std::size_t size, std::vector<Number> matrix) : n(size), A(std::move(matrix)), row(n), column(n) {
@@ -49,13 +49,13 @@ struct Elimination {
   static bool is_zero(double x) { return x == 0; }
   static bool is_zero(const Real& x) { return cln::zerop(x); }
 
-  /// A = L U with the factors in place of A; false where it is singular to working precision.
+  /// A = L U with the factors in place of A; false if A is singular to working precision.
   bool factor() {
     for (std::size_t step = 0; step < n; ++step) {
       const double pivot = choose(step);
       largest = std::max(largest, pivot);
       smallest = std::min(smallest, pivot);
-      if (!(pivot >= 1e-30)) return false;  // of a matrix scaled to 1
+      if (!(pivot >= 1e-30)) return false;  // the matrix is scaled to 1
       for (std::size_t i = step + 1; i < n; ++i) {
         if (is_zero(at(i, step))) continue;
         const Number factor = at(i, step) / at(step, step);
@@ -107,7 +107,7 @@ struct Elimination {
   }
 };
 
-/// Rows and columns that hang together, each list ascending.
+/// Rows and columns of one decoupled block, each list ascending.
 struct Part {
   std::vector<std::size_t> rows, columns;
 };
@@ -141,7 +141,7 @@ std::vector<Part> parts(const std::vector<Real>& A, std::size_t n) {
   return result;
 }
 
-/// The widest float format among the numbers; none where all are exact.
+/// The widest float format among the numbers; none if all are exact.
 std::optional<cln::float_format_t> format_of(const std::vector<Real>& numbers) {
   std::optional<cln::float_format_t> widest;
   for (const Real& number : numbers) {
@@ -158,7 +158,7 @@ Real largest_of(const std::vector<Real>& v) {
   return largest;
 }
 
-/// A x = b from the factors of A in binary64; nothing where they do not suffice.
+/// Solves A x = b by refinement with factors of A in binary64; nothing if it does not converge.
 std::optional<std::vector<Real>> refined(const std::vector<Real>& A, const std::vector<Real>& b,
                                          const Elimination<double>& rough) {
   const std::size_t n = b.size();
@@ -191,7 +191,7 @@ std::optional<std::vector<Real>> refined(const std::vector<Real>& A, const std::
       change = cln::max(change, cln::abs(d));
     }
     if (change <= last_digit * largest_of(x)) return x;
-    // Each step is to be smaller than the one before by some digits.
+    // Each step has to be smaller than the previous one by some digits.
     if (iteration > 0 && change * 16 > before) return std::nullopt;
     before = change;
   }

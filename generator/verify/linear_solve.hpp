@@ -10,23 +10,23 @@
 namespace eomgen::verify {
 
 struct Solution {
-  std::vector<Real> unknowns;  // empty where the matrix is singular to working precision
-  /// Ratio of the extreme pivots after rows and columns were scaled to 1: a measure of the condition. Infinite where
-  /// the matrix is singular.
+  std::vector<Real> unknowns;  // empty if the matrix is singular to working precision
+  /// Ratio of the extreme pivots after rows and columns were scaled to 1: a measure of the condition. Infinite if the
+  /// matrix is singular.
   double condition = 1;
-  std::vector<std::vector<double>> inverse;  // the sizes of its columns' entries, where asked for
+  std::vector<std::vector<double>> inverse;  // absolute values of its columns' entries, if requested
 
   bool exists() const { return !std::isinf(condition); }
   const std::vector<Real>& x() const { return unknowns; }
 };
 
-/// A power of two near |x| (sign 1) or 1/|x| (sign -1), x != 0, at the precision of x: scaling by it rounds nothing.
+/// A power of two near |x| (sign 1) or 1/|x| (sign -1), x != 0, at the precision of x. Scaling by it is exact.
 Real power_of_two_near(const Real& x, int sign);
 
-/// A x = b with A n x n, row-major; parts that do not hang together each alone, by Gaussian elimination with complete
-/// pivoting of the scaled matrix. Large parts are eliminated in binary64 and refined: each residual, in all digits,
-/// takes off as many digits as binary64 has beyond the condition; where that does not converge, elimination in all
-/// digits it is.
+/// Solves A x = b with A n x n, row-major, by Gaussian elimination with complete pivoting of the scaled matrix.
+/// Decoupled blocks are solved one by one. Large blocks are eliminated in binary64 and refined with residuals in all
+/// digits: each step gains the digits that binary64 has beyond the condition. If this does not converge, they are
+/// eliminated in all digits.
 Solution solve(std::vector<Real> A, std::vector<Real> b, bool with_inverse = false);
 
 }  // namespace eomgen::verify

@@ -13,7 +13,7 @@ namespace eomgen::verify {
 Motion motion_at(const Judge& judge, const State& at) {
   Motion motion{at, {}, {}};
   State& s = motion.state;
-  std::vector<std::size_t> bound;  // constraints that do not follow from others
+  std::vector<std::size_t> bound;  // constraints that are closed and not implied by others
   for (std::size_t k = 0; k < judge.constraints().size(); ++k) {
     if (!judge.implied(k) && !at.apart.contains(k)) bound.push_back(k);
   }
@@ -23,7 +23,8 @@ Motion motion_at(const Judge& judge, const State& at) {
   const std::vector<Residual> rest = judge.dalembert(s, no_forces);
   const ConstraintValues c = judge.constraint_values(s);
   std::vector<Real> matrix(size * size, Real(0)), right(size, Real(0));
-  // Inertia is what an acceleration adds; beside large forces a small one would drown. A power of two rounds nothing.
+  // The matrix entries are the changes for a test acceleration. It is as large as the forces, so that no digits are
+  // lost; a power of two is exact.
   Real forces = 1;
   for (const Residual& row : rest) forces = cln::max(forces, row.scale);
   const Real acceleration = power_of_two_near(forces, 1);
@@ -46,7 +47,7 @@ Motion motion_at(const Judge& judge, const State& at) {
   for (std::size_t k = 0; k < m; ++k) row_scale.push_back(cln::abs(right[n + k]));
   const Solution solution = solve(matrix, std::move(right), true);
   if (!solution.exists()) throw Singular("the mass matrix is nearly singular");
-  for (std::size_t i = 0; i < size; ++i)  // terms of the solution may cancel to nothing
+  for (std::size_t i = 0; i < size; ++i)  // terms of the solution may cancel
     for (std::size_t k = 0; k < size; ++k)
       row_scale[i] = row_scale[i] + cln::abs(matrix[i * size + k] * solution.x()[k]);
   for (std::size_t i = 0; i < n; ++i) s.qddot[i] = solution.x()[i];
@@ -56,12 +57,12 @@ Motion motion_at(const Judge& judge, const State& at) {
     Real scale = 0;
     for (std::size_t k = 0; k < size; ++k) scale = scale + exact(solution.inverse[k][i]) * row_scale[k];
     if (i >= n) continue;
-    // An acceleration that a constraint makes 0 is what remains where the terms of its own equation cancel.
+    // For an acceleration that a constraint makes 0, the terms of its own equation cancel.
     const Real inertia = cln::abs(matrix[i * size + i]);
     if (!cln::zerop(inertia)) scale = scale + row_scale[i] / inertia;
     motion.scale.push_back(scale);
   }
-  if (m > 0) {  // as of system_values
+  if (m > 0) {  // as in system_values.cpp
     const Real share = least_share(judge.model());
     Real largest = 0;
     for (const Real& scale : motion.scale) largest = cln::max(largest, scale);
@@ -70,8 +71,7 @@ Motion motion_at(const Judge& judge, const State& at) {
   return motion;
 }
 
-// Beyond the digits that are compared, and far above rounding. A joint has moments among its forces, whose sizes
-// differ.
+// Below the compared digits and far above rounding. Joints have forces and moments, whose sizes differ.
 Real least_share(const model::Model& model) {
   return cln::expt(cln::cl_RA(1) / 10, cln::cl_I(model.joints.empty() ? 20 : 4));
 }

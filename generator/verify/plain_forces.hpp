@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces of a Model as the judge sees them, each stated in its own file of verify/forces/.
+// Forces of a Model as the oracle computes them, each kind in its own file of verify/forces/.
 #pragma once
 
 #include <vector>
@@ -12,20 +12,20 @@ namespace eomgen::verify {
 void subtract_forces(const model::Model& model, const Precision& precision, Interpreter& now,
                      std::vector<Residual>& sums);
 
-/// U of every force that has one (gravity that is uniform, attraction, springs), term by term, and that of [energy].
+/// U of [energy] and of every force that has one (uniform gravity, attraction, springs), term by term.
 std::vector<Jet> potentials(const model::Model& model, const Precision& precision, Interpreter& at);
 
-/// Particles, and bodies at their centres of mass.
+/// The mass of a particle, or of a body at its centre of mass.
 struct Mass {
   std::uint32_t place;
   model::NodeId mass;
 };
 std::vector<Mass> masses(const model::Model& model);
 
-/// J v with the inertia of a body along its axes at this moment.
+/// J v, with the inertia tensor of a body along its current axes.
 Vector inertia_times(const model::Body& body, Interpreter& at, const Vector& v);
 
-/// |difference| / scale as a binary64; 0 where both vanish, 1 where only the scale does.
+/// |difference| / scale as a binary64; 0 if both vanish, 1 if only the scale does.
 double relative(const Real& difference, const Real& scale);
 
 }  // namespace eomgen::verify

@@ -14,15 +14,15 @@
 namespace eomgen::verify {
 namespace {
 
-// How far random values go from the defaults and starts, before anything is rejected.
+// Initial spread of random values around the defaults and initial values; it narrows after rejections.
 constexpr double parameter_spread = 0.25;    // relative
 constexpr double coordinate_spread = 0.5;    // of the scale of its unit
 constexpr double angle_spread = 1.2;         // rad
 constexpr double range_margin = 0.05;        // of a chart's range, at either end: charts are singular there
-constexpr double longest_span = 100;         // s; later times test nothing more
+constexpr double longest_span = 100;         // s; later times add no new tests
 constexpr double kink_margin = 1e-6;         // so that rounding to binary64 cannot change the branch
-constexpr std::size_t patience = 12;         // tries to close the same contacts before one of them is left open
-constexpr std::size_t inside_patience = 48;  // where they close, but never within the ranges
+constexpr std::size_t patience = 12;         // attempts to close the same contacts before one of them is left open
+constexpr std::size_t inside_patience = 48;  // the same if they close, but never within the ranges
 
 bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text == "1"; }
 
@@ -43,12 +43,12 @@ double Points::uniform() { return (static_cast<double>(engine_() >> 12) + 0.5) *
 double Points::symmetric() { return 2 * uniform() - 1; }
 Real Points::exact(double value) const { return judge_.precision().round(verify::exact(value)); }
 
-// ---- what the file says about where the system lives
+// ---- ranges and scales from the model file
 
 void Points::read_scene() {
   const model::Model& m = judge_.model();
   State start;
-  start.integrals.assign(m.integrals.size(), Real(0));  // they count from the start
+  start.integrals.assign(m.integrals.size(), Real(0));  // integrals begin at the start
   start.parameters = judge_.default_parameters();
   const model::Scene* scene = m.scenes.empty() ? nullptr : &m.scenes.front();
   if (scene != nullptr)
@@ -62,7 +62,7 @@ void Points::read_scene() {
     if (scene->t1 != model::no_node) t1_ = cln::double_approx(judge_.constant(scene->t1, start.parameters));
   }
   t1_ = std::min(t1_, t0_ + longest_span);
-  start.t = exact(t0_);  // before functions of time are looked at, which may have no value at other times
+  start.t = exact(t0_);  // before functions of time are evaluated: they may be undefined at other times
   for (const model::Input& input : m.inputs) {
     start.inputs.push_back(judge_.constant(input.fallback, start.parameters));
     input_defaults_.push_back(cln::double_approx(start.inputs.back()));
@@ -78,8 +78,8 @@ void Points::read_scene() {
           target[value.coordinate] = judge_.value(value.value, start);
           if (values == &scene->initial && value.order == 0) given[value.coordinate] = true;
         } catch (const std::domain_error&) {
-          continue;  // a start that needs values which only the constraints give, or a time at which a function has no
-                     // rate, as t^1.5 at 0
+          continue;  // the start depends on values that only the constraints determine, or a function has no rate at
+                     // this time, as t^1.5 at 0
         }
       }
   read_ranges(start);
@@ -87,8 +87,8 @@ void Points::read_scene() {
   settle(std::move(start), given);
 }
 
-/// What the scene leaves to the constraints is where they put it: neither its guess nor a zero says where the system
-/// lives, or how large it is.
+/// Coordinates without an initial value follow from the constraints: neither their guess nor 0 gives their usual values
+/// and scales.
 void Points::settle(State start, const std::vector<bool>& given) {
   const bool holonomic = [&] {
     for (std::size_t k = 0; k < judge_.constraints().size(); ++k)
@@ -97,14 +97,14 @@ void Points::settle(State start, const std::vector<bool>& given) {
   }();
   if (!holonomic || std::find(given.begin(), given.end(), false) == given.end()) return;
   for (std::size_t i = 0; i < choices_.size(); ++i) start.q[i] = exact(choices_[i].center);
-  for (const std::size_t j : leavable_) start.apart.insert(j);  // they need not touch
+  for (const std::size_t j : leavable_) start.apart.insert(j);  // unilateral constraints may be open
   try {
     project_positions(start, &given);
     require_inside(start);
   } catch (const std::runtime_error&) {
-    return;  // given values may be moved too, or the guess is too far away: the states are looked for from there
+    return;  // given values may have to change too, or the guess is too far away: sampling begins from the given values
   } catch (const std::domain_error&) {
-    return;  // the start has no value, as t^1.5 has no rate at 0
+    return;  // the start is undefined, as the rate of t^1.5 at 0
   }
   for (std::size_t i = 0; i < choices_.size(); ++i) choices_[i].center = cln::double_approx(start.q[i]);
   read_scales();
@@ -124,7 +124,7 @@ void Points::read_ranges(const State& start) {
   }
 }
 
-/// Coordinates of the same unit share a scale: an orbit that starts at (7e6, 0) m moves in both.
+/// Coordinates of the same unit share a scale: an orbit that starts at (7e6, 0) m has this scale in both.
 void Points::read_scales() {
   const model::Model& m = judge_.model();
   for (std::size_t i = 0; i < choices_.size(); ++i) {
@@ -140,7 +140,7 @@ void Points::read_scales() {
     c.scale = scale > 0 && !is_angle(unit) ? scale : 1;
     c.rate_scale = rate > 0 ? rate : 1;
     const bool below = c.has_lower && c.center <= c.lower, above = c.has_upper && c.center >= c.upper;
-    if (below || above) {  // not given: it follows from a constraint
+    if (below || above) {  // not given: it follows from the constraints
       if (c.has_lower && c.has_upper)
         c.center = (c.lower + c.upper) / 2;
       else
@@ -150,7 +150,7 @@ void Points::read_scales() {
 }
 
 double Points::decades() const {
-  constexpr double decimals = 0.30103;  // of a binary digit
+  constexpr double decimals = 0.30103;  // decimal digits per binary digit
   double largest = 0;
   const auto look_at = [&](const Real& value) {
     if (cln::zerop(value)) return;
@@ -190,7 +190,7 @@ State Points::draw() {
   s.t = exact(t0_ + uniform() * (t1_ - t0_));
   for (std::size_t i = 0; i < m.parameters.size(); ++i) {
     const double u = symmetric();
-    const bool zero = cln::zerop(defaults_[i]);  // a term that is switched off by default is tested too
+    const bool zero = cln::zerop(defaults_[i]);  // test terms that are switched off by default too
     s.parameters.push_back(zero ? exact(spread_ * (0.55 + 0.45 * u))
                                 : defaults_[i] * exact(1 + parameter_spread * spread_ * u));
   }
@@ -227,10 +227,10 @@ void Points::require_smooth(const State& s) const {
   if (margin.kink < kink_margin) throw Rejected("too near a kink");
 }
 
-// Whether it is the contacts to be closed that fail, and not something else.
+// Whether the closed contacts cause the failure; if so, another set of contacts is tried.
 bool Points::give_up_closing(Choosing& choosing) {
   if (choosing.open.size() == leavable_.size()) return false;
-  if (choosing.reached) {  // and seldom: states with all of them open are looked at too
+  if (choosing.reached) {  // rare failure: add states with all of them open
     constexpr std::size_t seldom = 4;
     if (++choosing.failures != seldom * patience) return false;
     Choosing all;
@@ -242,7 +242,7 @@ bool Points::give_up_closing(Choosing& choosing) {
   return true;
 }
 
-// One more contact stays open, each of those that were to be closed in turn.
+// Leaves one more contact open: replaces the current set by sets with each of its closed contacts open.
 void Points::leave_one_open() {
   const std::set<std::size_t> open = choosings_[turn_ % choosings_.size()].open;
   choosings_.erase(choosings_.begin() + static_cast<std::ptrdiff_t>(turn_ % choosings_.size()));
@@ -251,7 +251,7 @@ void Points::leave_one_open() {
     Choosing more;
     more.open = open;
     more.open.insert(j);
-    // What is open in another one is open in this one too: that one closes more.
+    // Another set whose open contacts are all open in this one closes more contacts.
     const auto closes_more = [&](const Choosing& other) {
       return std::includes(more.open.begin(), more.open.end(), other.open.begin(), other.open.end());
     };
@@ -278,10 +278,10 @@ State Points::next() {
       return s;
     } catch (const Unclosed& unclosed) {
       if (give_up_closing(choosing)) continue;
-      ++turn_;  // contacts that closed once and do not again keep no others from their turn
+      ++turn_;  // a set that was reached before does not block the others
       reject(unclosed.what());
     } catch (const Outside& outside) {
-      // A contact that is far away is met by leaving a chart: it cannot be closed within the ranges.
+      // The projection closes a distant contact only outside a chart: it cannot be closed within the ranges.
       if (choosing.reached && give_up_closing(choosing)) continue;
       const bool closes = choosing.open.size() < leavable_.size();
       if (choosing.reached)
@@ -299,7 +299,7 @@ State Points::next() {
 
 void Points::reject(const std::string& why) {
   ++rejected_[why];
-  // Of states drawn at random, the fewer close the more loops there are.
+  // The more loops a model has, the fewer random states can be projected onto its constraints.
   constexpr std::size_t often = 10, few = 8;
   const std::size_t rows = std::max(few, judge_.constraints().size());
   if (++rejections_ % std::max<std::size_t>(1, often * few / rows) == 0) spread_ *= 0.8;

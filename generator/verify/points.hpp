@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random states that the model allows. In: the judge. Out: t, parameters about their defaults, coordinates within
-// their ranges about the start of the default scene, put onto the constraints by Newton's method at full precision
-// (positions, then velocities). Deterministic by seed on every platform; what cannot be compared is rejected and
-// counted.
+// Random admissible states of a model. In: the oracle. Out: t, parameters around their defaults, coordinates within
+// their ranges around the start of the default scene, projected onto the constraints by Newton's method at full
+// precision (positions, then velocities). Deterministic for each seed on every platform. States that cannot be compared
+// are rejected and counted.
 #pragma once
 
 #include <cln/rational.h>
@@ -20,36 +20,36 @@
 
 namespace eomgen::verify {
 
-/// A state that is not compared, and why; counted by reason.
+/// The reason why a state is not compared; rejections are counted by reason.
 struct Rejected : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The constraints cannot be met there.
+/// The projection onto the constraints fails.
 struct Unclosed : Rejected {
   using Rejected::Rejected;
 };
 
-/// A coordinate is outside its range there.
+/// A coordinate is outside its range.
 struct Outside : Rejected {
   using Rejected::Rejected;
 };
 
 class Points {
  public:
-  /// At most `cap` rejections in all. Parameters in `fixed` have that value at every point. States are moved onto the
-  /// constraints; implied ones hold there by themselves, or are moved onto too. Scalar constraints in `leavable` are
-  /// closed, all of them or, where that cannot be, as many as can be, other ones at other points; the others are
+  /// At most `cap` rejections in all. Parameters in `fixed` have that value at every state. States are projected onto
+  /// the constraints, and onto implied ones that do not hold by themselves. The unilateral scalar constraints in
+  /// `leavable` are closed, or, if they cannot all be closed, as many as possible, in turn; the others are
   /// State::apart.
   Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed = {},
          std::vector<std::size_t> leavable = {});
 
-  /// A state with qddot = 0. Throws Error (Fault::check) once too many were rejected.
+  /// The next state, with qddot = 0. Throws Error (Fault::check) after too many rejections.
   State next();
-  /// The state that next() gave cannot be compared after all.
+  /// Rejects the last state of next(), which cannot be compared.
   void reject(const std::string& why);
   const std::map<std::string, std::size_t>& rejected() const { return rejected_; }
-  /// The largest distance of a parameter, a start, a rate or a time from 1, in powers of ten.
+  /// The largest distance of a parameter, an initial value, a rate or a time from 1, in powers of ten.
   double decades() const;
 
  private:
@@ -58,7 +58,7 @@ class Points {
     bool has_lower = false, has_upper = false;
     double lower = 0, upper = 0;
   };
-  /// Which of `leavable` are open.
+  /// The open ones of `leavable`.
   struct Choosing {
     std::set<std::size_t> open;
     std::size_t failures = 0, outside = 0;
@@ -76,7 +76,7 @@ class Points {
   void fix(std::vector<Real>& parameters) const;
   State draw();
   double draw_coordinate(const Choice& choice);
-  /// Those that are `held` stay where they are.
+  /// Coordinates that are `held` keep their values.
   void project_positions(State& state, const std::vector<bool>* held = nullptr) const;
   void project_velocities(State& state) const;
   std::vector<Real> correction(const State& state, bool rates, const std::vector<bool>* held, bool by_room) const;
@@ -93,14 +93,14 @@ class Points {
   std::size_t cap_;
   std::map<std::uint32_t, cln::cl_RA> fixed_;
   std::vector<std::size_t> leavable_;
-  std::vector<Choosing> choosings_;  // taken in turn
+  std::vector<Choosing> choosings_;  // used in turn
   std::size_t turn_ = 0;
-  std::set<std::size_t> open_;   // implied constraints that positions are moved onto all the same
+  std::set<std::size_t> open_;   // implied constraints that positions are still projected onto
   std::vector<Choice> choices_;  // per coordinate
   std::vector<Real> defaults_;   // of the parameters
   std::vector<double> input_defaults_;
   double t0_ = 0, t1_ = 1;
-  double spread_ = 1;  // narrows about the defaults as points are rejected
+  double spread_ = 1;  // narrows around the defaults as states are rejected
   std::size_t rejections_ = 0;
   std::map<std::string, std::size_t> rejected_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// States at which equations are checked, moved onto the constraints.
+// Projection of random states onto the constraints.
 #include <cln/integer.h>
 #include <cln/rational.h>
 #include <cln/real.h>
@@ -14,7 +14,7 @@ constexpr double singular_constraints = 1e10;
 
 }  // namespace
 
-/// How far a coordinate is from the nearer end of its range; its scale, if that is less.
+/// Distance of a coordinate from the nearer end of its range, at most its scale.
 Real Points::room(const State& state, std::size_t i) const {
   const Choice& c = choices_[i];
   Real room = exact(c.scale);
@@ -23,13 +23,13 @@ Real Points::room(const State& state, std::size_t i) const {
   return room;
 }
 
-/// Takes the step, or of it what leaves every coordinate inside its range. False: it was cut.
+/// Takes the step, shortened if necessary to keep every coordinate inside its range. False: it was shortened.
 bool Points::move_inside(State& s, const std::vector<Real>& step) const {
-  const Real most = cln::cl_RA(9) / 10;  // of the way to the end of the range
+  const Real most = cln::cl_RA(9) / 10;  // of the distance to the end of the range
   Real part = 1;
   for (std::size_t i = 0; i < step.size(); ++i) {
     const Choice& c = choices_[i];
-    const auto keep = [&](const Real& way) {  // of the sign of the step
+    const auto keep = [&](const Real& way) {  // with the sign of the step
       if (cln::abs(step[i]) > most * cln::abs(way)) part = cln::min(part, most * way / step[i]);
     };
     if (c.has_lower && cln::minusp(step[i]) && s.q[i] > exact(c.lower)) keep(exact(c.lower) - s.q[i]);
@@ -39,19 +39,19 @@ bool Points::move_inside(State& s, const std::vector<Real>& step) const {
   return part == 1;
 }
 
-/// The least change that removes the defect, measured by the scales, or by what is left to the ends of the ranges:
+/// The least change that removes the defect, weighted by the scales or by the distances to the ends of the ranges:
 /// W A^T (A W A^T)^-1 (-defect).
 std::vector<Real> Points::correction(const State& state, bool rates, const std::vector<bool>* held,
                                      bool by_room) const {
   State at = state;
-  at.qddot.clear();  // nobody asks for psi_ddot here
+  at.qddot.clear();  // psi_ddot is not needed
   ConstraintValues c = judge_.constraint_values(at);
   const std::size_t n = choices_.size();
   std::vector<Real> defect = rates ? c.psi_dot : c.psi;
   for (std::size_t k = c.gradient.size(); k-- > 0;) {
     const bool follows = judge_.implied(k) && (rates || !open_.contains(k));
     if ((rates || judge_.holonomic(k)) && !follows && !state.apart.contains(k))
-      continue;  // else: binds no position, follows, is open
+      continue;  // otherwise: a velocity constraint, implied, or open
     c.gradient.erase(c.gradient.begin() + static_cast<std::ptrdiff_t>(k));
     defect.erase(defect.begin() + static_cast<std::ptrdiff_t>(k));
   }
@@ -68,7 +68,7 @@ std::vector<Real> Points::correction(const State& state, bool rates, const std::
   std::vector<Real> gram(rows * rows, Real(0)), right;
   for (const Real& value : defect) right.push_back(-value);
   for (std::size_t j = 0; j < n; ++j) {
-    std::vector<std::size_t> bound;  // constraints that it is in
+    std::vector<std::size_t> bound;  // constraints that contain this coordinate
     for (std::size_t i = 0; i < rows; ++i)
       if (!cln::zerop(c.gradient[i][j])) bound.push_back(i);
     for (const std::size_t i : bound) {
@@ -92,17 +92,17 @@ void Points::project_positions(State& s, const std::vector<bool>* held) const {
   const Real own = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() / 2 - 8));
   constexpr int most_settling = 8;
   int settled = 0;
-  bool by_room = false;  // once a step would have left a range: coordinates near an end are moved less then
+  bool by_room = false;  // after a step would have left a range: coordinates near an end then change less
   for (int iteration = 0; iteration < 40; ++iteration) {
     const std::vector<Real> step = correction(s, false, held, by_room);
     Real size = 0;
     for (std::size_t i = 0; i < step.size(); ++i) size = cln::max(size, cln::abs(step[i]) / exact(choices_[i].scale));
     if (!move_inside(s, step)) by_room = true;
-    // The first step may be as long as a prescribed motion is far away: a radius of a planet, where no start gives a
+    // The first step may be as long as the distance of a prescribed motion: the radius of a planet, if no start gives a
     // scale.
     if (iteration > 0 && size > 1000) break;
     if (size >= small) continue;
-    // A coordinate far below its scale, as a height of 1 beside a width of 1e300, has digits of its own to come.
+    // A coordinate far below its scale, as a height of 1 next to a width of 1e300, needs more digits of its own.
     const auto coarse = [&](std::size_t i) { return cln::abs(step[i]) > cln::abs(s.q[i]) * own; };
     if (++settled == most_settling) return;
     bool any = false;
@@ -114,7 +114,7 @@ void Points::project_positions(State& s, const std::vector<bool>* held) const {
 
 void Points::project_velocities(State& s) const {
   if (judge_.constraints().empty()) return;
-  // Linear; a second time for the digits of what is nearly at rest. What is left where nothing can move is 0.
+  // Linear; the second round gains digits for small velocities. A remainder where no motion is possible becomes 0.
   const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() - 6));
   std::vector<Real> size;
   for (std::size_t i = 0; i < choices_.size(); ++i)
@@ -128,8 +128,8 @@ void Points::project_velocities(State& s) const {
   }
 }
 
-/// What follows from velocities alone, as a joint of a body that they hold, binds positions all the same: those that
-/// are open are closed one by one, as long as that closes more.
+/// A constraint implied on the velocity level, as a joint of a body that velocity constraints hold, still constrains
+/// positions. Such constraints are closed one by one, as long as this closes more of them.
 void Points::close_implied(State& s) {
   for (std::size_t round = 0; judge_.any_implied() && round < judge_.constraints().size(); ++round) {
     const std::optional<std::size_t> open = first_open(s, false);
@@ -139,12 +139,13 @@ void Points::close_implied(State& s) {
   }
 }
 
-/// Relative to the size of the terms, as far as the digits of a projection go.
+/// Rejects states that violate implied constraints, relative to the size of the terms and within the digits of a
+/// projection.
 void Points::require_implied(const State& s) const {
   if (first_open(s, true)) throw Rejected("a joint closes in another way");
 }
 
-/// Of the constraints that follow from others: the first that does not hold, in positions or also in rates.
+/// The first implied constraint that does not hold, in positions or also in rates.
 std::optional<std::size_t> Points::first_open(const State& s, bool rates) const {
   if (!judge_.any_implied()) return std::nullopt;
   const ConstraintValues c = judge_.constraint_values(s);

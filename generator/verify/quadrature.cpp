@@ -44,7 +44,7 @@ class Panels {
     return refined(a, middle, left, depth + 1) + refined(middle, b, right, depth + 1);
   }
 
-  static constexpr int most_panels = 4000, deepest = 1200;  // a kink asks for some 4 halvings per digit
+  static constexpr int most_panels = 4000, deepest = 1200;  // a kink takes about 4 halvings per digit
   const std::function<Real(const Real&)>& f_;
   const std::vector<Real>& node_;
   const std::vector<Real>& weight_;
@@ -56,7 +56,7 @@ class Panels {
 }  // namespace
 
 // Nodes: roots of the Legendre polynomial by Newton's method, (n + 1) P_(n+1) = (2 n + 1) x P_n - n P_(n-1). With n
-// nodes an analytic integrand is met to n digits and more on a panel that is short beside its features.
+// nodes an analytic integrand has n digits and more on a panel that is short relative to its features.
 GaussLegendre::GaussLegendre(int digits, const Precision& precision)
     : precision_(precision), small_(cln::expt(cln::cl_RA(1) / 10, cln::cl_I(digits))) {
   const int n = digits / 2 + 10;

@@ -14,8 +14,8 @@ class GaussLegendre {
  public:
   GaussLegendre(int digits, const Precision& precision);
 
-  /// The integral of `f` from a to b (b may be before a) to the digits asked for, relative to the size of the
-  /// integrand: panels are halved until the halves agree with the whole. Throws Singular where that does not happen.
+  /// The integral of `f` from a to b (b may be before a), to the given digits relative to the size of the integrand.
+  /// Panels are halved until the halves agree with the whole. Throws Singular if they never do.
   Real operator()(const std::function<Real(const Real&)>& f, const Real& a, const Real& b) const;
 
  private:

@@ -10,14 +10,14 @@
 namespace eomgen::verify {
 namespace {
 
-/// Size of a vector, as the sum of its components' sizes.
+/// Size of a vector: the sum of the absolute values of its components.
 Real length(const Vector& v) { return cln::abs(v[0].real()) + cln::abs(v[1].real()) + cln::abs(v[2].real()); }
 
 Vector slope(const Vector& v, unsigned level, std::size_t i) {
   return {v[0].slope(level, i), v[1].slope(level, i), v[2].slope(level, i)};
 }
 
-/// The coordinates that move any of the vectors.
+/// The coordinates that any of the vectors depends on.
 std::vector<std::size_t> directions(const std::vector<Vector>& vectors, unsigned level) {
   std::set<std::size_t> result;
   for (const Vector& v : vectors)
@@ -33,8 +33,9 @@ State without_accelerations(State state) {
 
 }  // namespace
 
-// In curvilinear coordinates the rate of a momentum is itself a sum that may cancel (of a free particle, to nothing),
-// so that the size of a term is that of its factors: |dr/dq_i| (sum_k |m dr/dq_k qddot_k| + |all the rest|).
+// In curvilinear coordinates the rate of a momentum is itself a sum that may cancel (for a free particle, to zero).
+// Therefore the size of a term is the product of the sizes of its factors:
+// |dr/dq_i| (sum_k |m dr/dq_k qddot_k| + |all other terms|).
 void Inertia::add(const std::vector<std::size_t>& along, const std::vector<Vector>& tangent,
                   const std::vector<Vector>& momentum) {
   std::vector<Real> longest, size;
@@ -121,7 +122,7 @@ void Standing::add_particles() {
   }
 }
 
-/// sum over bodies of dH/dt . dw/dqdot_i, eq. (9.39); sizes as of particles.
+/// sum over bodies of dH/dt . dw/dqdot_i, eq. (9.39); sizes as for particles.
 void Standing::add_rotations() {
   Interpreter& by_q = now_.by_coordinates(false);
   Interpreter& later = now_.along_time();
@@ -142,15 +143,15 @@ void Standing::add_rotations() {
       momentum.push_back(turn.back()[0] * J[0] + turn.back()[1] * J[1] + turn.back()[2] * J[2]);
     }
     inertia_->add(along, turn, momentum);
-    // The axes turn: what cancels in dH/dt is of the size of w x H, also where nothing is left of it.
+    // The axes rotate: terms that cancel in dH/dt are as large as w x H.
     const Real size = length(rate) + length(H) * length(now_.angular_velocity(body.frame));
     for (std::size_t i = 0; i < along.size(); ++i)
       rest_[along[i]].add(dot(rate, turn[i]).real(), size * length(turn[i]));
   }
 }
 
-/// d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of the energies that the model gives as such. The size of the first term is
-/// that of its part in qddot and that of the rest.
+/// d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of the energies that the model states directly. The size of the first term is
+/// the sum of the sizes of its part in qddot and of the remainder.
 void Standing::add_energies() {
   if (model_.energy.kinetic != model::no_node) {
     Interpreter& later = now_.along_time().by_rates();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the judge finds at one state whatever the accelerations and the constraint forces are: d'Alembert's residuals
-// are affine in them, so that each further question at this state costs products of numbers only. In: a Judge and a
-// State. Out: the residuals without accelerations, what accelerations add, rows of the constraints.
+// The terms of the oracle at one state that are independent of accelerations and constraint forces. d'Alembert's
+// residuals are affine in these, so that each further evaluation at this state takes only products of numbers. In: the
+// Judge and a State. Out: the residuals at zero acceleration, the contribution of accelerations, constraint gradients.
 #pragma once
 
 #include <map>
@@ -12,15 +12,15 @@
 
 namespace eomgen::verify {
 
-/// sum_k M_ik qddot_k, with the sizes of its terms.
+/// The mass matrix, for sum_k M_ik qddot_k with the sizes of its terms.
 class Inertia {
  public:
   explicit Inertia(std::size_t n) : rows_(n) {}
-  /// A mass or a body whose displacements along the coordinates `along` are `tangent`, and what those make of its
-  /// momentum.
+  /// Adds a particle or a body: `tangent` are its displacements along the coordinates `along`, `momentum` its momenta
+  /// for unit rates of these coordinates.
   void add(const std::vector<std::size_t>& along, const std::vector<Vector>& tangent,
            const std::vector<Vector>& momentum);
-  /// Of energies that are given as such: their sizes are those of the sums.
+  /// Adds an entry from an energy that the model states directly; the sum itself is its size.
   void add_energy(std::size_t i, std::size_t k, const Real& entry);
   std::vector<Residual> at(const std::vector<Real>& qddot) const;
 
@@ -36,19 +36,19 @@ class Standing {
  public:
   Standing(const Judge& judge, const State& at);
 
-  /// psi and psi_dot; psi is 0 of a constraint on velocities.
+  /// psi and psi_dot; psi is 0 for a constraint on velocities.
   struct Along {
     Real psi = 0, rate = 0;
   };
 
   const State state;  // without accelerations
   Interpreter& now() { return now_; }
-  const Margin& margin() const { return margin_; }  // of all that was looked at so far
+  const Margin& margin() const { return margin_; }  // over all terms that were evaluated so far
   const Inertia& inertia();
-  const std::vector<Residual>& rest();  // everything but friction and constraint forces
+  const std::vector<Residual>& rest();  // at zero acceleration, without friction and constraint forces
   const std::vector<Real>& row(std::size_t constraint);
   const Along& along(std::size_t constraint);
-  const Real& second(std::size_t constraint);  // psi_ddot without accelerations
+  const Real& second(std::size_t constraint);  // psi_ddot at zero acceleration
 
  private:
   void look();

@@ -20,16 +20,16 @@ using system::EquationSystem;
 
 namespace {
 
-// Digits beyond the tolerance that a solve may lose; worse points are rejected.
+// Digits beyond the tolerance that a solve may lose; states with a larger condition are rejected.
 constexpr double worst_condition = 1e8;
 
 struct Solved {
-  std::vector<std::vector<double>> inverse;  // sizes of the columns of [M A^T; A 0]^-1, where asked for
+  std::vector<std::vector<double>> inverse;  // absolute values of the columns of [M A^T; A 0]^-1, if requested
   std::vector<Real> qddot, lambda;
   std::vector<Real> psi, A, b, gamma;
   std::vector<Real> M;
   std::vector<Real>
-      lost;  // of each row: terms that cancel in the route's own expressions, by what their last digits leave
+      lost;  // of each row: the size of terms that cancel in the formulation's expressions, from their lost digits
   double condition = 1;
 };
 
@@ -39,7 +39,7 @@ std::vector<Ref> concatenate(std::initializer_list<const std::vector<Ref>*> list
   return all;
 }
 
-// Of numbers that are far smaller than the largest, some may be what is left of terms that cancel.
+// Numbers that are far smaller than the largest may be remainders of cancelled terms.
 bool may_have_cancelled(const std::vector<Real>& values) {
   Real largest = 0;
   for (const Real& value : values) largest = cln::max(largest, cln::abs(value));
@@ -48,7 +48,8 @@ bool may_have_cancelled(const std::vector<Real>& values) {
                      [&](const Real& value) { return !cln::zerop(value) && cln::abs(value) < small; });
 }
 
-/// A force that is 0 because terms cancel leaves their last digits: the same with more digits tells how large they are.
+/// Sizes of cancelled terms in each row: a force whose terms cancel keeps their last digits, and an evaluation in more
+/// digits shows how large these are.
 std::vector<Real> lost_in_rows(const EquationSystem& s, const Lookup& lookup, int digits,
                                const std::vector<Real>& value, const Solved& out) {
   constexpr int more = 20;
@@ -100,7 +101,7 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
     }
     right.push_back(-out.gamma[k]);
   }
-  for (std::size_t j = 0; j < s.contacts.size(); ++j) {  // what is left has lambda = 0 in place of its constraint
+  for (std::size_t j = 0; j < s.contacts.size(); ++j) {  // open contacts: lambda = 0 replaces the constraint
     const std::optional<std::uint32_t> k = s.contacts[j].unilateral;
     if (!k || eom::contact_leaf(lookup.state.mode, 2 * j + 1) > 0) continue;
     for (std::size_t i = 0; i < n; ++i) matrix[(n + *k) * size + i] = 0;
@@ -112,7 +113,7 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
   if (!solution.exists() || solution.condition > worst_condition) throw Singular("the mass matrix is nearly singular");
   for (std::size_t i = 0; i < n; ++i) out.qddot.push_back(solution.x()[i]);
   for (std::size_t k = 0; k < m; ++k) out.lambda.push_back(-solution.x()[n + k]);
-  // What the route solved itself counts, not what its matrix would give.
+  // Accelerations that the formulation solves itself count, not those from its matrix.
   if (s.solution) {
     out.qddot = symbolic::evaluate(*s.dag, s.solution->qddot, lookup, digits);
     out.lambda = symbolic::evaluate(*s.dag, s.solution->lambda, lookup, digits);
@@ -125,7 +126,7 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
   return out;
 }
 
-/// Accelerations of eliminated coordinates are those that keep their constraints: psi_ddot = 0, by the judge.
+/// Accelerations of eliminated coordinates from psi_ddot = 0 of their constraints, by the oracle.
 void complete_accelerations(const mechanics::Mechanics& mechanics, const Judge& judge, State& state) {
   const std::size_t count = mechanics.fixed.size();
   if (count == 0) return;
@@ -149,8 +150,8 @@ std::vector<Real> propagate(const Solved& solved, const std::vector<Real>& row_s
   return scale;
 }
 
-/// A joint may keep a body from turning that nothing turns, constraints may hold what nothing pulls: accelerations and
-/// multipliers that are 0 up to rounding are so beside the largest ones.
+/// A joint or a constraint may carry no load at all: accelerations and multipliers that are 0 up to rounding get a
+/// scale relative to the largest ones.
 void raise_least(std::vector<Real>& scale, std::size_t accelerations, const Real& share) {
   const auto raise = [&](auto begin, auto end) {
     Real largest = 0;
@@ -162,7 +163,7 @@ void raise_least(std::vector<Real>& scale, std::size_t accelerations, const Real
   raise(middle, scale.end());
 }
 
-/// The terms of each equation, those of the unknowns among them: sum_k |M_ik qddot_k| may cancel to nothing.
+/// The size of the terms of each equation, including those of the unknowns: the terms M_ik qddot_k may cancel.
 std::vector<Real> sizes_of_rows(const EquationSystem& s, const Solved& solved, const SystemValues& v,
                                 const std::vector<Real>& qddot, const std::vector<Real>& lambda) {
   const std::size_t n = s.free.size(), m = s.active.size();
@@ -187,7 +188,7 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
   const std::vector<Real> row_scale = sizes_of_rows(s, solved, v, solved.qddot, solved.lambda);
   std::vector<Real> unknown = propagate(solved, row_scale);
   v.scale.assign(all + v.lambda.size(), Real(0));
-  // An acceleration that a constraint makes 0 is what remains where the terms of its own equation cancel.
+  // For an acceleration that a constraint makes 0, the terms of its own equation cancel.
   for (std::size_t i = 0; i < n; ++i) {
     const Real inertia = cln::abs(solved.M[i * n + i]);
     if (!cln::zerop(inertia)) unknown[i] = unknown[i] + row_scale[i] / inertia;
@@ -231,7 +232,7 @@ Real Lookup::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::input: return state.inputs.at(symbol.index);
     case SymbolKind::multiplier: return lambda.at(symbol.index);
     case SymbolKind::integral: return state.integrals.at(symbol.index);
-    case SymbolKind::side: return 0;  // every branch follows the state
+    case SymbolKind::side: return 0;  // branches depend on the state
     case SymbolKind::friction: return state.phi.at(symbol.index);
     case SymbolKind::contact: return eom::contact_leaf(state.mode, 2 * std::size_t{symbol.index} + symbol.order);
     case SymbolKind::extra: break;
@@ -289,8 +290,8 @@ std::vector<Real> integral_rates(const EquationSystem& s, const Lookup& lookup, 
 }
 
 Real energy_rate(const EquationSystem& s, const Judge& judge, const SystemValues& v, int digits) {
-  // At 3 d digits a step of 10^-d leaves 10^-2d of the truncation and of the rounding alike. What is fast takes a
-  // shorter step, and as many digits more.
+  // In 3 d digits a step of 10^-d makes truncation and rounding errors both 10^-2d. Fast motions take a shorter step,
+  // and correspondingly more digits.
   Real fastest = 1;
   for (const std::uint32_t i : s.free)
     fastest = cln::max(fastest, cln::max(cln::abs(v.state.qdot[i]), cln::abs(v.state.qddot[i])));

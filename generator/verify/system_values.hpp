@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: an EquationSystem and a state. Out: the numbers that it claims there: accelerations and multipliers from
+// In: an EquationSystem and a state. Out: its values there: accelerations and multipliers from
 // [M A^T; A 0][qddot; -lambda] = [f; -gamma], reactions, energies, power, outputs.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace eomgen::verify {
 
-/// What symbols stand for at a state: all coordinates to second order, functions, parameters, inputs, multipliers.
+/// Values of the symbols at a state: all coordinates to second order, functions, parameters, inputs, multipliers.
 struct Lookup {
   const Judge& judge;
   State state;
@@ -29,26 +29,27 @@ struct SystemValues {
   Real kinetic = 0, potential = 0, energy = 0, power = 0;
   std::vector<Real> outputs;
   double condition = 1;
-  std::vector<Residual> rows;    // d'Alembert's, per coordinate; their sizes with unknowns as large as their scales
-  ConstraintValues constraints;  // the judge's, with these accelerations
-  std::vector<Real> scale;       // of qddot (all coordinates), then of lambda: what an error of size 1 relative to the
-                                 // terms of every equation can change in them
+  std::vector<Residual> rows;    // d'Alembert's residuals, per coordinate; sizes for unknowns as large as their scales
+  ConstraintValues constraints;  // of the oracle, with these accelerations
+  std::vector<Real> scale;       // of qddot (all coordinates), then of lambda: their change for errors of relative
+                                 // size 1 in the terms of every equation
 };
 
-/// "lagrange II"
+/// The name of a system, "lagrange II".
 std::string name_of(const system::EquationSystem& system);
 
-/// Throws std::domain_error where there is no value, Singular where the system cannot be solved well.
+/// Evaluates a system. Throws std::domain_error if a value is undefined, Singular if the system is ill-conditioned.
 SystemValues values_of(const system::EquationSystem& system, const mechanics::Mechanics& mechanics, const Judge& judge,
                        const State& state);
 
-/// Accelerations of the free coordinates and multipliers of the active constraints, put into `lookup`.
+/// Solves for accelerations of the free coordinates and multipliers of the active constraints, and sets them in
+/// `lookup`.
 void solve_into(const system::EquationSystem& system, Lookup& lookup, int digits);
 
-/// d/dt of the integrals that are states.
+/// Time derivatives of the integrals that are states.
 std::vector<Real> integral_rates(const system::EquationSystem& system, const Lookup& lookup, int digits);
 
-/// What a right-hand side returns: qdot and qddot of the free coordinates, the rates of integrals.
+/// The right-hand side: qdot and qddot of the free coordinates, the rates of integrals.
 std::vector<Real> right_hand_side(const system::EquationSystem& system, const Judge& judge, const State& state);
 
 /// dE/dt of the system's energy by central differences along the path of `values`, at three times the digits.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an expression of a Model mentions, also through definitions and places.
+// Whether an expression of a Model contains a node, also through definitions and places.
 #pragma once
 
 #include <functional>

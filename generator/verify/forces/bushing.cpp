@@ -4,7 +4,7 @@
 namespace eomgen::verify::forces {
 namespace {
 
-// Newton's and Euler's statement: a force on B at its point, the opposite at the same place on A, and moments.
+// By Newton and Euler: a force on B at its point, the opposite force on A at the same point, and moments.
 void act(const model::Force& force, VirtualWork& w) {
   const std::uint32_t A = argument(force, "A")->index, B = argument(force, "B")->index;
   const model::NodeId rA = given(force, "rA"), rB = given(force, "rB");
@@ -13,7 +13,7 @@ void act(const model::Force& force, VirtualWork& w) {
   };
   const Vector d = w.now.vector(rB) - w.now.vector(rA);
   const Vector turns = w.now.angular_velocity(B) - w.now.angular_velocity(A);
-  const Vector slides = w.velocity(rB) - w.velocity(rA) - cross(w.now.angular_velocity(A), d);  // seen from A
+  const Vector slides = w.velocity(rB) - w.velocity(rA) - cross(w.now.angular_velocity(A), d);  // relative to A
   Vector push, moment;
   std::array<Vector, 3> a, b;
   for (std::size_t k = 0; k < 3; ++k) a[k] = w.now.axis(A, k), b[k] = w.now.axis(B, k);

@@ -6,14 +6,14 @@ namespace {
 
 bool extended(const model::Force& force) {
   const model::Argument* order = argument(force, "order");
-  return order != nullptr && order->index == 1;  // of 0 and 2
+  return order != nullptr && order->index == 1;  // index into the values 0 and 2
 }
 
 Jet trace(const model::Body& body, Interpreter& at) {
   return at.scalar(body.inertia[0][0]) + at.scalar(body.inertia[1][1]) + at.scalar(body.inertia[2][2]);
 }
 
-// What the inertia of a body adds to Newton's attraction, and the moment, eq. (7.72).
+// The contribution of a body's inertia to Newton's attraction, and the moment, eq. (7.72).
 void attract_extended(const model::Force& force, const model::Body& body, VirtualWork& w) {
   const model::NodeId center = given(force, "center");
   const Vector d = w.now.place(body.place) - w.now.vector(center);

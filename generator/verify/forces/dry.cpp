@@ -4,7 +4,7 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void act(const model::Force&, VirtualWork&) {}  // with the contacts (State::friction)
+void act(const model::Force&, VirtualWork&) {}  // computed with the contacts (State::friction)
 
 }  // namespace
 

@@ -6,7 +6,7 @@ namespace {
 
 void act(const model::Force& force, VirtualWork& w) {
   const Vector d = w.by_q.vector(given(force, "b")) - w.by_q.vector(given(force, "a"));
-  w.work(w.now.scalar(given(force, "force")), norm(d, w.precision));  // through the distance
+  w.work(w.now.scalar(given(force, "force")), norm(d, w.precision));  // along the distance
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ void act(const model::Force& force, VirtualWork& w) {
     return w.descend(own.scalar(given(force, "energy")));
   }
   const Jet stiffness = w.by_q.scalar(given(force, "stiffness"));
-  // Of no free length it is smooth where the ends meet.
+  // Without a free length the energy is smooth where the ends coincide.
   if (w.by_q.scalar(given(force, "length")).exactly_zero())
     return w.stretch(stiffness, w.by_q.vector(given(force, "b")) - w.by_q.vector(given(force, "a")));
   w.stretch(stiffness, w.by_q.extension(force));

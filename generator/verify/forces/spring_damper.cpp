@@ -9,7 +9,7 @@ void act(const model::Force& force, VirtualWork& w) {
   const Vector d = w.by_q.vector(b) - w.by_q.vector(a);
   const Jet stiffness = w.by_q.scalar(given(force, "stiffness"));
   if (w.by_q.scalar(given(force, "length")).exactly_zero()) {
-    w.stretch(stiffness, d);  // smooth where the ends meet
+    w.stretch(stiffness, d);  // smooth where the ends coincide
   } else {
     w.stretch(stiffness, norm(d, w.precision) - w.by_q.scalar(given(force, "length")));
   }

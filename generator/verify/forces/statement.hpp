@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The judge's own statement of each kind of force, from what the author wrote; it does not see what the description of
-// the kind makes of that. A kind is one file that defines a function with its name, after forces/registry.inc.
+// The oracle's force law of each kind of force, from the arguments in the model file. It is independent of the formulas
+// in the description of the kind. Each kind is one file that defines a function with its name in forces/registry.inc.
 #pragma once
 
 #include <string_view>
@@ -11,14 +11,14 @@ namespace eomgen::verify::forces {
 
 struct Statement {
   void (*act)(const model::Force&, VirtualWork&) = nullptr;       // its virtual work
-  void (*potential)(const model::Force&, Potentials&) = nullptr;  // its energy, where it has one
+  void (*potential)(const model::Force&, Potentials&) = nullptr;  // its potential energy, if it has one
 };
 
 #define FORCE(name) Statement name();
 #include "forces/registry.inc"
 #undef FORCE
 
-/// Throws std::out_of_range for a kind that is none.
+/// The force law of a kind. Throws std::out_of_range for an unknown kind.
 const Statement& statement(std::string_view kind);
 
 }  // namespace eomgen::verify::forces

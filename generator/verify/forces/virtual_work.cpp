@@ -16,7 +16,7 @@ Real size(const Vector& v) { return cln::abs(v[0].real()) + cln::abs(v[1].real()
 
 Vector VirtualWork::rate(const Vector& r) const { return slope(r, now.along_time().level(), 0); }
 
-// The coordinates that move any of these.
+// The coordinates that any of the jets depends on.
 std::set<std::size_t> VirtualWork::directions(const std::vector<const Jet*>& jets) const {
   std::set<std::size_t> result;
   for (const Jet* jet : jets)
