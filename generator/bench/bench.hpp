@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// True error against run time: every solver that fits a scene, over tolerances or step sizes, against a reference.
+// True error against run time: every eligible solver of a scene, over tolerances or step sizes, against a reference.
 #pragma once
 
 #include <eom/output/svg_plot.hpp>
@@ -16,22 +16,22 @@ struct Row {
   std::string solver;
   double rtol = 0, step = 0;  // one of them is 0
   double error = 0;        // of the end state: the largest over the components, relative to the largest value of each
-  double error_along = 0;  // the same at all times of the reference
+  double error_along = 0;  // the largest over all times of the reference
   std::vector<double> errors;  // per state at the end, absolute
   double seconds = 0;          // median
   std::size_t repeats = 0, steps = 0, rejected = 0, rhs_evaluations = 0;
-  std::string outcome;  // "interrupted": beyond the limit of time
+  std::string outcome;  // "interrupted": the time limit was exceeded
 };
 
-/// What is not the program's own: a name, and an integration to the end for a tolerance; steps may be 0 where it does
-/// not tell.
+/// A solver of another library: its name, and an integration to the end for a tolerance. Row::steps is 0 if the library
+/// does not report the steps.
 struct Other {
   std::string name;
   std::function<Row(double rtol, double atol)> run;
 };
 
 struct Request {
-  const run::RunRequest& run;  // without rows, work and estimate
+  const run::RunRequest& run;  // without rows, power and estimate
   const reference::Solution& reference;
   const std::vector<double>& times;  // of the reference
   std::vector<std::string> solvers;  // of eom::methods()
@@ -40,18 +40,18 @@ struct Request {
   std::function<void(const std::string&)> progress = {};
 };
 
-/// Largest value of each component of the reference, and no less than 1e-9 of the largest of all.
+/// Largest value of each component of the reference, at least 1e-9 of the largest of all.
 std::vector<double> scales(const reference::Solution& reference);
 
 std::vector<Row> measure(const Request& request);
 
-/// The fastest for errors of 1e-3, 1e-6, 1e-9, 1e-12, in a sentence.
+/// A sentence with the fastest solvers for errors of 1e-3, 1e-6, 1e-9, 1e-12.
 std::string advice(const std::vector<Row>& rows);
 
 /// Error over time, one line per solver.
 eom::Plot diagram(const std::vector<Row>& rows, const std::string& title);
 
-/// Processor and number of its cores that this system tells of.
+/// Processor and number of cores, as the operating system reports them.
 struct Machine {
   std::string processor;
   unsigned cores = 0;

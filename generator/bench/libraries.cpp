@@ -40,7 +40,7 @@ emit::Recipe recipe_of(const Library& library, const std::atomic<bool>* interrup
   return recipe;
 }
 
-/// What a solver of a library calls: the emitted code, counted, until the time is up.
+/// The callbacks of a library's solver: the emitted code, with a count of evaluations and a time limit.
 struct Calls {
   const run::RunRequest& request;
   std::vector<double> prepared;
@@ -50,7 +50,7 @@ struct Calls {
   bool late = false;
 
   bool is_over() {
-    constexpr std::size_t look = 256;  // at the clock, every so many evaluations
+    constexpr std::size_t look = 256;  // evaluations between checks of the clock
     if (++evaluations % look == 0) late = std::chrono::duration<double>(Clock::now() - start).count() > seconds;
     return late || (request.interrupt != nullptr && *request.interrupt);
   }
@@ -68,7 +68,7 @@ struct Calls {
   }
 };
 
-/// A compiled library with its solvers; stays loaded as long as one of them is there.
+/// A compiled library with its solvers; it stays loaded as long as one of them exists.
 class Loaded {
  public:
   explicit Loaded(const std::string& path) : handle_(::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
@@ -131,7 +131,7 @@ struct Runner {
   }
 };
 
-/// From what the compiler said.
+/// The reason of a failure, from the output of the compiler.
 std::string why_not(const Library& library, const std::string& said) {
   for (const char* missing : {"No such file", "file not found", "cannot find -l", "there is no"}) {
     if (said.find(missing) != std::string::npos)

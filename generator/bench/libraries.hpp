@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solvers of other libraries on the same right-hand side, where they are installed: small C functions of
-// templates/bench, compiled when they are asked for.
+// Solvers of other installed libraries on the same right-hand side: small C functions of templates/bench, compiled on
+// demand.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace eomgen::bench {
 
-/// One library: what is compiled, and the solvers that the result has.
+/// One library: the source to compile, and the solvers in it.
 struct Library {
   struct Solver {
     const char* name;      // in the table
@@ -28,11 +28,10 @@ const std::vector<Library>& libraries();
 
 struct LibrariesFound {
   std::vector<Other> others;
-  std::vector<std::pair<std::string, std::string>> left_out;  // name, why
+  std::vector<std::pair<std::string, std::string>> left_out;  // name, reason
 };
 
-/// The solvers that fit the scene. `request` is to outlive what is returned; a run that takes more than `seconds` is
-/// stopped.
+/// The solvers that can integrate the scene. `request` has to outlive the result; a run is stopped after `seconds`.
 LibrariesFound find_libraries(const run::RunRequest& request, const std::vector<double>& start, double seconds);
 
 }  // namespace eomgen::bench

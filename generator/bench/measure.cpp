@@ -59,7 +59,7 @@ class Measurement {
   }
 
  private:
-  /// The run that the error is taken from, looked at where the reference has its times.
+  /// The run that determines the error, evaluated at the times of the reference.
   eom::Result judged(run::Integration& integration, const eom::Options& options, Row& row) {
     const Clock::time_point start = Clock::now();
     const auto& reference = request_.reference.x;
@@ -126,9 +126,9 @@ std::vector<Row> measure(const Request& request) {
   const auto interrupted = [&] { return request.run.interrupt != nullptr && *request.run.interrupt; };
   const run::Scene& scene = request.run.scene;
   const double span = std::abs(scene.t1 - scene.t0);
-  double first_step = 16 * scene.step;  // around the one that the scene states
+  double first_step = 16 * scene.step;  // a range around the step of the scene
   if (first_step == 0) {
-    // As many steps as an adaptive solver of order 5 takes for 1e-3, so that step sizes have to do with the motion.
+    // As many steps as an adaptive solver of order 5 takes for 1e-3, so that the step sizes suit the motion.
     const Row rough = measurement.row("dopri5", 1e-3, 0);
     first_step = span / static_cast<double>(std::max<std::size_t>(rough.steps, 10));
   }
@@ -140,7 +140,7 @@ std::vector<Row> measure(const Request& request) {
       rows.push_back(adaptive
                          ? measurement.row(solver, std::pow(10.0, -3 - k), 0)
                          : measurement.row(solver, scene.rtol > 0 ? scene.rtol : 1e-9, std::ldexp(first_step, -k)));
-      if (rows.back().outcome == "interrupted") break;  // what is tighter takes longer
+      if (rows.back().outcome == "interrupted") break;  // tighter tolerances take longer
     }
   }
   for (const Other& other : request.others) {

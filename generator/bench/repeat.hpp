@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The time of something that is done several times.
+// Median run time of repeated work.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ struct Median {
   std::size_t repeats = 0;
 };
 
-/// Of 3 to 31 repetitions, no more than fit into 0.15 s.
+/// The median time of 3 to 31 repetitions, limited to 0.15 s in all.
 template <class Work>
 Median median_time(Work&& work) {
   using Clock = std::chrono::steady_clock;

@@ -12,10 +12,10 @@ namespace eomgen::bench {
 
 namespace {
 
-/// Where stability alone makes explicit solvers take many more steps than the motion asks for; or "".
+/// A remark if stability makes explicit solvers take many more steps than accuracy requires; otherwise "".
 std::string stiffness(const std::vector<Row>& rows) {
-  constexpr std::size_t many = 20;            // times as many; a motion that has to be resolved costs all of them alike
-  const Row* fewest[2] = {nullptr, nullptr};  // explicit, implicit; of those that are right to a percent
+  constexpr std::size_t many = 20;            // ratio of steps; accuracy costs all solvers alike
+  const Row* fewest[2] = {nullptr, nullptr};  // explicit, implicit; of rows with an error of at most a percent
   for (const Row& row : rows) {
     for (const eom::MethodInfo& method : eom::methods()) {
       if (row.solver != method.name || !method.adaptive || row.outcome != "done" || !(row.error_along <= 0.01))
@@ -36,7 +36,7 @@ std::string stiffness(const std::vector<Row>& rows) {
 
 std::string advice(const std::vector<Row>& rows) {
   constexpr double worth_naming =
-      1.1;  // `auto` is one of the others most of the time, and its times are theirs within the noise of clocks
+      1.1;  // `auto` mostly equals one of the other solvers, and its times are theirs within the noise of clocks
   const auto seconds = [](const Row& row) {
     return row.seconds * (row.solver == eom::Automatic::name ? worth_naming : 1);
   };

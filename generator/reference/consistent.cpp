@@ -15,7 +15,7 @@ namespace {
 
 using Number = cln::cl_F;
 
-constexpr int most_iterations = 8;  // from sixteen digits: two or three double them to any that are asked for
+constexpr int most_iterations = 8;  // two or three double sixteen digits to the precision needed
 
 struct Rows {
   std::vector<Number> psi, A, b;  // A by columns
@@ -40,9 +40,9 @@ class Start {
       if (cln::zerop(before)) break;
       move(rows, rows.psi, x, 0);
       const Number after = largest(evaluate(x).psi);
-      if (!(after < before)) break;  // the last digits
+      if (!(after < before)) break;  // only the last digits change
     }
-    for (int i = 0; i < 2; ++i) {  // linear: the second takes the rounding of the first
+    for (int i = 0; i < 2; ++i) {  // linear: the second step removes the rounding error of the first
       const Rows rows = evaluate(x);
       std::vector<Number> off = rows.b;
       for (std::size_t k = 0; k < off.size(); ++k) {
@@ -73,7 +73,7 @@ class Start {
     return result;
   }
 
-  /// x -= A^T (A A^T)^-1 off, from entry `first` on.
+  /// x -= A^T (A A^T)^-1 off, beginning with entry `first`.
   void move(const Rows& rows, const std::vector<Number>& off, std::vector<Number>& x, std::size_t first) const {
     const std::size_t m = off.size();
     numeric::Matrix<cln::cl_R> G(m, m), side(m, 1);
@@ -83,7 +83,7 @@ class Start {
         for (std::size_t j = 0; j < n_; ++j) G(k, l) = G(k, l) + rows.A[j * m + k] * rows.A[j * m + l];
       }
     }
-    // Positive definite where the constraints are independent.
+    // Positive definite if the constraints are independent.
     const numeric::Elimination<cln::cl_R> factors(std::move(G), 0, numeric::Pivots::diagonal);
     if (factors.rank() < m) {
       throw Error("reference", {}, "the constraints depend on one another at the start", "start elsewhere",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Taylor coefficients of a motion in any precision: the recurrences of the program (program/taylor.hpp), read in CLN's
+// Taylor coefficients of a motion in any precision: the recurrences of the program (program/taylor.hpp) in CLN
 // arithmetic.
 #pragma once
 
@@ -18,11 +18,11 @@ class Expansion {
  public:
   Expansion(const program::Taylor& taylor, int digits);
 
-  /// c[k][i], k = 0..order. Throws std::domain_error where a function leaves its domain.
+  /// c[k][i], k = 0..order. Throws std::domain_error if a function leaves its domain.
   std::vector<std::vector<Number>> operator()(const Number& t, const std::vector<Number>& x,
                                               const std::vector<double>& p, const std::vector<double>& u, int order);
 
-  Number number(double value) const;  // exactly
+  Number number(double value) const;  // exact
 
  private:
   struct Place {
@@ -41,7 +41,7 @@ class Expansion {
   int digits_;
   cln::float_format_t format_;
   std::size_t states_ = 0, at_k_ = 0, at_x_ = 0, at_w_ = 0, at_code_ = 0;
-  std::size_t sums_ = 0;  // that are not padding
+  std::size_t sums_ = 0;  // without padding
   std::vector<Step> code_;
   std::vector<Place> a_, b_, dx_;
   std::vector<Number> values_;

@@ -19,7 +19,7 @@ namespace {
 
 using States = std::vector<std::vector<Number>>;
 
-constexpr int guard = 4;  // digits between the last terms and the rounding of the arithmetic
+constexpr int guard = 4;  // digits between the last terms and the rounding error of the arithmetic
 constexpr std::size_t most_steps = 1000000;
 
 [[noreturn]] void fail(const Number& t, const std::string& why) {
@@ -27,7 +27,7 @@ constexpr std::size_t most_steps = 1000000;
               "shorten the run (--t-end), or start elsewhere", Fault::numerical);
 }
 
-/// log2 |x|, beyond the range of double too.
+/// log2 |x|, also beyond the range of double.
 double log2_of(const Number& x) {
   if (cln::zerop(x)) return -std::numeric_limits<double>::infinity();
   const auto exponent = cln::float_exponent(x);
@@ -87,7 +87,7 @@ class Run {
       problem_.progress((cln::double_approx(t_) - problem_.t0) / (problem_.times.back() - problem_.t0));
   }
 
-  /// Where the last two terms are 10^-(digits - guard) of the largest value.
+  /// The step at which the last two terms are 10^-(digits - guard) of the largest value.
   double length(const States& c) const {
     const double scale = std::max(log2_of(c[0]), -1000.0) - (settings_.digits - guard) * std::log2(10.0);
     double h = std::numeric_limits<double>::infinity();
@@ -114,7 +114,7 @@ class Run {
   std::size_t steps_ = 0;
 };
 
-/// Digits that a and b agree in, relative to `scale` of each component.
+/// Number of digits in which a and b agree, relative to `scale` of each component.
 int agreement(const std::vector<Number>& a, const std::vector<Number>& b, const std::vector<double>& scale) {
   double worst = -1000;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -128,7 +128,7 @@ int agreement(const std::vector<Number>& a, const std::vector<Number>& b, const 
 
 Solution solve(const Problem& problem, Settings first, Settings second) {
   const program::Taylor taylor = program::recurrences(problem.rhs);
-  Problem quiet = problem;  // the first run is the cheaper one: its progress is the first third
+  Problem quiet = problem;  // the first run is cheaper: it counts as the first third of the progress
   if (problem.progress) quiet.progress = [&](double fraction) { problem.progress(fraction / 3); };
   Run rough(quiet, taylor, first);
   const States a = rough.run();
@@ -147,7 +147,7 @@ Solution solve(const Problem& problem, Settings first, Settings second) {
       largest = std::max(largest, scale[i]);
     }
   }
-  constexpr double nothing = -66;  // log2: what is 1e-20 of the largest component is rounding
+  constexpr double nothing = -66;  // log2: components below 1e-20 of the largest are rounding error
   for (double& s : scale) s = std::max(s, largest + nothing);
   solution.end = b.back();
   solution.digits = std::min(first.digits, second.digits);

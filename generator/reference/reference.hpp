@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A motion to 30 digits and more: the program in CLN's arithmetic with Taylor steps, twice, at different order and
-// precision. What the two agree in is what the reference claims. Parameters, starts and times are the binary64 numbers,
-// exactly; but for constraints, which starts meet in all digits.
+// A motion in 30 digits and more: the program in CLN arithmetic with Taylor steps, twice, with different order and
+// precision. The reference claims the digits in which both agree. Parameters, starts and times are the exact values of
+// the binary64 numbers, except that starts satisfy the constraints in all digits.
 #pragma once
 
 #include <cln/float.h>
@@ -15,40 +15,40 @@
 
 namespace eomgen::reference {
 
-/// Inputs stand still until the end of each segment; the last one holds to the end.
+/// Inputs are constant until the end of each segment; the last segment lasts to the end.
 struct InputSegment {
   double until;
   std::vector<double> u;
 };
 
 struct Problem {
-  const program::Function& rhs;  // without branches that change on the way
+  const program::Function& rhs;  // without branches that change during the motion
   std::vector<double> x, p;
   double t0 = 0;
   std::vector<InputSegment> segments;
-  std::vector<double> times;  // where the state is wanted, in the direction of the run; the last is its end
+  std::vector<double> times;  // of the requested states, in the direction of the run; the last is its end
   const program::Function* constraints =
-      nullptr;                  // the function of that name, where there is one: the start is moved to meet them
-  std::size_t coordinates = 0;  // that it takes, first in x; their rates follow
+      nullptr;                  // the function of that name, if there is one: the start is projected onto them
+  std::size_t coordinates = 0;  // number of its coordinates, first in x; their rates follow
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double fraction)> progress = {};
 };
 
-/// Digits of the arithmetic; the order of the series, whose last terms are 1e-(digits - 4) of the state.
+/// Digits of the arithmetic, and order of the series; the last terms are 1e-(digits - 4) of the state.
 struct Settings {
   int digits, order;
 };
 inline constexpr Settings coarse{38, 40}, fine{46, 50};
 
 struct Solution {
-  std::vector<std::vector<double>> x;  // per time, the finer run rounded
-  std::vector<cln::cl_F> end;          // of it, not rounded
+  std::vector<std::vector<double>> x;  // per time, of the finer run, rounded
+  std::vector<cln::cl_F> end;          // of the finer run, not rounded
   int digits = 0, digits_at_end = 0;   // that agree, relative to the largest value of each component
   std::size_t steps = 0;               // of the finer run
   std::string method;
 };
 
-/// Throws Error{Fault::numerical} where the motion cannot be followed to the end.
+/// Computes the reference solution. Throws Error{Fault::numerical} if the motion cannot be computed to the end.
 Solution solve(const Problem& problem, Settings first = coarse, Settings second = fine);
 
 }  // namespace eomgen::reference

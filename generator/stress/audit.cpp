@@ -23,7 +23,7 @@ constexpr int digits = 60;
 constexpr std::array<std::size_t, 3> places{0, 12, 32};  // of the samples of a motion
 constexpr std::size_t most_work = 20000;                 // instructions in many digits per case
 constexpr double smallest_scale =
-    1e-9;  // of the largest acceleration: what is smaller is 0 to its rounding, and has no digits
+    1e-9;  // of the largest acceleration: smaller ones are 0 up to rounding, and have no digits
 constexpr double all_digits = 15.65;  // -log10 of the last one
 constexpr double last_digit = std::numeric_limits<double>::epsilon();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -83,7 +83,7 @@ void Auditor::see(const std::string& test, const run::Scene& scene, const run::C
   look_at_digits(test, scene, code, taken);
 }
 
-/// On the null space of the constraints: M alone may be singular (Euler parameters).
+/// The condition on the null space of the constraints: M alone may be singular (Euler parameters).
 void Auditor::look_at_mass(const std::string& test, const run::Scene& scene, const run::Code& code,
                            const Sample& sample) {
   if (code.mass == nullptr) return;
@@ -125,7 +125,7 @@ void Auditor::look_at_denominators(const std::string& test, const run::Scene& sc
   }
 }
 
-/// Of each acceleration relative to the largest value that it has in the motion.
+/// The digits lost of each acceleration, relative to its largest value in the motion.
 void Auditor::look_at_digits(const std::string& test, const run::Scene& scene, const run::Code& code,
                              const std::vector<const Sample*>& samples) {
   const std::size_t n = code.free.size();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The denominator audit: what the right-hand side divides by and where that is zero, how close the motions came to it,
-// the condition of the mass matrix, and how many digits binary64 loses against the same program in 60 digits.
+// The denominator audit: the denominators of the right-hand side, their zeros and how close the motions came to these,
+// the condition of the mass matrix, and the digits that binary64 loses relative to the same program in 60 digits.
 #pragma once
 
 #include <string>
@@ -15,12 +15,12 @@ inline constexpr double no_value = -1;
 
 struct Denominator {
   std::string expression, zero;             // "r", "r = 0"
-  std::string test = {};                    // of the emitted code: what it says where this vanishes
-  double smallest = no_value, largest = 0;  // |value| at the states that were looked at
-  std::string at = {};                      // the case of the smallest
+  std::string test = {};                    // the message of the emitted code for a zero of this denominator
+  double smallest = no_value, largest = 0;  // |value| over the audited states
+  std::string at = {};                      // the case of the smallest value
 };
 
-/// A largest value, and in which case it was met.
+/// A largest value, and the case in which it occurred.
 struct Extreme {
   double value = no_value;
   std::string at;
@@ -29,10 +29,10 @@ struct Extreme {
 struct Audit {
   std::size_t states = 0;
   std::vector<Denominator> denominators;  // factors, each once, in the order of the program
-  Extreme mass_condition;                 // of M on what the constraints leave free, in the units of the model
-  Extreme scaled_mass_condition;          // with its diagonal scaled to 1: what elimination feels
-  Extreme pivot;                          // smallest pivot relative to the entry that it is what is left of; as 1/that
-  Extreme digits_lost;                    // of accelerations, beyond the last digit of binary64
+  Extreme mass_condition;                 // of M on the null space of the constraints, in the units of the model
+  Extreme scaled_mass_condition;          // with its diagonal scaled to 1, which matters for elimination
+  Extreme pivot;                          // largest ratio of a matrix entry to the pivot that elimination leaves of it
+  Extreme digits_lost;                    // of accelerations, relative to the last digit of binary64
   std::size_t without_digits = 0;         // states at which the program has no value in many digits
 };
 
@@ -40,7 +40,7 @@ class Auditor {
  public:
   Auditor(const mechanics::Mechanics& mechanics, const program::Program& program);
 
-  /// A few states of a motion.
+  /// Audits a few states of a motion.
   void see(const std::string& test, const run::Scene& scene, const run::Code& code, const std::vector<Sample>& samples);
   const Audit& audit() const { return audit_; }
 
@@ -52,7 +52,7 @@ class Auditor {
                       const std::vector<const Sample*>& samples);
 
   const program::Function& rhs_;
-  program::Function divided_;  // the same code; its one result are the denominators
+  program::Function divided_;  // the same code with the denominators as its only result
   Audit audit_;
 };
 

@@ -13,7 +13,7 @@ namespace {
 using Exponents = std::array<int, 3>;  // of m, kg, s; rad is 1
 constexpr Exponents mass{0, 1, 0}, inertia{2, 1, 0}, stiffness{0, 1, -2}, torsion{2, 1, -2}, damping{0, 1, -1};
 
-constexpr double least = 1e-300;  // that a file may state
+constexpr double least = 1e-300;  // the smallest number that a file may contain
 constexpr double denormal = 1e-310;
 
 class Cases {
@@ -81,7 +81,7 @@ class Cases {
     return e[0] == of[0] && e[1] == of[1] && e[2] == of[2];
   }
 
-  // Of springs whose units are not known.
+  // Whether it is the stiffness of a spring, for parameters without known units.
   bool is_stiffness(std::uint32_t p) const {
     for (const model::Force& force : m_.model->forces) {
       for (const model::Argument& argument : force.arguments) {
@@ -103,7 +103,7 @@ class Cases {
     result_.push_back({.name = fmt::format("speed x {:g}", factor), .speed = factor});
   }
 
-  // Friction where slip vanishes, or all but does.
+  // Starts with zero or very small slip.
   void slow() {
     result_.push_back({.name = "from rest", .speed = 0});
     if (m_.contacts.empty()) return;

@@ -16,7 +16,7 @@ using program::Operand;
 using program::Slot;
 using symbolic::Op;
 
-constexpr std::size_t longest = 160;  // letters; what is longer is told by its size
+constexpr std::size_t longest = 160;  // letters; longer expressions are reported by their size
 
 class Text {
  public:
@@ -111,7 +111,7 @@ class Text {
   std::vector<std::string> known_;
 };
 
-/// Where the function has no value: factors of a product, what a root or a power is of.
+/// Lists the operands whose zeros make the function undefined: factors of a product, arguments of a root or a power.
 void factors(const Function& function, const Operand& operand, std::vector<Operand>& list) {
   if (operand.slot == Slot::value) {
     const Instruction& i = function.code[operand.index];
@@ -126,7 +126,7 @@ void factors(const Function& function, const Operand& operand, std::vector<Opera
 
 bool same(const Operand& a, const Operand& b) { return a.slot == b.slot && a.index == b.index; }
 
-/// What the emitted code says where this is zero.
+/// The message of the emitted code for a zero of this denominator.
 std::string test_of(const Function& function, const Operand& denominator) {
   for (const program::PivotTest& test : function.pivots) {
     if (!same(test.pivot, denominator)) continue;

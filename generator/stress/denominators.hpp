@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a function divides by, as text.
+// The denominators of a function, as text.
 #pragma once
 
 #include <string>

@@ -13,12 +13,12 @@ namespace eomgen::stress {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double kept_within = 100;  // tolerances, times the condition of the end state
+constexpr double kept_within = 100;  // tolerances times the condition of the end state
 constexpr double told_within = 10;   // estimates
 constexpr std::size_t most_fixed_steps = 2000;
 constexpr double limit_of_rk4 = 2.8;  // 2.785 along the real axis, 2.828 along the imaginary one
-constexpr double fewest_stable = 4;   // such steps, or there is nothing to see
-constexpr int shortenings = 24;       // of the span, each to a half at most, until its end is well determined
+constexpr double fewest_stable = 4;   // least number of stable steps in a span
+constexpr int shortenings = 24;       // of the span, each at least by half, until its end state is well determined
 
 class Judgement {
  public:
@@ -79,11 +79,11 @@ class Judgement {
     bool kept = true;
     for (std::size_t i = 0; i < reference_->x.size(); ++i) {
       const double scale = reference_->scale[i], error = std::abs(result.state[i] - reference_->x[i]) / scale;
-      // The start is rounded to binary64, and so is every sum on the way, beside the largest component.
+      // The start and every sum are rounded to binary64, relative to the largest component.
       double tolerance = unit * largest / scale;
       if (adaptive)
         tolerance =
-            std::max({tolerance, scene_.rtol, scene_.atol / scale});  // a fixed step promises what its estimate says
+            std::max({tolerance, scene_.rtol, scene_.atol / scale});  // a fixed step promises only its error estimate
       kept = kept && error <= kept_within * tolerance * condition;
       row.error = std::isnan(error) ? infinity : std::max(row.error, error);
       row.estimate = std::max(row.estimate, result.error_estimate[i].second / scale);
@@ -100,11 +100,10 @@ class Judgement {
   const run::Scene& scene_;
   const Request& request_;
   const ReferenceSolution* reference_;
-  double stable_step_;  // where fixed steps are to be near it
+  double stable_step_;  // for cases with fixed steps near the stability limit
 };
 
-/// The longest at which rk4 does not amplify what the right-hand side's derivative at the start oscillates or decays
-/// by.
+/// The longest step at which rk4 does not amplify any mode of the Jacobian of the right-hand side at the start.
 double stable_step(const run::Scene& scene, const Request& request) {
   run::RunRequest run = request.run(scene);
   run.watch_power = false;

@@ -18,13 +18,13 @@ struct TightSolver {
 constexpr std::array<TightSolver, 4> tight_solvers{
     {{"dop853", 1e-14}, {"taylor", 1e-15}, {"radau5", 1e-12}, {"rodas", 1e-11}}};
 
-constexpr double disturbance = 1e-7;   // of the start: large against rounding, small against what bends
-constexpr double bends_within = 1e-2;  // of the way to where coordinates fail
+constexpr double disturbance = 1e-7;   // of the start: large relative to rounding, small relative to nonlinearity
+constexpr double bends_within = 1e-2;  // largest disturbance relative to the distance from a chart singularity
 constexpr double disturbed_rtol = 1e-13;
 constexpr std::size_t sample_count = 32, early_samples = 2;
-constexpr double doubt = 3;  // each of two runs may be off by more than they differ
+constexpr double doubt = 3;  // the errors of two runs may be larger than their difference
 constexpr double most_uncertain = 1e-6;
-constexpr double shorter = 0.5;          // than what could be followed
+constexpr double shorter = 0.5;          // next span relative to the span that was reached
 constexpr double smallest_scale = 1e-9;  // of the largest component
 
 constexpr const char* by_the_clock = "not judged: a tight run takes longer than the limit of time";
@@ -59,7 +59,7 @@ std::optional<ReferenceSolution> ReferenceRuns::solution(std::string& why, doubl
     if (!run::eligible(solver.name, scene_, run_.code) || !second.empty()) continue;
     State scale;
     Tight run = tight(solver.name, solver.rtol, nullptr, &scale);
-    if (run.late) {  // another machine might have come to the end: nothing is concluded
+    if (run.late) {  // a faster machine might reach the end: no verdict
       why = by_the_clock;
       next_span = 0;
       return std::nullopt;
@@ -88,7 +88,7 @@ std::optional<ReferenceSolution> ReferenceRuns::solution(std::string& why, doubl
     if (late_) next_span = 0;
     return std::nullopt;
   }
-  // The start and every sum on the way are rounded to binary64, whatever two runs agree in.
+  // The start and every sum are rounded to binary64, even if two runs agree better.
   reference.uncertainty = doubt * distance(reference.x, second, reference.scale) + unit * reference.condition;
   if (reference.growth <= most_condition && reference.uncertainty < most_uncertain) {
     const run::Integration start(run_, solver_);
@@ -139,7 +139,7 @@ void ReferenceRuns::sample(const eom::StepView& view, int mode, std::vector<Samp
   }
 }
 
-// A component that stays 0 beside others of its kind is 0 to their rounding.
+// A component that stays 0 has the rounding errors of the others.
 void ReferenceRuns::level(State& scale, const State& x0) const {
   scale.resize(run_.state_names.size());
   double largest = 0;
@@ -160,11 +160,11 @@ run::Scene ReferenceRuns::started(const State& x) const {
   return scene;
 }
 
-/// Of disturbances along and against, the one that moves the end most; false where one of them cannot be followed.
+/// The largest effect of several disturbances on the end state; false if one of them cannot be integrated to the end.
 bool ReferenceRuns::condition(ReferenceSolution& reference) {
   const State x0 = run::Integration(run_, solver_).initial_state();
   for (const int pattern : {0, 1, 2}) {
-    // The other way may lie beyond where coordinates end.
+    // If this disturbance leaves the chart, the opposite one is tried.
     if (!moved(reference, x0, pattern, 1) && (late_ || !moved(reference, x0, pattern, -1))) return false;
   }
   return true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reference solution of a scene and how well it is known: tight runs by solvers that have nothing in common but the
-// right-hand side. All budgets are steps, so that a slower machine comes to the same verdict; the clock is a guard, and
-// its hitting is told.
+// The reference solution of a scene and its uncertainty: tight runs by solvers that share only the right-hand side. All
+// budgets are steps, so that verdicts do not depend on the speed of the machine. The clock is a safeguard; a hit is
+// reported.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@
 
 namespace eomgen::stress {
 
-/// Whether a run takes longer than is allowed.
+/// The time limit of a run.
 class Clock {
  public:
   using Steady = std::chrono::steady_clock;
@@ -35,32 +35,32 @@ using State = std::vector<double>;
 
 struct ReferenceSolution {
   State x;
-  State scale;  // largest value of each component along the motion; of rates no less than what turns the coordinate
-                // over in the whole span
+  State scale;  // largest value of each component along the motion; for rates at least the scale of the coordinate over
+                // the whole span
   double uncertainty = 0;       // relative to it
-  double condition = 1;         // by how much more than the start the end moves, both relative
+  double condition = 1;         // relative change of the end state over the relative change of the start
   double growth = 1;            // of a disturbance, from the first sixteenth of the span to its end
   std::vector<Sample> samples;  // the start first
 };
 
 inline constexpr double unit = std::numeric_limits<double>::epsilon();
 inline constexpr double most_condition =
-    1.6e5;  // e^12: what grows by more, in twelve Lyapunov times, says nothing; and no run is kept by more
+    1.6e5;  // e^12: beyond twelve Lyapunov times a comparison proves nothing; also the largest factor of tolerances
 
 class ReferenceRuns {
  public:
-  /// whole: the span that was asked for, of which the scene may have a part; nearness: of the start to where
-  /// coordinates fail.
+  /// whole: the requested span, of which the scene may cover a part; nearness: the distance of the start from the
+  /// singularity of a chart.
   ReferenceRuns(const run::Scene& scene, double whole, double nearness, const Request& request);
 
-  /// Nothing where no two solvers come to the end, or not to the same; `why` says so, and the span to try next (0:
-  /// none).
+  /// The reference solution; nothing if no two solvers reach the same end state. Then `why` has the reason, `next_span`
+  /// the span to try next (0: none).
   std::optional<ReferenceSolution> solution(std::string& why, double& next_span);
 
  private:
   struct Tight {
-    State x;             // empty: the run did not come to the end
-    double reached = 0;  // the part of the span that it covered
+    State x;             // empty: the run did not reach the end
+    double reached = 0;  // the fraction of the span that it covered
     bool late = false;
     std::vector<Sample> samples;
   };
@@ -80,7 +80,7 @@ class ReferenceRuns {
   bool late_ = false;
 };
 
-/// Largest |a - b| / scale; infinite where one of them is no number.
+/// Largest |a - b| / scale; infinite if a component is not a number.
 double distance(const State& a, const State& b, const State& scale);
 
 }  // namespace eomgen::stress

@@ -46,7 +46,7 @@ class Start {
   }
 
  private:
-  // What stays is a constant of the constraints: its column leaves A, and its rate goes to b.
+  // Fixed coordinates are constants of the constraints: their columns in A are 0, and their rates are added to b.
   int bound(const std::vector<std::size_t>& still, double t, const double* x, double* psi, double* A, double* b) {
     const int code = rows_(t, x, u_.data(), psi, A, b);
     const std::size_t m = rows_.size();
