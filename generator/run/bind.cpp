@@ -15,7 +15,7 @@ std::size_t index_of(const std::vector<std::string>& names, const std::string& n
   return static_cast<std::size_t>(found - names.begin());
 }
 
-/// Places of outputs by their names.
+/// Indices of outputs by name.
 class PlaceOf {
  public:
   explicit PlaceOf(const std::vector<std::string>& names) : names_(names) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene bound to the runtime. In: what a run is asked for, by names and expressions. Out: the same in numbers and
-// places, as eom::hybrid takes it.
+// A scene bound to the runtime. In: the request of a run, with names and expressions. Out: the same as numbers and
+// indices for eom::hybrid.
 #pragma once
 
 #include <eom/hybrid/problem.hpp>
@@ -14,7 +14,7 @@ namespace eomgen::run {
 /// The inputs of a scene.
 std::vector<eom::hybrid::Signal> signals_of(const Scene& scene);
 
-/// The request has to stay. `solver`: one that can integrate it.
+/// The problem of a run. `request` has to outlive it. `solver`: an eligible one.
 eom::hybrid::Problem problem_of(const RunRequest& request, const std::string& solver);
 
 }  // namespace eomgen::run

@@ -15,7 +15,7 @@ namespace {
 
 using eom::Feature;
 
-/// What stands in the way, as it is said of a model: without the feature, or with it.
+/// The obstacle, as a statement about the model: a feature that it lacks, or has.
 const char* without(Feature feature) {
   switch (feature) {
     case Feature::series: return "the code was compiled without its Taylor series";

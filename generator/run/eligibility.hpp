@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which solvers can integrate a scene, and why not: the features of equations, code and scenes that solvers ask for or
-// cannot follow (eom/features.hpp), and what is told of them.
+// Which solvers can integrate a scene, and the reasons if not: the features of equations, code and scenes that solvers
+// need or cannot handle (eom/features.hpp), and the messages about them.
 #pragma once
 
 #include <eom/registry.hpp>
@@ -17,27 +17,27 @@ struct Scene;
 /// `auto`, then the runtime's registry in its order.
 std::vector<std::string> solver_names();
 
-/// The solvers of these names, in the registry's order; none asked for: all. Throws Error{stage} for a name that is not
-/// there, with the nearest ones.
+/// The solvers with these names, in the registry's order; without names all of them. Throws Error{stage} for an unknown
+/// name, with the nearest ones.
 std::vector<std::string> solvers_among(const std::string& stage, const std::vector<std::string>& asked);
 
-/// The method of this name; throws std::logic_error where there is none.
+/// The method with this name; throws std::logic_error if there is none.
 const eom::MethodInfo& method_named(const std::string& name);
-/// Whether it takes df/dx where there is one: the implicit ones for stiff systems.
+/// Whether the method uses df/dx if it is available: the implicit methods for stiff systems do.
 bool uses_jacobian(const eom::MethodInfo& method);
 
-/// Of equations, before anything is compiled of them: what code can be made to have. kinks: whether they have any.
+/// Features of equations before compilation: the features that their code can have. kinks: whether they have kinks.
 eom::Features features_of(const system::EquationSystem& system, bool kinks);
-/// Of compiled code: what was asked for when it was made.
+/// Features of compiled code, as requested for its compilation.
 eom::Features features_of(const Code& code);
-/// Of a scene, beside its code.
+/// Features of a scene, without those of its code.
 eom::Features features_of(const Scene& scene);
 
 eom::Eligibility eligible(const std::string& solver, const Scene& scene, const Code& code);
 
-/// Why a solver is not eligible; "" where it is.
+/// The reason why a solver is not eligible; "" if it is.
 std::string reason_of(const eom::Eligibility& eligibility);
-/// Throws Error{stage "run"} with that reason, and what to take in its place.
+/// Throws Error{stage "run"} with this reason and an alternative, unless the solver is eligible.
 void require_eligible(const std::string& solver, eom::Features features);
 
 }  // namespace eomgen::run

@@ -79,7 +79,7 @@ class Writer {
 
   const Dag& dag_;
   const Lookup& lookup_;
-  std::vector<std::int32_t> place_;  // of nodes of the Dag
+  std::vector<std::int32_t> place_;  // in the table, of each node of the Dag
   Table table_;
   bool complete_ = true;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Expressions as data that a run evaluates by itself. In: expressions on a Dag and what their symbols are. Out: tables
-// of the runtime (eom/expressions/code.hpp).
+// Expressions as data that a run evaluates itself. In: expressions on a Dag and the meaning of their symbols. Out:
+// tables of the runtime (eom/expressions/code.hpp).
 #pragma once
 
 #include <eom/expressions/code.hpp>
@@ -15,8 +15,8 @@ namespace eomgen::run {
 
 using eom::expressions::Table;
 
-/// What a symbol is: a number, a parameter, the place of a variable, another expression; or nothing that can be
-/// evaluated.
+/// The meaning of a symbol: a number, a parameter, the index of a variable, another expression; or unknown, if it
+/// cannot be evaluated.
 struct Leaf {
   enum class Kind { number, parameter, variable, expression, unknown } kind = Kind::unknown;
   double number = 0;
@@ -30,10 +30,10 @@ struct Leaf {
 };
 using Lookup = std::function<Leaf(const symbolic::Symbol&)>;
 
-/// Nothing where a symbol cannot be evaluated.
+/// The table of the roots; nothing if a symbol cannot be evaluated.
 std::optional<Table> table_of(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& roots, const Lookup& lookup);
 
-/// Variables as a run has them (eom/hybrid/problem.hpp): t, free coordinates, their rates, integrals, inputs.
+/// The variables of a run (eom/hybrid/problem.hpp): t, free coordinates, their rates, integrals, inputs.
 Lookup variables_of(const system::EquationSystem& system);
 
 }  // namespace eomgen::run

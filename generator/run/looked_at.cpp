@@ -16,10 +16,10 @@ using symbolic::Ref;
 using symbolic::SymbolKind;
 
 constexpr int high_power = 20;
-constexpr int steep_power = 4;  // in a denominator: 1/(1 + x^2) still has tails that are seen
+constexpr int steep_power = 4;  // in a denominator: the tails of 1/(1 + x^2) are still visible to the error control
 
-/// What is a bump of a function without tails, as itself, its slope or its inverse are; nothing of functions whose
-/// tails the error control sees.
+/// The argument of a narrow function without tails (the function, its derivative or its inverse); nothing for functions
+/// with tails that the error control detects.
 std::vector<Ref> bumps(symbolic::Dag& dag, Ref r) {
   const symbolic::Node node = dag[r];
   const auto steep = [&](Ref part) { return dag[part].op == Op::power && dag[part].payload >= steep_power; };

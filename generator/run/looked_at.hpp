@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run looks at beside the compiled functions: what may jump, forces that are narrow in the state. In: a system.
-// Out: expressions as data for eom/hybrid.
+// Functions that a run monitors in addition to the compiled ones: functions that may jump, forces that are narrow in
+// the state. In: a system. Out: expressions as data for eom/hybrid.
 #pragma once
 
 #include <eom/hybrid/problem.hpp>
@@ -11,13 +11,14 @@
 
 namespace eomgen::run {
 
-/// Energies, constraints, places and velocities, where the equations have kinks; else empty.
+/// Energies, constraints, positions and velocities if the equations have kinks; otherwise empty.
 eom::hybrid::JumpFunctions jump_functions(const system::EquationSystem& system);
 
-/// Bumps without tails: exp, tanh, sinh, cosh, powers of the state.
+/// Narrow functions without tails: exp, tanh, sinh, cosh, powers of the state.
 std::vector<eom::expressions::Table> narrow_functions(const system::EquationSystem& system);
 
-/// Of functions of the state, by their place among the event functions; empty ones where there are no bounds.
+/// Tables of event functions that depend on the state, by index among the event functions; empty if they have no
+/// bounds.
 std::vector<eom::expressions::Table> bounded_events(const system::EquationSystem& system,
                                                     const std::vector<std::optional<symbolic::Ref>>& functions);
 

@@ -12,7 +12,7 @@ namespace {
 using mechanics::Mechanics;
 using system::OutputKind;
 
-// A component of a joint's reaction, or all of them, or the force of a constraint, that the motion does not determine.
+// Rejects a component of a joint's reaction, all of them, or a constraint force that the motion does not determine.
 void refuse_undetermined(const Mechanics& m, const model::Named& want) {
   for (const mechanics::Constraint& c : m.constraints) {
     const std::string label = "reaction." + c.label;
@@ -45,7 +45,7 @@ void refuse_undetermined(const Mechanics& m, const model::Named& want) {
 
 std::vector<std::string> expand_outputs(const Mechanics& m, const system::EquationSystem& system,
                                         const std::vector<model::Named>& wanted) {
-  // Every table has these.
+  // These are part of every table.
   const auto of_state = [](const system::Output& output) {
     return output.kind == OutputKind::coordinate || output.kind == OutputKind::rate;
   };

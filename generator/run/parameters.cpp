@@ -24,7 +24,7 @@ using symbolic::SymbolKind;
 
 constexpr int digits = 40;
 
-// The equations were simplified on the strength of it.
+// The simplification of the equations assumed this sign.
 void require_sign(const model::Parameter& p, const cln::cl_R& value, const model::Model& model) {
   if (!p.positive || cln::plusp(value)) return;
   throw Error(
@@ -33,7 +33,7 @@ void require_sign(const model::Parameter& p, const cln::cl_R& value, const model
       "give it a positive value, or leave `positive` out of the model");
 }
 
-// Runs are in binary64: what is smaller than its normal numbers would count as 0 there, without a word.
+// Runs use binary64: a subnormal number would silently count as 0 there.
 void require_normal(const std::string& what, const cln::cl_R& value, const Where& where) {
   if (cln::zerop(value)) return;
   const cln::cl_F written = cln::cl_float(value, cln::float_format(digits));
@@ -88,7 +88,7 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const std::vector<Ref>& fo
   const std::size_t n = formula.size();
   std::vector<cln::cl_R> values(n, 0);
   std::vector<bool> known(n, false);
-  // Parameters may use one another without cycles, in any order of the file: n rounds settle the longest chain.
+  // Parameters may depend on one another without cycles, in any order of the file: n rounds resolve the longest chain.
   for (std::size_t round = 0; round < n; ++round) {
     for (std::size_t i = 0; i < n; ++i) {
       if (known[i]) continue;
@@ -114,7 +114,7 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const std::vector<Ref>& fo
   return values;
 }
 
-// Values of expressions of parameters; none of others, which the equations meet as they go.
+// Values of expressions of parameters alone; the equations evaluate other expressions during the run.
 std::optional<std::vector<cln::cl_R>> known_values(const Mechanics& m, const std::vector<Ref>& expressions,
                                                    const std::vector<cln::cl_R>& parameters, const std::string& what,
                                                    const model::Span& span) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: parameters of a scene in many digits. Out: nothing, or Error{stage "scene"} with the place: what the reader saw
-// at the default values only.
+// Checks of a scene's parameters, which the reader made only for the default values. In: parameters in many digits.
+// Out: nothing, or Error{stage "scene"} with the position in the file.
 #pragma once
 
 #include <cln/real.h>
@@ -11,10 +11,10 @@
 
 namespace eomgen::run {
 
-/// Throws where a mass that parameters determine is not positive, or has no value.
+/// Throws if a mass that depends on parameters is not positive, or undefined.
 void require_masses(mechanics::Mechanics& mechanics, const std::vector<cln::cl_R>& parameters);
 
-/// Throws where a coefficient of friction is negative, has no value, or the static one is less than the dynamic one.
+/// Throws if a coefficient of friction is negative or undefined, or the static one is less than the dynamic one.
 void require_coefficients(const mechanics::Mechanics& mechanics, const std::vector<cln::cl_R>& parameters,
                           const model::Scene& scene);
 

@@ -18,7 +18,7 @@ SolverReason::Slopes slopes_of(const Code& code) {
   return code.jac != nullptr ? SolverReason::Slopes::compiled : SolverReason::Slopes::differences;
 }
 
-/// Before it runs: what the solver takes of the code.
+/// The functions of the code that the solver uses, before the run.
 SolverReason reason_of(const RunRequest& request, const std::string& solver, SolverReason::Basis basis) {
   SolverReason reason;
   reason.basis = basis;
@@ -32,7 +32,7 @@ SolverReason reason_of(const RunRequest& request, const std::string& solver, Sol
   return reason;
 }
 
-/// What `auto` did: the method that it ended with, the changes, where df/dx came from.
+/// Records the choices of `auto`: the final method, the changes, the source of df/dx.
 void take_choice(const RunRequest& request, const eom::Choice& choice, RunResult& result) {
   if (choice.method != nullptr) result.solver = choice.method;
   result.reason.changes = choice.changes;
@@ -40,7 +40,7 @@ void take_choice(const RunRequest& request, const eom::Choice& choice, RunResult
     result.reason.slopes_after_change = slopes_of(request.code);
 }
 
-/// Why the run ended, in the words of the command line.
+/// The reason why the run ended, in terms of the command line.
 std::string told_end(const eom::hybrid::RunResult& run) {
   using Kind = eom::hybrid::Reason::Kind;
   const eom::hybrid::Reason& reason = run.reason;
@@ -60,7 +60,7 @@ std::string told_end(const eom::hybrid::RunResult& run) {
       reason.amount);
 }
 
-/// The estimate by names; its doubts in the words of the command line.
+/// The error estimate by names; warnings about it in terms of the command line.
 void tell_error(const RunRequest& request, const eom::hybrid::RunResult& run, RunResult& result) {
   const eom::hybrid::EndError& error = run.error;
   result.estimate_note = error.note;

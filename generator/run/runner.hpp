@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: compiled code, a scene in numbers. Out: the run: end state, error estimate, invariants, power balance, what it
-// cost; and rows of outputs to whoever wants them.
+// In: compiled code and a scene in numbers. Out: the run: end state, error estimate, invariants, power balance, cost;
+// and rows of outputs for a callback.
 #pragma once
 
 #include <atomic>
@@ -23,8 +23,8 @@ using eom::hybrid::ExchangedChart;
 using eom::hybrid::OwnOutputs;
 using eom::hybrid::WatchedEvent;
 
-/// The compiled model of a run, and what is known of it beside: mass and constraints only where there are multipliers,
-/// functions for a solver only where it was asked for.
+/// The compiled model of a run, with its description. It has `mass` and `constraints` only if there are multipliers,
+/// and functions for a solver only if they were requested.
 struct Code : eom::hybrid::Code {
   std::vector<symbolic::Ref> kink_values = {};  // as expressions
 };
@@ -41,7 +41,7 @@ struct KinkCrossings {
 };
 
 struct RunResult {
-  // Defined once: every file that holds one would compile them anew.
+  // Defined in the .cpp file, so that they are compiled only once.
   RunResult();
   RunResult(const RunResult&);
   RunResult(RunResult&&) noexcept;
@@ -49,48 +49,48 @@ struct RunResult {
   RunResult& operator=(RunResult&&) noexcept;
   ~RunResult();
 
-  std::string solver;   // the method that ended the run
-  SolverReason reason;  // why it was taken
+  std::string solver;   // the method at the end of the run
+  SolverReason reason;  // why it was chosen
   eom::Outcome outcome = eom::Outcome::done;
-  std::string detail;        // the cause in the words of the command line, or ""
+  std::string detail;        // the cause, in terms of the command line, or ""
   eom::hybrid::Doubt doubt;  // of the estimate
   double t = 0;
   eom::Statistics statistics;
   double seconds_integrate = 0, seconds_estimate = 0;
   std::vector<std::pair<std::string, double>> final;
-  std::vector<double> state;  // at the end, in the model's own charts: also what is no output
-  std::vector<std::pair<std::string, double>> error_estimate;  // per state, then "max"; empty if not asked for
+  std::vector<double> state;  // at the end, in the model's own charts: all components, not only outputs
+  std::vector<std::pair<std::string, double>> error_estimate;  // per state, then "max"; empty if not requested
   std::size_t estimate_rhs_evaluations = 0;
-  std::string estimate_note;  // the doubt in the words of the command line, or ""
+  std::string estimate_note;  // the warning about the estimate, in terms of the command line, or ""
   std::vector<Invariant> invariants;
   double power_balance = 0;     // largest |E - E(0) - W| relative to the energies exchanged
   double constraint_drift = 0;  // largest |psi|, or |f . qdot + b| of a constraint on velocities, at the end of a step
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
-  double contact_work = 0;  // of impacts
+  double contact_work = 0;  // work of impacts
   std::vector<RunEvent> events;
   std::vector<KinkCrossings> kinks;
 };
 
-/// An output that no motion changes.
+/// A conserved output.
 struct ConservedOutput {
-  std::string name, magnitude;  // the size of its terms; none: ""
+  std::string name, magnitude;  // name of the output with the size of its terms; none: ""
   bool energy = false;          // an impulse of a support changes it
 };
 
-/// The outputs that are an integral of constraints on velocities, and its derivatives by the free coordinates and t.
+/// Names of outputs: an integral of velocity constraints, and its derivatives by the free coordinates and t.
 struct IntegralOutputs {
   std::string psi;
   std::vector<std::string> slopes;
 };
 
-/// The outputs of a contact: along each tangent the slip, its slopes by the rates of the free coordinates, the
-/// friction.
+/// Names of outputs of a contact, along each tangent: the slip, its derivatives by the rates of the free coordinates,
+/// the friction.
 struct ContactOutputs {
   std::vector<std::string> slip;
   std::vector<std::vector<std::string>> slopes;
   std::vector<std::string> phi;
-  std::size_t constraint = 0;  // active, of one that can be left
-  std::string restitution;     // of one that can be left
+  std::size_t constraint = 0;  // active constraint of a unilateral contact
+  std::string restitution;     // of a unilateral contact
 };
 
 struct RunRequest {
@@ -98,25 +98,25 @@ struct RunRequest {
   const Scene& scene;
   std::vector<std::string> state_names;    // of x
   std::vector<ConservedOutput> conserved;  // the invariants
-  std::vector<WatchedEvent> events = {};   // of the model, all
-  bool watch_power = false;                // power is not identically zero: its work is integrated alongside
+  std::vector<WatchedEvent> events = {};   // all events of the model
+  bool watch_power = false;                // power is not identically zero: its work is integrated with the motion
   bool estimate = true;
   double every = 0;  // interval of rows; 0: no rows
   std::function<void(double t, std::span<const double> y)> row;
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* interrupt = nullptr;
-  std::vector<IntegralOutputs> integrals = {};  // that the projection keeps
+  std::vector<IntegralOutputs> integrals = {};  // that the projection preserves
   std::vector<ContactOutputs> contacts = {};    // per Code::contacts
-  std::vector<std::string> redundant = {};      // outputs: psi of constraints that the others make hold
-  std::vector<ExchangedChart> charts = {};      // none: the run keeps to the coordinates that it has
+  std::vector<std::string> redundant = {};      // outputs: psi of redundant constraints
+  std::vector<ExchangedChart> charts = {};      // none: the run stays in its coordinates
   std::function<const Code&(unsigned charts)> in_charts =
-      {};  // code that knows these second charts, and those asked for before
+      {};  // code with these second charts, and all that were requested before
   eom::hybrid::BoundedFunctions bounded = {};
-  /// Whether the equations hold where a coordinate has left its range; none: they do not.
+  /// Whether the equations hold beyond the range of a coordinate; if empty, they do not.
   std::function<bool(std::uint32_t coordinate, double t, std::span<const double> x)> beyond_range = {};
   std::vector<std::string> constraint_names = {};  // of Code::active_constraints
-  std::size_t max_steps = 0;  // accepted and rejected together; 0: those of eom::Options, and no bound on fixed steps,
-                              // whose number is known
+  std::size_t max_steps = 0;  // accepted and rejected together; 0: the limit of eom::Options, and no limit for fixed
+                              // steps, whose number is known
 
   std::size_t steps_allowed(bool fixed) const {
     if (max_steps > 0) return max_steps;
@@ -124,11 +124,10 @@ struct RunRequest {
   }
 };
 
-/// Integrates the scene. Throws Error{stage "run"} for a solver that is not there or needs a step.
+/// Integrates the scene. Throws Error{stage "run"} for a solver that does not exist or needs a step.
 RunResult integrate_scene(const RunRequest& request);
 
-/// The solver for what was asked for, and why; auto where steps are chosen, and stiffness may change the method on the
-/// way.
+/// The solver for a request, and the reason for it; `auto` may change the method during the run if the system is stiff.
 std::pair<std::string, SolverReason::Basis> choose_solver(const std::string& asked, const Scene& scene);
 
 }  // namespace eomgen::run

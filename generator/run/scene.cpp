@@ -38,7 +38,7 @@ class SceneEvaluator {
 
   double number(model::NodeId id, const char* what) { return number(mechanics::lower_scalar(m_, id), id, what); }
   void set_start(double t0) { t0_ = numeric::exact(t0); }
-  /// Closed forms divide by factors of t: where such a factor is 0 they have no value, and the run would have none.
+  /// Rejects a time at which a closed form of an integral divides by 0: it has no value there, and neither has the run.
   void require_integrals(double t) {
     const cln::cl_R start = t0_;
     t0_ = numeric::exact(t);
@@ -58,7 +58,7 @@ class SceneEvaluator {
     const auto lookup = [&](const Symbol& s) -> cln::cl_R {
       if (s.kind == SymbolKind::parameter) return parameters_[s.index];
       if (s.kind == SymbolKind::time) return t0_;
-      if (s.kind == SymbolKind::integral) return 0;  // counts from here
+      if (s.kind == SymbolKind::integral) return 0;  // integrals begin here
       if (const auto found = given_.find(s); found != given_.end()) return found->second;
       throw Error("scene", m_.model->where(span), fmt::format("{} uses a value that is not given before it", what),
                   "give the values that it uses on earlier lines of `initial`");
@@ -118,7 +118,7 @@ std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene&
   return expressions;
 }
 
-// What time alone does, and where that makes something jump.
+// Functions of time alone, and the jumps that they cause.
 void resolve_clock(const Mechanics& m, const system::EquationSystem& system,
                    const std::vector<std::optional<Ref>>& expressions, Scene& result) {
   for (Signal& input : result.inputs) input.parameters(result.parameters);
@@ -130,7 +130,7 @@ void resolve_clock(const Mechanics& m, const system::EquationSystem& system,
   if (!found.none()) result.jumps = std::move(jumps);
 }
 
-// A start outside its chart would be integrated with equations that do not hold there.
+// The equations do not hold for a start outside its chart.
 void resolve_ranges(const Mechanics& m, SceneEvaluator& value, Scene& result) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const model::Coordinate& c : m.model->coordinates) {
@@ -165,7 +165,7 @@ void require_span(const Mechanics& m, const model::Scene& scene, const Scene& re
     fail("step, max_step and every must be positive", "leave them out for the defaults");
 }
 
-// Coordinates fail where M has no inverse; with multipliers it may have none as long as the constraints mend that.
+// Coordinates are singular where M has no inverse. With multipliers M may be singular if the constraints compensate it.
 void require_regular(const Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
                      const Scene& start) {
   constexpr double smallest_pivot = 1e-14;  // of M scaled to a unit diagonal; rounding leaves 1e-16 per operation
@@ -179,9 +179,9 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
     return std::nan("");
   });
   Eigen::MatrixXd M = Eigen::Map<const Eigen::MatrixXd>(values.data(), n, n);
-  if (!M.allFinite()) return;  // told by what has no value
+  if (!M.allFinite()) return;  // reported with the undefined value
   const Eigen::VectorXd scale = M.diagonal().cwiseSqrt();
-  if (scale.size() == 0) return;  // nothing is free
+  if (scale.size() == 0) return;  // no free coordinates
   bool regular = scale.minCoeff() > 0;
   if (regular) {
     M = scale.cwiseInverse().asDiagonal() * M * scale.cwiseInverse().asDiagonal();
@@ -265,7 +265,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
     problem.guess[{guess.coordinate, guess.order}] = value.number(guess.value, "a guess");
   }
   for (std::size_t i = 0; i < result.parameters.size();
-       ++i) {  // initial(q): what is known of q before the constraints are met
+       ++i) {  // initial(q): the value of q before the constraints are solved
     const auto& start_of = m.model->parameters[i].start_of;
     if (!start_of) continue;
     const auto given = problem.given.find({*start_of, 0});
@@ -278,7 +278,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     if (const auto& start_of = m.model->parameters[i].start_of) result.parameters[i] = problem.q[*start_of];
   }
-  resolve_clock(m, system, inputs, result);  // the start may be among the parameters
+  resolve_clock(m, system, inputs, result);  // parameters may depend on the start
   result.q = problem.q;
   result.qdot = problem.qdot;
   resolve_ranges(m, value, result);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: a scene of the model and what the command line overrides. Out: numbers: parameters, time span, a start that
-// satisfies the constraints, tolerances, inputs, the columns that are wanted.
+// In: a scene of the model and the overrides of the command line. Out: numbers: parameters, time span, a start that
+// satisfies the constraints, tolerances, inputs, the requested columns.
 #pragma once
 
 #include <cln/real.h>
@@ -19,18 +19,18 @@
 
 namespace eomgen::run {
 
-/// What `run` takes from the command line in place of the scene's values.
+/// Values from the command line that replace those of the scene.
 struct Overrides {
-  std::map<std::string, symbolic::Rational> values;  // of parameters; of coordinates and rates at the start
+  std::map<std::string, symbolic::Rational> values;  // of parameters; initial values of coordinates and rates
   std::optional<double> t_end, rtol, atol, step, max_step, every;
   std::optional<std::string> solver;
-  std::vector<std::string> outputs;  // in place of the scene's, unless empty
+  std::vector<std::string> outputs;  // replace those of the scene, unless empty
   bool at_start = false;             // t_end may be the start: nothing moves then
-  bool exchanges_charts = false;     // a start where coordinates fail is no error: the run goes on in other ones
+  bool exchanges_charts = false;     // a start at a chart singularity is no error: the run uses other charts
 };
 
 struct Scene {
-  // Defined once: every file that holds one would compile them anew.
+  // Defined in the .cpp file, so that they are compiled only once.
   Scene();
   Scene(const Scene&);
   Scene(Scene&&) noexcept;
@@ -42,37 +42,38 @@ struct Scene {
   std::vector<double> parameters;  // all of the model, in order; dependent ones computed
   double t0 = 0, t1 = 0;
   std::vector<double> q, qdot;       // all coordinates of the model
-  std::vector<double> lower, upper;  // open range of each coordinate; infinite where there is none
-  std::string solver;                // as asked for; may be "auto"
+  std::vector<double> lower, upper;  // open range of each coordinate; infinite if there is none
+  std::string solver;                // as requested; may be "auto"
   double rtol = 1e-9, atol = 1e-12;
   double step = 0, every = 0;        // 0: not given
-  double max_step = 0;               // of chosen steps; 0: not bounded
+  double max_step = 0;               // of adaptive steps; 0: not bounded
   std::vector<Signal> inputs;        // one per input of the model
   eom::hybrid::TimeFunctions time;   // functions of time alone
-  eom::hybrid::Clock clock;          // what they do in the span of the run
-  eom::hybrid::JumpFunctions jumps;  // where something may jump; empty: nowhere
+  eom::hybrid::Clock clock;          // their properties in the span of the run
+  eom::hybrid::JumpFunctions jumps;  // functions that may jump; empty: none
   std::vector<std::string> outputs;  // expanded, without the coordinates, each once
   std::vector<bool> stops;           // per event of the model: whether it ends the run
-  std::vector<bool> apart;           // per contact: whether it does not touch at the start
-  std::vector<std::string> solved;   // sentences: what followed from the constraints
+  std::vector<bool> apart;           // per contact: whether it is open at the start
+  std::vector<std::string> solved;   // sentences about values that follow from the constraints
 };
 
-/// The coordinate (order 0) or its rate (1) whose start has this name, "theta" or "theta_dot".
+/// The coordinate (order 0) or rate (order 1) with this name, "theta" or "theta_dot".
 std::optional<std::pair<std::uint32_t, std::uint8_t>> start_named(const model::Model& model, const std::string& name);
 
 inline constexpr double start_tolerance = 1e-8;  // relative; the contract's
 
-/// Throws Error{stage "scene"}: an unknown name, a value that does not exist, a start that breaks a constraint.
+/// Resolves a scene. Throws Error{stage "scene"} for an unknown name, an undefined value, or a start that violates a
+/// constraint.
 Scene resolve_scene(mechanics::Mechanics& mechanics, const system::EquationSystem& system, const model::Scene& scene,
                     const Overrides& overrides);
 
-/// Parameters of a scene in many digits. `moved`: those that are plain numbers are each multiplied by a number near 1
-/// that it chooses (what is 0 stays 0), and those that are computed from them follow.
+/// Parameters of a scene in many digits. With a seed `moved` each independent parameter is multiplied by a random
+/// number near 1 (0 stays 0), and dependent parameters are computed from them.
 std::vector<cln::cl_R> exact_parameters(mechanics::Mechanics& mechanics, const model::Scene& scene,
                                         const Overrides& overrides, int digits,
                                         std::optional<std::uint64_t> moved = {});
 
-/// Names of all outputs that can be asked for: those of the system, vectors and reactions by their parts.
+/// Names of the requested outputs, with vectors and reactions expanded into components.
 std::vector<std::string> expand_outputs(const mechanics::Mechanics& mechanics, const system::EquationSystem& system,
                                         const std::vector<model::Named>& wanted);
 

@@ -11,7 +11,7 @@
 namespace eomgen::run {
 namespace {
 
-/// x and, one after the other, each s times its scale.
+/// The state: x, followed by each s times its scale.
 class Variational {
  public:
   Variational(const RunRequest& request, const std::vector<Direction>& directions)
@@ -41,7 +41,7 @@ class Variational {
   int operator()(double t, const double* x, double* dx) {
     for (std::size_t i = 0; i < scene_.inputs.size(); ++i) u_[i] = scene_.inputs[i](t, side);
     const double* p = scene_.parameters.data();
-    // dx may be x: what is read of x comes first.
+    // dx may alias x: x is read before dx is written.
     if (const int code = code_.jac(t, x, p, u_.data(), 0, dfdx_.data(), dfdt_.data()); code != 0) return code;
     if (const int code = code_.jac_p(t, x, p, u_.data(), 0, dfdp_.data()); code != 0) return code;
     slopes_.assign(n_ * directions_.size(), 0.0);
@@ -63,7 +63,7 @@ class Variational {
     return code;
   }
 
-  double side = 0;  // of jumps of inputs: a time inside the segment that is being integrated
+  double side = 0;  // a time inside the current segment between jumps of inputs
 
  private:
   const Code& code_;
@@ -74,7 +74,7 @@ class Variational {
   bool prepared_ = false;
 };
 
-/// Ends of the segments between jumps of the inputs and kinks of time, and where the next one begins.
+/// Ends of the segments between jumps of inputs and kinks in time, and the beginnings of the next ones.
 std::vector<eom::hybrid::Break> segments(const Scene& scene, double t_end) {
   using eom::hybrid::Break;
   std::vector<Break> ends;
@@ -113,7 +113,7 @@ eom::Result run(const RunRequest& request, const std::string& solver, double t_e
   return total;
 }
 
-/// The method that ran, or, where it needs a series, momenta or constraints, one of as high an order that does not.
+/// The method of the run; if it needs a series, momenta or constraints, a method of similar order that does not.
 std::string without_requirements(const std::string& solver) {
   const eom::MethodInfo& method = method_named(solver);
   if (method.needs.required.none()) return solver;

@@ -18,19 +18,19 @@ class Signal {
   /// value[k] from time[k] until time[k+1]; value[0] before time[0].
   Signal(std::vector<double> time, std::vector<double> value);
 
-  /// Other numbers for the parameters of its expression.
+  /// Sets new values of the parameters in its expression.
   void parameters(const std::vector<double>& values);
 
   /// The value at t. At a jump: the value of the segment that `side_of` (a time inside the current segment) lies in.
   double operator()(double t, double side_of) const;
-  /// Whether it changes between its jumps.
+  /// Whether the signal varies between its jumps.
   bool moves() const;
   const std::vector<double>& jumps() const { return signal_.times; }
   const eom::hybrid::Signal& of_run() const { return signal_; }
 
  private:
   eom::hybrid::Signal signal_;
-  eom::expressions::Code code_;  // of its expression, with numbers for the parameters
+  eom::expressions::Code code_;  // of its expression, with values of the parameters
 };
 
 }  // namespace eomgen::run

@@ -20,7 +20,7 @@ const char* words(Basis basis) {
   return "";
 }
 
-/// Of the solver that was taken first.
+/// The reason for the first solver.
 std::string first(const SolverReason& reason) {
   std::string text = words(reason.basis);
   if (reason.slopes == Slopes::compiled) text += ", df/dx from the equations";

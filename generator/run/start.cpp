@@ -21,7 +21,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Newton ends when the step is below start_rounding; 50 steps are far more than it needs.
+// Newton's method ends when the step is below start_rounding; 50 steps are far more than it needs.
 constexpr int newton_steps = 50;
 
 class StartSolver {
@@ -47,7 +47,7 @@ class StartSolver {
       const std::vector<std::string> told = p_.solved;
       newton(1, unknowns(1));
       if (rows_.worst(1) <= start_tolerance) return;
-      p_.qdot = given;  // it slides
+      p_.qdot = given;  // the body slides
       p_.solved = told;
       rows_.drop_rolling();
     }
@@ -55,8 +55,8 @@ class StartSolver {
   }
 
  private:
-  // A contact that can be left is left where all that its gap depends on is given, and the gap is open (order 0) or
-  // opening (1).
+  // A unilateral contact is open if all coordinates in its gap are given, and the gap is positive (order 0) or
+  // increasing (order 1).
   void leave(std::uint8_t order) {
     p_.apart.resize(s_.contacts.size(), false);
     for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
@@ -72,12 +72,12 @@ class StartSolver {
         if (A(row, static_cast<Eigen::Index>(i)) != 0) given = given && p_.given.contains(key) && !may_move(key);
       }
       if (!given || !(residual(row) > 0) || rows_.relative(residual, A, order, row) <= start_tolerance) continue;
-      p_.apart[j] = order == 0;  // what opens is told by the run
+      p_.apart[j] = order == 0;  // the run reports a contact that opens
       rows_.drop(k);
     }
   }
 
-  /// Of four Euler parameters three are given, and are shorter than 1.
+  /// Whether three of four Euler parameters are given, with a norm below 1.
   bool follows_from_unit(std::uint32_t f) const {
     const model::Frame& frame = p_.mechanics.model->frames[f];
     if (frame.rotation != "euler_parameters") return false;
@@ -93,9 +93,8 @@ class StartSolver {
     return given + 1 == frame.entries.size() && square < 1 - start_tolerance;
   }
 
-  // Of a body that rolls or slides the position follows from the attitude, not the other way round: angles and their
-  // rates that are not given are 0. So are those of bodies in joints, unless joints close a loop from which they
-  // follow.
+  // The position of a rolling or sliding body follows from its attitude, not vice versa: angles and their rates that
+  // are not given are 0. The same holds for bodies in joints, unless a loop of joints determines their angles.
   void hold_angles(std::set<StartProblem::Key>& held) const {
     const model::Model& model = *p_.mechanics.model;
     for (std::uint32_t f = 1; f < model.frames.size(); ++f) {
@@ -110,7 +109,7 @@ class StartSolver {
     }
   }
 
-  // Eliminated coordinates have their value from the constraint; a value that was given must be that one.
+  // The constraint determines an eliminated coordinate; a given value has to agree with it.
   void impose_fixed() {
     symbolic::Substitution written = derive::write_out(p_.mechanics);
     for (const mechanics::FixedCoordinate& fixed : p_.mechanics.fixed) {
@@ -148,7 +147,7 @@ class StartSolver {
     return result;
   }
 
-  /// Contacts that can be left and are open at this place, though not all that their gaps depend on is given.
+  /// Unilateral contacts that are open at the current values, although not all coordinates in their gaps are given.
   std::vector<std::size_t> open_contacts() {
     VectorXd residual;
     MatrixXd A;
@@ -166,7 +165,7 @@ class StartSolver {
     return static_cast<Eigen::Index>(found - rows_.of(order).begin());
   }
 
-  /// What cannot touch beside all else that is given is apart, if it is open where the search begins.
+  /// Opens the contacts that are incompatible with the given values, if they are open at the initial guess.
   void leave_what_cannot_touch(const std::vector<double>& begin, const std::vector<std::string>& told) {
     const std::vector<double> end = p_.q;
     p_.q = begin;
@@ -211,7 +210,7 @@ class StartSolver {
       if (order == 0) hold_angles(loose_);
     }
     if (order == 1 && rows_.worst(order) > start_tolerance &&
-        !held_.empty()) {  // the speed of a body that rolls is given in place of its spin
+        !held_.empty()) {  // the velocity of a rolling body is given instead of its spin
       held_.clear();
       free = unknowns(order);
       newton(order, free);
@@ -225,8 +224,8 @@ class StartSolver {
     if (rows_.worst(order, &k) > start_tolerance) refuse_start(p_, rows_, order, static_cast<std::size_t>(k), free);
   }
 
-  /// Where the constraints could be met in several ways, as by rolling that says nothing of the spin about the normal:
-  /// those unknowns follow that they feel most, and the others stay 0 (or their guess), which is told.
+  /// If several choices satisfy the constraints (as for rolling without a given spin about the normal), solves for the
+  /// unknowns that the constraints depend on most strongly. The others stay 0 or keep their guess; this is reported.
   void choose(std::uint8_t order, const std::vector<std::size_t>& free) {
     VectorXd residual;
     MatrixXd A;
@@ -254,7 +253,7 @@ class StartSolver {
       p_.solved.push_back(open + " (chosen: the constraints can be met in several ways)");
   }
 
-  // What no constraint feels there stays where it is.
+  // Unknowns that no constraint depends on locally keep their values.
   void move_beside(std::uint8_t order, const std::vector<std::size_t>& free, double offset) {
     if (offset == 0) return;
     for (const std::size_t i : free) rows_.value({s_.free[i], order}) += offset;
@@ -266,14 +265,14 @@ class StartSolver {
     }
   }
 
-  // Tried from the guess (or 0), then from points beside it: at 0 a gradient may vanish (x^2 + y^2 - L^2).
+  // Starts from the guess (or 0), then from points near it: at 0 a gradient may vanish (x^2 + y^2 - L^2).
   void newton(std::uint8_t order, const std::vector<std::size_t>& free) {
     const std::vector<double> start = order == 0 ? p_.q : p_.qdot;
     for (const double offset : {0.0, 1.0, -1.0, 0.1, 10.0}) {
       (order == 0 ? p_.q : p_.qdot) = start;
       move_beside(order, free, offset);
-      if (!iterate(order, free, offset == 0)) continue;  // beside it nothing that stays would be 0
-      // Only what the constraints fix may follow from them; the rest would be a guess of ours.
+      if (!iterate(order, free, offset == 0)) continue;  // away from the guess undetermined unknowns would not be 0
+      // Accept only unknowns that the constraints determine; any other value would be arbitrary.
       for (const std::size_t i : free) {
         const StartProblem::Key key{s_.free[i], order};
         if (rows_.value(key) == start[key.first]) continue;
@@ -284,14 +283,14 @@ class StartSolver {
     (order == 0 ? p_.q : p_.qdot) = start;
   }
 
-  /// `partly`: where the constraints do not fix all of them, those that they fix.
+  /// `partly`: if the constraints do not determine all unknowns, solves for those that they determine.
   bool iterate(std::uint8_t order, const std::vector<std::size_t>& free, bool partly) {
     VectorXd residual;
     MatrixXd A;
     for (int step = 0; step < newton_steps; ++step) {
       rows_.linearise(order, residual, A);
       if (!residual.allFinite() || !A.allFinite()) return false;
-      std::vector<std::size_t> moving;  // with a column that is not zero
+      std::vector<std::size_t> moving;  // unknowns with a nonzero column
       for (const std::size_t i : free) {
         if (A.col(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff() > 0) moving.push_back(i);
       }
@@ -323,8 +322,8 @@ class StartSolver {
   const system::EquationSystem& s_;
   std::size_t n_;
   StartRows rows_;
-  std::set<StartProblem::Key> held_;   // not given, and 0
-  std::set<StartProblem::Key> loose_;  // not given, and 0 if the constraints hold so
+  std::set<StartProblem::Key> held_;   // not given, and set to 0
+  std::set<StartProblem::Key> loose_;  // not given, and set to 0 if the constraints then hold
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A start that satisfies the constraints: what is not given is 0, or follows from the constraints where they fix it.
+// A start that satisfies the constraints. Values that are not given follow from the constraints, if these determine
+// them, and are 0 otherwise.
 #pragma once
 
 #include <array>
@@ -35,12 +36,12 @@ struct StartProblem {
   std::vector<Turn> turns;
 
   std::vector<double> q, qdot;           // out: all coordinates
-  std::vector<std::string> solved = {};  // out: a sentence for each value that followed
-  std::vector<bool> apart = {};          // out: per contact, whether what can be left is left
+  std::vector<std::string> solved = {};  // out: a sentence for each value that follows from the constraints
+  std::vector<bool> apart = {};          // out: per contact, whether it is open
 };
 
-/// Fills q, qdot. Positions by Newton on psi = 0, then rates by A qdot + b = 0. Throws Error{stage "scene"} with the
-/// place of the offending value and by how much the constraint is broken.
+/// Computes q and qdot: positions by Newton's method on psi = 0, then rates by A qdot + b = 0. Throws
+/// Error{stage "scene"} with the position of the offending value and the violation of the constraint.
 void solve_start(StartProblem& problem);
 
 }  // namespace eomgen::run

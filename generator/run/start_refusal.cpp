@@ -17,11 +17,11 @@ using Eigen::VectorXd;
 
 struct Broken {
   std::size_t row;
-  double off, relative;  // to what the row is made of
+  double off, relative;  // violation; the same relative to the terms of the row
 };
 
-/// Of rates: the first constraint that cannot hold beside what is given and the constraints before it, and by how
-/// much it is off then.
+/// For rates: the first constraint that is incompatible with the given values and the previous constraints, and its
+/// violation.
 std::optional<Broken> first_broken(const StartRows& rows, const std::vector<std::size_t>& free) {
   VectorXd residual;
   MatrixXd A;
@@ -99,7 +99,8 @@ void refuse_start(const StartProblem& problem, const StartRows& rows, std::uint8
       span = found->second.span;
     }
   }
-  const bool alone = open.find(',') == std::string::npos;  // one unknown or none: nothing else could fix it
+  const bool alone =
+      open.find(',') == std::string::npos;  // at most one unknown: no other one could satisfy the constraint
   const std::string remedy =
       alone && !(open.empty() && !given.empty())
           ? fmt::format("{}: check its signs{}, or start the search elsewhere with guess = {{ .. }}",

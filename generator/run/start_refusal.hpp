@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Why a start cannot be: the constraint that it breaks, by how much, and what to do.
+// Error messages for inconsistent starts: the violated constraint, the violation, and a remedy.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,12 @@
 
 namespace eomgen::run {
 
-/// Columns whose part outside the span of the others is smaller than this (relative) do not fix their coordinate.
+/// A coordinate is undetermined if the part of its column outside the span of the others is smaller than this
+/// (relative).
 inline constexpr double start_rank_tolerance = 1e-10;
 
-/// Row k of this order does not hold, whatever the unknowns are; `free`: places of these among the free coordinates.
-/// Throws Error.
+/// Throws the Error for row k of this order, which no values of the unknowns satisfy; `free`: the unknowns, as indices
+/// of free coordinates.
 [[noreturn]] void refuse_start(const StartProblem& problem, const StartRows& rows, std::uint8_t order, std::size_t k,
                                const std::vector<std::size_t>& free);
 

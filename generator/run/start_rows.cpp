@@ -36,8 +36,7 @@ StartRows::StartRows(StartProblem& problem)
   for (const StartProblem::Turn& turn : p_.turns) add_turn(turn);
 }
 
-// Of rolling with friction the rates that are not given follow from rolling, if those that are given allow it: slip 0
-// as more rows.
+// Rates of a body that rolls with friction follow from rolling, if the given rates allow it: further rows with slip 0.
 bool StartRows::add_rolling() {
   const std::size_t before = rows_[1].size();
   for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
@@ -54,14 +53,14 @@ void StartRows::drop_rolling() {
   while (!rows_[1].empty() && rows_[1].back() >= first_turn() + 3 * p_.turns.size()) rows_[1].pop_back();
 }
 
-// An angular velocity is linear in the rates: three more rows beside those of the constraints.
+// An angular velocity is linear in the rates: three further rows.
 void StartRows::add_turn(const StartProblem::Turn& turn) {
   symbolic::Substitution imposed = derive::impose(p_.mechanics), written = derive::write_out(p_.mechanics);
   for (std::size_t k = 0; k < 3; ++k)
     add_rate(written(imposed(p_.mechanics.angular_velocity[turn.frame][k])), turn.value[k]);
 }
 
-// A row w = value, of w that is linear in the rates.
+// A row w = value, with w linear in the rates.
 void StartRows::add_rate(Ref w, double wanted) {
   symbolic::Dag& dag = *s_.dag;
   std::map<Symbol, Ref> zero;
@@ -81,7 +80,7 @@ double StartRows::lookup(const Symbol& s) const {
   switch (s.kind) {
     case SymbolKind::parameter: return p_.parameters[s.index];
     case SymbolKind::time: return p_.t0;
-    case SymbolKind::integral: return 0;  // counts from here
+    case SymbolKind::integral: return 0;  // integrals begin here
     case SymbolKind::coordinate: return s.order == 0 ? p_.q[s.index] : p_.qdot[s.index];
     default: return std::nan("");
   }
@@ -110,7 +109,7 @@ void StartRows::linearise(std::uint8_t order, VectorXd& residual, MatrixXd& A) c
   }
 }
 
-// |psi_k| against the size of its linear terms: the relative measure of the contract.
+// |psi_k| relative to the size of its linear terms, as in the contract.
 double StartRows::relative(const VectorXd& residual, const MatrixXd& A, std::uint8_t order, Eigen::Index k) const {
   double terms = 0, slopes = 0, largest = 0;
   for (std::size_t i = 0; i < n_; ++i) {
@@ -121,7 +120,7 @@ double StartRows::relative(const VectorXd& residual, const MatrixXd& A, std::uin
     largest = std::max(largest, std::abs(x));
   }
   const double size = std::abs(residual(k));
-  // What is beyond the last digit of the other coordinates is 0, whatever it is made of.
+  // A residual below the last digit of the other coordinates is 0, whatever its terms are.
   if (size <= start_rounding * slopes * largest) return 0;
   // At rest every term of A qdot vanishes; b itself is then the scale.
   return terms > size ? size / terms : 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a start has to satisfy, as rows: psi = 0 of positions (order 0), A qdot + b = wanted of rates (order 1). In: the
-// equations and the values so far, which are those of the StartProblem. Out: residuals and slopes there.
+// The equations of a start, as rows: psi = 0 for positions (order 0), A qdot + b = target for rates (order 1). In: the
+// equations and the current values, which are those of the StartProblem. Out: residuals and derivatives there.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,36 +14,36 @@
 
 namespace eomgen::run {
 
-/// A step, or a residual beside its terms, that is below this many units in the last place is 0.
+/// Steps, and residuals relative to their terms, below this (a few units in the last place) count as 0.
 inline constexpr double start_rounding = 4e-16;
 
 class StartRows {
  public:
-  /// Those of the active constraints, then of redundant ones, then three for each given angular velocity.
+  /// Rows of the active constraints, then of the redundant ones, then three for each given angular velocity.
   explicit StartRows(StartProblem& problem);
 
-  /// Numbers of the rows of an order, in theirs.
+  /// Numbers of the rows of an order.
   const std::vector<std::size_t>& of(std::uint8_t order) const { return rows_[order]; }
   /// The number of the first row of the first given angular velocity.
   std::size_t first_turn() const { return m_ + s_.redundant.size(); }
-  /// Of both orders.
+  /// Removes a row from both orders.
   void drop(std::size_t number) {
     for (auto& rows : rows_) std::erase(rows, number);
   }
-  /// Slip 0 where something rolls by friction; whether anything does.
+  /// Adds rows with slip 0 for bodies that roll with friction; returns whether there are any.
   bool add_rolling();
   void drop_rolling();
 
-  /// The residuals of the rows, and their slopes by the free coordinates or their rates.
+  /// The residuals of the rows, and their derivatives by the free coordinates or their rates.
   void linearise(std::uint8_t order, Eigen::VectorXd& residual, Eigen::MatrixXd& A) const;
   /// |residual_k| against the size of its linear terms: the relative measure of the contract.
   double relative(const Eigen::VectorXd& residual, const Eigen::MatrixXd& A, std::uint8_t order, Eigen::Index k) const;
-  /// The largest of them, and of which row.
+  /// The largest of them, and its row.
   double worst(std::uint8_t order, Eigen::Index* where = nullptr) const;
 
   double& value(StartProblem::Key key) { return (key.second == 0 ? p_.q : p_.qdot)[key.first]; }
   std::string label(StartProblem::Key key) const;
-  /// Of expressions, where the start is now.
+  /// Values of expressions at the current start.
   std::vector<double> evaluate(const std::vector<symbolic::Ref>& refs) const;
 
  private:
@@ -55,8 +55,8 @@ class StartRows {
   const system::EquationSystem& s_;
   std::size_t n_, m_;
   std::vector<symbolic::Ref> A_, psi_, b_;
-  std::vector<double> target_;                    // what A qdot + b is to be
-  std::array<std::vector<std::size_t>, 2> rows_;  // constraints on positions (order 0), on velocities: all
+  std::vector<double> target_;                    // of A qdot + b
+  std::array<std::vector<std::size_t>, 2> rows_;  // order 0: position constraints; order 1: all constraints
 };
 
 }  // namespace eomgen::run

@@ -24,7 +24,7 @@ std::vector<bool> felt_most(MatrixXd columns, const std::vector<bool>& first, do
   std::vector<bool> taken(first.size(), false);
   const double least = tolerance * columns.norm();
   for (const bool named : {true, false}) {
-    for (;;) {  // Gram and Schmidt, the longest of what is left each time
+    for (;;) {  // Gram-Schmidt with the longest remaining column each time
       Index longest = -1;
       for (Index i = 0; i < columns.cols(); ++i) {
         const auto k = static_cast<std::size_t>(i);

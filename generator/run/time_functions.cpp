@@ -16,7 +16,7 @@ using symbolic::Ref;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-/// What each node depends on: 0: on parameters and tables, 1: on t too, 2: on more.
+/// The dependence of each node: 0: on parameters and tables, 1: also on t, 2: on more.
 class Dependence {
  public:
   Dependence(const Dag& dag, const std::vector<std::optional<Ref>>& inputs)
@@ -36,7 +36,7 @@ class Dependence {
     }
   }
   int operator()(Ref r) const { return of_[r.id]; }
-  /// All nodes seen, operands before their users.
+  /// All visited nodes, operands before their users.
   const std::vector<Ref>& seen() const { return seen_; }
 
  private:
@@ -72,7 +72,7 @@ class Finder {
     });
     const std::size_t moving = roots.size();
     for (const Ref r : {system_.kinetic, system_.potential}) roots.push_back(r);
-    for (const system::Output& output : system_.outputs) {  // what jumps there
+    for (const system::Output& output : system_.outputs) {  // outputs that may jump
       if (output.kind == system::OutputKind::position || output.kind == system::OutputKind::velocity)
         roots.push_back(output.value);
     }
@@ -108,7 +108,7 @@ class Finder {
     add(surface, found_.surfaces);
   }
 
-  /// The largest expressions of time alone that something else uses, or that are part of the equations themselves.
+  /// The largest expressions of time alone that are operands of other expressions, or part of the equations themselves.
   void add_terms(const std::vector<Ref>& roots) {
     std::vector<bool> wanted(dag_.size(), false);
     for (const Ref r : roots) wanted[r.id] = wanted[r.id] || depends_(r) == 1;
@@ -129,8 +129,8 @@ class Finder {
     }
   }
 
-  /// What is added up is looked at term by term: a sum bounds its terms worse than these (sin^2 + cos^2), and a pulse
-  /// beside a large constant is one.
+  /// Sums are examined term by term: bounds of a sum are worse than those of its terms (sin^2 + cos^2), and a pulse
+  /// next to a large constant has to be found.
   std::vector<Ref> terms(Ref sum) {
     std::vector<Ref> open{sum}, result;
     while (!open.empty()) {

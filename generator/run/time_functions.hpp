@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions of time alone in a scene, also through inputs. In: a system, its inputs as expressions. Out: what
-// eom/hybrid/clock.hpp looks at before a run.
+// Functions of time alone in a scene, also through inputs. In: a system, its inputs as expressions. Out: the functions
+// that eom/hybrid/clock.hpp examines before a run.
 #pragma once
 
 #include <eom/hybrid/problem.hpp>
@@ -11,7 +11,7 @@
 
 namespace eomgen::run {
 
-/// inputs: what each is as an expression; none: a table.
+/// inputs: the expression of each; none for a table.
 eom::hybrid::TimeFunctions time_functions(const system::EquationSystem& system,
                                           const std::vector<std::optional<symbolic::Ref>>& inputs);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Definite integrals by Gauss-Legendre quadrature in any precision: how the judge knows integral(e), which shares
-// nothing with the closed forms that it judges.
+// Definite integrals by Gauss-Legendre quadrature in any precision: the oracle's evaluation of integral(e), independent
+// of the closed forms that it is compared with.
 #pragma once
 
 #include <functional>
