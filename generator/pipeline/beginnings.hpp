@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether runs of a scene can begin, without making them.
+// Whether runs of a scene have a valid start, without running them.
 #pragma once
 
 #include <optional>
@@ -14,15 +14,15 @@ class Beginnings {
  public:
   Beginnings(std::shared_ptr<const model::Model> model, std::string scene);
 
-  /// Whether its start can be found with these values. Throws Error for what is wrong with any start.
+  /// Whether the start can be computed with these values. Throws Error if no start at all is possible.
   bool can_begin(run::Overrides overrides);
-  /// Of the first that could not begin.
+  /// The error of the first run without a valid start.
   const std::optional<Error>& refusal() const { return refusal_; }
 
  private:
   std::unique_ptr<Derived> derived_;
   std::string scene_;
-  symbolic::Dag was_;  // every start puts its values into the graph of the model
+  symbolic::Dag was_;  // the initial graph of the model: every start adds its values to the graph
   bool charts_;
   std::optional<Error> refusal_;
 };

@@ -16,9 +16,9 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 
 constexpr double agree = 1e-8;      // of accelerations and energies
-constexpr double singular = 1e-10;  // smallest pivot of what is solved, relative
+constexpr double singular = 1e-10;  // smallest relative pivot of the linear system
 
-/// The range was stated by the coordinate system, not by the user.
+/// Whether the range comes from the coordinate system, not from the user.
 bool of_system(const model::Model& model, std::uint32_t coordinate) {
   const model::NodeId lower = model.coordinates[coordinate].lower;
   if (lower == model::no_node || model.coordinates[coordinate].upper != model::no_node) return false;
@@ -27,7 +27,7 @@ bool of_system(const model::Model& model, std::uint32_t coordinate) {
     if (!place.chart) continue;
     for (const model::NodeId entry : place.chart->entries) {
       if (entry == model::no_node) continue;
-      // Its range has the place of the entry, whose name begins behind the quotation mark.
+      // The range has the file position of the entry, whose name begins after the quotation mark.
       const model::Node& node = model.arena[entry];
       const bool itself = node.op == model::Op::coordinate && node.index == coordinate;
       if (itself && node.span.line == stated.line && node.span.column >= stated.column &&
@@ -42,7 +42,7 @@ Eigen::VectorXd numbers(const std::vector<double>& values, std::size_t from, std
   return Eigen::Map<const Eigen::VectorXd>(values.data() + from, static_cast<Eigen::Index>(count));
 }
 
-/// Accelerations, kinetic and potential energy; none where they are not determined.
+/// Accelerations, kinetic and potential energy; empty if they are not determined.
 std::optional<Eigen::VectorXd> motion(const system::EquationSystem& s, const run::Scene& scene, double t,
                                       std::span<const double> x) {
   const std::size_t n = s.free.size(), m = s.active.size();
@@ -75,7 +75,7 @@ std::optional<Eigen::VectorXd> motion(const system::EquationSystem& s, const run
   return result;
 }
 
-/// Whether what `own` gives (accelerations, energies) is that of equations derived without the range, on both sides.
+/// Whether the accelerations and energies of `own` equal those of equations derived without the range, on both sides.
 template <class Own>
 bool holds_beyond(const Derived& derived, const run::Scene& scene, const std::vector<std::uint32_t>& own_free,
                   std::uint32_t coordinate, double t, std::span<const double> x, const Own& own) {

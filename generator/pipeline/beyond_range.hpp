@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the equations still hold where a coordinate leaves the range of its coordinate system: a radius that becomes
-// negative on a wire through the centre. In: the model, compiled code or equations, a state. Out: yes where these agree
-// on both sides with equations that were derived without the range, and is regular at its end.
+// Whether the equations still hold after a coordinate leaves the range of its coordinate system, such as a radius that
+// becomes negative on a wire through the centre. In: the model, compiled code or equations, a state. Out: true if these
+// agree on both sides with equations that are derived without the range and regular at its end.
 #pragma once
 
 #include "pipeline/pipeline.hpp"
@@ -12,7 +12,7 @@ namespace eomgen::pipeline {
 bool holds_beyond_range(const Derived& derived, const run::Scene& scene, const run::Code& code,
                         std::uint32_t coordinate, double t, std::span<const double> x);
 
-/// The coordinates of which it holds near the start of the scene, by the equations alone, without compiled code.
+/// The coordinates for which this is true near the start of the scene, by the equations alone, without compiled code.
 std::vector<std::uint32_t> held_beyond_range(const Derived& derived, const run::Scene& scene);
 
 }  // namespace eomgen::pipeline

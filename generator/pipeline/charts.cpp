@@ -46,7 +46,7 @@ void add_second_charts(Derived& own, program::Program& program, const std::vecto
   const auto derived =
       derive_model(std::make_shared<const model::Model>(model::in_second_charts(own.model, charts, mask)),
                    request.approach, request.form);
-  // The route that was the cheapest one in the own charts: a second search would take longer than it could save.
+  // Uses the cheapest formulation of the own charts: a second search would take longer than it could save.
   std::stable_partition(derived->candidates.begin(), derived->candidates.end(), [&](const system::EquationSystem& s) {
     return s.route == program.route && s.approach == program.approach && s.form == program.form;
   });

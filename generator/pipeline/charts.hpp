@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Second charts of a model's rotations and positions: which can be exchanged, and the program that knows several. In:
-// what was derived in the own charts. Out: second charts derived, verified and put beside it.
+// Second charts of a model's rotations and positions: the exchangeable ones, and programs with several charts. In: the
+// model derived in its own charts. Out: the equations in second charts, derived, verified and added to the program.
 #pragma once
 
 #include <memory>
@@ -13,12 +13,12 @@
 
 namespace eomgen::pipeline {
 
-/// All, with what the mechanics say against one too.
+/// All second charts, also those that the mechanics exclude, with the reason.
 std::vector<model::SwitchedChart> charts_of(const mechanics::Mechanics& mechanics);
-/// Those that can be exchanged, as many as `mode` has bits for.
+/// The exchangeable charts, at most as many as `mode` has bits for.
 std::vector<model::SwitchedChart> exchangeable(const std::vector<model::SwitchedChart>& charts);
 
-/// How programs are made of one model, in whatever charts.
+/// Options of the programs of one model, in any charts.
 struct ChartRequest {
   program::Request request;
   ApproachChoice approach = ApproachChoice::automatic;
@@ -26,20 +26,20 @@ struct ChartRequest {
   std::uint64_t seed = 1;
 };
 
-/// Puts the second charts of `mask` beside `program`: derived, verified (Error{Fault::check} where that is negative),
-/// optimised.
+/// Derives, verifies and optimises the second charts of `mask`, and adds them to `program`. Throws Error{Fault::check}
+/// if the verification fails.
 void add_second_charts(Derived& own, program::Program& program, const std::vector<model::SwitchedChart>& charts,
                        unsigned mask, const ChartRequest& request);
 
-/// What a run asks for when it comes near where a chart fails: code with all charts that it has asked for so far.
+/// Provides a run near a chart singularity with code for all charts that it has requested so far.
 class ChartLibrary {
  public:
   ChartLibrary(Derived& own, program::Program program, emit::EmissionContext context, ChartRequest request);
 
   const std::vector<model::SwitchedChart>& charts() const { return charts_; }
-  /// Throws Error where a second chart cannot be derived or compiled.
+  /// Code with the charts of `mask`. Throws Error if a second chart cannot be derived or compiled.
   const run::Code& in(unsigned mask);
-  /// Of deriving, verifying and compiling.
+  /// Seconds of derivation, verification and compilation.
   double seconds() const { return seconds_; }
 
  private:

@@ -54,7 +54,7 @@ std::vector<double> rounded(const std::vector<verify::Real>& values) {
   return result;
 }
 
-/// A compiled function by name, with room for its arrays; nothing where it reports a code.
+/// Calls a compiled function by name; nothing if it returns an error code.
 std::optional<std::vector<std::vector<double>>> called(const emit::LoadedModel& m, const std::string& function,
                                                        const verify::At& at, const std::vector<std::size_t>& sizes,
                                                        std::size_t prepared) {
@@ -87,7 +87,7 @@ verify::CompiledForm CompiledCode::form() const {
                                                            const std::vector<double>& p, const std::vector<double>& u,
                                                            int mode) -> std::optional<std::vector<double>> {
     std::vector<double> dx(size), w(prepared);
-    // What `run` integrates; the self test has compared it with `rhs`.
+    // The function that `run` integrates; the self test has compared it with `rhs`.
     const int code = prepared == 0 ? model->rhs(t, x.data(), p.data(), u.data(), mode, dx.data())
                      : model->prepare(p.data(), w.data()) != 0
                          ? 1
@@ -101,7 +101,7 @@ verify::CompiledForm CompiledCode::form() const {
 run::Code CompiledCode::for_run() const {
   const emit::LoadedModel& model = compiled_.model;
   run::Code code = described_;
-  const auto bind = [&](const auto& one) { one(code, model); };  // what a run has
+  const auto bind = [&](const auto& one) { one(code, model); };  // the functions of a run
 #define ABI_FUNCTION(name, takes, gives, comes, purpose)      \
   bind([](auto& to, const auto& from) {                       \
     if constexpr (requires { to.name; }) to.name = from.name; \
@@ -119,7 +119,7 @@ CompiledCode compile(const program::Program& program, const emit::EmissionContex
     if (file.name == name + ".h") header = file.text;
   }
   if (source.empty() || header.empty()) throw std::logic_error("the cpp target emitted no C source");
-  const work::Kept heeded;  // by what waits for the compiler, which leaves nothing behind
+  const work::Kept heeded;  // the wait for the compiler handles an interrupt itself, and leaves no files
   emit::Compiled compiled = emit::compile_and_load(source, header, name, &work::stop_flag());
   if (!compiled.note.empty() && !again) {
     work::warn(format_warning({{},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emitted C, compiled and loaded, as `verify` and `run` use it.
+// Emitted C, compiled and loaded for `verify` and `run`.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace eomgen::pipeline {
 
-/// What a program says of its functions, which are null.
+/// The description of a program's code, with null functions.
 run::Code described_code(const program::Program& program);
 
 class CompiledCode {
@@ -26,16 +26,16 @@ class CompiledCode {
  private:
   emit::Compiled compiled_;
   run::Code described_;
-  std::map<std::string, std::vector<std::size_t>> arrays_;  // sizes of what each function writes
+  std::map<std::string, std::vector<std::size_t>> arrays_;  // sizes of the output arrays of each function
 };
 
 /// Emits C with `context` and compiles it (cached by content).
 CompiledCode compile(const program::Program& program, const emit::EmissionContext& context, bool again = false);
 
-/// What the emitted code takes for inputs that it is not given.
+/// The values that the emitted code uses for inputs that are not given.
 std::vector<double> default_inputs(Derived& derived);
 
-/// The same without a certificate, which is being made from it.
+/// The same without a certificate, for the verification that creates the certificate.
 CompiledCode compile_for_check(Derived& derived, const program::Program& program);
 
 }  // namespace eomgen::pipeline

@@ -85,7 +85,7 @@ void require_with(const std::vector<std::string>& with) {
   }
 }
 
-/// All second charts and what can be combined of them; warns of what cannot be exchanged.
+/// Adds all second charts and their combinations; warns of charts that cannot be exchanged.
 void add_all_charts(Derived& derived, program::Program& program, const ChartRequest& request) {
   const std::vector<model::SwitchedChart> all = charts_of(derived.mechanics);
   for (const model::SwitchedChart& chart : all) {

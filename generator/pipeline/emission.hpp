@@ -12,17 +12,17 @@ struct EmissionRequest {
   ApproachChoice approach = ApproachChoice::automatic;
   FormChoice form = std::nullopt;
   std::vector<std::string> with;     // of emitted_functions()
-  std::vector<std::string> outputs;  // of the function outputs, beside what "outputs" in `with` brings
-  std::vector<std::string> fix;      // parameters that become numbers
+  std::vector<std::string> outputs;  // of the function `outputs`, in addition to those of "outputs" in `with`
+  std::vector<std::string> fix;      // parameters that become constants
   std::uint64_t seed = 1;
   bool single = false;  // single precision
 };
 
-/// What `with` may hold: functions beside rhs; "energy"; "outputs", those of the default scene; "charts", second ones;
-/// "run", all that a run calls.
+/// The possible entries of `with`: functions other than rhs; "energy"; "outputs" of the default scene; "charts", second
+/// charts; "run", all functions that a run calls.
 const std::vector<std::string>& emitted_functions();
 
-/// Throws Error where it is neither one of the targets nor one of those `beside` them.
+/// Throws Error if the name is neither a target nor one of `beside`.
 void require_target(const std::string& target, const std::vector<std::string>& beside = {});
 
 struct Emission {
@@ -33,8 +33,8 @@ struct Emission {
   Timings seconds;
 };
 
-/// Throws Error{stage "emit"}: an unknown target, function, output or parameter; Error{Fault::check} where the
-/// derivations disagree. Warns (work::warn) of what was asked for and is empty.
+/// Throws Error{stage "emit"} for an unknown target, function, output or parameter, and Error{Fault::check} if the
+/// derivations disagree. Warns (work::warn) if a requested item is empty.
 Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionRequest& request);
 
 }  // namespace eomgen::pipeline

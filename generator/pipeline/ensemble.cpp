@@ -22,8 +22,8 @@
 namespace eomgen::pipeline {
 namespace {
 
-// Nearer than this to what a run without an error estimate may lose of its energy it is made alone, where the energy is
-// looked at after every step.
+// A run with a larger energy error is repeated as a separate run, which monitors the energy after every step. The limit
+// of a run without an error estimate is ten times as large.
 constexpr double doubtful_energy = eom::hybrid::balance::without_estimate / 10;
 
 emit::LoadedBatch compile_batch(const Simulation& first) {
@@ -34,7 +34,7 @@ emit::LoadedBatch compile_batch(const Simulation& first) {
   std::vector<std::pair<std::string, std::string>> files;
   for (const emit::EmittedFile& file : emit::emit(first.program, context, "batch"))
     files.emplace_back(file.name, file.text);
-  const work::Kept heeded;  // by what waits for the compiler
+  const work::Kept heeded;  // the wait for the compiler handles an interrupt itself
   return emit::compile_and_load_batch(files, emit::mangled_id(context.id), &work::stop_flag());
 }
 
@@ -44,8 +44,8 @@ bool stands_still(const run::Scene& scene) {
          scene.clock.bounds.empty() && scene.clock.breaks.empty();
 }
 
-/// A coordinate with a range that moves; what is eliminated and the same at states that have nothing in common stands
-/// still.
+/// Whether a coordinate has a range and varies; an eliminated coordinate with equal values at unrelated states is
+/// constant.
 std::string ranged(const Simulation& first, const run::Code& code) {
   const run::Scene& scene = first.scene;
   const std::size_t n = code.free.size();
@@ -105,7 +105,7 @@ class Runs {
     });
   }
 
-  /// Whether the method of the scene takes members side by side.
+  /// Whether the method of the scene can integrate members side by side.
   static bool wants_lanes(const run::Scene& scene) {
     return eom::ensemble::has_lanes<Lanes>(scene.solver, options_of(scene));
   }
@@ -137,8 +137,8 @@ class Runs {
     options.fixed_step = scene.step;
     return options;
   }
-  /// And its functions are there for lanes. Work that is integrated along is none of their states: explicit methods
-  /// have it for nothing, others evaluate more for it, which a run alone counts.
+  /// Whether the code has the functions for lanes, too. The integrated work is not a state of the lanes: explicit
+  /// methods get it without extra cost, others need more evaluations for it, which a separate run counts.
   bool has_lanes(const run::Scene& scene) const {
     if (batch_ == nullptr || !wants_lanes(scene)) return false;
     const eom::MethodInfo& method = run::method_named(scene.solver);
@@ -149,11 +149,11 @@ class Runs {
 
   enum class How : char { together, alone, refused };
 
-  /// The functions of one state as a run alone calls them.
+  /// The functions of one state, as in a separate run.
   struct One {
     const Runs& of;
-    const eom::hybrid::EventRanges* ranges;  // null where there are none
-    const double *p, *w, *u;                 // null where there are none
+    const eom::hybrid::EventRanges* ranges;  // null if there are none
+    const double *p, *w, *u;                 // null if there are none
     int operator()(double t, const double* x, double* dx) const {
       return w != nullptr ? of.code_.rhs_prepared(t, x, p, w, u, 0, dx) : of.code_.rhs(t, x, p, u, 0, dx);
     }
@@ -204,7 +204,7 @@ class Runs {
     }
   };
 
-  /// The scene of a run; nothing where it cannot begin, which has been told.
+  /// The scene of a run; nothing if it has no valid start, which has been reported.
   std::optional<run::Scene> scene_of(std::size_t member) {
     graph_.tidy();
     Derived& derived = *first_.derived;
@@ -218,7 +218,7 @@ class Runs {
     }
   }
 
-  /// By methods that know no lanes: each thread makes one run after the other.
+  /// For methods without lanes: each thread makes one run after the other.
   void one_by_one() {
     eom::ensemble::in_threads(asked_.threads, how_.size(), [this](const auto& next) {
       for (std::size_t member = 0; next(member);) {
@@ -240,7 +240,7 @@ class Runs {
   }
   bool stopped() const { return asked_.interrupt != nullptr && *asked_.interrupt; }
 
-  /// A run that is not to be made side by side ends where it begins.
+  /// Begins a member; a run that cannot be made side by side ends immediately.
   void begin(std::size_t member, eom::EnsembleStart& start) {
     const std::lock_guard<std::mutex> guard(lock_);  // scenes are resolved in the model's own graph
     start.t0 = start.t1 = 0;
@@ -275,7 +275,7 @@ class Runs {
     code_.outputs(t, x.data(), p.data(), u_ > 0 ? p.data() + p_ + w_ : nullptr, 0, y.data());
     return y;
   }
-  /// The energy, and the size of its parts.
+  /// The energy, and the size of its terms.
   std::pair<double, double> energy(const std::vector<double>& y) const {
     return {y[kinetic_] + y[potential_], std::abs(y[kinetic_]) + std::abs(y[potential_])};
   }
@@ -313,8 +313,8 @@ class Runs {
   std::vector<double> energy_;                                     // at the start of each
   std::vector<eom::EventFunction> events_;                         // of the model
   std::vector<eom::expressions::Table> bounded_;                   // event functions
-  std::vector<std::unique_ptr<eom::hybrid::EventRanges>> ranges_;  // of those under way
-  std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;                 // rows: parameters, what is prepared of them, inputs
+  std::vector<std::unique_ptr<eom::hybrid::EventRanges>> ranges_;  // of the active members
+  std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;                 // rows: parameters, prepared values, inputs
   std::size_t kinetic_ = 0, potential_ = 0;
   bool watches_energy_ = false;
   std::mutex lock_;

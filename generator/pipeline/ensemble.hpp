@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many runs of a scene by threads, in which explicit Runge-Kutta methods, rodas and taylor take some side by side in
-// the lanes of vector registers (eom/ensemble), and other methods one after the other. In: a run that has been made,
-// values for the others. Out: their results, to the last bit those that they have alone.
+// Many runs of a scene in threads. Explicit Runge-Kutta methods, rodas and taylor integrate several runs side by side
+// in the lanes of vector registers (eom/ensemble), other methods one after the other. In: a finished run, and the
+// values of the others. Out: their results, bit for bit those of separate runs.
 #pragma once
 
 #include <atomic>
@@ -21,24 +21,24 @@ struct EnsembleRuns {
   std::function<run::Overrides(std::size_t run)> values;
   /// Called by one thread at a time, in no particular order; not for runs that an interruption ended.
   std::function<void(std::size_t run, const run::RunResult& result)> done;
-  std::function<void(std::size_t run, const std::string& why)> refused;  // could not begin
+  std::function<void(std::size_t run, const std::string& why)> refused;  // called for a run without a valid start
   const std::atomic<bool>* interrupt = nullptr;
 };
 
-/// Where nothing is said an ensemble is integrated by this: no method that could change on the way.
+/// The default solver of an ensemble: a method that does not change during the run.
 std::string ensemble_solver(const model::Scene& scene, const run::Overrides& overrides);
 
-/// Why the runs of this scene cannot be made side by side; empty where they can. Only a run alone looks after contacts,
-/// kinks, constraints with multipliers, charts that are exchanged, ranges, inputs that move, integrals and narrow
+/// The reason why the runs of this scene cannot be made side by side; empty if they can. Only separate runs handle
+/// contacts, kinks, constraints with multipliers, changes of charts, ranges, varying inputs, integrals and narrow
 /// forces.
 std::string ensemble_obstacle(const Simulation& first);
 
 /// The code of a scene for many states, compiled once.
 class Ensemble {
  public:
-  /// `first` has to live as long.
+  /// `first` has to outlive the ensemble.
   explicit Ensemble(const Simulation& first);
-  /// Runs that do not end as planned, and those in which time alone does something, are made once more alone.
+  /// Runs that end early, and runs with events in time alone, are repeated as separate runs.
   void run(const EnsembleRuns& asked);
 
  private:

@@ -20,7 +20,7 @@ using nlohmann::json;
 
 constexpr std::uintmax_t most_bytes = 4 << 20;
 
-/// Nothing where there is no folder that can be trusted: what emits code needs none, and what runs code tells of it.
+/// Nothing if there is no folder that can be trusted. Emission needs none; commands that run code report it.
 std::optional<std::filesystem::path> folder_of_certificates() {
   try {
     const emit::CacheFolder folder = emit::cache_folder();
@@ -69,7 +69,7 @@ std::string program_identity() {
   };
   const std::string program = of_file("/proc/self/exe");
   if (program.empty()) return "";
-  // Where this code is part of a library, that file too.
+  // If this code is part of a library, that file too.
   Dl_info library{};
   const bool known = ::dladdr(reinterpret_cast<const void*>(&program_identity), &library) != 0;
   return program + (known ? " " + of_file(library.dli_fname) : "");
@@ -87,7 +87,7 @@ std::optional<verify::Certificate> kept_certificate(const std::string& key) {
     verify::Certificate certificate = from_json(document);
     return certificate.pass ? std::optional(std::move(certificate)) : std::nullopt;
   } catch (const json::exception&) {
-    return std::nullopt;  // cut short or of another version: it is made anew
+    return std::nullopt;  // truncated or of another version: verify again
   } catch (const std::filesystem::filesystem_error&) {
     return std::nullopt;
   }
@@ -107,7 +107,7 @@ void keep_certificate(const std::string& key, const verify::Certificate& certifi
     out.close();
     if (out) std::filesystem::rename(written, place_of(*folder, key));
   } catch (const std::system_error&) {
-    return;  // a full disk: the next command compares anew
+    return;  // for example a full disk: the next command verifies again
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Certificates that were positive, by all that they depend on: the next command for the same model does not pay for
-// them again. They lie in the folder of compiled code, which is this user's alone. `verify` compares anew each time.
+// A cache of positive certificates, with a key of everything that they depend on: the next command for the same model
+// need not verify again. It is in the user's private folder of compiled code. `verify` does not use it.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@
 
 namespace eomgen::pipeline {
 
-/// Of everything that is not the model: this program itself, as it lies on the disk.
+/// Identifies everything except the model: the file of this program.
 std::string program_identity();
 
-/// Nothing where there is none, or it cannot be read.
+/// The cached certificate; nothing if there is none, or it cannot be read.
 std::optional<verify::Certificate> kept_certificate(const std::string& key);
 
-/// Only where it is positive and whole. That it cannot be written is no error.
+/// Stores a certificate if it is positive and complete. A failure to write is no error.
 void keep_certificate(const std::string& key, const verify::Certificate& certificate);
 
 }  // namespace eomgen::pipeline

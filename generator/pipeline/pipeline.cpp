@@ -41,12 +41,12 @@ class Stopwatch {
 
 std::vector<system::Approach> approaches(const mechanics::Mechanics& m, ApproachChoice choice) {
   if (choice == ApproachChoice::one) return {system::Approach::one};
-  // With nothing to eliminate the two are the same equations.
+  // Without eliminated coordinates both approaches give the same equations.
   if (choice == ApproachChoice::two || m.fixed.empty()) return {system::Approach::two};
   return {system::Approach::two, system::Approach::one};
 }
 
-// Nothing to integrate and no right-hand side to emit; what such a model can tell is its constraint forces.
+// Rejects a model without degrees of freedom: no integration and no right-hand side, only constraint forces.
 void require_freedom(const mechanics::Mechanics& m) {
   if (m.freedom() > 0) return;
   const model::Constraint& last = m.model->constraints.back();
@@ -58,7 +58,7 @@ void require_freedom(const mechanics::Mechanics& m) {
       "remove a constraint; eomgen inverse gives the forces of a motion that is prescribed, eomgen derive shows them");
 }
 
-// The candidates in the forms that are wanted.
+// Adds candidates in the requested forms.
 void take_forms(Derived& derived, FormChoice choice) {
   if (choice == system::Form::multipliers) return;
   std::vector<system::EquationSystem> others;
@@ -85,7 +85,7 @@ void take_forms(Derived& derived, FormChoice choice) {
   for (system::EquationSystem& other : others) derived.candidates.push_back(std::move(other));
 }
 
-// The other forms, as they come out of the derivation: all must say the same.
+// The other forms, as derived: all must agree.
 std::vector<program::Program> other_forms(const Derived& derived, const program::Program& program,
                                           const std::map<std::uint32_t, symbolic::Rational>& fixed) {
   std::vector<program::Program> result;
@@ -108,7 +108,7 @@ program::AbiArguments abi_arguments(const verify::At& at, const std::vector<veri
   return {{at.t, at.x, at.p, at.u, {}, {}, at.mode}, default_inputs, at.order};
 }
 
-/// The same with its other functions.
+/// The same with the other functions of the ABI.
 verify::ProgramForm with_functions(verify::ProgramForm form, const program::Program& program,
                                    const std::vector<verify::Real>& default_inputs) {
   form.functions = program::abi_function_names(program);
@@ -221,11 +221,11 @@ namespace {
 void add_forms(mechanics::Mechanics& mechanics, reading::Forms& forms, verify::Subjects& subjects) {
   constexpr std::size_t large = 16;  // coordinates
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
-    // With nothing to eliminate the approaches are one: a large system is not looked at twice.
+    // Without eliminated coordinates both approaches coincide: a large system is displayed only once.
     if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
     const reading::ReadingForm& form = forms(approach, reading::Extent::equations);
     std::string name = fmt::format("reading form {}", system::name(approach));
-    // Too large to be written out: it is shown by parts, and there is nothing to hold against the others.
+    // Too large to be written out: it is displayed in parts, and not compared.
     if (form.by_parts)
       subjects.left_out.push_back({std::move(name), form.why_by_parts});
     else
@@ -242,7 +242,7 @@ void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjec
 
 namespace {
 
-/// Of all that a certificate depends on. Empty: nothing is kept of it.
+/// The key of everything that a certificate depends on. Empty: the certificate is not cached.
 std::string key_of(const Derived& derived, const program::Program& program, const Verification& options) {
   const std::string identity = program_identity();
   if (!options.keep || options.compiled != nullptr || identity.empty() || derived.model.content_hash.empty()) return "";
@@ -320,7 +320,8 @@ emit::EmissionContext emission_context(Derived& derived, const program::Program&
   context.id = model.id;
   context.title = model.title;
   context.content_hash = model.content_hash;
-  // Without the measured differences, whose last digits depend on the word size of the machine: equal bytes everywhere.
+  // Without the measured differences, whose last digits depend on the word size of the machine: the bytes are the same
+  // on every machine.
   context.verdict = fmt::format("{}: {} points at {} digits, {} comparisons", certificate.verdict(), certificate.points,
                                 certificate.options.digits, certificate.comparisons.size());
   for (const model::Coordinate& c : model.coordinates) context.coordinates.push_back({c.name, c.unit.text, "", 0});

@@ -13,14 +13,14 @@
 namespace eomgen::pipeline {
 namespace {
 
-/// A scene bound to code that is described, all in one place.
+/// A scene bound to described code, with everything that it refers to.
 struct Described {
   run::Scene scene;
   run::Code code;
   eom::hybrid::Problem problem;
 };
 
-/// Code that knows all charts from the start.
+/// Code with all charts from the start.
 std::vector<eom::hybrid::ExchangedChart> exchanged(const program::Program& program) {
   std::vector<eom::hybrid::ExchangedChart> result;
   for (const program::ChartInfo& chart : program.charts) {
@@ -44,10 +44,10 @@ std::shared_ptr<const emit::RunText> run_text(const Derived& derived, const run:
   request.every = row_interval(scene);
   described->problem = run::problem_of(request, run::choose_solver(scene.solver, scene).first);
   described->problem.beyond_range = {};
-  described->problem.time = scene.time;  // a run looks at it with the numbers that it has then
+  described->problem.time = scene.time;  // a run evaluates it with its own numbers
   described->problem.breaks = {};
   described->problem.bounds = {};
-  // As of eomgen run: where something jumps the run keeps to the coordinates that it has.
+  // As in `eomgen run`: if something jumps, the run does not change its coordinates.
   if (scene.jumps.functions.empty()) described->problem.charts = exchanged(program);
   if (described->problem.charts.empty()) described->problem.jumps = run::jump_functions(derived.candidates.front());
   auto text = std::make_shared<emit::RunText>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What emitted code hands over so that a program without the generator runs the model as `run` does.
+// The data in emitted code with which a program without the generator runs the model as `run` does.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace eomgen::pipeline {
 
-/// The default scene in numbers, and what `program` says of its functions, for NAME_run.hpp. Throws Error{stage "emit"}
-/// where the run needs expressions that emitted code does not have.
+/// The default scene in numbers, and the description of the functions of `program`, for NAME_run.hpp. Throws
+/// Error{stage "emit"} if the run needs expressions that emitted code does not have.
 std::shared_ptr<const emit::RunText> run_text(const Derived& derived, const run::Scene& scene,
                                               const program::Program& program);
 

@@ -11,9 +11,9 @@
 namespace eomgen::pipeline {
 namespace {
 
-/// The k-th state for the self test: the start, then states beside it with other parameters and inputs, no two of which
-/// are equal, so that a vanishing term cannot hide, nor one that is taken for another. Nearer to the start where there
-/// is no value.
+/// The k-th state for the self test: the start, then nearby states with other parameters and inputs. All values differ,
+/// so that neither vanishing nor interchanged terms go undetected. If a value is undefined, states closer to the start
+/// are used.
 std::optional<emit::TestVector> test_vector(const program::Program& program, const emit::EmissionContext& context,
                                             int k, int mode, std::size_t index) {
   for (const double share : {1.0, 0.125, 0x1p-6, 0x1p-10}) {
@@ -40,7 +40,7 @@ std::optional<emit::TestVector> test_vector(const program::Program& program, con
   return std::nullopt;
 }
 
-/// A state of second charts at which rounding says nothing about the code.
+/// Whether a state of second charts is far enough from their singularities, where rounding errors dominate.
 bool far_from_failing(const program::Program& program, int in_charts, const std::vector<double>& x) {
   constexpr double far = 0.3;
   bool result = true;
@@ -66,7 +66,7 @@ std::vector<emit::TestVector> test_vectors(const program::Program& program, cons
   for (const int mode : eom::contact_modes(shapes, most_modes)) {
     if (mode != 0) add(1, mode);
   }
-  int above = 0, below = 0;  // every kink held on one side
+  int above = 0, below = 0;  // modes with every kink on one side
   for (std::size_t k = 0; k < program.kinks.size(); ++k) {
     above |= 1 << (program::first_kink_bit + 2 * k);
     below |= 2 << (program::first_kink_bit + 2 * k);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The states at which emitted code tests itself.
+// The states of the self test of emitted code.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace eomgen::pipeline {
 
-/// Three points in mode 0, of contacts one in every other mode, the first ones, two in second charts.
+/// Three states in mode 0; with contacts one in each of the first other modes; two in second charts.
 std::vector<emit::TestVector> test_vectors(const program::Program& program, const emit::EmissionContext& context);
 
 }  // namespace eomgen::pipeline

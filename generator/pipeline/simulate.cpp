@@ -34,14 +34,14 @@ std::vector<run::ContactOutputs> contact_outputs(const system::EquationSystem& s
   return result;
 }
 
-/// Empty where it has none.
+/// The name of the magnitude of a conserved quantity; empty if it has none.
 std::string magnitude_of(const system::EquationSystem& system, std::size_t conserved) {
   const std::vector<std::string> names =
       system::names_of(system.outputs, OutputKind::magnitude, static_cast<std::uint32_t>(conserved));
   return names.empty() ? "" : names.front();
 }
 
-/// All that the compiled code gives: coordinates, energies, what is watched, reactions, what is asked for.
+/// All outputs of the compiled code: coordinates, energies, monitored quantities, reactions, requested outputs.
 std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& scene, bool watch_power) {
   std::vector<std::string> names;
   const auto add = [&](const std::string& name) {
@@ -145,7 +145,7 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
 
 namespace {
 
-/// Surfaces of the kinks of a program as expressions.
+/// The kink surfaces of a program as expressions.
 std::vector<symbolic::Ref> kink_values(const Derived& derived, const program::Program& program) {
   std::vector<symbolic::Ref> values;
   for (const system::EquationSystem& candidate : derived.candidates) {
@@ -160,7 +160,7 @@ std::vector<symbolic::Ref> kink_values(const Derived& derived, const program::Pr
   return values;
 }
 
-/// Lets the run exchange what the library can.
+/// Allows the run to change to the charts of the library.
 void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& library) {
   if (!library) return;
   for (const model::SwitchedChart& chart : library->charts()) {
@@ -179,7 +179,7 @@ void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& lib
 
 namespace {
 
-/// What code is to have for a solver, or, where every one is wanted, for all that can integrate the system.
+/// The features that code needs for a solver, or for every eligible solver.
 eom::Features wanted_features(const std::string& solver, bool every, eom::Features system) {
   const auto wants = [](const eom::Needs& needs) { return needs.required | needs.used; };
   eom::Features wanted = wants(run::method_named(solver).needs);
@@ -220,7 +220,7 @@ Simulation simulate(const SimulationRequest& request) {
   overrides.exchanges_charts = none.exchanges_charts = possible;
   run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), overrides);
   const std::string solver =
-      run::choose_solver(scene.solver, scene).first;  // a wrong name is told before anything is compiled
+      run::choose_solver(scene.solver, scene).first;  // reports a wrong name before the compilation
   const eom::Refusal* const keeps_charts = run::method_named(solver).needs.refusal(eom::Feature::charts);
   const bool exchanges = possible && scene.jumps.functions.empty() && keeps_charts == nullptr;
 
@@ -235,7 +235,7 @@ Simulation simulate(const SimulationRequest& request) {
   program::Program program = make_program(*derived, wanted);
   verify::Certificate certificate = certify(*derived, program, {50, emission_points, request.seed, nullptr});
   require_pass(certificate, derived->model);
-  // The sources carry the default scene, so that every scene runs the same library.
+  // The sources contain the default scene, so that all scenes share one library.
   const run::Scene defaults = run::resolve_scene(mechanics, system, derived->model.scene("default"), none);
   if (request.ready) request.ready();
   emit::EmissionContext context = emission_context(*derived, program, defaults, certificate);

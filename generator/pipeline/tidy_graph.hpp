@@ -5,18 +5,18 @@
 
 namespace eomgen::pipeline {
 
-/// Every run puts the values of its parameters into the graph of the model, where nothing is ever taken out. Nothing
-/// that a run leaves refers to them: now and then the graph becomes what it was, so that the memory of a sweep does not
+/// Every run adds the values of its parameters to the graph of the model, and the graph never shrinks. The results of a
+/// run do not refer to them. The graph is therefore reset from time to time, so that the memory of a sweep does not
 /// grow with its runs.
 class TidyGraph {
  public:
-  /// Where charts may be exchanged second ones stay in the graph, and it is left alone.
+  /// If charts may change, second charts stay in the graph, and it is not reset.
   explicit TidyGraph(const Simulation& first)
       : graph_(*first.derived->mechanics.dag),
         was_(graph_),
         most_(2 * graph_.size() + room),
         kept_(first.charts != nullptr) {}
-  /// Between runs.
+  /// Resets a large graph; to be called between runs.
   void tidy() {
     if (!kept_ && graph_.size() > most_) graph_ = was_;
   }

@@ -8,11 +8,11 @@
 namespace eomgen::pipeline {
 namespace {
 
-/// Every function that `emit` may be asked for, but for Taylor series where the program is too large for them.
+/// Every function that `emit` offers, except Taylor series if the program is too large for them.
 program::Program with_every_function(Derived& derived) {
   program::Request request;
   request.with = abi::asked_for();
-  std::erase(request.with, "outputs");  // by their names
+  std::erase(request.with, "outputs");  // outputs are requested by name
   for (const system::Output& output : derived.candidates.front().outputs) request.outputs.push_back(output.name);
   try {
     return make_program(derived, request);
@@ -22,8 +22,8 @@ program::Program with_every_function(Derived& derived) {
   }
 }
 
-/// Where the constraints fix the whole motion there is nothing to integrate and no code: the routes and the reading
-/// forms are held against the judge, their constraint forces above all.
+/// For a model without degrees of freedom, which has no code: compares the formulations and the display forms with the
+/// oracle, above all their constraint forces.
 std::optional<verify::Certificate> certify_prescribed(const std::shared_ptr<const model::Model>& model,
                                                       const VerificationRequest& request) {
   std::size_t equations = 0;
