@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reference runs against closed forms, and against themselves backwards.
+// Reference runs against closed forms, and against themselves run backwards.
 #include "reference/reference.hpp"
 
 #include <doctest/doctest.h>
@@ -17,7 +17,7 @@ using namespace test_systems;
 namespace {
 
 constexpr double rounded =
-    1e-15;  // a result is rounded once to binary64; closed forms in binary64 are wrong by some units
+    1e-15;  // results are rounded once to binary64; closed forms in binary64 are off by some units in the last place
 constexpr double closed_form = 2e-14;
 
 reference::Problem problem(const program::Program& program, std::vector<double> x, std::vector<double> p, double t0,
@@ -27,7 +27,7 @@ reference::Problem problem(const program::Program& program, std::vector<double> 
 
 }  // namespace
 
-TEST_CASE("reference: a pendulum's closed form, at each time asked for, and 30 digits of its own") {
+TEST_CASE("reference: a pendulum agrees with its closed form at each requested time, and claims 30 digits") {
   const auto built = build(pendulum());
   const auto solution = reference::solve(problem(built, {1.5, 0}, {1, 1, 9}, 0, 6));  // frequency 3 for small swings
   CHECK(solution.digits >= 30);
@@ -40,7 +40,7 @@ TEST_CASE("reference: a pendulum's closed form, at each time asked for, and 30 d
   }
 }
 
-TEST_CASE("reference: what is stiff or chaotic costs digits, and only those that are left are claimed") {
+TEST_CASE("reference: stiff or chaotic motions lose digits, and only the remaining ones are claimed") {
   const auto built = build(double_pendulum());
   const std::vector<double> p{1, 1, 1, 1, 9.81}, start{2.5, -2, 0, 0};  // errors grow by some e^(4 t)
   const auto near = reference::solve(problem(built, start, p, 0, 1)),
@@ -53,16 +53,16 @@ TEST_CASE("reference: what is stiff or chaotic costs digits, and only those that
   CHECK(difference <= rounded + 10 * std::pow(10.0, -rough.digits_at_end));
 }
 
-TEST_CASE("reference: there and back again") {
+TEST_CASE("reference: a run forward and back returns to its start") {
   const auto built = build(double_pendulum());
   const std::vector<double> p{1, 2, 1, 0.5, 9.81}, start{0.5, -0.3, 0.25, 0};
   const auto there = reference::solve(problem(built, start, p, 0, 3));
   const auto back = reference::solve(problem(built, there.x[1], p, 3, 0));
   for (std::size_t i = 0; i < 4; ++i)
-    CHECK(std::abs(back.x[1][i] - start[i]) < 1e-12);  // the middle was rounded to binary64
+    CHECK(std::abs(back.x[1][i] - start[i]) < 1e-12);  // the intermediate state was rounded to binary64
 }
 
-TEST_CASE("reference: inputs stand still on each segment") {
+TEST_CASE("reference: inputs are constant on each segment") {
   const auto built = build(cart_pendulum());
   reference::Problem whole = problem(built, {0, 0.25, 0, 0}, {2, 1, 1, 9.81, 0.5}, 0, 2);
   whole.segments = {{1, {3}}, {2, {-3}}};
@@ -77,7 +77,7 @@ TEST_CASE("reference: inputs stand still on each segment") {
   for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(alone.x[0][i] - both.x[1][i]) < 1e-14);
 }
 
-TEST_CASE("reference: where it cannot go on it says when and why") {
+TEST_CASE("reference: a run that cannot continue reports the time and the reason") {
   const Maker
       k;  // qddot = -sqrt(q) from rest at 1 meets 0, where the root is singular, at B(2/3, 1/2)/sqrt(3) = 1.49371
   system::EquationSystem system;

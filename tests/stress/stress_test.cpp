@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The judge of stress: right results are kept, coarse ones told, and a run that is wrong and says it is right is
-// silent.
+// The verdicts of stress: accurate results pass, inaccurate ones with a warning or a large estimate are reported, and
+// wrong results with a small estimate are undetected.
 #include "stress/stress.hpp"
 
 #include <doctest/doctest.h>
@@ -13,7 +13,7 @@ using namespace eomgen;
 
 namespace {
 
-double rate = 1;  // of the oscillator that the functions below are of
+double rate = 1;  // of the oscillator in the functions below
 
 int rhs(double, const double* x, const double*, const double*, int, double* dx) {
   dx[0] = x[1];
@@ -46,7 +46,7 @@ struct Oscillator {
       return run::RunRequest{code, s, {"x", "x_dot"}, {}, {}, false, true, 0, {}, {}, nullptr};
     };
     request.solvers = {"dopri5", "dop853", "radau5", "rk4"};
-    request.seconds_limit = 1e9;  // no row may depend on how busy the machine is
+    request.seconds_limit = 1e9;  // rows must not depend on the load of the machine
   }
 
   run::Code code;
@@ -57,7 +57,7 @@ struct Oscillator {
 
 }  // namespace
 
-TEST_CASE("stress: a motion that is easy is kept by solvers that control their error, with the error that they have") {
+TEST_CASE("stress: solvers with error control pass an easy motion, with their true error") {
   Oscillator o;
   const std::vector<stress::Row> rows = stress::judge({.name = "as it is"}, o.scene, o.request, o.why);
   CHECK(o.why.empty());
@@ -68,15 +68,15 @@ TEST_CASE("stress: a motion that is easy is kept by solvers that control their e
     CHECK(row.outcome == "done");
     CHECK(row.error < 1e-7);
     CHECK(row.condition >= 1);
-    CHECK(row.condition < 10);  // an oscillator turns disturbances round and does not make them grow
+    CHECK(row.condition < 10);  // disturbances of an oscillator rotate and do not grow
   }
 }
 
-TEST_CASE("stress: a result that is wrong and comes with a small estimate is silent") {
+TEST_CASE("stress: a wrong result with a small estimate is undetected") {
   Oscillator o;
   o.request.progress = [](const std::string&) {
     rate = 1.001;
-  };  // from here on the runs, no longer what they are held against
+  };  // from here on the runs, no longer their reference solution
   for (const stress::Row& row : stress::judge({.name = "another motion"}, o.scene, o.request, o.why)) {
     CAPTURE(row.solver);
     CHECK(row.verdict == stress::Verdict::unreported);
@@ -86,8 +86,8 @@ TEST_CASE("stress: a result that is wrong and comes with a small estimate is sil
 }
 
 TEST_CASE(
-    "stress: where no motion exists an outcome other than done is told, and done is silent; a parameter that is no "
-    "number is told") {
+    "stress: if no motion exists an outcome other than done is reported, and done is undetected; a parameter that is "
+    "not a number is reported") {
   Oscillator o;
   const stress::Case test{.name = "p = nan", .without_value = true};
   const auto all = [&](stress::Verdict verdict) {
@@ -96,7 +96,7 @@ TEST_CASE(
     for (const stress::Row& row : rows) CHECK(row.verdict == verdict);
   };
   all(stress::Verdict::unreported);
-  o.scene.parameters = {std::numeric_limits<double>::infinity()};  // which the right-hand side does not look at
+  o.scene.parameters = {std::numeric_limits<double>::infinity()};  // the right-hand side does not check parameters
   all(stress::Verdict::reported);
   o.scene.parameters = {1};
   rate = std::numeric_limits<double>::quiet_NaN();
@@ -104,8 +104,9 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "stress: budgets are steps: a run beyond them is told, and a motion that is not known to its end is judged as far "
-    "as it is") {
+    "stress: budgets are steps: a run beyond them is reported, and a motion without a reference to its end is "
+    "evaluated "
+    "over a shorter span") {
   Oscillator o;
   o.request.solvers = {"dopri5"};
   o.scene.t1 = 3000;
@@ -116,7 +117,7 @@ TEST_CASE(
   CHECK(rows[0].verdict != stress::Verdict::unreported);
   o.scene.t1 = 300;
   o.scene.rtol = o.scene.atol =
-      1e-15;  // dop853 and radau5 come to the end at their tolerances, dopri5 at this one does not
+      1e-15;  // dop853 and radau5 reach the end with their tolerances, dopri5 does not with this one
   o.request.steps_limit = 50000;
   const std::vector<stress::Row> slower = stress::judge({.name = "long"}, o.scene, o.request, o.why);
   REQUIRE(slower.size() == 1);
@@ -124,7 +125,7 @@ TEST_CASE(
   CHECK(slower[0].verdict == stress::Verdict::reported);
 }
 
-TEST_CASE("stress: fixed steps that damp what they cannot follow end alike, and the states on the way tell") {
+TEST_CASE("stress: fixed steps that damp unresolved oscillations are detected by intermediate states, not by the end") {
   Oscillator o;
   o.request.solvers = {"rk4"};
   o.request.steps_limit = 1000000;
@@ -137,14 +138,14 @@ TEST_CASE("stress: fixed steps that damp what they cannot follow end alike, and 
   CHECK(rows[0].verdict == stress::Verdict::reported);
 }
 
-TEST_CASE("stress: where the clock ends a tight run nothing is judged, and that is told") {
+TEST_CASE("stress: if the clock ends a tight run the case is skipped, and this is reported") {
   Oscillator o;
   o.request.seconds_limit = -1;
   CHECK(stress::judge({.name = "as it is"}, o.scene, o.request, o.why).empty());
   CHECK(o.why.find("limit of time") != std::string::npos);
 }
 
-TEST_CASE("stress: variations are those that a model has constants for") {
+TEST_CASE("stress: variations match the constants of the model") {
   const model::Model model = model::read_model_text(
       "format = 1\n[parameters]\nm = \"2 kg\"\nk = \"8 N/m\"\nL = \"1 m\"\n[[particle]]\nname = \"P\"\nmass = "
       "\"m\"\nposition = { cylindrical = [\"r\", \"theta\"] }\n"
@@ -167,6 +168,6 @@ TEST_CASE("stress: variations are those that a model has constants for") {
     CAPTURE(std::string(name));
     CHECK(has(name));
   }
-  CHECK_FALSE(has("L x 1e+06"));  // a length is neither stiff nor heavy
+  CHECK_FALSE(has("L x 1e+06"));  // a length is neither a stiffness nor a mass
   CHECK(stress::cases(m, scene, true).size() < all.size() / 2);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trees of bodies: which routes take them, that what these give is what d'Alembert's principle asks, and that what a
-// route has solved is what its own M and f say.
+// Trees of bodies: the formulations that accept them, the agreement of these with d'Alembert's principle, and the
+// agreement of solved accelerations with the formulation's own M and f.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -54,8 +54,8 @@ std::string euler(const std::string& set, const std::string& n) {
   return "{ euler = \"" + set + "\", angles = [\"" + n + "1\", \"" + n + "2\", \"" + n + "3\"] }";
 }
 
-/// A cart that is shaken, a body of full inertia on a ball joint, another on a pin of it, one more that is told by
-/// absolute angles, a slider on that one and a particle that is told by absolute directions.
+/// A shaken cart, a body of full inertia on a ball joint, another one on a pin of it, one more with absolute angles, a
+/// slider on that one, and a particle with absolute directions.
 const std::string mixed = parameters + R"toml([coordinates]
 s = "m"
 [[particle]]
@@ -96,7 +96,7 @@ force = "M/L*A.e2"
 on = "B"
 )toml";
 
-/// Ball joints in every kind of angles with springs at the joints, which pass moments to the body before.
+/// Ball joints in every kind of angles, with springs at the joints that exert moments on the previous body.
 std::string ball_joints(const std::string& first, const std::string& second) {
   return parameters + body("A", "\"b*A.e1 - L*A.e3\"", euler(first, "a")) +
          body("B", "\"A - L*A.e3 + b*B.e2\"", euler(second, "c"), "A") +
@@ -106,7 +106,7 @@ std::string ball_joints(const std::string& first, const std::string& second) {
          "\"M*A.e1\"\non = \"A\"\n";
 }
 
-/// A ring that turns as it is told, a rotor in it, and a body on the rotor by a Rodrigues vector.
+/// A ring with prescribed rotation, a rotor in it, and a body on the rotor with a Rodrigues vector.
 const std::string gimbals =
     parameters +
     "[coordinates]\nbeta = \"rad\"\n[[frame]]\nname = \"ring\"\nrotation = { axis = \"E3\", angle = \"w*t\" }\n" +
@@ -130,7 +130,7 @@ Result verified(const std::string& text) {
   return result;
 }
 
-/// The largest |M qddot - f| of what the route has solved, relative to its terms.
+/// The largest |M qddot - f| of the formulation's solved accelerations, relative to its terms.
 double residual(const system::EquationSystem& s) {
   const auto value = [](const symbolic::Symbol& symbol) -> double { return symbolic::sample_double(symbol, 3); };
   const std::vector<double> M = symbolic::evaluate(*s.dag, s.M, value), f = symbolic::evaluate(*s.dag, s.f, value);
@@ -161,7 +161,7 @@ void check_both_routes(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("body trees: pins, ball joints, sliders and particles on a cart that is shaken") { check_both_routes(mixed); }
+TEST_CASE("body trees: pins, ball joints, sliders and particles on a shaken cart") { check_both_routes(mixed); }
 TEST_CASE("body trees: ball joints with springs in angles of both kinds") {
   for (const auto& [first, second] :
        std::map<std::string, std::string>{{"321", "123"}, {"313", "121"}, {"232", "213"}}) {
@@ -198,7 +198,7 @@ TEST_CASE("body trees: one angle of two bodies, and a position across the axes")
   }
 }
 
-// The points of the judge have unit length, which is what the routes solve for.
+// The oracle's states have Euler parameters of unit length, as the formulations assume.
 TEST_CASE("body trees: Euler parameters of a free body, and of one that hangs on another") {
   const std::string four = R"({ euler_parameters = ["p0", "p1", "p2", "p3"] })",
                     more = R"({ euler_parameters = ["r0", "r1", "r2", "r3"] })";
@@ -219,7 +219,7 @@ TEST_CASE("body trees: Euler parameters of a free body, and of one that hangs on
   }
 }
 
-TEST_CASE("body trees: bodies that turn about their own centres of mass on one shaft") {
+TEST_CASE("body trees: bodies that rotate about their own centres of mass on one shaft") {
   check_both_routes(parameters + body("shaft", "\"L/2*E3\"", "{ axis = \"E3\", angle = \"psi\" }") +
                     body("A", "\"L*E3\"", "{ axis = \"shaft.e2\", angle = \"theta\" }", "shaft") +
                     body("payload", "\"L*E3 + b*A.e3 + b*payload.e1\"", "{ axis = \"A.e3\", angle = \"phi\" }", "A"));

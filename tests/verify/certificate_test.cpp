@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is right passes to nearly all digits; what is wrong fails, and the certificate names it.
+// Correct equations pass with nearly all digits; wrong ones fail, and the certificate names them.
 #include "verify/certificate.hpp"
 
 #include <doctest/doctest.h>
@@ -27,7 +27,7 @@ const Comparison& find(const Certificate& c, const std::string& a, const std::st
   throw std::logic_error("no comparison of " + a + " with " + b);
 }
 
-/// The certificate of `model` after one route was tampered with.
+/// The certificate of `model` with a fault in one formulation.
 Certificate with_fault(const model::Model& model, const std::string& route, system::Approach approach,
                        const std::function<void(symbolic::Dag&, EquationSystem&)>& fault) {
   mechanics::Mechanics m = mechanics::build_mechanics(model);
@@ -57,7 +57,7 @@ void check_only_blames(const Certificate& c, const std::string& culprit) {
 
 }  // namespace
 
-TEST_CASE("certificate: P7 by every route and both approaches agrees with the judge to 45 digits at 20 points") {
+TEST_CASE("certificate: P7 by every formulation and both approaches agrees with the oracle to 45 digits at 20 states") {
   const model::Model model = moving_sphere();
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   const Certificate c = verify::verify(m, {50, 20, 1});
@@ -89,7 +89,7 @@ TEST_CASE("certificate: multipliers, energies, chains, springs and dampers pass,
     }
 }
 
-TEST_CASE("certificate: where every term cancels, rounding is not taken for a difference") {
+TEST_CASE("certificate: if all terms cancel, rounding errors do not count as a difference") {
   model::Model free;  // no force at all: the acceleration is 0 by cancellation
   const Formula mass = parameter(free, "m", 1);
   const Formula R = coordinate(free, "R"), phi = coordinate(free, "phi"), theta = coordinate(free, "theta");
@@ -107,14 +107,14 @@ TEST_CASE("certificate: where every term cancels, rounding is not taken for a di
   }
 }
 
-TEST_CASE("certificate: a sign turned in f fails and is named") {
+TEST_CASE("certificate: a wrong sign in f fails and is named") {
   const auto turn = [](symbolic::Dag& dag, EquationSystem& s) { s.f[0] = dag.neg(s.f[0]); };
   check_only_blames(with_fault(moving_sphere(), "lagrange", system::Approach::two, turn), "lagrange II");
   check_only_blames(with_fault(chain(2), "jacobian", system::Approach::one, turn), "jacobian I");
 }
 
-TEST_CASE("certificate: a Christoffel term that was left out fails and is named") {
-  // the centrifugal R^2 sin(phi) cos(phi) theta_dot^2 of phi's equation: f loses what is quadratic in theta_dot
+TEST_CASE("certificate: a missing Christoffel term fails and is named") {
+  // the centrifugal R^2 sin(phi) cos(phi) theta_dot^2 of phi's equation: f loses the term quadratic in theta_dot
   const auto drop = [](symbolic::Dag& dag, EquationSystem& s) {
     symbolic::Substitution at_rest(dag, {{{SymbolKind::coordinate, 2, 1}, dag.zero()}});
     s.f[0] = at_rest(s.f[0]);
@@ -122,7 +122,7 @@ TEST_CASE("certificate: a Christoffel term that was left out fails and is named"
   check_only_blames(with_fault(moving_sphere(), "jacobian", system::Approach::two, drop), "jacobian II");
 }
 
-TEST_CASE("certificate: a force that was forgotten fails and is named") {
+TEST_CASE("certificate: a missing force fails and is named") {
   const auto forget = [](symbolic::Dag& dag, EquationSystem& s) {  // damping: c -> 0
     symbolic::Substitution undamped(dag, {{{SymbolKind::parameter, 4, 0}, dag.zero()}});
     for (Ref& f : s.f) f = undamped(f);
@@ -185,14 +185,14 @@ const Certificate& certificate_with(Certificate& keep, const model::Model& model
              t, x, p, [](double a) { return std::sin(a); }, [](double a) { return std::cos(a); }, error));
        }});
   subjects.programs.push_back({"program", [=](const Real& t, const auto& x, const auto& p, const auto&, int) {
-                                 const Real off =
-                                     cln::rational(Real(error));  // exact: a binary64 would bring its precision along
+                                 const Real off = cln::rational(
+                                     Real(error));  // exact: a binary64 would reduce the precision of the sum
                                  return by_hand(
                                      t, x, p, [](const Real& a) { return Real(cln::sin(a)); },
                                      [](const Real& a) { return Real(cln::cos(a)); }, off);
                                }});
   symbolic::Dag& dag = *m.dag;
-  std::vector<Ref> residuals;  // M qddot - f, right or wrong, in place of a reading form
+  std::vector<Ref> residuals;  // M qddot - f, correct or wrong, as a display form
   const EquationSystem& s = subjects.systems.back();
   for (std::size_t i = 0; i < s.free.size(); ++i) {
     Ref sum = dag.neg(s.f[i]);
@@ -201,13 +201,13 @@ const Certificate& certificate_with(Certificate& keep, const model::Model& model
     residuals.push_back(error == 0 ? sum : dag.add(sum, dag.constant(cln::rational(Real(error)))));
   }
   subjects.reading.push_back({"reading form II", residuals});
-  subjects.reading.push_back({"half a reading form", {residuals.front()}});  // says nothing of theta
+  subjects.reading.push_back({"half a reading form", {residuals.front()}});  // without an equation for theta
   return keep = certify(m, subjects, {50, 5, 1});
 }
 
 }  // namespace
 
-TEST_CASE("certificate: program, compiled code and reading form are held against the first route and the judge") {
+TEST_CASE("certificate: program, compiled code and display form match the first formulation and the oracle") {
   const model::Model model = moving_sphere();
   Certificate good, bad;
   certificate_with(good, model, 0);
@@ -224,7 +224,7 @@ TEST_CASE("certificate: program, compiled code and reading form are held against
   CHECK(!find(bad, "reading form II", "d'Alembert").pass);
 }
 
-TEST_CASE("certificate: code that says of every state that friction is undecided there is not passed over") {
+TEST_CASE("certificate: code that reports undecided friction at every state fails") {
   const model::Model model = model::read_model(eomgen::test::source_folder() + "/models/rough_incline_puck.toml");
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   Subjects subjects;
@@ -238,7 +238,7 @@ TEST_CASE("certificate: code that says of every state that friction is undecided
   CHECK_FALSE(find(found, "program", first).pass);
 }
 
-TEST_CASE("certificate: digits that binary64 cannot tell apart are refused, 300 are not") {
+TEST_CASE("certificate: 301 digits are rejected, as binary64 cannot hold such differences; 300 are accepted") {
   const model::Model model = chain(1);
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   CHECK_THROWS_AS(verify::verify(m, {301, 1, 1}), Error);

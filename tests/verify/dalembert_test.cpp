@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The judge against equations of motion that were derived by hand, at states with arbitrary accelerations and
-// multipliers: the residual is then lhs - rhs and must agree as a number, not only vanish.
+// The oracle against equations of motion derived by hand, at states with arbitrary accelerations and multipliers: the
+// residual is lhs - rhs and must agree as a number, not only vanish.
 #include "verify/dalembert.hpp"
 
 #include <cln/rational.h>
@@ -56,7 +56,7 @@ void check_rows(const std::vector<verify::Residual>& rows, const std::vector<Rea
 
 }  // namespace
 
-TEST_CASE("judge: the particle on a moving sphere obeys (2.109) in spherical coordinates") {
+TEST_CASE("oracle: the particle on a moving sphere obeys (2.109) in spherical coordinates") {
   const model::Model m = moving_sphere();
   const Judge judge(m, digits);
   Dice dice;
@@ -75,7 +75,7 @@ TEST_CASE("judge: the particle on a moving sphere obeys (2.109) in spherical coo
   }
 }
 
-TEST_CASE("judge: constraint rates along the path are those of R - d(t)") {
+TEST_CASE("oracle: constraint rates along the path are those of R - d(t)") {
   const model::Model m = moving_sphere();
   const Judge judge(m, digits);
   Dice dice;
@@ -89,7 +89,7 @@ TEST_CASE("judge: constraint rates along the path are those of R - d(t)") {
   CHECK(cln::zerop(c.gradient[0][1]));
 }
 
-TEST_CASE("judge: cart and pendulum from their energies give Lagrange's equations") {
+TEST_CASE("oracle: cart and pendulum from their energies give Lagrange's equations") {
   const model::Model m = cart_pendulum();
   const Judge judge(m, digits);
   Dice dice;
@@ -104,7 +104,7 @@ TEST_CASE("judge: cart and pendulum from their energies give Lagrange's equation
   }
 }
 
-TEST_CASE("judge: the double pendulum in absolute angles") {
+TEST_CASE("oracle: the double pendulum in absolute angles") {
   const model::Model m = chain(2);
   const Judge judge(m, digits);
   Dice dice;
@@ -121,7 +121,7 @@ TEST_CASE("judge: the double pendulum in absolute angles") {
   }
 }
 
-TEST_CASE("judge: spring, damper and rod of a pendulum in Cartesian coordinates") {
+TEST_CASE("oracle: spring, damper and rod of a pendulum in Cartesian coordinates") {
   const model::Model m = rod_pendulum();
   const Judge judge(m, digits);
   Dice dice;
@@ -137,7 +137,7 @@ TEST_CASE("judge: spring, damper and rod of a pendulum in Cartesian coordinates"
               mass * s.qddot[1] + mass * g + tension * dy / length - 2 * lambda * s.q[1]});
 }
 
-TEST_CASE("judge: variable mass, drag, attraction, torsion, an energy of the extension, diff and ddt in a force") {
+TEST_CASE("oracle: variable mass, drag, attraction, torsion, an energy of the extension, diff and ddt in a force") {
   model::Model m;
   const Formula k = parameter(m, "k", 2);
   const Formula x = coordinate(m, "x");
@@ -158,7 +158,7 @@ TEST_CASE("judge: variable mass, drag, attraction, torsion, an energy of the ext
   check_rows(judge.dalembert(s, {}), {K * s.t * s.qddot[0] + K * V - drag - pull - torsion - spring - 3 * X * X});
 }
 
-TEST_CASE("judge: energies and their rates balance for the true motion") {
+TEST_CASE("oracle: energies and their rates balance for the true motion") {
   const model::Model m = cart_pendulum();
   const Judge judge(m, digits);
   Dice dice;
@@ -170,7 +170,7 @@ TEST_CASE("judge: energies and their rates balance for the true motion") {
   CHECK(near(e.kinetic_rate + e.potential_rate, work, agreement, e.rate_scale));
 }
 
-TEST_CASE("judge: dependent parameters are computed, basis vectors are dual to one another") {
+TEST_CASE("oracle: dependent parameters are computed, basis vectors are dual to one another") {
   model::Model m = moving_sphere();
   model::Parameter J;
   J.name = "J";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models that each use some corner of the model language: reader, mechanics and every route against the judge.
+// Models that each test special features of the model language: reader, mechanics and every formulation against the
+// oracle.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -26,7 +27,7 @@ void check_passes(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("features: rocket of mass m(t) with drag in a central field, by [functions] that use one another") {
+TEST_CASE("features: rocket of mass m(t) with drag in a central field, by [functions] that depend on one another") {
   check_passes(R"toml(
 [parameters]
 m0 = 2
@@ -52,7 +53,7 @@ initial = { R = 2, phi = 1, R_dot = 0.2, theta_dot = 0.7 }
 )toml");
 }
 
-TEST_CASE("features: charts that measure from one another, dampers, springs with an energy, mutual attraction") {
+TEST_CASE("features: charts relative to one another, dampers, springs with an energy, mutual attraction") {
   check_passes(R"toml(
 [parameters]
 m1 = 1
@@ -89,7 +90,7 @@ initial = { r = 1, R = 1.5, phi = 1, z = 0.3 }
 )toml");
 }
 
-TEST_CASE("features: coordinates that only vector expressions use, with forces along their bases") {
+TEST_CASE("features: coordinates in vector expressions alone, with forces along their bases") {
   check_passes(R"toml(
 [parameters]
 m = 1
@@ -215,7 +216,7 @@ gravity = "-9.81*E3*(1 + W*t/50)"
 }
 
 TEST_CASE(
-    "features: constraints on velocities: a vector, a list, moving ones, beside holonomic ones that keep multipliers") {
+    "features: constraints on velocities: a vector, a list, moving ones, with holonomic ones that keep multipliers") {
   check_passes(R"toml(
 [parameters]
 m = 2
@@ -255,7 +256,7 @@ initial = { r = 2, phi = 1, alpha = 0.4 }
 )toml");
 }
 
-TEST_CASE("features: parameters that use ones which come later in the file, over several steps") {
+TEST_CASE("features: parameters that depend on later ones in the file, over several steps") {
   check_passes(R"toml(
 [parameters]
 k = "2*c/m"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// integral(e): closed forms and states against the judge, which integrates by quadrature; and the quadrature against
+// integral(e): closed forms and states against the oracle, which integrates by quadrature; and the quadrature against
 // known values.
 #include <doctest/doctest.h>
 
@@ -57,7 +57,7 @@ initial = { x = 1, y = 0.3 }
 
 }  // namespace
 
-TEST_CASE("integrals: what the rules know is written in closed form, and agrees with quadrature to 45 digits") {
+TEST_CASE("integrals: integrals with a known rule have a closed form, which agrees with quadrature to 45 digits") {
   bool active = false;
   for (const std::string integral : {"integral(1)",
                                      "integral(a*t^3 - b*t + 2)",
@@ -106,7 +106,7 @@ TEST_CASE("integrals: what the rules know is written in closed form, and agrees 
   }
 }
 
-TEST_CASE("integrals: every other one is a state, alone or inside of another, and agrees with quadrature") {
+TEST_CASE("integrals: any other integral is a state, alone or nested, and agrees with quadrature") {
   const std::pair<std::string, std::size_t> all[] = {
       {"integral(exp(-t^2))", 1},      {"integral(sin(w*t^2))", 1},        {"integral(sqrt(1 + s^2))", 1},
       {"integral(sin(t)/t)", 1},       {"integral(integral(exp(-s)))", 2}, {"integral(t) + integral(tanh(f))", 1},
@@ -124,7 +124,7 @@ TEST_CASE("integrals: every other one is a state, alone or inside of another, an
   }
 }
 
-TEST_CASE("integrals: the quadrature knows pi, log 2 and a kink to as many digits as asked for") {
+TEST_CASE("integrals: the quadrature gives pi, log 2 and a kink to the requested digits") {
   using verify::Real;
   for (const int digits : {20, 60, 120}) {
     const verify::Precision precision(digits + 10);

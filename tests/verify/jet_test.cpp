@@ -87,13 +87,13 @@ TEST_CASE("jets: atan2 has the derivatives of the angle in every quadrant") {
     }
 }
 
-TEST_CASE("jets: what is fainter than any float is 0, and subnormal numbers have their value") {
+TEST_CASE("jets: numbers below the float range are 0, and subnormal numbers keep their value") {
   const Real far = -cln::expt(cln::cl_RA(10), cln::cl_I(300));
   CHECK(exp(Jet::variable(1, Jet(far), 0), p).exactly_zero());
   CHECK(bool(exact(5e-324) * cln::expt(cln::cl_RA(2), cln::cl_I(1074)) == 1));
 }
 
-TEST_CASE("jets: what has no derivative is refused, what is exactly zero stays so") {
+TEST_CASE("jets: points without a derivative are rejected, exact zeros stay exact") {
   CHECK_THROWS_AS(Jet(1) / Jet(), Singular);
   CHECK_THROWS_AS(log(Jet(-1), p), Singular);
   CHECK_THROWS_AS(sqrt(Jet(-1), p), Singular);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models by hand for the judge's tests, which need no reader: formulas append nodes to the Arena.
+// Hand-built models for the tests of the oracle, without the reader: formulas append nodes to the Arena.
 #pragma once
 
 #include <string>
@@ -105,7 +105,7 @@ inline Formula input(model::Model& m, std::string name) {
   m.inputs.push_back(std::move(u));
   return leaf(m, Op::input, static_cast<std::uint32_t>(m.inputs.size() - 1));
 }
-/// A place and, where `mass` is given, a particle there. Gives the leaf that stands for the position.
+/// Adds a place and, if `mass` is given, a particle there. Returns the leaf for the position.
 inline Formula place(model::Model& m, std::string name, Formula position, Formula mass = {}) {
   if (m.places.empty()) m.places.emplace_back();  // the origin
   model::Place p;
@@ -124,7 +124,7 @@ inline Formula basis(Op op, Formula place, Formula q) {
   node.args[0] = q.id;
   return make(*place.model, node);
 }
-/// A force as the reader leaves it: what its author wrote, for the judge, and what it does, for mechanics.
+/// A force as the reader produces it: the arguments from the file for the oracle, and the effects for mechanics.
 inline void force(model::Model& m, std::string kind, std::vector<model::Argument> arguments,
                   std::vector<model::Effect> effects = {}) {
   m.forces.push_back({"force " + std::to_string(m.forces.size() + 1),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small changes made to emitted C, as a slip of the generator or of an editor would make them: the self test of the
-// file, or `verify`, has to notice them. Many changed copies of a file go into one library, each under names of its
-// own.
+// Mutation test: small changes to emitted C, as errors of the generator or of an editor would make them. The self test
+// of the file, or `verify`, has to detect them. Many mutants of a file go into one library, each with its own names.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -26,7 +25,7 @@ using namespace eomgen;
 
 namespace {
 
-/// A place in a source where a token can be exchanged.
+/// A position in a source where a token can be replaced.
 struct Change {
   std::size_t at = 0, length = 0;
   std::string by, what;
@@ -42,7 +41,7 @@ class Mutator {
     functions();
   }
 
-  /// The same number of changes in each function, as far as it has places for them.
+  /// The same number of changes in each function, or fewer if it has fewer positions.
   std::vector<Change> changes(std::size_t count) {
     std::vector<Change> result;
     std::set<std::pair<std::size_t, std::string>> seen;
@@ -54,7 +53,7 @@ class Mutator {
     return result;
   }
 
-  /// The source with that change, and every name of its own.
+  /// The source with this change, and unique names.
   std::string changed(const Change& change, const std::string& name) const {
     std::string text = source_;
     text.replace(change.at, change.length, change.by);
@@ -75,7 +74,7 @@ class Mutator {
   }
 
  private:
-  // From the line after the head of a function to its end.
+  // From the line after the signature of a function to its end.
   void functions() {
     const std::size_t last = source_.find("/* Whether values are off");
     REQUIRE(last != std::string::npos);
@@ -86,7 +85,7 @@ class Mutator {
       const std::string function = (*it)[1];
       if (begin > last || function == "abi" || function.find("sincos") != std::string::npos ||
           function.starts_with("taylor_sums") || function == "taylor")
-        continue;  // loops may not end
+        continue;  // a changed loop may not end
       functions_.emplace_back(begin, end);
     }
     REQUIRE(functions_.size() > 4);
@@ -143,7 +142,7 @@ class Mutator {
     return Change{at, text.size(), by(text), what};
   }
 
-  /// One value for another that is known before it.
+  /// One value replaced by an earlier one.
   std::optional<Change> operand(std::size_t begin, std::size_t end) {
     std::vector<std::pair<std::size_t, std::string>> declared;
     for (const auto& [at, text] : all("(const double|,) \\w+ = ", begin, end)) {
@@ -155,7 +154,7 @@ class Mutator {
     const auto& [after, name] = declared[below(declared.size())];
     const std::size_t all_known = source_.find(';', after);
     std::vector<std::pair<std::size_t, std::string>> uses = all("\\b" + name + "\\b", all_known, end);
-    std::erase_if(uses, [this](const auto& use) {  // in a remark
+    std::erase_if(uses, [this](const auto& use) {  // in a comment
       const std::size_t open = source_.rfind("/*", use.first), close = source_.rfind("*/", use.first);
       return open != std::string::npos && (close == std::string::npos || close < open);
     });
@@ -203,7 +202,7 @@ Subject subject(const std::string& model) {
   return s;
 }
 
-/// The library with the file as it is (NAME_m) and all changed ones (NAME_m0, NAME_m1, ..).
+/// The library with the original file (NAME_m) and all mutants (NAME_m0, NAME_m1, ..).
 std::string library(const test::TemporaryFolder& folder, const Subject& s, const Mutator& mutator,
                     const std::vector<Change>& changes) {
   std::ofstream out(folder.path + "/" + s.name + ".c");
@@ -218,7 +217,7 @@ std::string library(const test::TemporaryFolder& folder, const Subject& s, const
   return library;
 }
 
-/// Code without its self test, which is asked for by itself.
+/// Code without its self test, which is called separately.
 std::optional<pipeline::CompiledCode> loaded(const std::string& library, const std::string& name, const Subject& s) {
   try {
     return pipeline::CompiledCode({emit::LoadedModel(library, name), library, false, 0}, s.program);
@@ -229,7 +228,7 @@ std::optional<pipeline::CompiledCode> loaded(const std::string& library, const s
   }
 }
 
-/// Whether two codes differ anywhere: at states about the start, with parameters of their own, in every mode.
+/// Whether two codes differ at any of several states around the start, with random parameters, in every mode.
 bool differ(const verify::CompiledForm& a, const verify::CompiledForm& b, const Subject& s) {
   std::mt19937_64 engine(7);
   const auto random = [&engine] { return cln::cl_RA(static_cast<long>(engine() % 2001) - 1000) / 1000; };
@@ -262,7 +261,7 @@ bool differ(const verify::CompiledForm& a, const verify::CompiledForm& b, const 
 }  // namespace
 
 TEST_CASE(
-    "small changes to emitted code: at least 98 % of those that change a value are noticed by the self test or by "
+    "small changes to emitted code: at least 98 % of those that change a value are detected by the self test or by "
     "verify") {
   const test::TemporaryFolder folder;
   std::size_t changing = 0, by_self_test = 0, noticed = 0;

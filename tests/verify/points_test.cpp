@@ -56,10 +56,10 @@ TEST_CASE("points: coordinates stay inside their ranges, away from the ends, and
   }
 }
 
-TEST_CASE("points: what has no value is rejected, counted, and given up in the end with the reasons") {
+TEST_CASE("points: undefined states are rejected and counted; too many rejections are an error with the reasons") {
   model::Model m = chain(1);
   const Formula th = leaf(m, Op::coordinate, 0);
-  generalized(m, 0, call(Fn::log, th));  // of negative angles: no value
+  generalized(m, 0, call(Fn::log, th));  // undefined for negative angles
   const Judge judge(m, 60);
   Points points(judge, 5, many);
   for (int i = 0; i < 20; ++i) CHECK(cln::plusp(points.next().q[0]));
@@ -80,7 +80,7 @@ TEST_CASE("points: what has no value is rejected, counted, and given up in the e
   }
 }
 
-TEST_CASE("points: numbers of a scene, an input or a parameter that have no value are told with their place") {
+TEST_CASE("points: undefined numbers of a scene, an input or a parameter are reported with their position") {
   const auto told = [](const auto& spoil) {
     model::Model m = cart_pendulum();
     spoil(m, call(Fn::log, number(m, 0)).id);
@@ -104,7 +104,7 @@ TEST_CASE("points: numbers of a scene, an input or a parameter that have no valu
   CHECK(told([](model::Model& m, model::NodeId bad) { m.coordinates.front().lower = bad; }) == expected);
 }
 
-TEST_CASE("points: kinks are kept away from, constraints that contradict one another have no states") {
+TEST_CASE("points: states keep a distance from kinks, contradictory constraints have no states") {
   model::Model m = chain(1);
   const Formula th = leaf(m, Op::coordinate, 0);
   generalized(m, 0, call(Fn::abs, th - th));  // always at the kink
@@ -122,7 +122,7 @@ TEST_CASE("points: kinks are kept away from, constraints that contradict one ano
   CHECK(none.rejected().count("the constraints lose rank") == 1);
 }
 
-TEST_CASE("judge: solved for the motion, P7 moves as (2.109) says and its reaction is (2.111)") {
+TEST_CASE("oracle: the solved motion of P7 satisfies (2.109), and its reaction is (2.111)") {
   const model::Model m = moving_sphere();
   const Judge judge(m, 60);
   Points points(judge, 9, many);
@@ -140,7 +140,7 @@ TEST_CASE("judge: solved for the motion, P7 moves as (2.109) says and its reacti
   }
 }
 
-TEST_CASE("solve: pivots, scales over many orders of magnitude, and tells a singular matrix") {
+TEST_CASE("solve: pivots, scales over many orders of magnitude, and detects a singular matrix") {
   const Precision p(60);
   const auto r = [&](double value) { return p.round(cln::rational(Real(value))); };
   // [0 1e20; 1e-20 1] x = [1e20; 3]
@@ -149,7 +149,7 @@ TEST_CASE("solve: pivots, scales over many orders of magnitude, and tells a sing
   CHECK(near(good.x()[1], 1, 55));
   CHECK(near(good.x()[0], 2 / r(1e-20), 55));
   CHECK(!solve({r(1), r(2), r(2), r(4)}, std::vector<Real>{r(1), r(1)}).exists());
-  const Real beyond = r(1e300) * r(1e300);  // what binary64 holds
+  const Real beyond = r(1e300) * r(1e300);  // the range of binary64
   const Solution large = solve({beyond, Real(0), Real(0), 1 / beyond}, std::vector<Real>{2 * beyond, 3 / beyond});
   REQUIRE(large.exists());
   CHECK(near(large.x()[0], 2, 55));
@@ -157,7 +157,7 @@ TEST_CASE("solve: pivots, scales over many orders of magnitude, and tells a sing
 }
 
 TEST_CASE(
-    "solve: entries whose size no binary64 number has, products of starts of 1e-300 or speeds of 1e300, are scaled all "
+    "solve: entries beyond the range of binary64, products of starts of 1e-300 or speeds of 1e300, are scaled all "
     "the same") {
   const Precision p(60);
   const auto r = [&](double value) { return p.round(cln::rational(Real(value))); };
@@ -170,7 +170,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("solve: large systems, whole or in parts that do not hang together, have all digits") {
+TEST_CASE("solve: large systems, as a whole or in decoupled blocks, have all digits") {
   const Precision p(60);
   const auto entry = [&](std::size_t i, std::size_t k) {
     return p.round(Real(1) / (1 + static_cast<int>((7 * i + 3 * k) % 11)) + (i == k ? 5 : 0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The models that several tests of verify use, built by hand.
+// Hand-built models for several tests of verify.
 #pragma once
 
 #include "verify/model_builder.hpp"
@@ -68,8 +68,8 @@ inline model::Model chain(int n) {
   return m;
 }
 
-/// A planar pendulum in x, y on a rod whose length constraint stays with a multiplier, pulled by a spring and a damper
-/// from a point. Parameters m, g, L, k, c.
+/// A planar pendulum in x, y on a rod whose length constraint keeps its multiplier, with a spring and a damper to a
+/// point. Parameters m, g, L, k, c.
 inline model::Model rod_pendulum() {
   model::Model m;
   m.id = "rod_pendulum";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every model in models/: all routes, both approaches, against the judge.
+// Every model in models/: all formulations, both approaches, against the oracle.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::vector<fs::path> shipped_models() {
 
 }  // namespace
 
-TEST_CASE("certificate: every shipped model passes at 20 points in 50 digits, to 45 of them") {
+TEST_CASE("certificate: every shipped model passes at 20 states in 50 digits, with 45 digits of agreement") {
   const std::vector<fs::path> files = shipped_models();
   REQUIRE(!files.empty());
   for (const fs::path& file : files) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sound models that comparisons relative to the wrong size, or states that cannot be, would refuse.
+// Correct models that would fail if differences were relative to the wrong scale, or states were impossible.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ void check_passes(const std::string& text, std::uint64_t seed = 1) {
   CHECK(c.points == 6);
 }
 
-/// A particle in a plane, in the gravity field, with curves that it cannot pass.
+/// A particle in a plane with gravity, and curves that it cannot cross.
 std::string particle_above(const std::vector<std::string>& curves) {
   std::string text = R"toml(
 [parameters]
@@ -65,7 +65,7 @@ initial = { a_dot = 1 }
   }
 }
 
-TEST_CASE("sound models: a particle that two curves hold fast in their corner") {
+TEST_CASE("sound models: a particle fixed in the corner of two curves") {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     check_passes(particle_above({"y", "y - 0.3*x"}), seed);
     check_passes(particle_above({"y", "x"}), seed);
@@ -73,13 +73,13 @@ TEST_CASE("sound models: a particle that two curves hold fast in their corner") 
   }
 }
 
-TEST_CASE("sound models: contacts that cannot be closed at once are each closed at some states") {
+TEST_CASE("sound models: contacts that cannot be closed simultaneously are each closed at some states") {
   check_passes(particle_above({"y", "sqrt(x^2 + (y - 1)^2) - 0.2"}));
   check_passes(particle_above({"x", "1 - x"}));
   check_passes(particle_above({"y", "x", "1 - x"}));
 }
 
-TEST_CASE("sound models: a contact that repeats another one is still refused") {
+TEST_CASE("sound models: a contact that repeats another one is still rejected") {
   CHECK_THROWS_AS(certificate(particle_above({"y", "2*y"})), Error);
   try {
     certificate(particle_above({"y", "2*y"}));
@@ -131,7 +131,7 @@ initial = {{ x = 0.5, y = 1 }}
   }
 }
 
-TEST_CASE("sound models: the branch of `if` that is not taken need not have a value") {
+TEST_CASE("sound models: the other branch of `if` may be undefined") {
   for (const char* force : {"if(x > 0, sqrt(x), 0)", "if(x > 0, sqrt(x), -sqrt(-x))", "if(x > 0, log(x), 1/(x - 1))",
                             "if(x < 0, 0, x^1.5)"}) {
     CAPTURE(force);

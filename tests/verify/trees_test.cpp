@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trees of particles: which routes take them, and that what these give is what d'Alembert's principle asks.
+// Trees of particles: the formulations that accept them, and the agreement of these with d'Alembert's principle.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ ct = "0.1 N*m*s"
 F = { unit = "N", default = 0 }
 )toml";
 
-// A cart on a table that shakes, a rod on it, and two rods on that one's end; B is told by a relative angle.
+// A cart on a shaking table, a rod on it, and two rods at the end of this rod; B has a relative angle.
 const std::string planar_tree = parameters + R"toml([coordinates]
 beta = "rad"
 [[particle]]
@@ -78,7 +78,7 @@ position = { cylindrical = ["L2", "beta"], from = "A" }
 gravity = "-g*E2"
 )toml";
 
-// B hangs on A and on C: no tree.
+// B is attached to A and to C: not a tree.
 const std::string closed = parameters + R"toml([coordinates]
 alpha = "rad"
 gamma = "rad"
@@ -128,7 +128,7 @@ TEST_CASE("trees: a planar tree on a shaken table, with springs, dampers and inp
 TEST_CASE("trees: a cart in space carries planar rods and a free particle") {
   check_tree_routes(spatial_tree, true, true);
 }
-TEST_CASE("trees: a mass that varies has no tensions that are told by accelerations alone") {
+TEST_CASE("trees: with a varying mass the tensions do not follow from accelerations alone") {
   check_tree_routes(growing_mass, true, false);
 }
 TEST_CASE("trees: a particle between two others closes a loop") { check_tree_routes(closed, false, false); }
@@ -136,7 +136,7 @@ TEST_CASE("trees: chains in absolute and in relative angles") {
   for (const char* angles : {"absolute", "relative"}) check_tree_routes(chain(5, angles), true, true);
 }
 
-TEST_CASE("quasi-coordinates: the running sums of relative angles, and nothing where positions use no sums") {
+TEST_CASE("quasi-coordinates: the running sums of relative angles; none if positions contain no sums") {
   const auto of_chain = [](const char* angles) {
     static model::Model model;
     model = model::read_model_text(chain(3, angles), "chain");
@@ -156,7 +156,7 @@ TEST_CASE("quasi-coordinates: the running sums of relative angles, and nothing w
   CHECK(of_chain("absolute").identity());
 }
 
-TEST_CASE("quasi-coordinates: hundreds of coordinates that positions use one by one are left as they are") {
+TEST_CASE("quasi-coordinates: hundreds of coordinates that occur one by one in positions are not changed") {
   std::string text = "format = 1\n";
   for (int i = 0; i < 333; ++i) {
     text += fmt::format(
@@ -172,7 +172,7 @@ TEST_CASE("quasi-coordinates: hundreds of coordinates that positions use one by 
 namespace {
 
 // Four rods with particles at their ends, by energies alone: one velocity written out, one particle with y before x,
-// one with signs the other way round.
+// one with opposite signs.
 const std::string energies_of_rods = parameters + R"toml([coordinates]
 a1 = "rad"
 a2 = "rad"
@@ -198,11 +198,11 @@ const std::string squares_of_rods =
 
 }  // namespace
 
-TEST_CASE("trees: a kinetic energy that is a sum of squares of velocities of points is that of particles") {
+TEST_CASE("trees: a kinetic energy that is a sum of squared velocities of points counts as that of particles") {
   check_tree_routes(energies_of_rods + "kinetic = \"" + squares_of_rods + "\"\n", true, true);
 }
 
-TEST_CASE("trees: what is no such sum, or no tree, is left to other routes") {
+TEST_CASE("trees: other kinetic energies, and systems that are not trees, are left to other formulations") {
   for (const char* more :
        {" + m0*L1^2/2*a2_dot^2", " + m0*L1^2/4*a1_dot*a2_dot", " + m0/2*(sin(a1)*sin(a2)*L1*a1_dot)^2"}) {
     CAPTURE(more);
