@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is printed meanwhile, in place of the stream. glibc lets a stream be exchanged.
+/// Captures the output to a stream. glibc allows a stream to be replaced.
 class Caught {
  public:
   explicit Caught(FILE*& stream) : stream_(stream), before_(stream) { stream = open_memstream(&text_, &size_); }
@@ -47,7 +47,7 @@ class Caught {
   std::size_t size_ = 0;
 };
 
-/// Where the models and results of this process lie; compiled code too, which nobody needs again.
+/// The folder of the models and results of this process, and of compiled code, which is not reused.
 class Scratch {
  public:
   Scratch() {
@@ -101,13 +101,13 @@ void check_document(const Result& result, const Words& words) {
   for (const std::string& error : support::schema_errors(document, words.front())) found("schema: " + error, words);
 }
 
-/// The derivations of a model disagree, its code cannot be compiled: defects of ours, whatever the model is.
+/// Whether the error is a defect of this program for any model: derivations disagree, or code cannot be compiled.
 bool is_ours(const Error& error) {
   return error.fault() == Fault::tool || error.remedy().find("defect of eomgen") != std::string::npos ||
          error.message().find("internal") != std::string::npos;
 }
 
-/// The call of a text, and where its model begins.
+/// The call of a text, and the position at which its model begins.
 std::size_t chosen(const std::vector<Words>& calls, std::string_view text) {
   std::size_t number = text.size();
   if (text.size() > 1 && text[0] == '#' && text[1] >= '0' && text[1] <= '9')
@@ -192,7 +192,7 @@ std::string try_command(const std::vector<Words>& calls, const std::string& text
 std::string mutate(const std::vector<Words>& calls, const std::string& text, unsigned seed) {
   static const Mutator mutator(shipped());
   Random random(seed);
-  random.discard(3);  // seeds in a row begin alike
+  random.discard(3);  // consecutive seeds give similar first numbers
   const bool numbered = text.size() > 3 && text[0] == '#' && text[2] == '\n';
   const std::string first =
       numbered && random() % 4 != 0 ? text.substr(0, 3) : "#" + std::to_string(random() % calls.size()) + "\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mutated models through the derivations: classified, shown, verified, emitted.
+// Derivations of mutated models: classify, show, verify, emit.
 #include "commands.hpp"
 
 namespace fuzz = eomgen::fuzz;

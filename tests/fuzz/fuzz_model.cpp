@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever bytes the reader of models gets, it gives a model that keeps its promises, or one Error that says where.
+// For any bytes the reader returns a model that satisfies its invariants, or throws one Error with a position.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

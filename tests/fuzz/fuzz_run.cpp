@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mutated models, run for some steps, linearised, at rest, inverted. Compiled code comes from the C compiler without
-// optimisation: tests/fuzz/cc.
+// Runs of mutated models for some steps, linearisations, equilibria, inverse dynamics. Code is compiled without
+// optimisation by tests/fuzz/cc.
 #include <cstdlib>
 
 #include "commands.hpp"

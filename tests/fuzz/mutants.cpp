@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The harnesses without libFuzzer, for any compiler: mutated models in a fixed order, each in a process of its own with
-// bounds on its time and memory.
-//   mutants derive|run FIRST COUNT [SECONDS]: models of the seeds FIRST, FIRST + 1 ..; findings are kept in this folder
-//   mutants derive|run FILE...: these models, or those in these folders
+// The harnesses without libFuzzer, for any compiler: mutated models in a fixed order, each in a separate process with
+// limited time and memory.
+//   mutants derive|run FIRST COUNT [SECONDS]: models of the seeds FIRST, FIRST + 1 ..; findings are saved in this
+//   folder mutants derive|run FILE...: these models, or those in these folders
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,7 +23,8 @@ namespace {
 
 using namespace eomgen::fuzz;
 
-constexpr rlim_t most_seconds = eomgen::test::sanitized ? 600 : 60;  // of processor time: a busy machine finds nothing
+constexpr rlim_t most_seconds =
+    eomgen::test::sanitized ? 600 : 60;  // processor time, so that a busy machine has no effect
 constexpr rlim_t most_memory = eomgen::test::sanitized ? RLIM_INFINITY : rlim_t{2} << 30;
 constexpr int refused = 2;
 
@@ -51,13 +52,13 @@ int tried_apart(const std::vector<Words>& calls, const std::string& text) {
   return status;
 }
 
-/// Models in a row, and what became of them.
+/// A sequence of models with their results.
 class Trial {
  public:
   explicit Trial(std::string_view kind) : kind_(kind), calls_(kind == "derive" ? derive_calls() : run_calls()) {}
 
   void fresh(unsigned seed) {
-    // From one that was taken, so that changes add up, or from a shipped one.
+    // Mutates an accepted model, so that changes accumulate, or a shipped one.
     const std::string from = seed % 3 == 0 || taken_.empty() ? "" : taken_[seed / 3 % taken_.size()];
     const std::string text = mutate(calls_, from, seed), name = kind_ + "-" + std::to_string(seed) + ".toml";
     if (!holds(name, text)) std::ofstream(name) << text;

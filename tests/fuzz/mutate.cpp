@@ -26,7 +26,7 @@ const auto& any(const List& list, Random& random) {
   return list[below(list.size(), random)];
 }
 
-/// Lines whose texts are no expressions.
+/// Whether the strings of a line are not expressions.
 bool is_spoken(const std::string& text, std::size_t line) {
   static constexpr std::array keys{"format", "title", "note",   "name",    "unit", "tex",
                                    "type",   "from",  "solver", "outputs", "#",    "["};
@@ -34,7 +34,7 @@ bool is_spoken(const std::string& text, std::size_t line) {
                      [&](const std::string_view key) { return text.compare(line, key.size(), key) == 0; });
 }
 
-/// What expressions and values are made of: to the right of '='.
+/// The tokens of expressions and values, to the right of '='.
 std::vector<Token> tokens(const std::string& text) {
   std::vector<Token> result;
   bool value = false, quoted = false;
@@ -91,7 +91,7 @@ std::string key_of(const std::string& line) {
   return line.substr(0, line.find_last_not_of(" \t", equals - 1) + 1);
 }
 
-/// From one header to the next: the lines of a section that is drawn.
+/// The lines of a random section, from its header to the next.
 std::vector<std::string> section(const std::string& text, Random& random) {
   const std::vector<std::string> all = lines(text);
   std::vector<std::size_t> heads;
@@ -147,7 +147,7 @@ std::string wrapped(const std::string& text, Random& random) {
   return exchanged(text, token, form);
 }
 
-/// The value of a key, from a donor that has the key too.
+/// A value of the same key, from a donor that has this key.
 std::string other_value(const std::string& text, const std::string& source, Random& random) {
   std::vector<std::string> own = lines(text);
   const std::vector<std::string> others = lines(source);
@@ -170,7 +170,7 @@ std::string with_section(const std::string& text, const std::string& source, Ran
   const auto same = std::find_if(own.begin(), own.end(), [&](const std::string& line) {
     return is_header(line) && header(line) == header(added[0]);
   });
-  // What a model may have once is continued where it is there already, by keys that it does not have.
+  // A section that may occur only once is extended by keys that it does not have yet.
   if (!added[0].starts_with("[[") && same != own.end()) {
     const auto end = std::find_if(same + 1, own.end(), is_header);
     std::erase_if(added, [&](const std::string& line) {

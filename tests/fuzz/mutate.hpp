@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: the text of a model. Out: one that is a change or two away and mostly still a model: names, numbers, operators
-// and values are exchanged for others, sections come from other models. Bytes alone seldom get past the reader.
+// In: the text of a model. Out: a text with one or two changes that is mostly still a model: names, numbers, operators
+// and values are replaced by others, sections come from other models. Random bytes seldom pass the reader.
 #pragma once
 
 #include <random>
@@ -13,11 +13,11 @@ using Random = std::minstd_rand;
 
 class Mutator {
  public:
-  /// `donors`: models whose values and sections are taken.
+  /// `donors`: models that provide values and sections.
   explicit Mutator(std::vector<std::string> donors);
 
   std::string operator()(std::string text, Random& random) const;
-  /// One of the donors; without its units every second time, so that no change breaks them.
+  /// One of the donors; every second time without units, so that changes cannot violate them.
   std::string donor(Random& random) const;
 
  private:

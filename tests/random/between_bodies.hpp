@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces between bodies of a random mechanism: bushings, struts, actuators. In: bodies that turn. Out: [[force]]
+// Forces between bodies of a random mechanism: bushings, struts, actuators. In: bodies that rotate. Out: [[force]]
 // tables.
 #pragma once
 

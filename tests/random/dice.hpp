@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random numbers that are the same with every compiler and library.
+// Random numbers that are identical with every compiler and library.
 #pragma once
 
 #include <cstddef>

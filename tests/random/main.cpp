@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// random_mechanisms PROGRAM FROM TO [N]: every seed's model through the program; a line for each that breaks a promise,
-// and the sum. Every N-th (each, if N is left out) is compiled, run and linearised too. random_mechanisms PROGRAM
-// --found FOLDER: the models that broke a promise once; run, if their name begins with run_; only checked, in a tenth
-// of the time, with check_. random_mechanisms PROGRAM --print SEED | --shrink SEED: the text of one; the smallest text
-// that breaks the same promise.
+// random_mechanisms PROGRAM FROM TO [N]: runs the program on the model of every seed; prints a line for each finding,
+// and the total. Every N-th model (each, if N is omitted) is also compiled, run and linearised.
+// random_mechanisms PROGRAM --found FOLDER: the same for models of earlier findings. Models with names run_* are also
+// run; models with names check_* are only checked, in a tenth of the time.
+// random_mechanisms PROGRAM --print SEED | --shrink SEED: prints the text of a model; prints the smallest text with the
+// same finding.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -22,7 +23,7 @@ using namespace eomgen::random_models;
 
 std::uint64_t number(const char* text) { return std::strtoull(text, nullptr, 10); }
 
-// 0: all kept their promises, 1: some did not.
+// 0: no findings, 1: findings.
 int try_seeds(const std::string& program, const std::string& folder, std::uint64_t from, std::uint64_t to,
               std::uint64_t every) {
   std::map<std::string, std::size_t> features;
@@ -53,7 +54,7 @@ int try_seeds(const std::string& program, const std::string& folder, std::uint64
       "\n%zu random mechanisms: %zu kept every promise, %zu are no mechanism and were refused, %zu failed; slowest "
       "command %.1f s\n",
       tried, tried - refused - failed, refused, failed, slowest);
-  // A generator whose models are refused tests nothing.
+  // If most models are rejected, the generator tests nothing.
   return failed == 0 && 4 * refused <= tried ? 0 : 1;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What writes a random mechanism. In: a seed. Out: the text of a model, section by section; each file adds those of one
-// kind.
+// The builder of a random mechanism. In: a seed. Out: the text of a model, section by section; each file adds the
+// sections of one kind.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct Place {
   bool free_position = false;  // three (in a plane two) Cartesian coordinates of its own, from the origin
 };
 
-// Writes one model. Every member adds some lines and keeps account of what later ones may refer to.
+// Writes one model. Every member adds some lines and records the names that later ones may refer to.
 class Builder {
  public:
   explicit Builder(std::uint64_t seed);
@@ -34,7 +34,7 @@ class Builder {
  private:
   void feature(const std::string& name) { result_.features.insert(name); }
 
-  // A number, or the name of a new parameter that has it. Positive.
+  // A positive number, or the name of a new parameter with this value.
   std::string value(int low, int high) {
     const std::string number = equal_ && low <= 100 && 100 <= high ? "1" : dice_.decimal(low, high);
     if (!dice_.chance(named_parameters_)) return number;
@@ -70,12 +70,12 @@ class Builder {
     return "[" + text + "]";
   }
 
-  // Where a place may be measured from: an earlier one, or the origin.
+  // The origin of a new place: an earlier place, or null for the origin of the ground.
   const Place* earlier(int percent) {
     return !places_.empty() && dice_.chance(percent) ? &places_[dice_.below(places_.size())] : nullptr;
   }
 
-  // An axis of the ground or, in space, of a body.
+  // A direction in the axes of the ground.
   std::string direction() {
     if (planar_) return dice_.pick<std::string>({"E1", "E2", "0.6*E1 + 0.8*E2"});
     return dice_.pick<std::string>({"E1", "E2", "E3", "-E3", "E1 + E2", "0.6*E1 - 0.8*E3", "2*E2"});
@@ -105,7 +105,7 @@ class Builder {
 
   void force(const std::string& line) { force_lines_ += "[[force]]\n" + line + "\n"; }
 
-  /// One of the places that fit, if any does; else any.
+  /// A random one of the places that fit, or of all places if none fits.
   template <class Fits>
   const Place& one_of(const Fits& fits) {
     std::vector<std::size_t> which;

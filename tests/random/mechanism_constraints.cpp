@@ -28,7 +28,7 @@ void Builder::add_constraints() {
     const Place& a = places_[dice_.below(places_.size())];
     const Place& b = places_[dice_.below(places_.size())];
     switch (dice_.below(6)) {
-      case 0: {  // a joint as placed at the start; loops and bodies with coordinates of their own
+      case 0: {  // a joint in the configuration of the start; loops, and bodies with their own coordinates
         if (!a.body || (&a != &b && !b.body)) break;
         const std::string type =
             planar_ ? "pin" : dice_.pick<std::string>({"ball", "pin", "universal", "cylindrical", "slider"});
@@ -82,10 +82,10 @@ void Builder::add_constraints() {
   }
 }
 
-// Two bodies with axes at right angles, or held fast to one another as they are placed at the start.
+// Two bodies with orthogonal axes, or rigidly connected in the configuration of the start.
 void Builder::add_joint_of_all_axes() {
   const bool universal = !planar_ && dice_.chance(70);
-  // The place of the first and one of its angles follow from a universal joint.
+  // The position of the first and one of its angles follow from a universal joint.
   const auto fits = [&](const Place& p) {
     return p.body && (!universal || (p.free_position && p.angles.size() == 3 && p.spatial_rotation));
   };

@@ -25,8 +25,8 @@ void Builder::contact(const std::string& kind, const std::string& lines) {
   constraint_lines_ += "[[constraint]]\nname = \"c" + std::to_string(++constraints_) + "\"\n" + lines;
 }
 
-// At most three, as the program takes: a floor below the start of a place, a rough one through it, dry guides, a ball
-// on rough ground.
+// Adds at most three contacts, the limit of the program: a floor below the start of a place, a rough floor through it,
+// guides with dry friction, a ball on rough ground.
 void Builder::add_contacts() {
   const std::string up = planar_ ? "E2" : "E3";
   const std::size_t count = 1 + dice_.below(3);
@@ -37,7 +37,7 @@ void Builder::add_contacts() {
     });
     const std::string height = a.free_position ? a.own.back() : "";
     switch (kind) {
-      case 0:  // a floor below the start, of which nothing is known but for coordinates
+      case 0:  // a floor below the start, for places whose start is known only by coordinates
         if (height.empty())
           contact("floor",
                   "holonomic = \"dot(" + point_of(a) + ", " + up + ") + " + value(200, 400) + "\"\n" + one_sided());
@@ -45,7 +45,7 @@ void Builder::add_contacts() {
         contact("floor",
                 "holonomic = \"" + height + " - initial(" + height + ") + " + value(1, 30) + "\"\n" + one_sided());
         break;
-      case 1:  // a rough one through the start, level or not
+      case 1:  // a rough floor through the start, horizontal or inclined
         if (height.empty() || follows_.contains(height) || a.body || result_.constrained) break;
         contact("rough surface", "holonomic = \"" + height +
                                      (dice_.chance(50) ? " - " + value(10, 40) + "*" + a.own[0] : std::string()) +

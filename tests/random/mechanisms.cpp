@@ -7,9 +7,10 @@
 namespace eomgen::random_models {
 namespace {
 
-// The models of the seeds before it are what they were when these kinds were added: findings are told by their seeds.
+// First seeds with newer kinds of models. The models of smaller seeds stay the same, since findings are identified by
+// their seeds.
 constexpr std::uint64_t first_with_contacts = 1001, first_with_forces_between_bodies = 2001,
-                        first_small = 10001;  // one or two places, all else as before: many of them in a short time
+                        first_small = 10001;  // one or two places, otherwise the same: many models in a short time
 
 }  // namespace
 
@@ -70,7 +71,7 @@ Mechanism Builder::finish() {
       continue;
     }
     if (!value.empty()) start_ += (start_.empty() ? "" : ", ") + q + " = " + value;
-    // Rates that constraints bind to one another are left to them: the start is at rest but for what is prescribed.
+    // Constraints determine coupled rates: the start is at rest except for prescribed motions.
     if (!rate.empty() && !result_.constrained && constraints_ == 0)
       start_ += (start_.empty() ? "" : ", ") + q + "_dot = " + rate;
   }

@@ -14,30 +14,30 @@ namespace {
 using test::ChildResult;
 using Json = nlohmann::json;
 
-// What a model may be refused for, by `check` or at the start of `run`: it is no mechanism, or none at its start.
-// Everything else is a finding.
+// Messages with which `check` or the start of `run` may reject a model: it is not a valid mechanism, or has no valid
+// start. Any other message is a finding.
 const std::vector<std::string>& refusals() {
   static const std::vector<std::string> texts{
       "nothing is left to move",      // locked
       "more constraints than",        // a loop that cannot be closed
-      "contradict",                   // constraints that cannot hold together
-      "follows from",                 // one that says what others say
+      "contradict",                   // contradictory constraints
+      "follows from",                 // a redundant constraint
       "the start breaks constraint",  // an assembly that cannot be closed from its guess
       "cannot be satisfied",
-      "has no mass",  // a coordinate that nothing with inertia moves along
+      "has no mass",  // a coordinate without inertia
       "no inertia",
       "changes no equation of motion",  // a force that does no work: friction at a pivot
-      "contains no coordinate",         // a distance of two bodies that nothing changes
-      "does not determine the force",   // of a contact whose constraint follows from others
-      "fixes nothing",                  // a joint that would hold a place that a function of time moves
-      "contains no velocity",           // a knife edge along an arm: its point never moves that way
+      "contains no coordinate",         // a constant distance of two bodies
+      "does not determine the force",   // of a contact whose constraint is redundant
+      "fixes nothing",                  // a joint on a place with prescribed motion
+      "contains no velocity",           // a knife edge along an arm: its point never moves in this direction
       "does not depend on any velocity",
-      "the forces are not determined",  // more directions in which friction can hold than the system has
+      "the forces are not determined",  // more directions of sticking friction than degrees of freedom
   };
   return texts;
 }
 
-// A run may end early for what is true of the mechanism.
+// Outcomes with which a run may end early because of the mechanism itself.
 const std::vector<std::string>& outcomes() {
   static const std::vector<std::string> names{"chart_left", "singular_mass_matrix", "step_too_small",
                                               "friction_no_solution", "friction_many_solutions"};
@@ -57,7 +57,7 @@ std::string message(const ChildResult& result) {
   for (std::string line; std::getline(lines, line);) {
     if (line.find("error") != std::string::npos) return line;
   }
-  // A certificate says who disagrees.
+  // A certificate lists the disagreements.
   const Json document = Json::parse(result.out, nullptr, false);
   if (!document.is_discarded() && document.contains("summary")) return document["summary"].get<std::string>();
   return result.in_time ? "no message" : "out of time";
@@ -80,7 +80,7 @@ class Attempt {
   }
 
  private:
-  // Whether it did what it was asked for. A shell sets the limits: they die with the command.
+  // Whether the command succeeded. A shell sets the limits, so that they end with the command.
   bool command(const std::string& name, const std::vector<std::string>& options) {
     test::ChildCommand call;
     const std::string memory =
@@ -91,7 +91,7 @@ class Attempt {
         "m.toml",  "--json"};
     call.arguments.insert(call.arguments.end(), options.begin(), options.end());
     call.folder = folder_;
-    call.limit = 30.0 * limits_.seconds;  // of the clock, on a machine that is busy
+    call.limit = 30.0 * limits_.seconds;  // wall clock time, for a busy machine
     result_ = test::run_child(call);
     trial_.slowest = std::max(trial_.slowest, result_.seconds);
     if (result_.status == 0) return true;
@@ -101,7 +101,7 @@ class Attempt {
     } else if (result_.status == 3 && name == "run" && told_outcome()) {
       return false;
     } else if (result_.status == 2 && name == "linearize" && said.find("internal") == std::string::npos) {
-      return false;  // a state without slope, a start on a kink: it is told
+      return false;  // a state without derivative, a start on a kink: reported
     } else {
       trial_.findings.push_back({name, "exit code " + std::to_string(result_.status) + ": " + said});
     }
@@ -135,7 +135,7 @@ class Attempt {
   ChildResult result_;
 };
 
-// Sections as they stand, each from its heading to the next.
+// The sections of a text, each from its heading to the next.
 std::vector<std::string> sections(const std::string& text) {
   std::vector<std::string> result;
   std::istringstream lines(text);

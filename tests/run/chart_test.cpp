@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Coordinates have ranges: a start outside is refused, a run that leaves one is told.
+// Coordinates have ranges: a start outside is rejected, a run that leaves one reports it.
 #include <doctest/doctest.h>
 
 #include "support/folders.hpp"
@@ -9,7 +9,7 @@ using namespace eomgen;
 
 namespace {
 
-// Straight through the centre: r would become negative, where the spring's length is no longer r.
+// Motion through the centre: r would become negative, and the length of the spring is then not r.
 std::string radial(double r, double r_dot) {
   return "format = 1\n[parameters]\nm = 1\nk = 4\nL = 0.5\n[[particle]]\nname = \"P\"\nmass = \"m\"\n"
          "position = { cylindrical = [\"r\", \"theta\"] }\n"
@@ -35,16 +35,16 @@ TEST_CASE("run: a radius that would pass zero ends the run with chart_left, the 
   CHECK(finished.simulation.result.error_estimate.empty());
 }
 
-TEST_CASE("run: one that stays inside is done") {
+TEST_CASE("run: a run that stays inside its range is done") {
   CHECK(run_text(radial(1, 0)).simulation.result.outcome == eom::Outcome::done);
 }
 
-TEST_CASE("run: a start outside the range is refused") {
+TEST_CASE("run: a start outside the range is rejected") {
   CHECK_THROWS_WITH_AS(run_text(radial(-1, 0)), doctest::Contains("the start has r = -1, outside its range (0, inf)"),
                        Error);
 }
 
-TEST_CASE("run: a bead on a turning wire goes through the centre, where its equation is regular") {
+TEST_CASE("run: a bead on a rotating wire passes through the centre, where its equation is regular") {
   const test::Finished finished = run_text(
       "format = 1\n[parameters]\nm = 1\nw = 1\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = "
       "[\"r\", \"theta\"] }\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models that leave nothing to integrate are told so, at the constraint that takes the last freedom.
+// Models without degrees of freedom are rejected, with the constraint that removes the last one.
 #include <doctest/doctest.h>
 
 #include "support/folders.hpp"

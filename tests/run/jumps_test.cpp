@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What jumps is applied and told, or ends the run: velocities of supports, steps of a potential, positions.
+// Jumps are applied and reported, or end the run: velocities of supports, steps of a potential, positions.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ std::string pendulum(const std::string& support) {
          "[scene.default]\nt = [0, 3]\ninitial = { th = 0.1 }\n";
 }
 
-/// The pendulum on a support that moves evenly but for one change of its velocity at t = 1.
+/// The pendulum on a support with uniform velocity except for one jump at t = 1.
 std::array<double, 2> expected(double change) {
   const auto f = [](double, const double* x, double* dx) {
     dx[0] = x[1];
@@ -48,7 +48,7 @@ std::string step_at_one(const std::string& potential, double speed) {
 
 }  // namespace
 
-TEST_CASE("jumps: where the velocity of a support jumps the pendulum gets an impulse, and the work of it is told") {
+TEST_CASE("jumps: a jump in the velocity of a support gives the pendulum an impulse, and its work is reported") {
   struct Case {
     const char* support;
     double change;
@@ -69,7 +69,7 @@ TEST_CASE("jumps: where the velocity of a support jumps the pendulum gets an imp
   }
 }
 
-TEST_CASE("jumps: the same by a constraint with a multiplier") {
+TEST_CASE("jumps: the same with a constraint that keeps its multiplier") {
   const test::Finished finished = test::run_text(
       "rod",
       "[parameters]\nm = 1\nl = 1\na = 1\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = "
@@ -85,19 +85,19 @@ TEST_CASE("jumps: the same by a constraint with a multiplier") {
   CHECK(finished.simulation.result.power_balance < 1e-8);
 }
 
-TEST_CASE("jumps: a support whose velocity bends and does not jump gives no impulse") {
+TEST_CASE("jumps: a support whose velocity has a kink but no jump gives no impulse") {
   const test::Finished finished = test::run_text("bends", pendulum("a*max(0, t - 1)^2"));
   CHECK(finished.simulation.result.outcome == eom::Outcome::done);
   CHECK(impulse(finished) == nullptr);
 }
 
-TEST_CASE("jumps: a support that jumps itself ends the run, and is named") {
+TEST_CASE("jumps: a support whose position jumps ends the run, and is named") {
   const test::Finished finished = test::run_text("place", pendulum("if(t < 1, 0, a)"));
   CHECK(finished.simulation.result.outcome == eom::Outcome::jump_undetermined);
   CHECK(finished.simulation.result.detail.find("P.position1 jumps at t = 1") == 0);
 }
 
-TEST_CASE("jumps: a step of a potential ends the run where it is crossed, one that is not is no matter") {
+TEST_CASE("jumps: a step of a potential ends the run if it is crossed, and has no effect otherwise") {
   const test::Finished crossed = test::run_text("step", step_at_one("if(x < 1, 0, 5)", 4));
   CHECK(crossed.simulation.result.outcome == eom::Outcome::jump_undetermined);
   CHECK(crossed.simulation.result.detail.find("the potential energy jumps by 5") == 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an output is stands beside its name: tables are not misled by what a model's author calls things.
+// An output has a kind in addition to its name: names in a model cannot mislead tables.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ using system::OutputKind;
 
 namespace {
 
-/// Its names begin as those of what only runs ask for.
+/// A model whose names have the prefixes of outputs for runs.
 const std::string rough = R"toml(format = 1
 [parameters]
 m = "1 kg"
@@ -66,7 +66,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("outputs: 'all' takes what readers ask for, whatever the model's author calls things") {
+TEST_CASE("outputs: 'all' takes the outputs for readers, independent of the names in the model") {
   const Derived d;
   const std::vector<std::string> all = d.expanded("all");
   for (const char* name : {"contact.position1", "magnitude.velocity2", "differential.position1", "energy", "x_ddot",
@@ -83,7 +83,7 @@ TEST_CASE("outputs: 'all' takes what readers ask for, whatever the model's autho
   CHECK(for_runs >= 4);
 }
 
-TEST_CASE("outputs: a wrong name is answered with what readers may ask for, and nothing else") {
+TEST_CASE("outputs: the message for a wrong name lists the outputs for readers, and no others") {
   const Derived d;
   try {
     d.expanded("nothing");
@@ -96,7 +96,7 @@ TEST_CASE("outputs: a wrong name is answered with what readers may ask for, and 
   }
 }
 
-TEST_CASE("outputs: what they are, of what and in which unit") {
+TEST_CASE("outputs: kind, owner and unit") {
   const Derived d;
   const system::Output& velocity = d.output("contact.velocity2");
   CHECK(velocity.kind == OutputKind::velocity);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is shorter than a step is met all the same: pulses of forces and inputs, bumps, events that follow one another
-// fast.
+// Features shorter than a step are detected: pulses of forces and inputs, bumps, events in quick succession.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -60,7 +59,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("passed over: conditions in inputs are met, narrow ones too") {
+TEST_CASE("passed over: conditions in inputs are detected, also narrow ones") {
   const std::string text =
       particle("u", "[inputs]\nu = { default = 0 }\n") +
       "[scene.default]\nt = [0, 10]\ninputs = { u = \"if(t < 5, 0, if(t < 5.001, 1000, 0))\" }\n"
@@ -76,10 +75,10 @@ TEST_CASE("passed over: conditions in inputs are met, narrow ones too") {
   CHECK(std::abs(end("table") - 1) < 1e-9);
   CHECK(std::abs(end("kink") - 0.5) < 1e-9);
   CHECK(std::abs(end("pulses") - 10 * std::acos(0.9999) / std::numbers::pi) <
-        1e-9);  // half of the first, nine whole ones, half of the last
+        1e-9);  // half of the first pulse, nine whole pulses, half of the last
 }
 
-TEST_CASE("passed over: of a free particle, whose steps are long, every event is told") {
+TEST_CASE("passed over: every event of a free particle, whose steps are long, is reported") {
   const std::string text =
       "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, "
       "0]\n"
@@ -94,7 +93,7 @@ TEST_CASE("passed over: of a free particle, whose steps are long, every event is
   CHECK(count(result, "custom", "narrow") == 2);
 }
 
-TEST_CASE("passed over: a narrow region of force is met by a particle that crosses it within a step") {
+TEST_CASE("passed over: a particle that crosses a narrow region of force within a step is affected by it") {
   const test::Finished finished =
       test::run_text("barrier", particle("if(abs(x - 3.3) < 0.01, -20, 0)", "") +
                                     "[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n");
@@ -102,7 +101,7 @@ TEST_CASE("passed over: a narrow region of force is met by a particle that cross
   CHECK(std::abs(finished.final("x_dot") - std::sqrt(1 - 2 * 20 * 0.02)) < 1e-7);
 }
 
-TEST_CASE("passed over: a bump that is narrower than a step is hit") {
+TEST_CASE("passed over: a bump that is narrower than a step is detected") {
   const test::Finished finished = test::run_text(
       "bump",
       "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\ny = \"m\"\n[[particle]]\nname = \"P\"\nmass = "
@@ -115,14 +114,14 @@ TEST_CASE("passed over: a bump that is narrower than a step is hit") {
 }
 
 TEST_CASE(
-    "passed over: barriers that are narrow in the state and have no tails throw back, with every solver that chooses "
-    "its steps") {
+    "passed over: barriers that are narrow in the state and have no tails reflect a particle, with every adaptive "
+    "solver") {
   struct Case {
     const char* potential;
-    double x, x_dot;  // at t = 10, of a particle that comes from 0 with speed 1 and meets it at 3
+    double x, x_dot;  // at t = 10, of a particle that starts at 0 with speed 1 and reaches the barrier at 3
   };
-  // A bump of any width throws back at 3 but for its own width; a step of 0.3 beyond 1/2 J is passed, and slows it
-  // down.
+  // A bump reflects the particle at 3, up to the width of the bump. So does a step of 0.6 J, more than its energy of
+  // 1/2 J. The particle crosses a step of 0.4 J and becomes slower.
   for (const Case& c : {Case{"5*exp(-((x - 3)/1e-5)^2)", -4, -1}, Case{"5/(1 + ((x - 3)/1e-5)^4)", -4, -1},
                         Case{"0.3*tanh((x - 3)/1e-5) + 0.3", -4, -1},
                         Case{"0.2*tanh((x - 3)/1e-5) + 0.2", 3 + 7 * std::sqrt(0.2), std::sqrt(0.2)}}) {
@@ -144,7 +143,7 @@ TEST_CASE(
     }
     run::Overrides fixed;
     fixed.solver = "rk4";
-    fixed.step = 0.29;  // none ends at 3
+    fixed.step = 0.29;  // no step ends at 3
     CHECK(pipeline::run_again(finished.simulation, fixed).estimate_note.find("narrow in the state") !=
           std::string::npos);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bounds of functions along one variable, and what they find: kinks of time, narrow pulses.
+// Bounds of functions along one variable, and the features that they detect: kinks in time, narrow pulses.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 run::Leaf time_is_variable(const symbolic::Symbol&) { return run::Leaf::of_variable(0); }
 
-/// A system whose force is one function of time.
+/// A system whose force is a function of time.
 eom::hybrid::Clock clock_of(const std::function<Ref(Dag&, Ref)>& force, double t1 = 10) {
   system::EquationSystem system;
   system.dag = std::make_shared<Dag>();
@@ -33,7 +33,7 @@ Ref number(Dag& dag, long numerator, long denominator = 1) {
 
 }  // namespace
 
-TEST_CASE("ranges: every operation keeps values and slopes between its bounds") {
+TEST_CASE("ranges: values and derivatives of every operation lie between its bounds") {
   Dag dag;
   const Ref t = dag.symbol({symbolic::SymbolKind::time, 0, 0}), half = number(dag, 1, 2);
   std::vector<Ref> functions;
@@ -74,13 +74,13 @@ TEST_CASE("ranges: every operation keeps values and slopes between its bounds") 
   }
 }
 
-TEST_CASE("clock: kinks of time are found however near to one another, each to the last digit and none twice") {
+TEST_CASE("clock: kinks in time are found at any distance, each to the last digit and none twice") {
   const eom::hybrid::Clock pulse = clock_of([](Dag& dag, Ref t) {  // if(|t - 5.123| < 1e-7, 1, 0), and |t - 2|
     const Ref inside = dag.select(dag.call(Op::abs, dag.sub(t, number(dag, 5123, 1000))), number(dag, 1, 10'000'000),
                                   dag.one(), dag.zero());
     return dag.add(inside, dag.call(Op::abs, dag.sub(t, number(dag, 2))));
   });
-  REQUIRE(pulse.breaks.size() == 4);  // the middle of the pulse too, where |t - 5.123| has its kink
+  REQUIRE(pulse.breaks.size() == 4);  // also the middle of the pulse, where |t - 5.123| has its kink
   const double expected[] = {2, 5.123 - 1e-7, 5.123, 5.123 + 1e-7};
   for (std::size_t i = 0; i < 4; ++i) {
     CHECK(std::abs(pulse.breaks[i].before - expected[i]) < 4e-15);
@@ -98,7 +98,7 @@ TEST_CASE("clock: kinks of time are found however near to one another, each to t
   CHECK(touches.bounds.empty());
 }
 
-TEST_CASE("clock: steps are bounded where a smooth function of time is narrow, and nowhere else") {
+TEST_CASE("clock: steps are limited where a smooth function of time is narrow, and nowhere else") {
   for (const double w : {1e-1, 1e-3, 1e-6}) {
     CAPTURE(w);
     const eom::hybrid::Clock gauss = clock_of([&](Dag& dag, Ref t) {

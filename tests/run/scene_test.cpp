@@ -47,21 +47,21 @@ constexpr double rounding = 1e-14;
 
 }  // namespace
 
-TEST_CASE("scene: what is not given follows from the constraints, positions and rates") {
+TEST_CASE("scene: positions and rates that are not given follow from the constraints") {
   const run::Scene scene = resolve(rod + "initial = { x = 1.2, x_dot = 0.4 }\nguess = { y = -1 }\n");
   CHECK(scene.q[1] == doctest::Approx(-1.6).epsilon(rounding));
   CHECK(scene.qdot[1] == doctest::Approx(0.3).epsilon(rounding));  // x x_dot + y y_dot = 0
   CHECK(scene.solved.size() == 2);
 }
 
-TEST_CASE("scene: the guess chooses between the closures") {
+TEST_CASE("scene: the guess selects one of several solutions of the constraints") {
   CHECK(resolve(rod + "initial = { x = 1.2 }\nguess = { y = 3 }\n").q[1] == doctest::Approx(1.6).epsilon(rounding));
   CHECK(resolve(rod + "initial = { x = 1.2 }\nguess = { y = -3 }\n").q[1] == doctest::Approx(-1.6).epsilon(rounding));
 }
 
 TEST_CASE(
-    "scene: where constraints can be met in several ways those follow that they feel most, the others stay, and it is "
-    "told") {
+    "scene: if several choices satisfy the constraints, the unknowns that they depend on most are solved, the others "
+    "stay, and this is reported") {
   const std::string guess = "guess = { x = 0.55, y = -1.35 }\n";
   const run::Scene scene = resolve(rod + guess);
   CHECK(scene.q[0] == 0.55);
@@ -73,7 +73,7 @@ TEST_CASE(
   CHECK(named.q[1] == -1.35);
 }
 
-TEST_CASE("scene: rates that several constraints fix together follow, beside others that stay 0") {
+TEST_CASE("scene: rates that several constraints determine together are solved, other rates stay 0") {
   const std::string text = R"toml(format = 1
 [coordinates]
 w = {}
@@ -121,7 +121,7 @@ rolling = { body = "ball", at = "-R*E3", on = "ground" }
 
 }  // namespace
 
-TEST_CASE("scene: beside a given angular velocity the equation that cannot hold is named, and by how much it is off") {
+TEST_CASE("scene: with a given angular velocity the violated equation is named, with its violation") {
   // x_dot = R w2 holds, y_dot = -R w1 does not.
   const std::string message = refusal(ball + "initial = { x_dot = 0.6, y_dot = 1, \"ball.omega\" = [0.5, 2, 0.1] }\n");
   CHECK(message.find("'roll.2'") != std::string::npos);
@@ -130,12 +130,12 @@ TEST_CASE("scene: beside a given angular velocity the equation that cannot hold 
   CHECK(scene.qdot[1] == doctest::Approx(-0.15).epsilon(rounding));
 }
 
-TEST_CASE("scene: the spin of a body that rolls follows from its speed where the speed is given in its place") {
+TEST_CASE("scene: the spin of a rolling body follows from its velocity if only the velocity is given") {
   const run::Scene scene = resolve(ball + "initial = { x_dot = 0.6, y_dot = 0, psi_dot = 0.2, phi_dot = 0 }\n");
   CHECK(scene.qdot[4] == doctest::Approx(2).epsilon(rounding));  // th_dot
 }
 
-TEST_CASE("scene: values that break a constraint are refused with the amount, unless solve may move them") {
+TEST_CASE("scene: values that violate a constraint are rejected with the amount, unless solve may change them") {
   const std::string broken = "initial = { x = 1.2, y = -1.7 }\n";
   const std::string message = refusal(rod + broken);
   CHECK(message.find("breaks constraint 'rod'") != std::string::npos);
@@ -145,11 +145,11 @@ TEST_CASE("scene: values that break a constraint are refused with the amount, un
   CHECK(scene.q[1] == doctest::Approx(-1.6).epsilon(rounding));
 }
 
-TEST_CASE("scene: a start that the constraints do not determine is refused, not guessed") {
+TEST_CASE("scene: a start that the constraints do not determine is rejected, not guessed") {
   CHECK(refusal(rod).find("breaks constraint 'rod'") != std::string::npos);
 }
 
-TEST_CASE("scene: dependent parameters follow the ones that are set") {
+TEST_CASE("scene: dependent parameters are computed from the ones that are set") {
   const std::string text = R"toml(format = 1
 [parameters]
 k = "m*w^2"
@@ -171,7 +171,8 @@ parameters = { w = 4 }
   CHECK(refusal(text, overrides).find("no parameter 'nothing'") != std::string::npos);
 }
 
-TEST_CASE("scene: starts that are set stand in place of the scene's, and what follows from them follows") {
+TEST_CASE(
+    "scene: initial values that are set replace those of the scene, and dependent values are computed from them") {
   const std::string text = rod + "initial = { x = 1.2, x_dot = \"x/3\" }\nguess = { y = -1 }\n";
   run::Overrides overrides;
   overrides.values["x"] = symbolic::Rational(-8) / 5;
@@ -185,7 +186,7 @@ TEST_CASE("scene: starts that are set stand in place of the scene's, and what fo
   CHECK(scene.qdot[1] == doctest::Approx(-4).epsilon(rounding));  // x x_dot + y y_dot = 0
   overrides.values["y"] = 1;                                      // off the circle
   CHECK(refusal(text, overrides).find("breaks constraint 'rod'") != std::string::npos);
-  // Of a scene that gives no start this is one.
+  // This is also a start of a scene without initial values.
   run::Overrides alone;
   alone.values["x"] = 2;
   for (const std::string& told : resolve(rod, alone).solved) CHECK(told.find("no initial values") == std::string::npos);
@@ -200,7 +201,7 @@ TEST_CASE("scene: a parameter that is declared positive stays positive") {
   CHECK(refusal(text, overrides) == "parameter 'L' is declared positive, and its value is -2");
 }
 
-TEST_CASE("scene: parameters and masses that binary64 does not hold are refused by name") {
+TEST_CASE("scene: parameters and masses beyond the range of binary64 are rejected by name") {
   const std::string text = rod + "initial = { x = 0, y = -2 }\n";
   run::Overrides overrides;
   overrides.values["m"] = symbolic::Rational(1) / cln::expt(cln::cl_RA(10), cln::cl_I(310));
@@ -215,7 +216,7 @@ TEST_CASE("scene: parameters and masses that binary64 does not hold are refused 
         "the mass of 'P' is about 1e-350 here, which counts as 0: numbers of a run are from 2.2e-308 on");
 }
 
-TEST_CASE("scene: masses and coefficients of friction that have no value at its parameters are told") {
+TEST_CASE("scene: masses and coefficients of friction that are undefined at its parameters are reported") {
   run::Overrides negative;
   negative.values["k"] = -1;
   std::string text = rod;

@@ -18,7 +18,7 @@ TEST_CASE("signal: an expression of t and parameters has the value of its formul
   CHECK(signal.jumps().empty());
 }
 
-TEST_CASE("signal: a table holds its value up to the next time, and at a jump the side decides") {
+TEST_CASE("signal: a table keeps its value up to the next time, and at a jump the side selects the value") {
   const run::Signal signal({0, 1, 2}, {3, 5, 8});
   CHECK(signal(-1, -1) == 3);
   CHECK(signal(0.5, 0.5) == 3);

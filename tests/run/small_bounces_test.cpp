@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts at the ends of what numbers hold: bounces too low to follow, a start next to the floor, speeds whose squares
+// Contacts at the limits of binary64: bounces too low to resolve, a start next to the floor, speeds whose squares
 // overflow.
 #include <doctest/doctest.h>
 
@@ -41,8 +41,7 @@ run::RunResult with(std::map<std::string, Rational> parameters) {
 
 }  // namespace
 
-TEST_CASE(
-    "small bounces: with any coefficient of restitution the ball comes to lie on the floor and slides on from then") {
+TEST_CASE("small bounces: with any coefficient of restitution the ball comes to rest on the floor and then slides on") {
   constexpr double g = 9.81, mu = 0.1, v = 3;
   const double falls = std::sqrt(2 / g);
   for (const long exponent : {-1L, -2L, -3L, -5L, -6L, -7L, -8L, -10L, -14L, -100L, -300L}) {
@@ -56,7 +55,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("small bounces: a start next to the floor is one on the floor") {
+TEST_CASE("small bounces: a start next to the floor counts as a start on the floor") {
   for (const long exponent : {-12L, -15L, -20L, -100L, -300L}) {
     CAPTURE(exponent);
     const run::RunResult result = with({{"h", ten_to(exponent)}});
@@ -66,7 +65,7 @@ TEST_CASE("small bounces: a start next to the floor is one on the floor") {
   }
 }
 
-TEST_CASE("small bounces: a speed whose square overflows is told at once") {
+TEST_CASE("small bounces: a speed whose square overflows is reported at once") {
   const run::RunResult result = with({{"v", ten_to(300)}});
   CHECK(result.outcome != eom::Outcome::done);
   CHECK(result.statistics.steps + result.statistics.rejected < 1000);

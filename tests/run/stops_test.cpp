@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Friction along a direction that a stop holds while it touches, against closed forms.
+// Friction along a direction that a closed stop constrains, against closed forms.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ holonomic = "3 - x - y"
          "[scene.default]\ninitial = { x = 1, y = 2 }\nt = [0, " + std::to_string(t_end) + "]\n";
 }
 
-/// A slider in a rough guide whose friction is 4 N at most, with a stop at x = 1.
+/// A slider in a rough guide with at most 4 N of friction, with a stop at x = 1.
 std::string slider_with_a_stop(const std::string& forces, const std::string& restitution, const std::string& scene) {
   return R"toml(format = 1
 [parameters]
@@ -74,16 +74,16 @@ holds = "unilateral"
 
 }  // namespace
 
-TEST_CASE("stops: a slider on a rough guide bounces off its stop and comes to rest where friction lets it") {
+TEST_CASE("stops: a slider on a rough guide bounces off its stop and comes to rest by friction") {
   const test::Finished end = run_text(
       "slider", slider_with_a_stop("", "restitution = 0.3\n", "t = [0, 5]\ninitial = { x = 0.5, x_dot = 2 }\n"));
-  // It is slowed by F/m = 2: 4 - 2*2/2 = 2 is the square of its speed at the stop, e^2*2 that after it.
+  // The deceleration is F/m = 2: 4 - 2*2/2 = 2 is the square of its speed at the stop, e^2*2 that after it.
   CHECK(std::abs(end.final("x") - (1 - 0.09 * 2 / (2 * 2))) <= closed_form);
   CHECK(end.final("x_dot") == 0);
-  CHECK(end.final("friction.guide") == 0);  // nothing pulls at it
+  CHECK(end.final("friction.guide") == 0);  // no load
 }
 
-TEST_CASE("stops: what presses a slider onto its stop is borne by the stop, and released it goes on as friction says") {
+TEST_CASE("stops: the stop bears the force that presses a slider onto it; then friction determines the motion") {
   const test::Finished end = run_text(
       "pressed_slider",
       slider_with_a_stop("[[force]]\ngeneralized = { x = \"10 - 6*t\" }\n", "", "t = [0, 4]\ninitial = { x = 1 }\n"));
@@ -92,11 +92,11 @@ TEST_CASE("stops: what presses a slider onto its stop is borne by the stop, and 
   for (std::size_t row = 0; row <= last; ++row) {
     const double t = end.rows.t[row];
     CAPTURE(t);
-    if (t < 10.0 / 6 - 1e-6) {  // pressed: the stop takes all of it
+    if (t < 10.0 / 6 - 1e-6) {  // pressed: the stop bears the whole force
       pressed = true;
       CHECK(std::abs(end.rows.at(row, "reaction.stop") - (10 - 6 * t)) <= closed_form);
       CHECK(std::abs(end.rows.at(row, "friction.guide")) <= closed_form);
-    } else if (t > 10.0 / 6 + 1e-6 && t < 14.0 / 6 - 1e-6) {  // pulled by less than the guide can hold
+    } else if (t > 10.0 / 6 + 1e-6 && t < 14.0 / 6 - 1e-6) {  // pulled by less than the largest friction of the guide
       stuck = true;
       CHECK(end.rows.at(row, "reaction.stop") == 0);
       CHECK(std::abs(end.rows.at(row, "friction.guide") - (6 * t - 10)) <= closed_form);
@@ -109,7 +109,7 @@ TEST_CASE("stops: what presses a slider onto its stop is borne by the stop, and 
   CHECK(std::abs(end.final("x") - (1 - s * s * s / 2)) <= closed_form);
 }
 
-TEST_CASE("stops: a block on a rough floor that a wall or a rail holds slides along it, and sticks across it alone") {
+TEST_CASE("stops: a block on a rough floor at a wall or a rail slides along it, and sticks only across it") {
   for (const bool rail : {false, true}) {
     CAPTURE(rail);
     const test::Finished end = run_text(rail ? "block_on_rail" : "block_at_walls",
@@ -129,18 +129,18 @@ TEST_CASE("stops: a block that sticks beside a wall or on a rail has no friction
                                         block_beside_a_wall("z - x/10", "50*E1 + 46*E2", 1, rail));
     CHECK(std::abs(end.final("x") - 1) <= closed_form);
     CHECK(std::abs(end.final("y") - 2) <= closed_form);
-    // The force F, the weight and the normal forces of floor and wall have no part along (1, -1, 1/10), the line that
-    // is left; the friction f along it balances theirs.
+    // The force F, the weight and the normal forces of floor and wall have no component along (1, -1, 1/10), the line
+    // of possible motion; the friction f along it balances theirs.
     const double length = std::sqrt(2.01), pull = (50 - 46 - 20 * 0.1) / length;
     const double f[3] = {end.final("friction.floor.1"), end.final("friction.floor.2"), end.final("friction.floor.3")};
     CHECK(std::abs((f[0] - f[1] + f[2] / 10) / length + pull) <= closed_form);
     const double square = f[0] * f[0] + f[1] * f[1] + f[2] * f[2];
-    CHECK(std::abs(square - pull * pull) <= closed_form);  // and has no other part
+    CHECK(std::abs(square - pull * pull) <= closed_form);  // and no other component
   }
 }
 
-TEST_CASE("stops: between a floor and a ceiling each bounces a ball by its own coefficient of restitution") {
-  // Where both touch forces are not determined: nothing that a run needs may be asked for there.
+TEST_CASE("stops: a floor and a ceiling each reflect a ball with their own coefficient of restitution") {
+  // The forces are not determined if both contacts are closed: a run must not evaluate them there.
   const test::Finished end = run_text("ball_between", R"toml(format = 1
 [parameters]
 m = 2
@@ -165,7 +165,7 @@ restitution = 0.25
 t = [0, 8]
 initial = { x = 0, h = 0.5, x_dot = 1 }
 )toml");
-  // Along h = 1/2 + x + x^3/3 the kinetic energy stays: m/2 h_dot^2 (1 + 1/(1 + x^2)^2).
+  // Along h = 1/2 + x + x^3/3 the kinetic energy is constant: m/2 h_dot^2 (1 + 1/(1 + x^2)^2).
   CHECK(std::abs(end.final("x") + std::pow(end.final("x"), 3) / 3 + 0.5 - end.final("h")) <= closed_form);
   CHECK(end.simulation.result.outcome == eom::Outcome::done);
   const double x = end.final("x"), rate = end.final("x_dot");
@@ -174,7 +174,7 @@ initial = { x = 0, h = 0.5, x_dot = 1 }
   CHECK(std::abs(energy - 2.0 / 16 / 4) <= closed_form);
 }
 
-TEST_CASE("stops: balls in a row that touch are hit together, with a gap between them one after the other") {
+TEST_CASE("stops: touching balls in a row are hit simultaneously, balls with gaps one after the other") {
   for (const bool gap : {false, true}) {
     CAPTURE(gap);
     const test::Finished end = run_text(gap ? "row_with_gap" : "row", R"toml(format = 1
@@ -206,7 +206,7 @@ initial = { x1 = -1, x2 = 0, x1_dot = 2, x3 = )toml" + std::string(gap ? "0.1000
   }
 }
 
-TEST_CASE("stops: what cannot touch at the start is apart, which is told") {
+TEST_CASE("stops: contacts that cannot be closed at the start are open, and this is reported") {
   const char* const wheels = R"toml(format = 1
 [parameters]
 b = 0.05
@@ -235,13 +235,13 @@ t = [0, 1]
     return std::any_of(all.begin(), all.end(), [&](const std::string& note) { return note.find(text) != note.npos; });
   };
   CHECK(told("'forth', 'back' are apart: the start cannot be met while all touch"));
-  // phi1 = t^2 up to b, then both together with 2/3, of a third of the momentum.
+  // phi1 = t^2 up to b, then both together with 2/3, after the loss of a third of the momentum.
   const double hit = std::sqrt(0.05), rest = 1 - hit;
   CHECK(std::abs(end.final("phi2") - (2 * hit / 3 * rest + rest * rest / 3)) <= closed_form);
   CHECK(std::abs(end.final("phi1") - end.final("phi2") - 0.05) <= closed_form);
 }
 
-TEST_CASE("stops: where nothing else is said a contact touches at the start, and one that cannot be open is refused") {
+TEST_CASE("stops: a contact is closed at the start by default, and one that cannot be open is rejected") {
   const std::string ball =
       "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\"] }\n"
       "[[constraint]]\nname = \"floor\"\nholonomic = \"y - x^2 - 1\"\nholds = \"unilateral\"\n";
@@ -251,8 +251,8 @@ TEST_CASE("stops: where nothing else is said a contact touches at the start, and
                        doctest::Contains("the start breaks constraint 'floor'"), Error);
 }
 
-TEST_CASE("stops: what slides on a floor slides on where a coordinate stops telling the way along it") {
-  // Below the origin the floor's gradient has no part along theta.
+TEST_CASE("stops: a body that slides on a floor slides on where a coordinate becomes stationary along the floor") {
+  // Below the origin the floor's gradient has no component along theta.
   const test::Finished end = run_text("polar_floor", R"toml(format = 1
 [parameters]
 m = 2
@@ -277,8 +277,8 @@ initial = { theta = -0.5, r_dot = -1.5 }
 )toml");
   const double x0 = -2 * std::tan(0.5), v0 = end.rows.at(0, "theta_dot") * 2 / std::pow(std::cos(0.5), 2);
   REQUIRE(v0 > 0);
-  REQUIRE(v0 * v0 / 2 > -x0);  // it comes beyond, and rests where mu g has taken all of its speed
+  REQUIRE(v0 * v0 / 2 > -x0);  // it passes the origin, and comes to rest by the deceleration mu g
   const double x = x0 + v0 * v0 / 2, theta = end.final("theta");
   CHECK(std::abs(2 * std::tan(theta) - x) <= 1e-8);
-  CHECK(v0 < 4);  // by then
+  CHECK(v0 < 4);  // at rest before the end of the run
 }
