@@ -138,13 +138,13 @@ std::string why_not(const Library& library, const std::string& said) {
       return std::string("it is not installed (sudo apt-get install ") + library.package + ")";
   }
   const std::size_t at = said.find("error:");
-  return "what calls it cannot be compiled: " +
+  return "its adapter cannot be compiled: " +
          (at == std::string::npos ? said : said.substr(at, said.find('\n', at) - at));
 }
 
 std::string does_not_fit(const run::RunRequest& request) {
-  if (!request.scene.inputs.empty()) return "inputs that change on the way are this program's own";
-  if (request.scene.t1 < request.scene.t0) return "runs backwards in time are left to this program's own solvers";
+  if (!request.scene.inputs.empty()) return "inputs that vary during the run need one of eomgen's own solvers";
+  if (request.scene.t1 < request.scene.t0) return "runs backwards in time need one of eomgen's own solvers";
   return "";
 }
 

@@ -26,9 +26,8 @@ std::string stiffness(const std::vector<Row>& rows) {
   }
   if (fewest[0] == nullptr || fewest[1] == nullptr || fewest[0]->steps < many * fewest[1]->steps) return "";
   return fmt::format(
-      " The motion is stiff: explicit solvers are inefficient, stability asks of them for {} steps and more ({}), "
-      "where {} "
-      "takes {}.",
+      " The motion is stiff and explicit solvers are inefficient: stability requires at least {} steps of them ({}), "
+      "while {} takes {}.",
       fewest[0]->steps, fewest[0]->solver, fewest[1]->solver, fewest[1]->steps);
 }
 

@@ -98,7 +98,7 @@ void add_all_charts(Derived& derived, program::Program& program, const ChartRequ
   const std::vector<model::SwitchedChart> charts = exchangeable(all);
   if (charts.empty()) {
     throw Error("emit", Where{derived.model.file, 0, 0, 1, ""}, "this model has no chart that can be exchanged",
-                "leave charts out of --with; eomgen check tells the charts");
+                "leave charts out of --with; eomgen check lists the charts");
   }
   for (unsigned mask = 1; mask < 1u << charts.size(); ++mask)
     add_second_charts(derived, program, charts, mask, request);

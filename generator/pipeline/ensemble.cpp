@@ -329,17 +329,17 @@ std::string ensemble_solver(const model::Scene& scene, const run::Overrides& ove
 
 std::string ensemble_obstacle(const Simulation& first) {
   const run::Code code = first.code.for_run();
-  if (!code.contacts.empty()) return "the model has contacts with friction, or that can be left";
+  if (!code.contacts.empty()) return "the model has contacts with friction, or unilateral contacts";
   if (!code.kinks.empty()) return "the equations have kinks (abs, sign, min, max, if), which are located";
   if (code.active_constraints > 0) return "constraints keep multipliers, and each step is projected onto them";
-  if (first.charts != nullptr) return "coordinates that fail are exchanged for second charts";
+  if (first.charts != nullptr) return "the run may change to second charts near singularities";
   if (code.integrals > 0) return "an integral over time is a state of the model";
   if (const std::string name = ranged(first, code); !name.empty())
-    return fmt::format("'{}' has a range, which is looked at after every step", name);
+    return fmt::format("'{}' has a range, which is checked after every step", name);
   if (!run::narrow_functions(first.derived->candidates.front()).empty())
-    return "exp, tanh, sinh, cosh or a high power of the state may make a force that is narrow, which is looked for in "
-           "every step";
-  if (!stands_still(first.scene)) return "inputs or functions of time move, whose jumps and pulses are located";
+    return "exp, tanh, sinh, cosh or a high power of the state may give a force that is narrow, which is searched for "
+           "in every step";
+  if (!stands_still(first.scene)) return "inputs or functions of time vary, and their jumps and pulses are located";
   return "";
 }
 

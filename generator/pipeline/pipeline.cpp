@@ -73,13 +73,14 @@ void take_forms(Derived& derived, FormChoice choice) {
   }
   if (choice && others.empty()) {
     const bool any = !derived.mechanics.active.empty();
-    throw Error("derive", Where{derived.model.file, 0, 0, 1, ""},
-                any ? fmt::format("the constraints of this model can be left, hang together in blocks that are too "
-                                  "large for form '{}', or have no columns that are independent where they hold",
-                                  system::name(*choice))
-                    : fmt::format("form '{}' is one of constraints that keep multipliers, and this model has none",
-                                  system::name(*choice)),
-                any ? "leave --form out, or choose multipliers" : "leave --form out");
+    throw Error(
+        "derive", Where{derived.model.file, 0, 0, 1, ""},
+        any ? fmt::format("the constraints of this model are unilateral, are coupled in blocks that are too large "
+                          "for form '{}', or have no independent columns in admissible configurations",
+                          system::name(*choice))
+            : fmt::format("form '{}' needs constraints that keep multipliers, and this model has none",
+                          system::name(*choice)),
+        any ? "leave --form out, or choose multipliers" : "leave --form out");
   }
   if (choice) derived.candidates.clear();
   for (system::EquationSystem& other : others) derived.candidates.push_back(std::move(other));
@@ -257,7 +258,7 @@ std::string key_of(const Derived& derived, const program::Program& program, cons
 }  // namespace
 
 verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options) {
-  const work::Stage stage("holding the derivations against one another");
+  const work::Stage stage("comparing the derivations");
   Stopwatch watch;
   const std::string key = key_of(derived, program, options);
   if (!key.empty()) {
@@ -308,7 +309,7 @@ void require_pass(const verify::Certificate& certificate, const model::Model& mo
   throw Error("verify", Where{model.file, 0, 0, 1, ""},
               fmt::format("the derivations of this model disagree ({}), so nothing is emitted; {}", failures,
                           agreeing.empty() ? "none agrees with d'Alembert's principle"
-                                           : "with d'Alembert's principle agree " + agreeing),
+                                           : "d'Alembert's principle agrees with " + agreeing),
               "this is a defect of eomgen: please report it with the model; eomgen verify shows all comparisons",
               Fault::check);
 }

@@ -20,19 +20,19 @@ const char* without(Feature feature) {
   switch (feature) {
     case Feature::series: return "the code was compiled without its Taylor series";
     case Feature::momenta: return "the code was compiled without its momenta";
-    case Feature::constraints: return "its equations have no constraints with multipliers, which it would keep";
+    case Feature::constraints: return "its equations have no constraints with multipliers, which the solver needs";
     default: return "it lacks what the solver needs";
   }
 }
 
 const char* with(Feature feature) {
   switch (feature) {
-    case Feature::modes: return "the model has contacts with friction, or that can be left";
+    case Feature::modes: return "the model has contacts with friction, or unilateral contacts";
     case Feature::velocity_constraints: return "the model has a constraint on velocities";
     case Feature::kinks: return "the equations have kinks (abs, sign, min, max, if)";
     case Feature::other_states: return "an integral of a function of time is a state of this model";
     case Feature::moving_inputs: return "an input is an expression of t";
-    default: return "the solver cannot follow what the model has";
+    default: return "the solver does not support a feature of the model";
   }
 }
 

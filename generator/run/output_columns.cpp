@@ -19,10 +19,11 @@ void refuse_undetermined(const Mechanics& m, const model::Named& want) {
     const bool joint = std::any_of(m.model->joints.begin(), m.model->joints.end(),
                                    [&](const model::Joint& j) { return j.name == c.name; });
     if (c.determined || joint || (want.name != label && want.name != "reaction." + c.name)) continue;
-    throw Error("scene", want.span.line > 0 ? m.model->where(want.span) : Where{},
-                fmt::format("the motion does not determine '{}'", label),
-                "other constraints hold the same, or nothing moves against it (`check` lists such constraints): ask "
-                "for the force of another, or give the bodies coordinates that it binds");
+    throw Error(
+        "scene", want.span.line > 0 ? m.model->where(want.span) : Where{},
+        fmt::format("the motion does not determine '{}'", label),
+        "other constraints impose the same condition, or it holds identically (`check` lists such constraints): "
+        "request the force of another one, or give the bodies coordinates that it constrains");
   }
   for (std::size_t i = 0; i < m.joints.size(); ++i) {
     const std::string name = "reaction." + m.model->joints[i].name;

@@ -122,7 +122,8 @@ std::string without_requirements(const std::string& solver) {
 
 void require_smooth(const RunRequest& request) {
   if (request.code.contacts.empty()) return;
-  throw Error("run", {}, "contacts and friction change the equations on the way, and derivatives of the end jump there",
+  throw Error("run", {},
+              "contacts and friction change the equations during the run, and derivatives of the end jump there",
               "compare runs with changed parameters (--set), or sweep over them");
 }
 

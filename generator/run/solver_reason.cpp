@@ -15,7 +15,7 @@ const char* words(Basis basis) {
     case Basis::fixed_step: return "a fixed step is given";
     case Basis::loose_tolerance: return "rtol is above 1e-6, where order 5 needs the fewest evaluations";
     case Basis::tight_tolerance: return "rtol is 1e-6 or below, where order 8 needs the fewest evaluations";
-    case Basis::nothing_moves: return "nothing moves from the start to the start";
+    case Basis::nothing_moves: return "the run ends at its start";
   }
   return "";
 }
@@ -55,12 +55,11 @@ std::string to_text(const SolverReason& reason) {
   }
   if (reason.narrow_unsure_from)
     text += fmt::format(
-        "; whether a force that is narrow in the state lies in a step could not be told from t = {:.6g} on (--max-step "
-        "makes steps shorter)",
+        "; from t = {:.6g} on a step may miss a force that is narrow in the state (--max-step makes steps shorter)",
         *reason.narrow_unsure_from);
   if (reason.charts_refused != nullptr || reason.charts_kept_for_jumps)
     text += fmt::format(
-        "; the model's own coordinates are kept where they fail, since {}",
+        "; the model's own coordinates are kept near their singularities, since {}",
         reason.charts_refused != nullptr ? reason.charts_refused->why : "something may jump at a given time");
   return text;
 }

@@ -35,7 +35,7 @@ class Judgement {
     const run::RunResult result = made(scene_, solver, clock);
     row.seconds = clock.seconds();
     row.outcome = clock.was_late() ? "interrupted" : eom::name(result.outcome);
-    row.note = clock.was_late()         ? "takes longer than the limit of time"
+    row.note = clock.was_late()         ? "exceeds the time limit"
                : !result.detail.empty() ? result.detail
                                         : result.estimate_note;
     if (clock.was_late() || result.outcome != eom::Outcome::done) {
@@ -46,7 +46,7 @@ class Judgement {
     } else {
       row.error = row.estimate = infinity;
       row.verdict = Verdict::unreported;
-      row.note = "no motion exists, and this calls itself one";
+      row.note = "no motion exists, but the outcome is done";
     }
     return row;
   }
@@ -151,7 +151,7 @@ std::vector<Row> judge(const Case& test, const run::Scene& given, const Request&
   if (reference && request.seen) request.seen(test, scene, reference->samples);
   const double stable = test.of_limit ? stable_step(scene, request) : 0;
   if (test.of_limit && !(stable > 0 && (scene.t1 - scene.t0) / stable > fewest_stable)) {
-    left_out = "nothing in it is so fast that few steps would be unstable";
+    left_out = "it has no motion that is fast enough to make a few steps unstable";
     return rows;
   }
   Judgement judgement(test, scene, request, reference ? &*reference : nullptr, stable);

@@ -27,7 +27,7 @@ constexpr double most_uncertain = 1e-6;
 constexpr double shorter = 0.5;          // next span relative to the span that was reached
 constexpr double smallest_scale = 1e-9;  // of the largest component
 
-constexpr const char* by_the_clock = "not judged: a tight run takes longer than the limit of time";
+constexpr const char* by_the_clock = "skipped: a tight run exceeds the time limit";
 
 }  // namespace
 
@@ -78,13 +78,13 @@ std::optional<ReferenceSolution> ReferenceRuns::solution(std::string& why, doubl
   }
   if (second.empty()) {
     std::sort(reached.rbegin(), reached.rend());
-    why = fmt::format("no two solvers come to the end at a tight tolerance in {} steps", request_.steps_limit);
+    why = fmt::format("no two solvers reach the end with a tight tolerance in {} steps", request_.steps_limit);
     next_span = reached.size() > 1 ? shorter * std::min(1.0, reached[1]) * span : 0;
     return std::nullopt;
   }
   next_span = shorter * span;
   if (!condition(reference)) {
-    why = late_ ? by_the_clock : "a start that is a little disturbed does not come to the end";
+    why = late_ ? by_the_clock : "a slightly disturbed start does not reach the end";
     if (late_) next_span = 0;
     return std::nullopt;
   }
@@ -95,7 +95,7 @@ std::optional<ReferenceSolution> ReferenceRuns::solution(std::string& why, doubl
     reference.samples.insert(reference.samples.begin(), {scene_.t0, start.initial_state(), start.contact_mode()});
     return reference;
   }
-  why = fmt::format("disturbances of the start grow by a factor of {:.1e}, and the end is known to {:.1e}",
+  why = fmt::format("disturbances of the start grow by a factor of {:.1e}, and the uncertainty of the end is {:.1e}",
                     reference.growth, reference.uncertainty);
   return std::nullopt;
 }

@@ -83,7 +83,7 @@ TEST_CASE("names that are not there: the nearest one is told") {
        "did you mean 'multipliers'? choose from: auto, multipliers, nullspace, chaplygin"},
       {{"emit", P2, "-o", "out", "--form", "routh"}, "there is no form 'routh'", "choose from: auto"},
       {{"emit", P2, "-o", "out", "--form", "nullspace"},
-       "form 'nullspace' is one of constraints that keep multipliers, and this model has none",
+       "form 'nullspace' needs constraints that keep multipliers, and this model has none",
        "leave --form out"},
       {{"derive", P2, "--show", "equatons"}, "there is nothing called 'equatons' to show", "did you mean 'equations'?"},
       {{"derive", P2, "--format", "tex"}, "there is no format 'tex'", "did you mean 'text'?"},

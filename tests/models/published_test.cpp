@@ -203,8 +203,8 @@ TEST_CASE("published: bench tells that explicit solvers are inefficient for the 
   };
   const std::string stiff = bench::advice({row("dop853", 40000), row("taylor", 69000), row("radau5", 128)});
   CHECK(stiff.ends_with(
-      "The motion is stiff: explicit solvers are inefficient, stability asks of them for 40000 steps and "
-      "more (dop853), where radau5 takes 128."));
+      "The motion is stiff and explicit solvers are inefficient: stability requires at least 40000 steps of them "
+      "(dop853), while radau5 takes 128."));
   CHECK(bench::advice({row("dop853", 120), row("radau5", 128)}).find("stiff") == std::string::npos);
 }
 
