@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one error of the whole program: which stage, where in the user's file, what is wrong, what to do.
+// The error type of the whole program: stage, place in the user's file, message and remedy.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace eomgen {
 
-/// A place in a user's file; line and column count from 1, 0 where there is none. `text` is the whole source line.
+/// A place in a user's file. Line and column count from 1; 0 means unknown. `text` is the whole source line.
 struct Where {
   std::string file;
   std::uint32_t line = 0;
@@ -17,12 +17,12 @@ struct Where {
   std::string text;
 };
 
-/// What kind of failure; it decides the exit code (docs/commands.md).
+/// The kind of a failure. It determines the exit code (docs/commands.md).
 enum class Fault {
   input,      ///< exit 2: the model file or the command line is wrong
-  check,      ///< exit 1: a check came out negative
+  check,      ///< exit 1: a check failed
   numerical,  ///< exit 3: a run failed numerically
-  tool,       ///< exit 4: a tool that is needed is missing or failed
+  tool,       ///< exit 4: a required tool is missing or failed
 };
 
 class Error : public std::exception {
@@ -48,7 +48,7 @@ class Error : public std::exception {
   std::string report_;
 };
 
-/// The same layout for a warning, which does not stop anything.
+/// A warning. format_warning uses the layout of Error::what; the program continues.
 struct Warning {
   Where where;
   std::string message;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What long calculations owe to those who wait for them: they end when they are asked to, have budgets counted in
-// operations, and say what they do. The request and the name of what is under way are one for the process, as the
-// signal and the terminal are; budgets belong to the thread that calculates. Hot loops call `spend`, which is a
-// subtraction.
+// Cancellation, operation budgets and progress of long calculations. The stop request and the name of the current
+// stage are global to the process, like the signal and the terminal. Budgets belong to the calculating thread. Hot
+// loops call work::spend, which costs one subtraction.
 #pragma once
 
 #include <atomic>
@@ -13,25 +12,25 @@
 
 namespace eomgen::work {
 
-/// Thrown by `spend` after a request to stop. It is no std::exception: what recovers from a failure lets it pass.
+/// Thrown by work::spend after a request to stop. It is not a std::exception, so that error recovery does not catch it.
 struct Interrupted {};
 
-/// What is left out of an answer, and why: "acceleration of roll.1", "too many terms to be written out".
+/// A result that is not computed, and the reason: "acceleration of roll.1", "too many terms to be written out".
 struct LeftOut {
   std::string what, why;
   bool over_budget = true;  // false: it does not apply
 };
 
-/// Thrown by `spend` where a budget is used up.
+/// Thrown by work::spend when a budget is exhausted.
 struct OverBudget : std::length_error {
   using std::length_error::length_error;
 };
 
-/// Safe in a signal handler.
+/// Requests the process to stop. Safe in a signal handler.
 void request_stop() noexcept;
 
-/// While one exists, a request to stop is seen to by whoever made it: `spend` does not throw for it, and no progress is
-/// shown.
+/// Defers interruption while it exists: the owner handles a request to stop, work::spend does not throw for it, and no
+/// progress is shown.
 class Kept {
  public:
   Kept() noexcept;
@@ -39,20 +38,21 @@ class Kept {
   Kept(const Kept&) = delete;
   Kept& operator=(const Kept&) = delete;
 };
-/// Whether what is under way has to be left: a stop was requested, and nothing is kept.
+/// Whether the current work must end: a stop was requested, and no object defers it.
 bool abandoned() noexcept;
 
-/// Who called for what this thread does, while one exists: is told what begins and what to know beside the result, and
-/// may ask for an end as request_stop does for the process. Listeners within listeners are in place of these.
+/// Receives the stages and warnings of the work of this thread while it exists. It may request a stop of this work, as
+/// request_stop does for the process. A nested listener replaces the outer one.
 class Listener {
  public:
-  /// `stop` becomes true where what is under way is to end.
+  /// The work ends once `stop` is true; null: it ends only by request_stop.
   explicit Listener(const std::atomic<bool>* stop = nullptr) noexcept;
   virtual ~Listener();
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
+  /// Called at the start of each stage.
   virtual void begins(const char* stage);
-  /// A warning as format_warning gives it.
+  /// Called with each warning, as formatted by format_warning.
   virtual void warns(const std::string& text);
 
  private:
@@ -61,17 +61,19 @@ class Listener {
   const std::atomic<bool>* stop_;
   Listener* around_;
 };
-/// To the listener of this thread; lost where there is none.
+/// Sends a warning to the listener of this thread; without a listener it is discarded.
 void warn(const std::string& text);
-/// What is true once an end was asked for: of the listener where it has one, or else of the process.
+/// The flag that is true once a stop was requested: that of the listener if it has one, else that of the process.
 const std::atomic<bool>& stop_flag() noexcept;
 
-/// Counts operations of some ten nanoseconds to a microsecond. Throws Interrupted, OverBudget.
+/// Subtracts operations from the current budget; one operation takes between ten nanoseconds and a microsecond.
+/// Throws Interrupted, OverBudget.
 void spend(std::size_t operations);
-/// Throws Interrupted.
+/// Throws Interrupted after a request to stop.
 void check();
 
-/// While one exists, `operations` may be spent, or what is left of the budget around it; the same on every machine.
+/// Limits the operations of this thread while it exists: to `operations`, or to the rest of the enclosing budget if
+/// that is less. The count is the same on every machine.
 class Budget {
  public:
   explicit Budget(std::size_t operations);
@@ -83,7 +85,7 @@ class Budget {
   std::size_t around_, given_;
 };
 
-/// While one exists, this is what the process says it does. Stages within stages are told in place of these.
+/// Names the current stage of the process while it exists. A nested stage replaces the outer one.
 class Stage {
  public:
   explicit Stage(const char* name);
@@ -94,11 +96,11 @@ class Stage {
  private:
   const char* around_;
 };
-/// The innermost; nullptr where none is under way.
+/// The name of the innermost stage; nullptr outside of stages.
 const char* stage() noexcept;
 
-/// A line on a terminal that the next one replaces; the end of the outermost stage clears it. Nothing is shown outside
-/// of stages, nor while anything is kept.
+/// Shows a progress line on a terminal, in place of the previous one. The end of the outermost stage clears it. Nothing
+/// is shown outside of stages, or while interruption is deferred.
 void show_line(const char* text);
 void clear_line() noexcept;
 

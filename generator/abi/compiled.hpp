@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled functions of the table (functions.hpp): their types, and calls by name.
+// The functions of the table (functions.hpp) as function pointers: their types, and calls by name.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace eomgen::abi {
 
-/// What compiled functions are called with; what one does not take is not read.
+/// The arguments of a compiled function. A function reads only those that it takes.
 struct Given {
   double t = 0;
   const double *x = nullptr, *p = nullptr, *w = nullptr, *u = nullptr;
@@ -53,11 +53,11 @@ struct Takes {
       -> int (*)(decltype(handed<inputs>(Given{}))..., decltype(std::get<result>(Given{}.results) + 0)...);
 };
 
-/// The type of a function that takes so and gives that many arrays.
+/// The pointer type of a function with these inputs and this number of result arrays.
 template <class Inputs, std::size_t results>
 using Pointer = decltype(Inputs::pointer(std::make_index_sequence<results>{}));
 
-/// All functions of the table: null where code lacks them.
+/// Pointers to all functions of the table; null if the code lacks a function.
 struct Compiled {
 #define TAKES(...) Takes<__VA_ARGS__>
 #define GIVES(...) count({__VA_ARGS__})
@@ -66,7 +66,7 @@ struct Compiled {
 #include "abi/functions.inc"
 #undef ABI_FUNCTION
 
-  /// Calls visit(name, pointer) for each, with a reference to the pointer.
+  /// Calls visit(name, pointer) for each function, with a reference to the pointer.
   template <class Visit>
   void each(Visit&& visit) {
 #define ABI_FUNCTION(name, takes, gives, comes, purpose) visit(#name, name);
@@ -82,7 +82,7 @@ struct Compiled {
     return false;
   }
 
-  /// The code that the function of this name returns; it must be there.
+  /// Calls the function of this name, which must not be null, and returns its code.
   int call(std::string_view function, const Given& given) const {
 #define ABI_FUNCTION(name, takes, gives, comes, purpose) \
   if (function == #name) return takes::call(name, given, std::make_index_sequence<gives>{});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The functions of emitted code (docs/abi.md) as one table: their signatures, headers, documentation and templates are
-// made of it or held against it, compiled code is loaded and called by it.
+// The table of the functions of emitted code (docs/abi.md). Signatures, headers, documentation and templates are
+// generated from it or checked against it; compiled code is loaded and called by it.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace eomgen::abi {
 
-/// What a function takes. The name of the argument: t, x, p, w, u, mode, order, to.
+/// An input of a function. The argument names are t, x, p, w, u, mode, order, to.
 enum class Input : std::uint8_t { time, state, parameters, prepared, inputs, mode, order, to };
 const char* name(Input input);
 
-/// With what a function comes.
+/// When a function is emitted.
 enum class Comes : std::uint8_t {
   always,
-  where_it_saves,  // where something is worth computing once
+  where_it_saves,  // if some part is worth computing only once
   with,            // emit --with NAME
   with_outputs,    // emit --output NAMES, or --with outputs
   with_charts      // emit --with charts
@@ -26,7 +26,7 @@ enum class Comes : std::uint8_t {
 /// An array that a function writes.
 struct Result {
   const char* name;
-  bool may_be_null = false;  // it is left out then
+  bool may_be_null = false;  // null: it is not computed
 };
 
 struct Function {
@@ -41,13 +41,13 @@ struct Function {
 
 const std::vector<Function>& functions();
 
-/// Of this name, or none.
+/// The function of this name, or nullptr.
 const Function* find(std::string_view name);
 
-/// Names of those that are asked for: --with NAME.
+/// Names of the functions that are emitted on request: --with NAME.
 std::vector<std::string> asked_for();
 
-/// "int NAME_rhs(double t, const double* x, ...)", as docs/abi.md has it.
+/// The prototype as printed in docs/abi.md: "int NAME_rhs(double t, const double* x, ...)".
 std::string prototype(const Function& function, const std::string& name);
 
 }  // namespace eomgen::abi

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curvilinear coordinate systems as data: a system is one file with one of these and one line in registry.cpp.
-// The expressions are in the language of model files, over the slot names (and the system's own constants); the model
-// reader spells a position out with them, so that nothing downstream knows a coordinate system by name.
+// Curvilinear coordinate systems as data: a system is one file that defines a CoordinateSystem, and one line in
+// registry.cpp. The expressions are in the model language, in terms of the slot names and the system's own constant.
+// The model reader expands positions with them, so that no later stage depends on a coordinate system.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct Slot {
   std::string_view upper;
 };
 
-/// A further key of the position ("pitch", "angle"), which the expressions use; no name if there is none.
+/// An additional key of the position ("pitch", "angle") that the expressions use; an empty name if there is none.
 struct Constant {
   std::string_view name;
   std::string_view unit;
@@ -29,8 +29,8 @@ struct CoordinateSystem {
   std::array<Slot, 3> slots;
   std::array<std::string_view, 3> x;                 // Cartesian components, eq. (1.16)
   std::array<std::array<std::string_view, 3>, 3> e;  // unit vectors along a_i; empty strings: normalise a_i
-  std::string_view singular;                         // where det(a_ik) = 0, for reading
-  bool planar;                                       // two entries allowed, the third is 0
+  std::string_view singular;                         // where det(a_ik) = 0, as text
+  bool planar;                                       // two entries suffice, the third is then 0
   Constant constant;
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Couplings of two rotations as data: a kind of [[constraint]] that is one file with a function that makes one of
-// these, and one line in registry.inc. The formulas are in the language of model files; the model reader spells them
-// out as a constraint on velocities, so that nothing downstream knows a coupling by name.
+// Couplings of two rotations as data: a kind of [[constraint]] is one file with a function that returns a Coupling, and
+// one line in registry.inc. The formulas are in the model language. The model reader expands them into a constraint on
+// velocities, so that no later stage depends on a kind of coupling.
 //
-// Names in the formulas: ratio; wA, wB the angular velocities of the bodies against the carrier, a and b the unit
-// vectors of their axes; or angle1 and angle2.
+// Names in the formulas: ratio; for bodies wA and wB, the angular velocities relative to the carrier, with the unit
+// vectors a and b of their axes; for angles angle1 and angle2.
 #pragma once
 
 #include <span>
@@ -14,9 +14,9 @@
 namespace eomgen::couplings {
 
 struct Coupling {
-  std::string name;  // KIND = { .. } of a [[constraint]]: unique
+  std::string name;  // unique; the key of a [[constraint]]: KIND = { .. }
   std::string title;
-  std::string of_bodies, of_angles;  // what is 0; the multiplier is the moment on the first
+  std::string of_bodies, of_angles;  // left-hand sides of "= 0"; the multiplier is the moment on the first body
 };
 
 std::span<const Coupling> registry();

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kinds of forces as data: a kind is one file with a function that makes one of these, and one line in registry.inc.
-// It says which keys a force of this kind has in a model file, and what it does, as formulas in the language of model
-// files. The model reader checks the keys and spells the formulas out (model/spell_forces.cpp), so that nothing
-// downstream knows a force by name. The judge states each kind on its own, from what the author wrote
-// (verify/forces/).
+// Kinds of forces as data: a kind is one file with a function that returns a Kind, and one line in registry.inc. A Kind
+// lists the keys of the force in a model file, and its effects as formulas in the model language. The model reader
+// checks the keys and expands the formulas (model/spell_forces.cpp), so that no later stage depends on a kind of force.
+// The oracle has its own statement of each kind, in terms of the keys that the author wrote (verify/forces/).
 //
-// Names in the formulas: the keys; of `ends` a and b; of `bodies` fA and fB with their axes A1 A2 A3 and B1 B2 B3 and
-// their angular velocities wA and wB (E1 E2 E3 and 0 of the ground); of `points` rA and rB; of `body` its mass m, the
-// position r of its centre of mass and its angular velocity w; of `triple` its entries with 1, 2, 3 behind the key; of
-// terms over several masses those of Over.
+// Names in the formulas: the keys. In addition: for `ends` a and b; for `bodies` fA and fB with their axes A1 A2 A3 and
+// B1 B2 B3 and their angular velocities wA and wB (for the ground E1 E2 E3 and 0); for `points` rA and rB; for `body`
+// its mass m, the position r of its centre of mass and its angular velocity w; for `triple` the key followed by 1, 2,
+// 3; for terms over several masses the names of the enum below (once, masses, pairs, bodies).
 #pragma once
 
 #include <span>
@@ -22,40 +21,40 @@ enum class Asks {
   scalar,
   vector,
   triple,  // an array of three scalars
-  point,   // a place by its name, or a vector
-  points,  // two of them
-  ends,    // two of them that are not the same, in space: between = [P, Q]
-  place,   // a particle or point by its name
-  frame,   // a body or frame, which the ground is not
+  point,   // the name of a place, or a vector
+  points,  // two points
+  ends,    // two different points: between = [P, Q]
+  place,   // the name of a particle or point
+  frame,   // a body or frame, not the ground
   body,    // a body with mass
-  bodies,  // two bodies or frames, or the ground and one
-  energy,  // a scalar of `extension`
+  bodies,  // two bodies or frames, or one and the ground
+  energy,  // a scalar function of `extension`
   choice,  // one of Key::choices
 };
 
-/// What a value may depend on, beside parameters.
-enum class On { time, motion, state };  // t; and coordinates; and velocities and inputs
+/// The variables that a value may depend on, besides parameters. Each entry includes the previous ones.
+enum class On { time, motion, state };  // t; coordinates; velocities and inputs
 
 struct Choice {
   std::string text;
-  std::string of_bodies;  // what it does with bodies, where it needs some: "acts on what a [[body]] has of inertia"
+  std::string of_bodies;  // if it needs bodies: the reason, "acts on what a [[body]] has of inertia"
 };
 
 struct Key {
   std::string name;
   Asks asks = Asks::scalar;
-  std::string unit = {};  // asked; empty: any
+  std::string unit = {};  // required; empty: any
   On on = On::time;
   bool optional = false;
-  std::string fallback = {};  // formula where it is left out and optional; empty: it has no value then
-  std::string with = {};      // the fallback is for where this other key is given
-  std::string unless = {};    // needed where this other key is not given
+  std::string fallback = {};  // default formula of an optional key; empty: no value
+  std::string with = {};      // the default applies only if this other key is given
+  std::string unless = {};    // required only if this other key is not given
   std::string what = {};      // in messages: "gravity"; empty: "the KEY of FORCE"
-  std::string remedy = {};    // where it is missing or made of what it may not depend on
+  std::string remedy = {};    // if it is missing or depends on a forbidden variable
   std::vector<Choice> choices = {};
 };
 
-/// What must hold of keys together. Messages follow the name of the force: "'f' has both a stiffness and an energy".
+/// A condition on two keys. Messages follow the name of the force: "'f' has both a stiffness and an energy".
 struct Rule {
   enum class Asks { not_both, one_of, needs };  // not both; at least one; the first needs the second
   Asks asks = Asks::not_both;
@@ -63,11 +62,13 @@ struct Rule {
   std::string what, remedy;
 };
 
-enum class Over { once, masses, pairs, bodies };  // once; m, r; m1, r1, m2, r2; m, r, d = arm, dJd = d . J d, trJ
+/// The objects over which a term is summed, and the names that its formula may use:
+/// once: none; masses: m, r; pairs: m1, r1, m2, r2; bodies: m, r, d = arm, dJd = d . J d, trJ = trace of J.
+enum class Over { once, masses, pairs, bodies };
 
-/// What the formula is.
+/// The meaning of the formula of a term.
 enum class Acts {
-  acceleration,  // vector: of every mass
+  acceleration,  // vector: an acceleration of every mass
   potential,     // scalar: a potential energy
   force,         // vector: at the point `at`
   moment,        // vector: on the frame that the key `at` names, or on fA, fB of `bodies`
@@ -75,7 +76,7 @@ enum class Acts {
   damping,       // scalar: coefficient of a damper between the ends a and b
 };
 
-/// Where a term is there; of a key that is left out and has a fallback, what counts as written is the fallback.
+/// A condition on a key. An omitted key with a default counts as given with this default.
 enum class Is { given, left_out, zero, not_zero, chosen };
 struct When {
   Is is = Is::given;
@@ -87,32 +88,33 @@ struct Term {
   Acts acts = Acts::potential;
   std::string formula;
   std::string at = {};
-  std::vector<When> when = {};  // all of them
-  std::string extension = {};   // what `extension` stands for in the formula
+  std::vector<When> when = {};  // the term applies if all of them hold
+  std::string extension = {};   // the formula for which `extension` stands
   Over over = Over::once;
   std::string arm = {};  // of Over::bodies
 };
 
+/// How a force of this kind is written in a model file.
 enum class Form {
   table,       // KIND = { key = value, .. }
-  value,       // KIND = value, with the other keys beside it
+  value,       // KIND = value, with the other keys in the same table
   components,  // KIND = { coordinate = force, .. }
   friction,    // KIND = { coordinate, normal, and the law of friction }
 };
 
-/// Between two points among the keys' names; none where they are empty.
+/// A symbol drawn between the points of two keys; empty names: none.
 struct Line {
   std::string from, to;
 };
 
 struct Kind {
-  std::string name;   // KIND of a model file: unique
+  std::string name;   // unique; the key KIND of a model file
   std::string title;  // for lists
   Form form = Form::table;
   std::vector<Key> keys = {};
   std::vector<Rule> rules = {};
   std::vector<Term> terms = {};
-  Line spring = {}, damper = {};  // that `report` draws
+  Line spring = {}, damper = {};  // drawn by `report`
 };
 
 std::span<const Kind> registry();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kinds of joints, and the equations of which they are made.
+// The kinds of joints, and the equations from which they are composed.
 #pragma once
 
 #include "joints/joint.hpp"
@@ -14,11 +14,11 @@ Joint universal();
 Joint fixed();
 
 std::vector<Equation> same_point();   // r_B = r_A, eq. (7.16)
-std::vector<Equation> on_the_axis();  // r_B on the axis through r_A
-std::vector<Equation> same_axis();    // the two that a pin adds, eq. (7.18)
+std::vector<Equation> on_the_axis();  // r_B is on the axis through r_A
+std::vector<Equation> same_axis();    // the axes are parallel: the two equations that a pin adds, eq. (7.18)
 Equation no_turn_about_the_axis();
 
-/// All equations of several groups, in their order.
+/// Concatenates groups of equations.
 std::vector<Equation> together(std::vector<std::vector<Equation>> groups);
 
 }  // namespace eomgen::joints

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decompositions of matrices in binary64. They are Eigen's, compiled here once: each takes the compiler seconds.
+// Matrix decompositions in binary64. They are Eigen's, compiled only here because each takes the compiler seconds.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,21 +7,21 @@
 
 namespace eomgen::numeric {
 
-/// The shortest x of those for which |A x - b| is least, and the rank of A.
+/// The minimum-norm solution x of min |A x - b|, and the rank of A.
 struct LeastSquares {
   Eigen::VectorXd x;
   Eigen::Index rank = 0;
 };
 
-/// Pivots up to `threshold` of the largest count as 0; without one those that roundings may leave.
+/// Solves min |A x - b|. A pivot counts as 0 up to `threshold` times the largest; by default, up to the rounding error.
 LeastSquares least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold = {});
 
-/// By the same pivots.
+/// The rank, with the same criterion for pivots as least_squares.
 Eigen::Index rank(const Eigen::MatrixXd& A, double threshold);
 
-/// In Eigen's order.
+/// Eigenvalues in Eigen's order.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
-/// Ascending; of the lower triangle.
+/// Eigenvalues of a symmetric matrix, ascending. Only the lower triangle is read.
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& A);
 
 }  // namespace eomgen::numeric

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gauss' elimination of numbers of any kind: in binary64, where many points are tried, in many digits, where something
-// is decided, and exactly. The judge has one of its own (verify/linear_solve.hpp); expressions are eliminated by
-// symbolic/factorisation.hpp and program/elimination.hpp, whose order of operations becomes code.
+// Gaussian elimination for any number type: binary64 for trials at many points, many digits for decisions, and exact
+// rationals. The oracle has its own (verify/linear_solve.hpp). symbolic/factorisation.hpp and program/elimination.hpp
+// eliminate expressions; their order of operations becomes code.
 #pragma once
 
 #include <algorithm>
@@ -13,32 +13,32 @@
 
 namespace eomgen::numeric {
 
-/// Where pivots are looked for: among all entries that are left, or on the diagonal (of matrices that are positive
-/// semidefinite).
+/// The pivot search: over all remaining entries, or on the diagonal (for positive semidefinite matrices).
 enum class Pivots { complete, diagonal };
 
-/// A = L U of a matrix of any shape, as far as its rank; zeros cost nothing.
+/// A = L U of a matrix of any shape, up to its rank. Zero entries are skipped.
 template <class T>
 class Elimination {
  public:
-  /// Rows and then columns are scaled to a largest entry of 1, pivots are complete. Pivots up to `cutoff` count as 0;
-  /// so do rows up to `floor` of the largest row, and columns of scaled rows up to `floor`.
+  /// With complete pivoting, after scaling first the rows and then the columns to a largest entry of 1. Values up to
+  /// `cutoff` are not accepted as pivots. Rows up to `floor` times the largest row count as 0, and so do columns up to
+  /// `floor` after the rows are scaled.
   Elimination(Matrix<T> A, const T& cutoff, const T& floor = T(0)) : Elimination(std::move(A), Pivots::complete) {
     scale(floor);
     reduce(cutoff);
   }
-  /// Of the matrix as it is. Diagonal pivots need a square matrix.
+  /// Without scaling. Diagonal pivoting requires a square matrix.
   Elimination(Matrix<T> A, const T& cutoff, Pivots pivots) : Elimination(std::move(A), pivots) { reduce(cutoff); }
 
   std::size_t rank() const { return rank_; }
-  /// The last pivot that counts, the first being 1 or so; 1 where there is none.
+  /// The last accepted pivot, relative to a first one of about 1; 1 if there is none.
   T smallest_pivot() const { return rank_ == 0 ? T(1) : magnitude(at(rank_ - 1, rank_ - 1)); }
-  /// Columns whose pivots count, in the order of their choice.
+  /// Columns of the accepted pivots, in the order of elimination.
   std::vector<std::size_t> pivot_columns() const {
     return {col_.begin(), col_.begin() + static_cast<std::ptrdiff_t>(rank_)};
   }
 
-  /// A X = B with the rows of the pivots; unknowns without a pivot are 0. Other rows hold if the system has a solution.
+  /// Solves the pivot rows of A X = B; unknowns without a pivot are 0. The other rows hold if the system is consistent.
   Matrix<T> solve(const Matrix<T>& B) const {
     Matrix<T> X(a_.cols, B.cols);
     for (std::size_t c = 0; c < B.cols; ++c) {
@@ -54,7 +54,7 @@ class Elimination {
     return X;
   }
 
-  /// Columns that span {x: A x = 0}.
+  /// A matrix whose columns span {x: A x = 0}.
   Matrix<T> null_space() const {
     Matrix<T> N(a_.cols, a_.cols - rank_);
     for (std::size_t c = rank_; c < a_.cols; ++c) {
@@ -140,7 +140,7 @@ class Elimination {
     return true;
   }
 
-  /// Of a row, from a column on.
+  /// The largest magnitude in row i from column `from` on.
   T largest_in(std::size_t i, std::size_t from) const {
     T largest(0);
     for (std::size_t j = from; j < a_.cols; ++j) {
@@ -164,7 +164,7 @@ class Elimination {
   Matrix<T> a_;
   std::vector<std::size_t> row_, col_;
   std::vector<T> row_scale_, column_scale_;
-  std::vector<T> largest_;  // of what is left of each row: it changes with the row alone
+  std::vector<T> largest_;  // per row: largest remaining magnitude; only elimination in this row changes it
   Pivots pivots_;
   std::size_t rank_ = 0;
 };

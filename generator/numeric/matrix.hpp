@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small dense matrices over numbers of any kind.
+// Small dense matrices over any number type.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace eomgen::numeric {
 
-/// rows x cols, by rows.
+/// A rows x cols matrix, row-major.
 template <class T>
 struct Matrix {
   std::size_t rows = 0, cols = 0;
@@ -61,7 +61,7 @@ Matrix<T> columns_of(const Matrix<T>& A, const std::vector<std::size_t>& which) 
   return B;
 }
 
-/// B below A.
+/// A with the rows of B appended.
 template <class T>
 Matrix<T> stacked(Matrix<T> A, const Matrix<T>& B) {
   if (A.cols == 0) A.cols = B.cols;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What formulas ask of numbers of any kind: binary64, CLN's floats of any number of digits, exact rationals.
+// Operations that templates need for every number type: binary64, CLN's floats of any precision, exact rationals.
 #pragma once
 
 #include <cln/dfloat.h>
@@ -19,8 +19,8 @@ inline bool is_zero(double x) { return x == 0; }
 inline bool is_zero(const cln::cl_R& x) { return cln::zerop(x); }
 inline bool is_zero(const cln::cl_RA& x) { return cln::zerop(x); }
 
-/// What a binary64 is, exactly; of subnormal ones too, which CLN does not convert. CLN computes a float of binary64
-/// with one of many digits in binary64, so numbers enter as rationals.
+/// The exact rational value of a binary64 number. CLN does not convert subnormal numbers; this does. CLN combines a
+/// binary64 float and a float of many digits in binary64, so numbers enter as rationals.
 inline cln::cl_RA exact(double x) {
   if (x == 0) return 0;
   if (std::abs(x) >= std::numeric_limits<double>::min()) return cln::rational(cln::cl_DF(x));

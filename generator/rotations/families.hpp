@@ -6,13 +6,13 @@
 
 namespace eomgen::rotations {
 
-/// Three angles n1, n2, n3 about the axes i, j, k (1 to 3) that the rotations before have made, eqs. (5.57)-(5.59).
+/// Euler angles n1, n2, n3 about the axes i, j, k (1 to 3), each of the already rotated triad, eqs. (5.57)-(5.59).
 Rotation euler(int i, int j, int k);
-/// One angle about an axis r1, r2, r3 (components of a unit vector along the parent's axes), eq. (5.32).
+/// One angle about a fixed axis with unit vector r1, r2, r3 (components along the parent's axes), eq. (5.32).
 Rotation fixed_axis();
-/// e0 = cos(p/2), (e1, e2, e3) = sin(p/2) r, eq. (5.53).
+/// Euler parameters e0 = cos(p/2), (e1, e2, e3) = sin(p/2) r, eq. (5.53).
 Rotation euler_parameters();
-/// tan(p/2) r, eq. (5.47).
+/// Rodrigues parameters tan(p/2) r, eq. (5.47).
 Rotation rodrigues();
 Rotation fixed();
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Integrals that can be seen: of sums of terms c u^n u' (with u a part of the term), of powers times such terms by
-// parts, of even powers of sines and cosines. What is found is differentiated again and proven; the rest is not found.
+// Elementary integration: sums of terms c u^n u' (with u a part of the term), powers times such terms by parts, and
+// even powers of sines and cosines. A result is returned only if its derivative is proven to be the integrand.
 #pragma once
 
 #include <optional>
@@ -9,19 +9,19 @@
 
 namespace eomgen::symbolic {
 
-/// Of c u'/u: c log u, or c log(u^2)/2, which has a value where u is negative too.
+/// The integral of c u'/u: c log u, or c log(u^2)/2, which is also defined for negative u.
 enum class Logarithms { positive, any_sign };
 
-/// F with dF/dx = e, proven; nothing where none was found.
+/// F with dF/dx = e, proven; nothing if none was found.
 std::optional<Ref> antiderivative(Dag& dag, Ref e, Symbol x, Logarithms logarithms = Logarithms::positive);
 
-/// An expression of which it is proven that it does not depend on `x`, written without it: simplified, or its value at
-/// some x. Nothing where neither works.
+/// Rewrites an expression that is proven to be independent of `x` without it: simplified, or evaluated at some x.
+/// Nothing if neither works.
 std::optional<Ref> without(Dag& dag, Ref expression, Symbol x);
 
 bool depends_on(const Dag& dag, Ref expression, Symbol x);
 
-/// A term of a sum as base^exponent factors; a constant factor is a base with exponent 1.
+/// The factors base^exponent of a term; a constant factor is a base with exponent 1.
 std::vector<std::pair<Ref, long>> factors_of(Dag& dag, Ref term);
 /// The terms of nested sums and differences.
 std::vector<Ref> terms_of(Dag& dag, Ref sum);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every operation of the graph is, in numbers: in binary64, or with CLN at any number of digits. Expressions,
-// programs, slopes and signals are all evaluated by it.
+// The numerical value of every operation of the graph: in binary64, or with CLN at any precision. Expressions,
+// programs, derivatives and signals are evaluated with it.
 #pragma once
 
 #include <cln/float.h>
@@ -15,8 +15,8 @@
 
 namespace eomgen::symbolic {
 
-/// CLN floats of one format; exact rationals enter as such and are rounded once. Throws std::domain_error where a
-/// function leaves its real domain or a division is by zero.
+/// Arithmetic with CLN floats of one format. Exact rationals are rounded once. Throws std::domain_error outside the
+/// real domain of a function and for a division by zero.
 struct Precise {
   using Number = cln::cl_R;
   cln::float_format_t format;
@@ -57,7 +57,7 @@ struct Precise {
       default: throw std::logic_error("not a function of one argument");
     }
   }
-  /// 0 beyond the exponents that CLN's floats have.
+  /// 0 if the result is below the exponent range of CLN's floats.
   static cln::cl_R exp(const cln::cl_F& x) {
     static const cln::cl_I faintest = -cln::expt_pos(cln::cl_I(10), 18);
     if (x < faintest) return 0;
@@ -75,7 +75,7 @@ struct Precise {
   static bool less(const cln::cl_R& a, const cln::cl_R& b) { return a < b; }
 };
 
-/// Not-a-number or infinite where there is no value.
+/// Arithmetic in binary64. The result is NaN or infinite if there is no value.
 struct Binary64 {
   using Number = double;
   static double round(double x) { return x; }
@@ -89,8 +89,8 @@ struct Binary64 {
   static bool less(double a, double b) { return a < b; }
 };
 
-/// The value of an operation that is no leaf, of operands arg(0), arg(1), ... of the type Arithmetic::Number;
-/// `exponent` is that of Op::power.
+/// The value of an operation (not a leaf) for the operands arg(0), arg(1), ... of type Arithmetic::Number. `exponent`
+/// belongs to Op::power.
 template <class Arithmetic, class Argument>
 typename Arithmetic::Number value_of(Op op, long exponent, const Argument& arg, const Arithmetic& number) {
   switch (op) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Differentiation and substitution on the Dag: forward, memoised, iterative (depth is no stack).
+// Differentiation and substitution on the Dag: forward, memoised and iterative (no recursion).
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace eomgen::symbolic {
 
-/// d/ds along seeds: symbol -> d(symbol)/ds. Symbols without a seed are constant.
+/// The derivative d/ds for given seeds: symbol -> d(symbol)/ds. Symbols without a seed are constant.
 class Derivation {
  public:
   Derivation(Dag& dag, std::map<Symbol, Ref> seeds) : dag_(dag), seeds_(std::move(seeds)) {}
@@ -27,16 +27,17 @@ class Derivation {
 Derivation partial(Dag& dag, Symbol symbol);
 
 /// Total time derivative: t -> 1, q -> qdot -> qddot, f -> f' for functions of time, integrals -> their integrands.
-/// Third derivatives of coordinates do not exist here; `freeze_acceleration` seeds qdot with 0 in place of qddot (for
-/// bias terms).
+/// Third derivatives of coordinates do not exist. `freeze_acceleration` seeds qdot with 0 instead of qddot (for bias
+/// terms).
 Derivation total_time(Dag& dag, std::size_t coordinates, std::size_t functions, bool freeze_acceleration = false);
 
 /// Partial time derivative at fixed coordinates and velocities: t -> 1, f -> f'.
 Derivation explicit_time(Dag& dag, std::size_t functions);
 
-/// A node of the same operation with other operands (no leaf).
+/// A node with the same operation (not a leaf) and other operands.
 Ref rebuilt(Dag& dag, const Node& node, const std::array<Ref, 4>& operands);
 
+/// Replaces symbols by expressions.
 class Substitution {
  public:
   Substitution(Dag& dag, std::map<Symbol, Ref> values) : dag_(dag), values_(std::move(values)) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fast form's expressions: one arena of hash-consed nodes per model. Equal expressions have equal ids, so sharing
-// is free and derivatives are memoised. Ids are in creation order and nothing iterates over hashes or pointers: the
-// same calls give the same ids in every process.
+// Expressions of the compiled form: one arena of hash-consed nodes per model. Equal expressions have equal ids, so
+// common subexpressions are shared and derivatives are memoised. Ids are in creation order, and nothing iterates over
+// hashes or pointers: the same calls give the same ids in every process.
 //
 // Rules applied at construction: constant folding (exact), zero and one, commutative order by id, sign pulling
 // (-a*b -> -(a*b), -a-b -> -(a+b), b-a -> -(a-b) with the smaller id first, sin(-x) -> -sin x, ...).
@@ -23,8 +23,8 @@ namespace eomgen::symbolic {
 
 using Rational = cln::cl_RA;
 
-/// The leaves, then the operations of expressions that a run evaluates, in their order. power: args[0] to the integer
-/// payload (>= 2; negative powers are 1/x^n as div).
+/// The leaves, followed by the operations of the runtime in the same order. power: args[0] to the integer payload (>=
+/// 2; negative powers are 1/x^n with div).
 enum class Op : std::uint8_t {
   constant,  // payload: index into the constants
   pi,
@@ -32,12 +32,14 @@ enum class Op : std::uint8_t {
   EOM_OPERATIONS(EOM_OPERATION_ENUMERATOR)
 };
 
-/// The same operation there. Not for leaves: constants, pi and symbols are numbers, variables or parameters there.
+/// The same operation of the runtime. Not for leaves: constants, pi and symbols are numbers, variables or parameters
+/// there.
 constexpr eom::expressions::Op runtime_op(Op op) { return static_cast<eom::expressions::Op>(op); }
 constexpr Op function_at(eom::expressions::Op op) { return static_cast<Op>(op); }
 static_assert(runtime_op(Op::add) == eom::expressions::Op::add, "as many leaves here as there");
 
-/// The value or the slope jumps where the operands say so: another expression on either side of that surface.
+/// Whether the value or the derivative is discontinuous on a surface given by the operands, with a different expression
+/// on either side.
 constexpr bool is_kink(Op op) { return eom::expressions::is_kink(runtime_op(op)); }
 
 enum class SymbolKind : std::uint8_t {
@@ -48,10 +50,10 @@ enum class SymbolKind : std::uint8_t {
   input,
   multiplier,  // lambda of Mechanics::constraints[index]
   friction,    // phi of a tangent of Mechanics::contacts: a component of a friction force
-  contact,     // of the mode: order 0: slides (1, -1 against the tangent, 0 sticks), 1: sign of the normal force
-  extra,       // an intermediate that a caller names itself (cut points of the solve, the extension of a spring)
-  integral,    // of a function of time, from the start of the run; its rate is told to the Dag
-  side,        // -1, 0, 1: the branch at which a kink is held, or 0 (program/kinks.hpp)
+  contact,     // mode of a contact: order 0: slip direction (1, -1 against the tangent, 0 sticks), 1: sign of the normal force
+  extra,       // an auxiliary variable of the caller (cut points of the solve, the extension of a spring)
+  integral,    // of a function of time, from the start of the run; set_rate defines its derivative
+  side,        // branch at which a kink is held: -1 or 1, or 0 for none (program/kinks.hpp)
 };
 
 struct Symbol {
@@ -75,6 +77,7 @@ struct Node {
   friend bool operator==(const Node&, const Node&) = default;
 };
 
+/// A directed acyclic graph of expressions, simplified as they are created.
 class Dag {
  public:
   Dag();
@@ -92,17 +95,18 @@ class Dag {
   Ref div(Ref a, Ref b);
   Ref neg(Ref a);
   Ref power(Ref a, long exponent);      // any sign
-  Ref pow(Ref a, Ref b);                // folds to power or sqrt where the exponent is such a constant
+  Ref pow(Ref a, Ref b);                // power or sqrt if the exponent is such a constant
   Ref call(Op function, Ref a);         // sqrt ... sign
   Ref call(Op function, Ref a, Ref b);  // atan2, min, max
   Ref select(Ref a, Ref b, Ref x, Ref y);
 
-  /// From now on sqrt(x^2) is x for this symbol: a length, a radius inside its chart (docs/model-format.md, ranges).
+  /// Declares a symbol positive, so that sqrt(x^2) becomes x: a length, or a radius inside its chart
+  /// (docs/model-format.md, ranges).
   void assume_positive(Symbol symbol);
-  /// d/dt of an integral, for every later derivative with respect to time.
+  /// Defines d/dt of an integral, for all later derivatives with respect to time.
   void set_rate(Symbol integral, Ref rate) { rates_[integral] = rate; }
   const std::map<Symbol, Ref>& rates() const { return rates_; }
-  /// Known to be positive wherever it is defined, by the assumptions; false says nothing.
+  /// True if the assumptions imply that it is positive wherever it is defined; false is no statement.
   bool is_positive(Ref r) const;
 
   const Node& operator[](Ref r) const { return nodes_[r.id]; }
@@ -113,7 +117,7 @@ class Dag {
   const Rational& value(Ref r) const { return constants_[static_cast<std::size_t>(nodes_[r.id].payload)]; }
   const Symbol& symbol_of(Ref r) const { return symbols_[static_cast<std::size_t>(nodes_[r.id].payload)]; }
 
-  /// The nodes that `roots` need, each once, operands before users (ascending id).
+  /// The nodes on which `roots` depend, each once, operands first (ascending id).
   std::vector<Ref> reachable(const std::vector<Ref>& roots) const;
   bool has_kinks(const std::vector<Ref>& roots) const;
   /// The symbols in `roots`, sorted.
@@ -138,7 +142,7 @@ class Dag {
   Ref zero_, one_;
 };
 
-/// Operators for formulas that are to read like formulas; all operands from the same Dag.
+/// A Ref with arithmetic operators, for readable formulas. All operands must belong to the same Dag.
 struct Scalar {
   Dag* dag = nullptr;
   Ref ref;

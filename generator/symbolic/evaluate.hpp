@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers for expressions: in binary64, or with CLN at any number of digits.
+// Numerical evaluation of expressions: in binary64, or with CLN at any precision.
 #pragma once
 
 #include <cln/real.h>
@@ -11,12 +11,12 @@
 
 namespace eomgen::symbolic {
 
-/// Values of `roots` with CLN floats of `digits` decimal digits; throws std::domain_error where a function leaves its
-/// real domain or a division is by zero.
+/// Values of `roots` with CLN floats of `digits` decimal digits. Throws std::domain_error outside the real domain of a
+/// function and for a division by zero.
 std::vector<cln::cl_R> evaluate(const Dag& dag, const std::vector<Ref>& roots,
                                 const std::function<cln::cl_R(const Symbol&)>& lookup, int digits);
 
-/// The same in binary64; not-a-number where there is no value.
+/// The same in binary64; NaN if there is no value.
 std::vector<double> evaluate(const Dag& dag, const std::vector<Ref>& roots,
                              const std::function<double(const Symbol&)>& lookup);
 

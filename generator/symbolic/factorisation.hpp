@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// L D L^T of a symmetric matrix of expressions, unrolled: structural zeros cost nothing, and the order of elimination
-// (minimum degree) keeps them.
+// Symbolic L D L^T factorisation of a symmetric matrix of expressions. Structural zeros are skipped, and the minimum
+// degree order of elimination preserves them.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace eomgen::symbolic {
 
-/// `pivot` is what is left of `scale` after elimination; code 1 where it vanishes beside it.
+/// `pivot` is the value of `scale` after elimination. Emitted code returns 1 if it is negligible relative to `scale`.
 struct Pivot {
   Ref pivot, scale;
 };
 
-/// Among rows of equally few entries in M: which one is eliminated first.
+/// The order of elimination among rows of equal degree.
 enum class Ties { ascending, descending };
 
 /// L D L^T of a symmetric matrix (row-major, n x n) with structural zeros.
@@ -22,9 +22,9 @@ class Factorisation {
  public:
   Factorisation(Dag& dag, std::vector<Ref> matrix, std::size_t n, Ties ties);
 
-  /// L^-1 r, in the order of elimination.
+  /// L^-1 r, entries in the order of elimination.
   std::vector<Ref> forward(const std::vector<Ref>& r) const;
-  /// L^-T D^-1 z, in the order of the rows.
+  /// L^-T D^-1 z, entries in the order of the rows.
   std::vector<Ref> backward(const std::vector<Ref>& z) const;
   /// sum_k a_k b_k / D_k for two results of `forward`.
   Ref inner(const std::vector<Ref>& a, const std::vector<Ref>& b) const;

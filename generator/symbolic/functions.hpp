@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The functions of the graph, one row each: on how many arguments, their symmetry, their value at 0, and their names in
-// the model language and in the targets. The rules of the graph, printing, emission and counts read it. Derivatives and
-// values in binary64 are those of the runtime (eom/expressions/operations.hpp). The judge has a table of its own, since
-// it is to notice what is wrong here.
+// The table of the functions of the graph: number of arguments, symmetry, value at 0, and names in the model language
+// and in the targets. The rules of the graph, printing, emission and operation counts use it. Derivatives and values in
+// binary64 are those of the runtime (eom/expressions/operations.hpp). The oracle has a table of its own, so that it can
+// detect errors here.
 #pragma once
 
 #include <array>
@@ -20,20 +20,20 @@ struct Function {
   Op op;
   std::uint8_t arity;
   const char* name;            // in the model language
-  const char* code;            // in C, C++, CUDA, JavaScript and Python; none: written out
+  const char* code;            // in C, C++, CUDA, JavaScript and Python; null: expanded
   const char *latex, *mathml;  // empty: a notation of its own
   Parity parity = Parity::none;
-  int at_zero = -1;     // 0 or 1; otherwise nothing is known of f(0)
-  bool raised = false;  // its powers are printed at its name: sin^2 x
+  int at_zero = -1;     // f(0): 0 or 1; -1: unknown
+  bool raised = false;  // powers are printed at the name: sin^2 x
 
-  // dv/dx, as the runtime has it.
+  // dv/dx, from the table of the runtime.
   constexpr eom::expressions::Derivative derivative() const { return derivative_of(runtime_op(op)); }
   constexpr Slope slope() const { return derivative().form; }
-  constexpr bool falls() const { return derivative().falls; }             // minus what `slope` says
+  constexpr bool falls() const { return derivative().falls; }             // the derivative is minus `slope`
   constexpr Op other() const { return function_at(derivative().other); }  // of Slope::other
 };
 
-/// In the order of Op, from Op::pow on.
+/// The functions in the order of Op, from Op::pow on.
 inline constexpr std::array<Function, 19> function_table{{
     {Op::pow, 2, "^", "pow", "", ""},
     {Op::sqrt, 1, "sqrt", "sqrt", "", "", Parity::none, 0},
@@ -58,7 +58,7 @@ inline constexpr std::array<Function, 19> function_table{{
 
 constexpr bool is_function(Op op) { return op >= Op::pow; }
 
-/// Its row; throws std::out_of_range where `op` is no function.
+/// The row of a function. Throws std::out_of_range if `op` is not a function.
 constexpr const Function& function_of(Op op) {
   return function_table.at(static_cast<std::size_t>(op) - static_cast<std::size_t>(Op::pow));
 }
@@ -73,8 +73,8 @@ constexpr bool rows_are_in_order() {
 }  // namespace detail
 static_assert(detail::rows_are_in_order());
 
-/// The derivative of v = f(x), a function of one argument that has one. `numbers` gives one(), two(), square(a) and
-/// call(op, a); Number has + - *.
+/// The derivative of v = f(x), a differentiable function of one argument. `numbers` provides one(), two(), square(a)
+/// and call(op, a); Number has + - *.
 template <class Number, class Numbers>
 eom::expressions::SlopeOf<Number> slope_of(const Function& f, const Number& x, const Number& v,
                                            const Numbers& numbers) {
@@ -83,7 +83,7 @@ eom::expressions::SlopeOf<Number> slope_of(const Function& f, const Number& x, c
       [&](eom::expressions::Op op, const Number& a) -> Number { return numbers.call(function_at(op), a); });
 }
 
-/// `numbers` of slope_of for expressions.
+/// The `numbers` argument of slope_of for expressions.
 struct ScalarNumbers {
   Dag& dag;
   Scalar one() const { return {&dag, dag.one()}; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Expressions expanded into sums of products over atoms (symbols, sines, roots, ...), with sin^2 + cos^2 = 1 used in
-// whichever direction leaves fewer terms. In: a Ref. Out: a Ref of equal value, never more terms than the budget.
+// Expansion of expressions into sums of products over atoms (symbols, sines, roots, ...). sin^2 + cos^2 = 1 is applied
+// in the direction that leaves fewer terms. In: a Ref. Out: a Ref of equal value with at most the budgeted terms.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,17 @@
 
 namespace eomgen::symbolic {
 
-/// Of an atom, with an exponent of any sign.
+/// A power of an atom, with an exponent of any sign.
 struct Power {
   Ref atom;
   std::int64_t exponent = 1;
   friend auto operator<=>(const Power&, const Power&) = default;
 };
-using Monomial = ShortList<Power, 4>;  // ascending by atom, none with exponent 0
-/// Coefficients are not zero.
+using Monomial = ShortList<Power, 4>;  // ascending by atom; no exponent is 0
+/// Monomials with nonzero coefficients.
 using Polynomial = std::map<Monomial, Rational>;
 
-/// How much may still be multiplied: products of two terms. The same on every machine.
+/// A budget of products of two terms. The count is the same on every machine.
 struct Effort {
   std::size_t left = 0;
 
@@ -36,13 +36,13 @@ struct Effort {
 
 class Expander {
  public:
-  /// Nothing is expanded to more than `term_budget` terms, and nothing more once `effort` is used up.
+  /// No result has more than `term_budget` terms. Expansion stops once `effort` is exhausted.
   explicit Expander(Dag& dag, std::size_t term_budget = 400, Effort* effort = nullptr)
       : dag_(dag), budget_(term_budget), effort_(effort) {}
 
-  /// The expanded and reduced form; nothing where the budget does not suffice.
+  /// The expanded and reduced form; nothing if it exceeds the budget.
   std::optional<Ref> operator()(Ref expression);
-  /// The same, and the expression as it is where the budget does not suffice: of equal value either way.
+  /// The expanded form, or the unchanged expression if it exceeds the budget.
   Ref tidy(Ref expression) { return (*this)(expression).value_or(expression); }
 
  private:
@@ -66,7 +66,7 @@ class Expander {
 
 /// Expander::tidy for one expression.
 Ref tidy(Dag& dag, Ref expression, std::size_t term_budget = 400);
-/// The expanded form where it has no more nodes, else the expression as it is.
+/// The expanded form if it has no more nodes, else the unchanged expression.
 Ref simpler(Dag& dag, Ref expression, std::size_t term_budget, Effort* effort = nullptr);
 
 }  // namespace eomgen::symbolic

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Power series of expressions along a curve, in many digits: coefficient after coefficient, so that the curve may be
-// the solution of an equation in which the expressions stand.
+// Power series of expressions along a curve, in many digits. Coefficients are computed one order at a time, so that the
+// curve may be the solution of an equation that contains the expressions.
 #pragma once
 
 #include <cln/real.h>
@@ -18,17 +18,17 @@ class PowerSeries {
  public:
   using Lookup = std::function<cln::cl_R(const Symbol&, std::size_t)>;
 
-  /// Adds derivatives of functions to the Dag.
+  /// Prepares the series of `roots`. Adds derivatives of functions to the Dag.
   PowerSeries(Dag& dag, std::vector<Ref> roots, int digits);
 
-  /// Coefficient k of every root, k = 0, 1, 2, .. from call to call; `lookup` gives coefficient k of a symbol. Throws
-  /// std::domain_error where a function leaves its domain.
+  /// Computes coefficient k of every root; k = 0, 1, 2, .. increases with each call. `lookup` returns coefficient k of
+  /// a symbol. Throws std::domain_error outside the domain of a function.
   void extend(const Lookup& lookup);
   const std::vector<cln::cl_R>& operator[](std::size_t root) const { return series_.at(roots_[root]).c; }
 
  private:
   struct Series {
-    std::array<Ref, 2> slope{};  // of a function by its arguments
+    std::array<Ref, 2> slope{};  // partial derivatives of a function
     std::vector<cln::cl_R> c;
   };
   bool is_function(const Node& node) const;
@@ -39,7 +39,7 @@ class PowerSeries {
   Dag& dag_;
   std::vector<Ref> roots_;
   int digits_;
-  std::size_t order_ = 0;         // coefficients that are there
+  std::size_t order_ = 0;         // number of known coefficients
   std::map<Ref, Series> series_;  // operands before users
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A list of small things of which there are few, mostly: the first ones stand in the list itself, and cost no
-// allocation.
+// A vector that stores its first elements inline, without an allocation.
 #pragma once
 
 #include <algorithm>
@@ -71,9 +70,9 @@ class ShortList {
     if (size_ == capacity_) grow(2 * capacity_);
     data()[size_++] = item;
   }
-  /// Where `reserve` has made room.
+  /// Appends without a check; `reserve` must have made room.
   void push_back_reserved(T item) noexcept { data()[size_++] = item; }
-  /// The first `count` stay.
+  /// Keeps the first `count` elements.
   void shorten(std::size_t count) noexcept { size_ = static_cast<std::uint32_t>(count); }
 
   friend bool operator==(const ShortList& a, const ShortList& b) {
@@ -93,7 +92,7 @@ class ShortList {
     outside_ = wider;
     capacity_ = capacity;
   }
-  /// All of it, used or not: of a size that the compiler knows.
+  /// Copies the whole inline storage: its size is known to the compiler.
   void copy_inside(const ShortList& other) noexcept {
     std::memcpy(static_cast<void*>(inside_), static_cast<const void*>(other.inside_), sizeof(inside_));
   }
@@ -118,7 +117,7 @@ class ShortList {
   std::uint32_t size_ = 0, capacity_ = inside;
 };
 
-/// a b^power_of_b of lists of powers: ascending by `base`, each base once, no exponent zero.
+/// a b^power_of_b for lists of powers, which are ascending by `base`, with each base once and no exponent 0.
 template <auto base, class Powers>
 Powers product_of_powers(const Powers& a, const Powers& b, std::int32_t power_of_b = 1) {
   Powers result;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exact numbers that are mostly 1, -1 or another small integer: what CLN keeps in the word itself is told apart without
-// a call.
+// Fast paths for exact numbers that are mostly 1, -1 or another small integer. CLN stores small integers in the word
+// itself, where they are compared without a call.
 #pragma once
 
 #include <cln/rational.h>
@@ -11,7 +11,7 @@
 
 namespace eomgen::symbolic {
 
-/// CLN has small integers in the word, all else behind a pointer, and no number in two ways.
+/// Equality. CLN stores small integers in the word and all other numbers behind a pointer, each in one way only.
 inline bool same(const Rational& a, const Rational& b) {
   if (a.word == b.word) return true;
   return a.pointer_p() && b.pointer_p() && cln::equal(a, b);
@@ -23,7 +23,7 @@ inline bool is_zero(const Rational& a) { return a.word == cln::cl_combine(cl_FN_
 
 inline Rational plus(const Rational& a, const Rational& b) {
   if (a.pointer_p() || b.pointer_p()) return a + b;
-  // Value and tag are one integer: those of the sum are the sum without one of the tags.
+  // Value and tag are one integer. The word of the sum is the sum of the words minus one tag.
   std::int64_t sum = 0;
   const auto other = static_cast<std::int64_t>(b.word - cl_FN_tag);
   if (__builtin_add_overflow(static_cast<std::int64_t>(a.word), other, &sum)) return a + b;
@@ -36,7 +36,7 @@ inline Rational times(const Rational& a, const Rational& b) {
 }
 inline Rational over(const Rational& a, const Rational& b) { return is_one(b) ? a : a / b; }
 
-/// The same for equal numbers.
+/// A hash that is the same for equal numbers.
 inline std::uint64_t hash_of(const Rational& a) { return a.pointer_p() ? cln::equal_hashcode(a) : a.word; }
 
 }  // namespace eomgen::symbolic

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions of time as sums of terms whose antiderivatives are known:
+// Functions of time as sums of terms with known antiderivatives:
 //   factor t^n (a t + b)^p exp(a t + b) {1, sin(a t + b), cos(a t + b)}.
-// Sums, products and whole powers of such sums are such sums again (products of sines become sines of sums).
+// Sums, products and integer powers of such sums are again such sums (products of sines become sines of sums).
 #pragma once
 
 #include <optional>
@@ -33,7 +33,7 @@ class TimeTerms {
   /// `time` is the variable; everything else is constant.
   TimeTerms(Dag& dag, Symbol time) : dag_(dag), time_(time) {}
 
-  /// Nothing where the expression is not such a sum, or one of too many terms.
+  /// The terms of an expression; nothing if it is not such a sum or has too many terms.
   std::optional<std::vector<TimeTerm>> operator()(Ref expression);
   bool is_free(Ref expression) const;  // of time
 

@@ -19,8 +19,8 @@ Vec3 scale(Dag& dag, Ref factor, const Vec3& a);
 Ref dot(Dag& dag, const Vec3& a, const Vec3& b);
 Vec3 cross(Dag& dag, const Vec3& a, const Vec3& b);
 
-/// C x and C^T x of a square matrix, row-major. From the last entry to the first: the running sums that a triangular C
-/// of ones gives then share their terms.
+/// C x and C^T x for a square row-major matrix. Sums run from the last entry to the first, so that the running sums of
+/// a triangular C of ones share their terms.
 std::vector<Ref> applied(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x);
 std::vector<Ref> transposed_applied(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x);
 

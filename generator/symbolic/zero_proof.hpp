@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Is an expression zero for every value of its symbols? Decided exactly: sines and cosines become rational functions of
-// tan(u/2) (sums and multiples of angles taken apart first), exponentials a symbol, and the numerator that is left is a
-// polynomial, which is zero or is not.
+// Proof that an expression is zero for all values of its symbols. The decision is exact: sums and multiples of angles
+// are expanded, sines and cosines become rational functions of tan(u/2), and exponentials become symbols. The remaining
+// numerator is a polynomial.
 #pragma once
 
 #include "symbolic/dag.hpp"
@@ -9,8 +9,8 @@
 
 namespace eomgen::symbolic {
 
-/// True: zero wherever it is defined. False: not zero, or not proven - roots, logarithms and inverse functions count as
-/// independent of one another, and what grows beyond the budget of terms, or takes more than `effort`, is given up.
+/// True: zero wherever it is defined. False: not zero, or not proven. Roots, logarithms and inverse functions count as
+/// independent of one another. The proof is abandoned beyond the budget of terms or of `effort`.
 bool is_proven_zero(Dag& dag, Ref expression, Effort* effort = nullptr);
 
 }  // namespace eomgen::symbolic

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The product of derive's fast routes: the equations of motion of the coordinates that stay,
+// The equations of motion of the free coordinates, as every formulation of derive returns them,
 //   M(q,t) qddot = f(q,qdot,t,u) + A^T lambda,   A qddot + gamma = 0   (index-1 form, docs/theory.md),
-// as Dag expressions in the symbols t, q, qdot of the free coordinates, parameters and inputs only: functions of time
-// are written out and eliminated coordinates are replaced by theirs.
+// as Dag expressions in t, q, qdot of the free coordinates, parameters and inputs only. Functions of time are expanded
+// and eliminated coordinates are substituted.
 #pragma once
 
 #include <array>
@@ -24,34 +24,35 @@ using symbolic::Ref;
 enum class Approach { one, two };
 const char* name(Approach approach);  // "I", "II"
 
-/// How the equations are solved where constraints keep multipliers: by the Schur complement A M^-1 A^T, on a null space
-/// of A, or with the dependent velocities solved for.
+/// The method for constraints with multipliers: the Schur complement A M^-1 A^T, a null space of A, or solution for the
+/// dependent velocities.
 enum class Form { multipliers, nullspace, chaplygin };
 const char* name(Form form);  // "multipliers", "nullspace", "chaplygin"
 
-/// lambda of one constraint. For the active ones the bare multiplier symbol; for eliminated ones an expression in
-/// qddot (free) and the multipliers of the active constraints (the "(b)" equations of Approach I).
+/// lambda of one constraint. For an active constraint it is the multiplier symbol. For an eliminated one it is an
+/// expression in qddot (free) and the multipliers of the active constraints (the "(b)" equations of Approach I).
 struct Reaction {
   std::uint32_t constraint;  // index into Mechanics::constraints
   std::string label;
   Ref value;
 };
 
-/// M = S^T M_theta S, f = S^T f_theta for rates theta_dot = S qdot with constant S: cheaper to solve where M_theta is
-/// the simpler matrix (relative angles).
+/// Equations in quasi-velocities theta_dot = S qdot with constant S: M = S^T M_theta S, f = S^T f_theta. They are
+/// cheaper to solve if M_theta is the simpler matrix (relative angles).
 struct QuasiEquations {
   std::vector<symbolic::Rational> S_inverse;  // n x n row-major
   std::vector<Ref> M, f;                      // n x n, n
 };
 
-/// The equations solved by the route itself; nothing is left to factorise.
+/// The solution, if the formulation solves the equations itself.
 struct Solution {
   std::vector<Ref> qddot;   // n, without accelerations and multipliers
   std::vector<Ref> lambda;  // m
   std::vector<symbolic::Pivot> pivots;
 };
 
-/// An integral of a function of time without a closed form: a state that is 0 at the start, d/dt of it is `rate`.
+/// An integral of a function of time without a closed form: an additional state, 0 at the start, with derivative
+/// `rate`.
 struct IntegralState {
   std::uint32_t integral;  // index into Model::integrals
   Ref rate;                // of t, parameters and integrals that are states
@@ -59,31 +60,32 @@ struct IntegralState {
 
 struct Event {
   std::string name;
-  Ref value;  // the event is where it changes its sign; may use qddot of free coordinates and multipliers
+  Ref value;  // the event occurs at its sign changes; may depend on qddot of free coordinates and multipliers
 };
 
-/// mechanics::HeldDirection: phi has no part along it while it sticks and contact `by` touches.
+/// A direction of a contact that another constraint blocks: phi has no component along it while the contact sticks and
+/// contact `by` is closed. See mechanics::HeldDirection.
 struct HeldDirection {
-  std::uint32_t by = 0;    // index into EquationSystem::contacts; the contact itself: always
+  std::uint32_t by = 0;    // index into EquationSystem::contacts; its own index: always blocked
   std::vector<Ref> along;  // per tangent
 };
 
-/// A contact with friction or that can be left (docs/theory.md, "Friction"). The friction force sum_a phi_a t_a enters
-/// f and the reactions with the symbols phi_a = {SymbolKind::friction, first + a}; the law that determines them depends
-/// on the mode.
+/// A contact with friction, or a unilateral contact (docs/theory.md, "Friction"). The friction force sum_a phi_a t_a
+/// enters f and the reactions with the symbols phi_a = {SymbolKind::friction, first + a}. The law for phi_a depends on
+/// the mode.
 struct Contact {
   std::string name;
   std::uint32_t first = 0;               // index of the first phi
-  std::vector<std::uint32_t> reactions;  // indices into EquationSystem::reactions; none: the normal force is given
+  std::vector<std::uint32_t> reactions;  // indices into EquationSystem::reactions; empty: the normal force is given
   std::vector<Ref> gram;                 // |normal force|^2 = lambda^T gram lambda
   Ref normal;                            // the given normal force
-  std::vector<Ref> slip, slip_rate;      // per tangent; the rate may use qddot
+  std::vector<Ref> slip, slip_rate;      // per tangent; the rate may depend on qddot
   std::vector<HeldDirection> held;
-  std::vector<std::array<Ref, 3>> directions;  // t_a; none where a coordinate rubs
+  std::vector<std::array<Ref, 3>> directions;  // t_a; empty for friction on a coordinate
   Ref static_coefficient, dynamic_coefficient;
-  std::optional<Ref> width;                 // of the smooth law, which has no static coefficient
-  std::optional<std::uint32_t> unilateral;  // which of the active constraints can be left
-  Ref restitution;                          // of impacts then
+  std::optional<Ref> width;                 // of the regularised law, which has no static coefficient
+  std::optional<std::uint32_t> unilateral;  // the active constraint that can open
+  Ref restitution;                          // of impacts of a unilateral contact
   bool rolls = false;                       // sticking is rolling
 
   bool sticks() const { return !slip.empty() && !width; }
@@ -93,12 +95,12 @@ struct Contact {
   }
 };
 
-/// Symbols of the mode of a contact: 1, -1, 0 as it slides along its tangent, against it, sticks; 1, -1 as it presses,
-/// or as a unilateral one touches, is apart.
+/// Symbols of the mode of a contact. slides_symbol: 1 slides along its tangent, -1 against it, 0 sticks.
+/// presses_symbol: the sign of the normal force; for a unilateral contact 1 closed, -1 open.
 inline symbolic::Symbol slides_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact, contact, 0}; }
 inline symbolic::Symbol presses_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact, contact, 1}; }
 
-/// An equation that the active constraints make hold; runs watch psi, and starts satisfy it too.
+/// A constraint that follows from the active ones. Runs monitor psi, and initial states satisfy it.
 struct Watched {
   std::uint32_t constraint;  // index into Mechanics::constraints
   Ref psi;
@@ -107,7 +109,7 @@ struct Watched {
 };
 
 struct EquationSystem {
-  // Defined once: every file that holds one would compile them anew.
+  // Defined in the .cpp file, so that they are compiled only once.
   EquationSystem();
   EquationSystem(const EquationSystem&);
   EquationSystem(EquationSystem&&) noexcept;
@@ -126,23 +128,23 @@ struct EquationSystem {
   std::vector<IntegralState> integrals;
   std::vector<Ref> M;           // n x n, row-major, symmetric
   std::vector<Ref> f;           // n
-  std::vector<bool> holonomic;  // m: false of constraints on velocities, whose psi is 0
+  std::vector<bool> holonomic;  // m: false for constraints on velocities, whose psi is 0
   std::vector<Ref> psi;         // m
   std::vector<Ref> A;           // m x n, row-major
   std::vector<Ref> b;           // m: A qdot + b = 0
   std::vector<Ref> gamma;       // m: A qddot + gamma = 0
   std::vector<Watched> redundant;
-  std::vector<Ref> apart;  // m, or none: 1 where the mode has left a constraint, whose row of A and gamma is 0 then
+  std::vector<Ref> apart;  // m, or empty: 1 if the contact of a constraint is open; its row of A and gamma is then 0
 
-  std::optional<QuasiEquations> quasi;  // another way to M and f
-  std::optional<Solution> solution;     // equal to what M, f, A, gamma give
+  std::optional<QuasiEquations> quasi;  // equivalent equations in quasi-velocities
+  std::optional<Solution> solution;     // equal to the solution from M, f, A, gamma
 
   std::vector<Contact> contacts;
 
   std::vector<Reaction> reactions;        // all constraints, in model order
-  std::vector<Output> outputs;            // everything that can be asked for, in the order of docs/model-format.md
-  std::vector<Event> events;              // of the model, in its order
-  Ref energy, kinetic, potential, power;  // power: what dE/dt must be; may use multipliers and qddot
+  std::vector<Output> outputs;            // all available outputs, in the order of docs/model-format.md
+  std::vector<Event> events;              // in model order
+  Ref energy, kinetic, potential, power;  // power: the expected dE/dt; may depend on multipliers and qddot
 };
 
 }  // namespace eomgen::system

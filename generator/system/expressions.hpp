@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every expression of an EquationSystem, once: what rewrites or searches all of them cannot forget one. Left out are
-// `redundant`, which the start alone reads (its psi is an output too), and `apart`, which is made of modes.
+// Iteration over every expression of an EquationSystem, for code that rewrites or searches all of them. It omits
+// EquationSystem::redundant, which only the initial state uses (its psi is also an output), and EquationSystem::apart,
+// which depends on modes only.
 #pragma once
 
 #include "system/equation_system.hpp"
 
 namespace eomgen::system {
 
-/// What an expression is there for.
+/// The role of an expression.
 enum class Part {
-  motion,       // M, f, A, gamma, the rates of integrals, another way to M and f, a solution
-  slip,         // of a contact: changes its sign where the contact changes its mode
+  motion,       // M, f, A, gamma, the rates of integrals, the quasi-velocity equations, the solution
+  slip,         // slip of a contact: the mode of the contact changes at its sign changes
   contact,      // the rest of a contact's law
-  constraints,  // psi and b, which a start and a projection need
+  constraints,  // psi and b, for initial states and projection
   shown         // reactions, outputs, events, energies
 };
 

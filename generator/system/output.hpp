@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What can be asked of equations of motion: what it is, of what, in which unit, for whom. The name is for readers, and
-// for those who ask; nothing is told by it.
+// The outputs of equations of motion: kind, object, unit and audience. The name is for users only; no code interprets
+// it.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace eomgen::system {
 
-/// What an output is, and so what Output::index counts.
+/// The kind of an output. It determines the list into which Output::index points.
 enum class OutputKind : std::uint8_t {
   // of a coordinate of the model
   coordinate,
   rate,
   acceleration,
   momentum,
-  // of the whole
+  // of the whole system
   energy,
   kinetic,
   potential,
@@ -41,23 +41,23 @@ enum class OutputKind : std::uint8_t {
   slip,
   mode,
   definition,  // of the model
-  integral,    // of constraints on velocities: of Mechanics::integrals
-  // of the constraints that prescribe a motion: on a coordinate, on a particle (part: axis), all together
+  integral,    // integral of constraints on velocities: Mechanics::integrals
+  // of the constraints that prescribe a motion: on a coordinate, on a particle (part: axis), in total
   prescribed_force,
   particle_force,
   prescribed_power,
-  // For runs.
-  slip_slope,          // of a contact, by the rate of a free coordinate, in their order; part: tangent
-  friction_component,  // of a contact along a tangent, which is `part`
+  // only for runs
+  slip_slope,          // derivative of the slip of a contact with respect to each free rate, in order; part: tangent
+  friction_component,  // of a contact; part: tangent
   restitution,         // of a contact
-  redundant,           // psi of a constraint of Mechanics that the others make hold
-  differential,        // of Mechanics::integrals, by the free coordinates in their order, then by t
-  magnitude,           // size of the terms of a conserved quantity, counted as conserved_quantities gives them
+  redundant,           // psi of a redundant constraint of Mechanics
+  differential,        // derivatives of Mechanics::integrals: by the free coordinates in order, then by t
+  magnitude,           // size of the terms of a conserved quantity; index: as in conserved_quantities
   time_integral,       // of the model
-  drawn                // part: axis; index: as who draws counts
+  drawn                // part: axis; index: as defined by the drawing
 };
 
-/// Who asks for an output: whoever reads tables, or the run itself.
+/// The consumer of an output: the reader of tables, or the run itself.
 enum class Audience : std::uint8_t { reader, run };
 constexpr Audience audience(OutputKind kind) {
   return kind < OutputKind::slip_slope ? Audience::reader : Audience::run;
@@ -68,17 +68,17 @@ constexpr bool is_reaction(OutputKind kind) {
 
 struct Output {
   std::string name;     // "R", "R_dot", "energy", "power", "P.position1", ...
-  symbolic::Ref value;  // may use qddot of free coordinates and multipliers
+  symbolic::Ref value;  // may depend on qddot of free coordinates and multipliers
   OutputKind kind;
   std::uint32_t index = 0, part = 0;
-  std::string unit = {};    // "m/s^2"; empty where it is unknown or a pure number
-  std::string vector = {};  // "reaction.pin": the name by which all components are asked for at once; none: ""
+  std::string unit = {};    // "m/s^2"; empty if it is unknown or a pure number
+  std::string vector = {};  // "reaction.pin": the name that selects all components; "": none
 };
 
-/// Of this name, or none.
+/// The output of this name, or nullptr.
 const Output* find(const std::vector<Output>& outputs, const std::string& name);
 
-/// The names of all of a kind that belong to `index`, in their order.
+/// The names of all outputs of a kind with this index, in order.
 std::vector<std::string> names_of(const std::vector<Output>& outputs, OutputKind kind, std::uint32_t index = 0);
 
 /// "m" -> "m/s", "m/s^2" as it is divided by the second once or twice; a pure number that has no unit keeps none.
