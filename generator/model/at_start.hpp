@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Expressions as they are at the start of the default scene: coordinates are replaced by what the scene gives (0 where
-// it gives nothing), t by the start of the run. What is left is made of parameters.
+// Evaluation of expressions at the start of the default scene: coordinates are replaced by the initial values of the
+// scene (default 0) and t by the start of the run. The result depends on parameters only.
 #pragma once
 
 #include <array>
@@ -15,16 +15,15 @@ namespace eomgen::model {
 
 class AtStart {
  public:
-  /// Adds nodes to the arena of the model, whose scenes have been read. `open` coordinates are not 0 where the scene
-  /// gives nothing: something else tells them.
+  /// Adds nodes to the arena of the model, whose scenes must have been read. `open` coordinates have no default of 0:
+  /// other conditions determine them.
   AtStart(Model& model, std::set<std::uint32_t> open) : model_(model), open_(std::move(open)) {}
 
-  /// The same vector or scalar at the start; no_node where that cannot be told, and then `obstacle` says why.
+  /// The vector or scalar at the start; no_node if it cannot be determined. obstacle() then contains the reason.
   NodeId operator()(NodeId node);
   const std::string& obstacle() const { return obstacle_; }
 
-  /// Components along E1, E2, E3 of such a vector, the value of such a scalar, with the parameters as the file gives
-  /// them.
+  /// Components along E1, E2, E3 of such a vector, or the value of such a scalar, for the parameter values of the file.
   std::array<double, 3> vector_value(NodeId at_start);
   double scalar_value(NodeId at_start);
 

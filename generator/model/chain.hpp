@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[chain]]: a shorthand for particles on rods.
+// Reader of [[chain]], a shorthand for particles on rods.
 #pragma once
 
 #include "model/section_reader.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Charts that fail somewhere and can be exchanged for another there: Euler angles of a body or frame, spherical
-// coordinates of a place. In: a Model. Out: which there are, why some cannot be exchanged, and the Model in second
+// Charts with a singularity that can be exchanged for a second chart there: Euler angles of a body or frame, spherical
+// coordinates of a place. In: a Model. Out: the pairs of charts, why some cannot be exchanged, and the Model in second
 // charts.
 //
-// The second chart of the angles i-j-k differs in the third axis only (313: 312, 321: 323): one fails where E_i is
-// along e_k, the other where it is along another axis of the body, so never at once. That of spherical coordinates has
-// its pole on E1.
+// The second chart of the angles i-j-k differs in the third axis only (313: 312, 321: 323). One chart is singular if
+// E_i is along e_k, the other if E_i is along another axis of the body, so never both at once. The second spherical
+// chart has its pole on E1.
 #pragma once
 
 #include <array>
@@ -24,20 +24,20 @@ struct SwitchedChart {
   std::uint32_t index = 0;            // into Model::frames or Model::places
   std::array<std::size_t, 3> axes{};  // 0 to 2, of the own rotation
   std::size_t second_axis = 0;        // in place of axes[2]
-  std::vector<std::uint32_t> angles;  // coordinates that mean something else in the second chart
-  std::size_t guarded = 0;            // which of them tells how far the chart is from failing
-  bool at_sine = true;                // it fails where the sine of that one vanishes; else the cosine
+  std::vector<std::uint32_t> angles;  // coordinates with a different meaning in the second chart
+  std::size_t guarded = 0;            // index of the angle that measures the distance from the singularity
+  bool at_sine = true;                // singular at zeros of the sine of that angle; else of the cosine
   std::string refusal;                // why it cannot be exchanged; empty: it can
 
-  /// "sin(theta)": 0 where the own chart fails.
+  /// "sin(theta)": an expression that is 0 where the own chart is singular.
   std::string regular(const Model& model) const;
 };
 
-/// All that a model has, rotations first, those that cannot be exchanged too.
+/// All charts of a model with a singularity, rotations first, including those that cannot be exchanged.
 std::vector<SwitchedChart> charts(const Model& model);
 
-/// The model with the second charts of those whose bit is set: the same names, other meanings of the angles. Scenes
-/// still speak of the own charts.
+/// The model with the second charts of those whose bit in `mask` is set: the same names, other meanings of the angles.
+/// Scenes still refer to the own charts.
 Model in_second_charts(const Model& model, const std::vector<SwitchedChart>& charts, unsigned mask);
 
 }  // namespace eomgen::model

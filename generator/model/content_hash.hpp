@@ -5,7 +5,7 @@
 
 namespace eomgen::model {
 
-/// SHA-256 of some bytes (FIPS 180-4), 64 hexadecimal digits.
+/// The SHA-256 hash of `bytes` (FIPS 180-4) as 64 hexadecimal digits.
 std::string content_hash(const std::string& bytes);
 
 }  // namespace eomgen::model

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names are resolved in the order of their dependencies; what users see (the array p, columns, tables) is in the order
-// in which they declared them.
+// Names are resolved in the order of their dependencies. The order that users see (the array p, columns, tables) is the
+// order of declaration.
 #pragma once
 
 #include "model/model.hpp"
 
 namespace eomgen::model {
 
-/// Puts parameters, functions and definitions into the order of the file, in all expressions and scenes too.
+/// Sorts parameters, functions and definitions into the order of the file, and renumbers them in expressions and
+/// scenes.
 void restore_declared_order(Model& model);
 
 }  // namespace eomgen::model

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A TOML file as a tree of values with exact places, in the order of the file. The only user of toml++.
+// A TOML file as a tree of values with exact positions, in the order of the file. The only user of toml++.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ struct Value {
   std::vector<Value> items;         // of arrays
   std::vector<Entry> entries;       // of tables
   std::size_t begin = 0;            // byte offset in the file
-  std::vector<std::size_t> origin;  // strings: file offset of every byte of `text`, and of the end
+  std::vector<std::size_t> origin;  // strings: file offsets of every byte of `text` and of its end
   Span span;
 
   const Value* find(std::string_view key) const;
@@ -33,10 +33,10 @@ struct Entry {
   Value value;
 };
 
-/// "a string", "an array": for messages.
+/// The kind as text for messages: "a string", "an array".
 const char* kind_name(Value::Kind kind);
 
-/// The tree of a file. Throws Error for everything that TOML 1.0 forbids.
+/// Parses a file. Throws Error for everything that TOML 1.0 forbids.
 Value read_document(const Source& source);
 
 }  // namespace eomgen::model

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Expressions of a model file after parsing, name resolution and type checking: trees of exact numbers, names that
-// are indices into the Model, and operations. The product of the reader; mechanics and verify each interpret it on
-// their own.
+// Expressions of a model file after parsing, name resolution and type checking: trees of exact numbers, names as
+// indices into the Model, and operations. The reader produces them; mechanics and verify interpret them independently.
 #pragma once
 
 #include <cln/rational.h>
@@ -12,7 +11,7 @@
 
 namespace eomgen::model {
 
-/// A place in the model file, in bytes; line and column count from 1.
+/// A range of bytes in the model file; line and column count from 1.
 struct Span {
   std::uint32_t line = 0;
   std::uint32_t column = 0;
@@ -31,12 +30,11 @@ enum class Op : std::uint8_t {
   input,       // index into Model::inputs
   coordinate,  // index into Model::coordinates, order = 0, 1, 2
   definition,  // index into Model::definitions; scalar or vector
-  extension,   // of the spring whose energy expression this is
+  extension,   // extension of the spring to whose energy the expression belongs
   integral,    // index into Model::integrals; args[0] is the integrand
-  reaction,    // reaction.NAME in an event: index into Model::constraints, order = which of its equations (of a joint:
-               // components), from 0
-  slip,        // speed of the contact whose coefficient of friction this is
-  inertia,     // v . J v of a vector v = args[0] and Model::bodies[index]; of descriptions of forces only
+  reaction,    // reaction.NAME in an event: index into Model::constraints, order = equation (joint: component), from 0
+  slip,        // slip speed of the contact to whose coefficient of friction the expression belongs
+  inertia,     // v . J v of a vector v = args[0] and Model::bodies[index]; only in descriptions of forces
   // scalar or vector by Node::vector (multiply: one side may be a vector; divide: vector by scalar)
   add,
   subtract,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Coordinates that are given as functions of x1, x2, x3, solved for these: in: q_k = f_k(x1, x2, x3); out: x(q), eq.
-// (1.16).
+// Inversion of coordinates given as functions of x1, x2, x3. In: q_k = f_k(x1, x2, x3). Out: x(q), eq. (1.16).
 #pragma once
 
 #include <array>
@@ -13,9 +12,9 @@ namespace eomgen::model {
 
 inline constexpr std::array<const char*, 3> cartesian_names{"x1", "x2", "x3"};
 
-/// x1, x2, x3 as expressions of `names`, one unknown isolated after another; only functions with one inverse are undone
-/// (no even powers, no sin). Nothing where no order of elimination gets through. The caller checks the result by
-/// values.
+/// x1, x2, x3 as expressions of `names`. The unknowns are isolated one after the other; only functions with a unique
+/// inverse are inverted (no even powers, no sin). Nothing if no order of elimination succeeds. The caller checks the
+/// result numerically.
 std::optional<std::array<Syntax, 3>> invert(const std::array<Syntax, 3>& f, const std::array<std::string, 3>& names);
 
 }  // namespace eomgen::model

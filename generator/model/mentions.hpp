@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a model's expressions name something. In: a Model, a test of nodes. Out: a sentence about the first place.
+// Search for the use of a name in a model's expressions. In: a Model, a test of nodes. Out: a sentence about the first
+// use.
 #pragma once
 
 #include <functional>
@@ -9,18 +10,18 @@
 
 namespace eomgen::model {
 
-/// An expression that the motion depends on, or that can be an output, and whose it is.
+/// An expression on which the motion depends or that can be an output, and the object to which it belongs.
 struct Root {
   NodeId expression = no_node;
   std::string of;           // "constraint 'level'"
-  std::uint32_t frame = 0;  // of a rotation: whose; else 0
-  std::uint32_t place = 0;  // of a position
+  std::uint32_t frame = 0;  // of a rotation: index of its frame; else 0
+  std::uint32_t place = 0;  // of a position: index of its place; else 0
 };
 
-/// All of a model's expressions but those of scenes, which speak of its start.
+/// All expressions of a model except those of scenes, which refer to the start only.
 std::vector<Root> roots(const Model& model);
 
-/// "WHAT is named by OF" of the first node for which `what` is not empty; empty where there is none.
+/// "WHAT is named by OF" for the first node for which `what` returns a text; empty if there is none.
 std::string mention(const Model& model, const std::function<std::string(const Node& node, const Root& root)>& what);
 
 }  // namespace eomgen::model

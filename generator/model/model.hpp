@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a model file says, checked: the product of the model stage and all that later stages know of the user's file.
-// Contract: docs/model-format.md. Every quantity is in SI units; names are resolved to indices; vectors are 3-D.
+// The checked contents of a model file: the product of the model stage and the only input of later stages.
+// Contract: docs/model-format.md. Quantities are in SI units, names are resolved to indices, vectors are 3-D.
 #pragma once
 
 #include <array>
@@ -16,13 +16,13 @@
 
 namespace eomgen::model {
 
-/// Exponents of m kg s A K mol cd; nothing where the dimension is unknown (a bare number).
+/// Exponents of m kg s A K mol cd.
 struct Dimension {
   std::array<Rational, 7> exponents{};
 };
 struct Unit {
-  std::string text;                    // canonical SI, "m/s^2"; "1" for pure numbers; empty where unknown
-  std::optional<Dimension> dimension;  // nullopt: unknown
+  std::string text;                    // canonical SI, "m/s^2"; "1" for pure numbers; empty if unknown
+  std::optional<Dimension> dimension;  // nullopt: unknown (a bare number)
 };
 
 struct Parameter {
@@ -34,7 +34,7 @@ struct Parameter {
   bool positive = false;
   Span span;
   bool used = false;
-  std::optional<std::uint32_t> start_of;  // initial(q): the coordinate whose start value every run puts here
+  std::optional<std::uint32_t> start_of;  // initial(q): the coordinate whose initial value every run assigns
 };
 struct Function {  // of time
   std::string name;
@@ -44,14 +44,14 @@ struct Function {  // of time
   Span span;
 };
 struct Integral {    // integral(e) of a function of time, from the start of the run
-  std::string name;  // "integral_1", for where it becomes a state; no other name of the model is like it
+  std::string name;  // "integral_1", its name if it becomes a state; unique in the model
   NodeId integrand = no_node;
   Unit unit;
   Span span;
 };
 struct Input {
   std::string name;
-  NodeId fallback = no_node;  // the value where a scene gives none
+  NodeId fallback = no_node;  // the value if a scene gives none
   Unit unit;
   std::string tex;
   Span span;
@@ -60,7 +60,7 @@ struct Coordinate {
   std::string name;
   Unit unit;
   std::string tex;
-  NodeId lower = no_node, upper = no_node;  // open interval of the chart, where it has one
+  NodeId lower = no_node, upper = no_node;  // open interval of the chart, if it has one
   Span span;
 };
 struct Definition {
@@ -71,29 +71,29 @@ struct Definition {
   Span span;
 };
 
-/// Coordinates of a place, as the user wrote them: which system, which entries; `position` of the Place is the same
-/// thing already spelled out as a vector.
+/// The coordinate system and the entries of a place, as the user wrote them. Place::position is the same position as a
+/// vector.
 struct Chart {
   std::string system;                                           // name in coordinates::registry()
   std::array<NodeId, 3> entries{no_node, no_node, no_node};     // scalar expressions for the slots (third 0 if planar)
   std::array<NodeId, 3> unit_basis{no_node, no_node, no_node};  // vector expressions e_1, e_2, e_3; no_node: normalise
   bool planar = false;
 };
-/// Axes e1 e2 e3 on the way of a rotation, and the same thing as numbers: e_k = sum_j R[k][j] p_j of the axes before
-/// (those of the parent at first), and the components along e1 e2 e3 of the angular velocity against those before.
+/// The axes e1 e2 e3 after one step of a rotation: as vectors, as e_k = sum_j R[k][j] p_j in terms of the previous axes
+/// (at first those of the parent), and the components along e1 e2 e3 of the angular velocity relative to them.
 struct Stage {
   std::array<NodeId, 3> e{no_node, no_node, no_node};  // vectors
   std::array<std::array<NodeId, 3>, 3> R{};            // no_node: 0
   std::array<NodeId, 3> w{no_node, no_node, no_node};  // no_node: 0
 };
-/// Axes that turn, of a body or of a [[frame]]; frames[0] are E1 E2 E3, without stages.
+/// Rotating axes of a body or of a [[frame]]; frames[0] are E1 E2 E3, without stages.
 struct Frame {
   std::string name;
   std::string rotation;         // name in rotations::registry()
-  std::uint32_t parent = 0;     // whose axes it turns against
+  std::uint32_t parent = 0;     // the frame relative to which it rotates
   std::vector<NodeId> entries;  // angles, parameters
   std::vector<Stage> stages;    // the last is its own axes
-  NodeId regular = no_node;     // is 0 where the angles fail, for Euler angles
+  NodeId regular = no_node;     // Euler angles: an expression that is 0 where they are singular
   Span span;
 };
 /// A rigid body; its centre of mass is a place.
@@ -108,7 +108,7 @@ struct Place {
   std::string name;
   NodeId position = no_node;  // absolute
   std::optional<Chart> chart;
-  std::uint32_t from = 0;  // place that the chart measures from
+  std::uint32_t from = 0;  // origin of the chart, index into Model::places
   Span span;
 };
 struct Particle {
@@ -117,12 +117,12 @@ struct Particle {
   Span span;
 };
 
-/// Coulomb's law: coefficients are expressions, which may use Op::slip. With a width w0 the smooth law in its place,
+/// Coulomb friction. The coefficients are expressions that may use Op::slip. A width w0 selects the regularised law
 /// -mu |N| w / sqrt(w^2 + w0^2), which never sticks and has no static coefficient.
 struct Friction {
   NodeId static_coefficient = no_node, dynamic_coefficient = no_node;
   NodeId width = no_node;
-  NodeId surface_velocity = no_node;  // vector: stated motion of the surface along itself
+  NodeId surface_velocity = no_node;  // vector: prescribed tangential motion of the surface
   Span span;
 };
 struct Dry {  // Coulomb friction on one coordinate, with a given normal force
@@ -130,17 +130,17 @@ struct Dry {  // Coulomb friction on one coordinate, with a given normal force
   NodeId normal;
   Friction law;
 };
-/// What the author of a force wrote, by the names of forces/NAME.cpp.
+/// The value of one key of a force. Names are those of forces/NAME.cpp.
 struct Argument {
   std::string name;
-  NodeId value = no_node;   // an expression; of places and bodies where they are
+  NodeId value = no_node;   // an expression; for places and bodies their position
   std::uint32_t index = 0;  // of a place, body, frame, coordinate, choice
 };
-/// What a force does, as the description of its kind spells it out.
+/// An effect of a force: an expanded term of the description of its kind.
 struct Effect {
   enum class Acts {
-    acceleration,  // vector `value`: of every mass
-    potential,     // scalar: an energy, of the points `at`, `other` if given; Op::extension is `extension`
+    acceleration,  // vector `value`: an acceleration of every mass
+    potential,     // scalar: a potential energy, of the points `at`, `other` if given; Op::extension is `extension`
     force,         // vector: at the point `at`
     moment,        // vector: on the frame `index`
     work,          // scalar: a generalised force on the scalar `at`
@@ -153,37 +153,37 @@ struct Effect {
   std::uint32_t index = 0;
 };
 struct Force {
-  std::string name;  // given, or "force 2"
+  std::string name;  // as given, or "force 2"
   std::string kind;  // name in forces::registry()
   std::vector<Argument> arguments;
   std::vector<Effect> effects;
-  std::optional<Dry> dry;  // a contact, which has no effects
+  std::optional<Dry> dry;  // dry friction is a contact and has no effects
   Span span;
 
-  const Argument* argument(std::string_view key) const;  // nullptr where it is not given
-  /// The expression of an argument; no_node where it is not given.
+  const Argument* argument(std::string_view key) const;  // nullptr if it is not given
+  /// The expression of an argument; no_node if it is not given.
   NodeId value(std::string_view key) const;
-  /// The acceleration of every mass, of uniform gravity; no_node of all other forces.
+  /// The acceleration of uniform gravity; no_node for all other forces.
   NodeId acceleration() const;
 };
 
-/// Where a body touches a plane or another body: rolling = { .. }, sliding = { .. }.
+/// A contact of a body with a plane or another body: rolling = { .. }, sliding = { .. }.
 struct BodyContact {
   std::uint32_t place = 0, frame = 0;              // of the body
   NodeId arm = no_node;                            // from its centre of mass to the point of contact
-  std::uint32_t other_place = 0, other_frame = 0;  // of the body that it touches; 0: a plane
+  std::uint32_t other_place = 0, other_frame = 0;  // of the other body; 0: a plane
   NodeId other_arm = no_node;
   std::array<NodeId, 2> tangents{no_node, no_node};  // t1, t2; vectors
-  NodeId slip = no_node;                             // vector: the velocity of its point there against what it touches
-  NodeId tangential_velocity = no_node;              // vector: that of the point of contact over the body
-  std::vector<NodeId> normal_velocity;               // vanish if the point of contact is one, per body
-  NodeId offset = no_node;  // vector: vanishes if the points of both bodies are over one another
-  bool rolling = false;     // written as rolling
+  NodeId slip = no_node;                             // vector: relative velocity of the material points in contact
+  NodeId tangential_velocity = no_node;              // vector: velocity of the point of contact over the body
+  std::vector<NodeId> normal_velocity;               // per body: 0 if the point of contact stays on its surface
+  NodeId offset = no_node;  // vector: 0 if the points of contact of both bodies are on a common normal
+  bool rolling = false;     // given as rolling = { .. }
 };
 
-/// Two bodies that turn together: gear = { .. } between bodies.
+/// A coupling of the rotations of two bodies: gear = { .. } between bodies.
 struct Coupled {
-  std::array<std::uint32_t, 3> frames{};         // of A and B, and on which both turn; 0: the ground
+  std::array<std::uint32_t, 3> frames{};         // of A, of B and of the carrier of both axes; 0: the ground
   std::array<NodeId, 2> axes{no_node, no_node};  // unit vectors
   NodeId ratio = no_node;                        // of the speed of A to that of B
 };
@@ -194,34 +194,34 @@ struct Constraint {
   std::string name;
   std::vector<NodeId> psi;  // scalar equations psi = 0; more than one are NAME.1, NAME.2, ...
   bool curve = false;       // holonomic = ["psi1", "psi2"]
-  bool velocity = false;    // velocity = "..": psi binds velocities
-  bool rolling = false;     // without friction: of three equations the first two bind velocities, the third positions
+  bool velocity = false;    // velocity = "..": psi constrains velocities
+  bool rolling = false;     // without friction: equations 1 and 2 constrain velocities, equation 3 positions
   std::optional<BodyContact> contact;  // of rolling and sliding
-  bool unilateral = false;             // psi >= 0: it pushes and does not pull
-  NodeId restitution = no_node;        // of impacts of a unilateral one; none: 0
+  bool unilateral = false;             // psi >= 0: the normal force is not negative
+  NodeId restitution = no_node;        // of impacts of a unilateral constraint; none: 0
   std::optional<Friction> friction;
-  std::optional<std::uint32_t> joint;  // whose equations these are
-  bool unit = false;                   // the length of Euler parameters
+  std::optional<std::uint32_t> joint;  // the joint to which the equations belong
+  bool unit = false;                   // the unit norm of Euler parameters
   std::optional<Coupled> coupled;
   Span span;
 
   bool binds_velocities(std::size_t equation) const { return velocity || (rolling && equation < 2); }
-  /// Rolls while friction holds it: one equation, and two components of friction as reactions before it.
+  /// Rolling with friction: one equation; its reactions are two friction components followed by the normal force.
   bool rolls_by_friction() const { return contact && contact->rolling && friction; }
   std::size_t reactions() const { return joint ? joint_components : rolls_by_friction() ? 3 : psi.size(); }
 };
 
-/// Between two bodies, or a body and the ground. Its equations are those of a Constraint of the same name.
+/// A joint between two bodies, or a body and the ground. Its equations are in a Constraint of the same name.
 struct Joint {
   std::string name;
   std::string type;                                // name in joints::registry()
   std::array<std::uint32_t, 2> frames{};           // of A and B; 0: the ground
   std::array<NodeId, 2> points{no_node, no_node};  // of the joint in A and B
   std::array<NodeId, 2> drift{
-      no_node, no_node};  // vectors that vanish if these points are fixed in their bodies; no_node: they are
+      no_node, no_node};  // vectors that are 0 if these points are fixed in their bodies; no_node: known to be fixed
   std::vector<NodeId> force,
-      moment;              // per equation, vectors: what lambda = 1 is on B, the moment about its point; no_node: none
-  std::uint32_t axes = 0;  // frame along whose axes the reactions are given
+      moment;              // per equation, vectors: reaction on B for lambda = 1, moment about its point; no_node: none
+  std::uint32_t axes = 0;  // the reactions are given along the axes of this frame
   std::uint32_t constraint = 0;  // index into Model::constraints
   Span span;
 };
@@ -235,14 +235,14 @@ struct Event {  // a change of sign of `when`
 };
 const char* name(Event::Direction direction);  // "any", "up", "down"
 
-/// A shape of [draw], about its middle along the own axes of a body; of a particle along E1 E2 E3.
+/// A shape of [draw], centred, along the axes of the body; for a particle along E1 E2 E3.
 struct Drawn {
   std::uint32_t place = 0;
   std::string kind;  // sphere R; box a, b, c; cylinder R, L; disk R; rod L; arrow x, y, z; mesh x, y, z of each point
   std::vector<NodeId> lengths;
-  std::vector<std::vector<std::uint32_t>> faces;  // of a mesh: its points, from 0; none: it is convex
-  std::uint32_t axis = 2;                         // that a cylinder, disk or rod is about
-  std::vector<NodeId> at;                         // of its middle; none: 0
+  std::vector<std::vector<std::uint32_t>> faces;  // of a mesh: indices of points, from 0; empty: convex hull
+  std::uint32_t axis = 2;                         // axis of a cylinder, disk or rod
+  std::vector<NodeId> at;                         // position of the centre; empty: 0
   Span span;
 };
 
@@ -256,7 +256,7 @@ struct InitialValue {
   NodeId value;
   Span span;
 };
-struct InitialRotation {  // "B.omega" = [..]: along its own axes
+struct InitialRotation {  // "B.omega" = [..]: components along the axes of B
   std::uint32_t frame;
   std::array<NodeId, 3> value;
   Span span;
@@ -274,7 +274,7 @@ struct Named {
   Span span;
 };
 struct Scene {
-  // Defined once: every file that holds one would compile them anew.
+  // Defined in the .cpp file, so that they are compiled only once.
   Scene();
   Scene(const Scene&);
   Scene(Scene&&) noexcept;
@@ -286,18 +286,18 @@ struct Scene {
   NodeId t0 = no_node, t1 = no_node;
   std::vector<InitialValue> initial, guess;
   std::vector<InitialRotation> rotations;
-  std::vector<std::pair<std::uint32_t, std::uint8_t>> solve;  // coordinate, order that may be moved
+  std::vector<std::pair<std::uint32_t, std::uint8_t>> solve;  // (coordinate, order) of values that may be adjusted
   std::vector<std::pair<std::uint32_t, NodeId>> parameters;
   std::vector<SceneInput> inputs;
-  std::vector<Named> outputs;       // checked against the names that exist; "energy", "reaction.NAME", ...
-  std::vector<std::uint32_t> stop;  // events that end this scene, whatever their action
+  std::vector<Named> outputs;       // existing names only: "energy", "reaction.NAME", ...
+  std::vector<std::uint32_t> stop;  // events that end this scene, regardless of their action
   std::string solver = "auto";
   NodeId rtol = no_node, atol = no_node, step = no_node, every = no_node;
   Span span;
 };
 
 struct Model {
-  // Defined once: every file that holds one would compile them anew.
+  // Defined in the .cpp file, so that they are compiled only once.
   Model();
   Model(const Model&);
   Model(Model&&) noexcept;
@@ -309,13 +309,13 @@ struct Model {
   std::string id;    // file name without .toml
   std::string title, notes;
   std::vector<std::string> lines;  // the source, for carets
-  std::string content_hash;        // of the file's bytes, hexadecimal
+  std::string content_hash;        // hash of the file's bytes, hexadecimal
   Arena arena;
   std::vector<Parameter> parameters;
   std::vector<Function> functions;
-  std::vector<Integral> integrals;  // inner ones before those that use them
+  std::vector<Integral> integrals;  // inner integrals first
   std::optional<std::uint32_t>
-      start_time;  // the parameter that holds t0 of the run: the last; where there are integrals
+      start_time;  // the parameter (the last one) that holds t0 of the run; only with integrals
   std::vector<Input> inputs;
   std::vector<Coordinate> coordinates;  // in order of declaration or first appearance
   std::vector<Definition> definitions;
@@ -329,7 +329,7 @@ struct Model {
   std::vector<Joint> joints;
   std::vector<Event> events;
   std::vector<Drawn> drawn;
-  std::vector<Scene> scenes;  // scenes[0] is "default" (made up if the file has none)
+  std::vector<Scene> scenes;  // scenes[0] is "default" (generated if the file has none)
   std::vector<Warning> warnings;
 
   Where where(const Span& span) const;                // for Error
@@ -338,7 +338,7 @@ struct Model {
 
 /// Reads and checks a model file. Throws Error{stage "model"}.
 Model read_model(const std::string& path);
-/// The same from a text that is already in memory (tests, fuzzing); `file` is the name that errors show.
+/// The same for a text in memory (tests, fuzzing); errors show `file` as the file name.
 Model read_model_text(const std::string& text, const std::string& file);
 
 }  // namespace eomgen::model

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[body]] [[frame]]: rotations, points on bodies, and the start of rotations.
+// Reader of [[body]] and [[frame]]: rotations, points on bodies, and initial rotations.
 #pragma once
 
 #include <map>

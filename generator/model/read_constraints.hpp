@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[constraint]] and [energy].
+// Reader of [[constraint]] and [energy].
 #pragma once
 
 #include "model/section_reader.hpp"

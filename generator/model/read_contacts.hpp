@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// rolling = { .. } and sliding = { .. } of a [[constraint]]: a body on a plane or on another body.
+// Reader of rolling = { .. } and sliding = { .. } of a [[constraint]]: a body on a plane or on another body.
 #pragma once
 
 #include <map>
@@ -20,7 +20,7 @@ class ContactsReader : private SectionReader {
   void read_contact_point(Constraint& constraint, const Value& table, const std::map<std::string, Typed>& local);
   Typed contact_arm(const Value& table, std::map<std::string, Typed> local);
   bool touches_body(const Value& on);
-  /// psi, where it is not that of two points and a normal.
+  /// The text of psi; nothing for the general psi of two points and a normal.
   std::optional<std::string> between_bodies(BodyContact& contact, const Value& table,
                                             std::map<std::string, Typed>& local);
   void spheres_in_contact(const Value& table, std::map<std::string, Typed>& local);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// gear = { .. } of a [[constraint]], and other couplings of couplings/: a constraint on the velocities of two
-// rotations.
+// Reader of gear = { .. } of a [[constraint]] and of the other couplings of couplings/: constraints on the velocities
+// of two rotations.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@ namespace eomgen::model {
 class CouplingsReader : private SectionReader {
  public:
   explicit CouplingsReader(ReaderContext& context) : SectionReader(context) {}
-  /// The coupling that a [[constraint]] is; nullptr where it is none.
+  /// The entry of the coupling in a [[constraint]]; nullptr if there is none.
   const Entry* found(const Value& table) const;
   void read(Constraint& constraint, const Entry& entry);
 

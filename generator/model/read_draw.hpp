@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [draw]: how a report draws particles and bodies.
+// Reader of [draw]: shapes of particles and bodies in a report.
 #pragma once
 
 #include "model/section_reader.hpp"

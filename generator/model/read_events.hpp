@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[event]], and the events that end a scene.
+// Reader of [[event]] and of the events that end a scene.
 #pragma once
 
 #include "model/section_reader.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[force]]: the keys of a kind as forces/ describes them, and its formulas spelled out.
+// Reader of [[force]]: checks the keys described in forces/ and expands the formulas.
 #pragma once
 
 #include <map>
@@ -16,14 +16,14 @@ class ForcesReader : private SectionReader {
   void read();
 
  private:
-  /// A force whose keys are being read.
+  /// A force while its keys are read.
   struct Open {
     const forces::Kind& kind;
     Force& force;
-    const Value& table;                  // that holds its keys
+    const Value& table;                  // the table with its keys
     std::string what;                    // "'NAME'" or "this spring"
-    bool named = false;                  // by the author
-    std::map<std::string, Typed> local;  // what its formulas may name
+    bool named = false;                  // the author gave it a name
+    std::map<std::string, Typed> local;  // names available in its formulas
   };
   // read_forces.cpp
   const Entry& kind_of(const Value& table) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Coulomb friction: friction = { .. } of a constraint, and the force dry = { .. } on one coordinate.
+// Reader of Coulomb friction: friction = { .. } of a constraint, and the force dry = { .. } on one coordinate.
 #pragma once
 
 #include "model/section_reader.hpp"
@@ -11,7 +11,7 @@ class FrictionReader : private SectionReader {
   explicit FrictionReader(ReaderContext& context) : SectionReader(context) {}
   void of_constraint(Constraint& constraint, const Value& value);
   Dry dry(const Value& table, const std::string& what);
-  /// friction.NAME, friction.NAME.1 .. 3, slip.NAME, slip.NAME.1 .. 2 and mode.NAME of a contact.
+  /// Whether it is an output of a contact: friction.NAME, friction.NAME.1 .. 3, slip.NAME, slip.NAME.1 .. 2, mode.NAME.
   bool is_output(const std::vector<std::string>& parts);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The inertia of a [[body]].
+// Reader of the inertia of a [[body]].
 #pragma once
 
 #include "model/section_reader.hpp"

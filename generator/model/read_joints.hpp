@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[joint]]: two ends, points and axes fixed in each, and the equations of the registry between them.
+// Reader of [[joint]]: two ends with points and axes fixed in each, and the equations of the registry between them.
 #pragma once
 
 #include <optional>
@@ -29,7 +29,7 @@ class JointsReader : private SectionReader {
   void joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends, const Value& table,
                   const std::string& what);
   std::array<Typed, 3> triad_about(const Value& axis, const JointEnd& end, const std::string& what);
-  /// k where the vector is E1, E2 or E3 and the body turns about it alone: it is its own axis k, wherever it starts.
+  /// k if the vector is E1, E2 or E3 and the body rotates about it only. It is then the body's own axis k at all times.
   std::optional<std::size_t> own_axis_of_plane(const Typed& vector, std::uint32_t frame) const;
   void axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span,
                      const std::string& what);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [parameters] [functions] [inputs] [coordinates] [definitions]: names, and what they stand for when it is needed.
+// Reader of [parameters], [functions], [inputs], [coordinates] and [definitions]. Names are declared first; their
+// values are read on demand.
 #pragma once
 
 #include "model/section_reader.hpp"

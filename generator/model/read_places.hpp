@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[particle]] [[point]], and where the places of bodies and chains are.
+// Reader of [[particle]] and [[point]], and of the positions of bodies and chains.
 #pragma once
 
 #include "model/section_reader.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Positions in a coordinate system of the registry, or in one of the model.
+// Reader of positions in a coordinate system of the registry, or in one that the model defines.
 #pragma once
 
 #include "coordinates/coordinate_system.hpp"
@@ -15,7 +15,7 @@ class PositionsReader : private SectionReader {
   Typed position(std::uint32_t place, const Value& table);
 
  private:
-  /// A position in a chart, from where the chart measures.
+  /// A position in a chart, relative to the origin of the chart.
   struct ExpandedPosition {
     Chart chart;
     std::array<Typed, 3> x;

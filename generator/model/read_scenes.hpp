@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [scene.NAME]: starts, parameters, inputs, outputs and the solver.
+// Reader of [scene.NAME]: initial values, parameters, inputs, outputs and the solver.
 #pragma once
 
 #include "model/section_reader.hpp"

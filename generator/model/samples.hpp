@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of a model's expressions at made-up points, in double: enough to tell that coordinates are dependent or that
-// two formulas are not inverse. In: nodes of the arena. Out: numbers; NaN for what has none or is not of scalars.
+// Values of a model's expressions at sample points, in binary64. They detect dependent coordinates and formulas that
+// are not inverse. In: nodes of the arena. Out: numbers; NaN for undefined values and for vectors.
 #pragma once
 
 #include <map>
@@ -10,22 +10,22 @@
 
 namespace eomgen::model {
 
-/// f(x) in binary64, f(x, y) of functions of two arguments.
+/// f(x) in binary64; f(x, y) for functions of two arguments.
 double value_of(Fn fn, double x, double y);
 
 class Samples {
  public:
   explicit Samples(const Model& model) : model_(model) {}
 
-  /// Another point: every coordinate within its range (between -1.5 and 1.5 where there is none); the same sequence in
+  /// Moves to the next point: every coordinate within its range (default -1.5 to 1.5). The sequence is the same in
   /// every process.
   void next();
   double value(NodeId node);
   double coordinate(std::uint32_t index) const { return q_[index]; }
-  /// The value with one coordinate moved.
+  /// The value with one coordinate changed by `by`.
   double moved(NodeId node, std::uint32_t coordinate, double by);
 
-  /// det(a_i . a_k) of the tangents dx/dq_i at this point, each scaled to unit length: 0 where they are dependent.
+  /// The Gram determinant det(a_i . a_k) of the unit tangents along dx/dq_i at this point; 0 if they are dependent.
   double independence(const std::array<NodeId, 3>& x, const std::vector<std::uint32_t>& coordinates);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one scope of a model: every declared name, what it is, and what is known of it so far.
+// The symbol table of a model: every declared name, its kind, and its value once it is resolved.
 #pragma once
 
 #include <deque>
@@ -16,17 +16,17 @@ namespace eomgen::model {
 
 inline constexpr std::size_t max_names = 5000;
 
-/// An expression of the arena with all that is known of it.
+/// An expression of the arena with its type, dimension and dependencies.
 struct Typed {
   NodeId node = no_node;
   bool vector = false;
-  bool literal = false;                // of written numbers and unit vectors: no dimension, fits every one
-  bool pure = false;                   // a literal that hardly carries a unit: 2, 1/12, E1
-  bool bare_time = false;              // of t and written numbers: in sin(2*t) the 2 carries 1/s
-  bool loose = false;                  // the dimension is known up to a bare number (0.3*x): mismatches are warnings
+  bool literal = false;                // made of number literals and unit vectors: compatible with every dimension
+  bool pure = false;                   // a literal that is a pure number: 2, 1/12, E1
+  bool bare_time = false;              // made of t and number literals: in sin(2*t) the 2 has the unit 1/s
+  bool loose = false;                  // dimension uncertain due to a bare number (0.3*x): mismatches are warnings
   std::optional<Dimension> dimension;  // nothing: unknown
-  std::uint8_t facts = 0;              // what it depends on
-  int depth = 1;                       // with all that it refers to
+  std::uint8_t facts = 0;              // the variables on which it depends
+  int depth = 1;                       // including everything to which it refers
   double exponents = 1;                // product of nested constant exponents
   std::optional<Rational> constant;    // of numbers and parameters that are numbers
 };
@@ -40,7 +40,7 @@ struct Symbol {
   std::string name;
   Span span;
   std::uint32_t frame = 0;  // of a place that is a body: its axes
-  std::uint32_t index = 0;  // in the list of the model; parameters, functions and definitions get theirs when done
+  std::uint32_t index = 0;  // in the list of the model; set when done for parameters, functions and definitions
   State state = State::fresh;
   bool used = false;
   Typed typed;                   // when done: value of a parameter, position of a place, ...
@@ -55,7 +55,7 @@ class Scope {
   Symbol* find(std::string_view name);
   std::vector<std::string> names() const;
   std::vector<std::string> names(SymbolKind kind) const;
-  /// The axes of a body or frame, index into Model::frames: known by the name of that, and resolved on their own.
+  /// Declares the axes of a body or frame (index into Model::frames). They share its name and are resolved separately.
   void declare_axes(const std::string& name, Span span);
   Symbol& axes(std::uint32_t frame) { return axes_[frame]; }
   /// All symbols of one kind in the order of declaration.

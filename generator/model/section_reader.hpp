@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the readers of the sections share. A section is read by one class, a SectionReader, on one ReaderContext: the
-// file as values, the Model that is being made, the names, and the sources of what is resolved only when it is needed.
+// The common base of the section readers. Each section is read by one class derived from SectionReader, on one
+// ReaderContext: the file as values, the Model under construction, the names, and the declarations that are resolved on
+// demand.
 #pragma once
 
 #include <functional>
@@ -20,14 +21,14 @@ inline constexpr std::size_t max_coordinates = 1000;
 inline constexpr std::size_t max_scenes = 100;
 inline constexpr long max_chain = 64;
 
-/// The keys of one kind of table: those that exist, and what others call them.
+/// The keys of one kind of table, and common synonyms.
 struct Keys {
   std::string what;  // "[[particle]]"
   std::vector<std::string_view> known;
-  std::map<std::string, std::string, std::less<>> others{};  // a word of others, and how it is written here
+  std::map<std::string, std::string, std::less<>> others{};  // synonym -> advice on the key to use
 };
 
-/// Where a place is declared.
+/// The declaration of a place.
 struct PlaceSource {
   const Value* table = nullptr;
   bool particle = false;
@@ -44,21 +45,21 @@ struct Chain {
   std::vector<std::uint32_t> coordinates, places;
 };
 
-/// A direction that is fixed in a frame and in space: components of its unit vector along the axes of the frame, and
-/// in proportion to them numbers, where it is made of numbers.
+/// A direction that is fixed in a frame and in space: the components of its unit vector along the axes of the frame,
+/// and, if it is numerical, numbers proportional to them.
 struct FixedDirection {
   std::array<Typed, 3> unit;
   std::optional<std::array<cln::cl_RA, 3>> numbers;
 };
 
-/// Where axes are declared.
+/// The declaration of axes.
 struct FrameSource {
   const Value* table = nullptr;
   std::uint32_t place = 0;                  // of a body
-  bool still = false;                       // it keeps its attitude; the ground does
-  std::optional<FixedDirection> axis = {};  // about which it turns, if that is a fixed one
+  bool still = false;                       // it does not rotate, like the ground
+  std::optional<FixedDirection> axis = {};  // its axis of rotation, if that is fixed
   bool upright =
-      false;  // it turns about that axis alone, from E1, E2, E3 on: the axis has the same components in space
+      false;  // it rotates about that axis only, starting from E1, E2, E3: the axis has the same components in space
 };
 
 struct ReaderContext {
@@ -70,7 +71,7 @@ struct ReaderContext {
   const Value& root;
   Model model;
   Scope scope;
-  std::function<Typed(Symbol&)> define;  // reads the declaration of a symbol that is needed now
+  std::function<Typed(Symbol&)> define;  // reads the declaration of a symbol on demand
   Resolver resolver;
   std::vector<PlaceSource> place_sources;  // per Model::places
   std::vector<FrameSource> frame_sources;  // per Model::frames
@@ -92,16 +93,16 @@ class SectionReader {
   std::string text_of_key(const Value& table, std::string_view key, const std::string& what) const;
   Span key_span(const Value& table, std::string_view key) const;
   std::string tex_of(const Value& table, const std::string& what) const;
-  /// A unit that values are given in: SI without a factor.
+  /// Reads a unit for values: SI without a factor.
   Unit si_unit(const Value& value, const std::string& what) const;
   MeasuredUnit any_unit(const Value& value, const std::string& what) const;
 
   // section_reader.cpp
-  /// Index into Model::places, 0 of "origin"; refused if it is no name of a place.
+  /// The index into Model::places of a named place, 0 for "origin". Throws Error if there is no such place.
   std::uint32_t place_named(const Value& value, const std::string& what);
-  /// Index into Model::frames, 0 of "ground"; refused if it is no name of a body or frame.
+  /// The index into Model::frames of a named body or frame, 0 for "ground". Throws Error if there is none.
   std::uint32_t frame_named(const Value& value, const std::string& what);
-  /// A place by its name, or a vector.
+  /// A position given as the name of a place or as a vector.
   Typed point(const Value& value, const std::string& what);
 
   ReaderContext& context_;

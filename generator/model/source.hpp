@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The user's file as bytes and lines; everything that is wrong with it is told through `fail`.
-// In: the text of a model file. Out: places (Span, Where) and errors.
+// The user's file as bytes and lines. Source::fail reports every error in it.
+// In: the text of a model file. Out: locations (Span, SourceLocation) and errors.
 #pragma once
 
 #include <cstddef>
@@ -21,16 +21,16 @@ inline constexpr std::size_t max_toml_depth = 24;
 
 class Source {
  public:
-  /// Throws Error if the text is too large, is not UTF-8, holds control characters, or is nested too deeply.
+  /// Throws Error if the text is too large, is not UTF-8, contains control characters, or is nested too deeply.
   Source(std::string file, std::string text);
 
   const std::string& file() const { return file_; }
   const std::string& text() const { return text_; }
   const std::vector<std::string>& lines() const { return lines_; }
 
-  /// The place of some bytes of the file.
+  /// The location of a range of bytes.
   Span span(std::size_t offset, std::size_t length) const;
-  /// Byte offset of a line and a column that counts characters, not bytes (as toml++ does); both from 1.
+  /// The byte offset of a line and a column in characters, not bytes (as in toml++); both count from 1.
   std::size_t offset(std::size_t line, std::size_t character_column) const;
   Where where(const Span& span) const;
   [[noreturn]] void fail(const Span& span, std::string what, std::string remedy) const;
@@ -47,7 +47,7 @@ class Source {
   std::vector<std::string> lines_;
 };
 
-/// The place of a span in the lines of a file.
+/// The location of a span in the lines of a file.
 Where where_in(const std::string& file, const std::vector<std::string>& lines, const Span& span);
 
 }  // namespace eomgen::model

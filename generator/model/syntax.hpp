@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Expressions as written: lexer and parser. In: a text. Out: a tree whose names mean nothing yet.
+// Lexer and parser of expressions. In: a text. Out: a syntax tree with unresolved names.
 // Grammar: docs/model-format.md.
 #pragma once
 
@@ -18,11 +18,11 @@ inline constexpr int max_nesting = 256;           // of parentheses, signs, powe
 inline constexpr std::size_t max_number_digits = 400;
 inline constexpr long max_number_exponent = 400;
 
-/// A text to parse and how its bytes map to the file.
+/// A text to parse, and the mapping of its bytes to the file.
 struct Text {
   std::string_view text;
   const Source* source = nullptr;
-  const Value* value = nullptr;  // the TOML string that holds it; null: `fixed` is the place of all of it
+  const Value* value = nullptr;  // the TOML string that contains it; null: `fixed` is the location of the whole text
   std::size_t offset = 0;        // of `text` in value->text
   Span fixed;
 
@@ -39,9 +39,9 @@ struct Token {
   Rational value = 0;                // of numbers
   std::optional<MeasuredUnit> unit;  // 1.7e-5[m]
 };
-/// The tokens of a text, `end` last. Throws Error.
+/// The tokens of a text, with `end` as the last one. Throws Error.
 std::vector<Token> tokens_of(const Text& text);
-/// An exact rational from digits [ "." digits ] [ e [sign] digits ]; the reason where it cannot be one.
+/// An exact rational from digits [ "." digits ] [ e [sign] digits ], or the reason why the text is not a number.
 struct ExactNumber {
   Rational value = 0;
   std::string problem;
@@ -82,9 +82,9 @@ struct Syntax {
 
 /// Parses a whole expression. Throws Error.
 Syntax parse_expression(const Text& text);
-/// The unit after the last blank of "9.81 m/s^2", if that is how the text reads.
+/// The unit after the last blank, as in "9.81 m/s^2", if there is one.
 std::optional<MeasuredUnit> trailing_unit(std::string_view text);
-/// The same as parse_expression, but a unit may follow after a blank.
+/// Like parse_expression, with an optional unit after a blank.
 Syntax parse_quantity(const Text& text);
 
 }  // namespace eomgen::model

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Units of measurement: exact factors to SI, and the algebra of dimensions.
+// Units of measurement: exact conversion factors to SI, and the algebra of dimensions.
 #pragma once
 
 #include <optional>
@@ -18,12 +18,11 @@ struct MeasuredUnit {
   int pi_power = 0;
 };
 
-/// "m/s^2", "N*m", "1/s", "kg/(m*s)", "deg"; nothing if it is not made of known units.
+/// Parses "m/s^2", "N*m", "1/s", "kg/(m*s)" or "deg"; nothing if it is not composed of known units.
 std::optional<MeasuredUnit> parse_unit(std::string_view text);
-/// What was meant by "m/s2", "m/s**2", "kg.m": the same with the signs that are missing; nothing if that is no unit
-/// either.
+/// A correction of "m/s2", "m/s**2" or "kg.m" with the missing operators; nothing if that is not a unit either.
 std::optional<std::string> completed_unit(std::string_view text);
-/// The units near to a misspelt one, for did-you-mean.
+/// Suggests units similar to a misspelt one.
 std::string unit_hint(std::string_view text);
 
 bool same(const Dimension& a, const Dimension& b);
@@ -33,9 +32,9 @@ Dimension quotient(const Dimension& a, const Dimension& b);
 Dimension raised(const Dimension& a, const Rational& exponent);
 /// Canonical SI text: "m/s^2", "N", "1".
 std::string text_of(const Dimension& dimension);
-/// The dimension of a unit that is known to be right: dimension_of("kg*m^2").
+/// The dimension of a valid unit: dimension_of("kg*m^2").
 Dimension dimension_of(std::string_view unit);
-/// Unit of a quantity whose dimension is `dimension`.
+/// The SI unit of a dimension.
 Unit unit_of(const std::optional<Dimension>& dimension);
 
 }  // namespace eomgen::model

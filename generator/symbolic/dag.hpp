@@ -50,7 +50,7 @@ enum class SymbolKind : std::uint8_t {
   input,
   multiplier,  // lambda of Mechanics::constraints[index]
   friction,    // phi of a tangent of Mechanics::contacts: a component of a friction force
-  contact,     // mode of a contact: order 0: slip direction (1, -1 against the tangent, 0 sticks), 1: sign of the normal force
+  contact,     // mode of a contact: order 0: slip direction (0: it sticks), order 1: sign of the normal force
   extra,       // an auxiliary variable of the caller (cut points of the solve, the extension of a spring)
   integral,    // of a function of time, from the start of the run; set_rate defines its derivative
   side,        // branch at which a kink is held: -1 or 1, or 0 for none (program/kinks.hpp)

@@ -81,7 +81,7 @@ const Output* find(const std::vector<Output>& outputs, const std::string& name);
 /// The names of all outputs of a kind with this index, in order.
 std::vector<std::string> names_of(const std::vector<Output>& outputs, OutputKind kind, std::uint32_t index = 0);
 
-/// "m" -> "m/s", "m/s^2" as it is divided by the second once or twice; a pure number that has no unit keeps none.
+/// The unit divided by s, `times` times: "m" -> "m/s", "m/s^2". An empty unit stays empty.
 std::string per_second(const std::string& unit, int times = 1);
 
 }  // namespace eomgen::system
