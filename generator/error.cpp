@@ -8,7 +8,8 @@
 namespace eomgen {
 namespace {
 
-// Control characters of an untrusted file must not reach the terminal; columns stay as they are (one byte each).
+// Replaces control characters, which must not reach the terminal from an untrusted file, by one byte each: columns stay
+// valid.
 std::string printable(const std::string& line) {
   std::string result = line;
   for (char& c : result) {
@@ -17,7 +18,7 @@ std::string printable(const std::string& line) {
   return result;
 }
 
-// Long lines are shown around the place only.
+// Only the surroundings of the place are shown of a long line.
 std::string source_excerpt(const Where& where) {
   constexpr std::size_t window = 100;
   std::string line = printable(where.text);

@@ -10,7 +10,7 @@
 namespace eomgen::work {
 namespace {
 
-// A signal handler and the thread that shows progress can reach nothing but objects of static storage.
+// Static storage: the signal handler and the progress thread can access nothing else.
 std::atomic<bool> stop{false};
 std::atomic<const char*> under_way{nullptr};
 std::atomic<int> keeping{0};

@@ -3,7 +3,7 @@
 
 namespace eomgen::coordinates {
 
-// A basis that is not orthogonal; the coordinate curves of theta are helices.
+// The basis is not orthogonal; the coordinate curves of theta are helices.
 extern const CoordinateSystem helical;
 const CoordinateSystem helical{
     .name = "helical",

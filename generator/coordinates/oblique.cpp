@@ -3,7 +3,7 @@
 
 namespace eomgen::coordinates {
 
-// q1 = x1 sec(angle), q2 = x2 - x1 tan(angle), q3 = x3: straight lines, not at right angles.
+// q1 = x1 sec(angle), q2 = x2 - x1 tan(angle), q3 = x3: the coordinate lines are straight and oblique.
 extern const CoordinateSystem oblique;
 const CoordinateSystem oblique{
     .name = "oblique",

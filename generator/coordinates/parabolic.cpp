@@ -3,7 +3,7 @@
 
 namespace eomgen::coordinates {
 
-// Half the axis each: v = 0 is the upper one, u = 0 the lower one. u and v are square roots of lengths.
+// v = 0 is the upper half of the axis, u = 0 the lower half. u and v are square roots of lengths.
 extern const CoordinateSystem parabolic;
 const CoordinateSystem parabolic{
     .name = "parabolic",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A new coordinate system: one file like spherical.cpp, one declaration and one line here.
+// To add a coordinate system: one file like spherical.cpp, one declaration and one line here.
 #include <array>
 
 #include "coordinates/coordinate_system.hpp"

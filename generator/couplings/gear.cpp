@@ -3,7 +3,7 @@
 
 namespace eomgen::couplings {
 
-// Gears that mesh outside turn against one another: their ratio is negative, that of a belt or a chain positive.
+// External gears rotate in opposite directions, so their ratio is negative. The ratio of a belt or a chain is positive.
 Coupling gear() {
   return {"gear", "two rotations with a ratio: a pair of gears, a belt, a planetary gear on a carrier",
           "dot(wA, a) - ratio*dot(wB, b)", "ddt(angle1) - ratio*ddt(angle2)"};

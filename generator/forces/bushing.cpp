@@ -3,8 +3,8 @@
 
 namespace eomgen::forces {
 
-// x_i = (rB - rA) . A_i, along the axes of A; p_i = sin(p) n . A_i of the rotation by p about n that takes the axes of
-// A to those of B. Forces and moments on A and B are opposite; both forces act at the point of B.
+// Displacements x_i = (rB - rA) . A_i along the axes of A. Rotations p_i = sin(p) n . A_i, for the rotation by p about
+// n from the axes of A to those of B. Forces and moments on A and B are opposite; both forces act at the point of B.
 Kind bushing() {
   const std::string x1 = "dot(rB - rA, A1)", x2 = "dot(rB - rA, A2)", x3 = "dot(rB - rA, A3)";
   const std::string p1 = "((dot(B2, A3) - dot(B3, A2))/2)", p2 = "((dot(B3, A1) - dot(B1, A3))/2)",

@@ -3,7 +3,7 @@
 
 namespace eomgen::forces {
 
-// Order 2 adds what the inertia of bodies makes of it, eq. (7.71).
+// Order 2 adds the term of the inertia of bodies, eq. (7.71).
 Kind central_gravity() {
   return {
       .name = "central_gravity",

@@ -3,7 +3,7 @@
 
 namespace eomgen::forces {
 
-// Of no free length (norm(a - b))^2 without a square root, and so without a singular point.
+// For free length 0, (norm(a - b))^2 is written without the square root, so that it has no singular point.
 Kind spring() {
   return {
       .name = "spring",

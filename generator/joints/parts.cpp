@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// With u fixed in A and v in B the rate of u.v is (w_B - w_A).(v x u): lambda (v x u) is the moment on B.
+// For u fixed in A and v fixed in B, d(u.v)/dt = (w_B - w_A).(v x u). The moment on B is therefore lambda (v x u).
 #include "joints/kinds.hpp"
 
 namespace eomgen::joints {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A new kind of joint: a line here, and one file like pin.cpp.
+// To add a kind of joint: a line here, and one file like pin.cpp.
 #include "joints/kinds.hpp"
 
 namespace eomgen::joints {

@@ -43,7 +43,7 @@ NodeId AtStart::coordinate(const Node& node) {
   return push(zero);
 }
 
-/// What a name stands for; no_node of a node that is no name.
+/// The expression for which a name stands; no_node if the node is not a name.
 NodeId AtStart::reference(const Node& node) {
   switch (node.op) {
     case Op::time: return model_.scenes.front().t0;

@@ -49,7 +49,7 @@ void ChainsReader::declare(const Value& table) {
   chains_.push_back(std::move(chain));
 }
 
-// "m" for all links, or an array with one entry for each.
+// A value for all links, "m", or an array with one entry per link.
 Typed ChainsReader::entry(const Value& table, std::string_view key, long link, const Context& context) {
   const std::string what = "this [[chain]]";
   const Value& value =

@@ -12,7 +12,7 @@
 namespace eomgen::model {
 namespace {
 
-/// The coordinates that these entries are; nothing where one of them is an expression, or twice the same.
+/// The coordinates in these entries; empty if an entry is not a coordinate, or if one occurs twice.
 std::vector<std::uint32_t> plain(const Model& model, const std::vector<NodeId>& entries) {
   std::vector<std::uint32_t> result;
   for (const NodeId entry : entries) {
@@ -24,7 +24,7 @@ std::vector<std::uint32_t> plain(const Model& model, const std::vector<NodeId>& 
   return result;
 }
 
-/// Contacts keep modes that belong to directions, which are not carried over yet.
+/// The reason if the model has contacts: their modes refer to directions, whose transition is not implemented.
 std::string contact_of(const Model& model) {
   for (const Constraint& constraint : model.constraints) {
     if (constraint.friction || constraint.unilateral)
@@ -58,8 +58,8 @@ void refuse(const Model& model, SwitchedChart& chart, std::vector<NodeId> entrie
   chart.refusal = name.empty() ? contact_of(model) : name;
 }
 
-/// Where x1, x2, x3 of a place are written down: its position without what it is measured from; no_node: along axes
-/// that turn.
+/// The node with x1, x2, x3 of a place: its position relative to the origin of the chart; no_node if it is along
+/// rotating axes.
 NodeId components_of(const Model& model, const Place& place) {
   NodeId id = place.position;
   if (place.from > 0 && model.arena[id].op == Op::add) id = model.arena[id].args[1];
@@ -95,7 +95,7 @@ class Builder {
   std::vector<Node>& nodes_;
 };
 
-/// The last step about another axis: the same entries in other rows.
+/// Replaces the axis of the last step: the same entries in other rows.
 void turn(Model& model, const SwitchedChart& chart) {
   Builder build(model);
   Frame& frame = model.frames[chart.index];
@@ -120,8 +120,8 @@ void turn(Model& model, const SwitchedChart& chart) {
   frame.regular = build.call(chart.at_sine ? Fn::cos : Fn::sin, frame.entries[1]);
 }
 
-/// x2 = R sin(phi) cos(theta), x3 = R sin(phi) sin(theta), x1 = R cos(phi): the same components, each one place further
-/// on.
+/// Moves the pole to E1: x2 = R sin(phi) cos(theta), x3 = R sin(phi) sin(theta), x1 = R cos(phi), a cyclic permutation
+/// of the components.
 void move_pole(Model& model, const SwitchedChart& chart) {
   Builder build(model);
   Place& place = model.places[chart.index];

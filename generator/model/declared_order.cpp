@@ -9,14 +9,14 @@
 namespace eomgen::model {
 namespace {
 
-// What the program itself has added comes last.
+// Items that the program added come last.
 template <class T>
 bool is_made_up(const T& item) {
   if constexpr (std::is_same_v<T, Parameter>) return item.start_of.has_value();
   return false;
 }
 
-// Sorts by place in the file; gives the new index of each old one.
+// Sorts by position in the file. Returns the new index of each old one.
 template <class T>
 std::vector<std::uint32_t> sort_by_place(std::vector<T>& items) {
   std::vector<std::uint32_t> order(items.size());

@@ -16,7 +16,7 @@ std::size_t offset_of(const Source& source, const toml::source_position& place) 
   return source.offset(place.line, place.column);
 }
 
-// Walks a TOML string in the source beside its decoded bytes, so that every byte knows where it came from.
+// Traverses a TOML string in the source along with its decoded bytes, to find the source offset of every byte.
 class StringWalk {
  public:
   StringWalk(const std::string& source, std::size_t begin, const std::string& decoded)
@@ -48,7 +48,7 @@ class StringWalk {
   }
 
  private:
-  // Should the walk and toml++ ever disagree, the start of the string is still a place.
+  // If the traversal and toml++ disagree, every byte gets the offset of the start of the string.
   std::vector<std::size_t> fallback() const { return std::vector<std::size_t>(decoded_.size() + 1, begin_); }
 
   bool escape(std::vector<std::size_t>& result) {
@@ -96,7 +96,7 @@ void convert_table(const Source& source, const toml::table& table, Value& value)
     const std::size_t end = offset_of(source, key.source().end);
     entries.push_back({begin, Entry{std::string(key.str()), source.span(begin, end - begin), convert(source, child)}});
   }
-  // toml++ keeps keys by name; a model keeps the order of the file.
+  // toml++ sorts keys by name; a model keeps the order of the file.
   std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   for (auto& [begin, entry] : entries) value.entries.push_back(std::move(entry));
 }
@@ -134,7 +134,7 @@ Value convert(const Source& source, const toml::node& node) {
   return value;
 }
 
-// "Error while parsing string: unescaped ..." reads better without its first words.
+// Removes the prefix of messages such as "Error while parsing string: unescaped ...".
 std::string clean_description(std::string_view description) {
   constexpr std::string_view lead = "Error while parsing ";
   if (description.starts_with(lead)) description.remove_prefix(lead.size());
@@ -170,7 +170,7 @@ const char* kind_name(Value::Kind kind) {
 
 namespace {
 
-// key = 9,81 and key = 9.81 m/s^2: what is wrong is the value, not the file.
+// key = 9,81 and key = 9.81 m/s^2: the error is in the value, not in the structure of the file.
 void refuse_bare_value(const Source& source, std::size_t at) {
   const std::string& text = source.text();
   at = std::min(at, text.size());
@@ -192,7 +192,7 @@ void refuse_bare_value(const Source& source, std::size_t at) {
     source.fail(span, "a comma is no decimal point",
                 fmt::format("write {}", meant.find(' ') == std::string::npos ? meant : '"' + meant + '"'));
   }
-  // A number that TOML does not take is told as such.
+  // An invalid TOML number has its own message.
   const bool plain = value.find_first_not_of("0123456789.eE+-_xob") == std::string::npos;
   if (plain || value.size() > 100 || value.find(',') != std::string::npos) return;
   source.fail(span, fmt::format("{} is no TOML value: units and expressions are texts", quote(value)),

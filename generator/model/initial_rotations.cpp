@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The start of rotations: Euler parameters that a scene leaves out, and "B.omega".
+// Initial values of rotations: Euler parameters that a scene omits, and "B.omega".
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace eomgen::model {
 
-// Of Euler parameters that a scene leaves out e1, e2, e3 are 0, and e0 is what is left of the length.
+// Omitted Euler parameters e1, e2, e3 are 0, and an omitted e0 follows from the unit norm.
 void BodiesReader::complete_parameters(Scene& scene) {
   for (const Frame& frame : model_.frames) {
     const rotations::Rotation* rotation = rotations::find(frame.rotation);
@@ -62,7 +62,7 @@ bool BodiesReader::read_initial_rotation(Scene& scene, const Entry& entry, bool 
   return true;
 }
 
-// An angular velocity stands instead of the rates of the body's own angles.
+// An angular velocity replaces the rates of the body's own angles.
 void BodiesReader::check_initial_rotations(const Scene& scene) const {
   for (const InitialRotation& rotation : scene.rotations) {
     const Frame& frame = model_.frames[rotation.frame];

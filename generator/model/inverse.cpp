@@ -13,7 +13,7 @@ namespace {
 using Id = std::uint32_t;
 constexpr std::size_t largest_pool = 60000;  // of nodes; beyond, nobody wants the result
 
-// All trees in one pool; children have smaller ids than their parents.
+// Solves for the unknowns. All trees are in one pool; children have smaller ids than their parents.
 class Solver {
  public:
   Solver(const std::array<Syntax, 3>& f, const std::array<std::string, 3>& names) {
@@ -37,7 +37,7 @@ class Solver {
 
  private:
   struct Equation {
-    Id left, right;  // the right-hand side holds no unknown that is still to be found
+    Id left, right;  // the right-hand side contains no remaining unknown
   };
   struct Linear {
     Id constant, factor;
@@ -69,7 +69,7 @@ class Solver {
   bool is_number(Id id) const { return pool_[id].kind == SyntaxKind::number && !pool_[id].unit; }
   bool is(Id id, int value) const { return is_number(id) && pool_[id].value == value; }
 
-  // a op b with numbers joined and 0 and 1 left out, so that what cancels is seen to cancel.
+  // a op b with constants folded and 0 and 1 simplified, so that cancellation is detected.
   Id make(SyntaxKind kind, Id a, Id b) {
     if (is_number(a) && is_number(b) && kind != SyntaxKind::power && !(kind == SyntaxKind::divide && is(b, 0))) {
       const Rational &x = pool_[a].value, &y = pool_[b].value;
@@ -89,7 +89,7 @@ class Solver {
     return add(std::move(node));
   }
 
-  // Which nodes hold x_k.
+  // Marks the nodes that contain x_k.
   std::vector<bool> holders(std::size_t unknown) const {
     std::vector<bool> holds(pool_.size());
     for (std::size_t id = 0; id < pool_.size(); ++id) {
@@ -101,7 +101,7 @@ class Solver {
     return holds;
   }
 
-  // The expression as constant + factor * unknown, where its form shows it.
+  // The expression as constant + factor * unknown, if its structure shows that it is linear.
   std::optional<Linear> linear(Id id, const std::vector<bool>& holds) {
     if (id >= holds.size() || !holds[id]) return Linear{id, number(0)};
     const SyntaxNode node = pool_[id];
@@ -134,7 +134,7 @@ class Solver {
     }
   }
 
-  // The unknown from left = right: linear at once, otherwise the outermost operation undone, again and again.
+  // The unknown from left = right: directly if it is linear, otherwise by repeatedly inverting the outermost operation.
   std::optional<Id> isolate(Id left, Id right, const std::vector<bool>& holds) {
     while (pool_.size() < largest_pool) {
       if (const auto line = linear(left, holds)) {
@@ -193,7 +193,7 @@ class Solver {
     return std::nullopt;
   }
 
-  // A copy of the tree with x_unknown replaced.
+  // A copy of the tree with the unknown replaced.
   Id substituted(Id root, const std::vector<bool>& holds, Id by) {
     std::map<Id, Id> known;
     const auto copy = [&](const auto& self, Id id) -> Id {
@@ -207,7 +207,7 @@ class Solver {
     return copy(copy, root);
   }
 
-  // Equations with few unknowns first; what an unknown is made of is filled in when the others are known.
+  // Equations with few unknowns come first. The expression of an unknown is completed once the others are known.
   bool eliminate(const std::vector<Equation>& equations, const std::vector<std::size_t>& unknowns) {
     if (unknowns.empty()) return true;
     std::map<std::size_t, std::vector<bool>> holds;
@@ -241,7 +241,7 @@ class Solver {
     return false;
   }
 
-  // The part of the pool that one tree needs.
+  // The part of the pool that belongs to one tree.
   Syntax extracted(Id root) const {
     Syntax result;
     std::map<Id, Id> moved;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables and their keys: what is unknown, what is missing.
+// Tables and their keys: errors for unknown and missing keys.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -111,7 +111,7 @@ class Lexer {
     return token;
   }
 
-  /// What to write where a unit follows a number at once; empty where what follows is none.
+  /// The correction if a unit follows a number without a blank; empty if it is not a unit.
   std::string missing_blank(const Token& token) const {
     const std::size_t end = std::min(text_.text.find_first_of(" \t\r\n", at_), text_.text.size());
     const bool last = text_.text.find_first_not_of(" \t\r\n", end) == std::string_view::npos;
@@ -127,7 +127,7 @@ class Lexer {
     const std::string_view first = text_.text.substr(at_, letters - at_);
     const bool whole = letters == text_.text.size() ||
                        std::string_view(" \t)+-,*/").find(text_.text[letters]) != std::string_view::npos;
-    if (!whole || first.size() < 2 || !parse_unit(first)) return "";  // one letter is a name as often
+    if (!whole || first.size() < 2 || !parse_unit(first)) return "";  // one letter may as well be a name
     return fmt::format("inside of an expression a unit stands in brackets: {0}[{1}]; a product has its sign: {0}*{1}",
                        token.text, first);
   }

@@ -75,8 +75,8 @@ class Collector {
   }
   void law(const Friction& f) { more({f.static_coefficient, f.dynamic_coefficient, f.width, f.surface_velocity}); }
 
-  /// A component along a coordinate names it, though no expression does: the position or rotation that uses it stands
-  /// for it.
+  /// A force component along a coordinate uses it without an expression. The position or rotation that uses the
+  /// coordinate is reported instead.
   void rubbed(std::uint32_t coordinate) {
     for (NodeId id = 0; id < model_.arena.nodes.size(); ++id) {
       const Node& node = model_.arena[id];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nothing but what every holder of a Model needs: the judge links no more of this stage.
+// The functions that every user of a Model needs. The oracle links no other file of this stage.
 #include "model/model.hpp"
 
 namespace eomgen::model {

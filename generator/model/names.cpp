@@ -11,8 +11,9 @@ namespace eomgen::model {
 namespace {
 
 constexpr std::size_t many = 64;
-// Names and numbers of arguments are those of symbolic/functions.hpp, which this stage and the judge, which reads Fn,
-// do not know; tests/mechanics holds one against the other. min and max take more than two here, as nested calls.
+// Names and numbers of arguments are those of symbolic/functions.hpp. This stage, and the oracle, which reads Fn, do
+// not depend on that file; tests/mechanics compares the two. min and max take more than two arguments here, as nested
+// calls.
 constexpr std::array<FunctionName, 17> scalar_functions{{
     {"sin", Fn::sin, 1, 1},
     {"cos", Fn::cos, 1, 1},
@@ -86,7 +87,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t li
 }
 
 std::optional<std::string> nearest(std::string_view name, const std::vector<std::string>& candidates) {
-  // Short names are near to everything: one edit for up to four letters, then two, then three.
+  // The limit grows with the length: one edit for up to four letters, then two, then three.
   const std::size_t limit = name.size() <= 4 ? 1 : name.size() <= 8 ? 2 : 3;
   std::optional<std::string> best;
   std::size_t best_distance = limit + 1;
@@ -123,7 +124,7 @@ bool looks_misspelt(std::string_view name, std::string_view known) {
   if (std::min(name.size(), known.size()) < 2 || std::max(name.size(), known.size()) < 3) return false;
   const std::size_t shortest = std::min(name.size(), known.size());
   const bool after_underscore = name.size() > 2 && name[name.size() - 2] == '_';
-  // What is left between the common start and the common end.
+  // Compare the parts between the common prefix and the common suffix.
   while (!name.empty() && !known.empty() && name.front() == known.front()) {
     name.remove_prefix(1);
     known.remove_prefix(1);

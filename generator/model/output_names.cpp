@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of outputs: no name of the model may be that of an output which the program gives by itself, or that other
-// names make.
+// Conflicts of output names: a name of the model must differ from the built-in outputs and from those derived from
+// other names.
 #include <fmt/format.h>
 
 #include <map>
@@ -10,7 +10,7 @@
 namespace eomgen::model {
 
 void ScenesReader::refuse_shadowed_outputs() {
-  std::map<std::string, std::string> taken;  // the output, what it is
+  std::map<std::string, std::string> taken;  // output name -> description
   const auto derived = [&taken](const std::string& name, const std::string& what) { taken.emplace(name, what); };
   derived("energy", "T + U");
   derived("kinetic", "the kinetic energy");

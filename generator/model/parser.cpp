@@ -97,7 +97,7 @@ class Parser {
     return combine(terms, SyntaxKind::multiply);
   }
 
-  // Left to right, but long sums and products become trees of runs, so that no walk of them goes deep.
+  // Left to right. Long sums and products become balanced trees of runs, which limits the depth of recursion.
   std::uint32_t combine(std::vector<Term> terms, SyntaxKind kind) {
     constexpr std::size_t run = 16;
     const bool sum = kind == SyntaxKind::add;
@@ -215,7 +215,7 @@ class Parser {
     return id;
   }
 
-  // Of if(): a comparison; elsewhere the resolver refuses one.
+  // An argument of if() may be a comparison; elsewhere the resolver rejects one.
   std::uint32_t argument() {
     const std::uint32_t left = sum();
     const Token& token = now();
@@ -245,7 +245,7 @@ Syntax parse_expression(const Text& text) { return Parser(text).all(); }
 
 namespace {
 
-// The last word of a text that has an operand before it: "m/s^2" of "9.81 m/s^2", nothing of "a + b".
+// The last word of a text after an operand: "m/s^2" of "9.81 m/s^2", nothing of "a + b".
 struct LastWord {
   std::string_view before, word;
 };
@@ -271,7 +271,7 @@ Syntax parse_quantity(const Text& text) {
   const auto at = static_cast<std::size_t>(last->word.data() - text.text.data());
   auto unit = parse_unit(last->word);
   if (!unit) {
-    // "2 fm/s": what could only be a unit is told as one.
+    // "2 fm/s": the message calls it a unit, as it cannot be anything else.
     const bool unit_like =
         completed_unit(last->word).has_value() || (std::isalpha(static_cast<unsigned char>(last->word[0])) != 0 &&
                                                    last->word.find_first_of("(),+-<>.") == std::string_view::npos);

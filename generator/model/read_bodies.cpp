@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[body]], [[frame]]: axes that turn, spelled out through the registry of rotations; points on bodies.
+// [[body]], [[frame]]: rotating axes, expanded with the registry of rotations; points on bodies.
 #include "model/read_bodies.hpp"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ void BodiesReader::declare_frame(const Value& table, std::uint32_t place, Symbol
   frame_sources_.push_back({&table, place});
 }
 
-// The names in angles = [..], euler_parameters = [..], rodrigues = [..] and angle = "..": new ones are coordinates.
+// Declares new names in angles = [..], euler_parameters = [..], rodrigues = [..] and angle = ".." as coordinates.
 void BodiesReader::declare_angles(const Value& table) {
   const Value* rotation = table.find("rotation");
   if (rotation == nullptr || !rotation->is(Value::Kind::table)) return;
@@ -63,7 +63,7 @@ const Entry& BodiesReader::rotation_entry(const Value& rotation) const {
   return *found;
 }
 
-// The values of the entries, and the name of the representation.
+// Returns the values of the entries and sets the name of the representation.
 std::vector<const Value*> BodiesReader::rotation_entries(Frame& frame, const rotations::Rotation& found,
                                                          const Entry& entry, const Value& rotation) {
   frame.rotation = found.name;
@@ -152,7 +152,7 @@ void BodiesReader::read_rotation(Frame& frame, std::uint32_t index, const Value&
   }
 }
 
-// About an axis that is fixed in the parent: one of its axes, or any sum of them with constant components.
+// A rotation about an axis fixed in the parent: one of its axes, or a sum of them with constant components.
 void BodiesReader::turn_about(Frame& frame, std::uint32_t index, const Value& rotation,
                               std::map<std::string, Typed>& local) {
   const Value& written = *rotation.find("axis");
@@ -167,7 +167,7 @@ void BodiesReader::turn_about(Frame& frame, std::uint32_t index, const Value& ro
     return a[0] * b[1] == a[1] * b[0] && a[0] * b[2] == a[2] * b[0] && a[1] * b[2] == a[2] * b[1];
   };
   const FrameSource& parent = frame_sources_[frame.parent];
-  // In a plane E3 is the axis of all bodies.
+  // In plane motion all bodies rotate about E3.
   const auto in_space = numbers_of(axis.node);
   const bool common =
       parent.upright && parent.axis && parent.axis->numbers && in_space && parallel(*parent.axis->numbers, *in_space);
@@ -194,7 +194,7 @@ void BodiesReader::turn_about(Frame& frame, std::uint32_t index, const Value& ro
   }
 }
 
-/// The components of a sum of numbers times E1, E2, E3.
+/// The components of a sum of numbers times E1, E2, E3; nothing for other vectors.
 std::optional<std::array<cln::cl_RA, 3>> BodiesReader::numbers_of(NodeId vector) const {
   const Node& node = model_.arena[vector];
   std::array<cln::cl_RA, 3> result{0, 0, 0};
@@ -301,7 +301,7 @@ bool by_parameters(const Value& table) {
 
 }  // namespace
 
-// Euler parameters have unit length: a constraint NAME_unit for each body or frame that uses them.
+// Declares the unit norm of Euler parameters: a constraint NAME_unit for each body or frame that uses them.
 void BodiesReader::declare_units() {
   for (std::uint32_t k = 1; k < model_.frames.size(); ++k) {
     if (!by_parameters(*frame_sources_[k].table)) continue;

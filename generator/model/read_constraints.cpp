@@ -49,7 +49,7 @@ void ConstraintsReader::read() {
   }
 }
 
-// rolling = { .. } or sliding = { .. }; false for any other constraint.
+// Reads rolling = { .. } or sliding = { .. }; returns false for any other constraint.
 bool ConstraintsReader::read_contact(Constraint& constraint, const Value& table) {
   const Entry *rolling = table.entry("rolling"), *sliding = table.entry("sliding");
   if (rolling == nullptr && sliding == nullptr) return false;
@@ -66,7 +66,7 @@ bool ConstraintsReader::read_contact(Constraint& constraint, const Value& table)
   return true;
 }
 
-// gear = { .. } and such; false for any other constraint.
+// Reads gear = { .. } or another coupling; returns false for any other constraint.
 bool ConstraintsReader::read_coupling(Constraint& constraint, const Value& table) {
   CouplingsReader couplings(context_);
   const Entry* coupling = couplings.found(table);
@@ -80,7 +80,7 @@ bool ConstraintsReader::read_coupling(Constraint& constraint, const Value& table
   return true;
 }
 
-// holds = "unilateral": psi >= 0, with a coefficient of restitution.
+// Reads holds = "unilateral": psi >= 0, with a coefficient of restitution.
 void ConstraintsReader::read_holds(Constraint& constraint, const Value& table) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
   const Value* holds = table.find("holds");
@@ -131,7 +131,7 @@ void ConstraintsReader::read_equations(Constraint& constraint, const Value& valu
     context.remedy =
         "a constraint on velocities is made of velocities, coordinates, functions of time, parameters and t";
   }
-  // Its gradient vanishes where it holds, so that there would be no constraint force.
+  // The gradient of a square vanishes on the constraint, so that there would be no constraint force.
   const auto no_power = [&](const Typed& typed, const Value& of) {
     if (typed.vector || constraint.velocity) return;
     NodeId id = typed.node;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact of two bodies: where both are touched, and the normal there. Afterwards it is that of a body with a plane
-// through the point of the other body, which moves as that point does, eq. (7.28).
+// Contact of two bodies: the points of contact of both and the normal. It is then treated as the contact of a body with
+// a plane through the point of the other body, which moves with that point, eq. (7.28).
 #include <fmt/format.h>
 
 #include "model/read_contacts.hpp"
@@ -43,7 +43,7 @@ std::optional<std::string> ContactsReader::between_bodies(BodyContact& contact, 
   return hollow ? "Rb - R - norm(x - xb)" : "norm(x - xb) - (R + Rb)";
 }
 
-// shape = { sphere = "R" }, shape_b = { sphere = "S" } or { hollow = "S" }, inside of which the other sphere is.
+// shape = { sphere = "R" }, shape_b = { sphere = "S" } or { hollow = "S" } with the other sphere inside.
 void ContactsReader::spheres_in_contact(const Value& table, std::map<std::string, Typed>& local) {
   constexpr const char* form =
       "write shape = { sphere = \"R\" }, shape_b = { sphere = \"S\" }, or shape_b = { hollow = \"S\" } where it is "
@@ -71,7 +71,7 @@ void ContactsReader::spheres_in_contact(const Value& table, std::map<std::string
   local["pb"] = resolver_.text(hollow ? "-Rb*n" : "Rb*n", local, table.span, arm);
 }
 
-// at, at_b and the normal, which is that of a sphere about the centre of mass of the first body if it is left out.
+// at, at_b and the normal; the default normal is that of a sphere about the centre of mass of the first body.
 void ContactsReader::points_in_contact(const Value& table, std::map<std::string, Typed>& local) {
   const std::string what = "a contact of two bodies";
   if (const Value* shape = table.find("shape_b"))

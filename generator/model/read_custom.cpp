@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // position = { custom = [q1, q2, q3], x = [..] } and/or q = [..]: coordinates that the user defines by x(q), by q(x) in
-// x1, x2, x3, or by both. In the end there is x(q), of which it has been seen at points that q(x) undoes it.
+// x1, x2, x3, or by both. The result is x(q), checked numerically to be the inverse of q(x).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -55,7 +55,7 @@ PositionsReader::ExpandedPosition PositionsReader::custom_position(const Value& 
   return expanded;
 }
 
-// q(x) alone: solved for x1, x2, x3.
+// Solves q(x), given alone, for x1, x2, x3.
 std::array<Typed, 3> PositionsReader::solved_position(const Value& names, const Value& q, const Context& context) {
   std::array<Syntax, 3> f;
   std::array<std::string, 3> of;
@@ -84,10 +84,10 @@ std::array<Typed, 3> PositionsReader::solved_position(const Value& names, const 
   return x;
 }
 
-// q(x(q)) = q at made-up points.
+// Checks q(x(q)) = q at sample points.
 void PositionsReader::check_inverse(const ExpandedPosition& expanded, const Value& q, bool both) {
   constexpr int tries = 200, enough = 8;
-  constexpr double tolerance = 1e-8;  // of values around 1, through a few roots and quotients
+  constexpr double tolerance = 1e-8;  // for values around 1 and a few roots and quotients
   std::map<std::string, Typed> local;
   for (std::size_t k = 0; k < 3; ++k) local[cartesian_names[k]] = expanded.x[k];
   std::array<NodeId, 3> back{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [draw]: how a report draws particles and bodies. The equations do not see it.
+// [draw]: shapes of particles and bodies in a report. It does not affect the equations.
 #include "model/read_draw.hpp"
 
 #include <fmt/format.h>

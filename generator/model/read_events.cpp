@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[event]]: changes of sign that are told, or that end a run; and the events that end a scene.
+// [[event]]: sign changes that a run reports or that end it; and the events that end a scene.
 #include "model/read_events.hpp"
 
 #include <fmt/format.h>

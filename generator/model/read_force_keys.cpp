@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The values of the keys of a force: what they are, and what the formulas of its kind may name by them.
+// Reads the values of the keys of a force, and defines the names that the formulas of its kind may use.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -72,7 +72,7 @@ void ForcesReader::read_value(Open& open, const forces::Key& key, const Value& v
   }
 }
 
-// One value stands for all three.
+// A single value applies to all three components.
 void ForcesReader::read_triple(Open& open, const forces::Key& key, const Value& value) {
   const Context entry = context(open, key, Shape::scalar);
   const bool three = value.is(Value::Kind::array);

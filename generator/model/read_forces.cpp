@@ -18,7 +18,7 @@ std::vector<std::string_view> kinds() {
   return names;
 }
 
-/// Keys that stand beside the value of a kind: on = "P".
+/// Keys next to the value of a kind, such as on = "P".
 std::vector<std::string_view> beside() {
   std::vector<std::string_view> keys;
   for (const forces::Kind& kind : forces::registry()) {
@@ -34,7 +34,7 @@ bool has_key(const forces::Kind& kind, std::string_view name) {
   return std::any_of(kind.keys.begin(), kind.keys.end(), [&](const forces::Key& key) { return key.name == name; });
 }
 
-/// What a key that is missing has to be, where the description of its kind does not say it.
+/// The default remedy for a missing key, if the description of its kind has none.
 std::string remedy_for(const forces::Key& key) {
   switch (key.asks) {
     case forces::Asks::ends: return "write between = [\"P\", \"Q\"] with particles, points, \"origin\" or vectors";

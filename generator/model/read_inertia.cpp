@@ -122,18 +122,18 @@ std::array<NodeId, 3> InertiaReader::shape_moments(const Body& body, const Entry
   return result;
 }
 
-// One moment is enough where the body turns about a direction that is fixed in it and in space.
+// One moment of inertia suffices if the body rotates about a direction that is fixed in it and in space.
 void InertiaReader::read_scalar_inertia(Body& body, const Value& value) {
   const Frame& frame = model_.frames[body.frame];
   const Typed J = resolver_.value(value, moment_context(fmt::format("the inertia of '{}'", frame.name)));
   const auto& axis = frame_sources_[body.frame].axis;
-  if (!axis && frame_sources_[body.frame].still) return;  // it does not turn: any moment does
+  if (!axis && frame_sources_[body.frame].still) return;  // it does not rotate: the moment has no effect
   if (!axis) {
     source_.fail(value.span,
                  fmt::format("one moment of inertia does not do: '{}' does not turn about one fixed axis", frame.name),
                  form);
   }
-  // Of J only J r . r moves the body: J r r along the unit vector r.
+  // Only J r . r affects the motion, for the unit vector r of the axis: the matrix is J r r.
   const auto on = [&](std::size_t k) { return !axis->numbers || !cln::zerop((*axis->numbers)[k]); };
   const bool own = axis->numbers && on(0) + on(1) + on(2) == 1;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -22,7 +22,7 @@ std::string kinds() {
 
 double length(const std::array<double, 3>& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-// Directions that are nearer to one another than this (sine of the angle) are the same.
+// Directions with a smaller sine of the angle between them count as equal.
 constexpr double parallel = 1e-9;
 
 }  // namespace
@@ -122,8 +122,7 @@ std::array<JointsReader::JointEnd, 2> JointsReader::joint_ends(const Value& tabl
   return ends;
 }
 
-// Coordinates that something else than this constraint binds: their start is not 0 just because the scene does not give
-// it.
+// Other constraints determine the initial values of some coordinates: these have no default of 0.
 AtStart JointsReader::at_start(std::uint32_t constraint) {
   std::set<std::uint32_t> open;
   const auto add = [&](NodeId node) {
@@ -146,7 +145,7 @@ AtStart JointsReader::at_start(std::uint32_t constraint) {
   return AtStart(model_, std::move(open));
 }
 
-// A direction, fixed in a body so that it is at the start what it is there.
+// A vector fixed in a body that is equal to `direction` at the start.
 Typed JointsReader::carried(const Typed& direction, std::uint32_t frame, AtStart& start, Span span, bool attitude) {
   const auto known = [&](const Typed& typed) {
     Typed result = typed;
@@ -224,7 +223,7 @@ std::optional<std::size_t> JointsReader::own_axis_of_plane(const Typed& vector, 
   return node.index;
 }
 
-// The axis of one end with two directions across it, all along the axes of that body with constant components.
+// The axis of one end and two directions normal to it, with constant components along the axes of that body.
 std::array<Typed, 3> JointsReader::triad_about(const Value& written, const JointEnd& end, const std::string& what) {
   const std::string of = end.frame == 0 ? "E1, E2, E3" : fmt::format("{0}.e1, {0}.e2, {0}.e3", end.name);
   const Context context{fmt::format("an axis of {}", what), end.frame == 0 ? Facts{0} : on_motion, Shape::vector,
@@ -244,7 +243,7 @@ std::array<Typed, 3> JointsReader::triad_about(const Value& written, const Joint
   const std::array<double, 3> v = values.vector_value(along.node);
   if (!(length(v) > 0))
     source_.fail(written.span, fmt::format("an axis of {} has no direction", what), "make it of " + of);
-  // Across it: with the axis to which it is least inclined.
+  // The first normal direction uses the body axis that is least aligned with the joint axis.
   std::size_t least = 0;
   for (std::size_t k = 1; k < 3; ++k) {
     if (std::abs(v[k]) < std::abs(v[least])) least = k;
@@ -282,7 +281,7 @@ void JointsReader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>
     if (kind.axes == joints::Axes::line) return;
     AtStart start = at_start(static_cast<std::uint32_t>(model_.constraints.size()));
     const NodeId a = start(ends[0].axis[0].node), b = a == no_node ? no_node : start(ends[1].axis[0].node);
-    if (b == no_node) return;  // the start will tell
+    if (b == no_node) return;  // the initial state is checked instead
     const std::array<double, 3> u = start.vector_value(a), v = start.vector_value(b);
     const std::array<double, 3> across{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
     if (length(across) < parallel * length(u) * length(v)) {
@@ -315,7 +314,7 @@ void JointsReader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>
   axis_at_start(direction, ends, start, axis->span, what);
 }
 
-// One axis, as placed at the start, with two directions across it, all fixed in A; the axis fixed in B too.
+// One axis, given by the initial state, with two directions normal to it, all fixed in A; the axis is also fixed in B.
 void JointsReader::axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span,
                                  const std::string& what) {
   const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};

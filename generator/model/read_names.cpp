@@ -10,13 +10,13 @@
 namespace eomgen::model {
 namespace {
 
-// The unit of a stated value: as written where that is SI, canonical otherwise.
+// The unit of a value: as written if that is SI, otherwise canonical.
 Unit stated_or(const std::optional<MeasuredUnit>& stated, const std::optional<Dimension>& dimension) {
   if (stated && stated->scale == 1 && stated->pi_power == 0) return Unit{stated->text, stated->dimension};
   return unit_of(dimension);
 }
 
-// "9.81 m/s^2" keeps the words of the user.
+// The unit as the user wrote it, as in "9.81 m/s^2".
 std::optional<MeasuredUnit> unit_in(const Value& value) {
   return value.is(Value::Kind::text) ? trailing_unit(value.text) : std::nullopt;
 }
@@ -74,7 +74,7 @@ void NamesReader::read_coordinate(const Entry& entry) {
   measured_.insert(index);
 }
 
-// After all names are known: the ends of a range may be expressions of parameters.
+// Called once all names are known: the ends of a range may be expressions of parameters.
 void NamesReader::read_ranges() {
   const Value* table = section("coordinates");
   if (table == nullptr) return;

@@ -62,14 +62,15 @@ void PlacesReader::declare() {
   }
 }
 
-// A bare unknown name in a position is a new coordinate. All other names are declared by now.
+// A bare unknown name in a position declares a coordinate. All other names are already declared.
 void PlacesReader::declare_coordinates() {
   const auto position = [&](const Value& table) {
     const Value* found = table.find("position");
     if (found != nullptr && found->is(Value::Kind::table)) PositionsReader(context_).declare_entries(*found);
   };
   std::size_t place = 1;
-  // Those of a body's rotation follow those of its position; frames come where they stand among the bodies.
+  // The coordinates of a body's rotation follow those of its position; frames are ordered among the bodies as in the
+  // file.
   for (std::size_t frame = 1; frame <= frame_sources_.size(); ++frame) {
     const std::size_t begin =
         frame < frame_sources_.size() ? frame_sources_[frame].table->begin : source_.text().size();

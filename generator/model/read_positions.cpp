@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// position = { SYSTEM = [..], .. }: charts are spelled out through the registry of coordinate systems; `custom` ones
-// are read in read_custom.cpp.
+// position = { SYSTEM = [..], .. }: charts are expanded with the registry of coordinate systems; read_custom.cpp reads
+// `custom` ones.
 #include "model/read_positions.hpp"
 
 #include <fmt/format.h>
@@ -28,14 +28,14 @@ void PositionsReader::declare_entries(const Value& position) {
   }
 }
 
-// A coordinate of a custom system has no unit of its own: [coordinates] may state one.
+// A coordinate of a custom system has no predefined unit: [coordinates] may state one.
 void PositionsReader::declare_entry(const Value& entry, std::string_view unit) {
   if (!is_bare_name(entry)) return;
   const Symbol* known = scope_.find(entry.text);
   if (known == nullptr) {
     const Derivative derivative = split_derivative(entry.text);
     if (is_reserved(entry.text) || (derivative.order > 0 && scope_.find(derivative.base) != nullptr))
-      return;  // told later
+      return;  // reported later
     NamesReader(context_).declare_coordinate(entry.text, entry.span, nullptr);
     NamesReader(context_).warn_misspelt(entry.text, entry.span);
     known = scope_.find(entry.text);
@@ -46,7 +46,7 @@ void PositionsReader::declare_entry(const Value& entry, std::string_view unit) {
   }
 }
 
-// The one entry of the table that names a coordinate system; keys that belong to another one are refused.
+// The only entry of the table that names a coordinate system; keys of another system are rejected.
 const Entry& PositionsReader::system_entry(const Value& table) const {
   Keys keys{"a position",
             {"from", "axes", "custom", "x", "q"},
@@ -113,7 +113,7 @@ std::array<Typed, 3> PositionsReader::chart_entries(const coordinates::Coordinat
   return result;
 }
 
-// A system of the registry: its expressions over the entries and its constant.
+// A position in a system of the registry: its expressions in terms of the entries and the constant.
 PositionsReader::ExpandedPosition PositionsReader::expanded_position(const Value& table, const Entry& entry) {
   const coordinates::CoordinateSystem& system = *coordinates::find(entry.key);
   const Span span = entry.value.span;
@@ -143,10 +143,10 @@ PositionsReader::ExpandedPosition PositionsReader::expanded_position(const Value
   return expanded;
 }
 
-// Coordinates that do not tell places apart would give a singular inertia matrix wherever one starts.
+// Dependent coordinates would make the mass matrix singular at every state.
 void PositionsReader::check_independent(const ExpandedPosition& expanded, const Entry& entry, Span constant) {
   constexpr int points = 12;
-  constexpr double smallest = 1e-9;  // squared sine of the angle between tangents; rounding leaves 1e-18 of it
+  constexpr double smallest = 1e-9;  // squared sine of the angle between tangents; rounding errors are about 1e-18
   std::vector<std::uint32_t> coordinates;
   for (const NodeId id : expanded.chart.entries) {
     const Node& node = model_.arena[id];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// rolling = { .. } and sliding = { .. }: a body that touches a plane or another body with a point at rest against it,
-// or only touches it. Written out as equations: of rolling the velocities along the two tangents and the position along
-// the normal, eqs. (7.28), (7.38). With friction the one of the position is left, and the law sees to the others.
+// rolling = { .. } and sliding = { .. }: contact of a body with a plane or another body, without slip or with slip. The
+// equations of rolling are the velocities along the two tangents and the position along the normal, eqs. (7.28),
+// (7.38). With friction only the position remains a constraint; the law of friction replaces the others.
 #include <fmt/format.h>
 
 #include "model/read_contacts.hpp"
@@ -15,7 +15,7 @@ constexpr const char* form =
 
 }  // namespace
 
-// The plane: a point of it, its normal, what it does along itself, and the tangents.
+// The plane: a point, the normal, the tangential surface velocity and the tangents.
 std::map<std::string, Typed> ContactsReader::plane_of_contact(const Value& on) {
   const Span span = on.span;
   const Context position{"a plane", on_motion, Shape::vector, std::nullopt, ""};
@@ -58,7 +58,7 @@ std::map<std::string, Typed> ContactsReader::plane_of_contact(const Value& on) {
   return plane;
 }
 
-// From the centre of mass to the point of contact.
+// The vector from the centre of mass to the point of contact.
 Typed ContactsReader::contact_arm(const Value& table, std::map<std::string, Typed> local) {
   const Value *at = table.find("at"), *shape = table.find("shape");
   if ((at == nullptr) == (shape == nullptr)) {
@@ -81,8 +81,8 @@ Typed ContactsReader::contact_arm(const Value& table, std::map<std::string, Type
                         entry.value.span, arm);
 }
 
-// Of a body: its centre of mass x, the velocity v of that, its angular velocity w, its axis e3. Equations are written
-// in these, so that no name of the model can be taken for another.
+// Names for the motion of a body: its centre of mass x and the velocity v of it, its angular velocity w, its axis e3.
+// The equations use only these names, so that they cannot collide with names of the model.
 void ContactsReader::name_motion(std::uint32_t frame, const std::string& ending, Span span,
                                  std::map<std::string, Typed>& local) {
   const Context vector{"a contact", on_motion | on_velocity, Shape::vector, std::nullopt, ""};
@@ -93,7 +93,7 @@ void ContactsReader::name_motion(std::uint32_t frame, const std::string& ending,
   local["e3" + ending] = resolver_.own_axis(frame, 2, span);
 }
 
-// The direction that tangent 1 is nearest to, where the model names one.
+// The direction to which tangent 1 is closest, if the model gives one.
 void ContactsReader::tangent_of_contact(const Value& table, std::map<std::string, Typed>& local) {
   const Value* value = table.find("tangent");
   if (value == nullptr) return;
@@ -104,7 +104,7 @@ void ContactsReader::tangent_of_contact(const Value& table, std::map<std::string
   local["t2"] = resolver_.text("cross(n, t1)", local, value->span, direction);
 }
 
-// Where it touches, and how fast its point there moves against what it touches.
+// The point of contact and the slip velocity there.
 void ContactsReader::read_contact_point(Constraint& constraint, const Value& table,
                                         const std::map<std::string, Typed>& local) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
@@ -116,7 +116,7 @@ void ContactsReader::read_contact_point(Constraint& constraint, const Value& tab
   };
   contact.slip = read("v + cross(w, p) - V", Shape::vector);
   contact.tangential_velocity = read("ddt(p) - cross(w, p)", Shape::vector);
-  // What touches may move on the body, but not into what it touches: then it would not be the point of contact.
+  // The point of contact may move over the body, but not along the normal: it would then not be the point of contact.
   contact.normal_velocity.push_back(read("dot(ddt(p) - cross(w, p), n)", Shape::scalar));
   if (contact.other_frame == 0) return;
   contact.other_arm = local.at("pb").node;

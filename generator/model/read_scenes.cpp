@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [scene.NAME]: merging, the span of time, start values, what may be moved, the solver.
+// [scene.NAME]: inheritance, time span, initial values, adjustable values, solver.
 #include "model/read_scenes.hpp"
 
 #include <fmt/format.h>
@@ -54,7 +54,7 @@ void ScenesReader::read() {
   }
 }
 
-// The entries of a scene after `from`: tables merge key by key (see scene_entries), other keys replace.
+// The entries of a scene including those inherited by `from`: tables merge key by key, other keys replace.
 std::vector<const Entry*> ScenesReader::merged(const Entry& scene, std::vector<std::string>& from) const {
   const std::string what = fmt::format("[scene.{}]", scene.key);
   as(Value::Kind::table, scene.value, what, "write [scene.NAME] and its keys below");
@@ -91,7 +91,7 @@ std::vector<const Entry*> ScenesReader::merged(const Entry& scene, std::vector<s
 
 namespace {
 
-// The tables of one key, earlier scenes first; a later value replaces an earlier one in its place.
+// Merges the tables of one key, earlier scenes first; a later value replaces an earlier one at its position.
 std::vector<const Entry*> merged_table(const std::vector<const Entry*>& scene, std::string_view key) {
   std::vector<const Entry*> result;
   std::map<std::string_view, std::size_t> at;
@@ -232,7 +232,7 @@ void ScenesReader::read_initial(Scene& scene, const std::vector<const Entry*>& e
   }
 }
 
-// 45 of an angle that is measured in radians: degrees were meant, or a whole number of turns too many.
+// Warns of a value like 45 for an angle in radians, which was probably meant in degrees or has surplus full turns.
 void ScenesReader::warn_of_degrees(const Entry& entry, const Typed& typed, const InitialValue& initial) {
   const Rational turn = Rational(62832) / 10000;
   const bool angle = model_.coordinates[initial.coordinate].unit.text == "rad";

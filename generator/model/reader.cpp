@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model file, section by section: each is read by a class of its own (section_reader.hpp).
+// Reads a model file section by section, each with its own class (section_reader.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,10 +24,11 @@ namespace eomgen::model {
 
 namespace {
 
-// A model without any unit is not checked for units: its coordinates' metres and radians are then mere words.
+// Whether the model states any unit. Without units nothing is checked: the metres and radians of coordinates have no
+// effect.
 bool states_units(const Value& value, std::string_view section, std::string_view key) {
   if (value.is(Value::Kind::text)) {
-    // Angles are numbers: a unit of them says nothing of the others.
+    // Angles are numbers: their units do not imply that other quantities have units.
     const auto says = [](const std::optional<MeasuredUnit>& unit) { return unit && !is_one(unit->dimension); };
     if (key == "unit" || section == "coordinates") {
       const std::optional<MeasuredUnit> unit = parse_unit(value.text);
@@ -35,7 +36,7 @@ bool states_units(const Value& value, std::string_view section, std::string_view
     }
     for (std::size_t open = 0; (open = value.text.find('[', open)) != std::string::npos; ++open) {
       const std::size_t close = value.text.find(']', open);
-      if (close == std::string::npos) return true;  // refused later
+      if (close == std::string::npos) return true;  // rejected later
       const std::optional<MeasuredUnit> unit = parse_unit(value.text.substr(open + 1, close - open - 1));
       if (!unit || says(unit)) return true;
     }
@@ -62,8 +63,8 @@ class Reader : private SectionReader {
   void read_head();
 };
 
-// First every name of the file is declared, then expressions are resolved; a name that is needed is resolved on the
-// way, so that the order of the file does not matter.
+// Declares every name of the file, then resolves expressions. Names are resolved on demand, so that the order of the
+// file does not matter.
 void Reader::read() {
   read_head();
   NamesReader(context_).declare();
@@ -157,7 +158,7 @@ Model read_model(const std::string& path) {
     fail("this is a directory", "name a model file, such as models/cart_pendulum.toml");
   std::ifstream stream(path, std::ios::binary);
   if (!stream) fail("the file cannot be read", "check its permissions");
-  std::string text(max_file_bytes + 1, '\0');  // one byte more than allowed tells that there is too much
+  std::string text(max_file_bytes + 1, '\0');  // one byte more than allowed, to detect a file that is too large
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.bad()) fail("the file cannot be read", "check the file");
   text.resize(static_cast<std::size_t>(stream.gcount()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sums, products, powers and units: exact constants within bounds, dimensions, scalars and vectors.
+// Sums, products, powers and units: exact constants of limited size, dimensions, scalars and vectors.
 #include <cln/integer.h>
 #include <cln/rational.h>
 #include <fmt/format.h>
@@ -12,15 +12,15 @@ namespace eomgen::model {
 namespace {
 
 constexpr long largest_exponent = 64;       // of a constant power
-constexpr double largest_nested = 4096;     // product of exponents on top of one another
+constexpr double largest_nested = 4096;     // product of nested exponents
 constexpr std::size_t largest_bits = 4096;  // of a constant
 
 std::size_t bits(const Rational& value) {
   return cln::integer_length(cln::numerator(value)) + cln::integer_length(cln::denominator(value));
 }
 
-// Numbers that hardly stand for a quantity: 2*x, x/2 and x/12 are pure numbers times x; 0.3*x may be a stiffness times
-// x.
+// Whether a number is certainly not a quantity with a unit: in 2*x, x/2 and x/12 it is a pure number; in 0.3*x it may
+// be a stiffness.
 bool pure_factor(const Rational& factor) {
   const Rational size = cln::abs(factor);
   if (size == 0 || size == 1 || size == 2) return true;
@@ -51,7 +51,7 @@ void Resolver::agree(Typed& result, const Typed& a, const Typed& b, Span span, s
   }
   const bool literal = a.literal && b.literal;
   if (known_a || known_b) {
-    // A name of unknown dimension is taken to fit the other side.
+    // An unknown dimension is assumed to match the other side.
     result.dimension = known_a ? a.dimension : b.dimension;
     result.loose = (!known_a || a.loose) && (!known_b || b.loose);
   }
@@ -60,7 +60,7 @@ void Resolver::agree(Typed& result, const Typed& a, const Typed& b, Span span, s
   result.bare_time = (a.bare_time || a.literal) && (b.bare_time || b.literal) && !literal;
 }
 
-// The dimension of a*b or a/b; of scalars, and of dot and cross products too.
+// The dimension of a*b or a/b, for scalars and for dot and cross products.
 void Resolver::combine(Typed& result, const Typed& a, const Typed& b, bool quotient_of) {
   const bool bare_a = a.bare_time || a.literal, bare_b = b.bare_time || b.literal;
   if (a.literal && b.literal) {
@@ -183,7 +183,7 @@ Typed Resolver::divide(const Typed& a, const Typed& b, Span span) {
   }
   Typed result = make(Op::divide, a.vector, {a, b}, span);
   Typed divisor = b;
-  if (b.literal && b.constant) divisor.pure = pure_factor(1 / *b.constant);  // x/12 is as pure as x/2
+  if (b.literal && b.constant) divisor.pure = pure_factor(1 / *b.constant);  // as in x/12 and x/2
   combine(result, a, divisor, true);
   if (a.constant && b.constant && !cln::zerop(*b.constant)) {
     result.constant = *a.constant / *b.constant;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Axes of bodies and frames, and how they turn: nodes for B.e1, B.e1', omega(B).
+// Axes and angular velocities of bodies and frames: nodes for B.e1, B.e1', omega(B).
 #include "model/resolver.hpp"
 
 namespace eomgen::model {
@@ -11,7 +11,7 @@ Typed Resolver::axis(std::uint32_t frame, std::size_t stage, std::size_t axis, S
   node.order = frame == 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(3 * stage + axis);
   result.literal = result.pure = true;
   if (frame == 0) return result;
-  const Symbol& axes = scope_.axes(frame);  // its own stages may be asked for while it is being read
+  const Symbol& axes = scope_.axes(frame);  // its own stages may be used while it is being read
   result.facts = axes.typed.facts;
   result.depth = axes.typed.depth + 1;
   return result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions: scalar ones, if, derivatives, and those of vectors and places.
+// Function calls: scalar functions, if, derivatives, and functions of vectors and places.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ Typed Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, const 
             a.loose || a.bare_time);
     }
     if (k == 0 && arguments.size() > 1) continue;
-    // min and max of many are nested pairs.
+    // min and max of several arguments become nested pairs.
     Typed next =
         arguments.size() == 1 ? make(Op::call, false, {a}, node.span) : make(Op::call, false, {result, a}, node.span);
     model_.arena.nodes[next.node].fn = function.fn;
@@ -149,7 +149,7 @@ Typed Resolver::partial_derivative(const Syntax& syntax, const SyntaxNode& node)
   return result;
 }
 
-// The start value of a coordinate: a parameter that every run sets from its own start.
+// The initial value of a coordinate: a parameter that every run sets from its own initial state.
 Typed Resolver::initial(const Syntax& syntax, const SyntaxNode& node) {
   arity(node, 1, 1);
   const SyntaxNode& of = syntax.nodes[node.children[0]];
@@ -206,7 +206,7 @@ Typed Resolver::integral(const Syntax& syntax, const SyntaxNode& node) {
   return result;
 }
 
-// Also through definitions; functions of time are held fixed by diff().
+// Looks into definitions, but not into functions of time, which diff() holds fixed.
 bool Resolver::holds_integral(NodeId root) const {
   std::vector<NodeId> stack{root};
   std::set<NodeId> seen;

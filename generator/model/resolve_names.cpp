@@ -64,7 +64,7 @@ Typed Resolver::name(const SyntaxNode& node) {
   return basis_vector(node, *symbol);
 }
 
-// B.e1 of a body or frame, with one or two primes after so many of its Euler angles; B.omega.
+// B.e1 of a body or frame, with one or two primes for the axes after one or two of its Euler angles; B.omega.
 Typed Resolver::frame_part(const SyntaxNode& node, const Symbol& symbol) {
   const std::string& part = node.parts[1];
   const std::string written = joined(node.parts) + std::string(node.primes, '\'');
@@ -91,7 +91,7 @@ Typed Resolver::frame_part(const SyntaxNode& node, const Symbol& symbol) {
   return result;
 }
 
-// reaction.NAME or reaction.NAME.k, as among the outputs.
+// reaction.NAME or reaction.NAME.k, named like the outputs.
 Typed Resolver::reaction(const SyntaxNode& node) {
   const std::string written = joined(node.parts);
   const Symbol* symbol = node.parts.size() <= 3 ? scope_.find(node.parts[1]) : nullptr;
@@ -172,7 +172,7 @@ Typed Resolver::plain_name(const SyntaxNode& node) {
   }
   if (name == "pi") {
     Typed result = make(Op::pi, false, {}, node.span);
-    result.literal = result.pure = true;  // a number as 2 is
+    result.literal = result.pure = true;  // a pure number like 2
     return result;
   }
   if (name == "t") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values, contexts, and the nodes that the reader makes itself.
+// Values, contexts, and the nodes that the reader creates directly.
 #include "model/resolver.hpp"
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 namespace eomgen::model {
 namespace {
 
-// Sets a member for the time of one call, also when the call throws.
+// Sets a member for the duration of one call, and restores it even if the call throws.
 template <class T>
 class Hold {
  public:
@@ -253,7 +253,7 @@ Typed Resolver::component(const Typed& vector, std::uint32_t axis, Span span) {
 Typed Resolver::place(std::uint32_t index, Span span) {
   Typed result = make(Op::place, true, {}, span);
   model_.arena.nodes[result.node].index = index;
-  if (index == 0) return result;  // the origin: zero fits every dimension
+  if (index == 0) return result;  // the origin: zero is compatible with every dimension
   const Typed& position = symbol(*scope_.find(model_.places[index].name), span);
   result.facts = position.facts;
   result.depth = position.depth + 1;
@@ -280,7 +280,7 @@ const CoordinateSet& Resolver::coordinates_of(NodeId reference) {
   return coordinates_of_.emplace(reference, coordinates_in(reference)).first->second;
 }
 
-// Expressions are trees apart from the places and definitions that they name, and those are remembered.
+// Expressions are trees except for the places and definitions to which they refer, which are cached.
 CoordinateSet Resolver::coordinates_in(NodeId root) {
   CoordinateSet found;
   const auto insert = [&](std::pair<std::uint32_t, std::uint8_t> coordinate, std::uint8_t shift) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a scene sets and asks for: parameters, inputs, the solver, outputs.
+// Settings of a scene: parameters, inputs, the solver, outputs.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -63,7 +63,7 @@ std::uint32_t SectionReader::frame_named(const Value& value, const std::string& 
 }
 
 Typed SectionReader::point(const Value& value, const std::string& what) {
-  // A misspelt name of a particle deserves to be told as one.
+  // A misspelt name of a place has its own message.
   if (value.is(Value::Kind::text) && is_identifier(value.text) && scope_.find(value.text) == nullptr &&
       value.text != "origin" && !is_reserved(value.text)) {
     place_named(value, what);

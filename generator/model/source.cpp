@@ -8,7 +8,7 @@
 namespace eomgen::model {
 namespace {
 
-// Length of the UTF-8 sequence at `at`, 0 if it is none (overlong forms and surrogates are none).
+// The length of the UTF-8 sequence at `at`; 0 if it is invalid (including overlong forms and surrogates).
 std::size_t utf8_length(const std::string& text, std::size_t at) {
   const auto byte = [&](std::size_t i) -> unsigned {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
@@ -43,7 +43,7 @@ Source::Source(std::string file, std::string text) : file_(std::move(file)), tex
                 fmt::format("the file has {} bytes; a model may have {}", text_.size(), max_file_bytes),
                 "check that this is a model file; split a model that is really this large");
   }
-  if (text_.starts_with("\xef\xbb\xbf")) text_.erase(0, 3);  // a byte order mark is no content
+  if (text_.starts_with("\xef\xbb\xbf")) text_.erase(0, 3);  // remove the byte order mark
   starts_.push_back(0);
   for (std::size_t i = 0; i < text_.size(); ++i) {
     if (text_[i] == '\n') starts_.push_back(i + 1);
@@ -99,7 +99,7 @@ void Source::check_bytes() {
     const bool control = (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7f;
     const bool lone_return = c == '\r' && (at + 1 >= text_.size() || text_[at + 1] != '\n');
     if (length == 0 || control || lone_return) {
-      // Where without the line's text: bytes of a binary file stay out of the terminal.
+      // The location has no line text, so that bytes of a binary file do not reach the terminal.
       const Span place = span(at, 1);
       throw Error("model", Where{file_, place.line, place.column, 1, ""},
                   length == 0 ? fmt::format("byte 0x{:02x} is not UTF-8 text", c)
@@ -114,7 +114,7 @@ void Source::check_bytes() {
 
 namespace {
 
-// Just enough of TOML's lexical rules to know what is inside a string or a comment.
+// The lexical rules of TOML for strings and comments.
 struct Skim {
   const std::string& text;
   std::size_t at = 0;
@@ -139,7 +139,7 @@ struct Skim {
         while (multiline && at < text.size() && text[at] == c) ++at;  // """" ends with a quote inside
         return true;
       } else if (!multiline && text[at] == '\n') {
-        return true;  // unterminated: toml++ says so
+        return true;  // unterminated: toml++ reports it
       } else {
         ++at;
       }
@@ -151,7 +151,7 @@ struct Skim {
 
 }  // namespace
 
-// toml++ destroys its tables recursively: depth must be known before it sees the file.
+// toml++ destroys its tables recursively, so the nesting depth is checked before parsing.
 void Source::check_nesting() const {
   Skim skim{text_};
   std::size_t depth = 0;

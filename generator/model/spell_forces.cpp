@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The formulas of a kind of force, spelled out for one force of the model.
+// Expands the formulas of a kind of force for one force of the model.
 #include <fmt/format.h>
 
 #include <algorithm>

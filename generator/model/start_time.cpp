@@ -27,7 +27,7 @@ void name_start_values(Model& model) {
     if (!p.start_of) continue;
     const Coordinate& q = model.coordinates[*p.start_of];
     std::string name;
-    std::swap(name, p.name);  // not in its own way
+    std::swap(name, p.name);  // its own name must not count as taken
     p.name = free_name(model, name);
     p.unit = q.unit;
     p.note = "start value of " + q.name;

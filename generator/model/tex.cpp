@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LaTeX of the user's reaches documents that are compiled: only what cannot do anything is let through.
+// LaTeX of the user becomes part of documents that are compiled, so only harmless commands are accepted.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,8 +28,8 @@ bool among(std::string_view word, std::span<const std::string_view> list) {
 
 bool is_word_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
 
-/// list = { atom { "_" argument | "^" argument | "'" } }, at most one subscript and one superscript each, as TeX has
-/// it; atom = character | "{" list "}" | symbol | accent argument | style argument | \text{words}.
+/// list = { atom { "_" argument | "^" argument | "'" } }, with at most one subscript and one superscript each, as in
+/// TeX; atom = character | "{" list "}" | symbol | accent argument | style argument | \text{words}.
 class TexReader {
  public:
   explicit TexReader(std::string_view tex) : tex_(tex) {}
@@ -59,7 +59,7 @@ class TexReader {
         ++at_;
         argument(depth, true);
       } else if (c == '\'') {
-        // A superscript, which takes along one that follows at once.
+        // A prime is a superscript and includes a superscript that follows directly.
         if (above) return fail("a prime comes after a superscript: write it before, as in x'^2");
         above = true;
         while (more() && tex_[at_] == '\'') ++at_;

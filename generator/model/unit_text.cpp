@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a dimension is written: derived units where they are what an engineer would say, base units otherwise.
+// Dimensions as text: derived units if they are customary in engineering, otherwise base units.
 #include <cln/integer.h>
 #include <cln/rational.h>
 

@@ -141,14 +141,14 @@ class UnitParser {
     if (at_ < text_.size() && (text_[at_] == '-' || text_[at_] == '+')) ++at_;
     if (!negative && at_ < text_.size() && text_[at_] == '(') return fraction(*result);
     if (!is_digit()) return std::nullopt;
-    const int exponent = (negative ? -1 : 1) * (text_[at_++] - '0');  // one digit: nothing has a tenth power
+    const int exponent = (negative ? -1 : 1) * (text_[at_++] - '0');  // one digit suffices
     result->dimension = raised(result->dimension, exponent);
     result->scale = cln::expt(result->scale, cln::cl_I(exponent));
     result->pi_power *= exponent;
     return result;
   }
 
-  // m^(1/2), as dimensions are written; only of units without a factor, whose root would not be exact.
+  // m^(1/2), as in dimensions; only for units without a factor, because the root of a factor would not be exact.
   std::optional<MeasuredUnit> fraction(MeasuredUnit unit) {
     ++at_;
     const bool negative = at_ < text_.size() && text_[at_] == '-';
@@ -171,7 +171,7 @@ class UnitParser {
 }  // namespace
 
 std::optional<MeasuredUnit> parse_unit(std::string_view text) {
-  constexpr std::size_t longest = 64;  // also keeps the factor within reason
+  constexpr std::size_t longest = 64;  // also limits the factor
   if (text.empty() || text.size() > longest) return std::nullopt;
   return UnitParser(text).all();
 }

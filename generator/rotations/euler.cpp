@@ -32,7 +32,7 @@ Components cross(const Components& a, const Components& b) {
   return result;
 }
 
-/// Components of a vector along the axes that a step leads to.
+/// Components of a vector along the axes after a step.
 Components turned(const Step& step, const Components& v) {
   return {dot(step.R[0], v), dot(step.R[1], v), dot(step.R[2], v)};
 }

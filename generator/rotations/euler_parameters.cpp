@@ -3,9 +3,9 @@
 
 namespace eomgen::rotations {
 
-// Divided by N = e0^2 + e.e the formulas are those of a rotation for all e, not of unit e only: then no force acts
-// along e, and the constraint of unit length has the multiplier 0. Along the body's axes w = 2 (e0 edot - e0dot e - e x
-// edot)/N; along the parent's the last sign is the other one, eq. (5.56).
+// Divided by N = e0^2 + e.e, the formulas describe a rotation for all e, not only for unit e. No force then acts along
+// e, and the constraint of unit norm has the multiplier 0. Along the body's axes w = 2 (e0 edot - e0dot e - e x
+// edot)/N; along the parent's axes the last sign is opposite, eq. (5.56).
 Rotation euler_parameters() {
   const std::string N = "/(e0^2 + e1^2 + e2^2 + e3^2)";
   const auto over = [&](const std::string& sum) { return "(" + sum + ")" + N; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A new representation: a line here, and one file like rodrigues.cpp where it is a new family.
+// To add a representation: a line here, and for a new family one file like rodrigues.cpp.
 #include <vector>
 
 #include "rotations/families.hpp"

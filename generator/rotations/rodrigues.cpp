@@ -3,7 +3,7 @@
 
 namespace eomgen::rotations {
 
-// Along the body's axes w = 2 (ldot + ldot x l)/(1 + l.l); along the parent's with the other sign, eq. (5.51).
+// Along the body's axes w = 2 (ldot + ldot x l)/(1 + l.l); along the parent's axes with the opposite sign, eq. (5.51).
 Rotation rodrigues() {
   const std::string N = "/(1 + l1^2 + l2^2 + l3^2)";
   const auto over = [&](const std::string& sum) { return "(" + sum + ")" + N; };

@@ -26,7 +26,7 @@ class Integrator {
     Ref result = dag_.zero();
     for (const Ref part : terms_of(dag_, tidy(dag_, e, term_budget))) {
       const std::optional<Ref> integral = term(part, depth);
-      if (!integral) return by_substitution(e);  // u'/u of a u' with several terms, say
+      if (!integral) return by_substitution(e);  // for example u'/u with several terms in u'
       result = dag_.add(result, *integral);
     }
     return result;
@@ -48,7 +48,7 @@ class Integrator {
     return dag_.mul(constant, *integral);
   }
 
-  /// The parts of g that may serve as u.
+  /// The subexpressions of g that are candidates for u.
   std::vector<Ref> parts(Ref g) {
     std::vector<Ref> result{dag_.symbol(x_)};
     const auto add = [&](Ref r) {
@@ -74,7 +74,7 @@ class Integrator {
     return result;
   }
 
-  /// g = c u^n u': the exponent by numbers, then proven.
+  /// g = c u^n u': the exponent is found numerically, then proven.
   std::optional<Ref> by_substitution(Ref g) {
     for (const Ref u : parts(g)) {
       const Ref du = d_(u);
@@ -192,7 +192,7 @@ bool depends_on(const Dag& dag, Ref expression, Symbol x) {
 
 namespace {
 
-/// A multiple of 1/24 that the expression is proven to be.
+/// The multiple of 1/24 to which the expression is proven to be equal.
 std::optional<Ref> plain_number(Dag& dag, Ref expression) {
   constexpr double parts = 24, most = 1000;
   const double scaled = parts * evaluate(dag, {expression}, [](const Symbol& s) { return sample_double(s, 0); })[0];
@@ -216,7 +216,7 @@ std::optional<Ref> without(Dag& dag, Ref expression, Symbol x) {
           dag, {value}, [](const Symbol& s) -> cln::cl_R { return sample(s, 0); }, 30);
       return tidy(dag, value, term_budget);
     } catch (const std::exception&) {
-      continue;  // a removable singularity, say
+      continue;  // for example a removable singularity
     }
   }
   return std::nullopt;

@@ -10,8 +10,8 @@ namespace eomgen::symbolic {
 
 Ref Derivation::operator()(Ref expression) {
   if (const auto found = memo_.find(expression.id); found != memo_.end()) return found->second;
-  // Operands have smaller ids than their users. Most of a large expression does not depend on the seeds: what does is
-  // found first, and the rest is not remembered, but for where the two meet.
+  // Operands have smaller ids than their users. Most of a large expression does not depend on the seeds. The nodes that
+  // do are found first. Only these and their direct operands are memoised.
   std::vector<bool> seen(dag_.size(), false), depends(dag_.size(), false);
   std::vector<Ref> open, stack{expression};
   while (!stack.empty()) {
@@ -111,7 +111,7 @@ Derivation partial(Dag& dag, Symbol symbol) { return Derivation(dag, {{symbol, d
 
 namespace {
 
-// Orders of the functions of time that can be reached by differentiating accelerations a few times more.
+// The highest order of functions of time; it allows for further derivatives of accelerations.
 constexpr std::uint8_t highest_function_order = 6;
 
 std::map<Symbol, Ref> explicit_seeds(Dag& dag, std::size_t functions) {
@@ -157,7 +157,7 @@ Ref rebuilt(Dag& dag, const Node& node, const std::array<Ref, 4>& a) {
   }
 }
 
-// Those that are not known yet, operands before users; what is known has known operands.
+// The nodes without a known result, operands first. Operands of a node with a known result have known results.
 std::vector<Ref> Substitution::missing(Ref expression) const {
   std::vector<Ref> stack{expression}, result;
   std::unordered_set<std::uint32_t> seen;

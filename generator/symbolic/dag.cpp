@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The arena: hash-consing, leaves, walks. The rewriting rules are in dag_rules.cpp.
+// The arena: hash-consing, leaves, traversal. The rewriting rules are in dag_rules.cpp.
 #include "symbolic/dag.hpp"
 
 #include <cln/integer_io.h>
@@ -13,7 +13,7 @@
 namespace eomgen::symbolic {
 
 std::size_t Dag::Hash::operator()(const Node& node) const noexcept {
-  // FNV-1a over the fields; the value is only used to find a bucket, never to order anything.
+  // FNV-1a over the fields. The value selects a bucket only; it never determines an order.
   std::uint64_t hash = 1469598103934665603ull;
   const auto mix = [&hash](std::uint64_t value) { hash = (hash ^ value) * 1099511628211ull; };
   mix(static_cast<std::uint64_t>(node.op));
@@ -78,7 +78,7 @@ bool Dag::is_positive(Ref r) const {
     case Op::symbol: return positive_.contains(symbol_of(r));
     case Op::sqrt:
     case Op::power: return is_positive(node.args[0]);
-    // One level of these is enough for lengths and radii, and keeps the cost constant.
+    // One level suffices for lengths and radii, and keeps the cost constant.
     case Op::add:
     case Op::mul:
     case Op::div: {

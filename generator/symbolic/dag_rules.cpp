@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is simplified while an expression is built. Every rule is an identity wherever both sides are defined; none
-// grows the expression.
+// Simplification rules applied at construction. Every rule is an identity wherever both sides are defined; none makes
+// the expression larger.
 #include <cln/integer.h>
 #include <cln/integer_io.h>
 #include <cln/rational.h>
@@ -13,7 +13,7 @@ namespace {
 
 bool is_negative_constant(const Dag& dag, Ref r) { return dag.is_constant(r) && cln::minusp(dag.value(r)); }
 
-// Exact powers of numbers are only folded while they stay small: untrusted input must not blow up.
+// Exact powers of numbers are folded only while they are small: untrusted input must not exhaust memory.
 constexpr long fold_exponent_limit = 64;
 constexpr std::uintptr_t fold_bits_limit = 4096;
 
@@ -159,7 +159,7 @@ Ref Dag::pow(Ref a, Ref b) {
   return make(Op::pow, a, b);
 }
 
-// sqrt(a) where it is exact: of squares of what is known to be positive, and of products and quotients of such.
+// sqrt(a) if it is exact: for squares of expressions known to be positive, and their products and quotients.
 std::optional<Ref> Dag::exact_root(Ref a) {
   const Node node = nodes_[a.id];
   if (is_constant(a)) {
@@ -186,7 +186,7 @@ Ref Dag::call(Op function, Ref a) {
   }
   if (is_one(a) && function == Op::log) return zero_;
   if (is_constant(a)) {
-    if (function == Op::abs) return a;  // negative ones went above
+    if (function == Op::abs) return a;  // negative constants are handled above
     if (function == Op::sign) return one_;
   }
   if (function == Op::sqrt) {

@@ -12,7 +12,7 @@ namespace {
 
 using Wave = TimeTerm::Wave;
 
-// Each gives the integral of one term from `from` to t, without its factor.
+// Each rule returns the integral of one term from `from` to t, without its factor.
 class Rules {
  public:
   Rules(Dag& dag, Symbol time, Ref from) : dag_(dag), time_(time), t_(dag.symbol(time)), from_(from) {}
@@ -86,8 +86,8 @@ class Rules {
     return sum;
   }
 
-  // C = e^x cos y, S = e^x sin y: the integral of C is (a C + w S)/(a^2 + w^2), of S (a S - w C)/(a^2 + w^2); t^n by
-  // parts.
+  // With C = e^x cos y, S = e^x sin y: the integral of C is (a C + w S)/(a^2 + w^2), that of S (a S - w C)/(a^2 + w^2).
+  // Factors t^n are integrated by parts.
   Ref of_both(const TimeTerm& term, long n, Wave wave) {
     const Ref a = term.growth->a, w = term.phase.a;
     const Ref below = dag_.add(dag_.mul(a, a), dag_.mul(w, w));
@@ -108,8 +108,7 @@ class Rules {
   Ref t_, from_;
 };
 
-/// F(t) - F(from) of a proven antiderivative. Only where F is continuous and has a value wherever the integrand has
-/// one.
+/// F(t) - F(from) of a proven antiderivative, if F is continuous and defined wherever the integrand is.
 std::optional<Ref> by_antiderivative(Dag& dag, Ref integrand, Symbol time, Ref from) {
   const std::vector<Ref> given = dag.reachable({integrand});
   const auto may_jump = [&](Ref r) { return is_kink(dag[r].op) || dag[r].op == Op::atan2; };

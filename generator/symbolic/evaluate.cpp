@@ -14,7 +14,7 @@ namespace {
 
 using cln::cl_R;
 
-/// Values of some nodes, ascending: of a few among many there are no places for the others.
+/// Values of some nodes, ascending by id. Storage is for these nodes only, as they may be few among many.
 template <class Real>
 class Values {
  public:
@@ -50,8 +50,8 @@ template <class Real, class Arithmetic, class Lookup>
 std::vector<Real> run(const Dag& dag, const std::vector<Ref>& roots, const Lookup& lookup, const Arithmetic& number) {
   const std::vector<Ref> nodes = dag.reachable(roots);
   Values<Real> value(nodes, dag.size());
-  std::map<std::uint32_t, std::string> missing;  // outside of a domain, and why; the branch that is not taken may be
-  // What the value is made of lacks one.
+  std::map<std::uint32_t, std::string> missing;  // undefined nodes with the reason; allowed in a branch not taken
+  // The reason why an operand of the node is undefined, or null.
   const auto gap = [&](Ref r) -> const std::string* {
     if (missing.empty()) return nullptr;
     const Node& node = dag[r];

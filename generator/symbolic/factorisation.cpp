@@ -13,7 +13,7 @@ Factorisation::Factorisation(Dag& dag, std::vector<Ref> matrix, std::size_t n, T
   for (std::size_t i = 0; i < n; ++i) diagonal[i] = w_[i * n + i];
   for (std::size_t i = 0; i < n; ++i) degrees[i] = degree(done, i);
   for (std::size_t step = 0; step < n; ++step) {
-    // Minimum degree: the row whose elimination touches the fewest others, so that zeros stay zeros.
+    // Minimum degree: the elimination of this row affects the fewest other rows, which limits fill-in.
     std::size_t k = n;
     for (std::size_t i = 0; i < n; ++i) {
       if (!done[i] && (k == n || degrees[i] < degrees[k] || (degrees[i] == degrees[k] && ties == Ties::descending)))
@@ -39,7 +39,7 @@ Factorisation::Factorisation(Dag& dag, std::vector<Ref> matrix, std::size_t n, T
   }
 }
 
-/// Other rows that the row has entries in common with, of those that are left.
+/// The number of remaining rows that are coupled to this row.
 std::size_t Factorisation::degree(const std::vector<bool>& done, std::size_t row) const {
   std::size_t count = 0;
   for (std::size_t j = 0; j < n_; ++j) count += !done[j] && j != row && !dag_.is_zero(w_[row * n_ + j]) ? 1 : 0;

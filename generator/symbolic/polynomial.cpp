@@ -10,7 +10,7 @@
 namespace eomgen::symbolic {
 namespace {
 
-// Powers of sums beyond this are left as they are: nobody's equations of motion need them written out.
+// Higher powers of sums are not expanded: equations of motion do not need it.
 constexpr long highest_expanded_power = 8;
 
 void add_term(Polynomial& p, const Monomial& m, const Rational& coefficient) {
@@ -31,7 +31,7 @@ std::optional<Ref> Expander::operator()(Ref expression) {
 }
 
 const Expander::Maybe& Expander::expand(Ref expression) {
-  // Operands first, iteratively: their ids are smaller.
+  // Operands first, without recursion: their ids are smaller.
   for (const Ref r : dag_.reachable({expression})) {
     if (!memo_.contains(r.id)) {
       Maybe expanded = expand_node(r);
@@ -115,7 +115,7 @@ Expander::Maybe Expander::quotient(const Polynomial& a, const Polynomial& b) {
     inverse.emplace(std::move(m), cln::recip(divisor.begin()->second));
   } else {
     const Ref denominator = rebuild(divisor);
-    // The sum as an atom of its own, with exponent -1, so that equal denominators meet.
+    // The sum becomes an atom with exponent -1, so that equal denominators combine.
     const bool negative = dag_[denominator].op == Op::neg;
     const Ref positive = negative ? dag_[denominator].args[0] : denominator;
     inverse.emplace(Monomial{{positive, -1}}, negative ? Rational(-1) : Rational(1));
@@ -123,7 +123,7 @@ Expander::Maybe Expander::quotient(const Polynomial& a, const Polynomial& b) {
   return product(a, inverse);
 }
 
-// A function is an atom; what it is taken of may still become simpler.
+// A function is an atom; its arguments are expanded separately.
 Polynomial Expander::with_simpler_arguments(Ref r) {
   const Node node = dag_[r];
   std::array<Ref, 4> a{};
@@ -173,7 +173,7 @@ std::optional<Polynomial> Expander::replace_square(const Polynomial& p, Ref squa
 }
 
 Polynomial Expander::reduce(Polynomial p) const {
-  std::set<Ref> angles;  // arguments of which a square of a sine or cosine occurs
+  std::set<Ref> angles;  // arguments of squared sines and cosines
   for (const auto& term : p) {
     for (const auto& [r, exponent] : term.first) {
       const Op op = dag_[r].op;
@@ -206,7 +206,7 @@ Ref Expander::rebuild_monomial(const Monomial& m, const Rational& coefficient) {
   return dag_.mul(dag_.constant(coefficient), dag_.div(above, below));
 }
 
-// Factors that all terms share are pulled out in front.
+// Common factors of all terms are factored out.
 Ref Expander::rebuild(const Polynomial& p) {
   if (p.empty()) return dag_.zero();
   std::map<Ref, std::int64_t> common;

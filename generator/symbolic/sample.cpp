@@ -6,7 +6,7 @@ namespace {
 
 constexpr long steps = 1000003;  // a prime, so that the values have no common factors with small numbers
 
-/// 0 to steps - 1: the finaliser of splitmix64 over what identifies the symbol and the point.
+/// A hash in 0 .. steps - 1: the finaliser of splitmix64 over the identity of the symbol and the point.
 long scattered(const Symbol& symbol, std::uint64_t point) {
   std::uint64_t x = (point + 1) * 0x9e3779b97f4a7c15ull + (static_cast<std::uint64_t>(symbol.kind) << 40) +
                     (std::uint64_t{symbol.order} << 32) + symbol.index;

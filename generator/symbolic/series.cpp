@@ -12,7 +12,7 @@ using cln::cl_R;
 
 PowerSeries::PowerSeries(Dag& dag, std::vector<Ref> roots, int digits)
     : dag_(dag), roots_(std::move(roots)), digits_(digits) {
-  // The slopes of functions have series too, with functions of their own, until nothing new comes.
+  // The derivatives of functions need series too, which may contain further functions; repeat until none is new.
   for (std::vector<Ref> open = roots_; !open.empty();) {
     std::vector<Ref> found;
     for (const Ref r : dag_.reachable(open)) {
@@ -39,7 +39,7 @@ bool PowerSeries::is_function(const Node& node) const {
   }
 }
 
-// By the value itself where that closes the circle: sqrt, exp, tan, general powers.
+// Derivatives are expressed by the value itself if that closes the recursion: sqrt, exp, tan, general powers.
 std::array<Ref, 2> PowerSeries::slopes(Ref r) {
   const Node node = dag_[r];
   const auto s = [this](Ref ref) { return Scalar{&dag_, ref}; };
@@ -99,7 +99,7 @@ cl_R PowerSeries::next(Ref r, const Lookup& lookup) const {
     case Op::select: return arg(arg(0)[0] < arg(1)[0] ? 2 : 3)[k];
     default: break;
   }
-  // d/ds of a function is the sum of its slopes times those of the arguments.
+  // Chain rule: d/ds of a function is the sum of its partial derivatives times d/ds of the arguments.
   const std::array<Ref, 2>& slope = series_.at(r).slope;
   for (std::size_t a = 0; a < 2; ++a) {
     if (dag_.is_zero(slope[a])) continue;

@@ -18,7 +18,7 @@ bool TimeTerms::is_free(Ref expression) const {
   return std::find(symbols.begin(), symbols.end(), time_) == symbols.end();
 }
 
-// Also of 2 w - (w + w): a frequency that is divided by must not be such a zero.
+// It also detects 2 w - (w + w): a frequency in a denominator must not be such a zero.
 bool TimeTerms::vanishes(Ref constant) { return dag_.is_zero(tidy(dag_, constant)); }
 
 TimeTerm TimeTerms::constant(Ref factor) const {

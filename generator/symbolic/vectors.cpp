@@ -6,7 +6,7 @@
 namespace eomgen::symbolic {
 namespace {
 
-/// The entry at the row i and column k of the matrix is C[i * row + k * column].
+/// The matrix entry in row i and column k is C[i * row + k * column].
 std::vector<Ref> product(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x, std::size_t row,
                          std::size_t column) {
   const std::size_t n = x.size();

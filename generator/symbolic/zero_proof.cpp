@@ -74,7 +74,7 @@ class RationalForm {
     return known[argument] = dag_.symbol({SymbolKind::extra, first_symbol + next_++, 0});
   }
 
-  /// sine and cosine of an angle, by the rules for sums and multiples.
+  /// Sine and cosine of an angle, by the formulas for sums and multiples.
   std::pair<Fraction, Fraction> sine_cosine(Ref angle) {
     const Node node = dag_[angle];
     if (node.op == Op::neg) {
@@ -136,7 +136,7 @@ class RationalForm {
   std::uint32_t next_ = 0;
 };
 
-/// sqrt(s)^n with s^(n/2) taken out, which an expansion leaves as one atom.
+/// Extracts s^(n/2) from sqrt(s)^n, which an expansion leaves as one atom.
 Ref roots_split(Dag& dag, Ref expression) {
   std::unordered_map<std::uint32_t, Ref> memo;
   for (const Ref r : dag.reachable({expression})) {
