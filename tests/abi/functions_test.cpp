@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every function of the table is where it is promised: on the page of the ABI, in the header, in NAME_info, in compiled
-// code.
+// Every function of the table is present on the page of the ABI, in the header, in NAME_info and in compiled code.
 #include "abi/functions.hpp"
 
 #include <doctest/doctest.h>
@@ -31,7 +30,7 @@ std::string read(const std::string& file) {
   return text.str();
 }
 
-/// With one space for each space between words: a long prototype has several lines.
+/// The text with single blanks between words, because long prototypes have several lines.
 std::string in_one_line(const std::string& text) {
   std::istringstream words(text);
   std::string line;
@@ -39,7 +38,7 @@ std::string in_one_line(const std::string& text) {
   return line;
 }
 
-/// What one emission writes and compiles.
+/// The header, NAME_info and compiled code of one emission.
 struct Emitted {
   std::string name, header;
   nlohmann::json info;
@@ -67,7 +66,7 @@ struct Emitted {
     }
   }
 
-  /// Where NAME_info tells of a function.
+  /// Whether NAME_info lists a function.
   bool tells_of(const abi::Function& function) const {
     if (function.name == "taylor") return info.contains("taylor_order");
     if (function.comes == abi::Comes::with_charts) return info.contains("charts") && info.contains("chart_operations");
@@ -75,7 +74,7 @@ struct Emitted {
   }
 };
 
-/// Between them they have every function; charts and a series do not go together.
+/// Two emissions that together have every function, because charts and a Taylor series exclude one another.
 const std::vector<Emitted>& emissions() {
   static const std::vector<Emitted> all = [] {
     std::vector<std::string> with = abi::asked_for(), in_charts = with;
@@ -93,7 +92,7 @@ const std::vector<Emitted>& emissions() {
 
 }  // namespace
 
-TEST_CASE("abi: every function has its prototype on the page of the ABI, and what --with takes is in its row") {
+TEST_CASE("abi: every function has its prototype on the page of the ABI, and its row lists the names for --with") {
   const std::string page = in_one_line(read("docs/abi.md"));
   for (const abi::Function& function : abi::functions()) {
     const std::string prototype = abi::prototype(function, "NAME");
@@ -112,7 +111,7 @@ TEST_CASE("abi: every function has its prototype on the page of the ABI, and wha
   }
 }
 
-TEST_CASE("abi: every function that comes is in the header with its purpose, in NAME_info and in compiled code") {
+TEST_CASE("abi: every emitted function is in the header with its purpose, in NAME_info and in compiled code") {
   for (const abi::Function& function : abi::functions()) {
     CAPTURE(function.name);
     bool somewhere = false;
@@ -130,7 +129,7 @@ TEST_CASE("abi: every function that comes is in the header with its purpose, in 
   }
 }
 
-TEST_CASE("abi: what is asked for comes, and what is not does not") {
+TEST_CASE("abi: exactly the requested functions are emitted") {
   for (const Emitted& emitted : emissions()) {
     const bool charts = emitted.info.contains("charts");
     for (const abi::Function& function : abi::functions()) {
@@ -142,7 +141,7 @@ TEST_CASE("abi: what is asked for comes, and what is not does not") {
   }
 }
 
-TEST_CASE("abi: names are told apart, and a call hands on what the function takes") {
+TEST_CASE("abi: names are unique, and a call passes the arguments of the function") {
   std::set<std::string> names;
   for (const abi::Function& function : abi::functions()) {
     CHECK(names.insert(function.name).second);

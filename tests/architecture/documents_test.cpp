@@ -1,5 +1,5 @@
-// What documents and comments say about the tree: links and files, the model that the README shows, the packages and
-// the commands.
+// Consistency of documents and comments with the source tree: links, files, the model in the README, packages and
+// commands.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -24,7 +24,7 @@ std::vector<fs::path> documents() {
 
 }  // namespace
 
-TEST_CASE("every link within the repository leads to something") {
+TEST_CASE("every link within the repository has a target") {
   static const std::regex link(R"(\]\(([^)\s#]+)(#[^)]*)?\))");
   for (const fs::path& document : documents()) {
     const std::string text = read_text(document);
@@ -37,7 +37,7 @@ TEST_CASE("every link within the repository leads to something") {
   }
 }
 
-TEST_CASE("numbered sections of a page count from 1 on") {
+TEST_CASE("numbered sections of a page count from 1") {
   static const std::regex number(R"(\n## (\d+)\. )");
   std::size_t numbered = 0;
   for (const fs::path& document : documents()) {
@@ -51,9 +51,9 @@ TEST_CASE("numbered sections of a page count from 1 on") {
   CHECK(numbered >= 20);
 }
 
-TEST_CASE("every file that a comment names is there") {
+TEST_CASE("every file named in a comment exists") {
   std::vector<fs::path> sources;
-  std::string tree;  // the paths, a line each
+  std::string tree;  // the paths, one per line
   for (const char* folder : {"bench", "cmake", "docs", "examples", "generator", "lib", "templates", "tests"}) {
     for (const fs::path& file : files_below(root / folder)) {
       tree += "/" + fs::relative(file, root).generic_string() + "\n";
@@ -77,12 +77,12 @@ TEST_CASE("every file that a comment names is there") {
   CHECK(seen > 100);
 }
 
-TEST_CASE("the README shows the shipped model as it is") {
+TEST_CASE("the README shows the shipped model verbatim") {
   const std::string model = read_text(root / "models" / "P7_moving_sphere.toml");
   CHECK(read_text(root / "README.md").find("```toml\n" + model + "```\n") != std::string::npos);
 }
 
-TEST_CASE("docs/commands.md tells of every command that has a schema, and every schema is linked") {
+TEST_CASE("docs/commands.md describes every command that has a schema, and every schema is linked") {
   const std::string text = read_text(root / "docs" / "commands.md");
   for (const fs::path& schema : files_below(root / "docs" / "schema", {".json"})) {
     const std::string file = schema.filename().string();

@@ -1,5 +1,5 @@
-// The dependency rule of docs/architecture.md, read off the include lines: all stages share one include path, so that
-// the compiler alone would let a stage include a header of any other.
+// The dependency rule of docs/architecture.md, checked on the include lines. All stages share one include path, so the
+// compiler does not enforce it.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace {
 
 const fs::path root = eomgen::test::source_folder();
 
-/// The products that the stages hand to one another, in the order of the data flow: plain data, so that a later stage
-/// may read them without needing the stage that makes them.
+/// The products of the stages in the order of the data flow. They are plain data: a later stage may read them without
+/// depending on the stage that creates them.
 const std::vector<std::pair<std::string, std::string>> products = {
     {"forces", "forces/registry.inc"},    {"model", "model/expression.hpp"},
     {"model", "model/model.hpp"},         {"mechanics", "mechanics/mechanics.hpp"},
@@ -33,13 +33,13 @@ const std::vector<std::string> data_flow = {"forces", "model",  "coordinates",  
                                             "derive", "system", "conservation", "reading",  "program",
                                             "verify", "print",  "emit",         "run",      "cli"};
 
-/// Libraries by the beginning of their headers' paths, and the targets that bring them.
+/// Libraries by the prefix of their headers' paths, with the targets that provide them.
 const std::vector<std::pair<std::string, std::set<std::string>>> libraries = {
     {"ginac/", {"GiNaC::ginac"}},
     {"cln/", {"GiNaC::cln", "GiNaC::ginac"}},
     {"Eigen/", {"Eigen3::Eigen"}},
     {"eom/", {"eomgen::runtime", "eomgen_runtime"}},
-    {"fmt/", {"fmt::fmt", "error"}},  // error hands fmt on
+    {"fmt/", {"fmt::fmt", "error"}},  // error links fmt publicly
     {"nlohmann/", {"nlohmann_json::nlohmann_json"}},
     {"CLI/", {"CLI11::CLI11"}},
     {"toml++/", {"tomlplusplus::tomlplusplus"}},
@@ -63,7 +63,7 @@ bool comes_before(const std::string& a, const std::string& b) {
 
 struct Generator {
   std::map<std::string, Stage> stages;                   // by name
-  std::map<std::string, std::set<std::string>> folders;  // folder: names of the stages whose home it is
+  std::map<std::string, std::set<std::string>> folders;  // folder -> names of its stages
 
   std::set<std::string> reached_from(const std::string& folder) const {
     std::set<std::string> reached;
@@ -81,7 +81,7 @@ Generator read_generator() {
     const std::string text = read_text(list);
     for (Stage& stage : parse_stages(folder, text)) {
       generator.folders[folder].insert(stage.name);
-      // A folder whose sources another folder's stage compiles is at home there too.
+      // A folder whose sources are compiled by the stage of another folder belongs to that stage too.
       std::vector<std::string> sources = stage.sources;
       for (const std::vector<std::string>& arguments : cmake_calls(text, "target_sources"))
         if (!arguments.empty() && arguments.front() == "eomgen_" + stage.name)
@@ -96,7 +96,7 @@ Generator read_generator() {
 
 }  // namespace
 
-TEST_CASE("a stage includes its own folder, the stages that its CMakeLists.txt needs, and products made before it") {
+TEST_CASE("a stage includes its own folder, the stages under NEEDS, and products of earlier stages only") {
   const Generator generator = read_generator();
   REQUIRE(generator.stages.size() >= 8);
   for (const auto& [folder, owners] : generator.folders) {
@@ -114,7 +114,7 @@ TEST_CASE("a stage includes its own folder, the stages that its CMakeLists.txt n
         INFO(place(file, include));
         if (is_product(include.path) && comes_before(first, folder)) continue;
         if (first == "skeletons" && (folder == "emit" || folder == "bench"))
-          continue;  // made from templates/ while building
+          continue;  // generated from templates/ during the build
         CHECK(allowed.count(first) == 1);
       }
     }
@@ -138,7 +138,7 @@ TEST_CASE("a stage includes the libraries that its CMakeLists.txt links, and no 
   }
 }
 
-TEST_CASE("a test names doctest, itself or by a header beside it: builds without precompiled headers need it") {
+TEST_CASE("every test includes doctest, directly or by a header of its folder, as plain builds require") {
   const auto names_doctest = [](const fs::path& file) {
     const std::vector<Include> includes = parse_includes(read_text(file));
     return std::any_of(includes.begin(), includes.end(),
@@ -159,7 +159,7 @@ TEST_CASE("a test names doctest, itself or by a header beside it: builds without
   CHECK(seen > 200);
 }
 
-TEST_CASE("no stage needs itself, over whatever way") {
+TEST_CASE("the dependencies of stages have no cycles") {
   const Generator generator = read_generator();
   for (const auto& entry : generator.stages) {
     const Stage& stage = entry.second;
@@ -171,7 +171,7 @@ TEST_CASE("no stage needs itself, over whatever way") {
   }
 }
 
-TEST_CASE("products include products and the graph, no stage's working") {
+TEST_CASE("products include only products and the graph, no implementation of a stage") {
   for (const auto& [folder, header] : products) {
     const fs::path file = root / "generator" / header;
     for (const Include& include : parse_includes(read_text(file))) {
@@ -183,7 +183,7 @@ TEST_CASE("products include products and the graph, no stage's working") {
   }
 }
 
-TEST_CASE("the judge shares nothing with what it judges: the Model and its own files only") {
+TEST_CASE("the oracle includes only the Model and its own files") {
   const Generator generator = read_generator();
   REQUIRE(generator.stages.count("judge") == 1);
   const Stage& judge = generator.stages.at("judge");
@@ -220,7 +220,7 @@ TEST_CASE("the runtime and emitted code include neither the generator nor comput
         INFO(place(file, include));
         CHECK_FALSE(include.path.starts_with("ginac/"));
         CHECK_FALSE(include.path.starts_with("cln/"));
-        // But for the library's public headers in its own example.
+        // Except for the library's public headers in its own example.
         if (!include.path.starts_with("eomgen/")) CHECK_FALSE(fs::exists(root / "generator" / include.path));
       }
     }
@@ -228,7 +228,7 @@ TEST_CASE("the runtime and emitted code include neither the generator nor comput
   CHECK(seen > 20);
 }
 
-TEST_CASE("the command line knows no formula: of the stages that compute it includes registries and values alone") {
+TEST_CASE("the command line includes only registries and values of the computing stages, no formulas") {
   const std::set<std::string> stages = {"cli",      "abi",   "analysis", "emit",  "model",
                                         "pipeline", "print", "run",      "system"};
   const std::set<std::string> headers = {"error.hpp",
@@ -252,8 +252,8 @@ TEST_CASE("the command line knows no formula: of the stages that compute it incl
   }
 }
 
-TEST_CASE("no file names a folder of the machine that it was written or built on") {
-  // Spelt in two halves, since this file is looked at too.
+TEST_CASE("no file contains a path of the machine on which it was written or built") {
+  // Split into two parts, because the test checks this file too.
   const std::vector<std::string> never = {
       "/wo"
       "rk/",

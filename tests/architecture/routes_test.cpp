@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The routes of generator/derive/routes/registry.inc: none includes another, and what several are made of is what
-// docs/architecture.md says.
+// The formulations of generator/derive/routes/registry.inc: none includes another, and their shared files are those
+// listed in docs/architecture.md.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -35,15 +35,15 @@ Names registered() {
   return {names.begin(), names.end()};
 }
 
-/// "trees/branches" of "derive/trees/branches.hpp"; empty of files of other folders.
+/// "trees/branches" for "derive/trees/branches.hpp"; empty for files of other folders.
 std::string stem_in_derive(const std::string& path) {
   static const std::string folder = "derive/";
   if (!path.starts_with(folder)) return "";
   return fs::path(path.substr(folder.size())).replace_extension().generic_string();
 }
 
-/// What a file of generator/derive is made of, over headers and the sources beside them. The registry is left out: it
-/// names all routes.
+/// Collects the files of generator/derive on which a file depends, through headers and their sources. The registry is
+/// excluded because it names all formulations.
 void reach(const std::string& stem, Names& reached) {
   for (const char* ending : {".hpp", ".cpp"}) {
     const fs::path file = derive / (stem + ending);
@@ -55,7 +55,7 @@ void reach(const std::string& stem, Names& reached) {
   }
 }
 
-/// Files by the routes that are made of them, of those that several routes are made of.
+/// The files that several formulations use, by the set of these formulations.
 std::map<Names, Names> shared_files() {
   std::map<std::string, Names> users;
   for (const std::string& route : registered()) {
@@ -102,7 +102,7 @@ std::string text_of(const std::map<Names, Names>& rows) {
 
 }  // namespace
 
-TEST_CASE("every route of the registry has its file, and every file of a route is in the registry") {
+TEST_CASE("every formulation of the registry has its file, and every file of a formulation is in the registry") {
   const Names routes = registered();
   REQUIRE(routes.size() >= 6);
   Names files;
@@ -110,13 +110,13 @@ TEST_CASE("every route of the registry has its file, and every file of a route i
   CHECK(text_of(routes) == text_of(files));
 }
 
-TEST_CASE("the routes to the equations never include each other, so that their agreeing proves something") {
+TEST_CASE("the formulations never include each other, so that their agreement is evidence") {
   const Names routes = registered();
   for (const std::string& route : routes) {
     REQUIRE(fs::exists(derive / "routes" / (route + ".cpp")));
     Names reached;
     reach("routes/" + route, reached);
-    CHECK(reached.contains("equations"));  // the include lines are read at all
+    CHECK(reached.contains("equations"));  // the include lines are found
     for (const std::string& other : routes) {
       INFO(route << " and " << other);
       CHECK((other == route || !reached.contains("routes/" + other)));
@@ -124,6 +124,6 @@ TEST_CASE("the routes to the equations never include each other, so that their a
   }
 }
 
-TEST_CASE("what routes share is what docs/architecture.md says") {
+TEST_CASE("the files shared by formulations are those listed in docs/architecture.md") {
   CHECK(text_of(documented_files()) == text_of(shared_files()));
 }

@@ -53,7 +53,7 @@ std::vector<Stage> parse_stages(const std::string& folder, const std::string& cm
       else if (*word == "LINKS")
         list = &stage.links;
       else if (*word == "OWN_HEADERS" || *word == "COLD")
-        continue;  // how it is compiled, not what it knows
+        continue;  // a compiler option, not a dependency
       else if (list == nullptr)
         throw std::runtime_error("eomgen_stage: what is " + *word + " in " + folder);
       else

@@ -1,5 +1,5 @@
-// In: the CMakeLists.txt of the generator's folders and the include lines of its files. Out: who may include whom, and
-// who does (docs/architecture.md, "the dependency rule").
+// In: the CMakeLists.txt of the generator's folders and the include lines of its files. Out: the allowed and the actual
+// dependencies (docs/architecture.md, "the dependency rule").
 #pragma once
 
 #include <filesystem>
@@ -17,13 +17,13 @@ struct Stage {
   std::vector<std::string> sources, needs, links;
 };
 
-/// Every argument list of `command(...)` in a CMake text, comments left out, split at blanks.
+/// Every argument list of `command(...)` in a CMake text without comments, split at blanks.
 std::vector<std::vector<std::string>> cmake_calls(const std::string& text, const std::string& command);
 
 /// The stages that one folder's CMakeLists.txt declares.
 std::vector<Stage> parse_stages(const std::string& folder, const std::string& cmake_text);
 
-/// What an include line names: the path, and whether it stood between quotes.
+/// An include line: the path, and whether it is in quotes.
 struct Include {
   std::string path;
   bool quoted;
@@ -31,12 +31,12 @@ struct Include {
 };
 std::vector<Include> parse_includes(const std::string& text);
 
-/// Names of stages and external targets that `stage` reaches over NEEDS and LINKS, itself included.
+/// Names of stages and external targets that `stage` reaches through NEEDS and LINKS, including itself.
 std::set<std::string> reachable(const std::string& stage, const std::map<std::string, Stage>& stages);
 
 std::string read_text(const std::filesystem::path& file);
 
-/// Regular files below `folder`, sorted; with one of the endings, or all if there are none.
+/// Regular files below `folder`, sorted; only those with one of the endings, if any are given.
 std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder,
                                                const std::set<std::string>& endings = {});
 

@@ -4,7 +4,7 @@
 
 using namespace architecture;
 
-TEST_CASE("the stages of a CMakeLists.txt are read with their lists, comments left out") {
+TEST_CASE("the stages of a CMakeLists.txt are parsed with their lists, without comments") {
   const std::vector<Stage> stages = parse_stages("verify", R"(
 # eomgen_stage(ghost NEEDS everything)
 eomgen_stage(judge SOURCES a.cpp  # the judge
@@ -20,7 +20,7 @@ eomgen_stage(verify SOURCES c.cpp NEEDS judge program)
   CHECK(stages[1].needs == std::vector<std::string>{"judge", "program"});
 }
 
-TEST_CASE("include lines are read with their place; those in comments and strings are not") {
+TEST_CASE("include lines are found with their line number; those in comments and strings are ignored") {
   const std::vector<Include> includes =
       parse_includes("#include <vector>\n// #include <list>\n#  include \"model/model.hpp\"\n\"#include <map>\";\n");
   REQUIRE(includes.size() == 2);
@@ -31,7 +31,7 @@ TEST_CASE("include lines are read with their place; those in comments and string
   CHECK(includes[1].line == 3);
 }
 
-TEST_CASE("a stage reaches what its needs reach, and nothing that needs it") {
+TEST_CASE("a stage reaches everything that its needs reach, and no stage that needs it") {
   const std::map<std::string, Stage> stages = {
       {"model", {"model", "model", {}, {"error"}, {}}},
       {"symbolic", {"symbolic", "symbolic", {}, {}, {"GiNaC::cln"}}},

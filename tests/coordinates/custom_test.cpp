@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Coordinates that a model defines itself, by x(q), by q(x), or by both.
+// Coordinates defined by the model, by x(q), by q(x), or by both.
 #include <doctest/doctest.h>
 
 #include <fstream>
@@ -37,7 +37,7 @@ const std::string solve_first = "custom = [\"a\", \"b\", \"c\"], ";
 
 }  // namespace
 
-TEST_CASE("q(x) is solved: one unknown after another, in any order") {
+TEST_CASE("q(x) is solved for one unknown after the other, in any order") {
   Solved triangular(custom(solve_first + "q = [\"x1/cos(k)\", \"x2 - x1*tan(k)\", \"x3\"]"));
   const Sum a = triangular.q("a"), b = triangular.q("b"), k = triangular.q("k");
   CHECK(same(triangular.x(0), a * cos(k)));
@@ -59,7 +59,7 @@ TEST_CASE("q(x) is solved: linear systems") {
   CHECK(reading::is_zero(x1 + k * x3 - c));
 }
 
-TEST_CASE("q(x) is solved: functions with one inverse are undone") {
+TEST_CASE("q(x) is solved: functions with a unique inverse are inverted") {
   Solved s(custom(solve_first + "q = [\"exp(x1)\", \"sinh(x2 - x1)\", \"x3*x1^2 + atan(k*x2)\"]",
                   "[coordinates]\na = { range = [1, 4] }\n"));
   const auto log = [](const Sum& x) { return reading::call(symbolic::Op::log, {x}); };
@@ -69,7 +69,7 @@ TEST_CASE("q(x) is solved: functions with one inverse are undone") {
                        "[coordinates]\na = { range = [0, inf] }\n")) == "accepted");
 }
 
-TEST_CASE("x(q) and q(x) together are held against one another") {
+TEST_CASE("x(q) and q(x), given together, are checked against each other") {
   const std::string polar = solve_first + "x = [\"a*cos(b)\", \"a*sin(b)\", \"c\"], ";
   const std::string range = "[coordinates]\na = { range = [0, inf] }\n";
   const std::string good = "q = [\"sqrt(x1^2 + x2^2)\", \"atan2(x2, x1)\", \"x3\"]";
@@ -95,11 +95,11 @@ TEST_CASE("custom coordinates: the examples of docs/model-format.md are read") {
   CHECK(examples == 3);
 }
 
-TEST_CASE("what is no coordinate system is refused") {
+TEST_CASE("invalid coordinate systems are rejected") {
   const auto contains = [](const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
   };
-  // two solutions, none by elementary steps, dependent, nothing at all
+  // two solutions, no solution by elementary steps, dependent, constant
   for (const char* q :
        {"[\"x1^2\", \"x2\", \"x3\"]", "[\"sin(x1)\", \"x2\", \"x3\"]", "[\"x1 + sin(x1)\", \"x2\", \"x3\"]",
         "[\"x1 + x2\", \"x1 + x2\", \"x3\"]", "[\"x1 - x1\", \"x2\", \"x3\"]", "[\"1\", \"x2\", \"x3\"]"}) {

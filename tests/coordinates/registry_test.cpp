@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every coordinate system of the registry: what its file states is held against its x(q).
+// Every coordinate system of the registry: the contents of its file are checked against its x(q).
 #include <doctest/doctest.h>
 
 #include <random>
@@ -16,7 +16,7 @@ using coordinates::CoordinateSystem;
 
 namespace {
 
-constexpr double exact = 1e-12;       // of a few operations in double
+constexpr double exact = 1e-12;       // a few operations in binary64
 constexpr double differences = 1e-8;  // of central differences over 1e-6
 
 std::string model_in(const CoordinateSystem& system, bool planar) {
@@ -40,7 +40,7 @@ struct Charted {
     const std::string asked = name == "angle" || name == "pitch" ? "c" : std::string(name);
     return s.symbol(asked).terms().begin()->first[0].atom->symbol;
   }
-  /// Coordinates anywhere in their charts, constants too.
+  /// Random coordinates within their charts, and constants.
   Values point() {
     Values at;
     const auto random = [&](double low, double high) {
@@ -78,7 +78,7 @@ double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// "R = 0, phi = pi, cos(angle) = 0": the places that a chart tells to be singular.
+/// The documented singular places of a chart, parsed from "R = 0, phi = pi, cos(angle) = 0".
 std::vector<std::pair<std::string, double>> told(std::string_view singular) {
   std::vector<std::pair<std::string, double>> result;
   std::stringstream stream{std::string(singular)};
@@ -115,7 +115,7 @@ TEST_CASE("every system: a_i are the derivatives of the position, a^i . a_k is t
         for (std::size_t c = 0; c < 3; ++c) CHECK(std::abs((above[c] - below[c]) / (2 * step) - a[c]) < differences);
         for (std::size_t k = 0; k < 3; ++k) {
           const double product = dot(values(chart.geometry.contravariant[k], at), a);
-          CHECK(std::abs(product - (i == k ? 1 : 0)) < 1e3 * exact);  // near the ends of a chart a^k is large
+          CHECK(std::abs(product - (i == k ? 1 : 0)) < 1e3 * exact);  // a^k is large near the ends of a chart
         }
       }
     }
@@ -136,7 +136,7 @@ TEST_CASE("every system: unit vectors are unit and along a_i") {
   }
 }
 
-TEST_CASE("every system: the metric is singular where its file says, and nowhere else") {
+TEST_CASE("every system: the metric is singular exactly at the documented places") {
   for (const CoordinateSystem* system : coordinates::registry()) {
     CAPTURE(system->name);
     Charted chart(*system);
@@ -148,7 +148,7 @@ TEST_CASE("every system: the metric is singular where its file says, and nowhere
       at[chart.symbol(name)] = value;
       CHECK(std::abs(value_of(chart.geometry.determinant, at)) < exact);
     }
-    // A factor that vanishes on a surface changes its sign there.
+    // A factor that vanishes on a surface changes sign there.
     const reading::Factorisation parts = reading::factorise(chart.geometry.determinant);
     std::vector<Sum> factors;
     for (const reading::Factor& factor : parts.content.monomial) factors.emplace_back(factor.atom);
@@ -170,7 +170,7 @@ TEST_CASE("every system: the metric is singular where its file says, and nowhere
   }
 }
 
-TEST_CASE("every system: coordinates carry the units of the slots, and a planar one has two") {
+TEST_CASE("every system: coordinates have the units of the slots, and a planar system has two") {
   for (const CoordinateSystem* system : coordinates::registry()) {
     CAPTURE(system->name);
     Charted chart(*system);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gears and belts against closed forms: speeds by the ratio, the moment that the multiplier is, Willis' equation.
+// Gears and belts against closed forms: the ratio of speeds, the multiplier as a moment, Willis' equation.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -51,7 +51,7 @@ outputs = ["reaction.pair"]
 
 }  // namespace
 
-TEST_CASE("every coupling has a name of its own and says what is 0 of bodies and of angles") {
+TEST_CASE("every coupling has a unique name and equations for bodies and for angles") {
   std::set<std::string> names;
   REQUIRE_FALSE(couplings::registry().empty());
   for (const couplings::Coupling& coupling : couplings::registry()) {
@@ -62,7 +62,7 @@ TEST_CASE("every coupling has a name of its own and says what is 0 of bodies and
   }
 }
 
-TEST_CASE("gear: speeds by the ratio, the inertia of the second over its square, and the reaction on the first") {
+TEST_CASE("gear: speeds follow the ratio, the second inertia counts divided by its square, and the reaction is exact") {
   for (const double ratio : {-2.0, 3.0}) {  // gears; a belt
     for (const std::string which :
          {"bodies = [\"A\", \"B\"], axes = \"E3\"", "bodies = [\"A\", \"B\"], axes = [\"2*A.e3\", \"B.e3\"]",
@@ -81,7 +81,7 @@ TEST_CASE("gear: speeds by the ratio, the inertia of the second over its square,
   }
 }
 
-TEST_CASE("gear: on a carrier, with a ring at rest: Willis' equation, and power in equals power into the motion") {
+TEST_CASE("gear: on a carrier with a fixed ring, Willis' equation holds and the input power is that of the motion") {
   const Finished run = run_tight("gear_planetary", R"toml(
 [parameters]
 zs = 20
@@ -123,8 +123,8 @@ outputs = ["reaction.inner", "reaction.outer", "s_ddot", "p_ddot", "c_ddot"]
   const double sun = 1 + 50.0 / 20, planet = 1 - 50.0 / 15;
   const double inertia = 0.2 + 0.5 * 0.01 + 0.1 * sun * sun + 0.05 * planet * planet;  // of all, on the carrier
   CHECK(std::abs(c - 3 * sun / inertia) < same);
-  // Euler's equations: of the sun, of the planet (ratio times the moment on the first), of the carrier, which bears the
-  // rest of both meshes.
+  // Euler's equations: of the sun, of the planet (ratio times the moment on the first), and of the carrier, on which
+  // the remainder of both gear moments acts.
   const double inner = run.final("reaction.inner"), outer = run.final("reaction.outer");
   CHECK(std::abs(0.1 * run.final("s_ddot") - 3 - inner) < same);
   CHECK(std::abs(0.05 * run.final("p_ddot") - (15.0 / 20 * inner - 15.0 / 50 * outer)) < same);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces against closed forms, and against Newton's and Euler's equations that are written out by hand in the model.
+// Forces against closed forms, and against Newton's and Euler's equations written by hand in the model.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -47,7 +47,7 @@ initial = { x = 0.7, x_dot = 0 }
   CHECK(run.simulation.certificate.pass);
 }
 
-TEST_CASE("spring_damper: the same motion as of a spring and a damper, in a plane and where the ends may meet") {
+TEST_CASE("spring_damper: the motion is that of a spring and a damper, in a plane and if the ends may coincide") {
   const std::string plane = R"toml(
 [[particle]]
 name = "P"
@@ -72,7 +72,7 @@ initial = { x = 0.7, y = 0.1, y_dot = 1 }
   }
 }
 
-TEST_CASE("linear_actuator: a positive force pushes two masses apart, and their centre stays") {
+TEST_CASE("linear_actuator: a positive force pushes two masses apart, and their centre of mass stays at rest") {
   const Finished run = run_tight("linear_actuator", R"toml(
 [inputs]
 u = { unit = "N", default = 3 }
@@ -157,7 +157,7 @@ outputs = ["first_integral", "psi_ddot"]
   CHECK(run.simulation.certificate.pass);
 }
 
-TEST_CASE("bushing: of two free bodies, Newton's and Euler's equations by hand; momentum is kept") {
+TEST_CASE("bushing: two free bodies follow Newton's and Euler's equations; momentum is conserved") {
   const Finished run = run_tight("bushing_free",
                                  R"toml(
 [parameters]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every kind of force in the registry has to be, so that a new one is held to it without a further line.
+// Requirements on every kind of force in the registry. A new kind is checked automatically.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ bool has_potential(const forces::Kind& kind) {
 }  // namespace
 
 TEST_CASE(
-    "every kind of force has a name of its own, and a judge's statement, with an energy where it has a potential") {
+    "every kind of force has a unique name and a statement of the oracle, with an energy if it has a potential") {
   std::set<std::string> names;
   REQUIRE(forces::registry().size() >= 12);
   for (const forces::Kind& kind : forces::registry()) {
@@ -42,7 +42,7 @@ TEST_CASE(
   CHECK(forces::find("no_such_force") == nullptr);
 }
 
-TEST_CASE("keys, rules and terms of a kind name keys that it has") {
+TEST_CASE("keys, rules and terms of a kind refer to existing keys") {
   for (const forces::Kind& kind : forces::registry()) {
     CAPTURE(kind.name);
     std::set<std::string> keys;

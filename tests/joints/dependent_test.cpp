@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mechanisms with dependent constraints run, and move as they do in coordinates that need none.
+// Mechanisms with dependent constraints run, with the same motion as in coordinates without constraints.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -20,9 +20,9 @@ Finished run_text(const std::string& name, const std::string& text) {
   return run_model(path);
 }
 
-/// Motion along the axle's own direction and turning, by Newton and Euler: the masses of all three, wheels that spin
-/// with v/R. (M + 2 m + 2 J/R^2) v' = M c w^2, (I + M c^2 + 2 (J1 + m a^2 + J a^2/R^2)) w' = -M c v w, by small steps
-/// of Runge and Kutta.
+/// Translation along axle.e1 and rotation of the axle with its wheels, which spin with v/R, from Newton's and Euler's
+/// equations: (M + 2 m + 2 J/R^2) v' = M c w^2, (I + M c^2 + 2 (J1 + m a^2 + J a^2/R^2)) w' = -M c v w. Integrated with
+/// small Runge-Kutta steps.
 std::array<double, 2> by_newton(double v, double w, double until) {
   const double M = 5, m = 2, R = 0.3, a = 0.5, c = 0.1, J = 0.09, J1 = 0.05;
   const double along = M + 2 * m + 2 * J / (R * R),
@@ -45,7 +45,7 @@ std::array<double, 2> by_newton(double v, double w, double until) {
 
 }  // namespace
 
-TEST_CASE("two wheels on one axle move as Newton and Euler say, whether their height is a coordinate or not") {
+TEST_CASE("two wheels on one axle obey Newton's and Euler's equations, with and without a coordinate for the height") {
   for (const std::string height : {"z", "R"}) {
     CAPTURE(height);
     const Finished run = run_text("axle_" + height, wheels_on_one_axle(height));
@@ -59,9 +59,9 @@ TEST_CASE("two wheels on one axle move as Newton and Euler say, whether their he
   }
 }
 
-// At t = 1.05 the bars lie in one line, where the length of the coupler says nothing to first order: another equation
-// has to be kept.
-TEST_CASE("Bennett's loop keeps its energy and all four of its equations, also where its bars lie in one line") {
+// At t = 1.05 the bars are collinear. The length of the coupler then gives no condition to first order, so another
+// equation must be kept.
+TEST_CASE("Bennett's loop conserves energy and satisfies all four equations, also if its bars are collinear") {
   const Finished run = run_text("bennett", bennett_by_products());
   CHECK(run.simulation.certificate.pass);
   CHECK(run.simulation.result.outcome == eom::Outcome::done);

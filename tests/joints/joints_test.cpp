@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every kind of joint in the registry: degrees of freedom, the certificate (d'Alembert's principle from the model
-// alone), and the reactions against Newton and Euler for the body that the joint carries.
+// alone), and the reactions, checked with Newton's and Euler's equations of the carried body.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ constexpr double agreed = 1e-9;
 
 }  // namespace
 
-TEST_CASE("every joint leaves the degrees of freedom that its kind has, and its reactions are Newton's and Euler's") {
+TEST_CASE("every joint leaves the degrees of freedom of its kind, and its reactions obey Newton and Euler") {
   const std::map<std::string, long> freedom{{"ball", 3},        {"pin", 1},       {"slider", 1},
                                             {"cylindrical", 2}, {"universal", 2}, {"fixed", 0}};
   REQUIRE(joints::registry().size() == freedom.size());
@@ -61,11 +61,11 @@ TEST_CASE("every joint leaves the degrees of freedom that its kind has, and its 
         largest = std::max(largest, std::abs(reaction));
       }
     }
-    CHECK(largest > 1);  // there is something to carry
+    CHECK(largest > 1);  // the reactions are not trivial
   }
 }
 
-TEST_CASE("points and axes as placed at the start are those that two entries give") {
+TEST_CASE("points and axes given at the start are equal to those given by two entries") {
   // At the start the tip is at base + L/5 base.e1, and E3 is the axis of the base.
   const std::string placed =
       "u = 0.1, a = 0.2, u_dot = 0.3, psi = 0.3, theta = 0.4, phi = 0, x = 0.5, y = 0.4, z = -0.1";
@@ -89,7 +89,7 @@ TEST_CASE("points and axes as placed at the start are those that two entries giv
   }
 }
 
-TEST_CASE("reactions along the axes of a body") {
+TEST_CASE("reactions may be given along the axes of a body") {
   const joints::Joint& pin = *joints::find("pin");
   const Finished run = run_text("joint_axes", rod_on_base(of_kind(pin) + "axes = \"rod\"\n"));
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
@@ -98,7 +98,7 @@ TEST_CASE("reactions along the axes of a body") {
   }
 }
 
-TEST_CASE("equations that hold identically have no multiplier; what the motion does not determine is refused") {
+TEST_CASE("equations that hold identically have no multiplier; undetermined reactions are rejected") {
   const std::string planar =
       "position = { cartesian = [\"x\", \"y\"] }\nrotation = { axis = \"E3\", angle = \"psi\" }\n";
   const std::string joint = "type = \"pin\"\nbodies = [\"base\", \"rod\"]\n" + at_tip + "axis = \"E3\"\n",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which equations of closed loops are redundant, and what is refused.
+// Redundant equations of closed loops, and loops that are rejected.
 #include <doctest/doctest.h>
 
 #include "mechanics/mechanics.hpp"
@@ -46,10 +46,10 @@ const std::string axis = "axis = [\"coupler.e3\", \"rocker.e3\"]";
 
 }  // namespace
 
-TEST_CASE("a loop whose dimensions are inexact, or fit for special parameters only, is refused") {
+TEST_CASE("a loop whose dimensions are inexact, or fit only for special parameters, is rejected") {
   CHECK(refusal(changed("four_bar_spatial_pins", {{axis, "axis = [\"coupler.e3\", \"rocker.e3 + 1e-8*rocker.e1\"]"}}))
             .find("seems to follow from the other constraints") != std::string::npos);
-  for (const std::string tilt : {"sin(p - q)", "r"}) {  // numbers that happen to agree, a number that happens to be 0
+  for (const std::string tilt : {"sin(p - q)", "r"}) {  // parameters that happen to be equal, one that happens to be 0
     const std::string text =
         changed("four_bar_spatial_pins",
                 {{axis, "axis = [\"coupler.e3\", \"rocker.e3 + " + tilt + "*rocker.e1\"]"},
@@ -58,7 +58,7 @@ TEST_CASE("a loop whose dimensions are inexact, or fit for special parameters on
   }
 }
 
-TEST_CASE("lengths of a planar loop do not matter, and what is redundant does not depend on the start") {
+TEST_CASE("the redundant equations of a planar loop depend neither on its lengths nor on the start") {
   for (const std::string alpha : {"alpha = 1,", "alpha = 2.5,", "alpha = -0.4,"}) {
     const Built built(changed("four_bar_spatial_pins", {{"alpha = 1,", alpha}, {"l2 = \"1.2 m\"", "l2 = \"1.25 m\""}}));
     CHECK(built.redundant() == 3);
@@ -66,14 +66,14 @@ TEST_CASE("lengths of a planar loop do not matter, and what is redundant does no
   }
 }
 
-TEST_CASE("a ball in place of one pin leaves no redundant equation but the turn of the coupler about itself") {
+TEST_CASE("with a ball instead of one pin only the rotation of the coupler about its own axis is redundant") {
   const Built built(changed("four_bar_spatial_pins",
                             {{"type = \"pin\"", "type = \"ball\""}, {"axis = [\"crank.e3\", \"coupler.e3\"]\n", ""}}));
   CHECK(built.redundant() == 1);  // both ends of the coupler are in the plane, and so is its axis
   CHECK(built.mechanics.freedom() == 1);
 }
 
-TEST_CASE("a constraint of the model is kept where a joint says the same") {
+TEST_CASE("a constraint of the model takes precedence over an equivalent equation of a joint") {
   const Built built(changed("four_bar_spatial_pins",
                             {{"[[joint]]", "[[constraint]]\nname = \"level\"\nholonomic = \"theta\"\n[[joint]]"}}));
   CHECK(built.mechanics.freedom() == 1);
@@ -83,7 +83,7 @@ TEST_CASE("a constraint of the model is kept where a joint says the same") {
   CHECK(built.redundant() == 4);
 }
 
-TEST_CASE("a second joint between the same bodies repeats the first") {
+TEST_CASE("a second joint between the same bodies is redundant") {
   const std::string twice =
       "[[joint]]\nname = \"D\"\ntype = \"ball\"\nbodies = [\"coupler\", \"rocker\"]\nat = [\"coupler + "
       "l2/2*coupler.e1\", \"rocker + l3/2*rocker.e1\"]\n[scene.default]";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every misuse of a [[joint]] is told with its place and a remedy.
+// Every misuse of a [[joint]] is reported with its location and a remedy.
 #include <doctest/doctest.h>
 
 #include "joints/rod_on_base.hpp"
@@ -32,7 +32,7 @@ const std::string pin = "type = \"pin\"\n", both = "bodies = [\"base\", \"rod\"]
 
 }  // namespace
 
-TEST_CASE("misuse of joints") {
+TEST_CASE("misuse of joints is rejected") {
   const struct {
     std::string lines, what, remedy;
   } cases[] = {
@@ -73,7 +73,7 @@ TEST_CASE("misuse of joints") {
   }
 }
 
-TEST_CASE("a point as placed at the start needs the start of what follows from other constraints") {
+TEST_CASE("a point given at the start needs initial values of coordinates that other constraints determine") {
   const std::string joint = pin + both + "at = \"E1\"\naxis = \"E3\"\n";
   const std::string slot = "[[constraint]]\nname = \"slot\"\nholonomic = \"x - y\"\n";
   std::string text = rod_on_base(joint, "u = 0, a = 0, psi = 0.3, theta = 0, phi = 0");
@@ -84,7 +84,7 @@ TEST_CASE("a point as placed at the start needs the start of what follows from o
   CHECK(has(r.remedy, "initial"));
 }
 
-TEST_CASE("a reaction that a joint does not have") {
+TEST_CASE("a reaction that a joint does not have is rejected") {
   std::string text = rod_on_base(pin + both + at_tip + axis);
   text.replace(text.find("\"reaction.j\""), 12, "\"reaction.j.7\"");
   const Refusal r = refusal(text);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rod on a joint of a base that slides along E1 and turns about E3. F and M are what acts on the rod besides gravity,
-// the moment about its tip, by Newton and Euler: m a = F - m g E2 .., dH/dt = M + (tip - rod) x F.
+// A rod, connected by a joint to a base that slides along E1 and rotates about E3. F and M are the force on the rod
+// other than gravity and the moment about its tip, from m a = F - m g E2 .., dH/dt = M + (tip - rod) x F.
 #pragma once
 
 #include <string>

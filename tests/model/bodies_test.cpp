@@ -36,7 +36,7 @@ TEST_CASE("an inertia is principal, a symmetric matrix, or one moment about a fi
   CHECK(moments(with_inertia("7", "{ axis = \"E2\", angle = \"a\" }")) == std::array<Rational, 3>{0, 7, 0});
 }
 
-TEST_CASE("one moment is enough for a body relative to one that turns about the same axis") {
+TEST_CASE("one moment suffices for a body relative to one that rotates about the same axis") {
   const Model model = read(
       "format = 1\n[[body]]\nname = \"A\"\nmass = 1\ninertia = 2\nrotation = { axis = \"E3\", angle = \"a\" }\n"
       "[[body]]\nname = \"B\"\nmass = 1\ninertia = 3\nrotation = { axis = \"A.e3\", angle = \"b\" }\nrelative_to = "
@@ -45,7 +45,7 @@ TEST_CASE("one moment is enough for a body relative to one that turns about the 
   CHECK(model.frames[2].parent == 1);
 }
 
-TEST_CASE("coordinates come in the order of the file: position, then rotation, of one body after the other") {
+TEST_CASE("coordinates are in the order of the file: position, then rotation, of one body after the other") {
   const Model model = read(
       "format = 1\n[[body]]\nname = \"A\"\nmass = 1\ninertia = { sphere = 1 }\nrotation = { euler = \"123\", angles = "
       "[\"a\", \"b\", \"c\"] }\n"
@@ -57,7 +57,7 @@ TEST_CASE("coordinates come in the order of the file: position, then rotation, o
   CHECK(names == "x y z a b c s f ");
 }
 
-TEST_CASE("Euler parameters bring a constraint of unit length, and a start without them has e0 = 1") {
+TEST_CASE("Euler parameters add a constraint of unit norm, and their default initial value is e0 = 1") {
   const Model model = with_inertia("{ sphere = \"R\" }", "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }");
   REQUIRE(model.constraints.size() == 1);
   CHECK(model.constraints[0].name == "B_unit");
@@ -77,7 +77,7 @@ TEST_CASE("a point on a body is its centre of mass and components along its axes
   CHECK(model.arena[model.arena[sum.args[1]].args[1]].op == Op::axis);
 }
 
-TEST_CASE("a pin as placed at the start may have an axis of a body that is turned about a slanted axis") {
+TEST_CASE("a pin given at the start may have an axis of a body that is rotated about an oblique axis") {
   const Model model = read(
       "format = 1\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { sphere = 1 }\nposition = { cartesian = [\"x\", \"y\"] "
       "}\nrotation = { axis = \"E1 + E2\", angle = \"q\" }\n"
@@ -86,7 +86,7 @@ TEST_CASE("a pin as placed at the start may have an axis of a body that is turne
   CHECK(model.constraints.at(0).psi.size() == 5);
 }
 
-TEST_CASE("a pin of bodies in a plane has its axis in E3, wherever they start, once or for both") {
+TEST_CASE("a pin of bodies in plane motion has its axis in E3 for every start, given once or for both bodies") {
   const auto linkage = [](const std::string& axis) {
     std::string text = "format = 1\n";
     for (const std::string n : {"1", "2"})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which charts can be exchanged, and what a model has to name so that one cannot.
+// Charts that can be exchanged, and uses of angles that prevent it.
 #include "model/charts.hpp"
 
 #include <doctest/doctest.h>
@@ -24,7 +24,7 @@ std::string refusal(const std::string& text, std::size_t which = 0) {
 
 }  // namespace
 
-TEST_CASE("charts: what nothing else of the model names can be exchanged, as can what only its start names") {
+TEST_CASE("charts: angles used nowhere else, or only in initial values, can be exchanged") {
   CHECK(refusal(head() +
                 "[[force]]\ngravity = \"-g*E3\"\n[[force]]\nmoment = \"k*B.e1\"\non = \"B\"\n[definitions]\nw = "
                 "\"dot(omega(B), B.e3)\"\n" +
@@ -32,7 +32,7 @@ TEST_CASE("charts: what nothing else of the model names can be exchanged, as can
             .empty());
 }
 
-TEST_CASE("charts: a constraint, a force, a definition or an event that names an angle keeps the chart") {
+TEST_CASE("charts: a constraint, a force, a definition or an event that uses an angle prevents the exchange") {
   const auto check = [](const std::string& more, const std::string& sentence) {
     CAPTURE(more);
     CHECK(refusal(head() + more + end) == sentence);
@@ -53,7 +53,7 @@ TEST_CASE("charts: a constraint, a force, a definition or an event that names an
         "the coordinate 'psi' is named by the rotation of 'F'");
 }
 
-TEST_CASE("charts: angles that are no coordinates, contacts, axes that turn") {
+TEST_CASE("charts: angles that are not coordinates, contacts and rotating axes prevent the exchange") {
   std::string text = head();
   text.replace(text.find("\"psi\""), 5, "\"k*t\"");
   CHECK(refusal(text + end) == "an angle is an expression or the same as another: only coordinates can be exchanged");
@@ -68,7 +68,7 @@ TEST_CASE("charts: angles that are no coordinates, contacts, axes that turn") {
           1) == "its axes turn");
 }
 
-TEST_CASE("charts: a body has one of its rotation and one of its position, each by itself") {
+TEST_CASE("charts: a body has independent charts of its rotation and its position") {
   const model::Model model = model::read_model_text(
       head(spherical) + "[[constraint]]\nname = \"arm\"\nholonomic = \"R - k\"\n" + end, "m.toml");
   const std::vector<model::SwitchedChart> charts = model::charts(model);
@@ -76,7 +76,7 @@ TEST_CASE("charts: a body has one of its rotation and one of its position, each 
   CHECK(charts[0].of == "B");
   CHECK(charts[1].of == "B.position");
   CHECK(charts[0].refusal.empty());
-  CHECK(charts[1].refusal.empty());  // the constraint names R only
+  CHECK(charts[1].refusal.empty());  // the constraint uses R only
   CHECK(charts[0].second == "321");
   CHECK(charts[1].second == "spherical about E1");
   const model::Model both = model::in_second_charts(model, charts, 3);

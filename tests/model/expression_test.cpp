@@ -37,7 +37,7 @@ TEST_CASE("decimals are exact rationals") {
   CHECK(value_of("1e+2") == 100);
 }
 
-TEST_CASE("TOML numbers are read again from their text") {
+TEST_CASE("TOML numbers are parsed exactly from their text") {
   const Model model = with_parameters("a = 9.81\nb = 1_000.5e-3\nc = -0.3\nd = 1_000\ne1 = +2.5\nf = 0x10");
   CHECK(exact(model, model.parameters[0].value) == ratio(981, 100));
   CHECK(exact(model, model.parameters[1].value) == ratio(10005, 10000));
@@ -47,7 +47,7 @@ TEST_CASE("TOML numbers are read again from their text") {
   CHECK(exact(model, model.parameters[5].value) == 16);
 }
 
-TEST_CASE("long sums and products keep their value and do not grow deep") {
+TEST_CASE("long sums and products keep their value and have small depth") {
   std::string sum = "1000", product = "1";
   for (int k = 1; k <= 500; ++k) sum += (k % 3 == 0 ? "+" : "-") + std::to_string(k);
   for (int k = 1; k <= 300; ++k) product += k % 2 == 0 ? "*2" : "/2";
@@ -67,20 +67,20 @@ TEST_CASE("long sums and products keep their value and do not grow deep") {
   CHECK(*std::max_element(depth.begin(), depth.end()) < 64);
 }
 
-TEST_CASE("nesting of 200 is read, of 300 is refused") {
+TEST_CASE("a nesting depth of 200 is accepted, of 300 is rejected") {
   const auto nested = [](std::size_t n) { return std::string(n, '(') + "1" + std::string(n, ')'); };
   CHECK(value_of(nested(200)) == 1);
   CHECK(refusal(particle("[definitions]\nd = \"" + nested(300) + "\"")) ==
         "the expression is nested more than 256 deep");
 }
 
-TEST_CASE("blanks and lines do not matter inside an expression") {
+TEST_CASE("blanks and line breaks have no effect inside an expression") {
   CHECK(value_of(" 1 +\\n 2 *\\t3 ") == 7);
   const Model model = with_parameters("p = \"\"\"\n  1\n  + 2\n\"\"\"");
   CHECK(exact(model, model.parameters[0].value) == 3);
 }
 
-TEST_CASE("spans point at the bytes of the file, also behind escapes and in texts of several lines") {
+TEST_CASE("spans refer to the bytes of the file, also after escapes and in texts of several lines") {
   const Model model = with_parameters("p = \"\\u0031 + 22\"\nq = '''\n  3 +\n  44'''");
   const auto second = [&](std::size_t k) { return model.arena[model.arena[model.parameters[k].value].args[1]].span; };
   CHECK(second(0).line == 3);
@@ -90,7 +90,7 @@ TEST_CASE("spans point at the bytes of the file, also behind escapes and in text
   CHECK(second(1).column == 3);
 }
 
-TEST_CASE("a comparison in if() is stored as one of two forms") {
+TEST_CASE("a comparison in if() is stored in one of two forms") {
   const Model model =
       read(particle("[definitions]\na = \"if(R < L, 1, 2)\"\nb = \"if(R <= L, 1, 2)\"\n"
                     "c = \"if(R > L, 1, 2)\"\nd = \"if(R >= L, 1, 2)\"\n"));
@@ -107,7 +107,7 @@ TEST_CASE("a comparison in if() is stored as one of two forms") {
   CHECK(shape(3) == std::pair(false, true));   // R < L ? 2 : 1
 }
 
-TEST_CASE("min and max of many are pairs of pairs") {
+TEST_CASE("min and max of several arguments become nested pairs") {
   const Model model = read(particle("[definitions]\na = \"max(1, 2, 3)\"\n"));
   const Node& outer = model.arena[model.definitions[0].is];
   CHECK(outer.fn == Fn::max);
@@ -115,7 +115,7 @@ TEST_CASE("min and max of many are pairs of pairs") {
   CHECK(model.arena[outer.args[1]].value == 3);
 }
 
-TEST_CASE("an expression is scalar or vector by what it is made of") {
+TEST_CASE("operands determine whether an expression is a scalar or a vector") {
   const Model model =
       read(particle("[definitions]\na = \"cross(P, velocity(P))\"\nb = \"dot(P, E3)\"\n"
                     "c = \"norm(P)*unit(P)\"\nd = [0, 1, \"R/L\"]\ne = \"0*E1 + 0\"\n"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small models around one expression, and a plain evaluator of constant trees: independent of the DAG.
+// Small models around one expression, and an evaluator of constant trees that is independent of the Dag.
 #pragma once
 
 #include <cln/integer.h>
@@ -16,13 +16,13 @@ namespace eomgen::model {
 
 inline Model read(const std::string& text) { return read_model_text(text, "model.toml"); }
 
-/// A model with one particle whose [parameters] hold `parameters`.
+/// A model with one particle and the given [parameters].
 inline Model with_parameters(const std::string& parameters) {
   return read("format = 1\n[parameters]\n" + parameters +
               "\n[[particle]]\nname = \"P0\"\nmass = 1\nposition = { cartesian = [\"x0\", \"y0\"] }\n");
 }
 
-/// A free particle P in spherical coordinates R, phi, theta with parameters m, g, L, k and what is appended.
+/// A free particle P in spherical coordinates R, phi, theta with parameters m, g, L, k, followed by `more`.
 inline std::string particle(const std::string& more) {
   return R"(format = 1
 [parameters]
@@ -34,7 +34,7 @@ k = "30 N/m"
          more;
 }
 
-/// The first line and the remedy of the refusal of a text; "accepted" if it is none.
+/// The message of the error for a text; "accepted" if there is none.
 inline std::string refusal(const std::string& text) {
   try {
     read(text);
@@ -44,7 +44,7 @@ inline std::string refusal(const std::string& text) {
   return "accepted";
 }
 
-/// Numbers, parameters and + - * / ^ only.
+/// The exact value of a constant expression of numbers, parameters and + - * / ^.
 inline Rational exact(const Model& model, NodeId id) {
   const Node& node = model.arena[id];
   const auto arg = [&](std::size_t k) { return exact(model, node.args[k]); };
@@ -61,7 +61,7 @@ inline Rational exact(const Model& model, NodeId id) {
   }
 }
 
-/// The same with pi, as a double.
+/// The same with pi, in binary64.
 inline double approximate(const Model& model, NodeId id) {
   const Node& node = model.arena[id];
   const auto arg = [&](std::size_t k) { return approximate(model, node.args[k]); };

@@ -7,7 +7,7 @@ using namespace eomgen::model;
 
 namespace {
 
-// Values of coordinates for the check of positions; all by index.
+// Evaluates an expression for given values of the coordinates, by index.
 double at(const Model& model, NodeId id, const std::vector<double>& q) {
   const Node& node = model.arena[id];
   const auto arg = [&](std::size_t k) { return at(model, node.args[k], q); };
@@ -48,7 +48,7 @@ std::string placed(const std::string& position) {
 
 }  // namespace
 
-TEST_CASE("charts are spelled out, measured from a place, and planar with two entries") {
+TEST_CASE("charts are expanded, relative to a place, and planar with two entries") {
   const Model model = read(placed("{ cylindrical = [\"r\", \"theta\"], from = \"A\" }"));
   CHECK(model.places[0].name == "origin");
   const Place& place = model.places[2];
@@ -61,13 +61,13 @@ TEST_CASE("charts are spelled out, measured from a place, and planar with two en
   CHECK(position[2] == doctest::Approx(3));
 }
 
-TEST_CASE("an entry may be an expression, and a name that is known is no new coordinate") {
+TEST_CASE("an entry may be an expression, and a known name does not declare a coordinate") {
   const Model model = read(placed("{ spherical = [\"L\", \"xA/L\", \"0\"], from = \"origin\" }"));
   CHECK(model.coordinates.size() == 3);
   CHECK(model.arena[model.places[2].chart->entries[0]].op == Op::parameter);
 }
 
-TEST_CASE("coordinates may be shared, and built-in charts carry their ranges") {
+TEST_CASE("coordinates may be shared, and built-in charts define their ranges") {
   const Model model = read(placed("{ spherical = [\"xA\", \"phi\", \"theta\"] }"));
   REQUIRE(model.coordinates.size() == 5);  // xA yA zA phi theta
   CHECK(model.coordinates[0].unit.text == "m");
@@ -75,7 +75,7 @@ TEST_CASE("coordinates may be shared, and built-in charts carry their ranges") {
   CHECK(model.arena[model.coordinates[3].upper].op == Op::pi);
 }
 
-TEST_CASE("a misspelt coordinate is a new one, with a warning") {
+TEST_CASE("a misspelt coordinate declares a new one, with a warning") {
   const Model model = read(
       "format = 1\n[[particle]]\nname = \"A\"\nmass = 1\nposition = { cylindrical = [\"radius\", \"theta\"] }\n"
       "[[particle]]\nname = \"B\"\nmass = 1\nposition = { cylindrical = [\"raduis\", \"theta2\"] }\n");
@@ -84,14 +84,14 @@ TEST_CASE("a misspelt coordinate is a new one, with a warning") {
   CHECK(model.warnings[0].where.line == 9);
 }
 
-TEST_CASE("different numbers are different names, also with their digits exchanged") {
+TEST_CASE("names with different numbers are different, also with their digits exchanged") {
   const Model model = read(
       "format = 1\n[[particle]]\nname = \"A\"\nmass = 1\nposition = { cartesian = [\"x12\", \"y12\", \"z12\"] }\n"
       "[[particle]]\nname = \"B\"\nmass = 1\nposition = { cartesian = [\"x21\", \"y21\", \"z21\"] }\n");
   CHECK(model.warnings.empty());
 }
 
-TEST_CASE("a particle's basis vectors are there for the coordinates of its position") {
+TEST_CASE("a particle has basis vectors for the coordinates of its position") {
   const Model model = read(placed("{ cylindrical = [\"r\", \"theta\", \"z\"], from = \"A\" }") +
                            "[definitions]\na = \"B.e_theta\"\nb = \"B.a_xA\"\nc = \"B.g_theta\"\n");
   const Node& e = model.arena[model.definitions[0].is];

@@ -14,7 +14,7 @@ TEST_CASE("a file without scenes has a default one") {
   CHECK(model.scenes[0].rtol == no_node);
 }
 
-TEST_CASE("a scene holds times, start values, what may move, settings and outputs") {
+TEST_CASE("a scene contains times, initial values, adjustable values, settings and outputs") {
   const Model model = read(particle(R"toml(
 [inputs]
 F = { unit = "N", default = 0 }
@@ -56,7 +56,7 @@ every = 0.01
   CHECK(exact(model, scene.step) == ratio(1, 1000));
 }
 
-TEST_CASE("a scene starts from another: tables merge, other keys replace") {
+TEST_CASE("a scene inherits from another: tables merge, other keys replace") {
   const Model model = read(particle(R"toml(
 [scene.b]
 from = "default"
@@ -82,7 +82,7 @@ rtol = 1e-8
   CHECK(exact(model, model.scene("b").t1) == 5);
 }
 
-TEST_CASE("an unknown scene is told with the one that was meant") {
+TEST_CASE("the error for an unknown scene suggests a similar name") {
   const Model model = read(particle("[scene.default]\n[scene.fast]\nfrom = \"default\"\n"));
   try {
     model.scene("fsat");
@@ -94,7 +94,7 @@ TEST_CASE("an unknown scene is told with the one that was meant") {
   }
 }
 
-TEST_CASE("start values may use functions at the start and definitions of what is given") {
+TEST_CASE("initial values may use functions at the start and definitions of known values") {
   CHECK(refusal(particle("[functions]\nd = \"L + t*1[m/s]\"\n[definitions]\ns = \"R*sin(phi)\"\n[scene.default]\n"
                          "initial = { R = \"d\", R_dot = \"d_dot\", phi = 1, theta_dot = \"s/L/1[s]\" }\n")) ==
         "accepted");
@@ -103,13 +103,13 @@ TEST_CASE("start values may use functions at the start and definitions of what i
         "the start value of 'theta' uses 'R_dot', which is not given before it");
 }
 
-TEST_CASE("an output asked for twice is named once") {
+TEST_CASE("an output requested twice is listed once") {
   const Model model = read(particle("[scene.default]\noutputs = [\"kinetic\", \"kinetic\"]\n"));
   CHECK(model.scenes[0].outputs.size() == 1);
   CHECK(model.warnings.front().message == "the output 'kinetic' is asked for twice");
 }
 
-TEST_CASE("an angle above a full turn that has no unit is asked about") {
+TEST_CASE("an angle above a full turn without a unit causes a warning") {
   const auto warned = [](const std::string& value) {
     std::string all;
     for (const eomgen::Warning& warning :

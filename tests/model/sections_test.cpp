@@ -5,7 +5,7 @@
 
 using namespace eomgen::model;
 
-TEST_CASE("parameters may be stated in any order and keep it") {
+TEST_CASE("parameters may be declared in any order, which is preserved") {
   const Model model = with_parameters("a = \"b + c\"\nb = \"2*c\"\nc = 3");
   std::vector<std::string> names;
   for (const Parameter& parameter : model.parameters) names.push_back(parameter.name);
@@ -13,7 +13,7 @@ TEST_CASE("parameters may be stated in any order and keep it") {
   CHECK(exact(model, model.parameters[0].value) == 9);
 }
 
-TEST_CASE("a parameter table holds value, unit, tex, note and sign") {
+TEST_CASE("a parameter table contains value, unit, tex, note and sign") {
   const Model model =
       with_parameters("L = { value = 1.5, unit = \"mm\", tex = '\\ell', note = \"of the rod\", positive = true }");
   const Parameter& parameter = model.parameters[0];
@@ -24,7 +24,7 @@ TEST_CASE("a parameter table holds value, unit, tex, note and sign") {
   CHECK(parameter.unit.text == "m");
 }
 
-TEST_CASE("an unused parameter, function or input is warned of, and nothing else is") {
+TEST_CASE("unused parameters, functions and inputs cause warnings, other unused names do not") {
   const Model model = read(R"toml(format = 1
 [parameters]
 m = 1
@@ -64,7 +64,7 @@ TEST_CASE("inputs have a unit and a default") {
   CHECK(model.inputs[0].unit.text == "N");
 }
 
-TEST_CASE("coordinates take unit, tex and range from [coordinates], else from their chart") {
+TEST_CASE("coordinates take unit, tex and range from [coordinates], otherwise from their chart") {
   const Model model =
       read(particle("[coordinates]\nphi = { tex = '\\varphi', range = [0.1, \"pi/2\"] }\nR = { unit = \"m\", range = "
                     "[\"L/2\", inf] }\ns = {}\n"
@@ -141,7 +141,7 @@ TEST_CASE("a holonomic constraint is one scalar, a curve of two, or a vector of 
   for (const NodeId psi : model.constraints[2].psi) CHECK(!model.arena[psi].vector);
 }
 
-TEST_CASE("energies alone make a model") {
+TEST_CASE("energies alone define a model") {
   const Model model =
       read("format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"x^2/2\"\n");
   CHECK(model.particles.empty());
@@ -149,7 +149,7 @@ TEST_CASE("energies alone make a model") {
   CHECK(model.coordinates.size() == 1);
 }
 
-TEST_CASE("title, notes, id, hash and lines are kept") {
+TEST_CASE("title, notes, id, hash and lines are stored") {
   const Model model = read_model_text(
       "format = 1\ntitle = \"T\"\nnotes = \"N\"\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2\"\n",
       "some/where/M1_name.toml");
@@ -160,7 +160,7 @@ TEST_CASE("title, notes, id, hash and lines are kept") {
   CHECK(model.content_hash.size() == 64);
 }
 
-TEST_CASE("definitions may be stated before what they use") {
+TEST_CASE("definitions may precede the names that they use") {
   const Model model = read(particle("[definitions]\na = \"b + c\"\nb = \"2*c\"\nc = \"R\"\n"));
   CHECK(model.definitions[0].name == "a");
   CHECK(model.definitions[2].name == "c");

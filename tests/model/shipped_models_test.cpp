@@ -64,7 +64,7 @@ TEST_CASE("reading is deterministic") {
   CHECK(a.content_hash == b.content_hash);
 }
 
-TEST_CASE("a path that is no file is told") {
+TEST_CASE("a path that is not a file is reported") {
   for (const auto& [path, message] :
        {std::pair<std::string, std::string>{"/nonexistent/model.toml", "there is no such file"},
         {eomgen::test::source_folder() + "/models", "this is a directory"}}) {

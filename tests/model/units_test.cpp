@@ -40,7 +40,7 @@ TEST_CASE("units are converted to SI exactly") {
   CHECK(si("2[cm] + 1[mm]") == ratio(21, 1000));
 }
 
-TEST_CASE("degrees and turns bring pi as pi") {
+TEST_CASE("degrees and turns contain pi exactly") {
   const Model model =
       with_parameters("a = \"30 deg\"\nb = \"60 rpm\"\nc = \"1 rev/s\"\nd = \"-2*pi rad/s\"\ne = \"1 deg^2\"");
   const double pi = std::acos(-1.0);
@@ -52,7 +52,7 @@ TEST_CASE("degrees and turns bring pi as pi") {
   CHECK(model.arena[model.arena[model.parameters[4].value].args[1]].op == Op::power);
 }
 
-TEST_CASE("a unit keeps the user's words where they are SI, and is canonical otherwise") {
+TEST_CASE("a unit is kept as written if it is SI, and is canonical otherwise") {
   const Model model = with_parameters(
       "a = \"2 N*s/m\"\nb = \"2 mm\"\nc = \"a*b\"\nd = 3\ne = { value = 2, unit = \"kN/m\" }\nf = { value = 1, unit = "
       "\"1\" }");
@@ -66,7 +66,7 @@ TEST_CASE("a unit keeps the user's words where they are SI, and is canonical oth
   CHECK(model.parameters[5].unit.text == "1");
 }
 
-TEST_CASE("dimensions are written as an engineer would") {
+TEST_CASE("dimensions are printed in customary units") {
   CHECK(text_of(dimension_of("kg*m/s^2")) == "N");
   CHECK(text_of(dimension_of("kg*m^2")) == "kg*m^2");
   CHECK(text_of(dimension_of("rad")) == "1");
@@ -76,7 +76,7 @@ TEST_CASE("dimensions are written as an engineer would") {
   CHECK(same(dimension_of("kg^(-3/2)*m^2"), product(raised(dimension_of("kg"), ratio(-3, 2)), dimension_of("m^2"))));
 }
 
-TEST_CASE("what is no unit is refused") {
+TEST_CASE("invalid units are rejected") {
   for (const char* text : {"", "mm m", "foo", "m^", "m^0", "m^12", "m//s", "(m", "m)", "2", "kdeg", "m^(1/2", "m^(1/0)",
                            "m^-(1/2)", "mm^(1/2)", "m^1.5", "m-s"}) {
     CAPTURE(text);
@@ -84,13 +84,13 @@ TEST_CASE("what is no unit is refused") {
   }
 }
 
-TEST_CASE("a bare number fits every dimension") {
+TEST_CASE("a bare number is compatible with every dimension") {
   CHECK(refusal(particle("[[constraint]]\nname = \"c\"\nholonomic = \"R - 2\"\n")) == "accepted");
   CHECK(refusal(particle("[definitions]\na = \"R + 1\"\nb = \"a + L\"\n")) == "accepted");
   CHECK(refusal(particle("[[force]]\non = \"P\"\nforce = [0, 0, 3]\n")) == "accepted");
 }
 
-TEST_CASE("a sum, an argument and what is asked for must agree in dimension") {
+TEST_CASE("sums, arguments and required values must agree in dimension") {
   const auto sum = [](const std::string& expression) {
     return refusal(particle("[definitions]\na = \"" + expression + "\"\n"));
   };
@@ -108,7 +108,7 @@ TEST_CASE("a sum, an argument and what is asked for must agree in dimension") {
   CHECK(sum("norm(P.a_theta) - R*sin(phi)") == "accepted");
 }
 
-TEST_CASE("a factor that may carry a unit makes a mismatch a warning") {
+TEST_CASE("with a factor that may have a unit, a mismatch is a warning") {
   const Model model = read(particle("[[force]]\non = \"P\"\nforce = \"-0.3*R*P.e_R\"\n"));
   REQUIRE(model.warnings.size() == 3);  // and L, k are not used
   CHECK(model.warnings[0].message == "this force is asked in N, and this is in m");
@@ -116,7 +116,7 @@ TEST_CASE("a factor that may carry a unit makes a mismatch a warning") {
         "the units clash: this force is asked in N, and this is in m");
 }
 
-TEST_CASE("in sin(2*t) the 2 carries the unit, and unit vectors carry none") {
+TEST_CASE("in sin(2*t) the 2 has the unit, and unit vectors have none") {
   CHECK(refusal(particle("[functions]\nd = \"L + L/10*sin(2*t)\"\n")) == "accepted");
   CHECK(refusal(particle("[functions]\nd = \"L*sin(L*t)\"\n")) ==
         "the units clash: sin() takes a pure number, and this is in m*s");
@@ -145,17 +145,17 @@ holonomic = "z - x^2 - y^2 - sin(x)"
         "the units clash: m on one side and m^2 on the other side of '-'");
 }
 
-TEST_CASE("numbers made of pi are numbers, in every place") {
+TEST_CASE("multiples of pi count as numbers everywhere") {
   const Model model = read(particle(
       "[functions]\nf = \"min(t, pi)\"\ng2 = \"L + pi*L\"\n[definitions]\nd = \"max(R, pi/2) + pi\"\n"
       "[scene.default]\ninitial = { R = \"pi\", phi = \"pi/2\", phi_dot = \"2*pi\", theta_dot = \"-sqrt(pi)\" }\n"));
   CHECK(only_unused(model));
   CHECK(model.definitions[0].unit.text == "m");
   CHECK(model.functions[0].unit.text == "s");
-  CHECK_THROWS(read(particle("[definitions]\nd = \"R + L^2*pi\"\n")));  // what it is multiplied by keeps its dimension
+  CHECK_THROWS(read(particle("[definitions]\nd = \"R + L^2*pi\"\n")));  // the other factor keeps its dimension
 }
 
-TEST_CASE("a file whose only units are angles is a file without units") {
+TEST_CASE("a file whose only units are angles counts as a file without units") {
   const std::string text =
       "format = 1\n[parameters]\nm = 1\nL = 2\na = \"30 deg\"\nb = \"0.1[rad]\"\n[coordinates]\nphi = \"rad\"\nx = {}\n"
       "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = [\"r\", \"phi\", \"x\"] }\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies, frames, rotations and inertias that are refused.
+// Invalid bodies, frames, rotations and inertias.
 #include "wrong_models.hpp"
 
 namespace eomgen::model {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Expressions that are none.
+// Invalid expressions.
 #include "wrong_models.hpp"
 
 namespace eomgen::model {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces and couplings that are refused: keys that are missing, clash or are made of the wrong things.
+// Invalid forces and couplings: keys that are missing, conflict or have invalid values.
 #include "wrong_models.hpp"
 
 namespace eomgen::model {
 namespace {
 
-// The force is line 14: [[force]] is 13, its kind stands at column 1.
+// The force is in line 14, with its kind at column 1; [[force]] is line 13.
 std::string bodies(const std::string& force) {
   return R"(format = 1
 [[body]]
@@ -24,7 +24,7 @@ rotation = { axis = "E3", angle = "b" }
          "\n";
 }
 
-/// The gear is line 15.
+/// The gear is in line 15.
 std::string gear(const std::string& keys, const std::string& more = "") {
   std::string text = bodies("");
   text.erase(text.find("[[force]]"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Input that means harm.
+// Malicious input.
 #include "wrong_models.hpp"
 
 namespace eomgen::model {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models that must be refused, with the exact words. When a message is reworded, it is reworded here too.
+// Invalid models with the exact error messages. A changed message must be changed here too.
 #pragma once
 
 #include <string>

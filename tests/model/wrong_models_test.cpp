@@ -36,16 +36,16 @@ void refuse_all(const std::vector<WrongModel>& table) {
 
 }  // namespace
 
-TEST_CASE("wrong names and keys are refused in exact words") { refuse_all(wrong_names()); }
-TEST_CASE("wrong structure is refused in exact words") { refuse_all(wrong_structure()); }
-TEST_CASE("wrong units and types are refused in exact words") { refuse_all(wrong_units()); }
-TEST_CASE("wrong expressions are refused in exact words") { refuse_all(wrong_expressions()); }
-TEST_CASE("wrong scenes are refused in exact words") { refuse_all(wrong_scenes()); }
-TEST_CASE("wrong bodies and rotations are refused in exact words") { refuse_all(wrong_bodies()); }
-TEST_CASE("wrong forces are refused in exact words") { refuse_all(wrong_forces()); }
-TEST_CASE("hostile input is refused in exact words") { refuse_all(wrong_hostile()); }
+TEST_CASE("wrong names and keys are rejected with the exact message") { refuse_all(wrong_names()); }
+TEST_CASE("wrong structure is rejected with the exact message") { refuse_all(wrong_structure()); }
+TEST_CASE("wrong units and types are rejected with the exact message") { refuse_all(wrong_units()); }
+TEST_CASE("wrong expressions are rejected with the exact message") { refuse_all(wrong_expressions()); }
+TEST_CASE("wrong scenes are rejected with the exact message") { refuse_all(wrong_scenes()); }
+TEST_CASE("wrong bodies and rotations are rejected with the exact message") { refuse_all(wrong_bodies()); }
+TEST_CASE("wrong forces are rejected with the exact message") { refuse_all(wrong_forces()); }
+TEST_CASE("hostile input is rejected with the exact message") { refuse_all(wrong_hostile()); }
 
-TEST_CASE("the whole report of a refusal is what the user sees") {
+TEST_CASE("the complete error report is as the user sees it") {
   try {
     read(pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"R - LL\"\n"));
     FAIL("accepted");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names and keys that are unknown, taken or illegal.
+// Unknown, duplicate and illegal names and keys.
 #include "wrong_models.hpp"
 
 namespace eomgen::model {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes.
+// Invalid scenes.
 #include "wrong_models.hpp"
 
 namespace eomgen::model {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sections that lack something, have too much, or go round in circles.
+// Sections with missing parts, surplus parts, or circular references.
 #include "wrong_models.hpp"
 
 namespace eomgen::model {

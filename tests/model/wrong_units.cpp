@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dimensions, vectors and scalars.
+// Invalid dimensions, and mismatches of vectors and scalars.
 #include "wrong_models.hpp"
 
 namespace eomgen::model {

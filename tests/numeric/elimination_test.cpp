@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One elimination for numbers of every kind: solutions, ranks and null spaces that are known by hand.
+// Elimination for every number type: known solutions, ranks and null spaces.
 #include "numeric/elimination.hpp"
 
 #include <cln/float.h>
@@ -21,7 +21,7 @@ Matrix<T> matrix(std::size_t rows, std::size_t cols, std::initializer_list<int> 
   return A;
 }
 
-/// Largest entry of A - B.
+/// The largest entry of A - B.
 template <class T>
 T distance(const Matrix<T>& A, const Matrix<T>& B) {
   T largest(0);
@@ -29,7 +29,7 @@ T distance(const Matrix<T>& A, const Matrix<T>& B) {
   return largest;
 }
 
-/// The Hilbert matrix, whose condition grows like 34^n, as floats of 60 digits.
+/// The Hilbert matrix in floats of 60 digits. Its condition number grows like 34^n.
 Matrix<cl_R> hilbert(std::size_t n) {
   Matrix<cl_R> A(n, n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -71,7 +71,7 @@ TEST_CASE("the rank, pivot columns and null space of a matrix with dependent col
   CHECK(distance(A * N, Matrix<double>(3, 2)) < 1e-14);
 }
 
-TEST_CASE("scaled rows and columns: a system in units far apart has its full rank") {
+TEST_CASE("scaled rows and columns: a system in very different units has full rank") {
   const Matrix<double> A = [] {
     Matrix<double> B = matrix<double>(2, 2, {2, 1, 1, 3});
     for (std::size_t j = 0; j < 2; ++j) B(1, j) *= 1e-20;
@@ -81,7 +81,7 @@ TEST_CASE("scaled rows and columns: a system in units far apart has its full ran
   CHECK(Elimination<double>(A, 1e-9, Pivots::complete).rank() == 1);
 }
 
-TEST_CASE("diagonal pivots tell a positive definite matrix from a semidefinite one") {
+TEST_CASE("diagonal pivoting distinguishes a positive definite matrix from a semidefinite one") {
   const Matrix<cl_R> definite = hilbert(8);
   const cl_R nothing = cln::expt(cl_RA(1) / 10, 30);
   CHECK(Elimination<cl_R>(definite, nothing, Pivots::diagonal).rank() == 8);
@@ -90,7 +90,7 @@ TEST_CASE("diagonal pivots tell a positive definite matrix from a semidefinite o
   CHECK(Elimination<cl_R>(semidefinite, nothing, Pivots::diagonal).rank() == 2);
 }
 
-TEST_CASE("sixty digits less the condition of a matrix are left") {
+TEST_CASE("the error in sixty digits is bounded by the condition number of the matrix") {
   const Matrix<cl_R> A = hilbert(8);
   Matrix<cl_R> x(8, 1);
   for (std::size_t i = 0; i < 8; ++i) x(i, 0) = cl_R(static_cast<long>(i) - 3);
@@ -100,7 +100,7 @@ TEST_CASE("sixty digits less the condition of a matrix are left") {
   }
 }
 
-TEST_CASE("a binary64 enters exactly, subnormal ones too") {
+TEST_CASE("binary64 numbers are converted exactly, including subnormal ones") {
   CHECK(exact(0.375) == cl_RA(3) / 8);
   CHECK(exact(-0.0) == 0);
   for (const double x : {-1e-310, 2.2250738585072014e-308, 1e100})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Facts of the exercises on rotations: compositions, conversions, an axis found from angles.
+// Results of the exercises on rotations: compositions, conversions, an axis found from angles.
 #include "rotations/turning.hpp"
 
 using namespace eomgen;
@@ -21,8 +21,8 @@ void same_axes(Turning& model) {
 
 }  // namespace
 
-// Ex 5.8: about E1 by a quarter, then about E3 by a quarter, is about (1, 1, 1) by a third of a turn. In the axes that
-// the body carries the same two steps come in the other order.
+// Ex 5.8: a quarter turn about E1 followed by a quarter turn about E3 is a third of a turn about (1, 1, 1). In body
+// axes the two steps have the opposite order.
 TEST_CASE("F(pi/2, E3) F(pi/2, E1) = F(2 pi/3, (E1 + E2 + E3)/sqrt 3), and not the other way round") {
   Turning model(body("A", "{ axis = \"E3\", angle = \"n1\" }") +
                 body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
@@ -35,8 +35,8 @@ TEST_CASE("F(pi/2, E3) F(pi/2, E1) = F(2 pi/3, (E1 + E2 + E3)/sqrt 3), and not t
   CHECK(distance(model.vector("a1"), model.vector("b1")) > 0.1);
 }
 
-// (5.100): of C = B A the Euler parameters are g0 = e0 f0 - e.f, g = e0 f + f0 e + f x e, with e of A and f of B;
-// carried by the body, A comes second.
+// (5.100): the Euler parameters of C = B A are g0 = e0 f0 - e.f, g = e0 f + f0 e + f x e, with e of A and f of B. In
+// body axes A is the second step.
 TEST_CASE("Euler parameters of a composition are the product of the parameters") {
   Turning model(body("F", "{ euler_parameters = [\"f0\", \"f1\", \"f2\", \"f3\"] }") +
                 body("E", "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }", "relative_to = \"F\"\n") +
@@ -106,7 +106,7 @@ TEST_CASE("3-2-3 angles have the bases of (5.86) and (5.87)") {
   }
 }
 
-TEST_CASE("axes on the way of Euler angles: e' after the first, e'' after the second") {
+TEST_CASE("intermediate axes of Euler angles: e' after the first, e'' after the second") {
   Turning model(body("B", "{ euler = \"313\", angles = [\"n1\", \"n2\", \"n3\"] }") +
                 "[definitions]\na1 = \"B.e1'\"\na2 = \"B.e2''\"\na3 = \"B.e3'\"\nw = \"n1_dot*E3 + n2_dot*B.e1' + "
                 "n3_dot*B.e3'' - B.omega\"\n");
@@ -119,7 +119,7 @@ TEST_CASE("axes on the way of Euler angles: e' after the first, e'' after the se
   CHECK(distance(model.vector("w"), {0, 0, 0}) < exact);  // (5.59)
 }
 
-// Ex 5.2: R = Q2 Q1^T of a body that turns about e1 of the one before it; w_R = w_2 - w_1, eq. (5.95), (5.96).
+// Ex 5.2: R = Q2 Q1^T for a body that rotates about e1 of the previous one; w_R = w_2 - w_1, eq. (5.95), (5.96).
 TEST_CASE("the relative angular velocity of two bodies, along the axes between them and not its rate alone") {
   Turning model(body("A", "{ axis = \"E3\", angle = \"n1\" }") +
                 body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
@@ -130,7 +130,7 @@ TEST_CASE("the relative angular velocity of two bodies, along the axes between t
   model.at[{"n1", 1}] = ratio(3, 2);
   model.at[{"n2", 1}] = ratio(4, 3);
   CHECK(distance(model.vector("w"), model.vector("r")) < exact);
-  // w_R is the axial vector of Rdot R^T with R = Q2 Q1^T, which turns while its axis e1 does.
+  // w_R is the axial vector of Rdot R^T with R = Q2 Q1^T, whose axis e1 rotates too.
   const Real phi = model.at[{"n2", 0}], dphi = model.at[{"n2", 1}], dtheta = model.at[{"n1", 1}];
   const auto R = [&](const Numbers& v) {  // sum b_k (a_k . v)
     Numbers sum{0, 0, 0};
@@ -191,8 +191,8 @@ TEST_CASE("north, east and down are two rotations from the fixed axes") {
   same_axes(model);
 }
 
-// Ex 5.6: (5.122), the angular velocity of a rotation about an axis that turns, as the Rodrigues formula has it (5.46).
-TEST_CASE("about an axis that turns: the corotational part and what the turning axis adds") {
+// Ex 5.6: (5.122), the angular velocity of a rotation about a rotating axis, from the Rodrigues formula (5.46).
+TEST_CASE("about a rotating axis: the corotational part and the part due to the rotation of the axis") {
   Turning model(body("A", "{ axis = \"E3\", angle = \"p\" }") +
                 body("C", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
                 "[definitions]\nw = \"omega(C)\"\na = \"n_dot*A.e1 - p_dot*(cos(n)*E3 - sin(n)*A.e2) + p_dot*E3\"\n"
@@ -202,7 +202,7 @@ TEST_CASE("about an axis that turns: the corotational part and what the turning 
   model.at[{"p", 1}] = ratio(-3, 5);
   model.at[{"n", 1}] = ratio(5, 7);
   const Numbers w = model.vector("w"), turning = model.vector("a"), carried = model.vector("b");
-  // w_C = w_B + B w_A, in which B turns w_A = p_dot E3 about e1: b is p_dot (cos E3 - sin e2).
+  // w_C = w_B + B w_A, where B rotates w_A = p_dot E3 about e1: b is p_dot (cos E3 - sin e2).
   for (std::size_t k = 0; k < 3; ++k) CHECK(size(w[k] - (turning[k] + carried[k])) < exact);
 }
 
@@ -217,7 +217,7 @@ TEST_CASE("about E3 the axes are e_r, e_theta, E3, and w is theta_dot E3") {
   CHECK(distance(model.vector("w"), {0, 0, 0}) < exact);
 }
 
-// Ex 5.9, printed last: half a turn about E1, then half a turn about E2, is half a turn about E3.
+// Ex 5.9, last part: a half turn about E1 followed by a half turn about E2 is a half turn about E3.
 TEST_CASE("two half turns about axes at right angles are one about the third") {
   Turning model(body("A", "{ axis = \"E2\", angle = \"n\" }") +
                 body("B", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inertia and Euler tensors: of homogeneous shapes, about any point, as the body turns. The references are integrals
-// over the volume, by quadratures that are exact for what is integrated. Ex 6.4-6.8.
+// Inertia and Euler tensors of homogeneous shapes, about any point, of rotating bodies. The references are volume
+// integrals by quadratures that are exact for these integrands. Ex 6.4-6.8.
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -23,7 +23,7 @@ struct Weighted {
   double weight;  // sums to 1
 };
 
-// Three points of Gauss and Legendre on [-1, 1]: exact to degree five, of the squares of coordinates with room for r^2
+// Three-point Gauss-Legendre quadrature on [-1, 1]: exact to degree five, enough for squares of coordinates with r^2
 // dr.
 const std::array<double, 3> gauss{-std::sqrt(0.6), 0.0, std::sqrt(0.6)}, gauss_weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
 
@@ -68,7 +68,7 @@ std::vector<Weighted> sphere(double R) {
   return points;
 }
 
-/// E = sum m p (x) p, eq. (6.96), of p from `about` to the points.
+/// E = sum m p (x) p, eq. (6.96), with p from `about` to the points.
 Tensor euler_tensor(const std::vector<Weighted>& points, double mass, const Point& about) {
   Tensor E{};
   for (const Weighted& point : points)
@@ -95,7 +95,7 @@ std::vector<Shape> shapes() {
 
 constexpr double mass = 3;
 
-/// J about a point A of the body, from the kinetic energy of the body that turns about A: 2 T = w . J_A w.
+/// J about a point A of the body, from the kinetic energy of a rotation about A: 2 T = w . J_A w.
 Tensor inertia(const std::string& shape, const std::array<int, 3>& eighths) {
   std::string position;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -130,7 +130,7 @@ TEST_CASE("inertia: of a sphere, a cylinder, a disk, a rod, a box, about the cen
     for (const std::array<int, 3>& eighths : {std::array<int, 3>{0, 0, 0}, {4, 0, 0}, {-3, 5, 2}}) {
       CAPTURE(std::string(shape.inertia));
       if (std::string(shape.inertia).find("rod") != std::string::npos && eighths[0] == 0)
-        continue;  // nothing turns about a rod's own axis
+        continue;  // a rod has no inertia about its own axis
       const Point about{eighths[0] / 8.0, eighths[1] / 8.0, eighths[2] / 8.0};
       const Tensor J = inertia(shape.inertia, eighths), E = euler_tensor(shape.points, mass, about);
       for (std::size_t i = 0; i < 3; ++i) {
@@ -157,7 +157,7 @@ TEST_CASE("inertia: the cylinder of Ex 6.8 about a point off its axis") {
 
 // (6.91), (6.97): Jdot = W J - J W and Edot = W E - E W, with W v = w x v; from J = sum lambda_i e_i (x) e_i by
 // differences.
-TEST_CASE("inertia: the tensors turn with the body") {
+TEST_CASE("inertia: the tensors rotate with the body") {
   Turning model(body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") +
                 "[definitions]\na1 = \"B.e1\"\na2 = \"B.e2\"\na3 = \"B.e3\"\nw = \"B.omega\"\n");
   for (const char* name : {"n1", "n2", "n3"}) {
@@ -192,7 +192,7 @@ TEST_CASE("inertia: the tensors turn with the body") {
   }
 }
 
-// (6.100), and (6.101): with w . g3 = w . g2 = 0 what is left is a turn about E3.
+// (6.100), and (6.101): with w . g3 = w . g2 = 0 only a rotation about E3 remains.
 TEST_CASE("inertia: angular velocity, momentum and energy in 3-2-3 angles") {
   Turning model(body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") +
                 "[definitions]\nw1 = \"dot(B.omega, B.e1) - (n2_dot*sin(n3) - n1_dot*sin(n2)*cos(n3))\"\n"

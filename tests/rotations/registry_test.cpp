@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every representation of rotations: its axes are orthonormal and right-handed, and what its file says of angular
-// velocities, bases and singular sets holds.
+// Every representation of rotations: its axes are orthonormal and right-handed, and the angular velocities, bases and
+// singular sets of its file are correct.
 #include <set>
 
 #include "rotations/turning.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 const std::string axes_of_B = "[definitions]\na1 = \"B.e1\"\na2 = \"B.e2\"\na3 = \"B.e3\"\nw = \"omega(B)\"\n";
 
-/// Somewhere regular, and somehow moving; unit length for Euler parameters, and rates that keep it.
+/// Sets a regular state with nonzero rates. Euler parameters have unit norm, and rates that preserve it.
 void set(Turning& model, const rotations::Rotation& r, const std::string& suffix = "", long shift = 0) {
   constexpr std::array<long, 4> unit{1, 2, 4, 10}, kept{2, -1, 10, -4};
   for (std::size_t k = 0; k < r.entries.size(); ++k) {
@@ -82,7 +82,7 @@ TEST_CASE("rotations: the angular velocity is the axial vector of Qdot Q^T, alon
   }
 }
 
-TEST_CASE("rotations: w is the sum of the basis times the rates, and the dual basis gives them back") {
+TEST_CASE("rotations: w is the sum of the basis times the rates, and the dual basis recovers the rates") {
   for (const rotations::Rotation& r : rotations::registry()) {
     CAPTURE(r.name);
     Turning model(body("B", written(r)) + axes_of_B + formulas(r));
@@ -104,7 +104,7 @@ TEST_CASE("rotations: w is the sum of the basis times the rates, and the dual ba
   }
 }
 
-TEST_CASE("rotations: the basis of Euler angles is dependent just where its file says") {
+TEST_CASE("rotations: the basis of Euler angles is dependent exactly at the documented angles") {
   for (const rotations::Rotation& r : rotations::registry()) {
     CAPTURE(r.name);
     CHECK((r.family == "euler") == !r.regular.empty());
@@ -132,7 +132,7 @@ TEST_CASE("rotations: the basis of Euler angles is dependent just where its file
 TEST_CASE("rotations: relative to another body angular velocities add up, in every pair of representations") {
   for (const rotations::Rotation& a : rotations::registry()) {
     for (const rotations::Rotation& b : rotations::registry()) {
-      if (b.family == "axis") continue;  // its axis is named along E1, E2, E3; below
+      if (b.family == "axis") continue;  // its axis is given along E1, E2, E3; tested below
       CAPTURE(a.name);
       CAPTURE(b.name);
       Turning model(body("B", written(a, "a")) + body("C", written(b, "b"), "relative_to = \"B\"\n") +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model with bodies, evaluated in many digits: axes and angular velocities by names of definitions.
+// A model with bodies, evaluated in 60 digits: axes and angular velocities by names of definitions.
 #pragma once
 
 #include <cln/rational.h>
@@ -33,7 +33,8 @@ constexpr int digits = 60;
 constexpr double exact = 1e-50;       // some hundred operations in 60 digits
 constexpr double difference = 1e-35;  // of central differences with steps of 1e-20
 
-/// The rotation of a registry entry as a model writes it, with coordinates of the entries' names and a suffix.
+/// The rotation of a registry entry in the syntax of a model file, with coordinates named like the entries plus a
+/// suffix.
 inline std::string written(const rotations::Rotation& r, const std::string& suffix = "") {
   std::string names;
   for (const rotations::Entry& entry : r.entries) names += (names.empty() ? "\"" : ", \"") + entry.name + suffix + "\"";
@@ -62,7 +63,7 @@ class Turning {
     return numbers(mechanics::lower_vector(m_, model_.definitions[index(definition)].is));
   }
   Numbers own_rates(std::size_t frame) { return numbers(m_.angular_velocity[frame]); }
-  /// The vector a little later on the path q + h qdot.
+  /// The vector at q + h qdot.
   Numbers later(const std::string& definition, const Real& h) {
     const auto here = at;
     for (const auto& [key, x] : here) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One attitude in every representation of rotations, as a model writes it.
+// One attitude in every representation of rotations, in the syntax of model files.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@
 
 namespace eomgen::test {
 
-/// Rows e_k . E_j of an attitude that is far from the singular places of all sets of Euler angles.
+/// Rows e_k . E_j of an attitude far from the singularities of all sets of Euler angles.
 inline Eigen::Matrix3d some_attitude() {
   return (Eigen::AngleAxisd(0.9, Eigen::Vector3d(1, 0.4, -0.7).normalized()).toRotationMatrix() *
           Eigen::AngleAxisd(0.5, Eigen::Vector3d(0.2, 1, 0.3).normalized()).toRotationMatrix())
@@ -51,7 +51,7 @@ struct Attitude {
   std::string start;     // their values
 };
 
-/// Nothing for representations that cannot have any attitude.
+/// The attitude in a representation; nothing if it cannot represent every attitude.
 inline std::optional<Attitude> attitude_in(const rotations::Rotation& r, const Eigen::Matrix3d& wanted) {
   const auto value = [](const char* name, double x) {
     char text[60];

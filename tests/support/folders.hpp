@@ -1,5 +1,5 @@
-// Where the source tree and the build folder lie. Functions, not macros: no test's object file then depends on where
-// the tree was cloned to, and a compiler cache serves every clone.
+// Paths of the source tree and the build folder. They are functions, not macros, so that no test's object file depends
+// on the location of the clone, and a compiler cache serves every clone.
 #pragma once
 #include <string>
 

@@ -11,7 +11,7 @@
 
 namespace eomgen::test {
 
-/// w along the body's axes from w2 = 0, w1 > 0, w3 > 0, where the axis of the largest moment is circled.
+/// w along the body's axes from w2 = 0, w1 > 0, w3 > 0, if w circles the axis of the largest moment.
 inline std::array<double, 3> free_body(const std::array<double, 3>& J, double w1, double w3, double t) {
   const double E2 = J[0] * w1 * w1 + J[2] * w3 * w3, h2 = J[0] * J[0] * w1 * w1 + J[2] * J[2] * w3 * w3;
   const double rate = std::sqrt((J[2] - J[1]) * (h2 - E2 * J[0]) / (J[0] * J[1] * J[2]));

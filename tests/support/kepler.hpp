@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Kepler orbit from its perihelion, by Kepler's equation; the orbit's plane is turned about E1 by the inclination.
+// The Kepler orbit from its perihelion, by Kepler's equation; its plane is rotated about E1 by the inclination.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Texts of mechanisms whose constraints depend on one another, for several folders of tests.
+// Model texts of mechanisms with dependent constraints, for several folders of tests.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace eomgen::test {
 
-/// An axle, its centre of mass ahead of the hub, on two wheels L and R that roll with radii `left` and `right`; at the
-/// given height.
+/// An axle at the given height, with its centre of mass ahead of the hub, on two rolling wheels L and R of radii `left`
+/// and `right`.
 inline std::string wheels_on_one_axle(const std::string& height, const std::string& left = "R",
                                       const std::string& right = "R") {
   std::string text = R"toml(format = 1
@@ -49,8 +49,8 @@ rotation = { axis = "E3", angle = "th" }
          "[scene.default]\nt = [0, 2]\ninitial = { x_dot = 1, th_dot = 0.5, th = 0 }\nrtol = 1e-11\natol = 1e-13\n";
 }
 
-/// Bricard's orthogonal six-bar loop: hinges a1 to a6, each at right angles to the next, bars of one length along their
-/// products; a1 and a2 are held. Starts along the edges of a cube.
+/// Bricard's orthogonal six-bar loop: hinges a1 to a6, each normal to the next, and bars of equal length along their
+/// cross products; a1 and a2 are fixed. It starts along the edges of a cube.
 inline std::string bricard_by_products() {
   std::string text = "format = 1\n[parameters]\nm = \"1 kg\"\nL = \"1 m\"\ng = \"9.81 m/s^2\"\n[coordinates]\n";
   for (const std::string k : {"3", "4", "5", "6"}) {
@@ -85,7 +85,7 @@ inline std::string bricard_by_products() {
          "rtol = 1e-11\natol = 1e-13\noutputs = [\"M3.position1\", \"M3.position2\", \"M3.position3\"]\n";
 }
 
-/// The same loop as particles at distances: both ends of each bar, and a point on each hinge.
+/// The same loop as particles with fixed distances: both ends of each bar, and a point on each hinge.
 inline std::string bricard_by_distances() {
   using Place = std::array<int, 3>;
   struct Point {
@@ -132,8 +132,8 @@ inline std::string bricard_by_distances() {
   return text + "[scene.default]\nt = [0, 1]\ninitial = { " + start + " }\nrtol = 1e-11\natol = 1e-13\n";
 }
 
-/// Bennett's loop: two arms that turn about fixed hinges, and what a coupler between their tips says in scalar
-/// products: four equations for two coordinates, of which one is independent.
+/// Bennett's loop: two arms that rotate about fixed hinges, and the scalar products that a coupler between their tips
+/// prescribes: four equations for two coordinates, one of which is independent.
 inline std::string bennett_by_products() {
   return R"toml(format = 1
 [parameters]

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers for an EquationSystem in tests: values by name, and a reference solve of the index-1 form with Eigen.
+// Numerical evaluation of an EquationSystem in tests: values by name, and a reference solution of the index-1 form with
+// Eigen.
 #pragma once
 
 #include <Eigen/Dense>
@@ -14,8 +15,8 @@
 
 namespace eomgen::test {
 
-/// State, parameters and inputs by their names ("theta", "theta_dot", "t", "m"); accelerations and multipliers are
-/// solved for and can then be asked for ("theta_ddot", "lambda.rod").
+/// State, parameters and inputs by name ("theta", "theta_dot", "t", "m"). After solve, accelerations and multipliers
+/// are available too ("theta_ddot", "lambda.rod").
 class Point {
  public:
   Point(const mechanics::Mechanics& m, std::map<std::string, double> values) : m_(m), values_(std::move(values)) {}
@@ -37,7 +38,7 @@ class Point {
     return symbolic::evaluate(*m_.dag, {r}, [this](const symbolic::Symbol& s) { return (*this)(s); })[0];
   }
 
-  /// Solves [M -A^T; A 0][qddot; lambda] = [f; -gamma] and keeps the values.
+  /// Solves [M -A^T; A 0][qddot; lambda] = [f; -gamma] and stores the values.
   void solve(const system::EquationSystem& s) {
     const auto n = static_cast<Eigen::Index>(s.free.size()), k = static_cast<Eigen::Index>(s.active.size());
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n + k, n + k);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of model files that many tests begin with; parameters and what binds the particle are theirs.
+// Common beginnings of model files. The tests add parameters and constraints.
 #pragma once
 
 #include <string>

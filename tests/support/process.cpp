@@ -46,7 +46,7 @@ std::array<int, 2> make_pipe() {
   return ends;
 }
 
-/// Takes what is there; false at the end of the stream.
+/// Reads the available bytes; returns false at the end of the stream.
 bool take(int file, std::string& text) {
   std::array<char, 1 << 16> buffer{};
   const ssize_t n = ::read(file, buffer.data(), buffer.size());

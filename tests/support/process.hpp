@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A child process in a test. In: arguments, working folder, changes of the environment, a limit of time. Out: what it
-// printed and how it ended. A child that outlives its limit is killed.
+// A child process in a test. In: arguments, working folder, changes of the environment, a time limit. Out: its output
+// and exit status. A child that exceeds its limit is killed.
 #pragma once
 
 #include <sys/types.h>
@@ -14,9 +14,9 @@
 namespace eomgen::test {
 
 struct ChildCommand {
-  std::vector<std::string> arguments;  // the program first; looked for in PATH if it is no path
+  std::vector<std::string> arguments;  // the program first; searched in PATH unless it is a path
   std::string folder = ".";
-  std::map<std::string, std::optional<std::string>> environment{};  // changes; nothing: taken out
+  std::map<std::string, std::optional<std::string>> environment{};  // changes; nothing: removed
   double limit = 30;                                                // seconds; ten times as many under the sanitizers
 };
 
@@ -24,20 +24,20 @@ struct ChildResult {
   int status = -1;  // exit code, or 128 + signal
   bool in_time = true;
   double seconds = 0;
-  long peak_kilobytes = 0;  // of memory, its own and of the largest of its children
+  long peak_kilobytes = 0;  // peak memory of itself or of its largest child
   std::string out, err;
 };
 
 class Child {
  public:
-  /// Starts it. Throws std::runtime_error where that cannot be done.
+  /// Starts the process. Throws std::runtime_error if that fails.
   explicit Child(const ChildCommand& command);
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
   ~Child();
 
   void signal(int number) const;
-  /// Reads until both streams are at their end, and waits.
+  /// Reads both streams to the end and waits for the process.
   ChildResult finish();
 
  private:

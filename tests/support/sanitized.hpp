@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether this is built with the address sanitizer, whose shadow memory has terabytes of addresses and megabytes of
-// its own, and which makes code several times as slow.
+// Whether this is built with the address sanitizer. Its shadow memory reserves terabytes of addresses and uses
+// megabytes, and it makes code several times as slow.
 #pragma once
 
 namespace eomgen::test {

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-// A right document of each schema, as small as may be.
+// A minimal valid document for each schema.
 const std::map<std::string, json>& right_documents() {
   static const std::map<std::string, json> documents = [] {
     const json operations = {{"add", 4}, {"mul", 9}, {"div", 1}, {"sqrt", 0}, {"trig", 2}, {"other", 0}};
@@ -134,7 +134,7 @@ const std::map<std::string, json>& right_documents() {
   return documents;
 }
 
-// A right document with the value at `pointer` replaced.
+// A valid document with the value at `pointer` replaced.
 json changed(const std::string& schema, const std::string& pointer, json value) {
   json document = right_documents().at(schema);
   document.at(json::json_pointer(pointer)) = std::move(value);
@@ -143,7 +143,7 @@ json changed(const std::string& schema, const std::string& pointer, json value) 
 
 }  // namespace
 
-TEST_CASE("every schema of docs/schema takes a right document and refuses it without any one of its needed keys") {
+TEST_CASE("every schema of docs/schema accepts a valid document and rejects it without any one of its required keys") {
   for (const std::string& schema : support::schema_names()) {
     CAPTURE(schema);
     REQUIRE(right_documents().count(schema) == 1);
@@ -162,7 +162,7 @@ TEST_CASE("every schema of docs/schema takes a right document and refuses it wit
   }
 }
 
-TEST_CASE("every schema takes keys that a later version adds, and refuses another format") {
+TEST_CASE("every schema accepts keys of later versions, and rejects another format") {
   for (const auto& entry : right_documents()) {
     const std::string& schema = entry.first;
     CAPTURE(schema);
@@ -177,7 +177,7 @@ TEST_CASE("every schema takes keys that a later version adds, and refuses anothe
   }
 }
 
-TEST_CASE("wrong values are refused, each at its place") {
+TEST_CASE("wrong values are rejected, each at its location") {
   struct Wrong {
     const char* schema;
     const char* pointer;
@@ -230,22 +230,22 @@ TEST_CASE("wrong values are refused, each at its place") {
   }
 }
 
-TEST_CASE("a run that failed numerically may hold values that are not finite") {
+TEST_CASE("a run that failed numerically may contain values that are not finite") {
   json failed = changed("run", "/final/x", nullptr);
   failed["outcome"] = "not_finite";
   CHECK(support::schema_errors(failed, "run").empty());
 }
 
-TEST_CASE("emit: a document needs no counts, sources do") {
+TEST_CASE("emit: operation counts are required for sources, but not for a document") {
   CHECK(support::schema_errors({{"format", 1}, {"files", {"P7.tex"}}}, "emit").empty());
   CHECK_FALSE(support::schema_errors({{"format", 1}, {"files", {"code/P7.c"}}}, "emit").empty());
 }
 
-TEST_CASE("a schema that is not there is an error, not a pass") {
+TEST_CASE("a missing schema is an error, not a pass") {
   CHECK_THROWS_AS(support::schema_errors(json::object(), "no_such_command"), std::runtime_error);
 }
 
-TEST_CASE("an error names the place in the document") {
+TEST_CASE("an error names the location in the document") {
   const std::vector<std::string> errors = support::schema_errors(changed("run", "/outcome", "ok"), "run");
   REQUIRE_FALSE(errors.empty());
   CHECK(errors.back().find("outcome") != std::string::npos);

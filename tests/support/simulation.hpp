@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A shipped model run in a test: end values by name, rows by name, estimates and drifts.
+// Runs a shipped model in a test: final values by name, rows by name, error estimates and drifts.
 #pragma once
 
 #include <functional>
@@ -37,7 +37,8 @@ std::string read_text(const std::string& path);
 void write_text(const std::string& path, const std::string& text);
 std::shared_ptr<const model::Model> model_at(const std::string& path);
 
-/// Runs models/NAME.toml (or a path that ends in .toml); `adjust` may set scene, overrides and so on. Rows are kept.
+/// Runs models/NAME.toml (or a path that ends in .toml) and stores the rows. `adjust` may set scene, overrides and so
+/// on.
 Finished run_model(const std::string& name, const std::function<void(pipeline::SimulationRequest&)>& adjust = {});
 
 }  // namespace eomgen::test

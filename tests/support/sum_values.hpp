@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of reading forms in double, by a plain walk over the sum.
+// Values of display forms in binary64, by direct evaluation of the sum.
 #pragma once
 
 #include <cln/rational.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A folder under the system's temporary one that is gone, with all in it, at the end.
+// A temporary folder that is removed with its contents at the end of its scope.
 #pragma once
 
 #include <stdlib.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The throw that the models of coordinates share: from (1, 0, 2) with (0.5, 1, 5), each component a polynomial of t.
+// The projectile motion of the models of coordinates: from (1, 0, 2) with velocity (0.5, 1, 5). Each component is a
+// polynomial of t.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -10,7 +11,7 @@
 
 namespace eomgen::test {
 
-/// Runs the model and holds its end against the parabola.
+/// Runs the model and compares its final state with the parabola.
 inline Finished check_throw(const std::string& model, std::vector<std::string> outputs = {}) {
   INFO(model);
   constexpr double tolerance = 1e-9;  // of runs at rtol 1e-11

@@ -32,7 +32,7 @@ Typeset typeset(const std::string& text, const std::string& name) {
   const fs::path folder = fs::path(build_folder()) / "typeset" / name;
   fs::create_directories(folder);
   std::ofstream(folder / "document.tex") << text;
-  // A log line of 79 characters would break the words that are looked for.
+  // The default log line of 79 characters would break the words that the test searches for.
   const std::string command = "cd '" + folder.string() +
                               "' && max_print_line=1000 pdflatex -no-shell-escape -interaction=nonstopmode "
                               "-halt-on-error document.tex > out.txt 2>&1";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Documents set by pdflatex, where it is installed.
+// Typesets documents with pdflatex, if it is installed.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace eomgen::test {
 
-/// Says so where it is not.
+/// Whether pdflatex is installed; prints a message if it is not.
 bool is_pdflatex_installed();
 
 struct Typeset {
@@ -15,7 +15,8 @@ struct Typeset {
   std::vector<std::string> overruns;  // over the margin by more than 5 pt: what stands there, by the comment before it
 };
 
-/// Lines that begin with "% ITEM " in `text` name what follows them. The PDF stays in the build folder, under `name`.
+/// Lines that begin with "% ITEM " in `text` name the item that follows. The PDF is stored in the build folder as
+/// `name`.
 Typeset typeset(const std::string& text, const std::string& name);
 
 /// Fails the test for each overrun.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Integrals that are found, against differences of their values; and zeros that are proven, and not proven.
+// Antiderivatives against numerical differences; and proofs of zero that succeed and that must fail.
 #include "symbolic/antiderivative.hpp"
 
 #include <doctest/doctest.h>
@@ -31,7 +31,7 @@ struct Letters {
 
 }  // namespace
 
-TEST_CASE("antiderivatives: their slope, by differences, is the integrand") {
+TEST_CASE("antiderivatives: their numerical derivative is the integrand") {
   Letters l;
   const Scalar x = l.x, y = l.y, a = l.a;
   const Scalar s = l.f(Op::sin, a * x + y), c = l.f(Op::cos, a * x + y), e = l.f(Op::exp, l.number(-2) * x);
@@ -70,7 +70,7 @@ TEST_CASE("antiderivatives: their slope, by differences, is the integrand") {
   CHECK_FALSE(antiderivative(l.dag, (l.f(Op::sin, x) / x).ref, l.x_symbol));
 }
 
-TEST_CASE("antiderivatives: of u'/u below zero, where log u has no value") {
+TEST_CASE("antiderivatives: u'/u is integrated for negative u too, where log u is undefined") {
   Letters l;
   const Scalar x = l.x, integrand = x / (x * x - l.number(5));
   const std::optional<Ref> plain = antiderivative(l.dag, integrand.ref, l.x_symbol);
@@ -82,14 +82,14 @@ TEST_CASE("antiderivatives: of u'/u below zero, where log u has no value") {
   CHECK(l.value(*any, 1) - l.value(*any, 0) == doctest::Approx(std::log(4.0 / 5) / 2).epsilon(1e-14));
 }
 
-TEST_CASE("dag: 0/0 is no number") {
+TEST_CASE("dag: 0/0 is not folded to a number") {
   Letters l;
   const Ref quotient = l.dag.div(l.dag.zero(), l.dag.zero());
   CHECK_FALSE(l.dag.is_constant(quotient));
   CHECK(std::isnan(l.value(quotient, 1)));
 }
 
-TEST_CASE("zeros: identities of angles, exponentials and fractions are proven, what is not zero never is") {
+TEST_CASE("zeros: identities of angles, exponentials and fractions are proven, nonzero expressions never are") {
   Letters l;
   const Scalar x = l.x, y = l.y, one = l.number(1), two = l.number(2);
   const auto sin = [&](Scalar u) { return l.f(Op::sin, u); };

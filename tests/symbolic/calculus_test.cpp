@@ -40,7 +40,7 @@ TEST_CASE("calculus: every function's derivative agrees with differences at 120 
   functions.push_back(dag.select(x, two, dag.power(x, 3), x));
   const cln::cl_R at = cln::cl_float(cln::cl_R(Rational(37) / 100), cln::float_format(120));
   const cln::cl_R step = cln::cl_float(cln::cl_R(cln::expt(Rational(1) / 10, 30)), cln::float_format(120));
-  // Central differences: error h^2 f'''/6 = 1e-60 times a number that is below 1e5 here.
+  // Central differences: the error is h^2 f'''/6 = 1e-60 times a number below 1e5.
   const cln::cl_R tolerance = cln::cl_R(cln::expt(Rational(1) / 10, 50));
   Derivation derivative = partial(dag, x_symbol);
   for (const Ref f : functions) {
@@ -72,7 +72,7 @@ TEST_CASE("calculus: a nest of 60 shared levels is differentiated on the graph, 
   CHECK(dag.reachable({derivative}).size() < 2000);
 }
 
-TEST_CASE("calculus: substitution replaces symbols and folds what becomes constant") {
+TEST_CASE("calculus: substitution replaces symbols and folds expressions that become constant") {
   Dag dag;
   const Ref x = dag.symbol(x_symbol), t = dag.symbol({SymbolKind::time, 0, 0});
   Substitution at_zero(dag, {{x_symbol, dag.zero()}});

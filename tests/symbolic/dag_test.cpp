@@ -11,7 +11,7 @@ namespace {
 Ref coordinate(Dag& dag, std::uint32_t i) { return dag.symbol({SymbolKind::coordinate, i, 0}); }
 }  // namespace
 
-TEST_CASE("dag: equal expressions are one node, whatever the order they were written in") {
+TEST_CASE("dag: equal expressions are one node, regardless of the order of operands") {
   Dag dag;
   const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
   CHECK(dag.add(x, y) == dag.add(y, x));
@@ -26,7 +26,7 @@ TEST_CASE("dag: equal expressions are one node, whatever the order they were wri
   CHECK(dag.add(x, x) == dag.mul(dag.integer(2), x));
 }
 
-TEST_CASE("dag: zeros and ones disappear, exact numbers fold exactly") {
+TEST_CASE("dag: zeros and ones are eliminated, exact numbers are folded exactly") {
   Dag dag;
   const Ref x = coordinate(dag, 0);
   CHECK(dag.is_zero(dag.sub(x, x)));
@@ -47,7 +47,7 @@ TEST_CASE("dag: huge powers of numbers stay symbolic") {
   CHECK(dag[huge].op == Op::power);
 }
 
-TEST_CASE("dag: the rules keep the value of random expressions to 40 digits") {
+TEST_CASE("dag: the rules preserve the value of random expressions to 40 digits") {
   // A random expression is built twice: with the rules on the Dag, and directly in CLN numbers.
   std::uint64_t state = 7;
   const auto random = [&state](std::uint64_t n) {
@@ -112,7 +112,7 @@ TEST_CASE("dag: the rules keep the value of random expressions to 40 digits") {
   }
 }
 
-TEST_CASE("dag: roots of squares are taken of what is assumed positive, and of nothing else") {
+TEST_CASE("dag: roots of squares are simplified for positive expressions only") {
   Dag dag;
   const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
   const Ref square = dag.mul(dag.power(x, 2), dag.constant(Rational(9) / 4));
@@ -123,7 +123,7 @@ TEST_CASE("dag: roots of squares are taken of what is assumed positive, and of n
   CHECK(dag[dag.call(Op::sqrt, dag.mul(dag.power(x, 2), dag.power(y, 2)))].op == Op::sqrt);
 }
 
-TEST_CASE("dag: a value is the same among few nodes and among very many that it does not need") {
+TEST_CASE("dag: a value does not depend on the number of unrelated nodes") {
   Dag dag;
   const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
   const Ref early = dag.add(dag.call(Op::sin, x), dag.mul(y, dag.integer(3)));

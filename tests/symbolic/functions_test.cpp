@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each row of the table of functions against numbers: derivative, symmetry, value at 0.
+// Numerical checks of each row of the function table: derivative, symmetry, value at 0.
 #include "symbolic/functions.hpp"
 
 #include <doctest/doctest.h>
@@ -21,7 +21,7 @@ cl_R ten_to_minus(int exponent) { return cl_R(cln::expt(Rational(1) / 10, expone
 
 const Precise precise{cln::float_format(digits)};
 
-/// f(x) of a row with one argument.
+/// f(x) for a row with one argument.
 cl_R value(const Function& f, const cl_R& x) { return precise.call(f.op, precise.round(x)); }
 
 struct Numbers {
@@ -33,7 +33,7 @@ struct Numbers {
 
 }  // namespace
 
-TEST_CASE("the derivative of every function of one argument is the limit of its differences") {
+TEST_CASE("the derivative of every function of one argument is the limit of its difference quotients") {
   const cl_R h = ten_to_minus(20), x = Rational(3) / 7;
   for (const Function& f : function_table) {
     if (f.arity != 1 || f.op == Op::sign) continue;
@@ -46,7 +46,7 @@ TEST_CASE("the derivative of every function of one argument is the limit of its 
   }
 }
 
-TEST_CASE("what the table says of symmetry and of the value at 0 holds") {
+TEST_CASE("symmetry and value at 0 are as stated in the table") {
   for (const Function& f : function_table) {
     if (f.arity != 1) continue;
     CAPTURE(f.name);
@@ -73,7 +73,7 @@ TEST_CASE("derivatives on the graph are those of the table") {
   }
 }
 
-TEST_CASE("functions that code may call have a name there, the others are written out") {
+TEST_CASE("functions that code may call have a name there, the others are expanded") {
   for (const Function& f : function_table) {
     CAPTURE(f.name);
     const bool written_out =
@@ -84,7 +84,7 @@ TEST_CASE("functions that code may call have a name there, the others are writte
   CHECK_THROWS_AS(function_of(Op::add), std::out_of_range);
 }
 
-TEST_CASE("binary64 and many digits are the same functions") {
+TEST_CASE("functions in binary64 and in many digits agree") {
   for (const Function& f : function_table) {
     CAPTURE(f.name);
     const double x[] = {0.375, 0.5, 1.25, -2.0};  // powers of 2: exact in both
@@ -98,7 +98,7 @@ TEST_CASE("binary64 and many digits are the same functions") {
   }
 }
 
-TEST_CASE("what is fainter than any float of CLN is 0") {
+TEST_CASE("results below the range of CLN's floats are 0") {
   CHECK(cln::zerop(precise.call(Op::exp, -cln::expt(Rational(10), 300))));
   CHECK(cln::plusp(precise.call(Op::exp, -cln::expt(Rational(10), 17))));
 }

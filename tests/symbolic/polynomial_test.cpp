@@ -52,7 +52,7 @@ TEST_CASE("expansion: the velocity square in spherical coordinates has three ter
   CHECK(dag.reachable({*result}).size() <= dag.reachable({expected.ref}).size() + 4);
 }
 
-TEST_CASE("expansion: values stay, with quotients, roots and powers") {
+TEST_CASE("expansion: values are preserved, with quotients, roots and powers") {
   Symbols x;
   Dag& dag = x.dag;
   const Scalar a = x.s(x.q(0)), b = x.s(x.q(1)), s = x.sine(2);
@@ -67,7 +67,7 @@ TEST_CASE("expansion: values stay, with quotients, roots and powers") {
   }
 }
 
-TEST_CASE("expansion: what does not fit the budget is refused, not attempted") {
+TEST_CASE("expansion: expressions beyond the budget are rejected, not attempted") {
   Symbols x;
   Ref sum = x.dag.one();
   for (std::uint32_t i = 0; i < 12; ++i) sum = x.dag.add(sum, x.q(i));

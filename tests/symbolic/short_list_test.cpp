@@ -27,7 +27,7 @@ Powers ascending(std::uint32_t first, std::uint32_t count) {
 
 }  // namespace
 
-TEST_CASE("a short list keeps its members where it grows beyond itself, is copied, moved and assigned") {
+TEST_CASE("a small vector keeps its elements when it outgrows its inline storage, is copied, moved and assigned") {
   for (std::uint32_t count = 0; count < 9; ++count) {
     const Powers list = ascending(3, count);
     std::vector<Power> expected;
@@ -56,13 +56,13 @@ TEST_CASE("a short list keeps its members where it grows beyond itself, is copie
   }
 }
 
-TEST_CASE("short lists are ordered as words are") {
+TEST_CASE("small vectors are ordered lexicographically") {
   CHECK(ascending(1, 2) < ascending(1, 3));
   CHECK(ascending(1, 3) < ascending(2, 1));
   CHECK_FALSE(ascending(1, 3) < ascending(1, 3));
 }
 
-TEST_CASE("products of powers add exponents up and drop what cancels") {
+TEST_CASE("products of powers add exponents and drop factors that cancel") {
   const Powers a{{1, 2}, {4, -1}, {7, 3}}, b{{1, 1}, {2, 5}, {4, 1}, {9, 1}};
   CHECK(product_of_powers<&Power::atom>(a, b) == Powers{{1, 3}, {2, 5}, {7, 3}, {9, 1}});
   CHECK(product_of_powers<&Power::atom>(a, b, -2) == Powers{{2, -10}, {4, -3}, {7, 3}, {9, -2}});
@@ -70,7 +70,7 @@ TEST_CASE("products of powers add exponents up and drop what cancels") {
   CHECK(product_of_powers<&Power::atom>(a, {}) == a);
 }
 
-TEST_CASE("numbers are told apart whether CLN has them in the word or behind a pointer") {
+TEST_CASE("numbers are compared correctly whether CLN stores them in the word or behind a pointer") {
   const Rational large = cln::expt(Rational(7), cln::cl_I(40)), half = Rational(1) / 2,
                  wide = cln::expt(Rational(2), cln::cl_I(60));
   const std::vector<Rational> numbers{0,      1,         -1,           2,        half, -half, large,

@@ -29,7 +29,7 @@ TEST_CASE("vectors: a cross product is normal to both factors, and its square is
   CHECK_FALSE(is_zero(dag, c));
 }
 
-TEST_CASE("vectors: a matrix and its transpose, applied") {
+TEST_CASE("vectors: products with a matrix and its transpose") {
   Dag dag;
   const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
   const std::vector<Rational> C{1, 2, 0, Rational(-1) / 3};  // rows (1, 2) and (0, -1/3)
@@ -39,7 +39,7 @@ TEST_CASE("vectors: a matrix and its transpose, applied") {
         std::vector<Ref>{x, dag.add(dag.mul(dag.integer(2), x), dag.mul(dag.constant(C[3]), y))});
 }
 
-TEST_CASE("sample: values differ by symbol, order, kind and point, in the range that is promised") {
+TEST_CASE("sample: values differ by symbol, order, kind and point, and are in the documented range") {
   std::set<double> seen;
   for (const SymbolKind kind : {SymbolKind::coordinate, SymbolKind::parameter, SymbolKind::time}) {
     for (std::uint32_t index = 0; index < 5; ++index) {
@@ -58,7 +58,7 @@ TEST_CASE("sample: values differ by symbol, order, kind and point, in the range 
   }
 }
 
-TEST_CASE("expansion: tidy keeps what the budget does not cover, simpler takes the smaller of the two") {
+TEST_CASE("expansion: beyond the budget an expression is unchanged, and the shorter form is chosen on request") {
   Dag dag;
   const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
   const Ref power = dag.power(dag.add(x, y), 6);  // 7 terms
@@ -68,7 +68,7 @@ TEST_CASE("expansion: tidy keeps what the budget does not cover, simpler takes t
   CHECK(simpler(dag, dag.sub(dag.mul(x, dag.add(y, dag.one())), dag.mul(x, y)), 40) == x);
 }
 
-TEST_CASE("dag: kinks are found wherever they stand") {
+TEST_CASE("dag: kinks are found anywhere in an expression") {
   Dag dag;
   const Ref x = coordinate(dag, 0), y = coordinate(dag, 1), one = dag.one();
   for (const Ref kink : {dag.call(Op::abs, x), dag.call(Op::sign, x), dag.call(Op::min, x, y), dag.call(Op::max, x, y),
