@@ -51,7 +51,7 @@ void refuse(const Model& model, SwitchedChart& chart, std::vector<NodeId> entrie
       return fmt::format("the coordinate '{}'", model.coordinates[node.index].name);
     if (rotation && node.op == Op::axis && node.index == chart.index &&
         node.order / 3u + 1 < model.frames[chart.index].stages.size())
-      return fmt::format("'{}.e{}{}', an axis on the way of the rotation,", chart.of, node.order % 3 + 1,
+      return fmt::format("'{}.e{}{}', an intermediate axis of the rotation,", chart.of, node.order % 3 + 1,
                          node.order / 3 == 0 ? "'" : "''");
     return std::string();
   });

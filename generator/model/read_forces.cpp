@@ -84,7 +84,7 @@ const Entry& ForcesReader::kind_of(const Value& table) const {
     found = &entry;
   }
   if (found == nullptr) {
-    source_.fail(table.span, "this [[force]] says no kind of force",
+    source_.fail(table.span, "this [[force]] has no kind of force",
                  fmt::format("add one of {}", fmt::join(kinds(), ", ")));
   }
   const forces::Kind& kind = *forces::find(found->key);

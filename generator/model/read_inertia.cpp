@@ -129,9 +129,10 @@ void InertiaReader::read_scalar_inertia(Body& body, const Value& value) {
   const auto& axis = frame_sources_[body.frame].axis;
   if (!axis && frame_sources_[body.frame].still) return;  // it does not rotate: the moment has no effect
   if (!axis) {
-    source_.fail(value.span,
-                 fmt::format("one moment of inertia does not do: '{}' does not turn about one fixed axis", frame.name),
-                 form);
+    source_.fail(
+        value.span,
+        fmt::format("one moment of inertia is not enough: '{}' does not rotate about one fixed axis", frame.name),
+        form);
   }
   // Only J r . r affects the motion, for the unit vector r of the axis: the matrix is J r r.
   const auto on = [&](std::size_t k) { return !axis->numbers || !cln::zerop((*axis->numbers)[k]); };

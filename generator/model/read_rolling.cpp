@@ -62,10 +62,10 @@ std::map<std::string, Typed> ContactsReader::plane_of_contact(const Value& on) {
 Typed ContactsReader::contact_arm(const Value& table, std::map<std::string, Typed> local) {
   const Value *at = table.find("at"), *shape = table.find("shape");
   if ((at == nullptr) == (shape == nullptr)) {
-    source_.fail(
-        table.span,
-        at == nullptr ? "this contact says not where the body is touched" : "this contact has both 'at' and 'shape'",
-        form);
+    source_.fail(table.span,
+                 at == nullptr ? "this contact does not state where the body is touched"
+                               : "this contact has both 'at' and 'shape'",
+                 form);
   }
   const Context arm{"the vector to the point of contact", on_motion, Shape::vector, dimension_of("m"),
                     "it is made of axes of the body, angles and lengths"};

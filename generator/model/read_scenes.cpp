@@ -34,7 +34,7 @@ void ScenesReader::read() {
       std::transform(lowered.begin(), lowered.end(), lowered.begin(),
                      [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
       if (edit_distance(lowered, "default", 1) > 1) continue;
-      source_.fail(entry.span, fmt::format("there is no scene 'default', and {} is next to it", quote(entry.key)),
+      source_.fail(entry.span, fmt::format("there is no scene 'default', but {} has a similar name", quote(entry.key)),
                    "write [scene.default], or add one: it is the scene that runs where none is named");
     }
   }

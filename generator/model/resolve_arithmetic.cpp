@@ -85,7 +85,7 @@ Typed Resolver::apply_unit(Typed typed, const MeasuredUnit& unit, Span span) {
     }
   } else if (typed.dimension && !is_one(*typed.dimension)) {
     clash(span,
-          fmt::format("the value has the dimension {} already, and {} is put to it", text_of(*typed.dimension),
+          fmt::format("the value already has the dimension {}, and the unit {} is added", text_of(*typed.dimension),
                       unit.text),
           typed.loose);
   }
@@ -207,12 +207,12 @@ Typed Resolver::power(const Typed& a, const Typed& b, Span span) {
   }
   const Rational exponent = *b.constant;
   if (cln::abs(exponent) > largest_exponent || cln::denominator(exponent) > largest_exponent) {
-    source_.fail(span, fmt::format("this exponent is larger than {} or too fine", largest_exponent),
+    source_.fail(span, fmt::format("this exponent has a numerator or denominator above {}", largest_exponent),
                  fmt::format("constant exponents have numerators and denominators up to {}", largest_exponent));
   }
   result.exponents = std::max(1.0, cln::double_approx(cln::abs(exponent))) * a.exponents;
   if (result.exponents > largest_nested) {
-    source_.fail(span, fmt::format("powers on top of one another come to an exponent above {}", largest_nested),
+    source_.fail(span, fmt::format("nested powers have a total exponent above {}", largest_nested),
                  "write a smaller power");
   }
   if (b.literal && a.dimension) result.dimension = raised(*a.dimension, exponent);

@@ -38,7 +38,7 @@ Typed Resolver::node(const Syntax& syntax, std::uint32_t id) {
       const Typed a = child(0);
       return power(a, child(1), node.span);
     }
-    default: source_.fail(node.span, "a comparison stands where a value is asked", "write if(a < b, x, y)");
+    default: source_.fail(node.span, "a comparison is used where a value is required", "write if(a < b, x, y)");
   }
 }
 
@@ -80,7 +80,7 @@ Typed Resolver::frame_part(const SyntaxNode& node, const Symbol& symbol) {
       source_.fail(node.span, fmt::format("'{}' has no axis '{}'", symbol.name, written),
                    stages > 1
                        ? "one prime stands for the axes after the first of its angles, two for those after the second"
-                       : "primes are for the axes on the way of Euler angles");
+                       : "primes are for intermediate axes of Euler angles");
     }
     if (node.primes > 0) result = this->axis(symbol.frame, node.primes - 1, k, node.span);
   } else {

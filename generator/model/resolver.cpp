@@ -106,7 +106,7 @@ Typed Resolver::meet(Typed typed, Span span, const Context& context) {
   }
   if (context.dimension && typed.dimension && !same(*context.dimension, *typed.dimension)) {
     clash(span,
-          fmt::format("{} is asked in {}, and this is in {}", context.what, text_of(*context.dimension),
+          fmt::format("{} must be in {}, and this is in {}", context.what, text_of(*context.dimension),
                       text_of(*typed.dimension)),
           typed.loose);
   }
@@ -195,7 +195,7 @@ Typed Resolver::make(Op op, bool vector, std::initializer_list<Typed> children, 
   if (result.depth > max_depth) {
     source_.fail(span,
                  fmt::format("the expression, with all that it refers to, is nested more than {} deep", max_depth),
-                 "use fewer definitions on top of one another");
+                 "use fewer nested definitions");
   }
   result.node = push(std::move(node));
   return result;

@@ -124,7 +124,7 @@ void ScenesReader::read_outputs(Scene& scene, const Value& value) {
     const bool again = std::any_of(scene.outputs.begin(), scene.outputs.end(),
                                    [&](const Named& known) { return known.name == item.text; });
     if (again) {
-      resolver_.warn(item.span, fmt::format("the output '{}' is asked for twice", item.text), "name it once");
+      resolver_.warn(item.span, fmt::format("the output '{}' is requested twice", item.text), "name it once");
       continue;
     }
     scene.outputs.push_back(Named{item.text, item.span});

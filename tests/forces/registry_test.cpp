@@ -26,8 +26,7 @@ bool has_potential(const forces::Kind& kind) {
 
 }  // namespace
 
-TEST_CASE(
-    "every kind of force has a unique name and a statement of the oracle, with an energy if it has a potential") {
+TEST_CASE("every kind of force has a unique name and a statement of the oracle, with an energy if it has a potential") {
   std::set<std::string> names;
   REQUIRE(forces::registry().size() >= 12);
   for (const forces::Kind& kind : forces::registry()) {

@@ -46,7 +46,7 @@ TEST_CASE("charts: a constraint, a force, a definition or an event that uses an 
   check("[energy]\npotential = \"k*cos(theta)\"\n", "the coordinate 'theta' is named by the energies");
   check("[[event]]\nname = \"up\"\nwhen = \"theta - 1\"\n", "the coordinate 'theta' is named by event 'up'");
   check("[[force]]\nname = \"push\"\nmoment = \"k*B.e2'\"\non = \"B\"\n",
-        "'B.e2'', an axis on the way of the rotation, is named by 'push'");
+        "'B.e2'', an intermediate axis of the rotation, is named by 'push'");
   check("[[particle]]\nname = \"P\"\nmass = 1\nposition = { cylindrical = [\"r\", \"phi\"] }\n",
         "the coordinate 'phi' is named by the position of 'P'");
   check("[[frame]]\nname = \"F\"\nrotation = { axis = \"E3\", angle = \"psi\" }\n",

@@ -106,7 +106,7 @@ TEST_CASE("initial values may use functions at the start and definitions of know
 TEST_CASE("an output requested twice is listed once") {
   const Model model = read(particle("[scene.default]\noutputs = [\"kinetic\", \"kinetic\"]\n"));
   CHECK(model.scenes[0].outputs.size() == 1);
-  CHECK(model.warnings.front().message == "the output 'kinetic' is asked for twice");
+  CHECK(model.warnings.front().message == "the output 'kinetic' is requested twice");
 }
 
 TEST_CASE("an angle above a full turn without a unit causes a warning") {

@@ -111,9 +111,9 @@ TEST_CASE("sums, arguments and required values must agree in dimension") {
 TEST_CASE("with a factor that may have a unit, a mismatch is a warning") {
   const Model model = read(particle("[[force]]\non = \"P\"\nforce = \"-0.3*R*P.e_R\"\n"));
   REQUIRE(model.warnings.size() == 3);  // and L, k are not used
-  CHECK(model.warnings[0].message == "this force is asked in N, and this is in m");
+  CHECK(model.warnings[0].message == "this force must be in N, and this is in m");
   CHECK(refusal(particle("[[force]]\non = \"P\"\nforce = \"-R/2*P.e_R\"\n")) ==
-        "the units clash: this force is asked in N, and this is in m");
+        "the units clash: this force must be in N, and this is in m");
 }
 
 TEST_CASE("in sin(2*t) the 2 has the unit, and unit vectors have none") {
@@ -123,7 +123,7 @@ TEST_CASE("in sin(2*t) the 2 has the unit, and unit vectors have none") {
   CHECK(refusal(particle("[[force]]\non = \"P\"\nforce = \"E1 + 2*P.e_theta\"\n")) == "accepted");
   CHECK(refusal(particle("[[force]]\non = \"2*E1\"\nforce = \"m*g*unit(P)\"\n")) == "accepted");
   CHECK(refusal(particle("[[force]]\non = \"P\"\nforce = \"m*dot(E1, P)*E2\"\n")) ==
-        "the units clash: this force is asked in N, and this is in kg*m");
+        "the units clash: this force must be in N, and this is in kg*m");
 }
 
 TEST_CASE("a model that states no unit is not checked for units") {

@@ -50,7 +50,7 @@ std::vector<WrongModel> wrong_expressions() {
       {"an empty expression", pendulum({{"L = \"1 m\"", "L = \"\""}}), "5:6", "an expression is missing",
        "write a number, a name or an expression"},
       {"a comparison outside if", pendulum({{"L = \"1 m\"", "L = \"abs(1 < 2)\""}}), "5:12",
-       "a comparison stands where a value is asked", "write if(a < b, x, y)"},
+       "a comparison is used where a value is required", "write if(a < b, x, y)"},
       {"an error behind an escape", pendulum({{"-g*E3", "-g*\\u0045\\u0033 + nope"}}), "11:30",
        "the name 'nope' is not declared",
        "declare it: a coordinate in [coordinates] or in position = { cartesian = [..] }, a constant in [parameters], a "

@@ -7,10 +7,10 @@ namespace eomgen::model {
 std::vector<WrongModel> wrong_scenes() {
   return {
       {"a scene one letter from default", pendulum({}, "[scene.Default]\ninitial = { R = 1, phi = 1 }\n"), "12:8",
-       "there is no scene 'default', and 'Default' is next to it",
+       "there is no scene 'default', but 'Default' has a similar name",
        "write [scene.default], or add one: it is the scene that runs where none is named"},
       {"a scene with a letter too many", pendulum({}, "[scene.defaults]\ninitial = { R = 1, phi = 1 }\n"), "12:8",
-       "there is no scene 'default', and 'defaults' is next to it",
+       "there is no scene 'default', but 'defaults' has a similar name",
        "write [scene.default], or add one: it is the scene that runs where none is named"},
       {"initial with a capital", pendulum({}, "[scene.default]\nInitial = { R = 1, phi = 1 }\n"), "13:1",
        "[scene.default] has no key 'Initial'", "did you mean 'initial'?"},
@@ -32,7 +32,7 @@ std::vector<WrongModel> wrong_scenes() {
        "the start value of 'phi' uses 'theta', which is not given before it",
        "give that value first, or write the number"},
       {"a start value in the wrong unit", pendulum({}, "[scene.default]\ninitial = { R = \"1 s\" }\n"), "13:18",
-       "the units clash: the start value of 'R' is asked in m, and this is in s",
+       "the units clash: the start value of 'R' must be in m, and this is in s",
        "check the formula and the units of the names in it"},
       {"an end before the start", pendulum({}, "[scene.default]\nt = [5, 1]\n"), "13:5",
        "the run ends before it starts", "write t = [0, 10]: start and end in seconds"},
