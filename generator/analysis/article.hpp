@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The derivation as a document, with everything that the other analyses find of a model.
+// The derivation as a LaTeX document, with the results of the other analyses.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,11 @@
 
 namespace eomgen::analysis {
 
-/// What `emit --target` calls it, beside the targets of code.
+/// Name of the document for `emit --target`, in addition to the targets of code.
 inline constexpr const char* document_target = "latex";
 
-/// LaTeX. The equations are held against the judge first; throws Error{Fault::check} where they disagree.
+/// Returns the LaTeX source. Checks the equations against the independent oracle first; throws Error{Fault::check} if
+/// they disagree.
 std::string article(std::shared_ptr<const model::Model> model, std::uint64_t seed);
 
 }  // namespace eomgen::analysis

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Error against run time of a scene: every solver that fits it, and those of other libraries, against the reference.
+// Benchmark of a scene: error against run time of every eligible solver and of solvers of other libraries. Errors are
+// measured against a reference solution in multiple precision.
 #pragma once
 
 #include <functional>
@@ -14,12 +15,12 @@ namespace eomgen::analysis {
 struct BenchmarkRequest {
   std::shared_ptr<const model::Model> model;
   std::string scene = "default";
-  run::Overrides overrides;  // parameters and the end
+  run::Overrides overrides;  // parameters and end time
   pipeline::ApproachChoice approach = pipeline::ApproachChoice::automatic;
   pipeline::FormChoice form = std::nullopt;
-  std::vector<std::string> solvers;  // empty: all that fit
-  double seconds = 10;               // what takes longer is interrupted
-  bool libraries = true;             // those of other libraries too
+  std::vector<std::string> solvers;  // empty: all eligible solvers
+  double seconds = 10;               // time limit of a run, s
+  bool libraries = true;             // also measure solvers of other libraries
   std::uint64_t seed = 1;
   std::function<void(const std::string& what)> progress;
   const std::atomic<bool>* interrupt = nullptr;
@@ -28,17 +29,17 @@ struct BenchmarkRequest {
 struct Benchmark {
   pipeline::Simulation simulation;
   reference::Solution reference;
-  std::vector<std::string> states;  // names of what the rows have errors of
+  std::vector<std::string> states;  // names of the states that the errors of rows refer to
   std::vector<bench::Row> rows;
   std::vector<std::pair<std::string, std::string>> left_out;  // solver, why
   double seconds_reference = 0;
 
-  /// Whether a solver came to the end, and the reference has digits enough to be one.
+  /// Whether a solver finished and the reference solution is accurate enough.
   bool conclusive() const;
 };
 
-/// Throws Error{stage "bench"}: contacts, inputs that move, kinks, an unknown solver, a run that does not come to its
-/// end.
+/// Throws Error{stage "bench"} for contacts, time-dependent inputs, kinks, an unknown solver, and a run that does not
+/// reach its end time.
 Benchmark benchmark(const BenchmarkRequest& request);
 
 }  // namespace eomgen::analysis

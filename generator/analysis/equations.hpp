@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equations of motion as `derive` shows them: printed formulas, what was left out, which multiplier is which.
+// The equations of motion as shown by `derive`: printed formulas, skipped results, meaning of the multipliers.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace eomgen::analysis {
 
 struct EquationsRequest {
   pipeline::ApproachChoice approach = pipeline::ApproachChoice::automatic;
-  /// Of equation_keys(); "all" for all but "linear" and "routh".
+  /// Keys out of equation_keys(). "all": every key except "linear" and "routh".
   std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
 };
 
@@ -24,23 +24,23 @@ const std::vector<std::string>& equation_keys();
 struct Multiplier {
   std::string name, latex;
   std::string of;       // label of the constraint
-  std::string meaning;  // in words
+  std::string meaning;  // a phrase
 };
 
 struct Equations {
   system::Approach approach = system::Approach::two;
   std::vector<print::Item> items;
   std::vector<work::LeftOut> left_out;
-  std::vector<Multiplier> multipliers;  // where forces are shown
-  std::vector<std::string> notes;       // why what was asked for is empty
+  std::vector<Multiplier> multipliers;  // if forces are shown
+  std::vector<std::string> notes;       // reasons why a requested result is empty
   bool interrupted = false;
 };
 
-/// The equations as they are shown where no approach is asked for: those of approach I show the constraint forces too,
-/// and stand wherever something is eliminated or a contact has a force.
+/// Derives the display form by the default approach. Approach I also yields constraint forces; it is chosen if a
+/// constraint eliminates something or a contact has a force.
 reading::ReadingForm form_to_show(const mechanics::Mechanics& mechanics);
 
-/// Throws Error{stage "derive"}: an unknown key. Where it is interrupted it says so, and gives what is there.
+/// Throws Error{stage "derive"} for an unknown key. On interruption returns a partial result with `interrupted` set.
 Equations equations(std::shared_ptr<const model::Model> model, const EquationsRequest& request);
 
 }  // namespace eomgen::analysis

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a model is before anything moves: degrees of freedom, classes of its constraints and forces, what is conserved,
-// where its equations fail.
+// Structural analysis of a model: degrees of freedom, classes of constraints and forces, conserved quantities, singular
+// sets. All of it is known before any integration.
 #pragma once
 
 #include <memory>
@@ -20,20 +20,20 @@ struct ExaminedCoordinate {
   bool eliminated = false;  // fixed by a constraint
 };
 
-/// A parameter, or an input with what it is where a scene gives nothing.
+/// A parameter, or an input with its default value.
 struct ExaminedValue {
   std::string name, unit;
-  std::string value;    // a decimal, or the expression of the parameters that determine it
-  std::string written;  // in the model file
+  std::string value;    // a decimal, or an expression of other parameters
+  std::string written;  // as in the model file
 };
 
 struct ExaminedConstraint {
   std::string name, kind;                // "holonomic" or "velocity"
   std::string integrable;                // "yes", "no", "unknown"
-  std::optional<std::string> integral;   // an equation
-  bool redundant = false;                // it has no multiplier
-  std::optional<bool> determined;        // whether the motion determines its force; none of joints
-  std::string use, reason;               // what becomes of it; of `integrable`
+  std::optional<std::string> integral;   // the integrated equation
+  bool redundant = false;                // follows from others and has no multiplier
+  std::optional<bool> determined;        // whether the motion determines its force; not set for joints
+  std::string use, reason;               // treatment in the equations; reason for `integrable`
   std::vector<std::string> integral_of;  // the constraints that together have this integral
 };
 
@@ -47,14 +47,14 @@ struct ExaminedJoint {
 struct ExaminedForce {
   std::string name, conservative;  // "yes", "no", "unknown"
   std::optional<print::Item> potential;
-  std::vector<std::string> domain;  // conditions under which that is one
+  std::vector<std::string> domain;  // conditions under which the potential is valid
   bool many_valued = false, in_energy = false;
   std::string reason;
 };
 
 struct ExaminedContact {
   std::string name, kind, law;    // "surface", "curve", "coordinate"; "coulomb", "smooth", "none"
-  std::vector<std::string> slip;  // velocities, along each tangent
+  std::vector<std::string> slip;  // outputs: tangential velocity along each tangent
   bool unilateral = false;
 };
 
@@ -72,7 +72,7 @@ struct ExaminedSet {
 struct ExaminedChart {
   std::string of, own, second;
   std::vector<std::string> angles;
-  std::string refusal;  // why it cannot be exchanged; empty where it can
+  std::string refusal;  // why no second chart is available; empty if one is
 };
 
 struct Examination {
@@ -86,13 +86,13 @@ struct Examination {
   std::vector<ExaminedConserved> conserved;
   std::vector<ExaminedSet> singular;
   std::vector<ExaminedChart> charts;
-  bool every_unit = false;  // is given, and was checked
+  bool every_unit = false;  // all units are given and were checked
   std::vector<work::LeftOut> left_out;
-  bool interrupted = false;  // what was found by then
+  bool interrupted = false;  // the result is partial
 };
 
-/// Throws Error where the model has no equations. Where it is interrupted and `partial`, it says so and gives what it
-/// has; else it throws work::Interrupted.
+/// Throws Error if the model has no equations of motion. On interruption: returns the partial result if `partial`,
+/// otherwise throws work::Interrupted.
 Examination examine(std::shared_ptr<const model::Model> model, bool partial = false);
 
 }  // namespace eomgen::analysis

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inverse dynamics: the forces that prescribed motions need, over time. Evaluated where every coordinate is prescribed,
-// along a run where some are free.
+// Inverse dynamics: forces that prescribed motions require, over time. If every coordinate is prescribed they are
+// evaluated directly, otherwise along an integrated motion.
 #pragma once
 
 #include <functional>
@@ -14,22 +14,22 @@ struct InverseRequest {
   std::shared_ptr<const model::Model> model;
   std::string scene = "default";
   run::Overrides overrides;
-  std::vector<std::string> constraints;  // by name or label; empty: those that read q = f(t)
+  std::vector<std::string> constraints;  // by name or label; empty: all of the form q = f(t)
   std::size_t max_steps = 0;
   std::uint64_t seed = 1;
-  /// Before the first row, with the names of its values: coordinates, rates, the forces, what the scene asks for.
+  /// Called before the first row with the names of its values: coordinates, rates, forces, outputs of the scene.
   std::function<void(const run::Scene& scene, const std::vector<std::string>& columns)> begin;
   std::function<void(double t, std::span<const double> values)> row;
   const std::atomic<bool>* interrupt = nullptr;
 };
 
 struct InverseAnswer {
-  std::vector<std::string> columns, forces;  // those of `columns` that were asked for
+  std::vector<std::string> columns, forces;  // `forces`: the columns that are requested forces
   eom::Outcome outcome = eom::Outcome::done;
   std::string detail, certificate;
 };
 
-/// Throws Error{stage "inverse"}: no constraint prescribes a motion, an unknown name.
+/// Throws Error{stage "inverse"} if no constraint prescribes a motion, or for an unknown name.
 InverseAnswer inverse_dynamics(const InverseRequest& request);
 
 }  // namespace eomgen::analysis

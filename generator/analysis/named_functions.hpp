@@ -8,8 +8,8 @@
 
 namespace eomgen::analysis {
 
-/// A conserved quantity from the reading form of Approach II, where functions of time keep their names; nothing if it
-/// has no such form.
+/// Returns a conserved quantity from the display form of approach II, in which functions of time keep their names.
+/// Returns nullopt if there is no such form.
 std::optional<reading::Sum> in_named_functions(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
                                                const conservation::Conserved& conserved);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `run --sensitivity` is about: names into directions, and the derivatives of a finished run.
+// Sensitivities of the final state of a run (`run --sensitivity`): derivatives by parameters and initial values.
 #pragma once
 
 #include "pipeline/simulate.hpp"
@@ -7,11 +7,11 @@
 
 namespace eomgen::analysis {
 
-/// Functions of the code that are needed beside those of the run.
+/// Generated functions that sensitivities need in addition to those of a run.
 inline constexpr const char* sensitivity_functions[] = {"jac", "jac_p"};
 
-/// `names`: parameters, coordinates (their value at the start), NAME_dot. Throws Error{stage "run"}: an unknown name, a
-/// value that follows from others, a start that cannot follow the change.
+/// `names`: parameters, coordinates (initial value) and NAME_dot (initial rate). Throws Error{stage "run"} for an
+/// unknown name, a dependent value, or an initial state that cannot be adjusted to the change.
 run::Sensitivities sensitivities(const pipeline::Simulation& simulation, const pipeline::SimulationRequest& request,
                                  const std::vector<std::string>& names);
 

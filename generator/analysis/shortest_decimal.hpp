@@ -9,7 +9,8 @@
 
 namespace eomgen::analysis {
 
-/// The shortest decimal that reads back as this binary64, exactly: what tables show of it. Errors quote `name`.
+/// Returns, as an exact rational, the shortest decimal that reads back as this binary64; tables print the same decimal.
+/// Errors quote `name`.
 inline symbolic::Rational shortest_decimal(double value, const std::string& name) {
   return symbolic::parse_decimal(fmt::format("{}", value == 0 ? 0.0 : value), name);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `linearize` and `equilibria` begin with: a verified model, its vector field, and a state of a scene in many
-// digits.
+// Common input of `linearize` and `equilibria`: a verified model, its vector field, and a state of a scene in multiple
+// precision.
 #pragma once
 
 #include <memory>
@@ -16,33 +16,33 @@ struct SteadyProblem {
   std::unique_ptr<pipeline::Derived> derived;
   run::Scene scene;
   std::unique_ptr<linear::Flow> flow;
-  linear::State<linear::Precise> z;  // the start, or the state at `t`
+  linear::State<linear::Precise> z;  // state at time `t`; by default the initial state
   linear::Setting<linear::Precise> setting;
-  std::vector<linear::Setting<linear::Precise>> neighbours;  // the same with other parameters
+  std::vector<linear::Setting<linear::Precise>> neighbours;  // `setting` with perturbed parameters
   double t = 0;
   std::string certificate;
 
   const system::EquationSystem& system() const { return derived->candidates.front(); }
 };
 
-/// Throws Error{stage `command`} where contacts make the equations depend on a mode, or a derivation fails the judge.
-/// `at`: the state that a run from the scene's start reaches then.
+/// Throws Error{stage `command`} if contacts make the equations depend on a mode, or if a derivation fails the check
+/// against the independent oracle. `at`: time in s at which an integrated motion gives the state.
 SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const model::Model> model,
                              const std::string& scene, const run::Overrides& overrides, std::optional<double> at,
                              std::uint64_t seed);
 
-/// What has no slope at a state: a force, an energy or a constraint of the model, "'F' has"; else "the equations of
-/// motion have".
+/// A term that is not differentiable at a state: a force, an energy or a constraint of the model. `what`: start of a
+/// sentence, "'F' has" or, if no single term is found, "the equations of motion have".
 struct Source {
   Where where;
   std::string what;
 };
 Source without_slope(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
 
-/// At the state of the problem. Throws Error{stage "linearize"} where something has no slope there.
+/// Linearises at the state of the problem. Throws Error{stage "linearize"} if a term is not differentiable there.
 linear::Linearisation linearised(const SteadyProblem& problem, std::uint64_t seed);
 
-/// For results: 0 has no sign, and what many digits left of it is 0.
+/// Rounds to binary64 for display. Values that vanish within the multiple-precision arithmetic become +0.
 double shown(const linear::Precise& x);
 
 }  // namespace eomgen::analysis

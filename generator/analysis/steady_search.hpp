@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The search of equilibria as a command and tests ask for it: what is held, where to look, what is found and how stable
-// it is.
+// Search for equilibria and steady motions. In: the scene, held quantities, number of starts. Out: the solutions with
+// their stability.
 #pragma once
 
 #include "analysis/steady.hpp"
@@ -12,9 +12,9 @@ struct SteadyRequest {
   std::shared_ptr<const model::Model> model;
   std::string scene = "default";
   run::Overrides overrides;
-  std::map<std::string, symbolic::Rational>
-      hold;  // outputs and their values; empty: the conserved momenta at the start
-  std::size_t starts = 300;
+  /// Held outputs and their values; empty: the conserved momenta at the start.
+  std::map<std::string, symbolic::Rational> hold;
+  std::size_t starts = 300;  // initial guesses
   std::uint64_t seed = 1;
   std::function<void(double fraction)> progress = {};
 };
@@ -38,7 +38,7 @@ struct SteadyMotions {
   std::vector<SteadyMotion> points;
 };
 
-/// Throws Error{stage "equilibria"}: equations that depend on t, a name that cannot be held.
+/// Throws Error{stage "equilibria"} if the equations depend on t, or for a name that cannot be held.
 SteadyMotions steady_motions(const SteadyRequest& request);
 
 }  // namespace eomgen::analysis

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every solver through stiff and extreme variations of a scene: kept, told, or silent.
+// Stress test: runs every solver on stiff and extreme variations of a scene. Each run passes, reports its failure, or
+// fails undetected.
 #pragma once
 
 #include <functional>
@@ -13,11 +14,11 @@ namespace eomgen::analysis {
 struct StressRequest {
   std::shared_ptr<const model::Model> model;
   std::string scene = "default";
-  run::Overrides overrides;          // parameters and the end
+  run::Overrides overrides;          // parameters and end time
   std::vector<std::string> solvers;  // empty: all
-  double seconds = 60;               // a guard: what takes longer is interrupted, and told
-  std::size_t steps = 20000;         // what takes more is ended, and told
-  bool quick = false;                // a few variations of each kind
+  double seconds = 60;               // time limit of a run, s; exceeding it counts as reported
+  std::size_t steps = 20000;         // step limit of a run; exceeding it counts as reported
+  bool quick = false;                // few variations of each kind
   std::uint64_t seed = 1;
   std::function<void(const std::string& what)> progress;
   const std::atomic<bool>* interrupt = nullptr;
@@ -27,13 +28,13 @@ struct StressFindings {
   std::string scene;
   std::vector<std::string> solvers;
   std::vector<stress::Row> rows;
-  std::vector<std::pair<std::string, std::string>> left_out;  // case, why
+  std::vector<std::pair<std::string, std::string>> left_out;  // case, reason
   stress::Audit audit;
 
   std::size_t count(stress::Verdict verdict) const;
 };
 
-/// Throws Error{stage "stress"}: an unknown solver.
+/// Throws Error{stage "stress"} for an unknown solver.
 StressFindings stress_test(const StressRequest& request);
 
 }  // namespace eomgen::analysis

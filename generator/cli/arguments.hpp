@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a command reads from the command line. CLI11, which reads it, is included by arguments.cpp and by the program
-// alone: its templates would cost every command's file some seconds of compilation.
+// Declaration of command-line options. Only arguments.cpp and the program include CLI11, whose templates would add
+// seconds of compilation to the file of every command.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@ class Option;
 
 namespace eomgen::cli {
 
-/// What is wrong with a value as typed; empty where nothing is.
+/// Validates a value as typed. Returns the error, or an empty string.
 using Check = std::function<std::string(const std::string&)>;
 
-/// Checks of numbers; infinite and "nan" are refused by each.
+/// Validators of numbers. All of them reject infinities and NaN.
 Check finite_number();
 Check positive_number();
 Check number_not_negative();
 Check whole_number(unsigned long long least, unsigned long long most);
 
-/// The words that the value of an option may be, where a registry has them: of each option that says so.
+/// Suggested values of options, for shell completion.
 using Words = std::map<const CLI::Option*, std::vector<std::string>>;
 
 class Option {
@@ -34,11 +34,11 @@ class Option {
   Option(CLI::Option* option, Words& words) : option_(option), words_(words) {}
   Option required() const;
   Option check(Check complaint) const;
-  /// Its help shows what holds without it.
+  /// Shows the default value in the help.
   Option show_preset() const;
-  /// May be repeated, and takes one word each time.
+  /// Allows repetition, with one value each time.
   Option repeated() const;
-  /// What is completed behind it. Whoever reads the value says what is wrong with others.
+  /// Sets the values for shell completion. Does not validate: the command reports other values.
   Option one_of(std::vector<std::string> words) const;
 
  private:
@@ -50,7 +50,7 @@ class Arguments {
  public:
   Arguments(CLI::App& app, Words& words) : app_(app), words_(words) {}
 
-  /// A name without hyphens is an argument by its place.
+  /// Flags without hyphens declare a positional argument.
   Option add_option(const std::string& flags, std::string& target, const std::string& help);
   Option add_option(const std::string& flags, double& target, const std::string& help);
   Option add_option(const std::string& flags, int& target, const std::string& help);
@@ -60,10 +60,10 @@ class Arguments {
   Option add_option(const std::string& flags, std::vector<std::string>& target, const std::string& help);
   Option add_flag(const std::string& flags, bool& target, const std::string& help);
 
-  /// An option that names a file or folder for results: one meaning of it in every command. An empty name is refused.
+  /// Adds an option for an output file or folder, the same in all commands. An empty path is an error.
   Option add_place(const std::string& flags, std::string& target, const std::string& help);
-  /// An option that may be repeated and takes one word each time, which `delimiter` may part. CLI11 would let it
-  /// swallow MODEL.
+  /// Adds a list option: it may be repeated, takes one word each time, and splits it at `delimiter`. A CLI11 list would
+  /// also take MODEL.
   Option add_list(const std::string& flag, std::vector<std::string>& target, const std::string& help,
                   char delimiter = ',');
 

@@ -12,7 +12,8 @@ namespace eomgen::cli {
 using symbolic::decimal_text;
 using symbolic::parse_decimal;
 
-/// NAME=VALUE behind `option`, of two for one name the last. Throws Error{stage `command`} for what sets nothing.
+/// Parses NAME=VALUE arguments of `option`; the last one of a name counts. Throws Error{stage `command`} for anything
+/// else.
 std::map<std::string, symbolic::Rational> parse_assignments(const std::string& command, const std::string& option,
                                                             const std::vector<std::string>& assignments);
 

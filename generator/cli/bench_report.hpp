@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `bench` measured, as a table, as JSON and as CSV.
+// Results of `bench` as text, JSON and CSV.
 #pragma once
 
 #include <string>

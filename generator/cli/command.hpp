@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A command of the program: one file each in commands/, one line each in registry.cpp.
+// A command of the program. Each has one file in commands/ and one line in registry.cpp.
 #pragma once
 
 #include <functional>
@@ -13,15 +13,15 @@ namespace eomgen::cli {
 
 class Team;
 
-/// Options that every command has; and the processes that share its work, if there are any.
+/// Options common to all commands, and the group of processes that shares the work (nullptr: a single process).
 struct Common {
   bool json = false;
   std::uint64_t seed = 1;
   Team* team = nullptr;
 };
 
-/// What main asks of a command: `declare` adds its options to the parser, `execute` does the work and returns the exit
-/// code. Results go to standard output, everything else to standard error.
+/// A command. `declare` adds its options to the parser and returns the function that executes the command and returns
+/// the exit code. Results go to standard output, messages to standard error.
 struct Command {
   const char* name;
   const char* summary;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The commands with their options: what reads the command line, and what pages of the manual and completions are
-// written from.
+// Commands with their options. Parses the command line, and provides the data of manual pages and shell completions.
 #pragma once
 
 #include <memory>
@@ -12,18 +11,18 @@
 
 namespace eomgen::cli {
 
-/// An option or an argument, as those who read about it see it.
+/// Documentation of an option or a positional argument.
 struct DeclaredOption {
-  std::vector<std::string> flags;  // "-o", "--out"; none of an argument
-  std::string argument;            // "MODEL" of an argument; the kind of value of an option ("TEXT"), "" of a flag
-  std::string help, preset;        // preset: what holds without it; "" where it says nothing
-  bool takes_list = false;         // several words with commas
-  std::vector<std::string> words;  // what the value may be; empty: anything
+  std::vector<std::string> flags;  // "-o", "--out"; empty for a positional argument
+  std::string argument;            // "MODEL" for a positional argument; value type of an option ("TEXT"); "" for a flag
+  std::string help, preset;        // preset: the default value; may be empty
+  bool takes_list = false;         // several values separated by commas
+  std::vector<std::string> words;  // possible values; empty: any
 };
 
 struct DeclaredCommand {
   std::string name, summary;
-  std::vector<DeclaredOption> options;  // in the order of its help, --help among them
+  std::vector<DeclaredOption> options;  // in the order of the help, with --help
 
   std::vector<std::string> flags() const;
 };
@@ -39,10 +38,10 @@ class Declaration {
 
   std::vector<DeclaredCommand> commands() const;
   std::vector<std::string> names() const;
-  /// Reads the words of the command line. The exit code where help or the version was asked for, which is then printed.
-  /// Throws Error {stage "usage"} with a remedy.
+  /// Parses the command line. If help or version is requested, prints it and returns the exit code. Throws
+  /// Error{stage "usage"} with a remedy.
   std::optional<int> read(std::span<char* const> words);
-  /// What the command does that was read.
+  /// Executes the command that read() found and returns its exit code.
   int execute() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Eigenvalues and values of many digits as `linearize` and `equilibria` show them.
+// Eigenvalues in the output of `linearize` and `equilibria`.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace eomgen::cli {
 
 using analysis::shown;
 
-/// "-1.5 +- 2i", or "0.3", with what its digits are good for where that is less than usual.
+/// Format: "-1.5 +- 2i" or "0.3", with the number of reliable digits if it is lower than usual.
 Json eigenvalue_json(const linear::Eigenvalue& eigenvalue);
 std::string eigenvalue_text(const linear::Spectrum& spectrum, std::size_t i);
 

@@ -6,7 +6,7 @@
 
 namespace eomgen::cli {
 
-/// The document of docs/schema/check.schema.json.
+/// Returns the document of docs/schema/check.schema.json.
 Json to_json(const model::Model& model, const analysis::Examination& examination);
 
 }  // namespace eomgen::cli

@@ -7,12 +7,11 @@
 
 namespace eomgen::cli {
 
-/// From now on Ctrl-C (and a polite kill) is a request to stop (work.hpp) in place of the end of the program; a second
-/// one ends it.
+/// Turns the first SIGINT or SIGTERM into a stop request (work.hpp). A second one terminates the program.
 void heed_signals();
 
-/// While one exists, the command sees to the request itself, and keeps what it has; before that, it is left where it
-/// is.
+/// While an instance exists, the command handles stop requests itself and keeps partial results. Otherwise the
+/// program is terminated wherever it is.
 class Interrupt {
  public:
   static const std::atomic<bool>& flag();

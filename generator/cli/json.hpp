@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of the JSON documents. The library that writes them is included by json.cpp alone: its templates would cost
-// every file that makes a document some seconds of compilation.
+// Values of JSON documents. Only json.cpp includes the JSON library, whose templates would add seconds of compilation
+// to every file that makes a document.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@
 
 namespace eomgen::cli {
 
-/// Null, a truth value, a number, a text, a list, or an object whose members keep their order. A list in braces is an
-/// object where each of its elements is a pair whose first is a text, as in {{"format", 1}, {"file", name}}.
+/// Null, a boolean, a number, a string, a list, or an object whose members keep their order. A list in braces is an
+/// object if each element is a pair that starts with a string, as in {{"format", 1}, {"file", name}}.
 class Json {
  public:
   using Array = std::vector<Json>;
@@ -54,7 +54,7 @@ class Json {
   bool is_array() const { return std::holds_alternative<Array>(value_); }
   bool is_float() const { return std::holds_alternative<double>(value_); }
 
-  /// What it holds; std::logic_error where that is something else, or an integer that T cannot hold.
+  /// Returns the value as T. Throws std::logic_error if it has another type or T cannot represent it.
   template <typename T>
   T get() const {
     if constexpr (std::same_as<T, bool>) {
@@ -70,7 +70,8 @@ class Json {
     }
   }
 
-  /// Members of an object: an absent one is added (null becomes an object); of a constant one it has to be there.
+  /// Member of an object. The non-const overload adds an absent member and turns null into an object; the const
+  /// overload requires that the member exists.
   Json& operator[](std::string_view key);
   const Json& operator[](std::string_view key) const;
   Json& operator[](const char* key) { return (*this)[std::string_view(key)]; }
@@ -78,21 +79,21 @@ class Json {
   bool contains(std::string_view key) const;
   const Object& items() const;
 
-  /// Elements of a list; null becomes one.
+  /// Elements of a list. push_back() turns null into a list.
   void push_back(Json element);
   Json& back();
   const Json& operator[](std::size_t element) const;
   const Json& front() const { return (*this)[std::size_t{0}]; }
   Array::const_iterator begin() const { return elements().begin(); }
   Array::const_iterator end() const { return elements().end(); }
-  /// Elements or members; 0 of null.
+  /// Number of elements or members; 0 for null.
   std::size_t size() const;
   bool empty() const { return size() == 0; }
 
   friend bool operator==(const Json& a, const Json& b);
 
-  /// As text, on one line or by `indent` blanks a level. Bytes that are no UTF-8 are replaced, numbers that are not
-  /// finite are null. `signed_zero`: whether -0 keeps its sign.
+  /// Serialises on one line, or with `indent` blanks per level. Invalid UTF-8 is replaced; numbers that are not finite
+  /// become null. `signed_zero`: whether -0 keeps its sign.
   std::string dump(int indent = -1, bool signed_zero = true) const;
 
  private:

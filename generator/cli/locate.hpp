@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From what the user typed as MODEL to a Model, with its warnings told.
+// Loads the MODEL argument of a command: finds the file, reads it, prints its warnings.
 #pragma once
 
 #include <memory>
@@ -9,18 +9,18 @@
 
 namespace eomgen::cli {
 
-/// A path, or the name of a file in models/ (here, above, or beside the installed program). Throws Error with
-/// did-you-mean where there is no such model.
+/// Returns the path of a model. `name`: a path, or the name of a file in models/ (in this folder, a parent folder, or
+/// beside the installed program). Throws Error with a suggestion if there is no such model.
 std::string locate_model(const std::string& name);
 
-/// Prints what the reader warned of to standard error.
+/// Prints the warnings of the model reader to standard error.
 void tell_warnings(const model::Model& model);
 
-/// Reads it and tells its warnings; `seconds`: that it took.
+/// Reads a model and prints its warnings. `seconds`, if not nullptr, receives the time taken.
 std::shared_ptr<const model::Model> load_model(const std::string& name, double* seconds = nullptr);
 
-/// Where a page of the documentation is: beside the installed program, in the source tree that the program was built
-/// in, or else its name in that tree.
+/// Returns the path of a page of the documentation: beside the installed program, in the source tree of the build, or
+/// otherwise the path relative to a source tree.
 std::string documentation(const std::string& page);
 
 }  // namespace eomgen::cli

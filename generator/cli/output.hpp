@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where results go: documents to standard output, files to the places that options name; and what is told beside them.
+// Output of results: documents to standard output, files to the paths given by options, messages to standard error.
 #pragma once
 
 #include <eom/output/csv.hpp>
@@ -13,37 +13,35 @@
 
 namespace eomgen::cli {
 
-/// Of a result: 0 has no sign.
+/// Turns -0 into 0, for results.
 inline double unsigned_zero(double value) { return value == 0 ? 0 : value; }
 
-/// To standard output. Bytes that are no UTF-8 (of a path, say) are replaced, numbers that are not finite are null, -0
-/// is 0.
+/// Prints to standard output. Invalid UTF-8 (of a path, for example) is replaced, numbers that are not finite become
+/// null, -0 becomes 0.
 void print_document(const Json& document);
 
-/// To standard error; where that is closed or full the words are lost, and nothing else is.
+/// Prints to standard error. If that fails, only this message is lost.
 void tell(std::string_view text) noexcept;
 
-/// A place for results, as an option named it; `-` is standard output. An empty `path` of an option that was not given
-/// is no place.
+/// Destination of results given by an option; `-` is standard output.
 struct Place {
-  std::string option, path, ending;  // "--out", "a.csv", ".csv"; an empty ending: any
-  std::string or_ending = {};        // where the ending chooses the format: this or the first, and no other
+  std::string option, path, ending;  // "--out", "a.csv", ".csv"; empty extension: any
+  std::string or_ending = {};        // if the extension selects the format: the second one allowed
 };
 
-/// Throws Error unless every one of `places` can be written to, is none of the others and not the model's own file, and
-/// has no ending that names another format. `json`: standard output has the document already. Called before the work
-/// whose results go there.
+/// Throws Error unless all `places` can be written, are distinct, differ from the model file, and have no extension of
+/// another format. `json`: the document already goes to standard output. Call it before the computation.
 void require_places(const std::vector<Place>& places, const std::string& model_file, bool json);
 
-/// Throws Error where `folder`, which is to hold files, has the name of one.
+/// Throws Error if the name of an output `folder` has the extension of a file.
 void require_folder(const std::string& folder);
 
 bool is_standard_output(const std::string& path);
 
-/// A whole text to a place; gives the number of bytes. Throws Error.
+/// Writes a text to a path, completely or not at all. Returns the number of bytes. Throws Error.
 std::uint64_t write_text(const std::string& path, const std::string& text);
 
-/// A table at a place. Throws Error.
+/// CSV table that is written row by row. Throws Error.
 class TableFile {
  public:
   TableFile(const std::string& path, std::span<const std::string> columns);
@@ -55,12 +53,12 @@ class TableFile {
   eom::CsvWriter writer_;
 };
 
-/// Files into a folder that an option named, each whole or none; none of them is the model's own file. Gives their
-/// paths.
+/// Writes files into a folder, each completely or not at all, and returns their paths. Throws Error if one would
+/// replace the model file.
 std::vector<std::string> write_results(const std::string& folder, const std::vector<emit::EmittedFile>& files,
                                        const std::string& model_file);
 
-/// Readable results: to standard output, or to standard error where a file has taken that.
+/// Prints readable results to standard output, or to standard error if standard output carries a file.
 void print_readable(std::string_view text, bool output_taken);
 
 /// "1.2 MB"

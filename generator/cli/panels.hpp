@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which curves go into one plot: those with one unit. For plots of `run` and for pages.
+// Grouping of curves into panels by unit, for the plots of `run` and for pages.
 #pragma once
 
 #include <string>
@@ -9,23 +9,23 @@
 
 namespace eomgen::cli {
 
-/// Curves with one unit over time, or the curve of one quantity over another.
+/// Curves with a common unit over time, or a phase plane.
 struct Panel {
   std::string title;
   std::vector<std::string> names;
-  std::string over;  // a phase plane: what is along the horizontal axis; else time
+  std::string over;  // phase plane: quantity on the horizontal axis; empty: time
 };
 
-/// "m/s^2"; empty where the unit is unknown or the quantity a pure number.
+/// Unit such as "m/s^2"; empty if it is unknown or the quantity is dimensionless.
 std::string unit_of(const std::vector<system::Output>& outputs, const std::string& name);
 
-/// One for each unit of coordinates and of what is `wanted` beside them; and the energies.
+/// One panel per unit of the coordinates and of the outputs in `wanted`, and one for the energies.
 std::vector<Panel> panels(const std::vector<system::Output>& outputs, const std::vector<std::string>& wanted);
 
-/// Coordinates alone.
+/// Panels of the coordinates only.
 std::vector<Panel> coordinate_panels(const std::vector<system::Output>& outputs);
 
-/// `wanted`: "theta", or "x,x_dot" for the curve of x_dot over x; names with one unit come together.
+/// `wanted`: "theta", or "x,x_dot" for the curve of x_dot over x. Names with the same unit share a panel.
 std::vector<Panel> chosen_panels(const std::vector<system::Output>& outputs, const std::vector<std::string>& wanted);
 
 }  // namespace eomgen::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a plot goes, as --plot names it, and so what it is: SVG or PNG by the ending, characters on standard output.
+// Destination of a plot given by --plot. Its extension selects SVG or PNG; `-` prints text to standard output.
 #pragma once
 
 #include <eom/output/svg_plot.hpp>
@@ -12,13 +12,13 @@ namespace eomgen::cli {
 
 class PlotFile {
  public:
-  /// An empty path: no plot is asked for.
+  /// Empty path: no plot.
   explicit PlotFile(std::string path) : path_(std::move(path)) {}
 
   bool wanted() const { return !path_.empty(); }
   Place place() const { return {"--plot", path_, ".svg", ".png"}; }
 
-  /// The number of bytes that were written. `characters` gets the columns that there are.
+  /// Writes the plot and returns the number of bytes. `characters` receives the width of the terminal.
   std::uint64_t write(const std::function<std::string()>& svg,
                       const std::function<std::string(std::size_t columns)>& characters) const;
   std::uint64_t write(const eom::Plot& plot) const;

@@ -7,8 +7,8 @@
 
 namespace eomgen::cli {
 
-/// The whole program: reads its words, calls the command that they name, tells what went wrong. Returns the exit code.
-/// `team`: as Common has it.
+/// Runs the program: parses the command line, executes the command, reports errors. Returns the exit code. `team`: the
+/// group of processes that shares the work, or nullptr.
 int run_program(std::span<char* const> words, const char* name, std::span<const Command> commands, Team* team);
 
 }  // namespace eomgen::cli

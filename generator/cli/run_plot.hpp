@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plot of a run: panels over time or in phase planes, with the events and the estimated errors, as SVG or in
-// characters.
+// Plot of a run: panels over time or phase planes, with events and estimated errors, as SVG or text.
 #pragma once
 
 #include <span>
@@ -14,20 +13,20 @@ namespace eomgen::cli {
 
 class RunPlot {
  public:
-  /// `outputs`: of the model; `code`: names of what rows hold. Throws Error where a name of a panel is not among them.
+  /// `outputs`: of the model. `code`: names of the columns of a row. Throws Error if a panel names another column.
   RunPlot(std::vector<Panel> panels, const std::vector<system::Output>& outputs, const std::vector<std::string>& code);
 
   void row(double t, std::span<const double> values);
 
   std::string svg(const std::string& title, const run::RunResult& result) const;
-  /// For a terminal of so many columns.
+  /// Plot as text, at most `columns` wide.
   std::string characters(const std::string& title, const run::RunResult& result, std::size_t columns) const;
 
  private:
   const std::vector<double>& curve(const std::string& name) const;
 
   std::vector<Panel> panels_;
-  std::vector<std::string> names_, over_;  // the names that are kept; labels of horizontal axes, per panel
+  std::vector<std::string> names_, over_;  // stored columns; horizontal axis labels, per panel
   std::vector<std::size_t> index_;
   std::vector<double> t_;
   std::vector<std::vector<double>> columns_;

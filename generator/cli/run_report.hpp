@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run told to a person, and as the JSON document of docs/schema/run.schema.json.
+// Report of a run as text and as the JSON document of docs/schema/run.schema.json.
 #pragma once
 
 #include <optional>
@@ -15,14 +15,14 @@ namespace eomgen::cli {
 /// A file that the run wrote.
 struct WrittenFile {
   std::string path;
-  std::optional<std::uint64_t> rows;  // of a table
+  std::optional<std::uint64_t> rows;  // only for a table
   std::uint64_t bytes = 0;
 };
 
 struct RunReport {
   const pipeline::Simulation& simulation;
-  bool estimate_wanted = true;                           // else the document has no error_estimate
-  std::optional<run::Sensitivities> sensitivities = {};  // where they were asked for
+  bool estimate_wanted = true;                           // false: the document has no error_estimate
+  std::optional<run::Sensitivities> sensitivities = {};  // if requested
   std::vector<WrittenFile> files = {};
 
   std::string text() const;

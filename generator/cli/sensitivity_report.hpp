@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `run --sensitivity` shows.
+// Output of `run --sensitivity` as text and JSON.
 #pragma once
 
 #include <string>

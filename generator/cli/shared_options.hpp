@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options that several commands have: one name and one meaning in all of them. Each command adds those that it knows.
+// Options shared by several commands, with the same name and meaning in all of them. Each command adds those it
+// supports.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,7 @@
 
 namespace eomgen::cli {
 
-/// A scene, and what is asked of it in place of its own values.
+/// A scene and overrides of its values.
 struct SceneOptions {
   std::string scene = "default";
   std::vector<std::string> set, outputs;
@@ -19,7 +20,7 @@ struct SceneOptions {
   std::optional<std::string> solver;
 };
 
-/// Throws Error {stage `command`} for an assignment that sets nothing.
+/// Throws Error{stage `command`} for an invalid assignment.
 run::Overrides overrides_of(const std::string& command, const SceneOptions& options);
 
 void add_scene(Arguments& app, SceneOptions& options);       // --scene

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The verdicts of `stress`: a line for each case, a column for each solver, as SVG or in characters.
+// Plot of the verdicts of `stress`, one row per case and one column per solver, as SVG or text.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct StressPlot {
   std::string title;
 
   std::string svg() const;
-  /// For a terminal of so many columns.
+  /// Plot as text, at most `columns` wide.
   std::string characters(std::size_t columns) const;
 };
 

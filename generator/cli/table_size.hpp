@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How large a table will be, before it is written.
+// Size of a table before it is written.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 
 namespace eomgen::cli {
 
-/// Rows from t0 to t1 every `every` seconds, with both ends.
+/// Number of rows from t0 to t1 at intervals of `every` seconds, with both ends.
 double expected_rows(double t0, double t1, double every);
 
-/// Tells what more than a million rows will take. Throws Error where it is more than anybody asks for by intent, unless
-/// `yes`, and where `every` is lost in the rounding of t. `columns`: beside t; 0 where nothing goes to a file.
+/// Prints the expected size of tables with more than a million rows. Throws Error if the table is unreasonably large,
+/// unless `yes`, and if t + `every` rounds to t. `columns`: without t; 0 if nothing is written to a file.
 void require_size(double t0, double t1, double every, std::size_t columns, bool yes);
 
 }  // namespace eomgen::cli

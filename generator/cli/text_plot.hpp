@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plot in characters, for a terminal: ASCII, one letter for each curve.
+// Plot as ASCII text for a terminal, with one character for each curve.
 #pragma once
 
 #include <eom/output/svg_plot.hpp>
@@ -16,14 +16,14 @@ struct TextCurve {
 struct TextPlot {
   std::string y_label, x_label;
   std::vector<TextCurve> curves;
-  std::vector<double> marks = {};  // events, columns of ':'
+  std::vector<double> marks = {};  // events, drawn as columns of ':'
   bool log_x = false, log_y = false;
 };
-/// The curves of a plot, which has to outlive this.
+/// Converts a plot. The result refers to the data of `plot`, which must outlive it.
 TextPlot text_plot(const eom::Plot& plot);
 
-/// Lines of at most `columns` characters. Values that are not finite, or have no logarithm on a
-/// logarithmic axis, are left out.
+/// Returns lines of at most `columns` characters. Skips values that are not finite or have no logarithm on a
+/// logarithmic axis.
 std::string in_characters(const TextPlot& plot, std::size_t columns);
 
 }  // namespace eomgen::cli

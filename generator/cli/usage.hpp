@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command line as the user typed it: commands that are not there, and help.
+// Errors in the command name, and the help command.
 #pragma once
 
 #include <span>
@@ -13,10 +13,10 @@ namespace eomgen::cli {
 
 using model::choice_of;
 
-/// Throws Error where the first word is no command: with the nearest one, or with what can be done with a model.
+/// Throws Error if the first word is not a command. The remedy is the nearest command, or commands for a model.
 void require_command(std::span<char* const> words, const std::vector<std::string>& commands);
 
-/// `eomgen help` and `eomgen help COMMAND` as --help has them.
+/// Replaces `eomgen help` and `eomgen help COMMAND` by the equivalent --help.
 std::vector<std::string> with_help(std::span<char* const> words);
 
 }  // namespace eomgen::cli

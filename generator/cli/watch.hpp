@@ -7,8 +7,8 @@
 
 namespace eomgen::cli {
 
-/// Looks at the stages (work.hpp) of a command from a thread of its own: after two seconds a terminal is told which one
-/// is under way, and what does not end soon after Ctrl-C is left with the exit code 3, unless something is kept.
+/// Monitors the stages (work.hpp) of a command in a separate thread. After two seconds it shows the current stage on a
+/// terminal. If a stage does not end soon after Ctrl-C, it exits with code 3, unless the command defers interrupts.
 class Watch {
  public:
   Watch();
@@ -24,7 +24,7 @@ class Watch {
   std::thread thread_;
 };
 
-/// What an interrupted command says on standard error.
+/// Prints on standard error that the command was interrupted. `stage`: during which stage; may be nullptr.
 void tell_interrupted(const char* stage);
 inline constexpr int exit_interrupted = 3;
 

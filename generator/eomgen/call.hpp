@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What surrounds every call of the library: one at a time, its Task heard and asked. Not installed.
+// Context of a library call: takes the lock, forwards stop requests and callbacks of the Task. Not installed.
 #pragma once
 
 #include <atomic>
@@ -17,10 +17,11 @@
 
 namespace eomgen {
 
-/// CLN and GiNaC count references without atomics, and share constants: the whole process has one lock. Recursive, for
-/// functions of a Task that call again.
+/// The lock of the whole process. CLN and GiNaC count references without atomics and share constants. Recursive,
+/// because callbacks may call the library again.
 std::recursive_mutex& one_at_a_time();
 
+/// Forwards progress and warnings of one call to its Task, and its stop request to the stages.
 class Call : public work::Listener {
  public:
   explicit Call(const Task& task) : Listener(&stopped_), task_(task), asked_(task.stop, Raise{&stopped_}) {}
@@ -44,7 +45,7 @@ class Call : public work::Listener {
   std::stop_callback<Raise> asked_;
 };
 
-/// `work` gets the Call.
+/// Runs `work(call)` under the lock and returns its result. Throws Interrupted if the call was stopped.
 template <class Work>
 auto called(const Task& task, Work&& work) {
   const std::scoped_lock lock(one_at_a_time());
@@ -57,7 +58,8 @@ auto called(const Task& task, Work&& work) {
 }
 
 pipeline::ApproachChoice choice_of(Approach approach);
-/// The shortest decimal of each, exactly: as the command line takes them.
+/// Converts each value to the exact shortest decimal that denotes it, as on the command line. Throws Error for values
+/// that are not finite.
 std::map<std::string, symbolic::Rational> exact(const std::map<std::string, double>& values);
 Formula formula_of(const print::Item& item);
 std::vector<LeftOut> left_out_of(const std::vector<work::LeftOut>& list);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was held against one another, and the verdict.
+// Result of a verification: which derivations were compared, how far they differ, the verdict.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,29 @@
 namespace eomgen {
 
 struct VerifyOptions {
-  int digits = 50;          // decimal, of the arithmetic; 20 to 300
-  std::size_t points = 20;  // random states
-  std::uint64_t seed = 1;
-  bool compile = true;  // the emitted code too, which needs a C compiler
+  int digits = 50;          // decimal digits of the arithmetic, 20 to 300
+  std::size_t points = 20;  // random states, at least 1
+  std::uint64_t seed = 1;   // of the random states
+  bool compile = true;      // also checks the emitted code; needs a C compiler
 };
 
+/// Comparison of two derivations, or of a derivation with code generated from it.
 struct Comparison {
   std::string a, b;
-  bool shares_code = false;  // else the two have nothing in common
+  bool shares_code = false;  // false: the two are independent implementations
   double max_relative_difference = 0, tolerance = 0;
   bool pass = false;
 };
 
+/// Verdict of a verification with all comparisons.
 struct Certificate {
   bool pass = false;
-  std::size_t points = 0;
-  int digits = 0;
+  std::size_t points = 0;  // states compared
+  int digits = 0;          // of the arithmetic
   std::vector<Comparison> comparisons;
   std::vector<LeftOut> left_out;
-  std::string summary;
-  bool interrupted = false;  // before all points were compared
+  std::string summary;       // one sentence
+  bool interrupted = false;  // stopped before all points were compared
 };
 
 }  // namespace eomgen

@@ -24,7 +24,7 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-/// Names that TOML takes as they are; others are quoted.
+/// Quotes the key unless TOML accepts it as a bare key.
 std::string key_text(const std::string& key) {
   const auto bare = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
@@ -38,7 +38,7 @@ std::string number_text(double value) {
   return fmt::format("{}", value);
 }
 
-/// "scene.default" is the table `default` of `scene`.
+/// TOML header of a section: "scene.default" is the table `default` of `scene`.
 std::string header(const std::string& section) {
   const std::size_t dot = section.find('.');
   if (dot == std::string::npos) return key_text(section);

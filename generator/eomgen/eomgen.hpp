@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All of the library (docs/library.md).
+// Includes the whole library (docs/library.md).
 #pragma once
 
 #include "eomgen/model.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In the source tree; what is installed under this name is the file itself.
+// Forwarding header of the source tree. The installed file of this name is ../error.hpp itself.
 #pragma once
 
 #include "../error.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a model is before anything moves.
+// Structural analysis of a model: degrees of freedom, classes of constraints and forces, conserved quantities,
+// singular sets.
 #pragma once
 
 #include <optional>
@@ -10,35 +11,38 @@
 
 namespace eomgen {
 
+/// Classification of one constraint.
 struct ConstraintClass {
   std::string name, kind;               // "holonomic" or "velocity"
   std::string integrable;               // "yes", "no", "unknown"
-  std::optional<std::string> integral;  // an equation
-  bool redundant = false;               // it has no multiplier
-  std::string use, reason;              // what becomes of it; of `integrable`
+  std::optional<std::string> integral;  // the integrated equation
+  bool redundant = false;               // follows from others and has no multiplier
+  std::string use, reason;              // treatment in the equations; reason for `integrable`
 };
 
+/// Classification of one force.
 struct ForceClass {
   std::string name, conservative;  // "yes", "no", "unknown"
   std::optional<Formula> potential;
   std::string reason;
 };
 
+/// A quantity that is constant along every motion.
 struct ConservedQuantity {
   std::string name, title;
   Formula expression;
-  bool proven = false;  // else shown by numbers
+  bool proven = false;  // symbolically; false: confirmed numerically only
 };
 
-/// What `eomgen check` finds.
+/// Result of `eomgen check`.
 struct Examination {
   std::vector<std::string> coordinates;  // all
-  std::vector<std::string> eliminated;   // those that constraints fix
+  std::vector<std::string> eliminated;   // by constraints
   long degrees_of_freedom = 0;
   std::vector<ConstraintClass> constraints;
   std::vector<ForceClass> forces;
   std::vector<ConservedQuantity> conserved;
-  std::vector<Formula> singular;  // sets where an approach fails; `role` says which
+  std::vector<Formula> singular;  // sets on which an approach fails; `role` is that approach
   std::vector<LeftOut> left_out;
 };
 

@@ -33,7 +33,7 @@ std::string symbol_name(const model::Model& model, const symbolic::Symbol& s) {
   }
 }
 
-/// The nodes that `roots` need, operands first, each with its place.
+/// Converts the part of the graph that `roots` depend on to Nodes, operands first.
 class Writer {
  public:
   Writer(const model::Model& model, const symbolic::Dag& dag, const std::vector<symbolic::Ref>& roots) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Formulas as they are read, and as data.
+// Equations of motion in display form (printed formulas) and in compiled form (an expression graph).
 #pragma once
 
 #include <array>
@@ -10,28 +10,30 @@
 
 namespace eomgen {
 
-/// By Approach I constraints are imposed after the derivation and give their forces, by II before it; eqs. (2.96) to
-/// (2.101) of docs/theory.md. `automatic`: I where there is something to eliminate.
+/// When constraints are imposed: eqs. (2.96) to (2.101) of docs/theory.md. Approach I imposes them after the derivation
+/// and yields their forces; approach II imposes them before it. `automatic`: I if there is something to eliminate.
 enum class Approach { automatic, one, two };
 
+/// A result that was skipped, and why.
 struct LeftOut {
   std::string what, why;
 };
 
-/// One printed formula. `key` says what it is: "equations", "explicit", "constraints", "reactions", "friction",
+/// One printed formula. `key`: its kind, one of "equations", "explicit", "constraints", "reactions", "friction",
 /// "energies", "lagrangian", "conserved", "singular", "metric", "christoffel", ...
 struct Formula {
   std::string key, name, coordinate, role;
   std::string text, latex, mathml;
 };
 
+/// A Lagrange multiplier: its name, its constraint and its mechanical meaning.
 struct Multiplier {
-  std::string name, latex, of, meaning;  // "lambda", "\lambda", the constraint, in words
+  std::string name, latex, of, meaning;  // "lambda", "\lambda", label of the constraint, a phrase
 };
 
 struct EquationsOptions {
   Approach approach = Approach::automatic;
-  /// Keys, as `eomgen derive --show` has them; "all" for all but "linear" and "routh".
+  /// Formula keys, as in `eomgen derive --show`. "all": every key except "linear" and "routh".
   std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
 };
 
@@ -40,9 +42,9 @@ struct Equations {
   std::vector<Formula> formulas;
   std::vector<LeftOut> left_out;
   std::vector<Multiplier> multipliers;
-  bool interrupted = false;
+  bool interrupted = false;  // the result is partial
 
-  /// Those of one key, one in each line.
+  /// The formulas of one key, one a line.
   std::string text(const std::string& key = "equations") const { return lines(key, &Formula::text); }
   std::string latex(const std::string& key = "equations") const { return lines(key, &Formula::latex); }
 
@@ -56,28 +58,32 @@ struct Equations {
   }
 };
 
-/// An expression: `op` is "number" (`text`: an integer or a fraction, exactly), "pi", "symbol" (`text`: its name, such
-/// as "x", "x_dot", "m", "t"), one of "+" "-" "*" "/" "neg" "^" ("^" with an integer exponent has it in `text` and one
-/// argument), or a function of the model language ("sin", "atan2", "min"); "if" is args[0] < args[1] ? args[2] :
-/// args[3].
+/// A node of the expression graph. Values of `op`:
+///   "number"                 `text` is an exact integer or fraction;
+///   "pi"                     no arguments;
+///   "symbol"                 `text` is its name, such as "x", "x_dot", "m", "t";
+///   "+" "-" "*" "/" "neg"    arithmetic;
+///   "^"                      power; an integer exponent is in `text`, and then there is one argument;
+///   "sin", "atan2", "min"..  a function of the model language;
+///   "if"                     args[0] < args[1] ? args[2] : args[3].
 struct Node {
   std::string op, text;
-  std::array<std::uint32_t, 4> args{};  // indices of nodes that come before this one
+  std::array<std::uint32_t, 4> args{};  // indices of earlier nodes
   std::size_t arity = 0;
 };
 
-/// The equations of motion as data, in the coordinates that stay (n), with constraints that keep multipliers (m):
+/// The equations of motion in compiled form, for n free coordinates and m constraints with multipliers:
 ///   M qddot = f + A^T lambda,   A qddot + gamma = 0.
-/// Every entry is an index into `nodes`. Units are those of the model.
+/// Every entry is an index into `nodes`. Units are SI, as in the model.
 struct Derivation {
   std::string approach, route;
   std::vector<std::string> coordinates;  // n
-  std::vector<std::string> constraints;  // m labels
+  std::vector<std::string> constraints;  // m, labels
   std::vector<Node> nodes;
-  std::vector<std::uint32_t> M;         // n x n, by rows
-  std::vector<std::uint32_t> f;         // n
-  std::vector<std::uint32_t> A, gamma;  // m x n by rows, m
-  std::uint32_t kinetic = 0, potential = 0;
+  std::vector<std::uint32_t> M;              // n x n, row-major
+  std::vector<std::uint32_t> f;              // n
+  std::vector<std::uint32_t> A, gamma;       // A: m x n, row-major; gamma: m
+  std::uint32_t kinetic = 0, potential = 0;  // energies
 };
 
 }  // namespace eomgen

@@ -9,7 +9,7 @@
 namespace eomgen {
 namespace {
 
-/// What both are asked for: the scene, the solvers, how long, and what the Task hears and stops.
+/// Options that benchmark and stress test have in common: scene, solvers, limits, callbacks and stop request.
 template <class Request, class Options>
 Request request_of(const std::shared_ptr<const model::Model>& model, const Options& options, const Task& task,
                    const Call& call) {

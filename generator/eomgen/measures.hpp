@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Error against run time, and behaviour under stress.
+// Benchmark of solvers (error against run time) and stress test of solvers.
 #pragma once
 
 #include <map>
@@ -13,29 +13,31 @@ namespace eomgen {
 
 struct BenchmarkOptions {
   std::string scene = "default";
-  std::map<std::string, double> parameters = {};
-  std::optional<double> t_end = {};
-  std::vector<std::string> solvers = {};  // empty: all that fit
-  double seconds = 10;                    // what takes longer is interrupted
-  bool libraries = false;                 // those of other libraries too
+  std::map<std::string, double> parameters = {};  // replace the scene's values; SI units
+  std::optional<double> t_end = {};               // s; replaces the scene's
+  std::vector<std::string> solvers = {};          // empty: all eligible solvers
+  double seconds = 10;                            // time limit of a run, s
+  bool libraries = false;                         // also measure solvers of other libraries
   std::uint64_t seed = 1;
 };
 
+/// One run of one solver.
 struct BenchmarkRow {
   std::string solver;
-  double rtol = 0, step = 0;  // one of them is 0
-  double error = 0;           // of the end state, relative to the largest value of each component
-  double seconds = 0;         // median
+  double rtol = 0, step = 0;  // tolerance or fixed step in s; the other is 0
+  double error = 0;           // of the final state, relative to the largest value of each component
+  double seconds = 0;         // median run time, s
   std::size_t steps = 0, rhs_evaluations = 0;
   std::string outcome;
 };
 
+/// Result of Model::benchmark().
 struct Benchmark {
   std::vector<BenchmarkRow> rows;
   std::vector<LeftOut> left_out;
-  int reference_digits = 0;  // of the end state
-  std::string advice;
-  bool conclusive = false;
+  int reference_digits = 0;  // correct digits of the reference solution's final state
+  std::string advice;        // which solver to choose
+  bool conclusive = false;   // a solver finished, and the reference solution is accurate enough
 };
 
 struct StressOptions {
@@ -43,22 +45,25 @@ struct StressOptions {
   std::map<std::string, double> parameters = {};
   std::optional<double> t_end = {};
   std::vector<std::string> solvers = {};  // empty: all
-  double seconds = 60;
-  std::size_t steps = 20000;
-  bool quick = false;
+  double seconds = 60;                    // time limit of a run, s
+  std::size_t steps = 20000;              // step limit of a run
+  bool quick = false;                     // few variations of each kind
   std::uint64_t seed = 1;
 };
 
+/// Result of one solver on one variation. Verdicts: "kept" (the error is within 100 tolerances), "told" (the error is
+/// larger and was reported), "silent" (the error is larger and undetected).
 struct StressRow {
-  std::string test, solver, verdict;  // "kept", "told", "silent"
+  std::string test, solver, verdict;
   double error = 0, estimate = 0;
   std::string outcome, note;
 };
 
+/// Result of Model::stress_test().
 struct StressTest {
   std::vector<StressRow> rows;
   std::vector<LeftOut> left_out;
-  std::size_t kept = 0, told = 0, silent = 0;
+  std::size_t kept = 0, told = 0, silent = 0;  // rows of each verdict
 };
 
 }  // namespace eomgen

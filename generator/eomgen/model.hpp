@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A mechanical system, and all that eomgen does with one. Calls take seconds where they derive or compile; each takes a
-// Task that can end it. Error (eomgen/error.hpp) is thrown where a model, an option or a tool is wrong, with line and
-// column of the model where there is a place.
+// The mechanical system and all analyses of it. In: a model file, its text or a Definition. Out: plain structures.
 //
-// Threads: any thread may call, on the same or on different models. The computer algebra underneath is not made for
-// threads, so calls wait for one another; a call from within a function that another call was handed does not.
+// Calls that derive equations or compile code take seconds; a Task can stop them. All functions throw Error
+// (eomgen/error.hpp) if the model, an option or an external tool is wrong. Error has the line and column of the model
+// if the cause has a position there.
+//
+// Thread safety: any thread may call any function, on the same model or on different ones. The computer algebra is not
+// thread-safe, so one lock serialises all calls. A callback that runs inside a call may call the library again.
 #pragma once
 
 #include <memory>
@@ -28,43 +30,55 @@ namespace model {
 struct Model;
 }
 
-/// Read and checked; it does not change. Copies share it.
+/// A model that was read and checked. Immutable; copies share the data.
 class Model {
  public:
-  /// A model file (docs/model-format.md). Throws Error{stage "model"}.
+  /// Reads a model file (docs/model-format.md). Throws Error{stage "model"} if it is not a valid model.
   static Model from_file(const std::string& path);
-  /// The same from a text; `name` is the model's, and the file's in errors.
+  /// Reads a model from text in the format of model files. `name`: name of the model, and of the file in errors.
   static Model from_text(const std::string& text, const std::string& name = "model");
-  /// One that was made in code.
+  /// Builds a model from a Definition. Throws as from_text() does.
   static Model from(const Definition& definition, const std::string& name = "model");
 
-  std::string id() const;
-  std::string title() const;
-  std::vector<std::string> coordinates() const;
-  std::vector<std::string> parameters() const;
-  std::vector<std::string> inputs() const;
-  std::vector<std::string> scenes() const;
-  /// What the reader warns of, with place and remedy.
+  std::string id() const;                        // base name of the file, or `name` of from_text()
+  std::string title() const;                     // may be empty
+  std::vector<std::string> coordinates() const;  // names, with those that constraints eliminate
+  std::vector<std::string> parameters() const;   // names
+  std::vector<std::string> inputs() const;       // names
+  std::vector<std::string> scenes() const;       // names
+  /// Warnings of the model reader, each with position and remedy.
   std::vector<std::string> warnings() const;
 
-  /// Degrees of freedom, classes of constraints and forces, what is conserved, singular sets.
+  /// Classifies the model: degrees of freedom, constraints, forces, conserved quantities, singular sets.
   Examination examine(const Task& task = {}) const;
-  /// The equations as one reads them.
+  /// Derives the equations of motion in display form. Throws Error{stage "derive"} for an unknown key.
   Equations equations(const EquationsOptions& options = {}, const Task& task = {}) const;
-  /// The equations as data, by Lagrange's equations in the fast form. `automatic` is II here.
+  /// Derives the equations of motion in compiled form by Lagrange's equations. `automatic` means approach II here.
   Derivation derivation(Approach approach = Approach::two, const Task& task = {}) const;
-  /// The whole derivation as a LaTeX document.
+  /// Returns the whole derivation as a LaTeX document. Throws Error{Fault::check} if the check against the independent
+  /// oracle fails. `seed`: of the random states of that check.
   std::string article(const Task& task = {}, std::uint64_t seed = 1) const;
-  /// Every route against the judge, in many digits. A verdict that is negative is no error.
+  /// Checks all formulations against the independent oracle in multiple precision. A failed check is a result
+  /// (Certificate::pass is false), not an error.
   Certificate verify(const VerifyOptions& options = {}, const Task& task = {}) const;
-  /// Verified sources. Throws Error{Fault::check} where the derivations disagree.
+  /// Generates verified source code. Throws Error{Fault::check} if the formulations disagree.
   Sources emit(const EmitOptions& options = {}, const Task& task = {}) const;
-  /// Derives, verifies, compiles (with a C compiler; cached by content) and integrates a scene.
+  /// Derives, verifies, compiles and integrates a scene. Needs a C compiler; compiled code is cached by content.
+  /// A run that fails numerically returns its outcome and throws nothing.
   Motion run(const RunOptions& options = {}, const Task& task = {}) const;
+  /// Computes the forces that prescribed motions require. Throws Error{stage "inverse"} if no constraint prescribes a
+  /// motion or a name is unknown.
   InverseDynamics inverse_dynamics(const InverseOptions& options = {}, const Task& task = {}) const;
+  /// Linearises the equations about a state of a scene. Throws Error{stage "linearize"} if a term has no derivative
+  /// there.
   Linearisation linearise(const LineariseOptions& options = {}, const Task& task = {}) const;
+  /// Searches equilibria and steady motions and classifies their stability. Throws Error{stage "equilibria"} if the
+  /// equations depend on t or a quantity cannot be held.
   SteadyMotions steady_motions(const SteadyOptions& options = {}, const Task& task = {}) const;
+  /// Measures the error and run time of solvers against a reference solution. Throws Error{stage "bench"} for scenes
+  /// without a reference solution: contacts, moving inputs, kinks.
   Benchmark benchmark(const BenchmarkOptions& options = {}, const Task& task = {}) const;
+  /// Runs solvers on stiff and extreme variations of a scene. Throws Error{stage "stress"} for an unknown solver.
   StressTest stress_test(const StressOptions& options = {}, const Task& task = {}) const;
 
  private:

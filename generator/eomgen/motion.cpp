@@ -12,7 +12,7 @@
 namespace eomgen {
 namespace {
 
-/// What a run and the forces of a prescribed motion may change of a scene alike.
+/// Overrides of a scene that runs and inverse dynamics have in common.
 template <class Options>
 run::Overrides overrides_of(const Options& options) {
   run::Overrides overrides;
@@ -43,7 +43,7 @@ pipeline::SimulationRequest request_of(std::shared_ptr<const model::Model> model
   return request;
 }
 
-/// Those of the code's rows that a motion shows: coordinates with their rates, then what the scene asks for.
+/// Columns of a motion: coordinates with their rates, then the outputs of the scene.
 std::vector<std::string> shown(const model::Model& model, const run::Scene& scene) {
   std::vector<std::string> columns;
   for (const model::Coordinate& c : model.coordinates) {
@@ -86,7 +86,7 @@ Motion Model::run(const RunOptions& options, const Task& task) const {
     std::vector<std::size_t> index;
     std::vector<double> values;
     pipeline::SimulationRequest request = request_of(read_, options);
-    std::optional<work::Kept> kept;  // once it runs, what there is is given
+    std::optional<work::Kept> kept;  // from the first step on, an interruption returns the partial motion
     request.ready = [&kept] { kept.emplace(); };
     request.interrupt = call.stopped();
     request.progress = call.progress();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene integrated: the motion, and how far to trust it (docs/runtime.md).
+// Time integration of a scene: options, the motion, its error estimate and invariants (docs/runtime.md); inverse
+// dynamics.
 #pragma once
 
 #include <functional>
@@ -16,72 +17,78 @@ namespace eomgen {
 
 struct RunOptions {
   std::string scene = "default";
-  std::map<std::string, double> parameters = {};  // in place of the scene's, in SI units
+  std::map<std::string, double> parameters = {};  // replace the scene's values; SI units
   std::optional<double> t_end = {}, rtol = {}, atol = {};
-  std::optional<double> step = {};         // a fixed step, without error control
-  std::optional<double> max_step = {};     // where steps are chosen
-  std::optional<double> every = {};        // interval of the rows
-  std::optional<std::string> solver = {};  // of solvers(), or "auto"
-  std::vector<std::string> outputs = {};   // beside the coordinates, in place of the scene's; "all" for all
+  std::optional<double> step = {};         // fixed step without error control, s
+  std::optional<double> max_step = {};     // limit of adaptive steps, s
+  std::optional<double> every = {};        // output interval of the rows, s
+  std::optional<std::string> solver = {};  // one of solvers(), or "auto"
+  std::vector<std::string> outputs = {};   // in addition to coordinates; replace the scene's; "all": every output
   Approach approach = Approach::automatic;
-  std::string form = "auto";   // as EmitOptions has it
-  std::size_t max_steps = 0;   // 0: the solver's own limit
-  bool error_estimate = true;  // a second run
-  bool charts = true;          // angles may be exchanged near where they fail
+  std::string form = "auto";   // see EmitOptions::form
+  std::size_t max_steps = 0;   // 0: the solver's default
+  bool error_estimate = true;  // costs a second run
+  bool charts = true;          // allow changes of angle coordinates near their singularities
   std::uint64_t seed = 1;
-  /// Takes the rows, as Motion::columns names them, in place of Motion::rows.
+  /// If set, receives each row instead of Motion::rows. t in s; `values` in the order of Motion::columns.
   std::function<void(double t, std::span<const double> values)> row = {};
 };
 
+/// An event of a motion, such as an impact or a change of contact.
 struct MotionEvent {
-  double t;
+  double t;  // s
   std::string kind, name;
 };
 
+/// A conserved quantity and its numerical drift.
 struct Invariant {
   std::string name;
   double initial = 0, max_relative_drift = 0;
 };
 
+/// Result of Model::run(). All values in SI units.
 struct Motion {
-  std::string outcome;                    // "done", "stopped_by_event", or what ended it (docs/runtime.md)
-  std::string detail, solver;             // solver: the one that ended the run
-  std::string reason;                     // why that one was taken
-  double t = 0;                           // at the end
-  std::vector<std::string> columns;       // every coordinate with its rate, then the outputs
-  std::vector<double> times;              // of the rows
-  std::vector<std::vector<double>> rows;  // columns.size() each
-  std::vector<std::pair<std::string, double>> final;
-  std::vector<std::pair<std::string, double>> error_estimate;  // per state, then "max"; empty where none was made
-  std::string estimate_note;                                   // why the estimate is not to be trusted, or ""
+  std::string outcome;                                // "done", "stopped_by_event", or a failure (docs/runtime.md)
+  std::string detail, solver;                         // solver: the last one used
+  std::string reason;                                 // why this solver was chosen
+  double t = 0;                                       // final time, s
+  std::vector<std::string> columns;                   // every coordinate and its rate, then the outputs
+  std::vector<double> times;                          // of the rows, s
+  std::vector<std::vector<double>> rows;              // times.size() rows of columns.size() values
+  std::vector<std::pair<std::string, double>> final;  // values at the final time
+  std::vector<std::pair<std::string, double>> error_estimate;  // per state, then "max"; empty if none was made
+  std::string estimate_note;                                   // reason why the estimate is unreliable, or ""
   std::vector<Invariant> invariants;
-  double power_balance = 0, constraint_drift = 0;  // as `eomgen run` shows them
+  /// Largest |E - E(0) - W| relative to the energies exchanged; largest |psi|, or |f . qdot + b| of a velocity
+  /// constraint, at the end of a step.
+  double power_balance = 0, constraint_drift = 0;
   std::size_t steps = 0, rhs_evaluations = 0;
   std::vector<MotionEvent> events;
-  std::string certificate;
+  std::string certificate;  // summary of the verification
 
+  /// Whether the run reached its end time or a terminal event.
   bool ended() const { return outcome == "done" || outcome == "stopped_by_event"; }
-  /// Of `final`; throws std::out_of_range where there is no such name.
+  /// Returns the value of `name` in `final`. Throws std::out_of_range if there is no such name.
   double at_end(const std::string& name) const;
 };
 
-/// Names that RunOptions::solver takes.
+/// Names of all solvers, for RunOptions::solver.
 std::vector<std::string> solvers();
 
 struct InverseOptions {
   std::string scene = "default";
   std::map<std::string, double> parameters = {};
   std::optional<double> t_end = {}, every = {}, rtol = {}, atol = {};
-  std::vector<std::string> constraints = {};  // empty: those that prescribe a coordinate
+  std::vector<std::string> constraints = {};  // empty: all that prescribe a coordinate
   std::uint64_t seed = 1;
 };
 
-/// The forces that prescribed motions need.
+/// Forces that prescribed motions require, over time. All values in SI units.
 struct InverseDynamics {
-  std::string outcome, detail, certificate;
-  std::vector<std::string> columns, forces;
-  std::vector<double> times;
-  std::vector<std::vector<double>> rows;
+  std::string outcome, detail, certificate;  // as in Motion
+  std::vector<std::string> columns, forces;  // `forces`: the columns that are requested forces
+  std::vector<double> times;                 // s
+  std::vector<std::vector<double>> rows;     // times.size() rows of columns.size() values
 };
 
 }  // namespace eomgen

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emitted code (docs/abi.md).
+// Generated source code (docs/abi.md).
 #pragma once
 
 #include <cstdint>
@@ -11,32 +11,33 @@
 namespace eomgen {
 
 struct EmitOptions {
-  std::string target = "cpp";  // of targets()
+  std::string target = "cpp";  // one of targets()
   Approach approach = Approach::automatic;
-  /// "auto", "multipliers", "nullspace" or "chaplygin": how constraints that stay are solved.
+  /// How the remaining constraints are solved: "auto", "multipliers", "nullspace" or "chaplygin".
   std::string form = "auto";
-  std::vector<std::string> with = {};  // functions beside rhs: "jac", "mass", "outputs", ... (docs/commands.md, emit)
-  std::vector<std::string> outputs = {};  // names for the function `outputs`
-  std::vector<std::string> fix = {};      // parameters that become numbers
+  std::vector<std::string> with = {};  // functions in addition to rhs: "jac", "mass", .. (docs/commands.md, emit)
+  std::vector<std::string> outputs = {};  // outputs computed by the function `outputs`
+  std::vector<std::string> fix = {};      // parameters replaced by their numbers
   std::uint64_t seed = 1;
-  std::string real = "double";  // or "float": single precision (docs/abi.md, "Single precision")
+  std::string real = "double";  // "double" or "float" (docs/abi.md, "Single precision")
 };
 
 struct SourceFile {
-  std::string name;  // without a folder
+  std::string name;  // without folder
   std::string text;
 };
 
+/// Result of Model::emit().
 struct Sources {
   std::vector<SourceFile> files;
   std::string route, approach, form;
-  std::size_t flops = 0;    // of rhs
-  std::string certificate;  // the summary; what fails is not emitted
-  double single_error =
-      0;  // in single precision: how far rhs is off at the states of the self test, by its largest entry
+  std::size_t flops = 0;    // floating-point operations of rhs
+  std::string certificate;  // summary of the verification, which passed
+  /// Single precision: error of rhs at the states of the self test, relative to its largest entry. Otherwise 0.
+  double single_error = 0;
 };
 
-/// Names that EmitOptions::target takes.
+/// Names of all targets, for EmitOptions::target.
 std::vector<std::string> targets();
 
 }  // namespace eomgen

@@ -13,41 +13,43 @@ namespace eomgen {
 struct LineariseOptions {
   std::string scene = "default";
   std::map<std::string, double> parameters = {};
-  std::optional<double> at = {};  // a time of the scene's motion; the start without it
+  std::optional<double> at = {};  // s, a time of the scene's motion; default: its start
   std::uint64_t seed = 1;
 };
 
-/// y' = A y + B u in independent coordinates and speeds, on the constraint manifold.
+/// Linearised equations y' = A y + B u in independent coordinates and speeds, on the constraint manifold.
 struct Linearisation {
   std::string kind;                               // "equilibrium", "steady motion", "motion"
-  std::vector<std::string> states;                // n
-  std::vector<std::string> inputs;                // k
-  std::vector<double> A, B;                       // n x n and n x k, by rows
-  std::vector<std::complex<double>> eigenvalues;  // by falling real part
-  std::size_t structural_zeros = 0;
+  std::vector<std::string> states;                // n, names
+  std::vector<std::string> inputs;                // k, names
+  std::vector<double> A, B;                       // n x n and n x k, row-major
+  std::vector<std::complex<double>> eigenvalues;  // of A, in 1/s, by decreasing real part
+  std::size_t structural_zeros = 0;               // eigenvalues 0 for all parameters
   std::string certificate;
 };
 
 struct SteadyOptions {
   std::string scene = "default";
   std::map<std::string, double> parameters = {};
-  std::map<std::string, double> hold = {};  // outputs and their values; empty: the conserved momenta at the start
-  std::size_t starts = 300;
+  std::map<std::string, double> hold = {};  // held outputs; empty: the conserved momenta at the start
+  std::size_t starts = 300;                 // initial guesses of the search
   std::uint64_t seed = 1;
 };
 
+/// An equilibrium or a steady motion, with its stability.
 struct SteadyMotion {
-  std::string kind;                     // "equilibrium", "steady motion"
-  std::map<std::string, double> state;  // coordinates and rates
-  std::string stability, reason;        // "stable", "unstable", "unknown"
-  std::vector<std::complex<double>> eigenvalues;
-  std::size_t family = 0;  // dimensions of the family that it is one of
+  std::string kind;                               // "equilibrium", "steady motion"
+  std::map<std::string, double> state;            // coordinates and rates, SI units
+  std::string stability, reason;                  // "stable", "unknown" or "unstable", and why
+  std::vector<std::complex<double>> eigenvalues;  // 1/s
+  std::size_t family = 0;                         // dimension of the family it belongs to; 0: isolated
 };
 
+/// Result of Model::steady_motions().
 struct SteadyMotions {
   std::vector<SteadyMotion> motions;
-  std::map<std::string, double> held;
-  bool interrupted = false;
+  std::map<std::string, double> held;  // outputs held during the search, and their values
+  bool interrupted = false;            // not all initial guesses were tried
   std::string certificate;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a caller may ask of a long call, and hear from it.
+// Stop request and callbacks of one call of the library.
 #pragma once
 
 #include <exception>
@@ -9,16 +9,18 @@
 
 namespace eomgen {
 
-/// Of one call; the default asks for nothing. The functions are called from the thread of the call.
+/// Controls one call. By default the call cannot be stopped and reports nothing. The thread that made the call also
+/// runs the callbacks.
 struct Task {
-  /// Ends the call within a fraction of a second: a run, a search and a verification give what they have and say so,
-  /// everything else throws Interrupted.
+  /// Stops the call within a fraction of a second. A run, a search and a verification then return partial results that
+  /// are marked as interrupted. All other calls throw Interrupted.
   std::stop_token stop = {};
-  std::function<void(const std::string& stage)> begins = {};   // "deriving the equations"
-  std::function<void(double fraction)> progress = {};          // of a run's time span, of the starts of a search
-  std::function<void(const std::string& warning)> warns = {};  // what to know beside the result
+  std::function<void(const std::string& stage)> begins = {};   // start of a stage: "deriving the equations"
+  std::function<void(double fraction)> progress = {};          // in [0, 1], of a time span or of a search
+  std::function<void(const std::string& warning)> warns = {};  // a warning about the result
 };
 
+/// Thrown by a call that was stopped and has no partial result.
 class Interrupted : public std::exception {
  public:
   const char* what() const noexcept override { return "interrupted"; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any numbers for symbols; which they are does not matter to what holds everywhere.
+// Sample values of symbols for numerical tests of identities, which hold for any values.
 #pragma once
 
 #include <cmath>

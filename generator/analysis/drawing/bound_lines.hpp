@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A curve or a surface psi(q) = 0 as a figure shows it. In: psi and the position x as functions of two or three
-// coordinates q, where the particle is, how large the figure is. Out: lines in space: the curve; the edge of a plane;
-// of other surfaces a net around the particle and the outline, where the surface is seen from its side.
+// Lines that show a constraint curve or surface psi(q) = 0. In: psi and the position x as functions of two or three
+// coordinates q, the particle's position, the size of the figure. Out: lines in space. A curve gives itself and a plane
+// its border. Other surfaces give a net around the particle and the silhouette.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,26 +15,26 @@ namespace eomgen::analysis {
 
 struct BoundPoint {
   Eigen::VectorXd psi;
-  Eigen::MatrixXd slope;  // dpsi/dq: one row for each psi
+  Eigen::MatrixXd slope;  // dpsi/dq: one row per entry of psi, one column per coordinate
   Point x;
-  Eigen::Matrix3Xd turn;  // dx/dq
+  Eigen::Matrix3Xd turn;  // dx/dq: 3 x n
 };
-/// Nothing where there is no value.
+/// Returns nullopt where psi or x is undefined.
 using BoundFunction = std::function<std::optional<BoundPoint>(const Eigen::VectorXd& q)>;
 
 struct BoundPlace {
   Eigen::VectorXd q;
-  Eigen::VectorXd low, high;  // bounds of the coordinates, infinite where there is none
-  std::vector<bool> angle;
+  Eigen::VectorXd low, high;  // bounds of the coordinates; infinite: no bound
+  std::vector<bool> angle;    // whether each coordinate is an angle
   double size;  // of the figure, in the unit of x
 };
 
 struct BoundLine {
   std::vector<Point> points;
-  bool edge;  // of a plane, an outline, a curve; else of a net
+  bool edge;  // a border, a silhouette or a curve; false: a line of the net
 };
 
-/// One coordinate more than psi has entries, or two.
+/// Requires one or two coordinates more than psi has entries.
 std::vector<BoundLine> bound_lines(const BoundFunction& function, const BoundPlace& place, const View& view);
 
 }  // namespace eomgen::analysis

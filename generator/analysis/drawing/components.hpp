@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What acts along coordinates, taken apart into what a drawing can show. In: generalised forces Q_c. Out: moments of
-// angles, forces on masses that coordinates move alone, moments on bodies that they turn alone; and what is left.
+// Decomposition of generalised forces into vectors that a drawing can show. In: generalised forces Q_c. Out: moments
+// about angles, forces on masses and moments on bodies that have coordinates of their own, and the remainder.
 #pragma once
 
 #include <utility>
@@ -12,17 +12,17 @@ namespace eomgen::analysis {
 
 class Components {
  public:
-  /// `Q`: of all coordinates.
+  /// `Q`: generalised forces of all coordinates.
   Components(mechanics::Mechanics& mechanics, BodyMoments& moments, std::vector<symbolic::Ref> Q)
       : m_(mechanics), moments_(moments), Q_(std::move(Q)) {}
 
-  /// -dU/dq_c
+  /// Adds -dU/dq_c.
   void add_potential(symbolic::Ref U);
-  /// What is drawn already: a force at a point, a moment.
+  /// Subtracts a force at a point, or a moment, that is drawn already.
   void take(const symbolic::Vec3& force, const symbolic::Vec3& at);
   void take(const BodyMoment& moment);
 
-  /// What these find is taken off.
+  // Each of these returns the vectors it finds and subtracts them.
   std::vector<BodyMoment> along_angle(symbolic::Ref angle);
   std::vector<std::pair<std::size_t, symbolic::Vec3>> on_masses();  // index into Mechanics::masses, force
   std::vector<BodyMoment> on_attitudes();

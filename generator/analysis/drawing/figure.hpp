@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The figure of a document: the system at a start, as a textbook draws it: rods, bodies by their edges, springs,
-// dampers, joints, axes; in a plane also the angles from which positions are measured, and the lengths.
+// Figure of a document: the system in its initial configuration, drawn as in a textbook. It shows rods, edges of
+// bodies, springs, dampers, joints and axes; planar systems also get angles and lengths.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@
 
 namespace eomgen::analysis {
 
-/// Nothing where the model has no positions. Throws Error where one has no value at the start, and where the picture
-/// has too many strokes for a page.
+/// Returns nullopt if the model has no positions. Throws Error if a position is undefined at the start, or if the
+/// figure has too many strokes.
 std::optional<print::Figure> figure(mechanics::Mechanics& mechanics, const run::Scene& scene);
 
 }  // namespace eomgen::analysis

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces and moments as arrows, for a page that is asked for them. In: a drawing and a system of equations. Out:
-// vectors as outputs of that system: gravity and other forces on masses and at points, moments on bodies, what joints,
-// contacts, couplings and other constraints exert, friction. What has no such vector (along a coordinate that moves
-// several masses, say) is named instead.
+// Arrows of forces and moments on a page. In: a drawing and a system of equations. Out: force vectors as outputs of
+// that system: gravity and other forces on masses and at points, moments on bodies, friction, and reactions of joints,
+// contacts, couplings and other constraints. Some forces have no such vector, for example along a coordinate that moves
+// several masses; they are listed by name.
 #pragma once
 
 #include <string>
@@ -16,8 +16,8 @@ namespace eomgen::analysis {
 struct DrawnForce {
   std::string name;
   const char* kind;  // "applied", "constraint", "friction"
-  std::size_t at;    // where it acts, and the force, among the outputs of the drawing and then these
-  std::size_t value;
+  std::size_t at;    // index of the point of application among the outputs: first the drawing's, then these
+  std::size_t value;   // index of the vector, likewise
   bool turns = false;  // a moment
 };
 
@@ -25,13 +25,13 @@ class DrawnForces {
  public:
   DrawnForces(mechanics::Mechanics& mechanics, const Drawing& drawing) : mechanics_(mechanics), drawing_(drawing) {}
 
-  /// To each candidate its own; all have them in one order.
+  /// Adds the outputs to one candidate system. All candidates get the same outputs in the same order.
   void add_outputs(system::EquationSystem& system);
   const std::vector<std::string>& outputs() const { return names_; }
   const std::vector<DrawnForce>& list() const { return list_; }
-  /// Arrows that there would be beyond as many as anybody tells apart.
+  /// Number of arrows omitted because the drawing would have too many.
   std::size_t beyond() const { return beyond_; }
-  /// Forces and constraints of which all or a part has no vector.
+  /// Names of forces and constraints that have no vector, or only for a part.
   const std::vector<std::string>& without_vector() const { return unknown_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a function of three numbers vanishes in a box: lines in a slice, by marching squares.
+// Zero level lines of a function of three variables in slices of a box, by marching squares.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,13 +10,13 @@
 
 namespace eomgen::analysis {
 
-using Field = std::function<double(const Eigen::VectorXd&)>;  // of three numbers; not-a-number where it has no value
+using Field = std::function<double(const Eigen::VectorXd&)>;  // of 3 numbers; NaN where undefined
 
-/// Lines across coordinate k at `value`, each as points in their order.
+/// Level lines in the slice where coordinate k is `value`, each as an ordered list of points.
 std::vector<std::vector<Eigen::VectorXd>> level_lines(const Field& f, const Eigen::VectorXd& low,
                                                       const Eigen::VectorXd& high, Eigen::Index k, double value);
 
-/// The box around the surface, if it ends within this one.
+/// Bounding box of the zero surface; nullopt if the surface extends beyond the given box.
 std::optional<std::pair<Eigen::VectorXd, Eigen::VectorXd>> box_around(const Field& f, const Eigen::VectorXd& low,
                                                                       const Eigen::VectorXd& high);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Generalised forces as moments on bodies. In: mechanics, and what acts along coordinates or along an angle. Out:
-// moments M with M . dw/dqdot_c = Q_c of the bodies' angular velocities w.
+// Moments on bodies that are equivalent to generalised forces. In: mechanics, generalised forces Q_c. Out: moments M
+// with M . dw/dqdot_c = Q_c, where w is the angular velocity of the body.
 #pragma once
 
 #include <array>
@@ -21,35 +21,36 @@ class BodyMoments {
  public:
   explicit BodyMoments(mechanics::Mechanics& mechanics);
 
-  /// The body of this frame, or none.
+  /// Returns the body of a frame; nullopt if the frame is not fixed to a body.
   std::optional<std::size_t> body_of(std::uint32_t frame) const;
-  /// Whether the coordinate turns the body.
+  /// Whether coordinate c rotates the body.
   bool turns(std::size_t body, std::uint32_t c) const { return !symbolic::is_zero(*m_.dag, turns_[body][c]); }
-  /// And does nothing else.
+  /// Whether coordinate c rotates this body and has no other effect.
   bool turns_alone(std::size_t body, std::uint32_t c) const;
-  /// M . dw/dqdot_c
+  /// Generalised force of a moment on coordinate c: M . dw/dqdot_c
   symbolic::Ref along(const BodyMoment& moment, std::uint32_t c);
-  /// Of what acts along an angle, Q_c = tau d(angle)/dq_c: on the body that it turns, and the opposite one on the body
-  /// against which it is measured. Nothing where it is the angle of no such rotation.
+  /// Moments equivalent to Q_c = tau d(angle)/dq_c: one on the rotated body, the opposite one on the body of reference.
+  /// Returns an empty list if `angle` is not the angle of such a rotation.
   std::vector<BodyMoment> along_angle(const std::vector<symbolic::Ref>& Q, symbolic::Ref angle);
-  /// Along coordinates that turn this body and do nothing else, if these are all that turn it or three.
+  /// Moment equivalent to Q along the coordinates that rotate only this body. Requires that these are three, or all
+  /// coordinates that rotate it; otherwise returns nullopt.
   std::optional<symbolic::Vec3> of_attitude(std::size_t body, const std::vector<symbolic::Ref>& Q);
 
  private:
-  using Numbers = std::array<std::array<double, 3>, 2>;  // of a vector, at two states
-  /// dw/dqdot_c of a body, and of the ground where there is none; of two the difference.
+  using Numbers = std::array<std::array<double, 3>, 2>;  // components of a vector at two states
+  /// dw/dqdot_c of a body; 0 for the ground (nullopt).
   symbolic::Vec3 turn(std::optional<std::size_t> body, std::uint32_t c) const;
   Numbers numbers(std::optional<std::size_t> body, std::uint32_t c) const;
   std::optional<symbolic::Vec3> about_axis(std::size_t body, std::optional<std::size_t> other,
                                            const std::vector<symbolic::Ref>& Q,
                                            const std::vector<std::array<double, 2>>& slopes);
-  /// The least M with M . n_i = Q_i.
+  /// Minimum-norm M with M . n_i = Q_i.
   symbolic::Vec3 least(const std::vector<symbolic::Vec3>& directions, const std::vector<symbolic::Ref>& Q);
 
   mechanics::Mechanics& m_;
   std::vector<std::vector<symbolic::Vec3>> turns_;  // per body and coordinate
   std::vector<std::vector<Numbers>> numbers_;
-  std::vector<bool> moves_;  // per coordinate: a mass
+  std::vector<bool> moves_;  // per coordinate: whether it moves a mass
 };
 
 }  // namespace eomgen::analysis

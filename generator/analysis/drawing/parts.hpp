@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is drawn of a model, on a page and in a figure. In: its mechanics. Out: vectors (positions, axes of bodies, ends
-// of springs, points of joints and contacts, axes of gears, coordinates that constraints bind) as outputs, which the
-// code of a page is to have, and as expressions; and where each part of the drawing finds its numbers among them.
+// Parts of the drawing of a model, on a page and in a figure. In: its mechanics. Out: vectors (positions, body axes,
+// ends of springs, points of joints and contacts, axes of gears, constrained coordinates), both as expressions and as
+// outputs for the code of a page; and for each part the indices of its numbers among them.
 #pragma once
 
 #include <array>
@@ -15,25 +15,25 @@
 
 namespace eomgen::analysis {
 
-/// Parts of a drawing. A vector is where its first component is among the outputs, a length where it is among the
-/// sizes, a place counts the places.
+/// Parts of a drawing. They refer to a vector by the index of its first component in the outputs, to a length by its
+/// index in the sizes, and to a place by its index in DrawnParts::places.
 struct DrawnPlace {
   std::string name;
   const char* kind;          // "particle", "body", "point"
-  std::optional<long> from;  // the place that a line leads to it from, -1: the origin; none: no line
-  std::size_t at;
+  std::optional<long> from;  // start of the line that leads to it: a place, or -1 for the origin; none: no line
+  std::size_t at;            // a vector: its position
 };
 struct DrawnBody {
   std::size_t place;
-  std::array<std::size_t, 2> axes;  // the first two
+  std::array<std::size_t, 2> axes;  // vectors: the first two body axes
   std::size_t mass;
-  std::array<std::size_t, 9> inertia;  // by rows
+  std::array<std::size_t, 9> inertia;  // 3 x 3, row-major
 };
 struct DrawnLine {
-  std::size_t a, b;  // its ends
+  std::size_t a, b;  // vectors: its ends
 };
 struct DrawnJoint {
-  std::string name;  // empty: of a body whose position turns with it
+  std::string name;  // empty: the fixed point of a body that rotates about it
   std::size_t at;
   std::array<std::optional<std::size_t>, 2> of;  // places of its bodies; none: the ground
 };
@@ -41,41 +41,42 @@ struct DrawnContact {
   std::string name;
   std::size_t at;
   std::optional<std::array<std::size_t, 2>> tangents;  // of a plane
-  std::size_t foot;  // the same point moved onto the plane: what is not touched yet is above it
+  std::size_t foot;  // a vector: projection of the point onto the contact plane
 };
-/// What holonomic constraints leave to a particle or to the centre of a body with two or three coordinates of its own.
+/// The surface or curve to which holonomic constraints restrict a particle, or the centre of a body, with two or three
+/// coordinates of its own.
 struct DrawnSurface {
   std::string name;  // of the constraints
   std::size_t place;
   std::size_t at;                          // a vector: its coordinates
-  std::vector<std::uint32_t> coordinates;  // of the model: its own, relative to what it is measured from
-  std::vector<std::uint32_t> others;       // of the model: they carry the surface along, or its shape depends on them
-  std::vector<std::size_t> others_at;      // where each is among the outputs
+  std::vector<std::uint32_t> coordinates;  // indices in the model of its own coordinates
+  std::vector<std::uint32_t> others;       // indices in the model of coordinates that move or reshape the surface
+  std::vector<std::size_t> others_at;      // indices of these among the outputs
   std::optional<std::size_t> integrals;    // a vector: the first integrals over time
-  bool touched = false;                    // with friction, or one side only
-  bool reshapes = false;                   // psi changes with time or with the others
-  bool moves = false;                      // that, or it is carried along
-  std::vector<symbolic::Ref> psi;          // of all these coordinates, time and parameters
+  bool touched = false;                    // a contact: with friction, or unilateral
+  bool reshapes = false;                   // psi changes with time or with the other coordinates
+  bool moves = false;                      // reshapes, or moves as a whole
+  std::vector<symbolic::Ref> psi;          // functions of all these coordinates, time and parameters
   symbolic::Vec3 position;
 };
-/// Two places, -1 the origin, at a distance that coordinates or a constraint hold.
+/// A rod between two places (-1: the origin) whose distance is fixed by coordinates or by a constraint.
 struct DrawnRod {
   long a, b;
 };
-/// Two bodies that turn together, about axes of their own.
+/// A gear or belt between two bodies that rotate about their own axes.
 struct DrawnCoupling {
   std::string name;
   std::array<std::size_t, 2> of;    // places
   std::array<std::size_t, 2> axes;  // unit vectors
-  std::size_t ratio;                // a size: the first speed over the second
-  bool carried = false;             // both turn on a third body
+  std::size_t ratio;                // a size: first angular velocity over the second
+  bool carried = false;             // both rotate on a third body
 };
 struct DrawnShape {
   std::size_t place;
-  std::string kind;                  // as [draw] has it
+  std::string kind;                  // as in [draw]
   std::vector<std::size_t> lengths;  // sizes
   std::size_t axis;
-  std::vector<std::size_t> at;                    // sizes; none: the middle of the body
+  std::vector<std::size_t> at;                    // sizes; empty: at the centre of the body
   std::vector<std::vector<std::uint32_t>> faces;  // of a mesh
 };
 struct DrawnParts {
@@ -88,21 +89,21 @@ struct DrawnParts {
   std::vector<DrawnShape> shapes;
   std::vector<DrawnSurface> surfaces;
   std::vector<DrawnRod> rods;
-  bool untried_rods = false;  // there are more places than are tried
+  bool untried_rods = false;  // rods were not searched for because there are too many places
 };
 
 class Drawing {
  public:
   explicit Drawing(mechanics::Mechanics& mechanics);
 
-  /// In the order of the array that is drawn from.
+  /// Names, in the order of the array of numbers that the drawing reads.
   const std::vector<std::string>& outputs() const { return outputs_; }
-  /// What they are: of coordinates, time and parameters.
+  /// Their expressions in coordinates, time and parameters.
   const std::vector<symbolic::Ref>& expressions() const { return expressions_; }
-  /// The outputs that no system of equations has got by itself.
+  /// Adds the outputs that a system of equations does not have already.
   void add_outputs(system::EquationSystem& system) const;
-  /// Sizes that depend on parameters only: masses and inertias of bodies, lengths of shapes. What depends on more is a
-  /// negative number: unknown.
+  /// Sizes as expressions in parameters: masses and inertias of bodies, lengths of shapes. A size that depends on
+  /// anything else is unknown and has a negative value.
   const std::vector<symbolic::Ref>& sizes() const { return sizes_; }
   const DrawnParts& parts() const { return parts_; }
 
@@ -118,7 +119,7 @@ class Drawing {
   void contacts();
   void couplings();
   void shapes();
-  /// A particle or body, and the coordinates that its position has against what it is measured from.
+  /// A particle or body, with the coordinates of its position relative to its reference place.
   struct Bound {
     std::uint32_t place;
     std::set<std::uint32_t> own;
@@ -144,13 +145,13 @@ class Drawing {
   DrawnParts parts_;
 };
 
-/// The sizes of a drawing at parameters; -1 where one has no value.
+/// Evaluates the sizes of a drawing at parameter values. Undefined sizes are -1.
 std::vector<double> sizes_of(const Drawing& drawing, const symbolic::Dag& dag, const std::vector<double>& parameters);
 
-/// The direction in which things fall, where gravity is uniform; nothing where there is none.
+/// Returns the direction of uniform gravity; nullopt if there is none.
 std::optional<std::array<double, 3>> falling(mechanics::Mechanics& mechanics, const std::vector<double>& parameters);
 
-/// Whether parameters are all that an expression depends on.
+/// Whether an expression depends on parameters only.
 bool is_of_parameters(const symbolic::Dag& dag, symbolic::Ref expression);
 
 }  // namespace eomgen::analysis

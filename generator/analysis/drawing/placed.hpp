@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solids where they are. In: parts of a drawing, their sizes, values of its vectors. Out: the solids of bodies, and of
-// particles that [draw] gives a shape, whose axes are the fixed ones.
+// Solids with their positions. In: parts of a drawing, their sizes, values of its vectors. Out: solids of bodies and of
+// particles with a shape in [draw]; the axes of a particle are the fixed ones.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@ namespace eomgen::analysis {
 struct Placed {
   std::size_t place;
   std::vector<Solid> solids;
-  std::function<Point(const Point&)> world;  // from its own axes
+  std::function<Point(const Point&)> world;  // transformation from body axes to space
 };
 
 std::vector<Placed> placed_solids(const DrawnParts& parts, const std::vector<double>& sizes,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Strokes on paper: what a drawing in millimetres is made of. In: points in space and a view. Out: a Figure.
+// Strokes of a drawing, in millimetres on paper. In: points in space and a view. Out: a Figure.
 #pragma once
 
 #include <functional>
@@ -15,26 +15,27 @@ class Sketch {
  public:
   using Weight = print::Figure::Weight;
 
-  /// `extent`: all that is to fit on the paper; at least one point.
+  /// `extent`: points that must fit on the paper, at least one.
   Sketch(const View& view, const std::vector<Point>& extent);
 
   PlanePoint on_paper(const Point& r) const { return scale_ * (view_(r) - middle_); }
   const View& view() const { return view_; }
-  double scale() const { return scale_; }  // millimetres for a unit of length
+  double scale() const { return scale_; }  // millimetres per unit of length
 
   void line(const PlanePoint& from, const PlanePoint& to, Weight weight);
   void line(const Point& from, const Point& to, Weight weight) { line(on_paper(from), on_paper(to), weight); }
   void dashes(const PlanePoint& from, const PlanePoint& to);
   void path(const std::vector<PlanePoint>& points, Weight weight);
-  /// The same from space, with as few strokes as nobody tells from all of them.
+  /// A path given by points in space, simplified to as few strokes as look the same.
   void curve(const std::vector<Point>& points, Weight weight);
   void arrow(const PlanePoint& from, const PlanePoint& to, Weight weight);
   void dot(const PlanePoint& at, double diameter, bool filled);
   void coil(const Point& a, const Point& b);
   void damper(const Point& a, const Point& b);
-  /// `world`: from own axes to space. Edges that the solid itself hides are left out.
+  /// `world`: transformation from body axes to space. Edges that the solid itself hides are not drawn.
   void solid(const Solid& solid, const std::function<Point(const Point&)>& world);
-  /// Beside `at`, where the least is in its way; labels are placed in their order, after all strokes.
+  /// Places a label near `at` with the least overlap. finish() places labels in the order of the calls, after all
+  /// strokes.
   void label(const PlanePoint& at, std::variant<std::string, reading::Formula> text);
 
   PlanePoint low() const { return low_; }
@@ -47,7 +48,7 @@ class Sketch {
     PlanePoint at;
     std::variant<std::string, reading::Formula> text;
   };
-  /// All edges, of a solid that may hide some of its own anywhere.
+  /// Draws all edges of a solid that is not convex.
   void wire(const Solid& solid, const std::function<Point(const Point&)>& world);
   void cover(const PlanePoint& p);
   void place_labels();

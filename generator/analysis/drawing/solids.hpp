@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies as convex polyhedra in their own axes, from what the model says of their shape, or from their inertia: of
-// homogeneous bodies with the same mass and moments the sphere, the cylinder about the axis of two equal moments, the
-// box. The page of `report` makes the same (templates/report/shapes.js).
+// Bodies as convex polyhedra in body axes. In: the shape in the model, or mass and inertia. Out: faces. An inertia is
+// drawn as the homogeneous body of equal mass and moments: a sphere, a cylinder about the axis of symmetry, or a box.
+// The page of `report` draws the same (templates/report/shapes.js).
 #pragma once
 
 #include <optional>
@@ -13,24 +13,23 @@
 namespace eomgen::analysis {
 
 struct Solid {
-  std::vector<std::vector<Point>> faces;  // polygons; of a ball and an arrow none
-  Point at = Point::Zero();               // of a ball its middle, of an arrow its foot
-  double ball = 0;                        // radius
+  std::vector<std::vector<Point>> faces;  // polygons; empty for a sphere and an arrow
+  Point at = Point::Zero();               // centre of a sphere, foot of an arrow
+  double ball = 0;                        // radius of a sphere
   std::optional<Point> tip;               // of an arrow
-  bool open = false;                      // faces have no outside: of a mesh that says which it has
+  bool open = false;                      // a mesh given by its faces: they have no outside
 };
 
-/// The faces of the smallest convex polyhedron around points, with their outsides to the left of their edges; of points
-/// in a plane the polygon around them, of points in a line none.
+/// Convex hull: the faces, counterclockwise from outside. Coplanar points give one polygon, collinear points no face.
 std::vector<std::vector<Point>> hull(const std::vector<Point>& points);
 
-/// Nothing where a length is unknown.
+/// Returns nullopt if a length is unknown.
 std::optional<Solid> solid_of_shape(const DrawnShape& shape, const std::vector<double>& sizes);
 
-/// Nothing where the inertia is of no homogeneous body: of one that turns about one direction alone, say.
+/// Returns nullopt if no homogeneous body has this inertia, for example if only one moment is not 0.
 std::optional<Solid> solid_of_inertia(const DrawnBody& body, const std::vector<double>& sizes);
 
-/// A bar towards `spot`, where something is attached: as long as a uniform one of the largest moment.
+/// Returns a bar towards the attachment point `spot`, as long as a uniform bar with the largest moment of inertia.
 std::optional<Solid> bar_of_inertia(const DrawnBody& body, const std::vector<double>& sizes, const Point& spot);
 
 }  // namespace eomgen::analysis

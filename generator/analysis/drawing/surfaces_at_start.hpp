@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surfaces and curves of a drawing at the start of a scene. In: their equations, values of the drawing's vectors
-// there. Out: lines in space.
+// Constraint surfaces and curves of a drawing in the initial configuration of a scene. In: their equations, values of
+// the drawing's vectors. Out: lines in space.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace eomgen::analysis {
 
-/// `values`: of the drawing's expressions; `size`: of the rest of the figure.
+/// `values`: of the drawing's expressions. `size`: of the rest of the figure, in the unit of positions.
 std::vector<BoundLine> surfaces_at_start(const mechanics::Mechanics& mechanics, const DrawnParts& parts,
                                          const run::Scene& scene, const std::vector<double>& values, const View& view,
                                          double size);

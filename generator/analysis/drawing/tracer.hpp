@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Along curves of coordinates. In: equations, as many as there are coordinates but one, and the positions. Out: points
-// in space, at equal distances.
+// Curve tracing by continuation. In: n - 1 equations in n coordinates, and the position as a function of them. Out:
+// points in space at equal distances along the solution curve.
 #pragma once
 
 #include <utility>
@@ -9,26 +9,28 @@
 
 namespace eomgen::analysis {
 
-/// Values and slopes; nothing where there are none.
+/// Values (n - 1) and Jacobian (n - 1 x n) of the equations; nullopt if they are undefined.
 using Equations = std::function<std::optional<std::pair<Eigen::VectorXd, Eigen::MatrixXd>>(const Eigen::VectorXd&)>;
 
 class Tracer {
  public:
   Tracer(const BoundFunction& function, const BoundPlace& place) : f_(function), place_(place), n_(place.q.size()) {}
 
-  /// By how much a coordinate changes where the position changes by the size of the figure.
+  /// Change of coordinate k that moves the position by about the size of the figure.
   double span(Eigen::Index k) const;
-  /// In space.
+  /// Step length in space.
   double step() const;
   bool is_inside(const Eigen::VectorXd& q, const Eigen::VectorXd& low, const Eigen::VectorXd& high) const;
-  /// Newton's method by the smallest steps, relative to the spans.
+  /// Projects q onto the curve by Newton's method with minimum-norm steps, scaled by span(). Returns nullopt if it does
+  /// not converge in `tries` iterations.
   std::optional<Eigen::VectorXd> onto(const Equations& equations, Eigen::VectorXd q, int tries) const;
-  /// Both ways from a point, until the curve closes (its first point is its last then) or leaves the box.
+  /// Traces the curve in both directions from a point until it closes (then the first and last points are equal) or
+  /// leaves the box.
   std::vector<Point> trace(const Equations& equations, const Eigen::VectorXd& start, const Eigen::VectorXd& low,
                            const Eigen::VectorXd& high) const;
 
  private:
-  /// The direction in which nothing changes, by the distance in space.
+  /// Tangent of the curve, per unit of distance in space.
   std::optional<Eigen::VectorXd> along(const Equations& equations, const Eigen::VectorXd& q) const;
 
   const BoundFunction& f_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From where a system is looked at, without perspective, so that lengths can be compared. The page of `report` finds
-// its view by the same rules (templates/report/camera.js).
+// Direction of view on a system, in orthographic projection so that lengths can be compared. The page of `report` uses
+// the same rules (templates/report/camera.js).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,12 +14,12 @@ using PlanePoint = Eigen::Vector2d;
 
 class View {
  public:
-  /// Along the normal where all points are in a plane of two fixed axes, else from the side and a little from above;
-  /// things fall downwards. `points`: at least one, finite.
+  /// Looks along the normal if all points lie in a plane of two fixed axes, otherwise from the side and slightly from
+  /// above. `points`: at least one, finite. `down`: direction that points downwards on paper.
   View(const std::vector<Point>& points, const std::optional<Point>& down);
 
   PlanePoint operator()(const Point& r) const { return {right_.dot(r), above_.dot(r)}; }
-  const Point& toward() const { return toward_; }  // the reader
+  const Point& toward() const { return toward_; }  // direction towards the viewer
   bool flat() const { return flat_; }
 
  private:

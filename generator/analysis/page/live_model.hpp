@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The model as a page runs it: the optimised program in JavaScript, restricted to what the page calls, and what a start
-// and a change of a parameter need. Or why the page can only replay the run.
+// The model in the form in which a page integrates it: the optimised program in JavaScript, restricted to the functions
+// that the page calls, with the data for initial states and changes of parameters. If the page cannot integrate the
+// model, it replays the run, and the reason is given.
 #pragma once
 
 #include <set>
@@ -20,7 +21,7 @@ struct LiveParameter {
   std::string name, unit, note;
   double value = 0;
   bool positive = false;
-  bool moved = false;  // by the reader; what depends on others follows these
+  bool moved = false;  // has a slider; dependent parameters have none
 };
 struct LiveEvent {
   std::string name;
@@ -28,14 +29,14 @@ struct LiveEvent {
   const char* direction = "";
 };
 
-/// What the page needs beside the script. A state is counted with the coordinates first, then their rates.
+/// Initial data of the page's integrator. The state has n free coordinates, then their n rates.
 struct LiveStart {
-  std::size_t coordinates = 0;                              // free ones
-  std::vector<LiveState> states;                            // twice as many
-  std::vector<double> lower, upper;                         // of the coordinates; infinite where there is no bound
-  std::vector<std::size_t> given;                           // states that the scene gives
+  std::size_t coordinates = 0;                              // n
+  std::vector<LiveState> states;                            // 2 n
+  std::vector<double> lower, upper;                         // n bounds of the coordinates; infinite: no bound
+  std::vector<std::size_t> given;                           // states whose initial values the scene gives
   std::vector<LiveParameter> parameters;                    // all
-  std::vector<std::pair<std::size_t, std::size_t>> starts;  // parameters that are the start of a coordinate
+  std::vector<std::pair<std::size_t, std::size_t>> starts;  // (parameter, coordinate whose initial value it is)
   std::size_t inputs = 0;
   std::vector<LiveEvent> events;
   std::size_t constraints = 0, event_functions = 0, sizes = 0;
@@ -43,14 +44,14 @@ struct LiveStart {
 
 struct LiveModel {
   std::string
-      script;        // of the target javascript, ending in an expression statement free of side effects; empty: replay
-  std::string name;  // what the script calls the model
-  std::string reason;  // a sentence: why it is replayed
+      script;        // of the target javascript; its last statement has no side effects; empty: the page replays
+  std::string name;  // of the constant that the script defines
+  std::string reason;  // a sentence: why the page replays the run
   LiveStart start;
 };
 
-/// `outputs`: names in the order of the array that the page draws and plots from; `set`: parameters and starts that
-/// the command line made numbers.
+/// `outputs`: names in the order of the array that the page draws and plots from. `set`: parameters and initial values
+/// that the command line set to numbers.
 LiveModel live_model(const pipeline::Simulation& simulation, const Drawing& drawing,
                      const std::vector<std::string>& outputs, const std::set<std::string>& set);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equations of constraints that a page draws as surfaces and curves, in JavaScript, of any values of a particle's
-// coordinates: also of those that the motion has eliminated.
+// JavaScript code of the constraint equations that a page draws as surfaces and curves. It evaluates psi at any values
+// of a particle's coordinates, including coordinates that the equations of motion eliminate.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@
 namespace eomgen::analysis {
 
 struct SurfaceCode {
-  std::string script, name;  // as of LiveModel; empty where no surface is drawn
+  std::string script, name;  // as in LiveModel; empty if no surface is drawn
 };
 
-/// Function surface_K of the K-th surface, from 1 on: psi, then the position. Its state has all coordinates of the
-/// model, their rates, and integrals.
+/// Generates a function surface_K for the K-th surface, K = 1, 2, ..: it returns psi, then the position. Its state
+/// consists of all coordinates of the model, their rates, and the integrals.
 SurfaceCode surface_code(const pipeline::Simulation& simulation, const Drawing& drawing);
 
 }  // namespace eomgen::analysis

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which equilibrium each run of a sweep came to. In: the equilibria and steady motions that were found, states in which
-// runs ended. Out: how many ended at each, and elsewhere.
+// Basins of attraction: counts how many runs of a sweep end at each equilibrium or steady motion. In: equilibria and
+// steady motions, final states of runs. Out: counts.
 #pragma once
 
 #include <cstddef>
@@ -15,16 +15,17 @@ namespace eomgen::analysis {
 class Basins {
  public:
   struct Goal {
-    std::vector<std::pair<std::string, double>> values;  // of the coordinates that the equations feel, then their rates
+    std::vector<std::pair<std::string, double>> values;  // non-ignorable coordinates, then their rates
     linear::Stability stability = linear::Stability::unknown;
     std::size_t runs = 0;
   };
 
-  /// A run has come to one where each coordinate (an angle but for turns) and each rate is `within` of it, in SI units.
+  /// `within`: tolerance of each coordinate and rate, in SI units. Angles are compared modulo full turns.
   Basins(const SteadyMotions& found, double within);
 
-  /// Names of what see() wants, in its order.
+  /// Names of the entries of a final state, in the order that see() expects.
   const std::vector<std::string>& names() const { return names_; }
+  /// Counts a run with this final state.
   void see(const std::vector<double>& state);
 
   const std::vector<Goal>& goals() const { return goals_; }

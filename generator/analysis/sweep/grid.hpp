@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of parameters on a grid.
+// Grid of parameter values: the Cartesian product of its axes.
 #pragma once
 
 #include <cstddef>
@@ -11,30 +11,30 @@
 
 namespace eomgen::analysis {
 
-/// More than any sweep makes; products of two stay exact.
+/// Upper limit of the size of a sweep. Products of two such numbers stay exact.
 inline constexpr std::size_t most_points = 1'000'000'000'000;
 
-/// The values of one parameter: those that were listed, or of a range each when it is asked for.
+/// Values of one parameter: explicit values, or a range whose values are computed on demand.
 struct Axis {
   std::string parameter;
   std::vector<symbolic::Rational> listed;
-  symbolic::Rational from, to;  // of a range
+  symbolic::Rational from, to;  // ends of a range
   bool logarithmic = false;
-  std::size_t count = 0;  // at least 2 of a range
+  std::size_t count = 0;  // at least 2 for a range
 
   symbolic::Rational value(std::size_t i) const;
-  /// Why a value of the range would not exist; empty where all do.
+  /// Returns why some values of the range would be undefined; empty if all are defined.
   std::string obstacle() const;
 };
 
 class Grid {
  public:
-  /// Each axis has a parameter of its own. Throws Error{stage "sweep"} for more than most_points.
+  /// Requires axes with distinct parameters. Throws Error{stage "sweep"} for more than most_points points.
   explicit Grid(std::vector<Axis> axes);
 
   const std::vector<Axis>& axes() const { return axes_; }
   std::size_t size() const { return size_; }
-  /// All combinations; the last axis changes fastest.
+  /// Values of one grid point by name. The last axis changes fastest.
   std::map<std::string, symbolic::Rational> point(std::size_t index) const;
 
  private:

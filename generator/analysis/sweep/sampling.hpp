@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of parameters at samples. Each point follows from its number, the seed and what was asked alone, so that any
-// process makes any of them.
+// Random and quasi-random samples of parameter values. A sample depends only on its index, the seed and the request, so
+// any process can compute any sample.
 #pragma once
 
 #include <cstdint>
@@ -11,46 +11,47 @@
 
 namespace eomgen::analysis {
 
-/// Latin (hypercube): each axis in as many equal parts as there are samples, one sample in each. Sobol: a digitally
-/// shifted Sobol' sequence.
+/// Sampling plan. latin: Latin hypercube, which divides each axis into as many equal parts as there are samples, with
+/// one sample in each part. sobol: Sobol' sequence with a digital shift.
 enum class Design : std::uint8_t { random, latin, sobol };
 const char* name(Design design);
 
-/// A parameter between a and b, evenly or evenly in its logarithm; or normal, of mean a and deviation b.
+/// Distribution of one parameter: uniform or log-uniform between a and b, or normal with mean a and standard
+/// deviation b.
 struct SampledAxis {
   enum class Kind : std::uint8_t { even, logarithmic, normal };
   std::string parameter;
   double a = 0, b = 0;
   Kind kind = Kind::even;
 
-  /// Why samples would not exist, or not as finite numbers; empty where all do.
+  /// Returns why some samples would be undefined or infinite; empty if all are finite.
   std::string obstacle() const;
 };
 
 class Sampling {
  public:
-  /// Each axis has a parameter of its own, and no obstacle. Throws Error{stage "sweep"} for more samples or axes than
-  /// the design has.
+  /// Requires axes with distinct parameters and no obstacle(). Throws Error{stage "sweep"} for more samples or axes
+  /// than the design supports.
   Sampling(std::vector<SampledAxis> axes, std::size_t count, Design design, std::uint64_t seed);
 
   std::vector<std::string> names() const;
   std::size_t size() const { return count_; }
-  /// In the order of the names.
+  /// Values of one sample, in the order of names().
   std::vector<symbolic::Rational> point(std::size_t index) const;
 
  private:
   double random(std::size_t axis, std::uint64_t index) const;
-  /// Where a sample lies in [0, 1) along an axis.
+  /// Position of a sample along an axis, in [0, 1).
   double place(std::size_t axis, std::size_t index) const;
 
   std::vector<SampledAxis> axes_;
-  std::vector<std::vector<std::uint32_t>> orders_;  // of a Latin hypercube: the part of each axis that a sample lies in
+  std::vector<std::vector<std::uint32_t>> orders_;  // Latin hypercube: part of each axis, per sample
   std::size_t count_;
   Design design_;
   std::uint64_t seed_;
 };
 
-/// The value below which a normal distribution of mean 0 and deviation 1 has this part of itself; to 1e-15 of itself.
+/// Quantile function of the standard normal distribution, `part` in (0, 1). Relative error 1e-15.
 double normal_quantile(double part);
 
 }  // namespace eomgen::analysis

@@ -7,8 +7,7 @@
 
 namespace eomgen::cli {
 
-/// All processes of MPI_COMM_WORLD. Where one waits for others it sleeps in between, so that more processes than
-/// processors do no harm.
+/// All processes of MPI_COMM_WORLD. A waiting process sleeps between polls, so there may be more processes than cores.
 class MpiTeam : public Team {
  public:
   MpiTeam(int& argc, char**& argv);
@@ -16,9 +15,9 @@ class MpiTeam : public Team {
   MpiTeam(const MpiTeam&) = delete;
   MpiTeam& operator=(const MpiTeam&) = delete;
 
-  /// Of all but the first: whether there will be work.
+  /// Workers: waits for the leader and returns whether there will be work.
   bool await_go();
-  /// The program has ended with this code; where the others still count on this process they are ended as well.
+  /// Ends this process with an exit code. Aborts all processes if others still depend on this one.
   void leave(int code);
 
   std::size_t rank() const override { return static_cast<std::size_t>(rank_); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A PNG file of a picture in memory (ISO/IEC 15948), without libraries.
+// PNG encoder (ISO/IEC 15948) without libraries.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@ namespace eomgen::cli {
 
 struct Picture {
   std::size_t width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;  // by rows, 3 bytes each
+  std::vector<std::uint8_t> rgb;  // height x width x 3, row-major
 };
 
-/// The bytes of the file. Rows are differences to the row above and runs are packed, which suits plots.
+/// Returns the bytes of the file. Uses the filter "up" and run-length matches only, which suits plots.
 std::string png(const Picture& picture);
 
 }  // namespace eomgen::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Letters as strokes, for pictures that are drawn without a library of fonts.
+// Stroke font, for pictures without a font library.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace eomgen::cli {
 
-using Stroke = std::vector<std::pair<double, double>>;  // x to the right, y upwards from the base line
+using Stroke = std::vector<std::pair<double, double>>;  // x to the right, y up from the baseline
 
 struct WrittenText {
   std::vector<Stroke> strokes;
   double width = 0;
 };
 
-/// UTF-8 with letters `size` high, as that of a font is counted. What the font has not got is a box.
+/// Returns the strokes of a UTF-8 text in font size `size`. Characters missing in the font become boxes.
 WrittenText written(const std::string& text, double size);
 
 }  // namespace eomgen::cli

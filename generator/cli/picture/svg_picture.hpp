@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Our own plots as pixels. In: SVG as eom/output/svg_plot.hpp writes it (rectangles, lines, paths of straight pieces,
-// circles, text, one SVG in another at some height); nothing else is understood. Out: a picture.
+// Rasteriser for the program's own plots. In: SVG as written by eom/output/svg_plot.hpp (rectangles, lines, polygonal
+// paths, circles, text, a nested SVG at some height); nothing else is supported. Out: a picture.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace eomgen::cli {
 
-/// `scale`: pixels for a unit of the drawing. Throws std::logic_error where the drawing says no size.
+/// `scale`: pixels per unit of the drawing. Throws std::logic_error if the drawing has no size.
 Picture drawn(const std::string& svg, double scale);
 
 }  // namespace eomgen::cli

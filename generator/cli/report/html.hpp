@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pieces of a page. What is text is escaped here; formulas and plots come as markup of our own printers.
+// HTML of a page. Text is escaped here; formulas and plots are markup from the program's own printers.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ class Html {
   void formula(const std::string& mathml);
   void preformatted(const std::string& summary, const std::string& text);  // folded
   void markup(const std::string& trusted) { text_ += trusted + "\n"; }
-  /// Cells are escaped; those of `numbers` are set as figures.
+  /// Cells are escaped. `numbers`: indices of numeric columns.
   void table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows,
              const std::vector<std::size_t>& numbers = {});
   const std::string& text() const { return text_; }
@@ -26,14 +26,14 @@ class Html {
 struct PageParts {
   std::string title;  // escaped here
   std::string body;
-  std::string motion;  // JSON for the script; empty: the page has none
-  // JavaScript of the target javascript, or empty, and the name of the constant that it defines: the model, and the
-  // equations of what is drawn of constraints.
+  std::string motion;  // JSON for the script; empty: no motion
+  // JavaScript of the model and of the constraint surfaces, with the name of the constant that each defines; may be
+  // empty.
   std::string model, name;
   std::string surfaces, surfaces_name;
 };
 
-/// The whole page: the skeleton of templates/report with its style and scripts.
+/// Returns the whole page: the skeleton of templates/report with its style and scripts.
 std::string page(const PageParts& parts);
 
 }  // namespace eomgen::cli

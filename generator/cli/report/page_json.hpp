@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a page draws and runs, as its script reads it.
+// JSON for the script of a page: parts of the drawing, forces, initial data of the integrator.
 #pragma once
 
 #include "analysis/drawing/forces.hpp"
@@ -9,9 +9,9 @@
 
 namespace eomgen::cli {
 
-/// The bounds of coordinates are those of the scene.
+/// Bounds of coordinates are taken from the scene.
 Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const run::Scene& scene);
-/// Arrows of forces, and what has none, among the parts of a page.
+/// Adds the arrows of forces, and the names of forces without a vector, to the parts.
 void add_forces(Json& parts, const analysis::DrawnForces& forces);
 Json to_json(const analysis::LiveStart& start);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rows of a run, kept for the plots and the animation of a page.
+// Rows of a run, stored for the plots and the animation of a page.
 #pragma once
 
 #include <span>
@@ -19,14 +19,14 @@ class RecordedMotion {
   void row(double t, std::span<const double> values);
 
   std::size_t size() const { return t_.size(); }
-  /// Leaves out every second row, but the last.
+  /// Drops every second row and keeps the last one.
   void thin();
 
-  /// The panels as SVG, which a page without scripts and paper show.
+  /// Panels as SVG, for pages without scripts and for print.
   std::string plots(const std::vector<Panel>& panels) const;
 
-  /// What the page's script works on; null where nothing can be drawn or run. With a live model the states alone, from
-  /// which the script computes the rest; else all `outputs`.
+  /// Data for the page's script; null if nothing can be drawn or integrated. With a live model it contains only the
+  /// states, from which the script computes the rest; otherwise all `outputs`.
   Json json(const pipeline::Simulation& simulation, const analysis::Drawing& drawing,
             const analysis::DrawnForces& forces, const analysis::LiveModel& live,
             const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const;

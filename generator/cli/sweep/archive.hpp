@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A zip archive of members that are stored as they are (PKWARE's APPNOTE 6.3, with the 64-bit fields of section 4.5.3
-// throughout). In: names and sizes, then bytes of any member in any order of members. Out: the archive, with the
-// checksum of each.
+// Zip archive with uncompressed members (PKWARE APPNOTE 6.3, with the 64-bit fields of section 4.5.3 throughout). In:
+// names and sizes, then bytes of the members in any order. Out: the archive with a checksum of each member.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +17,12 @@ class Archive {
     std::string name;
     std::uint64_t bytes = 0;
   };
-  /// Throws std::system_error, as all here; std::invalid_argument where `path` cannot be written at any place.
+  /// Throws std::invalid_argument if `path` does not support writing at an offset. All members throw std::system_error.
   Archive(const std::string& path, std::vector<Member> members);
 
-  /// The next bytes of a member.
+  /// Appends bytes to a member.
   void write(std::size_t member, std::string_view bytes);
-  /// Once all bytes are there.
+  /// Writes the directory. Call it after all bytes of all members.
   void finish();
   void discard() { file_.discard(); }
 
@@ -42,7 +41,7 @@ class Archive {
   std::uint64_t end_ = 0;  // of the members
 };
 
-/// CRC-32 of ISO 3309 of all bytes up to here; begins with 0.
+/// Updates a CRC-32 (ISO 3309) with further bytes; the initial value is 0.
 std::uint32_t checksum(std::uint32_t before, std::string_view bytes);
 
 }  // namespace eomgen::cli

@@ -13,47 +13,47 @@
 
 namespace eomgen::cli {
 
-/// The table of a sweep. While it grows, rows go to FILE.partial-XXXXXX as they come in; finish() writes FILE in the
-/// order of the runs and removes the other. Rows of such files of the same sweep that was interrupted are taken over,
-/// unless the process that writes them is still there; so are those of FILE if the sweep is done. Links are not
-/// followed there, nor are files of other users read. Where FILE is no regular file nothing is taken over, and the
-/// table is written at once.
+/// Table of a sweep with checkpoints. Rows are appended to FILE.partial-XXXXXX in the order of completion; finish()
+/// writes FILE in the order of the runs and removes the partial file. The constructor takes over the rows of partial
+/// files of the same sweep, unless their process still runs, and those of a finished FILE. For safety it follows no
+/// links and reads no files of other users. If FILE is not a regular file, nothing is taken over and the table is
+/// written directly.
 class Ledger {
  public:
   enum class Part {
     whole,
     member
-  };  // of several processes that make one table all but the first are members: they take nothing over
+  };  // member: a process of a group other than its leader; it takes nothing over
 
-  /// `key`: what makes two sweeps the same; it stands in the first line. `belongs`: whether a run is one of the table.
-  /// Throws Error where an unfinished table of another sweep is in the way.
+  /// `key` identifies the sweep; it is in the first line of the file. `belongs`: whether the table has this run. Throws
+  /// Error if there is an unfinished table of another sweep.
   Ledger(std::string file, std::string key, std::function<bool(std::size_t run)> belongs, Part part = Part::whole);
 
-  const Rows& rows() const { return rows_; }  // in order before the first add() and after finish()
+  const Rows& rows() const { return rows_; }  // sorted before the first add() and after finish()
   void sort() { rows_.sort(); }
   const std::string& header() const { return header_; }
-  /// What the file begins with.
+  /// First lines of the file.
   std::string beginning() const;
-  /// What the columns are called; the file is begun with it. Nothing to do where all rows are there.
+  /// Sets the column names and starts the file. Not needed if all rows exist.
   void set_header(const std::string& header);
   void add(std::size_t run, const std::string& line);
   void finish();
-  /// Throws Error where FILE is no regular file.
+  /// Throws Error unless FILE is a regular file.
   void require_file() const;
-  /// Rows are in other places than FILE.
+  /// Whether rows are in files other than FILE.
   bool open() const { return out_ || !taken_over_.empty(); }
-  /// The rows are in FILE, which somebody else wrote: removes the others.
+  /// Removes the partial files after another process wrote FILE.
   void finish_elsewhere();
-  /// The rows so far, where no file keeps them for the next time.
+  /// Writes the rows so far if no partial file stores them.
   void interrupt();
-  /// Where the rows are.
+  /// Path of the file that contains the rows.
   const std::string& place() const { return place_; }
 
  private:
   struct Unfinished {
     std::string path;
     OpenFile file;
-    bool same = false;  // of this sweep
+    bool same = false;  // belongs to this sweep
   };
   std::vector<Unfinished> unfinished() const;
   void read(const OpenFile& file);
@@ -63,11 +63,11 @@ class Ledger {
 
   std::string file_, place_, key_, header_;
   std::function<bool(std::size_t)> belongs_;
-  bool kept_ = true;  // in a file of its own while it grows
+  bool kept_ = true;  // rows go to a partial file
   std::vector<std::string> taken_over_;
   Rows rows_;
   std::optional<eom::WholeFile> out_;
-  OpenFile own_;  // what rows are added to
+  OpenFile own_;  // the partial file of this process
   std::uint32_t number_ = 0;
   std::uint64_t end_ = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was asked of a sweep, as it was typed.
+// Options of a sweep, as typed.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct SweepOptions : SceneOptions {
   bool no_error_estimate = false, ensemble = false, statistics = false;
 };
 
-/// What makes two sweeps the same: the model's bytes and all that was asked.
+/// Key that identifies a sweep: the bytes of the model and all options.
 std::string key_of(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
                    const std::string& points_hash);
 

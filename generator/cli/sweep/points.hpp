@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which runs a sweep has, as it is typed, and as a shard's table tells it.
+// Parameter points and shard of a sweep, from its options and from the first line of a shard's table.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,14 @@
 
 namespace eomgen::cli {
 
-/// `file_hash`: of what --points names. Throws Error where nothing is varied, a parameter is varied twice, or there are
-/// samples and a file.
+/// `file_hash` receives the hash of the file of --points. Throws Error if nothing is varied, if a parameter is varied
+/// twice, or if both samples and a file are given.
 analysis::Points points_of(const SweepOptions& options, std::uint64_t seed, std::string& file_hash);
 
-/// "2/8". Throws Error for anything else.
+/// Parses "2/8". Throws Error for anything else.
 analysis::Shard parse_shard(const std::string& text);
 
-/// What stands in the first line of a shard's table behind the key of its sweep.
+/// Returns the part of the first line of a shard's table that follows the key of its sweep.
 std::string shard_note(const analysis::Shard& shard, std::size_t runs);
 struct ShardNote {
   std::string key;  // of the sweep

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of parameters that a file gives: a CSV table whose first line names them, each further line a point.
+// Parameter points from a CSV file: the first line has the names, each further line one point.
 #pragma once
 
 #include <string>
@@ -13,8 +13,7 @@ struct PointsFile {
   std::string content_hash;  // of its bytes
 };
 
-/// Lines that are empty or begin with # are left out. Throws Error with the number of the line for what is no such
-/// table.
+/// Skips lines that are empty or begin with #. Throws Error with the line number if the file is no such table.
 PointsFile read_points(const std::string& path);
 
 }  // namespace eomgen::cli

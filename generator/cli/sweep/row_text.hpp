@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lines of a sweep's table. In: a run, its point, its result. Out: the line, without its end.
+// Formats the lines of a sweep's table. In: a run, its point, its result. Out: the line without line break.
 #pragma once
 
 #include <map>
@@ -21,7 +21,7 @@ class RowText {
 
   std::string header() const;
   std::string of(std::size_t run, const Point& point, const run::RunResult& result) const;
-  /// Of a run that could not begin.
+  /// Line of a run that could not start.
   std::string refused(std::size_t run, const Point& point, const std::string& why) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of a sweep's table, in files: memory holds the place of each, 24 bytes, whatever its length. In: lines that
-// begin with the number of their run. Out: the lines in the order of the runs.
+// Index of the rows of a sweep's table. The rows stay in files; memory holds 24 bytes per row. In: lines that begin
+// with the number of their run. Out: the lines in the order of the runs.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace eomgen::cli {
 
-/// An open file; closed when the last copy is gone. What was unlinked is read until then.
+/// Shared file descriptor, closed with the last copy. An unlinked file stays readable until then.
 class OpenFile {
  public:
   OpenFile() = default;
   explicit OpenFile(int descriptor);
-  /// A file without a name, for what is kept while the process is there. Throws std::system_error.
+  /// Opens a temporary file without a name, which ends with the process. Throws std::system_error.
   static OpenFile unnamed();
 
   explicit operator bool() const { return descriptor_ != nullptr; }
@@ -29,26 +29,26 @@ class OpenFile {
   std::shared_ptr<const int> descriptor_;
 };
 
-/// The lines of a file from its beginning, as long as `take` wants them; the last one only if it ends with a line
-/// break.
+/// Calls `take` with the lines of a file from the start until it returns false. A last line without line break is
+/// skipped.
 void each_line(const OpenFile& file, const std::function<bool(std::string_view line, std::uint64_t offset)>& take);
 
-/// The number of the run that a line begins with, if it has as many fields as `header`: what was written while a disk
-/// was full has not.
+/// Whether a line has as many fields as `header`; if so, sets `run` to its first field. Lines written while the disk
+/// was full are incomplete.
 bool reads_as_row(std::string_view line, std::string_view header, std::size_t& run);
 
 class Rows {
  public:
-  /// Rows of this file are added with the number that it gives.
+  /// Registers a file and returns its number, for the other overload.
   std::uint32_t add(OpenFile file);
   void add(std::size_t run, std::uint32_t file, std::uint64_t offset, std::size_t length);
-  /// Puts them in order; of those of one run the last stays. Before what follows.
+  /// Sorts by run and keeps the last row of each run. Required before the functions below.
   void sort();
 
   std::size_t size() const { return places_.size(); }
   std::size_t run(std::size_t i) const { return places_[i].run; }
   std::size_t length(std::size_t i) const { return places_[i].length; }
-  /// Those from `first` to before `last`. Throws std::system_error.
+  /// Calls `take` with the rows in [first, last). Throws std::system_error.
   void each(std::size_t first, std::size_t last,
             const std::function<void(std::size_t run, std::string_view line)>& take) const;
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sweep: which runs there are, which of them are open, how each becomes a row of the table. In: what was asked. Out:
-// the table.
+// A sweep: determines its runs, computes the missing ones, and writes a row for each. In: options. Out: the table.
 #pragma once
 
 #include <optional>
@@ -22,25 +21,26 @@ namespace eomgen::cli {
 
 class Sweep {
  public:
-  /// Throws Error for what makes no sense.
+  /// Throws Error for inconsistent options.
   Sweep(const SweepOptions& options, const Common& common, const model::Model& model);
 
-  /// Makes the runs that are open, with the others of a team. Whether all are there now.
+  /// Computes the missing runs, together with the other processes if there are any. Returns whether the table is
+  /// complete.
   bool run() { return team_ != nullptr ? run_by_team() : run_alone(); }
 
-  /// All of them, of this shard.
+  /// Number of runs of this shard.
   std::size_t runs() const { return shard_.size(points_.size()); }
   std::size_t resumed() const { return resumed_; }
-  /// Where the rows are.
+  /// Path of the file that contains the rows.
   const std::string& place() const { return ledger_.place(); }
   struct Counts {
     std::size_t done = 0, failed = 0;
   };
-  /// After run(); of a team those of the first are of all.
+  /// Valid after run(). In a group of processes the first one has the counts of all.
   const Counts& counts() const { return counts_; }
-  /// Of the rows that are there; of a team of all or none.
+  /// Statistics of the existing rows. In a group of processes: of all rows, or empty if the table is incomplete.
   std::vector<analysis::ColumnStatistics> statistics() const;
-  /// Which equilibrium the same rows came to; none where not all are there.
+  /// Basins of attraction of the same rows; nullopt if the table is incomplete.
   std::optional<analysis::Basins> basins() const;
 
  private:
@@ -50,12 +50,12 @@ class Sweep {
   void make_open_runs();
   void write_by_team();
   std::vector<Stretch> open_runs() const;
-  /// Code and columns by the first of the open runs that can begin, else by any that can. Gives it, or none where an
-  /// interruption came first.
+  /// Compiles the code and determines the columns from the first open run that can start, otherwise from any run that
+  /// can. Returns that run, or nullopt on interruption.
   std::optional<std::size_t> prepare(const std::vector<Stretch>& open);
   bool simulate_first(std::size_t run, bool integrate);
   std::size_t first_that_begins(const std::vector<Stretch>& open);
-  /// The row of the run that prepare() gave, which is not open any more.
+  /// Adds the row of the run that prepare() returned and removes the run from `open`.
   void take_first(std::size_t run, std::vector<Stretch>& open);
   bool is_open(const std::vector<Stretch>& open, std::size_t run) const;
   std::vector<std::size_t> runs_of(const std::vector<Stretch>& stretches) const;
@@ -69,7 +69,7 @@ class Sweep {
 
   const SweepOptions& options_;
   std::uint64_t seed_;
-  std::string points_hash_;  // of the file that gives them
+  std::string points_hash_;  // of the file of --points
   analysis::Points points_;
   analysis::Shard shard_;
   std::string file_;
@@ -78,7 +78,7 @@ class Sweep {
   Counts counts_;
   Team* team_;
   RowText text_;
-  std::string solver_;  // of an ensemble
+  std::string solver_;  // of the ensemble
   std::optional<Interrupt> interrupt_;
   std::optional<pipeline::Simulation> first_;
   std::optional<pipeline::Ensemble> ensemble_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Several processes, maybe on several machines, that make one sweep. The first hands out runs in blocks and makes none
-// where there are others; each of the others keeps the rows that it makes in a file of its own, and all together write
-// the table.
+// Group of processes, possibly on several hosts, that computes one sweep. The leader distributes runs in blocks; it
+// computes runs only if it is alone. Each worker stores its rows in a file of its own. All processes together write the
+// table.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@
 
 namespace eomgen::cli {
 
-/// Runs that follow one another in the table, by their places in it.
+/// A range of consecutive runs of the table.
 struct Stretch {
   std::uint64_t first = 0, count = 0;
 };
@@ -26,32 +26,30 @@ class Team {
   bool leads() const { return rank() == 0; }
   std::size_t workers() const { return size() > 1 ? size() - 1 : 1; }
 
-  /// Of the first one: all that can be wrong before the work has been looked at; the others begin with this run, if
-  /// there is any to make.
+  /// Leader: lets the workers start, after all checks have passed. `run`: the run they prepare with; nullopt: no work.
   virtual void go(std::optional<std::uint64_t> run) = 0;
-  /// What go() was called with, for the others.
+  /// Workers: the argument of go().
   virtual std::optional<std::uint64_t> gone() const = 0;
-  /// First one process of each machine, then its others: what the first compiles the others find.
+  /// Calls `work` in one process of each host, then in the others, which find the compiled code in the cache.
   virtual void one_by_machine(const std::function<void()>& work) = 0;
 
-  /// Of the first one: answers the others until all of `open` is handed out, or `stop`. A block has `least` runs or
-  /// more.
+  /// Leader: answers requests of workers until `open` is exhausted or `stop` is set. Blocks have at least `least` runs.
   virtual void hand_out(std::vector<Stretch> open, std::uint64_t least, const std::atomic<bool>& stop) = 0;
-  /// Of the others: the next block, or none.
+  /// Worker: requests the next block; nullopt if there is none.
   virtual std::optional<Stretch> next() = 0;
 
+  /// Sum over all processes.
   virtual std::uint64_t sum(std::uint64_t of_this_one) = 0;
 
   struct Piece {
     Stretch where;
     std::uint64_t bytes = 0;
   };
-  /// Writes the pieces of all behind one another, in the order of the table, to what the first one calls `path`, from
-  /// `begin` on. Returns
-  /// "" or, for all, why that failed.
+  /// Writes the pieces of all processes in the order of the table to the leader's `path`, from offset `begin`. Returns
+  /// the same result in all processes: "" or the error.
   virtual std::string write(const std::string& path, std::uint64_t begin, const std::vector<Piece>& pieces,
                             const std::function<std::string(std::size_t piece)>& text) = 0;
-  /// Waits for all. From now on nobody needs the others.
+  /// Waits for all processes. Afterwards they are independent.
   virtual void part() = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Jobs by processes: what is loaded and derived is shared by fork, nothing else is.
+// Runs jobs in forked child processes, which share the loaded and derived data of the parent.
 #pragma once
 
 #include <atomic>
@@ -9,8 +9,8 @@
 
 namespace eomgen::cli {
 
-/// `line` in a child for every job, `done` with what it returned here, in the order in which they end. A job that
-/// returns an empty line, and all that its process would have done after it, is left out. Returns early when
+/// Calls `line` for every job in a child process, and `done` with the result in this process, in the order of
+/// completion. If a job returns an empty line, it and the remaining jobs of its process are skipped. Returns early if
 /// `interrupt` is set. Throws Error if a process dies.
 void by_processes(const std::vector<std::size_t>& jobs, std::size_t processes,
                   const std::function<std::string(std::size_t)>& line,
