@@ -21,7 +21,7 @@ namespace {
 using mechanics::Mechanics;
 using reading::ReadingForm;
 
-// What a search costs grows with the coordinates and the starts; one that is larger is left to `equilibria`.
+// The cost of a search grows with coordinates and starts. Larger searches are left to `equilibria`.
 constexpr std::size_t most_coordinates = 3, starts = 40;
 
 std::vector<print::ForceFinding> forces_of(Mechanics& m) {
@@ -56,14 +56,14 @@ void judge(Mechanics& m, const ReadingForm& one, const ReadingForm& two, std::ui
   const verify::Certificate certificate = verify::certify(m, subjects, {50, pipeline::emission_points, seed, {}});
   if (certificate.interrupted) throw work::Interrupted{};
   pipeline::require_pass(certificate, *m.model);
-  // Without the measured differences, whose last digits depend on the word size of the machine: equal bytes everywhere.
+  // Omits the measured differences: their last digits depend on the machine's word size, and output must be identical.
   findings.certificate = fmt::format("{} at {} random states in {} digits, {} comparisons", certificate.verdict(),
                                      certificate.points, certificate.options.digits, certificate.comparisons.size());
   for (const std::string& name : certificate.agreeing())
     findings.judged += (findings.judged.empty() ? "" : ", ") + name;
 }
 
-/// At the start of the default scene.
+/// Figure at the start of the default scene.
 void draw(Mechanics& m, const system::EquationSystem& system, print::Findings& findings) {
   try {
     findings.figure = figure(m, run::resolve_scene(m, system, m.model->scene("default"), {}));
@@ -80,7 +80,7 @@ print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion)
   for (std::size_t i = 0; i < 2 * free.size(); ++i) {
     const bool rate = i >= free.size();
     const double value = shown(motion.l.z[i]);
-    if (rate && value == 0) continue;  // of an equilibrium all
+    if (rate && value == 0) continue;  // all rates of an equilibrium
     result.values.emplace_back(
         symbolic::Symbol{symbolic::SymbolKind::coordinate, free[i % free.size()], static_cast<std::uint8_t>(rate)},
         value);

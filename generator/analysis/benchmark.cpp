@@ -16,21 +16,21 @@ namespace {
 using pipeline::Simulation;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t looks = 100;  // at the error along the run
-constexpr int fewest_digits = 8;    // of a reference that is worth the name
+constexpr std::size_t looks = 100;  // samples of the error along the run
+constexpr int fewest_digits = 8;    // required of the reference solution
 
 [[noreturn]] void unsupported(const std::string& what, const std::string& remedy) {
   throw Error("bench", {}, "there is no reference for this scene: " + what, remedy);
 }
 
-/// What the reference cannot follow is told before anything is measured.
+/// Reports before any measurement if there can be no reference solution.
 void require_smooth(const Simulation& simulation, const run::RunRequest& request) {
   if (!simulation.program.contacts.empty())
     unsupported("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
   for (const run::Signal& signal : simulation.scene.inputs) {
     if (signal.moves()) unsupported("an input is an expression of t", "write it into the force, or give it as a table");
   }
-  // A scene that states a step has a reason: adaptive ones may not get through.
+  // A scene with a fixed step may not be solvable with adaptive steps.
   run::Integration trial(request, simulation.scene.step > 0 ? "rk4" : "dop853");
   eom::Options options;
   options.fixed_step = simulation.scene.step;
@@ -90,7 +90,7 @@ std::vector<std::string> solvers_for(const BenchmarkRequest& options, const run:
     if (found)
       chosen.push_back(name);
     else if (found.reason == eom::Eligibility::Reason::refused || !options.solvers.empty())
-      left_out.emplace_back(name, run::reason_of(found));  // not what is for other models from the outset
+      left_out.emplace_back(name, run::reason_of(found));  // skips solvers that are made for other models
   }
   return chosen;
 }

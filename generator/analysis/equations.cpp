@@ -41,7 +41,7 @@ std::string name_of(const print::Item& item) {
   return name;
 }
 
-/// Items that took more than their budget, and the equations where they are shown by parts.
+/// Items that exceeded their budget, and equations that are shown in parts.
 std::vector<work::LeftOut> left_out_of(const std::vector<print::Item>& items, const reading::ReadingForm& form) {
   std::vector<work::LeftOut> result;
   if (form.by_parts) result.push_back({"equations written out", form.why_by_parts});
@@ -52,7 +52,7 @@ std::vector<work::LeftOut> left_out_of(const std::vector<print::Item>& items, co
   return result;
 }
 
-/// Which multiplier is which, where there are several.
+/// Meaning of the multipliers, if there are several.
 std::vector<Multiplier> legend(const mechanics::Mechanics& m, const reading::ReadingForm& form) {
   std::vector<Multiplier> result;
   const print::Notation notation(m);
@@ -87,7 +87,7 @@ void add_conserved(mechanics::Mechanics& mechanics, reading::Forms& forms, const
   }
 }
 
-// Only on request: it is another form of the equations that `all` shows already.
+// Only on explicit request: another form of equations that `all` shows already.
 void add_routh(mechanics::Mechanics& mechanics, reading::Forms& forms, const std::vector<std::string>& show,
                std::vector<print::Item>& items, std::vector<std::string>& notes) {
   if (std::find(show.begin(), show.end(), "routh") == show.end()) return;
@@ -101,7 +101,7 @@ void add_routh(mechanics::Mechanics& mechanics, reading::Forms& forms, const std
   for (print::Item& item : print::render_routh(mechanics, form)) items.push_back(std::move(item));
 }
 
-// Only on request: n^2 entries of four matrices, twice.
+// Only on explicit request: n^2 entries of four matrices, twice.
 void add_linear(const mechanics::Mechanics& mechanics, reading::Forms& forms, const std::vector<std::string>& show,
                 std::vector<print::Item>& items) {
   if (std::find(show.begin(), show.end(), "linear") == show.end()) return;

@@ -42,7 +42,7 @@ void add_constraints(const mechanics::Mechanics& m, Examination& found) {
     one.name = c.label;
     one.kind = c.holonomic() ? "holonomic" : "velocity";
     one.integrable = mechanics::name(m.classification[k].integrable);
-    if (c.holonomic()) one.integral = shown(m, c.psi) + " = 0";  // it is its own integral
+    if (c.holonomic()) one.integral = shown(m, c.psi) + " = 0";  // a holonomic constraint is its own integral
     for (const mechanics::Integral& i : m.integrals) {
       if (i.label != c.label) continue;
       one.integral = shown(m, i.psi) + " = constant";
@@ -119,8 +119,8 @@ void add_charts(const mechanics::Mechanics& m, Examination& found) {
   }
 }
 
-// A number as a decimal; what other parameters determine as their expression. Throws Error at `span` for what numbers
-// alone determine and has no value, as sqrt(-1).
+// Formats a number as a decimal, and a dependent parameter as its expression. Throws Error at `span` if an expression
+// of numbers is undefined, as sqrt(-1).
 std::string value_of(const mechanics::Mechanics& m, symbolic::Ref value, const std::string& what,
                      const model::Span& span) {
   constexpr int digits = 20;

@@ -20,7 +20,7 @@ namespace {
 
 using pipeline::Derived;
 
-/// What the forces are asked of: constraints by label; those that read q = f(t) if none are named.
+/// Labels of the requested constraints; all of the form q = f(t) if none are named.
 std::vector<std::string> chosen_constraints(const mechanics::Mechanics& m, const std::vector<std::string>& names) {
   if (names.empty()) {
     std::vector<std::string> labels = analysis::prescribing_constraints(m);
@@ -67,7 +67,7 @@ std::vector<std::string> force_columns(mechanics::Mechanics& m, system::Equation
   return names;
 }
 
-/// Every coordinate is prescribed: nothing is integrated.
+/// Case that every coordinate is prescribed: no integration.
 class Prescribed {
  public:
   explicit Prescribed(mechanics::Mechanics mechanics) : model_(*mechanics.model), m_(std::move(mechanics)) {}
@@ -89,7 +89,7 @@ class Prescribed {
     t_ = scene_.t0;
     for (const std::string& name : result.columns) {
       const system::Output* output = system::find(system_.outputs, name);
-      // What is 0 is shown as 0, not as the rounding of terms that cancel.
+      // Show exact zeros as 0 rather than as rounding errors.
       const bool nothing = conservation::vanishing(*m_.dag, {output->value}) != conservation::Certainty::no;
       values_.push_back(nothing ? m_.dag->zero() : output->value);
     }
@@ -127,7 +127,7 @@ class Prescribed {
     });
   }
 
-  /// Integrals of functions of time that have no closed form.
+  /// Integrals over time without closed form.
   void advance(double t, InverseAnswer& result) {
     const double from = std::exchange(t_, t);
     if (integrals_.empty()) return;
@@ -148,7 +148,7 @@ class Prescribed {
     result.detail = end.detail;
   }
 
-  /// Where a velocity jumps the forces are an impulse, which no row shows.
+  /// Warns of jumps of velocities: there the forces are impulses, which no row shows.
   void tell_jumps(InverseAnswer& result) const {
     const eom::hybrid::Jumps jumps(scene_.jumps, system_.free.size(), integrals_.size(), scene_.inputs.size(),
                                    scene_.parameters, !scene_.clock.breaks.empty());
@@ -187,7 +187,7 @@ class Prescribed {
   std::vector<double> integrals_;
 };
 
-/// Some coordinates are free: they move as the equations of motion say.
+/// Case that some coordinates are free: integrates the equations of motion.
 InverseAnswer along_a_run(const InverseRequest& asked) {
   InverseAnswer result;
   pipeline::SimulationRequest request;

@@ -18,15 +18,15 @@ using pipeline::Derived;
 using pipeline::Simulation;
 using pipeline::SimulationRequest;
 
-constexpr int halvings = 4;      // of the change: central differences of order 2, 4, 6, 8 by extrapolation
-constexpr long first_part = 32;  // the first change, as a part of the parameter
+constexpr int halvings = 4;      // of the step: extrapolation to central differences of order 2, 4, 6, 8
+constexpr long first_part = 32;  // the first step is the parameter divided by this
 
-/// Parameters and the start of the state, one after the other.
+/// Vector of the parameters, then the initial state.
 std::vector<double> values_of(const run::Scene& scene, const run::Code& code, std::size_t states) {
   std::vector<double> values = scene.parameters;
   for (const std::uint32_t i : code.free) values.push_back(scene.q[i]);
   for (const std::uint32_t i : code.free) values.push_back(scene.qdot[i]);
-  values.resize(scene.parameters.size() + states);  // integrals over time start from 0
+  values.resize(scene.parameters.size() + states);  // integrals over time start at 0
   return values;
 }
 
@@ -70,7 +70,7 @@ class Directions {
     return d;
   }
 
-  /// How dependent parameters and the start follow: by differences of what the scene makes of them, which is smooth.
+  /// Derivatives of dependent parameters and of the initial state, by differences of their smooth values in the scene.
   run::Direction by_parameter(std::size_t index) const {
     const model::Parameter& parameter = simulation_.derived->model.parameters[index];
     const run::Scene& scene = simulation_.scene;

@@ -50,7 +50,7 @@ std::string certified(Derived& derived, std::uint64_t seed) {
   return certificate.summary();
 }
 
-/// Coordinates, rates and integrals of time at the end of a run, by the model's indices.
+/// Coordinates, rates and integrals over time at the end of a run, by indices of the model.
 struct Reached {
   std::vector<double> q, qdot, integrals;
 };
@@ -84,7 +84,7 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
     for (const auto& [key, number] : run.result.final) {
       if (key == name) return number;
     }
-    return 0.0;  // an integral in closed form, which is no symbol any more
+    return 0.0;  // an integral with closed form is no symbol
   };
   Reached reached;
   for (const model::Coordinate& c : run.derived->model.coordinates) {
@@ -205,7 +205,7 @@ linear::Linearisation linearised(const SteadyProblem& p, std::uint64_t seed) {
 }
 
 double shown(const Precise& x) {
-  constexpr int nothing = 40;  // no model has lengths or rates of this size
+  constexpr int nothing = 40;  // exponent of values below any physical size
   return linear::magnitude(x) < linear::tiny<Precise>(nothing) ? 0.0 : linear::to_double(x);
 }
 

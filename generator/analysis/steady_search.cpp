@@ -34,7 +34,7 @@ struct Neighbour {
   linear::Field<Precise> field;
 };
 
-/// Points beside the start, one for each seed; none where one is not found.
+/// Points near the start, one per seed; nullopt if none is found.
 std::vector<Neighbour> neighbours(const SteadyProblem& p, std::initializer_list<std::uint64_t> seeds) {
   std::vector<Neighbour> result;
   for (const std::uint64_t seed : seeds) {
@@ -47,7 +47,7 @@ std::vector<Neighbour> neighbours(const SteadyProblem& p, std::initializer_list<
   return result;
 }
 
-/// Conserved at these parameters: its rate vanishes in many digits at points beside the start.
+/// Conserved at these parameters: the rate vanishes in multiple precision at points near the start.
 bool is_kept(const SteadyProblem& p, const std::vector<Neighbour>& neighbours, const Quantity& quantity) {
   const linear::Tape tape = p.flow->tape({quantity.expression});
   for (const auto& [z, setting, field] : neighbours) {
@@ -55,7 +55,7 @@ bool is_kept(const SteadyProblem& p, const std::vector<Neighbour>& neighbours, c
     try {
       s = p.flow->sloped(tape, z, setting);
     } catch (const std::domain_error&) {
-      return false;  // it has no value everywhere: it can be no invariant
+      return false;  // undefined somewhere, so not an invariant
     }
     Precise rate = s.slope(0, z.size() - 1), size(0);
     for (std::size_t i = 0; i < field.X.rows; ++i) {
@@ -68,8 +68,8 @@ bool is_kept(const SteadyProblem& p, const std::vector<Neighbour>& neighbours, c
   return !neighbours.empty();
 }
 
-/// What the energies and the momenta of the coordinates may be, beside what is conserved for all parameters: a torque
-/// of size 0 keeps a momentum too.
+/// Energies and momenta that may be conserved at these parameters only: for example, a torque of size 0 conserves a
+/// momentum.
 std::vector<Quantity> candidates(const SteadyProblem& p, bool energies) {
   const system::EquationSystem& s = p.system();
   const mechanics::Mechanics& m = p.derived->mechanics;
@@ -105,14 +105,14 @@ Kept kept_quantities(const SteadyProblem& p) {
   return kept;
 }
 
-/// Where in z a coordinate of the model is; nothing where it is eliminated.
+/// Index in z of a coordinate of the model; nullopt if it is eliminated.
 std::optional<std::size_t> place_of(const SteadyProblem& p, std::uint32_t coordinate) {
   const auto& free = p.system().free;
   const auto found = std::find(free.begin(), free.end(), coordinate);
   return found == free.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - free.begin()));
 }
 
-/// The entries of a rotation, where each is a coordinate of its own.
+/// Coordinates of a rotation, if each of its entries is a coordinate.
 template <std::size_t size>
 std::optional<std::array<std::size_t, size>> places_of(const SteadyProblem& p, const model::Frame& frame) {
   if (frame.entries.size() != size) return std::nullopt;
@@ -142,7 +142,8 @@ void name_attitudes(SteadyProblem& p, linear::SearchRequest& search) {
   }
 }
 
-/// A conserved quantity that none of the coordinates feels which the motion does not feel: it can be held beside them.
+/// Whether a conserved quantity is constant along the symmetry directions that are not retained, so it can be held with
+/// the others.
 bool can_be_held(const SteadyProblem& p, const std::vector<Neighbour>& neighbours, const linear::Symmetry& symmetry,
                  const Quantity& quantity) {
   const linear::Tape tape = p.flow->tape({quantity.expression});
@@ -157,7 +158,7 @@ bool can_be_held(const SteadyProblem& p, const std::vector<Neighbour>& neighbour
   return !neighbours.empty();
 }
 
-/// The start, or a state beside it where the start itself has no slopes: what is looked for is the same around it.
+/// The initial state, or a state near it if the equations are not differentiable there; the search is the same.
 linear::State<Precise> place_with_field(const SteadyProblem& p) {
   try {
     p.flow->at(p.z, p.setting);
@@ -225,7 +226,7 @@ void require_not_ignored(const SteadyMotions& result, const SteadyRequest& reque
   }
 }
 
-/// Of a search that found nothing: where its starts ended, if the equations have no value there.
+/// For a search without result: throws Error if the equations are undefined where its starts ended.
 void require_ends(const SteadyMotions& result) {
   const linear::SearchResult& search = result.search;
   if (search.refused == 0) return;
@@ -246,10 +247,10 @@ void judge(SteadyMotions& result, const SteadyRequest& request, const Kept& kept
   for (const linear::FoundPoint& point : result.search.points) {
     try {
       SteadyMotion motion{linear::linearise(*p.flow, point.z, p.setting, p.neighbours, request.seed), point.family, {}};
-      if (motion.l.kind == linear::Kind::motion) continue;  // in the coordinates there, none after all
+      if (motion.l.kind == linear::Kind::motion) continue;  // not steady in the coordinates of that point
       motion.verdict = test(motion.l);
       result.points.push_back(std::move(motion));
-    } catch (const std::domain_error& error) {  // the coordinates fail there
+    } catch (const std::domain_error& error) {  // the coordinates are singular there
       result.search.refuse(error.what(), point.z);
     }
   }
@@ -273,7 +274,7 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
       const work::Stage stage("looking for equilibria and steady motions");
       result.search = linear::find_steady_motions(search);
     }
-    // What was found is judged and shown where that is done at once.
+    // Small models: classify and show what was found so far.
     constexpr std::size_t small = 8;  // coordinates
     std::optional<work::Kept> kept;
     if (result.search.interrupted) {

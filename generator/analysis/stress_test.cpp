@@ -21,7 +21,7 @@ using stress::Row;
 using stress::Verdict;
 using LeftOut = std::vector<std::pair<std::string, std::string>>;
 
-/// The scene of one case, made anew from the model where constants change.
+/// The scene of one case. If constants change, it is resolved again from the model.
 class Variation {
  public:
   Variation(const pipeline::Simulation& simulation, const run::Overrides& overrides, const run::Code& code)
@@ -34,7 +34,7 @@ class Variation {
       overrides.values[derived.model.parameters[p].name] = numeric::exact(simulation_.scene.parameters[p] * factor);
     }
     for (const auto& [p, value] :
-         test.value) {  // what follows from them is computed anew, and a start that they break is refused
+         test.value) {  // recomputes dependent values and refuses an inconsistent initial state
       if (std::isfinite(value)) overrides.values[derived.model.parameters[p].name] = numeric::exact(value);
     }
     if (test.rtol) {
@@ -86,14 +86,14 @@ class Variation {
   const run::Code& code_;
 };
 
-/// Each constraint once more under another name: what follows from others has to be found before anything is derived.
+/// Repeats each constraint under another name: redundant constraints must be found before derivation.
 void repeat_constraints(const model::Model& given, std::vector<Row>& rows, LeftOut& left_out) {
   for (std::size_t c = 0; c < given.constraints.size(); ++c) {
-    if (given.constraints[c].joint) continue;  // its equations may repeat others, and are left out where they do
+    if (given.constraints[c].joint) continue;  // joints may be redundant anyway
     model::Model model = given;
     model.constraints.push_back(given.constraints[c]);
     model.constraints.back().name += "_again";
-    model.constraints.back().unit = false;  // the second one is no part of a rotation
+    model.constraints.back().unit = false;  // the copy is not part of a rotation
     const std::string test = fmt::format("constraint {} twice", given.constraints[c].name);
     try {
       mechanics::build_mechanics(model);
@@ -156,7 +156,7 @@ StressFindings stress_test(const StressRequest& asked) {
       if (const std::optional<run::Scene> scene = variation.scene(test, why)) {
         for (Row& row : stress::judge(test, *scene, request, why)) found.rows.push_back(std::move(row));
       }
-    } catch (const Error& error) {  // a start or a value that is refused is told
+    } catch (const Error& error) {  // a refused value or initial state counts as reported
       if (error.stage() != "scene") throw;
       why = "refused: " + error.message();
     }

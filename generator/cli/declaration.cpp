@@ -16,7 +16,7 @@
 namespace eomgen::cli {
 namespace {
 
-// The command whose options were being read; the program itself before there is one.
+// The command whose options are parsed; the program itself if there is none yet.
 const CLI::App& where(const CLI::App& app) {
   const auto parsed = app.get_subcommands();
   return parsed.empty() ? app : *parsed.front();
@@ -42,7 +42,7 @@ Error unexpected(const CLI::App& app) {
                  fmt::format("{} is one word too many", extra.empty() ? "there" : model::quote(extra.back())), help);
   }
   const std::string name = option->substr(0, option->find('='));
-  // Letters are near to every other letter: one stands for a longer name that begins with it.
+  // A single letter is close to every other one. It only matches a longer name that begins with it.
   const bool letter = name.size() == 2;
   std::string hint = letter ? "" : model::did_you_mean(name, flags_of(app));
   const auto begins = [&](const std::string& flag) {
@@ -60,7 +60,7 @@ Error unexpected(const CLI::App& app) {
                hint.empty() ? help : hint + " " + help);
 }
 
-/// The page of `eomgen --help`: three examples, then the commands, and where the documentation is.
+/// Text of `eomgen --help`: three examples, the commands, the path of the documentation.
 class HelpPage : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
@@ -77,7 +77,7 @@ class HelpPage : public CLI::Formatter {
   }
 };
 
-/// What CLI11 found wrong, in our words.
+/// Converts an error of CLI11 to Error.
 Error usage_error(const CLI::ParseError& error, const CLI::App& app) {
   const CLI::App& command = where(app);
   const std::string name = command.get_parent() == nullptr ? "eomgen" : "eomgen " + command.get_name();

@@ -8,7 +8,7 @@
 namespace eomgen::cli {
 namespace {
 
-// A signal handler can reach nothing but an object of static storage.
+// A signal handler can only access objects of static storage.
 std::atomic<bool> raised{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 

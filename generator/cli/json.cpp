@@ -116,7 +116,7 @@ bool operator==(const Json& a, const Json& b) {
   return a.value_ == b.value_;
 }
 
-/// The library's value of ours.
+/// Converts to the value type of the library.
 struct Writer {
   bool signed_zero;
 

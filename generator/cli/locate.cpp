@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> model_folders() {
   std::vector<fs::path> folders;
-  std::error_code ignored;  // an unreadable working directory only leaves fewer folders to look in
+  std::error_code ignored;  // an unreadable working directory only reduces the search path
   if (const char* from_environment = std::getenv("EOMGEN_MODELS")) folders.emplace_back(from_environment);
   for (fs::path here = fs::current_path(ignored); !here.empty(); here = here.parent_path()) {
     folders.push_back(here / "models");
@@ -43,7 +43,7 @@ std::vector<std::string> models_in(const std::vector<fs::path>& folders) {
   return names;
 }
 
-/// A file beside the one that was named, whose name differs in a letter or two; empty if there is none.
+/// A file in the same folder whose name differs in a letter or two; empty if there is none.
 std::string nearest_file(const fs::path& path) {
   std::vector<std::string> names;
   std::error_code none;
@@ -62,7 +62,7 @@ std::string nearest_file(const fs::path& path) {
   return meant ? (path.parent_path() / *meant).string() : "";
 }
 
-/// The model that was meant, as it would be typed; empty if none is near.
+/// The closest model, as it would be typed; empty if there is none.
 std::string nearest(const std::string& typed, const std::vector<fs::path>& folders) {
   const fs::path path(typed);
   if (const std::string file = nearest_file(path); !file.empty()) return file;
@@ -93,7 +93,7 @@ std::string locate_model(const std::string& name) {
       }
     }
   }
-  if (fs::is_directory(name, error)) return name;  // the reader says what is wrong with it
+  if (fs::is_directory(name, error)) return name;  // the reader reports the error
   const std::string hint = nearest(name, folders);
   throw Error("cli", Where{name, 0, 0, 1, ""}, "there is no such model file, nor a model of that name in models/",
               hint.empty() ? "eomgen new NAME writes a starter model" : fmt::format("did you mean {}?", hint));

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Endings that say what a file holds; others (.out, .2026, none) say nothing.
+/// File extensions that denote a format; others (.out, .2026, none) do not.
 constexpr std::array telling_endings{
     ".csv", ".tsv",  ".svg",  ".png",  ".jpg", ".jpeg", ".gif", ".bmp", ".pdf", ".ps",  ".eps",  ".html", ".htm",
     ".xml", ".json", ".toml", ".yaml", ".md",  ".tex",  ".c",   ".h",   ".cpp", ".hpp", ".py",   ".m",    ".mat",
@@ -52,7 +52,7 @@ bool same_file(const Identity& a, const Identity& b) {
 
 bool is_device(const Identity& place) { return place.there && S_ISCHR(place.mode); }
 
-/// The path that a file will have; equal for two names of one file that is not there yet.
+/// Canonical path of a file that need not exist; equal for two names of the same file.
 std::string final_path(const std::string& path) {
   std::error_code none;
   const fs::path absolute = fs::absolute(path, none);
@@ -79,11 +79,11 @@ void require_ending(const Place& place) {
 }
 
 void require_writable(const Place& place, const std::string& model_file) {
-  // As it is opened: what a link such as /dev/stdout leads to need not have a path.
+  // Compare the opened file: the target of a link such as /dev/stdout need not have a path.
   const Identity opened = identity(place.path);
   if (opened.there && !S_ISREG(opened.mode) && !S_ISDIR(opened.mode)) {
     if (::access(place.path.c_str(), W_OK) != 0) refuse(place, "this may not be written to", "choose another place");
-    return;  // written through
+    return;  // pipes and devices are written to directly
   }
   std::string path = place.path;
   try {
@@ -100,11 +100,11 @@ void require_writable(const Place& place, const std::string& model_file) {
     refuse(place, "this file may not be written to", "choose another name, or chmod u+w it");
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   const std::string name = fs::path(path).filename().string();
-  constexpr std::size_t longest_name = 255;  // of Linux's file systems
+  constexpr std::size_t longest_name = 255;  // on Linux file systems
   if (name.size() > longest_name)
     refuse(place, fmt::format("the name has {} bytes, and a file's has at most {}", name.size(), longest_name),
            "choose a shorter one");
-  std::error_code ignored;  // what cannot be looked at cannot be written either, and access says so
+  std::error_code ignored;  // an inaccessible folder fails in access() as well
   if (!fs::is_directory(folder, ignored))
     refuse(place, "there is no folder " + folder.string(), "make the folder first");
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
@@ -115,7 +115,7 @@ template <typename Write>
 auto writing(Write write) {
   try {
     return write();
-  } catch (const std::system_error& error) {  // the writer is part of the runtime, which knows no Error
+  } catch (const std::system_error& error) {  // the writer belongs to the runtime, which has no Error
     throw Error("cli", {}, error.what(), "see to space on that disk and to your rights there",
                 emit::fault_of_writing(error.code()));
   }
@@ -184,7 +184,7 @@ std::uint64_t write_text(const std::string& path, const std::string& text) {
       file.write(text);
       file.finish();
     } catch (const std::system_error&) {
-      file.discard();  // it could be made again: nothing is kept of it
+      file.discard();  // the file can be generated again, so no part is kept
       throw;
     }
     return file.bytes();

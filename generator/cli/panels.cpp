@@ -23,7 +23,7 @@ std::string titled(const std::string& what, const std::string& unit) {
   return is_plain(unit) ? what : what + " in " + unit;
 }
 
-// A single curve has no legend to be told by.
+// A panel with a single curve has no legend, so its title names the curve.
 void name_single_curves(const std::vector<system::Output>& outputs, std::vector<Panel>& panels) {
   for (Panel& panel : panels) {
     if (panel.over.empty() && panel.names.size() == 1)

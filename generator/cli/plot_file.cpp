@@ -15,7 +15,7 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr double pixels_of_a_unit = 2;  // of a PNG: sharp where screens are fine
+constexpr double pixels_of_a_unit = 2;  // of a PNG, for screens with high resolution
 
 std::size_t terminal_columns() {
   constexpr std::size_t usual = 80, most = 160;

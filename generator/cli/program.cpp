@@ -29,7 +29,7 @@ constexpr int exit_internal = 4;
 
 int report(const Error& error) {
   tell(error.what());
-  // Messages name a page as the source tree has it.
+  // Messages name a page by its path in the source tree.
   if (std::string_view(error.what()).find("docs/model-format.md") != std::string_view::npos) {
     tell(fmt::format("  docs/model-format.md is {}\n", documentation("model-format.md")));
   }
@@ -43,8 +43,9 @@ int output_lost() {
   return exit_internal;
 }
 
-/// A standard stream that is closed would give its number to the first file that is opened, and messages would go into
-/// results. What is written to standard output then fails, and is told; what is told is lost, and nothing else is.
+/// Reopens closed standard streams. Otherwise the first opened file would get the descriptor, and messages would go
+/// into results. Writing to a closed standard output then fails and is reported; messages to a closed standard error
+/// are lost.
 void take_closed_streams() {
   for (const auto& [stream, way] :
        {std::pair{STDIN_FILENO, O_WRONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}}) {
@@ -55,10 +56,10 @@ void take_closed_streams() {
       close(taken);
     }
   }
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that is gone is a failure of that place, told like a full disk
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as a write error, like a full disk
 }
 
-/// Warnings of the stages go to standard error.
+/// Prints warnings of the stages to standard error.
 class Teller : public work::Listener {
  public:
   void warns(const std::string& text) override { tell(text); }
@@ -76,7 +77,7 @@ int run_program(std::span<char* const> typed, const char* name, std::span<const 
   const Teller teller;
   const work::Stage stage("reading the model");
   const int code = declared.execute();
-  // A full disk or a closed pipe loses results; that is a failure, not a silence.
+  // A full disk or a closed pipe loses results, which is an error.
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return output_lost();
   return code;
 } catch (const Error& error) {
@@ -91,7 +92,7 @@ int run_program(std::span<char* const> typed, const char* name, std::span<const 
   tell("error: out of memory\n  remedy: make the model smaller\n");
   return exit_internal;
 } catch (const std::exception& error) {
-  if (std::ferror(stdout) != 0) return output_lost();  // what prints throws
+  if (std::ferror(stdout) != 0) return output_lost();  // printing throws
   tell(fmt::format("error: internal: {}\n  remedy: please report this, with the model\n", error.what()));
   return exit_internal;
 }

@@ -13,14 +13,14 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr double unbounded = 1e308;  // an estimate that is not finite: JSON has no infinity
+constexpr double unbounded = 1e308;  // replaces infinity, which JSON does not have
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// One line of the report: what it is about, then what there is to say.
+/// One line of the report: title, then text.
 std::string line(const std::string& label, const std::string& value) { return fmt::format("{:<18}{}\n", label, value); }
 
-// What `final` holds: coordinates, energy, reactions and what was asked for; the rest served the watches.
+// Values in `final`: coordinates, energy, reactions and requested outputs. The others only serve monitoring.
 bool is_final(const pipeline::Simulation& simulation, const std::string& name) {
   using system::OutputKind;
   const auto& wanted = simulation.scene.outputs;
@@ -32,7 +32,7 @@ bool is_final(const pipeline::Simulation& simulation, const std::string& name) {
          output->kind == OutputKind::energy || system::is_reaction(output->kind);
 }
 
-/// Components of joints, and forces of constraints, that the motion leaves open, and so are not in `final`.
+/// Reaction components of joints and constraints that the motion does not determine; they are not in `final`.
 std::vector<std::string> undetermined(const pipeline::Simulation& simulation) {
   const mechanics::Mechanics& m = simulation.derived->mechanics;
   std::vector<std::string> names;
@@ -73,7 +73,7 @@ std::string implicit_cost(const eom::Statistics& cost) {
   return text;
 }
 
-/// What became of that which must not change, and how much to believe.
+/// Drift of the invariants, and reliability of the result.
 std::string watched(const pipeline::Simulation& simulation) {
   const run::RunResult& result = simulation.result;
   std::string out;

@@ -15,11 +15,11 @@ namespace {
 using eom::plot::escaped;
 using stress::Verdict;
 
-constexpr double letter = 7.2, line = 18, column = 22, cell = 13;  // pixels; nobody measures text here
+constexpr double letter = 7.2, line = 18, column = 22, cell = 13;  // pixels; text widths are estimated
 
 struct Line {
   std::string name;
-  std::vector<const stress::Row*> rows;  // per solver, or none
+  std::vector<const stress::Row*> rows;  // per solver; nullptr: no row
 };
 
 std::vector<Line> lines_of(const analysis::StressFindings& found) {
@@ -46,7 +46,7 @@ std::string rectangle(double x, double y, double width, double height, const cha
                      number(height), fill);
 }
 
-// Told apart by their shape too: a square, a bar, a square with a cross.
+// The verdicts also differ in shape: a square, a bar, a square with a cross.
 std::string mark(Verdict verdict, double x, double y) {
   switch (verdict) {
     case Verdict::kept: return rectangle(x, y, cell, cell, eom::plot::colours[0]);
@@ -132,7 +132,7 @@ std::string StressPlot::characters(std::size_t columns) const {
     text.erase(text.find_last_not_of(' ') + 1);
     result += text + "\n";
   };
-  // Names of solvers downwards, to end above their columns.
+  // Vertical names of solvers that end above their columns.
   const std::size_t high = longest(found.solvers, [](const std::string& s) { return std::string_view(s); });
   for (std::size_t r = 0; r < high; ++r) {
     std::string head(names, ' ');

@@ -11,7 +11,7 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr double bytes_of_number = 20;  // 17 digits, the point, an exponent or a sign now and then, the comma
+constexpr double bytes_of_number = 20;  // 17 digits, decimal point, comma, sometimes a sign or exponent
 constexpr double told_rows = 1e6, most_rows = 1e8, most_bytes = 1e10;
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::size_t rows = 16, margin = 11;  // of the labels on the left
+constexpr std::size_t rows = 16, margin = 11;  // width of the labels on the left
 constexpr const char* letters = "*+ox#@%&=~abcdefghijklmnpqrstuvwyz";
 
 struct Range {
@@ -19,7 +19,7 @@ struct Range {
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  /// Never empty, so that a constant is a line in the middle.
+  /// Widens an empty range, so that a constant is a line in the middle.
   void close() {
     if (!(low <= high)) low = high = 0;
     const double least = 1e-9 * std::max(std::fabs(low), std::fabs(high));
@@ -28,7 +28,7 @@ struct Range {
     low -= half;
     high += half;
   }
-  /// 0 .. cells - 1.
+  /// Index of the cell that contains `value`, 0 .. cells - 1.
   std::size_t cell(double value, std::size_t cells) const {
     const double place = (value - low) / (high - low) * static_cast<double>(cells - 1);
     return static_cast<std::size_t>(std::clamp(std::round(place), 0.0, static_cast<double>(cells - 1)));

@@ -14,7 +14,7 @@
 namespace eomgen::cli {
 namespace {
 
-/// What others call it.
+/// Names of commands in other programs.
 constexpr std::pair<const char*, const char*> other_words[] = {{"simulate", "run"},
                                                                {"sim", "run"},
                                                                {"integrate", "run"},

@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds interval{25}, patience{100};
 constexpr std::chrono::seconds quiet{2};
 
-// Without allocation: a process may be forked while this runs.
+// Does not allocate, because the process may fork while this runs.
 void write_error(const char* text) {
   const ssize_t ignored = write(STDERR_FILENO, text, std::strlen(text));
   (void)ignored;
@@ -34,7 +34,7 @@ void tell_interrupted(const char* stage) {
 }
 
 Watch::Watch() {
-  // Signals stay with the thread that works.
+  // Signals are delivered to the main thread.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batches of shipped models, in every mode of their contacts and kinks: tests/emit/batch_harness.c compares each state
-// with itself alone.
+// Batch evaluation of shipped models in every mode of their contacts and kinks. tests/emit/batch_harness.c compares
+// each state of a batch with a separate evaluation.
 #include <doctest/doctest.h>
 
 #include "program.hpp"
@@ -8,8 +8,8 @@
 using namespace eomgen::test;
 
 TEST_CASE(
-    "batch: states of shipped models have the bits and codes that they have alone, in all modes, with inputs, beside "
-    "singular ones") {
+    "batch: states have the same bits and codes as in separate evaluations, in all modes, with inputs, next to "
+    "singular states") {
   const Folder folder;
   struct Case {
     const char *model, *modes;
@@ -59,6 +59,6 @@ TEST_CASE(
     REQUIRE(compiled.status == 0);
     const ChildResult found = run_child({{folder / name}, folder.path()});
     CAPTURE(found.out);
-    CHECK(found.status == 0);  // else the line of the harness that differs
+    CHECK(found.status == 0);  // otherwise the line of the harness that failed
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// bench: errors are true errors, whatever the times were.
+// Command bench: errors are true errors, independent of the measured times.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -11,12 +11,12 @@
 
 using namespace eomgen::test;
 
-TEST_CASE("bench: every solver's error falls with its tolerance or step, and the document has all of them") {
+TEST_CASE("bench: the error of every solver decreases with its tolerance or step, and the document lists all") {
   const Folder folder;
   const Json found =
       document(folder, {"bench", "P2_planar_pendulum", "--t-end", "1", "--csv", "out.csv", "--svg", "out.svg"});
   CHECK(found["reference"]["digits"].get<int>() >= 30);
-  for (const Json& left : found["left_out"]) {  // none of this program's own
+  for (const Json& left : found["left_out"]) {  // no solver of this program
     CHECK(contains(left["why"].get<std::string>(), "not installed"));
     CHECK((left["solver"] == "Odeint" || left["solver"] == "GSL" || left["solver"] == "SUNDIALS"));
   }
@@ -24,7 +24,7 @@ TEST_CASE("bench: every solver's error falls with its tolerance or step, and the
   const Json listed = document(folder, {"list"});
   for (const Json& solver : listed["solvers"]) {
     const std::string name = solver["name"];
-    if (solver["constrained"].get<bool>()) continue;  // this model has nothing for it to keep
+    if (solver["constrained"].get<bool>()) continue;  // this model has no constraint for it
     CAPTURE(name);
     std::vector<double> errors;
     for (const Json& row : found["rows"]) {
@@ -33,20 +33,19 @@ TEST_CASE("bench: every solver's error falls with its tolerance or step, and the
       CHECK(row["step"].is_null() == solver["adaptive"].get<bool>());
       CHECK(row["error_along"].get<double>() >= row["error"].get<double>());
       CHECK(row["seconds"].get<double>() > 0);
-      // Within its long steps the polynomial of radau has the order of its stages alone.
+      // Within its long steps, the interpolation of radau only has the stage order.
       errors.push_back(row[name == "radau" ? "error" : "error_along"]);
     }
     REQUIRE(errors.size() >= 9);
     const double fall = errors.front() / errors.back();
-    CHECK(fall >
-          (solver["order"].get<int>() == 2 ? 1e4 : 1e7));  // nine steps, each half the one before, of order 2: 4^8
+    CHECK(fall > (solver["order"].get<int>() == 2 ? 1e4 : 1e7));  // nine step sizes, halved each time, at order 2: 4^8
     if (solver["adaptive"].get<bool>()) CHECK(errors.back() < 1e-10);
   }
   CHECK(contains(folder.read("out.svg"), "</svg>"));
   CHECK(contains(folder.read("out.csv"), "solver,rtol,step,error,error_along,seconds"));
 }
 
-TEST_CASE("bench: the error is the difference from the motion itself") {
+TEST_CASE("bench: the error is the difference from the exact motion") {
   const Folder folder;
   const Json found = document(folder, {"bench", "P2_planar_pendulum", "--t-end", "2", "--solver", "dopri5"});
   const Json run = document(folder, {"run", "P2_planar_pendulum", "--t-end", "2", "--solver", "dopri5", "--rtol",
@@ -64,7 +63,7 @@ TEST_CASE("bench: the error is the difference from the motion itself") {
   CHECK(rows == 1);
 }
 
-TEST_CASE("bench: other libraries reach the same motion on the same right-hand side, or are told to be missing") {
+TEST_CASE("bench: other libraries reach the same motion with the same right-hand side, or are reported as missing") {
   const Folder folder;
   const Json found = document(folder, {"bench", "S5_double_pendulum", "--scene", "released", "--t-end", "1"});
   for (const auto& [library, names] : std::map<std::string, std::vector<std::string>>{
@@ -81,7 +80,7 @@ TEST_CASE("bench: other libraries reach the same motion on the same right-hand s
         least = std::min(least, row["error"].get<double>());
         evaluations = row["rhs_evaluations"];
       }
-      CHECK((least < 1e-6) != is_missing);  // the tightest of all that got there; multistep methods lose some digits
+      CHECK((least < 1e-6) != is_missing);  // the most accurate run that finished; multistep methods lose some digits
       CHECK((evaluations > 50) != is_missing);
     }
   }
@@ -89,7 +88,7 @@ TEST_CASE("bench: other libraries reach the same motion on the same right-hand s
   for (const Json& row : alone["rows"]) CHECK_FALSE(contains(row["solver"].get<std::string>(), " "));
 }
 
-TEST_CASE("bench: what has no reference is told, and so is a solver that does not exist") {
+TEST_CASE("bench: scenes without reference solution and unknown solvers are reported") {
   const Folder folder;
   const auto refused = [&](const Words& words, const char* what) {
     const auto result = expect(2, folder, words);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies in any coordinates: what the program answers to models of which some formulas are too long, and of which none
-// is.
+// Bodies in various coordinates: behaviour of the program for models with and without formulas that are too long.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -11,7 +10,7 @@ using namespace eomgen::test;
 
 namespace {
 
-/// A body with a position and Euler parameters, and what else there is.
+/// Model file of a body with a position and Euler parameters, plus `rest`.
 std::string tumbling(const std::string& rest, const std::string& scene) {
   return R"toml(format = 1
 [parameters]
@@ -51,7 +50,7 @@ std::string turning(const std::string& axis) {
          "}\n";
 }
 
-/// An ellipsoid that rolls, its centre of mass and its axes of inertia anywhere: nothing of it fits on a page.
+/// A rolling ellipsoid with general centre of mass and principal axes: all of its formulas are too long.
 const std::string ellipsoid = R"toml(format = 1
 [parameters]
 m = "1 kg"
@@ -95,7 +94,7 @@ bool left_out(const Json& document, const std::string& what) {
 }  // namespace
 
 TEST_CASE(
-    "bodies in Euler parameters with a position: free, with forces, and with omega . e3 = 0, every route agrees") {
+    "bodies with position and Euler parameters: free, with forces, and with omega . e3 = 0, all formulations agree") {
   const Folder folder;
   folder.write("free.toml", tumbling("", "initial = { \"B.omega\" = [0.2, 0.1, 1], x_dot = 1 }"));
   folder.write("loaded.toml", tumbling(loaded, "initial = { \"B.omega\" = [0.2, 0.1, 1], x = 1 }"));
@@ -107,8 +106,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "a coordinate without inertia that a constraint fixes: the reading form that is printed is held to be right") {
+TEST_CASE("a coordinate without inertia that a constraint fixes: the printed display form passes its check") {
   const Folder folder;
   folder.write("a.toml",
                "format = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"1/2*x_dot^2\"\npotential = "
@@ -126,7 +124,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "one moment of inertia does for a turn about any fixed axis: -E3, 2*E3, E1 + E2, an axis of a frame that stays") {
+    "one moment of inertia suffices for rotation about any fixed axis: -E3, 2*E3, E1 + E2, an axis of a fixed frame") {
   const Folder folder;
   const auto period = [&](const std::string& text) {
     folder.write("a.toml", text);
@@ -145,7 +143,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "what is too long to be written out ends no command: a rattleback in Euler parameters, five bodies on ball "
+    "formulas too long to be written out do not end a command: a rattleback in Euler parameters, five bodies on ball "
     "joints") {
   const Folder folder;
   folder.write("rattleback.toml", R"toml(format = 1
@@ -205,8 +203,8 @@ guess = { e3 = 0.03 }
 }
 
 TEST_CASE(
-    "formulas beyond their budget are left out by name, and nothing else fails: a rolling ellipsoid of any inertia in "
-    "Euler parameters") {
+    "formulas beyond their budget are skipped by name, and nothing else fails: a rolling ellipsoid of general inertia "
+    "in Euler parameters") {
   const Folder folder;
   folder.write("e.toml", ellipsoid);
   CHECK(document(folder, {"check", "e.toml"})["dof"] == 3);
@@ -221,8 +219,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "in a plane E3 is the axis of every body, relative ones too, and a body that does not turn takes any moment of "
-    "inertia") {
+    "planar models: E3 is the axis of every body, also of relative ones, and a body that does not rotate accepts any "
+    "moment of inertia") {
   const Folder folder;
   const auto end = [&](const std::string& axis, const std::string& moment) {
     folder.write("a.toml",
@@ -240,7 +238,7 @@ TEST_CASE(
   const Json own = end("-a.e3", "{ principal = [1, 1, 1] }"), common = end("-2*E3", "0.1");
   for (const char* name : {"s", "f", "g"})
     CHECK(common[name].get<double>() == doctest::Approx(own[name].get<double>()).epsilon(1e-12));
-  // An axis across the plane turns with the body, and so does that of a body on a tilted frame.
+  // An axis in the plane rotates with the body, and so does the axis of a body on a tilted frame.
   std::string text = folder.read("a.toml");
   text.replace(text.find("-2*E3"), 5, "E1");
   folder.write("b.toml", text);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table that --out writes.
+// The table written by --out.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 using namespace eomgen::test;
 
-TEST_CASE("columns: t, every coordinate and its rate in declared order, then what was asked for") {
+TEST_CASE("columns: t, every coordinate and its rate in declared order, then the requested outputs") {
   const Folder folder;
   expect(0, folder, {"run", "P7_moving_sphere", "--out", "a.csv"});
   const Table table = read_table(folder.read("a.csv"));
@@ -18,7 +18,7 @@ TEST_CASE("columns: t, every coordinate and its rate in declared order, then wha
   CHECK(table.outcome == "done");
   CHECK(table.rows.front()[0] == 0);
   CHECK(table.rows.back()[0] == 10);
-  // The eliminated coordinate is the function of time that the constraint says.
+  // The eliminated coordinate is the function of time given by the constraint.
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     CHECK(table.at(i, "R") == doctest::Approx(1 + 0.1 * std::sin(2 * table.rows[i][0])).epsilon(1e-15));
     CHECK(table.at(i, "R_dot") == doctest::Approx(0.2 * std::cos(2 * table.rows[i][0])).epsilon(1e-15));
@@ -31,7 +31,7 @@ TEST_CASE("columns: t, every coordinate and its rate in declared order, then wha
   CHECK(folder.names() == Words{"a.csv"});
 }
 
-TEST_CASE("numbers have 17 significant digits: the table holds the very values of the run") {
+TEST_CASE("numbers have 17 significant digits: the table has the exact values of the run") {
   const Folder folder;
   const Json run = document(folder, {"run", "S5_double_pendulum", "--out", "a.csv"});
   const std::string text = folder.read("a.csv");
@@ -52,14 +52,14 @@ TEST_CASE("numbers have 17 significant digits: the table holds the very values o
   }
 }
 
-TEST_CASE("rows: from t0 to t1 every DT, the end also where it is off the grid") {
+TEST_CASE("rows: from t0 to t1 every DT, and the end even if it is off the grid") {
   const Folder folder;
   expect(0, folder, {"run", "P2_planar_pendulum", "--out", "a.csv", "--every", "0.3", "--t-end", "1"});
   const Table table = read_table(folder.read("a.csv"));
   REQUIRE(table.rows.size() == 5);
   for (std::size_t i = 0; i < 4; ++i) CHECK(table.rows[i][0] == static_cast<double>(i) * 0.3);
   CHECK(table.rows[4][0] == 1);
-  // An interval longer than the run leaves both ends.
+  // With an interval longer than the run, both ends remain.
   expect(0, folder, {"run", "P2_planar_pendulum", "--out", "a.csv", "--every", "50", "--t-end", "1"});
   CHECK(read_table(folder.read("a.csv")).rows.size() == 2);
   folder.write("late.toml", pendulum_text("[scene.default]\nt = [5, 6]\ninitial = { x = 1, y = 0, x_dot = 0 }\n"));
@@ -70,7 +70,7 @@ TEST_CASE("rows: from t0 to t1 every DT, the end also where it is off the grid")
   CHECK(late.rows.back()[0] == 6);
 }
 
-TEST_CASE("rows between steps are as exact as those at their ends, and on the constraint") {
+TEST_CASE("rows between steps are as accurate as those at their ends, and satisfy the constraint") {
   const Folder folder;
   folder.write(
       "rod.toml",
@@ -87,7 +87,7 @@ TEST_CASE("rows between steps are as exact as those at their ends, and on the co
   CHECK(energy < 1e-5);
 }
 
-TEST_CASE("a table that is there is replaced when the new one is complete") {
+TEST_CASE("an existing table is replaced when the new one is complete") {
   const Folder folder;
   folder.write("a.csv", "old");
   expect(2, folder, {"run", "P2_planar_pendulum", "--out", "a.csv", "--scene", "nosuch"});
@@ -97,7 +97,7 @@ TEST_CASE("a table that is there is replaced when the new one is complete") {
   CHECK(folder.names() == Words{"a.csv"});
 }
 
-TEST_CASE("a plot is one SVG, and the table beside it the same as without it") {
+TEST_CASE("a plot is one SVG, and the table is the same as without it") {
   const Folder folder;
   expect(0, folder, {"run", "P2_planar_pendulum", "--out", "a.csv"});
   expect(0, folder, {"run", "P2_planar_pendulum", "--out", "b.csv", "--plot", "b.svg"});

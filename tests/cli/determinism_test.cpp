@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equal input gives equal bytes, whatever the process: addresses, environment and folder differ from one to the next.
+// Equal input gives equal bytes in any process: addresses, environment and folder differ between processes.
 #include <doctest/doctest.h>
 
 #include <map>
@@ -12,7 +12,7 @@ using namespace eomgen::test;
 namespace {
 
 constexpr int processes = 5, at_least = 2;
-constexpr std::size_t long_output = 60000;  // bytes: seconds of work; emitted as often as is needed to compare
+constexpr std::size_t long_output = 60000;  // bytes: seconds of work, so only as many processes as needed
 
 using Files = std::map<std::string, std::string>;
 
@@ -22,8 +22,8 @@ std::size_t size_of(const Files& files) {
   return sum;
 }
 
-/// What `words` writes into out/, from `processes` processes, two at a time; from two of them where it is long. The
-/// first two verify, each by itself; the others derive and emit anew, with the certificates that these kept.
+/// Files that `words` writes into out/, from `processes` processes, two at a time; from only two if the output is long.
+/// The first two verify independently. The others derive and emit again with the certificates cached by these.
 std::vector<Files> emit_repeatedly(const Words& words) {
   std::vector<Files> result;
   std::vector<std::unique_ptr<Folder>> folders;
@@ -33,7 +33,7 @@ std::vector<Files> emit_repeatedly(const Words& words) {
     for (int i = k; i < std::min(k + 2, processes); ++i) {
       folders.push_back(std::make_unique<Folder>());
       ChildCommand call = command(*folders.back(), words);
-      // Moves the stack, and the hashes of a program that would seed them from its environment.
+      // Moves the stack, and changes hashes that are seeded from the environment.
       call.environment["EOMGEN_TEST_PADDING"] = std::string(static_cast<std::size_t>(1 + 977 * i), 'x');
       call.environment["EOMGEN_CACHE_DIR"] = *folders[static_cast<std::size_t>(i % 2)] / "cache";
       call.environment["LC_ALL"] = i % 2 == 0 ? "C" : "C.UTF-8";
@@ -59,7 +59,7 @@ std::vector<Files> emit_repeatedly(const Words& words) {
 
 struct Shipped {
   std::string name;
-  bool prescribed;  // nothing to integrate, so no code: the equations for reading instead
+  bool prescribed;  // nothing to integrate, so no code: compares the printed equations instead
 };
 
 const std::vector<Shipped>& all_shipped() {
@@ -73,7 +73,7 @@ const std::vector<Shipped>& all_shipped() {
   return all;
 }
 
-/// Returns what the first process wrote.
+/// Returns the files of the first process.
 Files same_everywhere(const std::string& model, const Words& words, std::size_t files) {
   CAPTURE(model);
   const std::vector<Files> all = emit_repeatedly(words);
@@ -82,13 +82,13 @@ Files same_everywhere(const std::string& model, const Words& words, std::size_t 
     for (const auto& [name, text] : one) {
       const auto& shown = name;
       CAPTURE(shown);
-      CHECK((text == all.front().at(name)));  // in brackets: doctest would print both
+      CHECK((text == all.front().at(name)));  // parentheses prevent doctest from printing both
     }
   }
   return all.front();
 }
 
-/// One document of many: what stands between the beginning and the end of each.
+/// Joins documents: the text between beginning and end of each.
 class Pages {
  public:
   void add(const std::string& model, const std::string& document) {
@@ -118,7 +118,7 @@ TEST_CASE("every shipped model emits equal bytes in fresh processes") {
   }
 }
 
-TEST_CASE("every shipped model's document has equal bytes in fresh processes, and fits on its pages") {
+TEST_CASE("the document of every shipped model has equal bytes in fresh processes, and fits on its pages") {
   Pages pages;
   for (const auto& [model, prescribed] : all_shipped()) {
     if (prescribed) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every command's JSON document: the keys that were promised, the shape of docs/schema, and that it holds what is true.
+// JSON documents of all commands: documented keys, the schemas of docs/schema, correct values.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -22,7 +22,7 @@ const Words models{"P7_moving_sphere", "P2_planar_pendulum", "S5_double_pendulum
 
 }  // namespace
 
-TEST_CASE("list: the document holds the registries, the readable output names the same") {
+TEST_CASE("list: the document contains the registries, and the readable output has the same names") {
   const Folder folder;
   const Json all = document(folder, {"list"});
   has_keys(all, {"coordinates", "rotations", "joints", "couplings", "forces", "solvers", "targets"});
@@ -34,7 +34,7 @@ TEST_CASE("list: the document holds the registries, the readable output names th
   CHECK_FALSE(contains(readable, "{"));
 }
 
-TEST_CASE("check: every model's document") {
+TEST_CASE("check: the documents of all models") {
   const Folder folder;
   for (const std::string& model : models) {
     CAPTURE(model);
@@ -55,14 +55,14 @@ TEST_CASE("check: every model's document") {
   CHECK(sphere["forces"][1]["conservative"] == "no");
   CHECK(sphere["forces"][1]["potential"].is_null());
   CHECK(sphere["constraints"][0]["integrable"] == "yes");
-  // Each set once, with the approaches that fail there: R is no coordinate of Approach II, d(t) is none of Approach I.
+  // Each set once, with the approaches that fail there. R is no coordinate of approach II, d(t) none of approach I.
   for (const Json& one : sphere["singular"]) {
     CHECK(std::count_if(sphere["singular"].begin(), sphere["singular"].end(),
                         [&](const Json& s) { return s["set"] == one["set"]; }) == 1);
   }
 }
 
-TEST_CASE("derive: a key for each thing shown, in three formats") {
+TEST_CASE("derive: one key per kind of formula, in three formats") {
   const Folder folder;
   for (const std::string& model : models) {
     CAPTURE(model);
@@ -91,8 +91,7 @@ TEST_CASE("derive: a key for each thing shown, in three formats") {
   CHECK(contains(in_format("mathml"), "<math"));
 }
 
-TEST_CASE(
-    "derive --document: the derivation as LaTeX, beside what is printed, to the same bytes as emit --target latex") {
+TEST_CASE("derive --document: writes the derivation as LaTeX, with the same bytes as emit --target latex") {
   const Folder folder;
   CHECK(contains(expect(0, folder, {"derive", "P9_paraboloid", "--document", "paper.tex"}).out, "wrote paper.tex"));
   const std::string text = folder.read("paper.tex");
@@ -107,13 +106,13 @@ TEST_CASE(
   expect(0, folder, {"emit", "P9_paraboloid", "--target", "latex", "-o", "out"});
   CHECK(folder.read("out/P9_paraboloid.tex") == text);
   CHECK(document(folder, {"derive", "P9_paraboloid", "--document", "paper.tex"})["document"] == "paper.tex");
-  // To standard output, and the equations then to standard error.
+  // The document goes to standard output, and the equations then to standard error.
   const ChildResult both = expect(0, folder, {"derive", "P9_paraboloid", "--document", "-"});
   CHECK(both.out == text);
   CHECK(contains(both.err, "Approach I\n"));
 }
 
-TEST_CASE("derive --document: wrong places are refused before any work") {
+TEST_CASE("derive --document: invalid paths are refused before any work") {
   const Folder folder;
   folder.write("m.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }\n"));
   CHECK(contains(expect(2, folder, {"derive", "m.toml", "--document", "paper.pdf"}).err, "--document"));
@@ -124,7 +123,7 @@ TEST_CASE("derive --document: wrong places are refused before any work") {
 }
 
 TEST_CASE(
-    "the document of hostile texts, of a model whose motion is prescribed, and of one without search says so and "
+    "the document of hostile texts, of a prescribed motion, and of a model without search of equilibria states it and "
     "compiles") {
   const Folder folder;
   folder.write("hostile.toml", R"(format = 1
@@ -166,7 +165,7 @@ force = "-k*write18*E1"
   }
 }
 
-TEST_CASE("derive: headings say what stands below them, and a legend tells which multiplier is which") {
+TEST_CASE("derive: headings describe the formulas, and a legend explains the multipliers") {
   const Folder folder;
   const std::string disk =
       expect(0, folder, {"derive", "R6_rolling_disk", "--show", "constraints,equations,reactions,singular"}).out;
@@ -182,7 +181,7 @@ TEST_CASE("derive: headings say what stands below them, and a legend tells which
   CHECK(contains(sphere, "\nfunctions of time\n  d = "));
   CHECK(contains(sphere, "\nequations that give the constraint forces\n"));
   CHECK_FALSE(contains(sphere, "which multiplier"));
-  // Bouncing: what belongs to leaving the floor is no friction.
+  // Bouncing: equations of leaving the floor are not friction.
   const std::string ball = expect(0, folder, {"derive", "bouncing_ball"}).out;
   CHECK(contains(ball, "\nfriction at 'floor', slides\n"));
   CHECK(contains(ball, "\ncontact 'floor', impact\n"));
@@ -190,12 +189,12 @@ TEST_CASE("derive: headings say what stands below them, and a legend tells which
   REQUIRE(pin["multipliers"].size() == 5);
   CHECK(pin["multipliers"][4]["name"] == "lambda_pin_M2");
   CHECK(pin["multipliers"][4]["latex"] == "\\lambda_{\\mathrm{pin},\\mathrm{M2}}");
-  // By approach II the multipliers of what is built in do not stand anywhere.
+  // In approach II, eliminated constraints have no multipliers.
   CHECK(document(folder, {"derive", "P8_smooth_helix", "--approach", "II"})["multipliers"].empty());
   CHECK(document(folder, {"derive", "P8_smooth_helix", "--approach", "I"})["multipliers"].size() == 2);
 }
 
-TEST_CASE("derive: what does not apply is an empty list, not a missing key") {
+TEST_CASE("derive: a result that does not apply is an empty list, not a missing key") {
   const Folder folder;
   for (const char* key :
        {"basis", "metric", "christoffel", "line_element", "constraints", "conserved", "reactions", "singular"}) {
@@ -204,7 +203,7 @@ TEST_CASE("derive: what does not apply is an empty list, not a missing key") {
   }
 }
 
-TEST_CASE("verify: routes with what they share, and a verdict") {
+TEST_CASE("verify: formulations with the code they share, and a verdict") {
   const Folder folder;
   for (const char* model : {"P7_moving_sphere", "S5_double_pendulum_cartesian"}) {
     CAPTURE(model);
@@ -223,11 +222,11 @@ TEST_CASE("verify: routes with what they share, and a verdict") {
   const std::string readable = expect(0, folder, {"verify", "P7_moving_sphere", "--points", "2", "--no-compile"}).out;
   CHECK_FALSE(contains(readable, "{"));
   CHECK_FALSE(contains(readable, "emitted code"));
-  // What shares no code comes first.
+  // Comparisons without shared code come first.
   CHECK(readable.find("they share code") > readable.rfind("reading form II "));
 }
 
-TEST_CASE("emit: the files are there; the counts are of the route that was taken") {
+TEST_CASE("emit: the files exist; the operation counts are those of the chosen formulation") {
   const Folder folder;
   const Json emitted = document(folder, {"emit", "P7_moving_sphere", "-o", "out"});
   has_keys(emitted, {"files", "route", "tried", "operations", "seconds"});
@@ -243,7 +242,7 @@ TEST_CASE("emit: the files are there; the counts are of the route that was taken
   CHECK(contains(expect(0, folder, {"emit", "P7_moving_sphere", "-o", "out"}).out, "wrote out/P7_moving_sphere.hpp"));
 }
 
-TEST_CASE("run: the document tells how, how long, how exact") {
+TEST_CASE("run: the document reports method, time and accuracy") {
   const Folder folder;
   for (const std::string& model : models) {
     CAPTURE(model);
@@ -258,11 +257,11 @@ TEST_CASE("run: the document tells how, how long, how exact") {
   }
   const Json without = document(folder, {"run", "P2_planar_pendulum", "--no-error-estimate"});
   CHECK_FALSE(without.contains("error_estimate"));
-  CHECK(without["constraint_drift"].is_null());  // both constraints are built in
+  CHECK(without["constraint_drift"].is_null());  // both constraints are eliminated
   CHECK(document(folder, {"run", "S5_double_pendulum_cartesian"})["constraint_drift"].get<double>() < 1e-10);
 }
 
-TEST_CASE("run: the readable report says the same in words") {
+TEST_CASE("run: the readable report has the same contents") {
   const Folder folder;
   const ChildResult run = expect(0, folder, {"run", "S5_double_pendulum_cartesian", "--t-end", "1"});
   CHECK(run.err.empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// emit --with run: a default scene that emitted code and the runtime can run, or why they cannot.
+// emit --with run: a default scene that emitted code can run with the runtime, or the reason why not.
 #include <doctest/doctest.h>
 
 #include "program.hpp"
@@ -8,7 +8,7 @@ using namespace eomgen::test;
 
 namespace {
 
-/// x'' = F/m, or what `more` makes of it.
+/// x'' = F/m, with `more` appended to the model.
 std::string particle(const std::string& scene, const std::string& more = "") {
   return "format = 1\n[parameters]\nm = \"1 kg\"\n[inputs]\nF = { unit = \"N\", default = 0 }\n[[particle]]\nname = "
          "\"P\"\nmass = \"m\"\n"
@@ -26,7 +26,7 @@ struct Case {
   std::vector<std::string> told;
 };
 
-/// Its run is refused with these words, and nothing is written; without the run the model is emitted.
+/// The run is refused with these words and nothing is written. Without the run, the model is emitted.
 void check_refusal(const Case& c) {
   CAPTURE(std::string(c.what));
   const Folder folder;
@@ -42,7 +42,7 @@ void check_refusal(const Case& c) {
 
 }  // namespace
 
-TEST_CASE("emit --with run: a solver that the default scene names and the model is not eligible for is refused") {
+TEST_CASE("emit --with run: a solver of the default scene that is ineligible for the model is refused") {
   const std::string clipped = "[[force]]\non = \"P\"\nforce = \"-max(x, 0)*1[N/m]*E1\"\n";
   const std::vector<Case> cases{
       {"no constraints",
@@ -57,7 +57,7 @@ TEST_CASE("emit --with run: a solver that the default scene names and the model 
   for (const Case& c : cases) check_refusal(c);
 }
 
-TEST_CASE("emit --with run: a solver that the model is eligible for comes with the functions that it needs") {
+TEST_CASE("emit --with run: an eligible solver adds the functions that it needs") {
   struct Needs {
     const char *solver, *function;
   };
@@ -76,7 +76,7 @@ TEST_CASE("emit --with run: a solver that the model is eligible for comes with t
   }
 }
 
-TEST_CASE("emit --with run: targets that write no C tell that there is no header of the run") {
+TEST_CASE("emit --with run: targets that do not write C report that there is no header of the run") {
   const Folder folder;
   folder.write("model.toml", particle(""));
   for (const char* target : {"javascript", "cuda"})
@@ -87,7 +87,7 @@ TEST_CASE("emit --with run: targets that write no C tell that there is no header
         expect(0, folder, {"emit", "model.toml", "-o", target, "--target", target, "--with", "run"}).err, "warning"));
 }
 
-TEST_CASE("emit --with run: inputs are tables that jump, or expressions as tables of operations") {
+TEST_CASE("emit --with run: inputs are tables with jumps, or expressions as tables of operations") {
   const Folder folder;
   const auto header_of = [&](const std::string& inputs) {
     folder.write("model.toml", particle("inputs = { F = " + inputs + " }\n"));

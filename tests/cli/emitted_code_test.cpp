@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emitted sources in the hands of a stranger: compiled with every warning an error, called from C and from C++.
+// Use of emitted sources in other projects: compiled with all warnings as errors, called from C and C++.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ void compile(const Folder& folder, Words words) {
   REQUIRE(result.status == 0);
 }
 
-/// What a program in `folder` prints, as JSON.
+/// Output of a program in `folder`, parsed as JSON.
 Json printed(const Folder& folder, const std::string& program) {
   const ChildResult result = run_child({{folder / program}, folder.path()});
   REQUIRE(result.status == 0);
@@ -71,7 +71,7 @@ TEST_CASE("C: every shipped model compiles as strict C11, passes its self test, 
     CHECK(all["info"]["model"] == name);
     CHECK(all["info"]["verdict"].get<std::string>().starts_with("pass"));
     CHECK(all["info"]["outputs"] == Json({"energy"}));
-    // The right-hand side begins with the rates.
+    // The right-hand side starts with the rates.
     const std::size_t half = all["info"]["states"].size() / 2;
     if (half == 1) CHECK(all["dx"][0] == all["x"][1]);
   }
@@ -88,7 +88,7 @@ TEST_CASE("C: the pendulum's acceleration is -g/L sin(theta)") {
   CHECK(all["dx"][1].get<double>() == doctest::Approx(-9.81 * std::sin(1.0)).epsilon(1e-15));
 }
 
-TEST_CASE("C++: the header alone, in float and double, gives the same") {
+TEST_CASE("C++: the header alone gives the same results, in float and double") {
   const Folder folder;
   expect(0, folder, {"emit", "P2_planar_pendulum", "-o", ".", "--with", "jac"});
   folder.write("caller.cpp", R"(#include <cmath>
@@ -115,10 +115,10 @@ int main() {
   CHECK(all["float"].get<double>() == doctest::Approx(all["expected"].get<double>()).epsilon(1e-6));
 }
 
-TEST_CASE("C: integrating the emitted right-hand side by hand gives the rows of run") {
+TEST_CASE("C: an independent integration of the emitted right-hand side gives the rows of run") {
   const Folder folder;
   expect(0, folder, {"emit", "P7_moving_sphere", "-o", "."});
-  // Classical Runge-Kutta written here, from the defaults to t = 1.
+  // Classical Runge-Kutta method, from the defaults to t = 1.
   folder.write("caller.c", R"(#include <stdio.h>
 #include "P7_moving_sphere.h"
 static void f(double t, const double* x, const double* p, double* dx) { (void)P7_moving_sphere_rhs(t, x, p, NULL, 0, dx); }
@@ -149,7 +149,7 @@ int main(void)
     CHECK(by_hand[i].get<double>() == doctest::Approx(final[names[i]].get<double>()).epsilon(1e-9));
 }
 
-TEST_CASE("--fix: a parameter becomes a number, the array of parameters stays") {
+TEST_CASE("--fix: a parameter becomes a number, and the array of parameters keeps its size") {
   const Folder folder;
   const Json fixed = document(folder, {"emit", "P7_moving_sphere", "-o", ".", "--fix", "m,g,D"});
   const Json open = document(folder, {"emit", "P7_moving_sphere", "-o", "open"});

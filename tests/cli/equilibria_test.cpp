@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command equilibria: its document, its text, and what it refuses. Its numbers are tested in tests/linear.
+// Command equilibria: document, text and refusals. Its numbers are tested in tests/linear.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ TEST_CASE("equilibria: points with values, eigenvalues and stability, the same f
   CHECK(document(folder, {"equilibria", "R6_rolling_disk"})["points"][0]["stable"] == "unknown");
 }
 
-TEST_CASE("equilibria: coordinates that are 0 are shown, 0 has no sign, and a search that a force ends says which") {
+TEST_CASE("equilibria: zero coordinates are shown without sign, and a force that ends the search is named") {
   const Folder folder;
   const std::string text = expect(0, folder, {"equilibria", "S5_double_pendulum"}).out;
   CHECK(contains(text, "theta1                                          0\n"));
@@ -43,7 +43,7 @@ TEST_CASE("equilibria: coordinates that are 0 are shown, 0 has no sign, and a se
   CHECK(contains(why, "'stick' has no slope"));
 }
 
-TEST_CASE("equilibria: where there is none, no start is said to lead to one") {
+TEST_CASE("equilibria: without any equilibrium, the report states that no start led to one") {
   const Folder folder;
   folder.write("shafts.toml",
                "format = 1\n[coordinates]\na = {}\nb = {}\nc = {}\n[energy]\nkinetic = \"a_dot^2/2 + (a_dot + b_dot)^2 "
@@ -54,7 +54,7 @@ TEST_CASE("equilibria: where there is none, no start is said to lead to one") {
   CHECK(found["converged"] == 0);
 }
 
-TEST_CASE("equilibria: equations that depend on t, contacts, and what cannot be held are told with a remedy") {
+TEST_CASE("equilibria: time-dependent equations, contacts and invalid holds are refused with a remedy") {
   const Folder folder;
   CHECK(contains(expect(2, folder, {"equilibria", "P1_spherical_pendulum_varying"}).err, "eomgen linearize"));
   CHECK(contains(expect(2, folder, {"equilibria", "bouncing_ball"}).err, "linearise a copy"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Events as the user meets them: exit codes, JSON, tables, emitted code.
+// Events in exit codes, JSON, tables and emitted code.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ const std::string scene =
 
 }  // namespace
 
-TEST_CASE("an event that stops a run is no failure: exit code 0, told in JSON, text and table") {
+TEST_CASE("a terminal event is no failure: exit code 0, reported in JSON, text and table") {
   const Folder folder;
   const Json run = document(folder, {"run", "leaving_sphere", "--out", "a.csv", "--every", "0.1"});
   CHECK(run["outcome"] == "stopped_by_event");
@@ -32,8 +32,7 @@ TEST_CASE("an event that stops a run is no failure: exit code 0, told in JSON, t
   CHECK(contains(text.out, "leaves"));
 }
 
-TEST_CASE(
-    "events with a projection: on the rod x = 0 is passed where y = -L, and the motion is that without the event") {
+TEST_CASE("events with projection: on the rod, x = 0 is crossed at y = -L, and the event does not change the motion") {
   const Folder folder;
   folder.write("plain.toml", pendulum_text(scene));
   folder.write("watched.toml", pendulum_text("[[event]]\nname = \"bottom\"\nwhen = \"x\"\n"
@@ -65,7 +64,7 @@ TEST_CASE("emit --with events: the function, its names and directions") {
   CHECK(contains(folder.read("leaving_sphere.h"), "int leaving_sphere_events("));
   CHECK(contains(folder.read("leaving_sphere.hpp"), "struct Event { enum : std::size_t { leaves, halfway }; };"));
   CHECK(contains(folder.read("leaving_sphere.c"), "\\\"direction\\\":\\\"down\\\""));
-  // Without it nothing of events is emitted.
+  // Without the option, no code for events is emitted.
   const Folder other;
   expect(0, other, {"emit", "bilinear_oscillator", "-o", "."});
   CHECK_FALSE(contains(other.read("bilinear_oscillator.c"), "side_1"));

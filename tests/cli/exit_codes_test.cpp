@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 0 done, 1 a check came out negative, 2 bad input, 3 a run failed numerically, 4 a tool is missing.
+// Exit codes: 0 done, 1 a check failed, 2 bad input, 3 a run failed numerically, 4 a tool is missing.
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
@@ -20,9 +20,10 @@ TEST_CASE("exit code 0: results on standard output, nothing on standard error") 
   }
 }
 
-TEST_CASE("exit code 1: a compiler that miscompiles is found out by verify") {
+TEST_CASE("exit code 1: verify detects a compiler that miscompiles") {
   const Folder folder;
-  // It takes sines for cosines, and breaks the self test too, so that only the comparison with the symbols can tell.
+  // The compiler replaces sines by cosines and breaks the self test too. Only the comparison with the symbols detects
+  // it.
   folder.write("cc", R"(#!/bin/sh
 for word in "$@"; do
   case $word in
@@ -42,7 +43,7 @@ exec cc "$@"
   CHECK(result.status == 1);
   const Json certificate = Json::parse(result.out);
   CHECK(certificate["verdict"] == "fail");
-  // Functions without a sine stay right; nothing but the emitted code is blamed.
+  // Functions without sine stay correct; only the emitted code fails.
   bool blamed = false;
   for (const Json& row : certificate["routes"]) {
     if (!contains(row["a"].get<std::string>(), "emitted code")) CHECK(row["pass"] == true);
@@ -51,7 +52,7 @@ exec cc "$@"
   CHECK(blamed);
 }
 
-TEST_CASE("exit code 2: an error of the model shows its place, a caret and what to do") {
+TEST_CASE("exit code 2: an error of the model shows its position, a caret and a remedy") {
   const Folder folder;
   std::string text = pendulum_text("");
   text.replace(text.find("x^2"), 1, "xx");
@@ -70,7 +71,7 @@ TEST_CASE("exit code 2: an error of the model shows its place, a caret and what 
   CHECK(folder.names() == Words{"wrong.toml"});
 }
 
-TEST_CASE("exit code 3: a diverging run keeps its rows and says how it ended") {
+TEST_CASE("exit code 3: a diverging run keeps its rows and reports its outcome") {
   const Folder folder;
   folder.write("diverging.toml", diverging_text());
   const Json run = document(folder, {"run", "diverging.toml", "--out", "rows.csv", "--every", "0.1"}, 3);
@@ -85,7 +86,7 @@ TEST_CASE("exit code 3: a diverging run keeps its rows and says how it ended") {
   CHECK(contains(readable.out, "outcome           step_too_small at t = 2.97"));
 }
 
-TEST_CASE("exit code 3: with fixed steps it grows beyond all bounds, and the document stays valid") {
+TEST_CASE("exit code 3: with fixed steps the motion diverges, and the document stays valid") {
   const Folder folder;
   folder.write("diverging.toml", diverging_text());
   const Json run =
@@ -94,7 +95,7 @@ TEST_CASE("exit code 3: with fixed steps it grows beyond all bounds, and the doc
   CHECK(read_table(folder.read("rows.csv")).outcome == run["outcome"]);
 }
 
-TEST_CASE("exit code 3: no accelerations on the way") {
+TEST_CASE("exit code 3: the accelerations are undefined during the run") {
   const Folder folder;
   folder.write("singular.toml", singular_text());
   const Json run = document(folder, {"run", "singular.toml", "--solver", "rk4", "--step", "2", "--out", "rows.csv"}, 3);
@@ -105,7 +106,7 @@ TEST_CASE("exit code 3: no accelerations on the way") {
   CHECK(table.rows.size() == 1);
 }
 
-TEST_CASE("exit code 4: without a C compiler the command that installs one is told") {
+TEST_CASE("exit code 4: without a C compiler, the message has the command that installs one") {
   const Folder folder;
   ChildCommand call = command(folder, {"run", "P2_planar_pendulum", "--out", "rows.csv"});
   call.environment["EOMGEN_CC"] = "/nonexistent";
@@ -116,7 +117,7 @@ TEST_CASE("exit code 4: without a C compiler the command that installs one is to
   CHECK(contains(result.err, "the C compiler `/nonexistent` does not run"));
   CHECK(contains(result.err, "apt-get install gcc"));
   CHECK_FALSE(folder.has("rows.csv"));
-  // What needs no compiler works without one.
+  // Commands that need no compiler work without one.
   for (const Words& words : {Words{"derive", "P2_planar_pendulum"}, Words{"emit", "P2_planar_pendulum", "-o", "out"},
                              Words{"verify", "P2_planar_pendulum", "--points", "1", "--no-compile"}}) {
     call.arguments.resize(1);
@@ -125,7 +126,7 @@ TEST_CASE("exit code 4: without a C compiler the command that installs one is to
   }
 }
 
-TEST_CASE("a full standard output is no success") {
+TEST_CASE("a full standard output is an error") {
   const Folder folder;
   ChildCommand call;
   call.arguments = {"/bin/sh", "-c", std::string("exec '") + EOMGEN_PROGRAM + "' list >/dev/full"};

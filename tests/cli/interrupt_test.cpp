@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ctrl-C in the middle of a run.
+// Interruption by signals.
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
@@ -14,10 +14,10 @@ using namespace eomgen::test;
 
 namespace {
 
-// Far longer than any test may take.
+// Much longer than a test may take.
 const Words endless{"run", "P2_planar_pendulum", "--t-end", "1e7", "--every", "20", "--out", "a.csv", "--json"};
 
-/// The file NAME.partial-XXXXXX, once there are rows in it; empty where that takes more than 20 seconds.
+/// Waits until the file NAME.partial-XXXXXX has rows and returns its name; empty after 20 seconds.
 std::string wait_for_rows(const Folder& folder, const std::string& name, std::size_t bytes = 100000) {
   for (int k = 0; k < 2000; ++k) {
     for (const std::string& file : folder.names()) {
@@ -32,7 +32,7 @@ std::string wait_for_rows(const Folder& folder, const std::string& name, std::si
 
 }  // namespace
 
-TEST_CASE("an interrupted run keeps its rows, names its outcome and ends with 3") {
+TEST_CASE("an interrupted run keeps its rows, reports its outcome and exits with code 3") {
   for (const int signal : {SIGINT, SIGTERM}) {
     const Folder folder;
     Child child(command(folder, endless));
@@ -43,7 +43,7 @@ TEST_CASE("an interrupted run keeps its rows, names its outcome and ends with 3"
     CHECK(result.status == 3);
     const Json run = Json::parse(result.out);
     CHECK(run["outcome"] == "interrupted");
-    const Table table = read_table(folder.read("a.csv"));  // whole rows only
+    const Table table = read_table(folder.read("a.csv"));  // complete rows only
     CHECK(table.outcome == "interrupted");
     CHECK(table.rows.size() > 1000);
     CHECK(table.rows.back()[0] == run["t"]);
@@ -52,7 +52,7 @@ TEST_CASE("an interrupted run keeps its rows, names its outcome and ends with 3"
 }
 
 TEST_CASE(
-    "a run that is killed leaves its rows under another name, whole but for the last, and the old table as it was") {
+    "a killed run leaves its rows under another name, complete except the last one, and does not touch the old table") {
   const Folder folder;
   folder.write("a.csv", "old");
   Child child(command(folder, endless));
@@ -61,14 +61,14 @@ TEST_CASE(
   child.signal(SIGKILL);
   CHECK(child.finish().status == 128 + SIGKILL);
   CHECK(folder.read("a.csv") == "old");
-  // SIGKILL may fall into the middle of a write, which the kernel then cuts between two pages.
+  // SIGKILL may interrupt a write, which the kernel then cuts at a page boundary.
   const std::string text = folder.read(partial);
   const Table table = read_table(text.substr(0, text.rfind('\n') + 1));
   CHECK(table.outcome.empty());
   CHECK(table.rows.size() > 100);
 }
 
-TEST_CASE("what is no terminal gets no progress") {
+TEST_CASE("progress is printed on terminals only") {
   const Folder folder;
   Child child(command(folder, endless));
   REQUIRE_FALSE(wait_for_rows(folder, "a.csv").empty());
@@ -76,14 +76,14 @@ TEST_CASE("what is no terminal gets no progress") {
   CHECK(child.finish().err.empty());
 }
 
-TEST_CASE("Ctrl-C is heeded while one step's rows are written") {
+TEST_CASE("Ctrl-C takes effect while the rows of one step are written") {
   const Folder folder;
   Child child(command(folder, {"run", "P2_planar_pendulum", "--every", "1e-9", "--yes", "--out", "a.csv", "--json"}));
   REQUIRE_FALSE(wait_for_rows(folder, "a.csv").empty());
   const auto asked = std::chrono::steady_clock::now();
   child.signal(SIGINT);
   const ChildResult result = child.finish();
-  CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(5));  // at once, but on a busy machine
+  CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(5));  // immediate, except on a busy machine
   CHECK(result.status == 3);
   const Json run = Json::parse(result.out);
   CHECK(run["outcome"] == "interrupted");
@@ -93,7 +93,7 @@ TEST_CASE("Ctrl-C is heeded while one step's rows are written") {
   CHECK(table.rows.back()[0] - table.rows[table.rows.size() - 2][0] < 2e-9);  // no gap before the end
 }
 
-TEST_CASE("a polite kill is heeded while the compiler hangs, and nothing is left") {
+TEST_CASE("SIGTERM takes effect while the compiler hangs, and no files are left") {
   const Folder folder;
   folder.write("cc", "#!/bin/sh\n[ \"$1\" = --version ] && exec echo slow\ntouch working\nsleep 1000\n");
   REQUIRE(::chmod((folder / "cc").c_str(), 0755) == 0);
@@ -109,14 +109,14 @@ TEST_CASE("a polite kill is heeded while the compiler hangs, and nothing is left
   CHECK(result.in_time);
   CHECK(result.status == 3);
   CHECK(contains(result.err, "interrupted before the run began"));
-  // Of what was to be compiled; the certificate was whole before.
+  // No files of the compilation; the certificate was complete before.
   for (const auto& entry : std::filesystem::directory_iterator(folder / "cache"))
     CHECK(entry.path().filename().string().starts_with("certificate-"));
 }
 
-TEST_CASE("every command that derives stops on Ctrl-C at once, with 3, whatever it is doing") {
+TEST_CASE("every command that derives stops on Ctrl-C immediately with exit code 3, in any stage") {
   const Folder folder;
-  // Distances of all pairs of 20 particles on relative angles: nothing of it is short.
+  // Distances of all pairs of 20 particles on relative angles: every stage takes long.
   folder.write("a.toml",
                "format = 1\n[[chain]]\nname = \"link\"\nn = 20\nmass = 1\nlength = 1\ncoordinate = \"th\"\nangles = "
                "\"relative\"\n"
@@ -140,7 +140,7 @@ TEST_CASE("every command that derives stops on Ctrl-C at once, with 3, whatever 
     const ChildResult result = child.finish();
     CHECK(result.status == 3);
     CHECK(contains(result.err, "interrupted"));
-    CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(1));  // 0.2 of them where nothing else runs
+    CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(1));  // 0.2 s on an idle machine
   }
   CHECK(folder.names() == Words{"a.toml"});
 }
@@ -148,7 +148,7 @@ TEST_CASE("every command that derives stops on Ctrl-C at once, with 3, whatever 
 TEST_CASE("equilibria that were found before Ctrl-C are shown") {
   const Folder folder;
   Child child(command(folder, {"equilibria", "S5_double_pendulum", "--starts", "100000", "--json"}));
-  std::this_thread::sleep_for(std::chrono::seconds(2));  // some thousand starts; the first few find all four
+  std::this_thread::sleep_for(std::chrono::seconds(2));  // a few thousand starts; the first ones find all four
   child.signal(SIGINT);
   const ChildResult result = child.finish();
   CHECK(result.status == 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command inverse: its table against closed forms, its document, and what it refuses.
+// Command inverse: table against closed forms, document, refusals.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double tolerance = 1e-8;  // a run of one second at the default rtol of 1e-9
 
-// A pendulum whose angle `drive` prescribes; the rod stays a constraint of its own.
+// A pendulum whose angle `drive` prescribes; the rod is a separate constraint.
 std::string driven(const std::string& drive) {
   return "format = 1\n[parameters]\nm = 2\nL = 0.5\ng = 9.81\n[functions]\ndrive = \"0.3*sin(2*t)\"\n"
          "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = [\"r\", \"theta\"] }\n"
@@ -24,7 +24,7 @@ const char* const motor = "[[constraint]]\nname = \"motor\"\nholonomic = \"theta
 
 }  // namespace
 
-TEST_CASE("inverse: where all is prescribed the moment of a driven pendulum is m L^2 theta_ddot + m g L sin(theta)") {
+TEST_CASE("inverse: the moment of a fully prescribed pendulum is m L^2 theta_ddot + m g L sin(theta)") {
   const Folder folder;
   folder.write("driven.toml", driven(motor));
   const Json found = document(folder, {"inverse", "driven.toml", "--constraint", "motor"});
@@ -42,7 +42,7 @@ TEST_CASE("inverse: where all is prescribed the moment of a driven pendulum is m
     CHECK(table.at(i, "P.force2") == doctest::Approx(moment / 0.5 * std::cos(theta)).epsilon(1e-13));
     CHECK(table.at(i, "prescribed.power") == doctest::Approx(moment * 0.6 * std::cos(2 * t)).epsilon(1e-13));
   }
-  // Without a choice the rod counts too: then the force on P is the whole of what is not gravity.
+  // By default the rod is included: then the force on P is the total force except gravity.
   expect(0, folder, {"inverse", "driven.toml", "--out", "all.csv", "--every", "0.5"});
   const Table all = read_table(folder.read("all.csv"));
   REQUIRE(all.rows.size() == 3);
@@ -53,7 +53,7 @@ TEST_CASE("inverse: where all is prescribed the moment of a driven pendulum is m
   CHECK(all.at(1, "P.force2") == doctest::Approx(radial * std::sin(theta) + across * std::cos(theta)).epsilon(1e-13));
 }
 
-TEST_CASE("inverse: what is not prescribed moves, and the forces are those along its motion") {
+TEST_CASE("inverse: free coordinates move, and the forces are those along their motion") {
   const Folder folder;
   folder.write("free.toml", driven("") + "initial = { theta = 0.4 }\n");
   const Json found = document(folder, {"inverse", "free.toml", "--rtol", "1e-11", "--t-end", "2"});
@@ -68,7 +68,7 @@ TEST_CASE("inverse: what is not prescribed moves, and the forces are those along
   }
 }
 
-TEST_CASE("inverse: a prescribed motion may hold an integral without a closed form") {
+TEST_CASE("inverse: a prescribed motion may contain an integral without closed form") {
   const Folder folder;
   std::string text = driven(motor);  // theta = integral of exp(-t^2) = sqrt(pi)/2 erf(t)
   text.replace(text.find("0.3*sin(2*t)"), 12, "integral(exp(-t^2))");
@@ -83,7 +83,7 @@ TEST_CASE("inverse: a prescribed motion may hold an integral without a closed fo
   }
 }
 
-TEST_CASE("inverse: nothing prescribed, a constraint that is not there, a place that cannot be written are told") {
+TEST_CASE("inverse: models without prescribed motion, unknown constraints and unwritable paths are reported") {
   const Folder folder;
   CHECK(contains(expect(2, folder, {"inverse", "P14_kepler_spherical"}).err,
                  "no constraint of this model prescribes a motion"));

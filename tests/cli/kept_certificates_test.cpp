@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A positive certificate is kept by what it depends on, and by nothing less.
+// Cache of positive certificates: the key has everything that the certificate depends on.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -25,7 +25,7 @@ ChildResult with_cache(const Folder& folder, const Words& words) {
   return Child(call).finish();
 }
 
-/// As the first command would have found it, had the difference been another.
+/// Changes a formulation and a difference in a cached certificate.
 void change(const std::filesystem::path& path) {
   std::ifstream in(path);
   Json document = Json::parse(in);
@@ -37,8 +37,7 @@ void change(const std::filesystem::path& path) {
 }  // namespace
 
 TEST_CASE(
-    "kept certificates: the next command takes what an earlier one found, for the same model, program and options "
-    "only") {
+    "cached certificates: a command uses the result of an earlier one for the same model, program and options only") {
   const Folder folder;
   folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }"));
   const Words emit{"emit", "p.toml", "-o", "out"};
@@ -49,7 +48,7 @@ TEST_CASE(
   CHECK(kept(folder).size() == 1);
   change(kept(folder).front());
   CHECK(contains(with_cache(folder, emit).out, "worst 1.2e-50 (another route"));
-  // Another seed, another function, another byte of the model, other code: each is compared anew.
+  // Another seed, function, byte of the model or other code: each is verified again.
   for (const Words& other :
        {Words{"emit", "p.toml", "-o", "out", "--seed", "2"}, Words{"emit", "p.toml", "-o", "out", "--with", "jac"},
         Words{"emit", "p.toml", "-o", "out", "--fix", "g"},
@@ -64,7 +63,7 @@ TEST_CASE(
   CHECK_FALSE(contains(with_cache(folder, emit).out, "another route"));
 }
 
-TEST_CASE("kept certificates: verify compares anew, and what is damaged is made again") {
+TEST_CASE("cached certificates: verify ignores the cache, and damaged entries are replaced") {
   const Folder folder;
   folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }"));
   REQUIRE(with_cache(folder, {"run", "p.toml"}).status == 0);
@@ -83,7 +82,7 @@ TEST_CASE("kept certificates: verify compares anew, and what is damaged is made 
   CHECK(contains(with_cache(folder, {"run", "p.toml"}).out, "(kept)"));
 }
 
-TEST_CASE("kept certificates: what needs no folder does without one") {
+TEST_CASE("cached certificates: commands work without a cache folder") {
   const Folder folder;
   folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }"));
   std::filesystem::create_directory(folder / "open");

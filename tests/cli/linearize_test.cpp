@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command linearize: its document, its text, and what it refuses. Its numbers are tested in tests/linear.
+// Command linearize: document, text and refusals. Its numbers are tested in tests/linear.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -39,7 +39,7 @@ TEST_CASE("linearize: another parameter, another time") {
   CHECK(later["A"][1][0].get<double>() ==
         doctest::Approx(-4 - std::pow(later["point"]["x"].get<double>(), 2)).epsilon(1e-14));
   CHECK(later["kind"] == "motion");
-  // It comes to rest: within the tolerance of the run that is the equilibrium.
+  // The motion comes to rest: within the tolerance of the run, the state is the equilibrium.
   const Json rest = document(folder, {"linearize", "drop.toml", "--at", "60"});
   CHECK(rest["kind"] == "equilibrium");
   CHECK(rest["A"][1][0] == -4.0);
@@ -52,7 +52,7 @@ TEST_CASE("linearize: another parameter, another time") {
   CHECK(faint["A"].back().back() == -1.0);
 }
 
-TEST_CASE("linearize: what has no slope, contacts, wrong names and times are told with a remedy") {
+TEST_CASE("linearize: nondifferentiable terms, contacts, unknown names and invalid times are refused with a remedy") {
   const Folder folder;
   folder.write("edge.toml",
                "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[[force]]\ngeneralized = { x = "

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pages of the manual and completions are made of the options that the program reads: none is missing, and nothing of
-// their text is taken for markup.
+// Manual pages and shell completions: they have all options of the program, and their text is escaped.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -48,7 +47,7 @@ std::string without_escapes(std::string roff) {
 
 }  // namespace
 
-TEST_CASE("manual: a page for the program and for each command, with each of its options") {
+TEST_CASE("manual: one page for the program and one for each command, with all options") {
   const Folder folder;
   expect(0, folder, {"manual", "-o", "pages"});
   const std::vector<std::string> names = commands(folder);

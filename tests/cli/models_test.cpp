@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where models come from: `new`, paths, names, and names that nobody would choose.
+// The MODEL argument: `new`, paths, names, hostile names.
 #include <doctest/doctest.h>
 
 #include "program.hpp"
@@ -7,7 +7,7 @@
 
 using namespace eomgen::test;
 
-TEST_CASE("new: a starter that can be checked, verified, run at once; never over another file") {
+TEST_CASE("new: the starter can be checked, verified and run, and overwrites no file") {
   const Folder folder;
   CHECK(expect(0, folder, {"new", "my_pendulum"}).out == "wrote my_pendulum.toml\n");
   const std::string text = folder.read("my_pendulum.toml");
@@ -21,7 +21,7 @@ TEST_CASE("new: a starter that can be checked, verified, run at once; never over
   CHECK(folder.read("my_pendulum.toml") == "mine");
 }
 
-TEST_CASE("new: names that are no names are refused, and nothing is written") {
+TEST_CASE("new: invalid names are refused, and nothing is written") {
   const Folder folder;
   for (const char* name : {"", "1abc", "../up", "a/b", "a b", "a.toml", "; rm", "a\nb", "\xc3\xa9"}) {
     CAPTURE(name);
@@ -31,7 +31,7 @@ TEST_CASE("new: names that are no names are refused, and nothing is written") {
   CHECK(folder.names().empty());
 }
 
-TEST_CASE("MODEL is a path, with or without .toml, or a name in models/; a folder of that name is not in the way") {
+TEST_CASE("MODEL is a path, with or without .toml, or a name in models/, even if a folder has that name") {
   const Folder folder;
   const std::string path = source_folder() + "/models/P2_planar_pendulum";
   for (const std::string& model :
@@ -44,7 +44,7 @@ TEST_CASE("MODEL is a path, with or without .toml, or a name in models/; a folde
                  "there is no such model file"));
 }
 
-TEST_CASE("hostile file names are mangled, never obeyed") {
+TEST_CASE("hostile file names are mangled, never executed") {
   const Folder folder;
   const std::vector<std::pair<std::string, std::string>> names{
       {"my model-1", "my_model_1"},
@@ -75,7 +75,7 @@ TEST_CASE("hostile file names are mangled, never obeyed") {
   CHECK_FALSE(folder.has("pwned"));
 }
 
-TEST_CASE("bytes that are no UTF-8 in a path do not break a document") {
+TEST_CASE("invalid UTF-8 in a path does not break a document") {
   const Folder folder;
   const Json emitted = document(folder, {"emit", "P2_planar_pendulum", "-o", "bad\xff"});
   CHECK(emitted["files"].size() == 3);

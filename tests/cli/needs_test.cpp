@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Only what is asked for is emitted: requests and models that differ in one need differ in that symbol, that operation.
+// Emitted code has only what is needed: requests and models that differ in one need differ in that symbol or operation.
 #include <doctest/doctest.h>
 
 #include <set>
@@ -11,7 +11,7 @@ using namespace eomgen::test;
 
 namespace {
 
-/// The functions that a user can call and the operations of the right-hand side.
+/// Callable functions and operations of the right-hand side of emitted code.
 struct Emitted {
   std::set<std::string> functions;  // without NAME_
   std::string source;
@@ -22,7 +22,7 @@ struct Emitted {
     for (const auto& [kind, count] : report["operations"].items()) sum += count.get<int>();
     return sum;
   }
-  std::string function(const std::string& name) const {  // its text, with that of the functions made for it
+  std::string function(const std::string& name) const {  // its text with that of its helper functions
     const std::size_t begin = source.find("_" + name + "_from(") != std::string::npos
                                   ? source.find("_" + name + "_from(")
                                   : source.find("_" + name + "(");
@@ -71,7 +71,7 @@ std::string cart(const std::string& input, const std::string& force) {
 
 }  // namespace
 
-TEST_CASE("needs: a function that is asked for adds its symbol and leaves the right-hand side as it is") {
+TEST_CASE("needs: a requested function adds its symbol and does not change the right-hand side") {
   const Emitted bare = emitted("P7_moving_sphere");
   CHECK(bare.functions == with(always, bare.report["hoisted"].is_null() ? Names{} : prepared));
   CHECK_FALSE(contains(bare.source, "lambda"));
@@ -90,17 +90,17 @@ TEST_CASE("needs: a function that is asked for adds its symbol and leaves the ri
   }
 }
 
-TEST_CASE("needs: parameters that are fixed are not read, and what is made of them is a number") {
+TEST_CASE("needs: fixed parameters are not read, and expressions of them are numbers") {
   const Emitted open = emitted("S5_double_pendulum"), fixed = emitted("S5_double_pendulum", {"--fix", "m1,m2,L1,L2,g"});
   CHECK(open.functions == with(always, prepared));
-  CHECK(fixed.functions == always);  // nothing is left to prepare
+  CHECK(fixed.functions == always);  // no function `prepare` remains
   CHECK(fixed.operations() < open.operations());
   CHECK(contains(open.function("rhs"), " = p["));
   CHECK_FALSE(contains(fixed.function("rhs"), " = p["));
   CHECK(fixed.report["hoisted"].is_null());
 }
 
-TEST_CASE("needs: what is prepared is not done again") {
+TEST_CASE("needs: prepared values are not computed again") {
   const Emitted open = emitted("S5_double_pendulum");
   const auto cost = [](const Json& operations) {
     return operations["add"].get<int>() + operations["mul"].get<int>() + operations["div"].get<int>();
@@ -109,7 +109,7 @@ TEST_CASE("needs: what is prepared is not done again") {
   CHECK(cost(open.report["hoisted"]["prepare"]) > 0);
 }
 
-TEST_CASE("needs: without an input none is read, and its operation is gone") {
+TEST_CASE("needs: without an input, none is read and its operation disappears") {
   const Emitted driven =
       emitted(cart("[inputs]\nF = { unit = \"N\", default = 0 }\n", "[[force]]\ngeneralized = { s = \"F\" }\n"));
   const Emitted free = emitted(cart("", ""));
@@ -119,14 +119,14 @@ TEST_CASE("needs: without an input none is read, and its operation is gone") {
   CHECK(driven.operations() == free.operations() + 1);
 }
 
-TEST_CASE("needs: only where a chart is singular is that tested, and only where one divides") {
+TEST_CASE("needs: singularity is tested only for charts that have one, and only before a division") {
   const Emitted spherical = emitted("G1_spherical"), cartesian = emitted("G1_cartesian");
   CHECK(contains(spherical.function("rhs"), "return 1;"));
   CHECK_FALSE(contains(cartesian.function("rhs"), "return 1;"));
   CHECK(cartesian.operations() == 0);  // a diagonal mass matrix of equal masses: no solve at all
 }
 
-TEST_CASE("needs: a kernel for sines comes with two angles, not with one") {
+TEST_CASE("needs: a kernel for sines is used for two angles, not for one") {
   const Emitted one = emitted("S6_chain_1"), two = emitted("S6_chain_2");
   CHECK_FALSE(contains(one.source, "sincos"));
   CHECK_FALSE(contains(one.source, "string.h"));
@@ -134,17 +134,15 @@ TEST_CASE("needs: a kernel for sines comes with two angles, not with one") {
   CHECK(contains(one.function("rhs"), " sin("));
 }
 
-TEST_CASE(
-    "needs: second charts are in the code only where they are asked for, and a model that cannot exchange any has "
-    "none") {
+TEST_CASE("needs: second charts are in the code only on request, and never for a model without exchangeable charts") {
   const Emitted own = emitted("R1_free_body"), both = emitted("R1_free_body", {"--with", "charts"});
   CHECK_FALSE(contains(own.source, "chart"));
   CHECK(both.functions == with(own.functions, {"chart"}));
-  CHECK(both.report["operations"] == own.report["operations"]);  // of the own chart: nothing is added to it
+  CHECK(both.report["operations"] == own.report["operations"]);  // of the first chart: nothing is added
   CHECK(contains(both.source, "own_rhs("));
   CHECK(contains(both.source, "chart1_rhs("));
   const std::string kernel = "static inline void R1_free_body_sincos_lanes(";
-  CHECK(both.source.find(kernel) == both.source.rfind(kernel));  // of which both make use
+  CHECK(both.source.find(kernel) == both.source.rfind(kernel));  // used by both
   const Emitted mass = emitted("R1_free_body", {"--with", "charts,mass"});
   CHECK(mass.functions == with(both.functions, {"mass", "mass_in"}));
   const Folder folder;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where results go: never over the model, through links and devices, and told how much.
+// Output of results: protection of the model file, links and devices, reported sizes.
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ const char* const oscillator =
     "format = 1\n[parameters]\nm = 1\nk = 4\n[coordinates]\nx = {}\n"
     "[energy]\nkinetic = \"m*x_dot^2/2\"\npotential = \"k*x^2/2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n";
 
-/// Under a shell, so that its redirections can be tried.
+/// Runs a shell, to test redirections.
 ChildResult shell(const Folder& folder, const std::string& line) {
   ChildCommand call = command(folder, {});
   const std::string program = call.arguments.front();
@@ -28,7 +28,7 @@ ChildResult shell(const Folder& folder, const std::string& line) {
 
 }  // namespace
 
-TEST_CASE("no option writes over the model's own file, whatever it is called by") {
+TEST_CASE("no option overwrites the model file, under any of its names") {
   const Folder folder;
   folder.write("p.toml", oscillator);
   fs::create_symlink("p.toml", folder / "link.csv");
@@ -52,7 +52,7 @@ TEST_CASE("no option writes over the model's own file, whatever it is called by"
   CHECK(contains(expect(2, folder, {"new", "new"}).err, "this file exists already"));
 }
 
-TEST_CASE("links are followed, devices and pipes are written through, - is standard output") {
+TEST_CASE("links are followed, devices and pipes are written directly, - is standard output") {
   const Folder folder;
   folder.write("p.toml", oscillator);
   fs::create_directories(folder / "far");
@@ -65,7 +65,7 @@ TEST_CASE("links are followed, devices and pipes are written through, - is stand
     CAPTURE(place);
     const ChildResult result = expect(0, folder, {"run", "p.toml", "--out", place});
     CHECK(result.out == table);
-    CHECK(contains(result.err, "outcome           done"));  // the report makes way
+    CHECK(contains(result.err, "outcome           done"));  // the report goes to standard error
     CHECK_FALSE(folder.has("-"));
   }
   CHECK(shell(folder, "$EOMGEN run p.toml --out /dev/stdout >to.csv 2>/dev/null").status == 0);
@@ -75,7 +75,7 @@ TEST_CASE("links are followed, devices and pipes are written through, - is stand
   CHECK(fs::is_fifo(folder / "pipe"));
   expect(0, folder, {"run", "p.toml", "--out", "/dev/null"});
   CHECK(fs::is_character_file("/dev/null"));
-  const std::string drawn = expect(0, folder, {"run", "p.toml", "--plot", "-"}).out;  // in characters, for a terminal
+  const std::string drawn = expect(0, folder, {"run", "p.toml", "--plot", "-"}).out;  // as text, for a terminal
   CHECK(contains(drawn, "*"));
   CHECK_FALSE(contains(drawn, "<svg"));
   CHECK(expect(0, folder, {"run", "p.toml", "--plot", "/dev/stdout"}).out.starts_with("<svg"));
@@ -85,7 +85,7 @@ TEST_CASE("links are followed, devices and pipes are written through, - is stand
   for (const std::string& name : folder.names()) CHECK_FALSE(contains(name, ".partial"));
 }
 
-TEST_CASE("places that cannot be, and two results for one place, are refused before any work") {
+TEST_CASE("invalid paths, and two results for one path, are refused before any work") {
   const Folder folder;
   folder.write("p.toml", oscillator);
   fs::create_symlink("a.csv", folder / "b.csv");
@@ -113,10 +113,10 @@ TEST_CASE("places that cannot be, and two results for one place, are refused bef
   refused({"emit", "p.toml", "--out", "p.toml"}, "this is a file, and a folder is asked");
   refused({"run", "p.toml", "--out", std::string(300, 'x')}, "at most 255");
   CHECK(folder.names() == Words{"b.csv", "p.toml"});
-  expect(0, folder, {"run", "p.toml", "--out", "rows.out"});  // an ending that says nothing
+  expect(0, folder, {"run", "p.toml", "--out", "rows.out"});  // an extension without meaning
 }
 
-TEST_CASE("a model name of 240 letters is no obstacle, or is told") {
+TEST_CASE("a model name of 240 letters works or is reported") {
   const Folder folder;
   const std::string name(240, 'n');
   folder.write(name + ".toml", oscillator);
@@ -131,7 +131,7 @@ TEST_CASE("a model name of 240 letters is no obstacle, or is told") {
   CHECK_FALSE(contains(longer.err, "internal"));
 }
 
-TEST_CASE("run says what it writes and how much; a size beyond reason is told, or refused unless it is confirmed") {
+TEST_CASE("run reports files and sizes; large sizes are announced, or refused unless confirmed") {
   const Folder folder;
   folder.write("p.toml", oscillator);
   const ChildResult told = expect(0, folder, {"run", "p.toml", "--out", "a.csv", "--plot", "a.svg"});
@@ -155,10 +155,10 @@ TEST_CASE("run says what it writes and how much; a size beyond reason is told, o
       expect(0, folder,
              {"run", "p.toml", "--out", "/dev/null", "--plot", "b.svg", "--every", "0.9e-6", "--no-error-estimate"});
   CHECK(contains(many.err, "asks for 1.11e+06 rows, about"));
-  CHECK(fs::file_size(folder / "b.svg") < 30'000'000);  // a plot has points enough
+  CHECK(fs::file_size(folder / "b.svg") < 30'000'000);  // a plot limits its points
 }
 
-TEST_CASE("a standard error that is closed or full loses its words and nothing else") {
+TEST_CASE("a closed or full standard error loses only messages") {
   const Folder folder;
   std::string warned = oscillator;
   warned.insert(warned.find("[coordinates]"), "unused = 3\n");
@@ -174,7 +174,7 @@ TEST_CASE("a standard error that is closed or full loses its words and nothing e
     CHECK(shell(folder, std::string("$EOMGEN run p.toml --out a.csv ") + closed).status == 0);
     CHECK(read_table(folder.read("a.csv")).outcome == "done");  // and no warning in it
   }
-  shell(folder, "{ sleep 0.3; $EOMGEN check p.toml >/dev/null; echo $? >code; } 2>&1 | true");  // nobody reads
+  shell(folder, "{ sleep 0.3; $EOMGEN check p.toml >/dev/null; echo $? >code; } 2>&1 | true");  // without reader
   CHECK(folder.read("code") == "0\n");
   const ChildResult lost = shell(folder, "$EOMGEN check p.toml >&-");
   CHECK(lost.status == 4);
@@ -184,7 +184,7 @@ TEST_CASE("a standard error that is closed or full loses its words and nothing e
   CHECK_FALSE(contains(all.err, "internal"));
 }
 
-TEST_CASE("a full disk is a failure of that disk, in every command that writes") {
+TEST_CASE("a full disk is reported by every command that writes") {
   if (!fs::exists("/dev/full")) return;
   const Folder folder;
   folder.write("p.toml", oscillator);

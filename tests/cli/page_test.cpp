@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pages of `report` in a browser without a window: what they show, that they move, and that they compute what the
-// program computes. Skipped with a word where there is no Chromium (scripts/setup --with page).
+// Pages of `report` in a headless browser: contents, animation, and agreement of their computation with the program.
+// Skipped with a message without Chromium (scripts/setup --with page).
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -22,12 +22,11 @@ namespace {
 constexpr std::size_t largest_page = 1000000;  // bytes
 constexpr double as_run_does = 1e-5;  // the page integrates with rtol 1e-8, the run with 1e-9 and another method
 constexpr double a_pixel = 1;
-constexpr std::size_t longest_formula = 60000;  // bytes; as on a page
-constexpr double on_the_sphere =
-    1e-3;  // of a radius of 1: where a line of a surface crosses a cell is found by secants
+constexpr std::size_t longest_formula = 60000;  // bytes, as in report
+constexpr double on_the_sphere = 1e-3;  // for radius 1: intersections of surface lines with cells are found by secants
 
-// A box in free flight, drawn as it is said to be, with a point at one of its corners: as a box, by its corners and a
-// point inside, by two of its faces.
+// A box in free flight with a point at one of its corners. It is drawn as a box, by its corners and an inner point, and
+// by two of its faces.
 const char* const brick = R"(format = 1
 title = "Brick & <b>hostile</b> \"name\" </script>"
 [parameters]
@@ -56,7 +55,7 @@ t = [0, 1]
 initial = { psi_dot = 2, theta_dot = 0.7, phi_dot = 4, x_dot = 1, z_dot = 4 }
 )";
 
-// A bead in a bowl that slides: its surface goes along with the cart.
+// A bead in a sliding bowl: its surface moves with the cart.
 const char* const bowl = R"(format = 1
 title = "Bead in a bowl that slides"
 [parameters]
@@ -86,10 +85,10 @@ solve = ["z", "z_dot"]
 
 struct Case {
   std::string model;        // a name, or a file in the folder
-  bool live = true;         // the page runs it
+  bool live = true;         // the page integrates it
   std::string slider = {};  // a parameter that is moved
   double value = 0;
-  std::string drag = {};    // a place that is taken by hand
+  std::string drag = {};    // a point that is dragged
   std::string corner = {};  // a point that is a corner of a drawn body
   bool sphere = false;      // its particle is on a sphere about the origin
 };
@@ -117,7 +116,7 @@ std::optional<std::string> browser() {
   for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
     try {
       if (run_child({{name, "--version"}}).status == 0) return name;
-    } catch (const std::exception&) {  // there is no such program
+    } catch (const std::exception&) {  // the program is not installed
     }
   }
   return std::nullopt;
@@ -131,7 +130,7 @@ ChildResult browse(const Folder& folder, const std::string& program, Words words
   return run_child(command);
 }
 
-/// What page_checks.js finds of the cases.
+/// Results of page_checks.js for the cases.
 Json looked_at(const Folder& folder, const std::string& program, const Json& cases) {
   folder.write("checks.html", "<!DOCTYPE html><html><body><pre id=\"found\"></pre><script id=\"cases\">const cases = " +
                                   in_script(cases) + ";</script><script>" + source("tests/cli/page_checks.js") +
@@ -191,12 +190,12 @@ void check(const Json& found, const Case& c, const Json& wanted) {
     CHECK(at["forces"]["taken_back"] == true);
     CHECK(at["forces"]["legend_of_moments"] == (at["forces"]["moments"] > 0));
     if (c.model == "R7_satellite" || c.model == "R15_pin_joint") CHECK(at["forces"]["moments"] > 0);
-    if (c.model == "bowl.toml") {  // z of its lines is what the bowl has above the cart
+    if (c.model == "bowl.toml") {  // z of its lines is the bowl above the cart
       CHECK(at["carried"]["lines"] > 300);
       CHECK(at["carried"]["off"] < on_the_sphere);
       CHECK(at["carried"]["moved"] > 0.1);
     }
-    if (c.model == "bouncing_ball") {  // the line of the floor, from wherever the ball is above it
+    if (c.model == "bouncing_ball") {  // the line of the floor, below the ball
       CHECK(at["floor"]["lines"] > 50);
       CHECK(at["floor"]["off"] < 1e-9);
     }
@@ -236,7 +235,7 @@ void keep_picture(const Folder& folder, const std::string& program, const std::s
 
 }  // namespace
 
-TEST_CASE("page: in a browser reports show their equations whole, move as the run does, and run the model themselves") {
+TEST_CASE("page: reports show complete equations, replay the run, and integrate the model in a browser") {
   const std::optional<std::string> program = browser();
   if (!program) {
     MESSAGE("skipped: there is no chromium");
@@ -290,7 +289,7 @@ TEST_CASE("page: in a browser reports show their equations whole, move as the ru
   for (std::size_t k = 0; k < list.size(); ++k) check(found[k], list[k], wanted[k]);
 }
 
-TEST_CASE("page: the formulas of all shipped models stand whole in their column, with gaps and without overlaps") {
+TEST_CASE("page: the formulas of all shipped models fit their column, with gaps and without overlaps") {
   const std::optional<std::string> program = browser();
   if (!program) {
     MESSAGE("skipped: there is no chromium");

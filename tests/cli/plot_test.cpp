@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plots of `run`: panels by units, phase planes, events, estimated errors, characters; of `bench` and `stress` as well.
+// Plots of `run` (panels by units, phase planes, events, estimated errors, text), of `bench` and of `stress`.
 #include <doctest/doctest.h>
 
 #include <sstream>
@@ -23,7 +23,7 @@ std::string plotted(const Folder& folder, Words words) {
   return folder.read("plot.svg");
 }
 
-// Printable, and no line longer than a terminal is wide.
+// Checks that the text is printable and fits the width of a terminal.
 void check_characters(const std::string& text) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -34,7 +34,7 @@ void check_characters(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("plot: one panel for each unit, with the title of the model once and the unit at its axis") {
+TEST_CASE("plot: one panel for each unit, with the unit at its axis and one title") {
   const Folder folder;
   const std::string cart = plotted(folder, {"cart_pendulum"});
   CHECK(contains(cart, ">x in m<"));
@@ -45,7 +45,7 @@ TEST_CASE("plot: one panel for each unit, with the title of the model once and t
   CHECK(contains(plotted(folder, {"S5_double_pendulum"}), ">coordinates in rad<"));
 }
 
-TEST_CASE("plot: what is asked for, by units; a phase plane is one quantity over another") {
+TEST_CASE("plot: requested outputs by units; a phase plane is one quantity over another") {
   const Folder folder;
   const std::string chosen =
       plotted(folder, {"S5_double_pendulum", "--plot-of", "energy", "--plot-of", "theta1", "--plot-of", "theta2",
@@ -60,7 +60,7 @@ TEST_CASE("plot: what is asked for, by units; a phase plane is one quantity over
                  ">P2.position2 in m<"));
 }
 
-TEST_CASE("plot: events are marked with their names, and an estimated error that is more than a line is a bar") {
+TEST_CASE("plot: events are marked by name, and an estimated error wider than a line is a bar") {
   const Folder folder;
   const std::string sphere = plotted(folder, {"leaving_sphere"});
   CHECK(contains(sphere, "<title>halfway</title>"));
@@ -69,16 +69,14 @@ TEST_CASE("plot: events are marked with their names, and an estimated error that
                  "estimated error of theta2"));
 }
 
-TEST_CASE(
-    "plot: a PNG has the pixels of the SVG: the paper is white, curves have their colours, and its checksums are "
-    "right") {
+TEST_CASE("plot: a PNG has the pixels of the SVG: white background, coloured curves, valid checksums") {
   const Folder folder;
   expect(0, folder, {"run", "cart_pendulum", "--plot", "plot.PNG"});
   const std::string png = folder.read("plot.PNG");
   CHECK(png.substr(0, 8) == std::string("\x89PNG\r\n\x1a\n", 8));
   CHECK(png.size() < 400000);
   CHECK(png.substr(png.size() - 8) == std::string("IEND\xae\x42\x60\x82", 8));
-  // Node's inflate holds the stream, and counts what is drawn.
+  // Node decompresses the stream and counts the drawn pixels.
   folder.write(
       "read.js",
       R"(const b = require('fs').readFileSync('plot.PNG'), zlib = require('zlib'); let at = 8, data = [], size = null;
@@ -101,7 +99,7 @@ console.log(JSON.stringify({size, whole: raw.length === row * size[1], white, bl
   }
 }
 
-TEST_CASE("plot: characters fit into eighty columns and show each curve with a letter of its own") {
+TEST_CASE("plot: text fits into eighty columns and shows each curve with a letter of its own") {
   const Folder folder;
   const std::string text =
       expect(0, folder, {"run", "S5_double_pendulum", "--plot", "-", "--plot-of", "theta1", "--plot-of", "theta2"}).out;
@@ -137,10 +135,10 @@ TEST_CASE("plot: bench draws errors over run times, one line for each solver, on
   const ChildResult text = plotted("-");
   CHECK(contains(text.out, "* rk4   + tsit5"));
   check_characters(text.out);
-  CHECK(contains(text.err, "reference"));  // the table has gone aside
+  CHECK(contains(text.err, "reference"));  // the table goes to standard error
 }
 
-TEST_CASE("plot: stress draws each verdict of its table, told apart by shape as well as by colour") {
+TEST_CASE("plot: stress draws each verdict of its table, distinguished by shape and colour") {
   const Folder folder;
   folder.write("hostile.toml", R"(format = 1
 title = "<b> & \"both\""
@@ -173,7 +171,7 @@ initial = { x = 0.1 }
   CHECK(found["told"].get<std::size_t>() > 3);
   CHECK(count(svg, ": kept, ") == found["kept"].get<std::size_t>());
   CHECK(count(svg, ": told, ") == found["told"].get<std::size_t>());
-  CHECK(count(svg, "height=\"13\" fill=\"#0b6ab0\"") == found["kept"].get<std::size_t>() + 1);  // and the legend
+  CHECK(count(svg, "height=\"13\" fill=\"#0b6ab0\"") == found["kept"].get<std::size_t>() + 1);  // and one in the legend
   CHECK(count(svg, "height=\"4\" fill=\"#e08e0b\"") == found["told"].get<std::size_t>() + 1);
   plotted("s.png", {});
   CHECK(folder.read("s.png").starts_with("\x89PNG"));
@@ -183,7 +181,7 @@ initial = { x = 0.1 }
   CHECK(contains(text, "as it is"));
 }
 
-TEST_CASE("plot: names that there are not, and what is no phase plane, are refused with what to do") {
+TEST_CASE("plot: unknown names and invalid phase planes are refused with a remedy") {
   const Folder folder;
   const auto refused = [&](const Words& words, const std::string& what) {
     Words all{"run", "S5_double_pendulum"};

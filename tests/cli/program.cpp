@@ -172,7 +172,7 @@ Table read_table(const std::string& text) {
   std::getline(lines, line);
   for (std::istringstream cells(line); std::getline(cells, cell, ',');) table.columns.push_back(cell);
   while (std::getline(lines, line)) {
-    CHECK(table.outcome.empty());  // the line of the outcome is the last
+    CHECK(table.outcome.empty());  // the line of the outcome is the last one
     if (line.starts_with("# outcome: ")) {
       table.outcome = line.substr(11);
       continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command report: a page that is whole, needs nothing else, and lets nothing of a model's text out of its place.
+// Command report: a self-contained, well-formed page with escaped text of the model.
 #include <doctest/doctest.h>
 
 #include <cctype>
@@ -15,7 +15,7 @@ using namespace eomgen::test;
 
 namespace {
 
-/// The first tag that is not closed in its place; "" where all are. Scripts and styles are skipped as text.
+/// First tag that is not closed properly; "" if all are. Scripts and styles are skipped as text.
 std::string unbalanced(const std::string& page) {
   const Words void_tags{"meta", "input"};
   Words open;
@@ -55,7 +55,7 @@ Json motion(const std::string& page) {
 
 }  // namespace
 
-TEST_CASE("report: one page with equations, certificate, run, plots and animation, and no reference to anything else") {
+TEST_CASE("report: one page with equations, certificate, run, plots and animation, without external references") {
   const Folder folder;
   for (const char* model : {"S5_double_pendulum", "R6_rolling_disk", "stick_slip_belt", "P7_moving_sphere"}) {
     CAPTURE(std::string(model));
@@ -73,7 +73,8 @@ TEST_CASE("report: one page with equations, certificate, run, plots and animatio
 }
 
 TEST_CASE(
-    "report: a page that runs the model carries the states of the run, one that replays what is drawn, and says why") {
+    "report: a page that integrates the model has the states of the run; one that replays has the drawn values and the "
+    "reason") {
   const Folder folder;
   expect(0, folder, {"report", "S5_double_pendulum", "-o", "page.html", "--t-end", "1"});
   Json moving = motion(folder.read("page.html"));
@@ -103,15 +104,15 @@ TEST_CASE(
   CHECK(highest == 1);
 }
 
-TEST_CASE("report: a page runs a model with kinks, whether or not it has events") {
+TEST_CASE("report: a page integrates a model with kinks, with and without events") {
   const Folder folder;
   expect(0, folder, {"report", "bilinear_oscillator", "-o", "page.html", "--t-end", "1"});
   const Json found = motion(folder.read("page.html"));
   CHECK(found["reason"] == "");
-  CHECK(found["live"]["event_count"] == 1);  // x, where max and min turn
+  CHECK(found["live"]["event_count"] == 1);  // x, at the switch of max and min
 }
 
-TEST_CASE("report: what a scene asks for in J and is no energy has a panel of its own beside that of the energies") {
+TEST_CASE("report: an output in J that is not an energy has its own panel, separate from the energies") {
   const Folder folder;
   folder.write("pushed.toml", R"toml(format = 1
 [parameters]
@@ -180,7 +181,8 @@ initial = { x = 1 }
 }
 
 TEST_CASE(
-    "report: gears that mesh touch between their centres with radii as their teeth, a belt runs over its pulleys") {
+    "report: meshing gears touch between their centres with radii in the ratio of their teeth, a belt runs over its "
+    "pulleys") {
   const Folder folder;
   expect(0, folder, {"report", "geared_hoist", "-o", "page.html", "--t-end", "0.1"});
   const Json moving = motion(folder.read("page.html")), couplings = moving["parts"]["couplings"];
@@ -190,7 +192,7 @@ TEST_CASE(
   CHECK(moving["sizes"][couplings[0]["ratio"].get<std::size_t>()] == -4);
   CHECK(moving["sizes"][couplings[1]["ratio"].get<std::size_t>()] == 2);
   CHECK(couplings[0]["axes"][0] != couplings[0]["axes"][1]);
-  // What the page's script makes of them, by Node.
+  // Runs the script of the page in Node.
   std::string script;
   for (const char* part : {"linear.js", "shapes.js"}) {
     std::ifstream file(source_folder() + "/templates/report/" + part);
@@ -220,8 +222,7 @@ console.log(JSON.stringify({mesh: wheelsOf(-4, false, 0.25, [[], []]), ring: whe
 }
 
 TEST_CASE(
-    "report: parameters that depend on others follow on the page and have no slider of their own; those that are set "
-    "are numbers") {
+    "report: dependent parameters are updated on the page and have no slider; parameters set by options are numbers") {
   const Folder folder;
   expect(0, folder, {"report", "R6_rolling_disk", "-o", "page.html", "--set", "J=0.01", "--t-end", "0.1"});
   const Json moving = motion(folder.read("page.html"));
@@ -229,7 +230,7 @@ TEST_CASE(
   CHECK(contains(folder.read("page.html"), "p_all"));
 }
 
-TEST_CASE("report: a page of many coordinates and outputs stays below 1 MB with fewer rows, and says so") {
+TEST_CASE("report: a page with many coordinates and outputs stays below 1 MB with fewer rows, and reports it") {
   const Folder folder;
   std::string text = "format = 1\n[parameters]\nm = \"1 kg\"\n", outputs;
   for (int i = 1; i <= 22; ++i) {
@@ -259,7 +260,7 @@ TEST_CASE("report: a page of many coordinates and outputs stays below 1 MB with 
   CHECK_FALSE(contains(folder.read("page.html"), "Coarser"));
 }
 
-TEST_CASE("report: what is not drawn is told on the page: forces without a vector, arrows and rods among too many") {
+TEST_CASE("report: the page reports what is not drawn: forces without a vector, surplus arrows and rods") {
   const Folder folder;
   std::string text = "format = 1\n[parameters]\nm = \"1 kg\"\n[coordinates]\nX = \"m\"\n";
   for (int i = 1; i <= 202; ++i) {
@@ -282,7 +283,7 @@ TEST_CASE("report: what is not drawn is told on the page: forces without a vecto
     CHECK(contains(page, words));
 }
 
-TEST_CASE("report: what a model writes stays text") {
+TEST_CASE("report: text of a model is escaped") {
   const Folder folder;
   folder.write("hostile.toml",
                "format = 1\ntitle = \"</title><script>alert(1)</script>\"\nnotes = \"<img src=x onerror=alert(2)> "
@@ -293,7 +294,7 @@ TEST_CASE("report: what a model writes stays text") {
   expect(0, folder, {"report", "hostile.toml"});
   const std::string page = folder.read("report.html");
   CHECK(unbalanced(page) == "");
-  CHECK(count(page, "<script") == 2);  // the motion, and the page's own with the model
+  CHECK(count(page, "<script") == 2);  // the motion, and the script of the page with the model
   CHECK(count(page, "</script") == 2);
   CHECK(count(page, "<!--") == 0);
   CHECK(count(page, "<img") == 0);
@@ -301,7 +302,7 @@ TEST_CASE("report: what a model writes stays text") {
   CHECK(contains(page, "{{{body}}}"));
 }
 
-TEST_CASE("report: a run that fails is told on the page, a place that cannot be written before anything is done") {
+TEST_CASE("report: a failed run is reported on the page, an unwritable path before any work") {
   const Folder folder;
   folder.write("diverging.toml", diverging_text());
   CHECK(document(folder, {"report", "diverging.toml"}, 3)["file"] == "report.html");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of run: each changes what it should and nothing else.
+// Options of run: each has its effect and no other.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ double angle(const Json& run) { return run["final"]["theta"].get<double>(); }
 
 }  // namespace
 
-TEST_CASE("--set changes the motion as the closed form says, with the code that is there") {
+TEST_CASE("--set changes the motion according to the closed form, with the same code") {
   const Folder folder;
   document(folder, {"run", "P2_planar_pendulum"});
   for (const double L : {0.5, 1.0, 2.5}) {
@@ -29,7 +29,7 @@ TEST_CASE("--set changes the motion as the closed form says, with the code that 
   }
 }
 
-TEST_CASE("--set takes exact decimals, and the last of two") {
+TEST_CASE("--set takes exact decimals, and the last of two values") {
   const Folder folder;
   const auto length = [&](const std::string& value) {
     return document(folder, {"run", "P2_planar_pendulum", "--set", "L=3", "--set", "L=" + value, "--t-end",
@@ -59,10 +59,10 @@ TEST_CASE("--t-end, --rtol, --scene") {
   CHECK(other["scene"] == "long_rod");
   CHECK(other["t"] == 2.0);
   CHECK(other["final"]["y"].get<double>() == doctest::Approx(-2));
-  CHECK(other["compiled"] == "from the cache");  // scenes run the same code
+  CHECK(other["compiled"] == "from the cache");  // all scenes use the same code
 }
 
-TEST_CASE("--max-steps ends a run and says how to go on") {
+TEST_CASE("--max-steps ends a run with a remedy") {
   const Folder folder;
   const Json told = document(folder, {"run", "P2_planar_pendulum", "--max-steps", "20"}, 3);
   CHECK(told["outcome"] == "max_steps");
@@ -71,13 +71,13 @@ TEST_CASE("--max-steps ends a run and says how to go on") {
   expect(2, folder, {"run", "P2_planar_pendulum", "--max-steps", "0"});
 }
 
-TEST_CASE("every solver that list shows runs, and they agree") {
+TEST_CASE("all listed solvers run and agree") {
   const Folder folder;
   const double expected = pendulum_from_rest(1.0, std::sqrt(9.81), 10).angle;
   const Json listed = document(folder, {"list"});
   for (const Json& solver : listed["solvers"]) {
     const std::string name = solver["name"].get<std::string>();
-    if (solver["constrained"].get<bool>()) continue;  // this model has nothing for it to keep
+    if (solver["constrained"].get<bool>()) continue;  // this model has no constraint for it
     CAPTURE(name);
     Words words{"run", "P2_planar_pendulum", "--solver", name};
     const bool adaptive = solver["adaptive"].get<bool>();
@@ -92,7 +92,7 @@ TEST_CASE("every solver that list shows runs, and they agree") {
   }
 }
 
-TEST_CASE("a step without a solver means rk4; a step with an adaptive one keeps it") {
+TEST_CASE("a step without a solver selects rk4; a step with an adaptive solver keeps it") {
   const Folder folder;
   const Json run = document(folder, {"run", "P2_planar_pendulum", "--step", "0.01"});
   CHECK(run["solver"] == "rk4");
@@ -100,7 +100,7 @@ TEST_CASE("a step without a solver means rk4; a step with an adaptive one keeps 
   CHECK(document(folder, {"run", "P2_planar_pendulum", "--step", "0.01", "--solver", "dop853"})["steps"] == 1000);
 }
 
-TEST_CASE("--seed: the same run, whatever it is; verify draws other points") {
+TEST_CASE("--seed does not change a run; verify uses other points") {
   const Folder folder;
   const Json one = document(folder, {"run", "S5_double_pendulum", "--seed", "1"});
   CHECK(one["final"] == document(folder, {"run", "S5_double_pendulum", "--seed", "1"})["final"]);
@@ -128,7 +128,7 @@ TEST_CASE("--approach: I and II are the same motion") {
   }
 }
 
-TEST_CASE("the error estimate bounds what a far tighter run shows, within its factor") {
+TEST_CASE("the error estimate bounds the error against a much tighter run, within its factor") {
   const Folder folder;
   const double exact = pendulum_from_rest(1.0, std::sqrt(9.81), 10).angle;
   for (const char* rtol : {"1e-5", "1e-8"}) {
@@ -139,7 +139,7 @@ TEST_CASE("the error estimate bounds what a far tighter run shows, within its fa
   }
 }
 
-TEST_CASE("run: what constraints exert on a particle is its mass times acceleration less the forces that are given") {
+TEST_CASE("run: the constraint force on a particle is mass times acceleration minus the applied forces") {
   const Folder folder;
   const double m = 2, g = 9.81;
   for (const char* constraint : {"holonomic = \"y - x^2\"", "velocity = \"y_dot - x*x_dot\""}) {
@@ -152,7 +152,7 @@ TEST_CASE("run: what constraints exert on a particle is its mass times accelerat
     CHECK(value("P.constraint_force1") == doctest::Approx(m * value("x_ddot")));
     CHECK(value("P.constraint_force2") == doctest::Approx(m * (value("y_ddot") + g)));
   }
-  // Of two particles on rods the second is moved by coordinates of its own; on the first acts what acts on both.
+  // Two particles on rods: only the second one has coordinates of its own; the force on the first acts on both.
   const Json rods =
       document(folder, {"run", "S5_double_pendulum", "--t-end", "0", "--output", "P2.constraint_force,reaction.rod2"});
   const double tension = rods["final"]["reaction.rod2"];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// run --sensitivity: against closed forms, against differences of runs, and what is refused.
+// run --sensitivity: against closed forms and differences of runs; refusals.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ rtol = 1e-11
 atol = 1e-12
 )toml";
 
-/// The derivative of the end by a parameter from four runs: a central difference of order 4.
+/// Derivative of the final state by a parameter, from four runs by a central difference of order 4.
 double by_runs(const Folder& folder, const std::string& model, const std::string& parameter, double value,
                const std::string& state) {
   const double h = 1e-2 * value;
@@ -45,7 +45,7 @@ constexpr double of_order_four = 1e-6;  // (1e-2)^4 times fifth derivatives of t
 
 }  // namespace
 
-TEST_CASE("sensitivity: an oscillator's are those of its closed form, and within their estimates") {
+TEST_CASE("sensitivity: those of an oscillator agree with its closed form, within their estimates") {
   const Folder folder;
   folder.write("model.toml", oscillator);
   const Json found = document(folder, {"run", "model.toml", "--sensitivity", "k,m,A,x,x_dot"})["sensitivities"];
@@ -59,14 +59,14 @@ TEST_CASE("sensitivity: an oscillator's are those of its closed form, and within
   };
   near("k", "x", by_w * w / (2 * k));
   near("m", "x", -by_w * w / (2 * m));
-  near("A", "x", c);  // through the start alone
+  near("A", "x", c);  // through the initial state only
   near("x", "x", c);
   near("x", "x_dot", -w * s);
   near("x_dot", "x", s / w);
   near("x_dot", "x_dot", c);
 }
 
-TEST_CASE("sensitivity: what follows from a parameter follows it, for implicit solvers and multipliers too") {
+TEST_CASE("sensitivity: dependent parameters are included, for implicit solvers and multipliers too") {
   const Folder folder;
   folder.write("model.toml", R"toml(format = 1
 [parameters]
@@ -101,7 +101,7 @@ t = [0, 1]
               of_order_four);
     }
   }
-  // W = m g with m = 1, and g is nowhere else: by W alone, or by g that takes it along.
+  // W = m g with m = 1, and g occurs nowhere else: by W alone, or by g through W.
   const Json weight = document(folder, {"run", "model.toml", "--sensitivity", "W,g"})["sensitivities"]["values"];
   CHECK(weight["W"]["x"].get<double>() == doctest::Approx(weight["g"]["x"].get<double>()).epsilon(1e-8));
   CHECK(contains(
@@ -112,7 +112,7 @@ t = [0, 1]
   CHECK(chain["sensitivities"]["outcome"] == "done");
 }
 
-TEST_CASE("sensitivity: what has no derivative is refused, with what to do") {
+TEST_CASE("sensitivity: values without derivative are refused with a remedy") {
   const Folder folder;
   folder.write("model.toml", oscillator);
   const auto refused = [&](const Words& words, const char* what) {

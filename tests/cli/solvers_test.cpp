@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The runtime's registry is the only list of solvers: `list`, --solver of every command, the reader of scenes, the JSON
-// schemas and the pages say what it says.
+// schemas and the documentation agree with it.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using namespace eomgen::test;
 
 namespace {
 
-/// `auto`, then the registry's, as every message tells them.
+/// `auto`, then the names of the registry, as in all messages.
 std::vector<std::string> names() {
   std::vector<std::string> result{eom::Automatic::name};
   for (const eom::MethodInfo& method : eom::methods()) result.emplace_back(method.name);
@@ -44,7 +44,7 @@ std::string scene(const std::string& solver) {
 
 }  // namespace
 
-TEST_CASE("solvers: list tells the registry, in its order, with what each method needs") {
+TEST_CASE("solvers: list shows the registry in its order, with the needs of each method") {
   const Json solvers = document(Folder(), {"list"})["solvers"];
   REQUIRE(solvers.size() == eom::methods().size());
   for (std::size_t k = 0; k < solvers.size(); ++k) {
@@ -62,7 +62,7 @@ TEST_CASE("solvers: list tells the registry, in its order, with what each method
   }
 }
 
-TEST_CASE("solvers: --solver of every command refuses what is not in the registry, and tells all that is") {
+TEST_CASE("solvers: --solver of every command refuses unknown names and lists all known ones") {
   const Folder folder;
   for (const Words& words :
        {Words{"run", "P2_planar_pendulum"}, Words{"bench", "P2_planar_pendulum"}, Words{"stress", "P2_planar_pendulum"},
@@ -99,7 +99,7 @@ TEST_CASE("solvers: every method of the registry integrates the pendulum on a ro
   }
 }
 
-TEST_CASE("solvers: rodas has its order in Euler parameters too, where its Jacobian is needed off the unit sphere") {
+TEST_CASE("solvers: rodas keeps its order in Euler parameters, which needs its Jacobian off the unit sphere") {
   const Folder folder;
   const auto end = [&](const Words& how) {
     Words words{"run", "R17_follower_force", "--t-end", "1", "--no-error-estimate"};
@@ -114,10 +114,10 @@ TEST_CASE("solvers: rodas has its order in Euler parameters too, where its Jacob
       largest = std::max(largest, std::abs(final[e].get<double>() - exact[e].get<double>()));
     return largest;
   };
-  CHECK(std::log2(error("0.02") / error("0.01")) == doctest::Approx(5).epsilon(0.04));  // 3 with slopes on it alone
+  CHECK(std::log2(error("0.02") / error("0.01")) == doctest::Approx(5).epsilon(0.04));  // else 3
 }
 
-TEST_CASE("solvers: the schema of runs and the pages name the registry's methods") {
+TEST_CASE("solvers: the schema of runs and the documentation name the methods of the registry") {
   const Json schema = Json::parse(text_of("docs/schema/run.schema.json"));
   std::set<std::string> told;
   for (const Json& name : schema["properties"]["solver"]["enum"]) CHECK(told.insert(name).second);

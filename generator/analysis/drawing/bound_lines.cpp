@@ -20,8 +20,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double pi = std::numbers::pi;
-constexpr double around = 0.6;         // how far a net goes along a length, of that size
-constexpr double flat = 1e-7;          // of a plane, relative
+constexpr double around = 0.6;         // extent of a net along a length, relative to the size
+constexpr double flat = 1e-7;          // relative tolerance of a plane
 constexpr double same_slope = 1e-9;    // relative: psi is linear in a coordinate
 constexpr int points_of_line = 48;     // of a net
 constexpr int spokes = 12, rings = 4;  // of a net: around, and across
@@ -58,7 +58,7 @@ class Lines {
     const VectorXd none = VectorXd::Constant(n_, std::numeric_limits<double>::infinity());
     std::vector<Point> points = tracer_.trace(psi(), here_, -none, none);
     const bool closed = points.size() > 2 && points.front() == points.back();
-    if (!closed) {  // a turn of an angle, or as far as the rest of the figure
+    if (!closed) {  // limited to a full turn of an angle, or to the size of the figure
       for (Index k = 0; k < n_; ++k) {
         const double reach = place_.angle[static_cast<std::size_t>(k)] ? pi : 1.2 * place_.size;
         low[k] = std::max(low[k], here_[k] - reach);
@@ -75,10 +75,10 @@ class Lines {
     return n.norm() > 0 ? Point(n / n.norm()) : Point(Point::Zero());
   }
 
-  /// The coordinate in which psi is linear, with a slope that the others do not make vanish: the others are its net.
+  /// The coordinate in which psi is linear with a nonzero slope. The others are then the parameters of the net.
   std::optional<Index> solved_for() const {
     std::optional<Index> best;
-    double least = 0.3;  // of how much its slope varies
+    double least = 0.3;  // least slope relative to its variation
     for (Index k = 0; k < 3; ++k) {
       double smallest = std::numeric_limits<double>::infinity(), largest = 0;
       bool linear = true;
@@ -124,13 +124,13 @@ class Lines {
     });
   }
 
-  /// Level where it can be.
+  /// One side is horizontal if possible.
   void parallelogram(const BoundPoint& at) {
     const Point n = normal(at);
     Point u = Point::Unit(2).cross(n);
     if (u.norm() < 0.1) u = Point::Unit(1).cross(n);
     u.normalize();
-    const Point v = n.cross(u), foot = n.dot(x_) * n;  // of the origin
+    const Point v = n.cross(u), foot = n.dot(x_) * n;  // projection of the origin
     const bool near = (foot - x_).norm() < 1.5 * place_.size && std::abs(n.dot(x_)) < 0.5 * place_.size;
     const Point middle = near ? Point((foot + x_) / 2) : x_;
     const double a = around * place_.size + (near ? std::abs(u.dot(foot - x_)) / 2 : 0),
@@ -140,7 +140,7 @@ class Lines {
                       true});
   }
 
-  /// Of a net, and of the numbers at which it has lines.
+  /// Range of a coordinate of the net, and the values at which it has lines.
   void range(Index k, const BoundPoint& at) {
     const bool angle = place_.angle[static_cast<std::size_t>(k)];
     const bool bounded = std::isfinite(place_.low[k]) && std::isfinite(place_.high[k]);
@@ -148,7 +148,7 @@ class Lines {
     low_[k] = angle ? here_[k] - pi : here_[k] - reach;
     high_[k] = angle ? here_[k] + pi : here_[k] + reach;
     if (angle && bounded) low_[k] = place_.low[k], high_[k] = place_.high[k];
-    // A radius begins at its axis.
+    // A radius starts at its axis.
     if (!angle && std::isfinite(place_.low[k]) && low_[k] - place_.low[k] < reach) low_[k] = place_.low[k];
     low_[k] = std::max(low_[k], place_.low[k]);
     high_[k] = std::min(high_[k], place_.high[k]);
@@ -182,7 +182,7 @@ class Lines {
     }
   }
 
-  /// Where no coordinate is a function of the others: lines in slices across each.
+  /// For surfaces that are no graph over two coordinates: level lines in slices across each coordinate.
   void sliced() {
     const auto psi_at = [this](const VectorXd& q) {
       const auto p = f_(q);
@@ -220,7 +220,7 @@ class Lines {
     lines_.push_back({std::move(line), false});
     net_.push_back(std::move(points));
   }
-  /// How much the surface is seen from its front.
+  /// Component of the unit normal towards the viewer.
   std::optional<double> facing(const VectorXd& q) const {
     const auto p = f_(q);
     if (!p) return std::nullopt;
@@ -249,7 +249,7 @@ class Lines {
     };
   }
 
-  /// From where lines of the net turn away from the reader.
+  /// Silhouette, traced from points where lines of the net turn away from the viewer.
   void outline() {
     const Equations equations = seen_sideways();
     std::vector<std::vector<Point>> found;

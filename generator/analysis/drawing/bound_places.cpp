@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What holonomic constraints and coordinates leave to particles and bodies: surfaces, curves, rods between two, points
-// about which a body turns.
+// Parts of a drawing that follow from holonomic constraints and coordinates: surfaces and curves of particles and
+// bodies, rods between places, fixed points of rotating bodies.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -21,8 +21,8 @@ using symbolic::Vec3;
 
 namespace {
 
-constexpr std::uint32_t most_places = 200;  // of which each pair is tried for a rod
-constexpr double parallel = 1e-9;           // of slopes in binary64, relative
+constexpr std::uint32_t most_places = 200;  // each pair of them is tested for a rod
+constexpr double parallel = 1e-9;           // relative tolerance of gradients in binary64
 
 std::set<std::uint32_t> coordinates_of(const symbolic::Dag& dag, const std::vector<Ref>& expressions) {
   std::set<std::uint32_t> result;
@@ -39,7 +39,7 @@ bool is_moving(const symbolic::Dag& dag, const std::vector<Ref>& expressions) {
   });
 }
 
-/// Those that bind a particle where it is, and no joint, contact of a body or Euler parameters.
+/// Constraints on the position of a particle: not those of joints, contacts of bodies and Euler parameters.
 bool binds_places(const mechanics::Mechanics& m, const mechanics::Constraint& c, const model::Constraint& of) {
   return c.holonomic() && c.need == mechanics::Need::holds && !of.joint && !of.contact && !of.unit && !of.coupled &&
          !m.dag->is_zero(c.psi);
@@ -50,7 +50,7 @@ const model::Constraint& written(const model::Model& model, const mechanics::Con
                        [&](const model::Constraint& other) { return other.name == c.name; });
 }
 
-/// Of two gradients, whose components take turns, at any two states.
+/// Whether two gradients, with interleaved components, are parallel at two sample states.
 bool are_parallel(const symbolic::Dag& dag, const std::vector<Ref>& slopes) {
   for (int state = 0; state < 2; ++state) {
     const std::vector<double> v =
@@ -66,7 +66,7 @@ bool are_parallel(const symbolic::Dag& dag, const std::vector<Ref>& slopes) {
   return true;
 }
 
-/// What tells of most pairs of places, without a derivative, that no rod is between them.
+/// Distances of places at sample states. They exclude a rod for most pairs of places without any derivative.
 class DistancesAnywhere {
  public:
   explicit DistancesAnywhere(const mechanics::Mechanics& m) {
@@ -77,16 +77,16 @@ class DistancesAnywhere {
     }
     for (int state = 0; state < 2; ++state) {
       positions_.push_back(symbolic::evaluate(*m.dag, all, [state](const Symbol& s) {
-        return anywhere(s, s.kind == SymbolKind::parameter ? 0 : state);  // of one system
+        return anywhere(s, s.kind == SymbolKind::parameter ? 0 : state);  // same parameters
       }));
     }
   }
-  /// Their distance at two states is one, as far as numbers say.
+  /// Whether two places have the same distance at both states, numerically.
   bool may_be_rigid(std::size_t a, std::size_t b) const {
     const double before = square(0, a, b), after = square(1, a, b);
     return !(std::abs(before - after) > parallel * (before + after));
   }
-  /// Positions that name all of these.
+  /// Positions that depend on all of these coordinates.
   bool have(std::size_t a, std::size_t b, const std::set<std::uint32_t>& coordinates) const {
     return std::all_of(coordinates.begin(), coordinates.end(),
                        [&](std::uint32_t c) { return coordinates_[a].contains(c) || coordinates_[b].contains(c); });
@@ -130,8 +130,8 @@ void Drawing::surfaces() {
   }
 }
 
-// Besides coordinates of its own, a constraint may have those that move other places, if it binds two of its own: a
-// bead on a wedge that slides. Of two places that it binds so it is a rod, or has no surface.
+// The constraint must depend on two coordinates of this place. It may also depend on coordinates of other places, as
+// for a bead on a sliding wedge. A constraint that binds two places in this way is a rod or has no surface.
 bool Drawing::is_bound(const Bound& one, const std::vector<Bound>& all, std::uint32_t constraint) {
   const std::set<std::uint32_t> of = coordinates_of(*mechanics_.dag, {mechanics_.constraints[constraint].psi});
   const auto common = [&](const Bound& place) {
@@ -146,7 +146,7 @@ bool Drawing::is_bound(const Bound& one, const std::vector<Bound>& all, std::uin
   return of_places && several == 1 && common(one) > 1 && !is_radial(one, constraint);
 }
 
-// Its slopes along these coordinates are those of the distance from what the place is measured from: a thread.
+// A thread: the gradient along these coordinates is parallel to that of the distance from the reference place.
 bool Drawing::is_radial(const Bound& one, std::uint32_t constraint) {
   symbolic::Dag& dag = *mechanics_.dag;
   const Vec3 d = symbolic::subtract(dag, *mechanics_.place_position[one.place],
@@ -167,7 +167,7 @@ void Drawing::surface(const Bound& one, const std::vector<Bound>& all_places) {
   const Vec3 relative = symbolic::subtract(dag, r, *mechanics_.place_position[from]);
   DrawnSurface surface;
   for (std::size_t k = 0; k < 3; ++k) surface.position[k] = written_(r[k]);
-  bool radial = true;  // all of them hold it at a distance from what it is measured from, and a rod is drawn
+  bool radial = true;  // all constraints fix the distance from its reference place; a rod is drawn instead
   for (std::uint32_t c = 0; c < mechanics_.constraints.size(); ++c) {
     const mechanics::Constraint& constraint = mechanics_.constraints[c];
     const model::Constraint& of = written(model_, constraint);
@@ -205,7 +205,7 @@ void Drawing::surface(const Bound& one, const std::vector<Bound>& all_places) {
   parts_.surfaces.push_back(std::move(surface));
 }
 
-// Three of them in each vector that is drawn from.
+// Groups the values in vectors of three.
 std::vector<std::size_t> Drawing::values_of(const std::vector<std::uint32_t>& coordinates) {
   std::vector<std::size_t> result;
   for (std::size_t k = 0; k < coordinates.size(); k += 3) {
@@ -218,7 +218,7 @@ std::vector<std::size_t> Drawing::values_of(const std::vector<std::uint32_t>& co
   return result;
 }
 
-// psi is a function of their distance alone: its slopes are along those of the distance wherever they are.
+// psi is a function of the distance alone: its gradient is parallel to that of the distance in all states.
 bool Drawing::is_rod(std::uint32_t constraint, std::uint32_t a, std::uint32_t b) {
   symbolic::Dag& dag = *mechanics_.dag;
   const mechanics::Constraint& c = mechanics_.constraints[constraint];
@@ -236,7 +236,7 @@ bool Drawing::is_rod(std::uint32_t constraint, std::uint32_t a, std::uint32_t b)
   return are_parallel(dag, slopes);
 }
 
-// They move against one another, and their distance does not change.
+// The two places move relative to each other at constant distance.
 bool Drawing::is_rigid(std::uint32_t a, std::uint32_t b) {
   symbolic::Dag& dag = *mechanics_.dag;
   const Vec3 d = symbolic::subtract(dag, *mechanics_.place_position[b], *mechanics_.place_position[a]);
@@ -248,7 +248,7 @@ bool Drawing::is_rigid(std::uint32_t a, std::uint32_t b) {
   return mechanics::vanishes(dag, slopes);
 }
 
-// With r the centre of mass and n = dw/dqdot, dr/dq = n x (r - c) about a point c that is fixed in the body.
+// With r the centre of mass and n = dw/dqdot, dr/dq = n x (r - c) for a point c fixed in the body.
 void Drawing::pivots() {
   symbolic::Dag& dag = *mechanics_.dag;
   for (const model::Body& body : model_.bodies) {
@@ -288,14 +288,14 @@ void Drawing::rods() {
   const DistancesAnywhere distances(mechanics_);
   for (const model::Particle& particle : model_.particles) {
     if (model_.places[particle.place].chart) continue;
-    // The nearest before it in the model, as of the links of a chain.
+    // The closest earlier place in the model, as for the links of a chain.
     for (std::uint32_t a = particle.place; a-- > 0;) {
       if (!distances.may_be_rigid(a, particle.place) || !is_rigid(a, particle.place)) continue;
       parts_.rods.push_back({static_cast<long>(a) - 1, static_cast<long>(particle.place) - 1});
       break;
     }
   }
-  for (const model::Body& body : model_.bodies) {  // about the origin, on no joint
+  for (const model::Body& body : model_.bodies) {  // rotates about the origin without a joint
     const auto is_of = [&](const DrawnJoint& j) { return j.of[0] == body.place - 1 || j.of[1] == body.place - 1; };
     if (!model_.places[body.place].chart && std::none_of(parts_.joints.begin(), parts_.joints.end(), is_of) &&
         is_rigid(0, body.place))

@@ -54,7 +54,7 @@ std::vector<BodyMoment> Components::on_attitudes() {
     if (!value || mechanics::vanishes(*m_.dag, {(*value)[0], (*value)[1], (*value)[2]})) continue;
     result.push_back({b, *value});
     take(result.back());
-    // Euler parameters have a direction too many, along which nothing moves.
+    // Euler parameters have one surplus direction, along which nothing moves.
     for (std::uint32_t c = 0; c < Q_.size(); ++c) {
       if (moments_.turns_alone(b, c)) Q_[c] = m_.dag->zero();
     }

@@ -26,13 +26,13 @@ namespace {
 using symbolic::SymbolKind;
 using Weight = Sketch::Weight;
 
-constexpr std::size_t most_strokes = 4000;  // a picture with more is no figure of a page
+constexpr std::size_t most_strokes = 4000;  // more strokes do not fit a figure
 constexpr double axis_length = 9;           // mm
-constexpr double seen_sideways = 0.2;       // of a length that is seen from its end
+constexpr double seen_sideways = 0.2;       // ratio below which a length counts as seen end-on
 constexpr int arc_strokes = 16;
 constexpr double least_turn = 0.02;  // rad
 
-struct Rod {  // between places, -1 the origin
+struct Rod {  // between places; -1: the origin
   long from, to;
 };
 
@@ -88,7 +88,7 @@ class Drawer {
   }
 
  private:
-  /// Of all vectors, where the coordinates are these.
+  /// Values of all vectors at these coordinates.
   std::vector<double> values(const std::vector<double>& q) const {
     return symbolic::evaluate(*m_.dag, drawing_.expressions(), [&](const symbolic::Symbol& s) -> double {
       switch (s.kind) {
@@ -96,7 +96,7 @@ class Drawer {
         case SymbolKind::coordinate:
           return s.order == 0 ? q[s.index] : s.order == 1 ? scene_.qdot[s.index] : std::nan("");
         case SymbolKind::parameter: return scene_.parameters[s.index];
-        default: return s.kind == SymbolKind::integral ? 0 : std::nan("");  // from the start on
+        default: return s.kind == SymbolKind::integral ? 0 : std::nan("");  // integrals are 0 at the start
       }
     });
   }
@@ -121,7 +121,7 @@ class Drawer {
            std::any_of(parts_.rods.begin(), parts_.rods.end(), [](const DrawnRod& rod) { return rod.a == -1; });
   }
 
-  /// Two other states, which tell what a plane holds only at the start, and what length changes.
+  /// Values at two other states. They show which positions leave the plane and which lengths change.
   void look_elsewhere() {
     for (int state = 1; state < 3; ++state) {
       std::vector<double> q = scene_.q;
@@ -162,7 +162,7 @@ class Drawer {
     return result;
   }
 
-  /// Of the rest of the figure and what it is measured from: surfaces are drawn as far as that.
+  /// Size of the rest of the figure with the reference places; surfaces are drawn to this extent.
   static double size(std::vector<Point> all) {
     all.push_back(Point::Zero());
     Point low = all.front(), high = low;
@@ -173,7 +173,7 @@ class Drawer {
     return high == low ? 1 : (high - low).norm();
   }
 
-  /// At the origin where that is on the paper, else in its corner.
+  /// Axes at the origin if it is on the paper, otherwise in a corner.
   void axes(Sketch& sketch) const {
     const PlanePoint origin = sketch.on_paper(Point::Zero()), low = sketch.low(), high = sketch.high();
     const bool inside = ((origin - low).array() >= -1e-9).all() && ((high - origin).array() >= -1e-9).all();
@@ -187,7 +187,7 @@ class Drawer {
     }
   }
 
-  /// The plane that something touches.
+  /// The plane of a contact.
   void ground(Sketch& sketch, const DrawnContact& contact) const {
     if (contact.tangents) {
       const Point here = point(contact.foot), a = point((*contact.tangents)[0]), b = point((*contact.tangents)[1]);
@@ -201,7 +201,7 @@ class Drawer {
     sketch.dot(sketch.on_paper(point(contact.at)), 1, true);
   }
 
-  /// What leads to places, and what holds two of them apart.
+  /// Lines to places, and rods between two places.
   std::vector<Rod> links() const {
     std::vector<Rod> result;
     for (std::size_t i = 0; i < parts_.places.size(); ++i) {
@@ -213,7 +213,7 @@ class Drawer {
   Point at_place(const std::vector<double>& there, long place) const {
     return place < 0 ? Point(Point::Zero()) : at(there, parts_.places[static_cast<std::size_t>(place)].at);
   }
-  /// A rod or thread, unless a spring is drawn there; dashed where its length changes.
+  /// A rod or thread, unless a spring is drawn there. It is dashed if its length changes.
   void link(Sketch& sketch, const Rod& rod) const {
     const Point from = at_place(at_start_, rod.from), here = at_place(at_start_, rod.to);
     const auto near = [](const Point& a, const Point& b) { return (a - b).norm() < 1e-9 * (1 + a.norm()); };
@@ -230,7 +230,7 @@ class Drawer {
       const double other = (at_place(there, rod.to) - at_place(there, rod.from)).norm();
       rigid = rigid && !(std::abs(other - length) > 1e-6 * length);
     }
-    // A constraint that is not built in holds what other states do not know of.
+    // The other states ignore constraints that are not eliminated.
     const bool held = std::any_of(parts_.rods.begin(), parts_.rods.end(),
                                   [&](const DrawnRod& other) { return other.a == rod.from && other.b == rod.to; });
     if (rigid || held)
@@ -264,15 +264,15 @@ class Drawer {
     sketch.dot(at, std::string_view(place.kind) == "body" && !is_solid ? 2.4 : 0.8, true);
   }
 
-  /// The coordinate that this is, by itself.
+  /// Returns the coordinate if the expression is one.
   std::optional<std::uint32_t> plain_coordinate(model::NodeId node) const {
     if (node == model::no_node) return std::nullopt;
     const model::Node& leaf = model_.arena[node];
     return leaf.op == model::Op::coordinate && leaf.order == 0 ? std::optional(leaf.index) : std::nullopt;
   }
 
-  /// Where the end of a link goes as a coordinate grows from 0 to its value at the start: an arc about its foot, from a
-  /// dashed line; and the length of the link.
+  /// Draws an angle as the path of the link's end while the coordinate grows from 0 to its initial value: an arc that
+  /// starts at a dashed line. Also labels the length of the link.
   void angles(Sketch& sketch) const {
     std::vector<bool> shown(model_.coordinates.size(), false);
     for (std::size_t i = 0; i < parts_.places.size(); ++i) {
@@ -302,7 +302,7 @@ class Drawer {
       if (!along.allFinite() || !(std::abs(along.norm() - reach) <= 1e-6 * reach) || reach < 4) return false;
       directions.push_back(along / reach);
     }
-    if ((directions.back() - directions.front()).norm() < least_turn) return false;  // a constraint moves it, say
+    if ((directions.back() - directions.front()).norm() < least_turn) return false;  // a constraint moves it
     const double radius = std::min(0.4 * reach, 11.0);
     std::vector<PlanePoint> points;
     for (const PlanePoint& direction : directions) points.emplace_back(centre + radius * direction);

@@ -17,10 +17,10 @@ using symbolic::SymbolKind;
 using symbolic::Vec3;
 using system::OutputKind;
 
-constexpr std::size_t most_forces = 60;  // arrows that anybody tells apart
+constexpr std::size_t most_forces = 60;  // limit of readability
 constexpr const char *applied = "applied", *constraint = "constraint", *friction = "friction";
 
-/// The arrows of one system of equations.
+/// Collects the arrows of one system of equations.
 class Collection {
  public:
   Collection(Mechanics& mechanics, const Drawing& drawing, system::EquationSystem& system)
@@ -87,7 +87,7 @@ class Collection {
     });
     return found == system_.outputs.end() ? nullptr : &*found;
   }
-  /// Three outputs along these axes, from part `first` on; what is not there is 0.
+  /// Vector of three outputs along these axes, from part `first` on. Missing outputs are 0.
   Vec3 along(OutputKind kind, std::uint32_t index, const std::array<Vec3, 3>& axes, std::uint32_t first = 0) {
     Vec3 sum = symbolic::zero_vector(dag_);
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -105,7 +105,7 @@ class Collection {
     return axes;
   }
 
-  /// On the mass that is there, else at the point.
+  /// Applies the force to the mass at this point if there is one, otherwise to the point.
   void act(const std::string& name, const Vec3& value, const Vec3& at) {
     acts_.push_back({value, at});
     const auto mass =
@@ -152,7 +152,7 @@ class Collection {
     }
   }
 
-  /// On a body; the ground bears what acts on it.
+  /// Moment on a body; nothing for the ground.
   bool moment(const model::Force& force, const model::Effect& effect) {
     if (effect.index == 0) return true;
     const auto body = moments().body_of(effect.index);
@@ -162,7 +162,7 @@ class Collection {
     return true;
   }
 
-  /// Of a stiffness between two points.
+  /// Forces of a stiffness between two points.
   bool spring(const model::Force& force, const model::Effect& effect) {
     const model::NodeId stiffness = force.value("stiffness"), length = force.value("length");
     if (effect.other == model::no_node || stiffness == model::no_node) return false;
@@ -180,7 +180,7 @@ class Collection {
     return true;
   }
 
-  /// What is known by its components along coordinates only. Whether the arrows are all of it.
+  /// Draws a force that is given by its generalised components. Returns whether the arrows represent all of it.
   bool generalised(std::size_t i) {
     const model::Force& force = model_.forces[i];
     Components Q(m_, moments(), m_.force_components[i]);
@@ -197,7 +197,7 @@ class Collection {
     for (const BodyMoment& turn : Q.on_attitudes()) put_moment(force.name, applied, turn);
     return mechanics::vanishes(dag_, Q.rest());
   }
-  /// Along which it acts: that of its own, or coordinates.
+  /// Angle along which the force acts: its own, or coordinates.
   std::vector<Ref> angles(const model::Force& force) {
     std::vector<Ref> result;
     if (const model::NodeId own = force.value("angle"); own != model::no_node)
@@ -209,7 +209,7 @@ class Collection {
     return result;
   }
 
-  /// What all constraints exert; where coordinates move several masses Newton's law says it, m a - F.
+  /// Total force of all constraints. If coordinates move several masses, it follows from Newton's law as m a - F.
   void on_particle(std::size_t p) {
     const PointMass& mass = m_.masses[p];
     if (!is_particle(mass)) return;
@@ -221,8 +221,8 @@ class Collection {
     }
     put("N", constraint, place(mass.place), force);
   }
-  /// By its coordinates or by constraints: not one that coordinates of its own move freely in space, or in the plane of
-  /// its chart.
+  /// Whether coordinates or constraints restrict the place. False if its own coordinates move it freely in space or in
+  /// the plane of its chart.
   bool is_held(const PointMass& mass) {
     const std::vector<symbolic::Symbol> symbols = dag_.symbols({mass.position[0], mass.position[1], mass.position[2]});
     const auto count = std::count_if(symbols.begin(), symbols.end(),
@@ -252,7 +252,7 @@ class Collection {
     const auto found = std::find_if(drawn.begin(), drawn.end(), [&](const DrawnContact& c) { return c.name == name; });
     return found == drawn.end() ? nullptr : &*found;
   }
-  /// On the body that touches: along the normal, and where it rolls without a law of friction along both tangents.
+  /// Contact force on the body: along the normal, and along both tangents if it rolls without a friction law.
   void body_contact(const model::Constraint& c) {
     const DrawnContact* drawn = contact_drawn(c.name);
     if (drawn == nullptr) return;
@@ -270,7 +270,7 @@ class Collection {
     }
     put(c.name, constraint, drawn->at, sum);
   }
-  /// What written constraints and couplings exert on bodies; particles have it in N.
+  /// Forces of explicit constraints and couplings on bodies. For particles they are contained in N.
   void on_bodies(std::uint32_t k) {
     const mechanics::Constraint& c = m_.constraints[k];
     const model::Constraint& of = *std::find_if(model_.constraints.begin(), model_.constraints.end(),
@@ -306,7 +306,7 @@ class Collection {
     }
     return false;
   }
-  /// Its multiplier is the moment on the first body about its axis.
+  /// The multiplier of a coupling is the moment on the first body about its axis.
   void coupling(const std::string& name, const model::Coupled& coupled, Ref lambda, Components& Q) {
     const Vec3 a = symbolic::scale(dag_, lambda, mechanics::lower_vector(m_, coupled.axes[0])),
                b = symbolic::scale(dag_, dag_.neg(dag_.mul(lambda, mechanics::lower_scalar(m_, coupled.ratio))),
@@ -323,7 +323,7 @@ class Collection {
   void rubbing(std::uint32_t j) {
     const mechanics::Contact& contact = m_.contacts[j];
     if (contact.directions.empty()) {
-      if (contact.place == 0) leave_out(contact.name);  // a coordinate rubs
+      if (contact.place == 0) leave_out(contact.name);  // friction along a coordinate
       return;
     }
     const Vec3 force = along(OutputKind::friction, j, fixed_axes());
@@ -343,10 +343,10 @@ class Collection {
   struct Act {
     Vec3 force, at;
   };
-  std::vector<Act> acts_;  // of the force under way
+  std::vector<Act> acts_;  // of the current force
   std::vector<BodyMoment> turns_;
   std::optional<BodyMoments> moments_;
-  bool all_are_vectors_ = false;  // so that the rest of m a is of constraints
+  bool all_are_vectors_ = false;  // so the remainder of m a is due to constraints
 };
 
 }  // namespace

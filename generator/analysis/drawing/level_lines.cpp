@@ -16,7 +16,7 @@ constexpr int cells = 32, blocks = 24;
 
 bool cross(double a, double b) { return std::isfinite(a) && std::isfinite(b) && (a < 0) != (b < 0); }
 
-/// A stroke from one edge of the grid to another; an edge is where it begins, and its direction.
+/// A stroke between two edges of the grid. An edge is given by its start and its direction.
 using Edge = std::array<int, 3>;
 using Strokes = std::multimap<Edge, Edge>;
 
@@ -57,7 +57,7 @@ std::vector<std::vector<VectorXd>> level_lines(const Field& f, const VectorXd& l
       }
     }
   }
-  // By halves: it is crossed once between the ends.
+  // Bisection: there is one sign change between the ends.
   const auto point = [&](const Edge& edge) {
     double from = 0, to = 1;
     const bool first = of(edge[0], edge[1]) < 0;
@@ -70,7 +70,7 @@ std::vector<std::vector<VectorXd>> level_lines(const Field& f, const VectorXd& l
   };
   std::vector<std::vector<VectorXd>> result;
   while (!strokes.empty()) {
-    // An end that has no other stroke, where there is one: the rest are rings.
+    // Start at an end with a single stroke if there is one; the remaining lines are closed.
     auto begin =
         std::find_if(strokes.begin(), strokes.end(), [&](const auto& s) { return strokes.count(s.first) == 1; });
     if (begin == strokes.end()) begin = strokes.begin();

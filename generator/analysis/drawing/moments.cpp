@@ -17,7 +17,7 @@ using symbolic::Vec3;
 
 namespace {
 
-constexpr double vanishing = 1e-9;  // in binary64, of numbers of the size of 1
+constexpr double vanishing = 1e-9;  // in binary64, for numbers of magnitude 1
 
 using Triple = std::array<double, 3>;
 
@@ -82,8 +82,8 @@ BodyMoments::Numbers BodyMoments::numbers(std::optional<std::size_t> body, std::
   return body ? numbers_[*body][c] : Numbers{};
 }
 
-// G a = Q of G_ij = n_i . n_j, M = sum a_i n_i; of three directions and more (Euler parameters have four)
-// (sum n_i n_i^T) M = sum Q_i n_i.
+// Up to two directions: G a = Q with G_ij = n_i . n_j, M = sum a_i n_i. Three or more directions (Euler parameters have
+// four): (sum n_i n_i^T) M = sum Q_i n_i.
 Vec3 BodyMoments::least(const std::vector<Vec3>& n, const std::vector<Ref>& Q) {
   symbolic::Dag& dag = *m_.dag;
   std::vector<Ref> gram, right = Q;
@@ -107,8 +107,8 @@ Vec3 BodyMoments::least(const std::vector<Vec3>& n, const std::vector<Ref>& Q) {
   return sum;
 }
 
-// Where they turn against one another about one axis alone, and by this angle; or where the angle is one of the
-// independent ones that turn the body.
+// Applies if the two bodies rotate relative to each other about a single axis by this angle, or if the angle is one of
+// the independent angles that rotate the body.
 std::optional<Vec3> BodyMoments::about_axis(std::size_t body, std::optional<std::size_t> other,
                                             const std::vector<Ref>& Q,
                                             const std::vector<std::array<double, 2>>& slopes) {
@@ -134,7 +134,7 @@ std::optional<Vec3> BodyMoments::about_axis(std::size_t body, std::optional<std:
   for (std::size_t s = 0; s < 2; ++s) {
     for (std::size_t i = 1; i < n.size(); ++i) {
       one_axis = one_axis && length(cross(n[0][s], n[i][s])) < vanishing;
-      for (std::size_t k = 0; k < 3; ++k)  // the same multiple of both
+      for (std::size_t k = 0; k < 3; ++k)  // both have the same factor
         one_axis = one_axis && std::abs(slopes[of[0]][s] * n[i][s][k] - slopes[of[i]][s] * n[0][s][k]) < vanishing;
     }
     if (n.size() == 2) independent = independent && length(cross(n[0][s], n[1][s])) > vanishing;
@@ -176,7 +176,7 @@ std::vector<BodyMoment> BodyMoments::along_angle(const std::vector<Ref>& Q, Ref 
   return {};
 }
 
-// Three directions are all that there are; of fewer, which also turn it otherwise or move it, nothing is known.
+// Three directions span all rotations. Fewer directions that have other effects too determine nothing.
 std::optional<Vec3> BodyMoments::of_attitude(std::size_t body, const std::vector<Ref>& Q) {
   std::vector<Vec3> directions;
   std::vector<Ref> along;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int digits = 20;
 
-/// Where the body of this frame is among the places.
+/// Index of the body of a frame among the places.
 std::optional<std::size_t> place_of(const model::Model& model, std::uint32_t frame) {
   for (const model::Body& body : model.bodies) {
     if (body.frame == frame) return body.place - 1;
@@ -93,8 +93,8 @@ void Drawing::places() {
   };
   for (std::uint32_t i = 1; i < model_.places.size(); ++i) {
     const model::Place& place = model_.places[i];
-    // What a position is measured from is a rod or a thread as often as not; free coordinates of space are no line to
-    // the origin.
+    // A line from the reference place usually shows a rod or thread. A place with free coordinates in space gets no
+    // line to the origin.
     const bool linked = place.chart && (place.from > 0 || place.chart->system != "cartesian");
     const char* const kind = massive(i, model_.particles) ? "particle" : massive(i, model_.bodies) ? "body" : "point";
     parts_.places.push_back(
@@ -151,7 +151,7 @@ void Drawing::contacts() {
       symbolic::Dag& dag = *mechanics_.dag;
       const Vec3 normal = symbolic::cross(dag, mechanics::lower_vector(mechanics_, contact.tangents[0]),
                                           mechanics::lower_vector(mechanics_, contact.tangents[1]));
-      // The last equation is the height over the plane.
+      // The last equation is the height above the plane.
       const Ref height = mechanics::lower_scalar(mechanics_, constraint.psi.back());
       foot = symbolic::subtract(dag, at, symbolic::scale(dag, height, normal));
     }
@@ -188,7 +188,7 @@ std::vector<double> sizes_of(const Drawing& drawing, const symbolic::Dag& dag, c
     try {
       result.push_back(cln::double_approx(symbolic::evaluate(dag, {size}, lookup, digits)[0]));
     } catch (const std::exception&) {
-      result.push_back(-1);  // unknown, as where it depends on more than parameters
+      result.push_back(-1);  // unknown, as if it depended on more than parameters
     }
   }
   return result;
@@ -207,7 +207,7 @@ std::optional<std::array<double, 3>> falling(mechanics::Mechanics& mechanics, co
       try {
         down[k] = cln::double_approx(symbolic::evaluate(*mechanics.dag, {g[k]}, lookup, digits)[0]);
       } catch (const std::exception&) {
-        return std::nullopt;  // no value: the page draws E3 upwards then
+        return std::nullopt;  // undefined: the page then draws E3 upwards
       }
       length = std::hypot(length, down[k]);
     }

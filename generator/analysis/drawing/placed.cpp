@@ -46,7 +46,7 @@ class Placing {
     };
   }
 
-  /// Where a joint or a point is on a body, or else the origin, in its own axes.
+  /// Position of a joint or point on a body in body axes; the origin if it has none.
   Point attached(const DrawnBody& body) const {
     Point spot = Point::Zero();
     const auto joint = std::find_if(parts_.joints.begin(), parts_.joints.end(), [&](const DrawnJoint& j) {

@@ -14,10 +14,10 @@ namespace eomgen::analysis {
 namespace {
 
 constexpr double width = 90, height = 65;  // mm, without labels
-constexpr double dash = 1.2;               // mm, and as much between two
-constexpr double sharp = 0.8;              // cosine of the angle between faces that share an edge worth drawing
-constexpr int ring = 40;                   // strokes of a circle
-constexpr double straight = 0.04;          // mm that a point may be off its stroke
+constexpr double dash = 1.2;               // mm, length of dashes and of gaps
+constexpr double sharp = 0.8;              // largest cosine between face normals at a visible edge
+constexpr int ring = 40;                   // strokes per circle
+constexpr double straight = 0.04;          // mm, tolerance of simplified paths
 
 print::Figure::Point plain(const PlanePoint& p) { return {p.x(), p.y()}; }
 
@@ -32,7 +32,7 @@ struct Box {
   }
 };
 
-// By the separating axes: those of the box and the normal of the stroke.
+// Separating axis test with the axes of the box and the normal of the stroke.
 bool crosses(const print::Figure::Stroke& s, const Box& box) {
   const PlanePoint a(s.from[0], s.from[1]), b(s.to[0], s.to[1]);
   if (!box.meets({a.cwiseMin(b), a.cwiseMax(b)})) return false;
@@ -40,7 +40,7 @@ bool crosses(const print::Figure::Stroke& s, const Box& box) {
   return std::abs(normal.dot((box.low + box.high) / 2 - a)) <= normal.cwiseAbs().dot(half);
 }
 
-// Those from which no other is farther than nobody sees off the strokes between them (Douglas and Peucker).
+// Simplifies a path with an invisible error (Douglas and Peucker).
 std::vector<PlanePoint> simplified(const std::vector<PlanePoint>& points) {
   if (points.size() < 3) return points;
   const auto off = [](const PlanePoint& p, const PlanePoint& a, const PlanePoint& b) {
@@ -189,7 +189,7 @@ void Sketch::solid(const Solid& solid, const std::function<Point(const Point&)>&
       open.erase(other);
     }
   }
-  for (const auto& [ends, edge] : open) line(edge.from, edge.to, Weight::plain);  // of one face alone
+  for (const auto& [ends, edge] : open) line(edge.from, edge.to, Weight::plain);  // edges of a single face
 }
 
 void Sketch::wire(const Solid& solid, const std::function<Point(const Point&)>& world) {
@@ -214,12 +214,12 @@ void Sketch::place_labels() {
   }
   for (const Wanted& wanted : wanted_) {
     const std::string* name = std::get_if<std::string>(&wanted.text);
-    // Letters are some 2 mm wide; a formula here is one letter with an index.
+    // Letters are about 2 mm wide; formulas here are a letter with an index.
     const PlanePoint half(name ? 1.0 * static_cast<double>(name->size()) : 2.0, 1.6);
     double least = std::numeric_limits<double>::infinity();
     Box best{};
     for (const double distance : {2.4, 4.6}) {
-      for (int k = 0; k < 8; ++k) {  // from the upper right on
+      for (int k = 0; k < 8; ++k) {  // starting at the upper right
         const double angle = std::numbers::pi / 4 * (k + 1);
         const PlanePoint direction(std::cos(angle), std::sin(angle));
         const PlanePoint middle = wanted.at + distance * direction + half.cwiseProduct(direction);

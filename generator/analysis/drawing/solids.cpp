@@ -15,9 +15,9 @@ using Faces = std::vector<std::vector<Point>>;
 using Axes = Eigen::Matrix3d;  // columns
 
 constexpr int sides = 28;
-constexpr double equal = 1e-6;                           // of moments, relative
-constexpr double thinnest = 0.03;                        // of a disk and a plate, against their size
-constexpr double rod_radius = 0.02, bar_radius = 0.025;  // against their length
+constexpr double equal = 1e-6;                           // relative tolerance of moments
+constexpr double thinnest = 0.03;                        // thickness of a disk and a plate relative to their size
+constexpr double rod_radius = 0.02, bar_radius = 0.025;  // relative to their length
 
 Faces box(double a, double b, double c) {
   const auto corner = [&](unsigned k) {
@@ -33,7 +33,7 @@ Faces box(double a, double b, double c) {
   return faces;
 }
 
-// About the third axis.
+// About the third axis, centred at the origin.
 Faces cylinder(double radius, double length) {
   const auto at = [&](int k, double z) {
     const double angle = 2 * std::numbers::pi * (k % sides) / sides;
@@ -55,7 +55,7 @@ Faces moved(Faces faces, const Axes& axes, const Point& at) {
   return faces;
 }
 
-// Right-handed, the k-th of `axes` third.
+// Right-handed axes of which the third is the k-th of `axes`.
 Axes about(const Axes& axes, int k) {
   Axes result;
   result << axes.col((k + 1) % 3), axes.col((k + 2) % 3), axes.col(k);
@@ -70,8 +70,8 @@ Axes inertia_of(const DrawnBody& body, const std::vector<double>& sizes) {
   return result;
 }
 
-// Around points of a plane, to the left of its edges as `normal` sees it: from the outermost point always the next that
-// leaves all others to the left.
+// Convex polygon around coplanar points, counterclockwise as seen against `normal` (gift wrapping): from the outermost
+// point on, the next vertex leaves all others to the left.
 std::vector<Point> polygon(const std::vector<Point>& points, const std::vector<std::size_t>& in_plane,
                            const Point& normal) {
   const Point along = normal.unitOrthogonal();

@@ -49,7 +49,7 @@ std::vector<BoundLine> surfaces_at_start(const mechanics::Mechanics& m, const Dr
               return s.order == 0 && value != at.end() ? value->second : std::nan("");
             }
             case SymbolKind::parameter: return scene.parameters[s.index];
-            default: return s.kind == SymbolKind::integral ? 0 : std::nan("");  // from the start on
+            default: return s.kind == SymbolKind::integral ? 0 : std::nan("");  // integrals are 0 at the start
           }
         });
         BoundPoint point{Eigen::VectorXd(bound), Eigen::MatrixXd(bound, n), Point::Zero(), Eigen::Matrix3Xd(3, n)};

@@ -14,10 +14,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double share = 0.02;      // of a step, of the size of the figure
-constexpr double longest = 8;       // of a curve both ways, of that size
-constexpr double inside = 1e-9;     // a bound is met
-constexpr double standing = 1e-12;  // relative: where coordinates change and the position does not
+constexpr double share = 0.02;      // step length relative to the size of the figure
+constexpr double longest = 8;       // maximum curve length in each direction, relative to that size
+constexpr double inside = 1e-9;     // tolerance at bounds
+constexpr double standing = 1e-12;  // relative: the coordinates change but the position does not
 
 }  // namespace
 

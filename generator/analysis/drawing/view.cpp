@@ -7,7 +7,7 @@
 namespace eomgen::analysis {
 namespace {
 
-constexpr double in_plane = 1e-9;  // relative to the extent of all
+constexpr double in_plane = 1e-9;  // relative to the extent of all points
 constexpr double azimuth = 0.6, elevation = 0.3;
 
 }  // namespace
@@ -28,7 +28,7 @@ View::View(const std::vector<Point>& points, const std::optional<Point>& down) {
   const Point up = down ? Point(-down->normalized()) : Point::Unit(normal == 2 ? 1 : 2);
   if (flat_) {
     toward_ = Point::Unit(*normal);
-    // The reader expects the axes to point to the right rather than to the left.
+    // Axes should point to the right rather than to the left.
     if (up.cross(toward_).sum() < 0) toward_ = -toward_;
     above_ = up;
   } else {

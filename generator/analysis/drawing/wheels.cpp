@@ -11,7 +11,7 @@ namespace {
 
 using Weight = Sketch::Weight;
 
-constexpr int strokes = 40;  // of a circle
+constexpr int strokes = 40;  // per circle
 
 struct Wheels {
   bool belt = false;

@@ -18,8 +18,7 @@ namespace {
 using symbolic::Ref;
 using symbolic::SymbolKind;
 
-constexpr std::size_t largest_script =
-    400000;  // bytes; what is longer takes a page longer to read than it is looked at
+constexpr std::size_t largest_script = 400000;  // bytes; longer code takes too long to load
 
 Ref exact(symbolic::Dag& dag, double value) { return dag.constant(numeric::exact(value)); }
 
@@ -68,7 +67,7 @@ class Live {
   }
 
  private:
-  /// What the page's integrator cannot do, or "".
+  /// Feature of the model that the page's integrator does not support, or "".
   std::string obstacle() const {
     if (!s_.program.contacts.empty())
       return "its contacts stick, slide or part, and each of these has equations of its own";
@@ -102,8 +101,7 @@ class Live {
     return program::schedule(program::flatten(program::from_dag(dag_, wanted, s_.program.free), false), name, shape);
   }
 
-  /// The formula of a parameter: those of the scene and of the command line are numbers, which the reader of the page
-  /// may move.
+  /// Formula of a parameter. Parameters set by the scene or the command line are numbers with a slider on the page.
   bool is_dependent(std::size_t i) const {
     const auto& set = model_scene().parameters;
     const bool given = std::any_of(set.begin(), set.end(), [i](const auto& p) { return p.first == i; });
@@ -132,8 +130,8 @@ class Live {
     return expression;
   }
 
-  /// All parameters, the start as far as the scene gives it, and sizes of what is drawn, from the parameters that can
-  /// be moved.
+  /// All parameters, the given part of the initial state, and sizes of drawn parts, as functions of the parameters that
+  /// have a slider.
   program::Function setup() {
     std::vector<Ref> p, x, sizes;
     for (std::uint32_t i = 0; i < derived_.model.parameters.size(); ++i)
@@ -154,7 +152,7 @@ class Live {
     return function("setup", {{"p_all", p}, {"x_start", x}, {"sizes", sizes}});
   }
 
-  /// Inputs as the scene has them over time.
+  /// Inputs of the scene over time.
   program::Function signals() {
     std::vector<Ref> u;
     symbolic::Substitution written = mechanics::write_out(m_);

@@ -17,11 +17,11 @@ namespace eomgen::analysis {
 namespace {
 
 constexpr std::size_t most_samples = 1'000'000'000'000, most_latin = 10'000'000,
-                      most_sobol = 1ULL << 32;  // latin keeps 4 bytes of each
+                      most_sobol = 1ULL << 32;  // latin stores 4 bytes per sample
 
 [[noreturn]] void fail(const std::string& what, const std::string& remedy) { throw Error("sweep", {}, what, remedy); }
 
-// Steele, Lea and Flood's SplitMix64: a bijection of 64 bits that mixes them well.
+// Steele, Lea and Flood's SplitMix64: a bijection of 64 bits with good mixing.
 std::uint64_t mixed(std::uint64_t z) {
   z += 0x9e3779b97f4a7c15ULL;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -47,7 +47,7 @@ constexpr Direction directions[] = {{1, 0, {1}},
 constexpr std::size_t most_dimensions = 1 + std::size(directions);
 constexpr unsigned digits = 32;
 
-/// The point of this number, in units of 2^-32.
+/// The Sobol' point of this index, in units of 2^-32.
 std::uint32_t sobol(std::size_t dimension, std::uint64_t index) {
   std::uint32_t v[digits];
   for (unsigned i = 0; i < digits; ++i) {
@@ -73,14 +73,14 @@ std::uint32_t sobol(std::size_t dimension, std::uint64_t index) {
 }  // namespace
 
 double normal_quantile(double part) {
-  // Newton's method on the distribution function, from the middle outwards: erfc is accurate in its tail.
+  // Newton's method on the distribution function, from the centre outwards: erfc is accurate in the tail.
   const double tail = std::min(part, 1 - part);
   if (!(tail > 0)) return part < 0.5 ? -HUGE_VAL : HUGE_VAL;
   double x = tail > 0.1 ? (0.5 - tail) * std::sqrt(2 * std::numbers::pi) : std::sqrt(-2 * std::log(tail));
   for (int i = 0; i < 60; ++i) {
     const double excess = 0.5 * std::erfc(x / std::numbers::sqrt2) - tail;
     const double density = std::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi);
-    const double newton = excess / density, step = newton / (1 - 0.5 * newton * x);  // Halley's, which the tail needs
+    const double newton = excess / density, step = newton / (1 - 0.5 * newton * x);  // Halley's method, for the tail
     x += step;
     if (std::abs(step) <= 1e-15 * std::abs(x)) break;
   }

@@ -7,7 +7,7 @@
 namespace eomgen::analysis {
 namespace {
 
-/// Neumaier's sum.
+/// Compensated summation by Neumaier.
 class Sum {
  public:
   void add(double value) {
@@ -40,7 +40,7 @@ ColumnStatistics statistics_of(const std::string& name, std::vector<double>& val
   result.histogram.resize(result.least < result.greatest ? histogram_parts : 1);
   for (const double value : values) {
     const double place = value / 2 - result.least / 2,
-                 width = result.greatest / 2 - result.least / 2;  // halves: no range is infinite
+                 width = result.greatest / 2 - result.least / 2;  // halves, so the range does not overflow
     const std::size_t part = width > 0 ? static_cast<std::size_t>(place / width * histogram_parts) : 0;
     ++result.histogram[std::min(part, result.histogram.size() - 1)];
   }

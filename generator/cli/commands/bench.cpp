@@ -24,7 +24,7 @@ struct Options : SceneOptions {
   bool no_libraries = false;
 };
 
-/// One line on a terminal, wiped at the end.
+/// Progress line on a terminal, cleared at the end.
 class Status {
  public:
   Status() = default;

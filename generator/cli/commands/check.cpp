@@ -12,7 +12,7 @@ namespace {
 
 std::string text(const Json& value) { return value.get<std::string>(); }
 
-/// "48.85 deg", as the author has it; a bare number with the unit that it was given.
+/// The value as in the model file, such as "48.85 deg". A bare number gets its declared unit.
 std::string as_written(const Json& parameter) {
   const std::string value = text(parameter["value"]), written = text(parameter["written"]),
                     unit = text(parameter["unit"]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a shell completes after `eomgen`: commands, options, and the words of an option where a registry knows them.
+// Command completion: shell completion of commands, options, and option values from registries.
 #include <fmt/format.h>
 
 #include "cli/commands/commands.hpp"
@@ -13,8 +13,8 @@ namespace {
 
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
 
-// After an option whose words are known these, of a list what follows its last comma; after `-` options; else models,
-// tables and folders.
+// Completes the values of an option if they are known (in a list, after the last comma), options after `-`, and
+// otherwise models, tables and folders.
 std::string bash(const Declaration& declared) {
   std::string flags, words;
   for (const DeclaredCommand& sub : declared.commands()) {
@@ -57,14 +57,14 @@ complete -o filenames -F _eomgen eomgen
       joined(declared.names()), flags, joined(declared.names()), joined(declared.names()), words);
 }
 
-/// Within single quotes of zsh and fish.
+/// Escapes text for single quotes of zsh and fish.
 std::string quoted(std::string text, const char* apostrophe) {
   for (std::size_t at = 0; (at = text.find('\'', at)) != std::string::npos; at += std::string_view(apostrophe).size())
     text.replace(at, 1, apostrophe);
   return "'" + text + "'";
 }
 
-/// A description within [..] of _arguments.
+/// Escapes a description for [..] of _arguments.
 std::string in_brackets(const std::string& text) {
   std::string result;
   for (const char c : text) {

@@ -37,7 +37,7 @@ Json to_json(const std::vector<print::Item>& items, const std::string& approach,
   for (const std::string& key : analysis::equation_keys()) {
     const bool wanted =
         std::find(show.begin(), show.end(), key) != show.end() || (all && key != "linear" && key != "routh");
-    if (wanted && key != "all") result[key] = Json::array();  // also where there turns out to be nothing to show
+    if (wanted && key != "all") result[key] = Json::array();  // present even if there is nothing to show
   }
   for (const print::Item& item : items) {
     if (!item.left_out.empty()) continue;
@@ -55,7 +55,7 @@ Json to_json(const std::vector<print::Item>& items, const std::string& approach,
   return result;
 }
 
-/// What stands there.
+/// Heading of a group of formulas.
 std::string heading_of(const print::Item& item) {
   const auto named = [&](const std::string& what) {
     return item.name.empty() ? what : fmt::format("{} '{}'", what, item.name);
@@ -69,7 +69,7 @@ std::string heading_of(const print::Item& item) {
                                            : fmt::format("{}, {}", named("constraint"), item.role);
   if (item.key == "reactions")
     return item.role.empty() ? "multipliers" : fmt::format("{} on '{}'", item.role, item.name);
-  if (item.key == "friction") {  // a contact that can be left is no friction
+  if (item.key == "friction") {  // some items describe the contact, not its friction
     const bool of_contact = item.role.starts_with("touches") || item.role.starts_with("is apart") ||
                             item.role == "impact" || item.role == "normal force";
     return fmt::format("{}, {}", named(of_contact ? "contact" : "friction at"), item.role);

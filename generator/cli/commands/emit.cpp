@@ -23,7 +23,7 @@ struct Options {
   bool print_name = false;
 };
 
-/// Of code, and that of the document.
+/// Names of the targets of code, and of the document.
 std::vector<std::string> target_names() {
   std::vector<std::string> names = emit::target_names();
   names.emplace_back(analysis::document_target);
@@ -43,7 +43,7 @@ int emit_document(const Options& options, const Common& common) {
   }
   const auto model = load_model(options.model);
   const std::string text = analysis::article(model, common.seed);
-  const work::Kept kept;  // all files or none
+  const work::Kept kept;  // writes all files or none
   const std::vector<std::string> files =
       write_results(options.folder, {{emit::mangled_id(model->id) + ".tex", text}}, model->file);
   if (common.json) {
@@ -54,7 +54,7 @@ int emit_document(const Options& options, const Common& common) {
   return 0;
 }
 
-/// The header of a run is C++ beside C.
+/// Warns if --with run was requested but the target has no C++ header of a run.
 void tell_run_left_out(const Options& options, const std::vector<emit::EmittedFile>& files) {
   const auto is_header = [](const emit::EmittedFile& file) { return file.name.ends_with("_run.hpp"); };
   if (std::find(options.with.begin(), options.with.end(), "run") == options.with.end() ||
@@ -64,7 +64,7 @@ void tell_run_left_out(const Options& options, const std::vector<emit::EmittedFi
                    options.target));
 }
 
-/// What is computed once for the parameters, and the right-hand side that is left; null where it is not split.
+/// Operations that depend on parameters only, and those of the remaining right-hand side; null if it is not split.
 Json hoisted(const program::Program& program) {
   if (program.prepared_count() == 0) return nullptr;
   return {{"prepare", to_json(program.functions.rbegin()[1].operations)},

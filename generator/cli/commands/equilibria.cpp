@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equilibria and steady motions of a model, and whether they are stable.
+// Command equilibria: equilibria and steady motions of a model with their stability.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -74,7 +74,7 @@ std::string text(const analysis::SteadyMotion& point, const std::vector<std::str
   out += "  eigenvalues";
   for (std::size_t i = 0; i < point.l.spectrum.values.size(); ++i) {
     const linear::Eigenvalue& e = point.l.spectrum.values[i];
-    if (e.im < 0 || (e.re == 0 && e.im == 0)) continue;  // of a pair one is shown
+    if (e.im < 0 || (e.re == 0 && e.im == 0)) continue;  // one of each conjugate pair
     out += e.im == 0 ? fmt::format("  {:.8g}", e.re) : fmt::format("  {:.8g} +- {:.8g}i", e.re, e.im);
     if (!e.holds()) out += " (in doubt)";
   }

@@ -26,7 +26,7 @@ struct Options : SceneOptions {
   bool yes = false;
 };
 
-/// The table: to the file, and its extremes.
+/// Writes the table to the file and records its extremes.
 class Table {
  public:
   Table(const std::string& file, std::vector<std::string> columns) : columns_(std::move(columns)) {

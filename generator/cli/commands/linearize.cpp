@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equations of motion linearised at the start of a scene, or at its state at a time.
+// Command linearize: linearises the equations of motion at the start of a scene, or at a later time.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -26,7 +26,7 @@ Json registries() {
     coordinates.push_back(
         {{"name", system->name}, {"title", system->title}, {"slots", slots}, {"singular", system->singular}});
   }
-  // Defined by the model itself, so it is no entry of that registry.
+  // Defined by the model itself, so not in that registry.
   coordinates.push_back({{"name", "custom"},
                          {"title", "coordinates that a model defines, by x(q) or by q(x)"},
                          {"slots", Json::array()},
@@ -46,7 +46,7 @@ Json registries() {
   }
   for (const emit::TargetEntry& target : emit::targets())
     targets.push_back({{"name", target.name}, {"title", target.title}});
-  // A document comes from the reading form, not from a program, so it is no entry of that registry.
+  // The document uses the display form instead of a program, so it is not in that registry.
   targets.push_back({{"name", analysis::document_target},
                      {"title", "a LaTeX document: both approaches side by side, constraint forces"}});
   result["coordinates"] = coordinates;

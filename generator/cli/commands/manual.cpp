@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pages of the manual, written from the options that the program reads: roff with the macros man(7).
+// Command manual: manual pages generated from the declared options, as roff with the macros of man(7).
 #include <fmt/format.h>
 
 #include "cli/commands/commands.hpp"
@@ -15,7 +15,7 @@ struct Options {
   std::string command, folder;
 };
 
-/// As man(7) takes it for text: hyphens of options stay hyphens, nothing begins a request or an escape.
+/// Escapes text for man(7): keeps hyphens of options, prevents requests and escapes.
 std::string roff(std::string_view text) {
   std::string result;
   for (const char c : text) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tables that the shards of a sweep wrote, joined: the bytes of the sweep that one call makes.
+// Command merge: joins the tables of the shards of a sweep. The result is identical to the table of a single call.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -33,7 +33,7 @@ struct Options {
 
 [[noreturn]] void fail(const std::string& what, const std::string& remedy) { throw Error("merge", {}, what, remedy); }
 
-/// A pipe is copied: rows are read again, in another order.
+/// Copies a pipe to a temporary file, because rows are read again in another order.
 OpenFile readable(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
   struct stat found {};
@@ -92,11 +92,11 @@ class Tables {
       file.write(text);
       file.finish();
     } catch (const std::system_error&) {
-      file.discard();  // it could be made again: nothing is kept of it
+      file.discard();  // the file can be generated again, so no part is kept
       throw;
     }
   }
-  /// Every run of every shard, and each once.
+  /// Requires every run of every shard exactly once.
   void require_all() {
     for (std::size_t shard = 1; shard <= note_.shard.count; ++shard) {
       if (!tables_.contains(shard))

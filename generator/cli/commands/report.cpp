@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One page that holds all: the model, its equations, what they were checked against, a run, plots and an animation. No
-// other file, no network.
+// Command report: one self-contained HTML page with the model, its equations, their verification, a run, plots and an
+// animation. It needs no other file and no network.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,12 +30,12 @@ struct Options : SceneOptions {
   std::string model, out;
 };
 
-constexpr double most_rows = 400, least_rows = 120, most_values = 20000;   // of a motion
-constexpr std::size_t fewest_rows = 40;                                    // that still are a motion
+constexpr double most_rows = 400, least_rows = 120, most_values = 20000;   // in a motion
+constexpr std::size_t fewest_rows = 40;                                    // least number for an animation
 constexpr std::size_t longest_formula = 60000, longest_formulas = 350000;  // bytes of MathML
-constexpr std::size_t largest_page = 980000, largest_motion = 900000;      // bytes; without formulas
+constexpr std::size_t largest_page = 980000, largest_motion = 900000;      // bytes, without formulas
 
-/// Between rows the page has cubics: many coordinates need no more numbers than few.
+/// Number of rows. The page interpolates with cubics, so models with many coordinates can have fewer rows.
 double rows_of_a_page(const model::Model& model) {
   return std::clamp(most_values / (2 * static_cast<double>(model.coordinates.size())), least_rows, most_rows);
 }
@@ -44,7 +44,7 @@ std::string text(const Json& value) {
   return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-// What a reader looks for first: the mechanism, moving. The script fills in the controls, which do nothing without it.
+// The animation comes first. The script adds the controls, which need it.
 void add_head(Html& html, const model::Model& model, bool moving) {
   html.heading(1, model.title.empty() ? model.id : model.title);
   html.paragraph(model.id + ".toml", "quiet");
@@ -72,10 +72,10 @@ void add_model(Html& html, const model::Model& model, const Json& found) {
   html.preformatted("The model file", source);
 }
 
-// A page that is opened anywhere stays small: what is longer than a reader follows is left to `derive`.
+// Keeps the page small: long formulas are skipped and left to `derive`.
 class Formulas {
  public:
-  /// `taken`: bytes of the page beside `html`.
+  /// `taken`: bytes of the page without `html`.
   Formulas(Html& html, std::size_t taken) : html_(html), taken_(taken) {}
 
   void add(const std::string& mathml) {
@@ -89,7 +89,7 @@ class Formulas {
     room_ -= mathml.size();
     html_.formula(mathml);
   }
-  /// Tells how many were left out since it told so.
+  /// Writes how many formulas were skipped since its last call.
   void end() {
     if (left_out_ > 0) {
       html_.paragraph(
@@ -123,7 +123,7 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
     if (items.empty()) continue;
     html.heading(3, title);
     std::string before;
-    std::vector<print::Item> derivatives;  // of constraints: behind the equations for who asks for them
+    std::vector<print::Item> derivatives;  // of constraints: folded, after the equations
     for (const print::Item& item : items) {
       if (key == "constraints" && item.role.ends_with("time derivative") && item.left_out.empty()) {
         derivatives.push_back(item);
@@ -231,10 +231,10 @@ int execute(const Options& options, const Common& common) {
   request.seed = common.seed;
   request.overrides = overrides_of("report", options);
   request.rows = rows_of_a_page(*request.model);
-  request.with = {"mass"};  // a point that is dragged moves the lightest most
+  request.with = {"mass"};  // dragging a point uses the mass matrix
   std::optional<analysis::Drawing> drawing;
   std::optional<analysis::DrawnForces> forces;
-  std::vector<std::string> outputs;  // what the page draws and plots beside the state
+  std::vector<std::string> outputs;  // outputs for drawing and plots, without the state
   std::vector<Panel> curves;
   request.prepare = [&](pipeline::Derived& derived) {
     drawing.emplace(derived.mechanics);

@@ -30,7 +30,7 @@ struct Options : SceneOptions {
   bool no_error_estimate = false, no_charts = false, yes = false;
 };
 
-/// Rows to the CSV file and to the plot.
+/// Passes rows to the CSV file and to the plot.
 class Rows {
  public:
   Rows(const std::string& csv, const std::vector<Panel>& panels, bool yes, const pipeline::Derived& derived,
@@ -47,7 +47,7 @@ class Rows {
     values_.resize(columns_.size());
     const double every = pipeline::row_interval(scene);
     require_size(scene.t0, scene.t1, every, csv.empty() ? 0 : columns_.size(), yes);
-    // A plot has no use for more points than it can show, and they are kept in memory.
+    // The plot stores its points in memory, so it gets no more than it can show.
     stride_ =
         std::max<std::uint64_t>(1, static_cast<std::uint64_t>(expected_rows(scene.t0, scene.t1, every) / most_points));
     if (!csv.empty()) csv_.emplace(csv, columns_);
@@ -78,7 +78,7 @@ class Rows {
   std::optional<RunPlot> plot_;
 };
 
-/// One line on a terminal, written over and over, and wiped at the end.
+/// Progress line on a terminal, cleared at the end.
 class Progress {
  public:
   Progress() = default;
@@ -103,7 +103,7 @@ class Progress {
   bool shown_ = false;
 };
 
-/// The run; an error while the user asked it to stop is an interruption.
+/// Runs the simulation. An error after a stop request counts as an interruption.
 pipeline::Simulation simulate_until_interrupted(const pipeline::SimulationRequest& request) {
   try {
     return pipeline::simulate(request);
@@ -114,7 +114,7 @@ pipeline::Simulation simulate_until_interrupted(const pipeline::SimulationReques
   }
 }
 
-/// Outputs that are plotted, by all their names; coordinates are in every row.
+/// Names of the plotted outputs other than coordinates, which are in every row.
 std::vector<std::string> plotted_outputs(const Options& options, pipeline::Derived& derived) {
   std::vector<model::Named> wanted;
   for (const std::string& item : options.plot_of) {
@@ -141,7 +141,7 @@ int execute(const Options& options, const Common& common) {
   request.form = pipeline::form_choice(options.form);
   request.estimate = !options.no_error_estimate;
   request.charts =
-      !options.no_charts && options.sensitivity.empty();  // derivatives are those of the model's own coordinates
+      !options.no_charts && options.sensitivity.empty();  // derivatives refer to the model's own coordinates
   if (!options.sensitivity.empty())
     request.with.assign(std::begin(analysis::sensitivity_functions), std::end(analysis::sensitivity_functions));
   request.seed = common.seed;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every solver through stiff and extreme variations of a scene: kept, told, or silent.
+// Command stress: runs every solver on stiff and extreme variations of a scene.
 #include <fmt/format.h>
 #include <unistd.h>
 

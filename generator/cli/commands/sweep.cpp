@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many runs of one scene over a grid of parameters: compiled once, run by several processes, and gone on with after an
-// interruption.
+// Command sweep: many runs of one scene over a grid of parameters. Compiles once, runs in several processes, and
+// continues after an interruption.
 #include "cli/sweep/sweep.hpp"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ int execute(const SweepOptions& options, const Common& common) {
   const model::Model model = model::read_model(locate_model(options.model));
   Sweep sweep(options, common, model);
   const bool whole = sweep.run();
-  if (common.team != nullptr && !common.team->leads()) return 0;  // the first one tells
+  if (common.team != nullptr && !common.team->leads()) return 0;  // the leader reports
   Json found = document(options, model, sweep);
   const std::optional<analysis::Basins> basins = options.basins ? sweep.basins() : std::nullopt;
   if (common.json) {

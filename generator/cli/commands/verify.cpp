@@ -46,7 +46,7 @@ Json to_json(const verify::Certificate& certificate) {
 
 void print_readable(const verify::Certificate& certificate) {
   fmt::print("{:<28} {:<28} {:>12} {:>10}  {}\n", "this", "against", "difference", "tolerance", "");
-  // What shares no code proves most, so it comes first.
+  // Comparisons without shared code are the strongest evidence, so they come first.
   std::vector<verify::Comparison> rows = certificate.comparisons;
   std::stable_partition(rows.begin(), rows.end(), [](const verify::Comparison& c) { return !c.shares_code; });
   for (const verify::Comparison& c : rows) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// eomgen-mpi: the command sweep by as many processes as mpirun starts. The first one does all that can fail for
-// everybody before the others begin; what fails later ends all of them, and the same command goes on from the rows that
-// are there.
+// eomgen-mpi: the command sweep with the processes that mpirun starts. The leader does everything that can fail in
+// general before the workers start. A later failure ends all processes; the same command then continues from the
+// existing rows.
 #include <algorithm>
 #include <string_view>
 

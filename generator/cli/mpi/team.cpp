@@ -11,7 +11,7 @@
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
-// Open MPI leaves what it allocated, also in libraries that are closed by then: no suppression can name these.
+// Open MPI leaks memory, also in libraries that are unloaded by then, so suppressions cannot name the functions.
 extern "C" int __lsan_is_turned_off() { return 1; }
 #endif
 #endif
@@ -20,7 +20,7 @@ namespace eomgen::cli {
 namespace {
 
 constexpr int asks = 1, answers = 2;              // tags
-constexpr std::uint64_t most_in_block = 1 << 16;  // runs; what a block needs of memory stays small
+constexpr std::uint64_t most_in_block = 1 << 16;  // runs; limits the memory of a block
 
 void rest() { std::this_thread::sleep_for(std::chrono::microseconds(200)); }
 
@@ -101,7 +101,7 @@ void MpiTeam::hand_out(std::vector<Stretch> open, std::uint64_t least, const std
     if (open.empty() || stop) {
       --waiting;
     } else {
-      // Large blocks first, small ones at the end, so that all end at about the same time.
+      // Blocks decrease in size, so that all workers finish at about the same time.
       const std::uint64_t share = std::clamp(left / (4 * workers()), least, std::max(least, most_in_block));
       words[0] = open.back().first;
       words[1] = std::min(share, open.back().count);
@@ -132,9 +132,9 @@ std::uint64_t MpiTeam::sum(std::uint64_t of_this_one) {
   return all;
 }
 
-/// Where each piece of this process begins in the file: the first one puts the pieces of all in order.
+/// File offsets of the pieces of this process. The leader sorts the pieces of all processes.
 std::vector<std::uint64_t> MpiTeam::offsets(std::uint64_t begin, const std::vector<Piece>& pieces) {
-  std::vector<std::uint64_t> mine, all;  // where it begins in the table, its bytes
+  std::vector<std::uint64_t> mine, all;  // pairs: first run, bytes
   for (const Piece& piece : pieces) mine.insert(mine.end(), {piece.where.first, piece.bytes});
   std::vector<int> counts(size()), places(size()), halves(size()), half_places(size());
   const int count = whole(mine.size());
@@ -161,7 +161,7 @@ std::vector<std::uint64_t> MpiTeam::offsets(std::uint64_t begin, const std::vect
   return own;
 }
 
-/// What went wrong at any of the processes, for all.
+/// Returns in all processes the error of any process, or "".
 std::string MpiTeam::agreed(const std::string& why) {
   int first = why.empty() ? size_ : rank_, least = size_;
   MPI_Allreduce(&first, &least, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
@@ -194,8 +194,7 @@ std::string MpiTeam::write(const std::string& path, std::uint64_t begin, const s
   note(MPI_File_open(MPI_COMM_WORLD, place.c_str(), MPI_MODE_WRONLY, MPI_INFO_NULL, &file));
   why = agreed(why);
   if (!why.empty()) return why;
-  // As many rounds as the one with most pieces needs: all write at the same time, and the file system sees large
-  // requests.
+  // All processes write in the same number of rounds, so that collective writes give the file system large requests.
   const std::uint64_t mine = pieces.size();
   std::uint64_t rounds = 0;
   MPI_Allreduce(&mine, &rounds, 1, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);

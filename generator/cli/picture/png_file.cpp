@@ -25,7 +25,7 @@ std::string chunk(const std::string& type, const std::string& data) {
   return big_endian(static_cast<std::uint32_t>(data.size())) + type + data + big_endian(crc(type + data));
 }
 
-/// DEFLATE (RFC 1951) in one block of the fixed code; repetitions of one byte are the only matches looked for.
+/// DEFLATE (RFC 1951) encoder: one block with fixed codes; the only matches are repetitions of one byte.
 class Deflate {
  public:
   std::string operator()(const std::string& bytes) {
@@ -50,7 +50,7 @@ class Deflate {
   static constexpr std::size_t shortest = 3, longest = 258;
   static constexpr unsigned end_of_block = 256;
 
-  void put(unsigned value, unsigned bits) {  // least bit first
+  void put(unsigned value, unsigned bits) {  // least significant bit first
     for (unsigned k = 0; k < bits; ++k) {
       held_ |= (value >> k & 1) << count_;
       if (++count_ < 8) continue;
@@ -58,7 +58,7 @@ class Deflate {
       held_ = count_ = 0;
     }
   }
-  void code(unsigned value, unsigned bits) {  // codes come with their greatest bit first
+  void code(unsigned value, unsigned bits) {  // codes are packed from the most significant bit
     for (unsigned k = bits; k-- > 0;) put(value >> k & 1, 1);
   }
   void symbol(unsigned s) {
@@ -73,7 +73,7 @@ class Deflate {
   }
   void literal(std::uint8_t byte) { symbol(byte); }
   void match(std::size_t length) {
-    // Symbols 257 .. 285: eight lengths without further bits, then groups of four with 1 .. 5 of them.
+    // Symbols 257 .. 285: eight lengths without extra bits, then groups of four with 1 .. 5 extra bits.
     if (length == longest) {
       symbol(285);
     } else if (length < 11) {

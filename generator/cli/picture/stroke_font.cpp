@@ -10,8 +10,8 @@ namespace {
 
 struct Glyph {
   std::string_view character;  // UTF-8
-  // Strokes apart by blanks; points as two characters, x 0 .. 4 and y 0 .. 6 above the base line, y and z for 2 and 1
-  // below it.
+  // Strokes are separated by blanks. A point is two characters: x from 0 to 4; y from 0 to 6 above the baseline, or y
+  // and z for 2 and 1 below it.
   std::string_view strokes;
 };
 
@@ -116,7 +116,7 @@ constexpr Glyph glyphs[] = {{"0", "010516364541301001"},
                             {"`", "0615"}};
 
 constexpr std::string_view box = "0006464000";
-constexpr double advance = 1.7, along = 0.094, upwards = 0.118;  // of the size: a unit of the grid
+constexpr double advance = 1.7, along = 0.094, upwards = 0.118;  // a grid unit relative to the font size
 
 double height(char c) { return c == 'z' ? -1 : c == 'y' ? -2 : c - '0'; }
 

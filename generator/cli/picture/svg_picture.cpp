@@ -87,7 +87,7 @@ class Painter {
         centre.first - radius, centre.first + radius, centre.second - radius, centre.second + radius,
         [&](double x, double y) { return radius + 0.5 - std::hypot(x - centre.first, y - centre.second); }, colour);
   }
-  /// A polyline in dashes, the first pattern from its beginning.
+  /// A dashed polyline; the pattern starts at its first point.
   void polyline(const std::vector<Point>& points, double width, const std::vector<double>& dashes,
                 const Colour& colour) {
     if (points.size() == 1) line(points[0], points[0], width, colour);
@@ -116,7 +116,7 @@ class Painter {
   }
 
  private:
-  static constexpr double farthest = 1e5;  // pixels; nothing beyond is seen
+  static constexpr double farthest = 1e5;  // pixels; clamps invisible coordinates
   Point placed(Point p) const {
     return {std::clamp(p.first * scale_, -farthest, farthest),
             std::clamp((p.second + y_) * scale_, -farthest, farthest)};
@@ -160,7 +160,7 @@ std::vector<double> numbers(const std::string& text) {
   return result;
 }
 
-/// Pieces of a path of M, L, H and V.
+/// Polylines of a path with the commands M, L, H and V.
 std::vector<std::vector<Point>> pieces(const std::string& d) {
   std::vector<std::vector<Point>> result;
   for (std::size_t i = 0; i < d.size();) {
@@ -206,7 +206,7 @@ class Reader {
       if (name == "title") at = svg_.find("</title>", end);
       if (name == "svg") painter_.shift(tag.number("y"));
       if (name == "g") group_ = colour_of(tag.get("fill"), group_);
-      if (name == "rect" && tag.get("width").find('%') == std::string::npos)  // all of it is the paper, which is white
+      if (name == "rect" && tag.get("width").find('%') == std::string::npos)  // else the background
         painter_.rectangle({tag.number("x"), tag.number("y")}, tag.number("width"), tag.number("height"),
                            colour_of(tag.get("fill"), ink));
       if (name == "line")
@@ -243,7 +243,7 @@ class Reader {
     std::string text;
     double size, dy;
   };
-  /// Text and <tspan dy=".." font-size="..">text</tspan>, one after the other.
+  /// Parses a sequence of text and <tspan dy=".." font-size="..">text</tspan>.
   static std::vector<Run> runs(const std::string& content, double size) {
     std::vector<Run> result;
     double dy = 0;

@@ -30,7 +30,7 @@ namespace {
 
 using print::escape_html;
 
-// Inside of a script element "</script>" and "<!--" mean something, in a string too.
+// "</script>" and "<!--" have a meaning inside a script element, even in strings.
 std::string inside_of_script(const std::string& json) {
   std::string result;
   for (const char c : json)
@@ -78,7 +78,7 @@ std::string page(const PageParts& parts) {
   all.set("style", std::string(report::page_css));
   all.set("body", parts.body);
   all.set("motion", inside_of_script(parts.motion));
-  // The target escapes what the model says; a script may hold nothing that ends it.
+  // The target escapes text of the model; the script must not contain its end tag.
   const auto returned = [](const std::string& script, const std::string& name) {
     return script.empty() ? "return null;" : script + "return " + name + ";";
   };

@@ -10,7 +10,7 @@ template <class T>
 Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
-/// null where there is none.
+/// The index, or null.
 Json bounds(const std::vector<double>& list) {
   Json result = Json::array();
   for (const double bound : list) result.push_back(std::isfinite(bound) ? Json(bound) : Json(nullptr));

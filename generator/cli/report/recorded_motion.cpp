@@ -13,10 +13,10 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr double least_seconds = 4, most_seconds = 20;  // of an animation, whatever the time span of the run
+constexpr double least_seconds = 4, most_seconds = 20;  // duration of an animation, for any time span of the run
 constexpr int digits_of_states = 10, digits_of_screens = 6;
 
-// As many digits as are needed; fewer bytes.
+// Rounds to the digits needed, to save bytes.
 double shortened(double x, int digits) {
   return std::isfinite(x) ? std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr) : 0;
 }

@@ -12,12 +12,12 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::uint16_t version = 45;  // of what reads 64-bit fields
+constexpr std::uint16_t version = 45;  // required to read 64-bit fields
 constexpr std::uint16_t utf8_names = 0x800;
-constexpr std::uint16_t first_day = 0x21;        // 1 January 1980: the same runs, the same bytes
-constexpr std::uint32_t elsewhere = 0xffffffff;  // in the 64-bit fields
+constexpr std::uint16_t first_day = 0x21;        // 1 January 1980, so equal runs give equal bytes
+constexpr std::uint32_t elsewhere = 0xffffffff;  // the value is in the 64-bit fields
 
-/// Little-endian, whatever the machine.
+/// Little-endian on any machine.
 template <class T>
 void put(std::string& text, T value) {
   for (std::size_t i = 0; i < sizeof(T); ++i) text += static_cast<char>(value >> (8 * i) & 0xff);
@@ -71,7 +71,7 @@ std::string Archive::local_header(std::size_t i) const {
 std::string Archive::central_header(std::size_t i) const {
   std::string text;
   put<std::uint32_t>(text, 0x02014b50);
-  put<std::uint16_t>(text, 3 << 8 | version);  // attributes are those of Unix
+  put<std::uint16_t>(text, 3 << 8 | version);  // file attributes of Unix
   for (const std::uint16_t value : {version, utf8_names, std::uint16_t{0}, std::uint16_t{0}, first_day})
     put(text, value);
   put(text, places_[i].checksum);
@@ -119,17 +119,17 @@ void Archive::finish() {
     directory += central_header(i);
   }
   const std::uint64_t size = directory.size(), count = members_.size(), end = end_ + size;
-  put<std::uint32_t>(directory, 0x06064b50);  // the end of the directory, with 64 bits
+  put<std::uint32_t>(directory, 0x06064b50);  // 64-bit end of the central directory
   put<std::uint64_t>(directory, 44);
   put(directory, version);
   put(directory, version);
   put<std::uint64_t>(directory, 0);
   for (const std::uint64_t value : {count, count, size, end_}) put(directory, value);
-  put<std::uint32_t>(directory, 0x07064b50);  // where that is
+  put<std::uint32_t>(directory, 0x07064b50);  // locator of that record
   put<std::uint32_t>(directory, 0);
   put(directory, end);
   put<std::uint32_t>(directory, 1);
-  put<std::uint32_t>(directory, 0x06054b50);  // the end as it was before there were 64 bits
+  put<std::uint32_t>(directory, 0x06054b50);  // 32-bit end of the central directory
   put<std::uint32_t>(directory, 0);
   const auto few = static_cast<std::uint16_t>(std::min<std::uint64_t>(count, 0xffff));
   put(directory, few);

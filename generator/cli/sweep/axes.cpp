@@ -39,7 +39,7 @@ std::vector<std::string> parts(const std::string& text, char delimiter) {
   return result;
 }
 
-/// NAME=VALUES; `wrong` is called for what names no parameter.
+/// Splits NAME=VALUES. Calls `wrong` if the name is missing.
 template <class Wrong>
 std::pair<std::string, std::string> assignment(const std::string& text, Wrong&& wrong) {
   const std::size_t equals = text.find('=');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What several processes do to make one sweep: the first one takes over what is there, prepares, and hands out; the
-// others make rows; all write the table.
+// A sweep by several processes: the leader takes over existing rows, prepares and distributes the runs. The workers
+// compute rows. All processes write the table.
 #include <eom/output/whole_file.hpp>
 #include <system_error>
 
@@ -10,9 +10,8 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::uint64_t least_of_ensemble =
-    256;                                    // runs of a block for each thread, so that lanes are full most of the time
-constexpr std::size_t most_rows = 1 << 16;  // that are written at once
+constexpr std::uint64_t least_of_ensemble = 256;  // runs per block and thread, so that SIMD lanes are mostly full
+constexpr std::size_t most_rows = 1 << 16;        // written in one request
 
 }  // namespace
 
@@ -27,7 +26,7 @@ bool Sweep::run_by_team() {
     std::optional<std::size_t> first;
     if (!open.empty()) {
       first = prepare(open);
-      if (!first) return false;  // interrupted: the others are told so when this one leaves
+      if (!first) return false;  // interrupted: leaving notifies the workers
       take_first(*first, open);
       if (options_.ensemble && !open.empty()) ensemble_.emplace(*first_);
     }
@@ -64,7 +63,7 @@ void Sweep::make_here(const std::vector<Stretch>& stretches, std::size_t threads
 }
 
 void Sweep::write_by_team() {
-  if (team_->sum(ledger_.open() ? 1 : 0) == 0) return;  // the table is there
+  if (team_->sum(ledger_.open() ? 1 : 0) == 0) return;  // the table is complete
   const Rows& rows = ledger_.rows();
   struct Part {
     std::size_t first, last;
@@ -101,12 +100,12 @@ void Sweep::write_by_team() {
       table->write(beginning);
     }
     const std::string why = team_->write(table ? table->partial() : "", beginning.size(), pieces, text);
-    if (table && !why.empty()) lost(why);  // the others wait below until this one has told it and ends them
+    if (table && !why.empty()) lost(why);  // the others wait below until this one aborts them
     if (table) table->finish();
   } catch (const std::system_error& error) {
     lost(error.what());
   }
-  team_->sum(0);  // the table has its name before any of the others goes
+  team_->sum(0);  // the table is renamed before any worker continues
   ledger_.finish_elsewhere();
 }
 

@@ -31,15 +31,15 @@ constexpr const char* mark = "# sweep: ";
               emit::fault_of_writing(error.code()));
 }
 
-/// A file that may be read and taken over: regular, one's own, no link, and nobody is writing to it.
+/// Opens a file that may be taken over: regular, owned by the user, not a link, and not being written.
 OpenFile open_own(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return {};
   OpenFile file(descriptor);
   struct stat found {};
   if (::fstat(descriptor, &found) != 0 || !S_ISREG(found.st_mode) || found.st_uid != ::geteuid()) return {};
-  // Where locks are unknown (some file systems of clusters) nobody can tell, and nothing is lost: two that write have a
-  // file each.
+  // File systems of some clusters have no locks, so a writer is not detected. This loses nothing: two writers have
+  // different files.
   if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) return {};
   return file;
 }
@@ -81,10 +81,10 @@ std::vector<Ledger::Unfinished> Ledger::unfinished() const {
     if (other != name && !(other.starts_with(name + "-") && other.size() == name.size() + 7)) continue;
     const std::string path = target.has_parent_path() ? entry.path().string() : other;
     OpenFile file = open_own(path);
-    if (!file) continue;  // somebody's who is writing to it
+    if (!file) continue;  // another process is writing it
     std::string first;
     each_line(file, [&](std::string_view line, std::uint64_t) { return first = line, false; });
-    if (first.starts_with(mark)) found.push_back({path, std::move(file), first == mark + key_});  // else a run's
+    if (first.starts_with(mark)) found.push_back({path, std::move(file), first == mark + key_});  // else of `run`
   }
   std::sort(found.begin(), found.end(), [](const Unfinished& a, const Unfinished& b) { return a.path < b.path; });
   return found;
@@ -108,7 +108,7 @@ std::string Ledger::beginning() const { return mark + key_ + "\n" + header_ + "\
 
 void Ledger::write(const std::function<void(std::string_view)>& to) const {
   constexpr std::size_t enough = 1 << 20;
-  to(beginning());  // at once: what is killed before that leaves a file that nobody knows
+  to(beginning());  // immediately, because a partial file without header cannot be recognised
   std::string text;
   rows_.each(0, rows_.size(), [&](std::size_t, std::string_view line) {
     text.append(line);
@@ -121,11 +121,11 @@ void Ledger::write(const std::function<void(std::string_view)>& to) const {
 }
 
 void Ledger::set_header(const std::string& header) try {
-  if (header_ != header) rows_ = Rows();  // a table of other columns cannot be gone on with
+  if (header_ != header) rows_ = Rows();  // a table with other columns cannot be continued
   header_ = header;
   if (kept_) {
     out_.emplace(file_);
-    if (out_->partial().empty()) {  // it is open as standard output
+    if (out_->partial().empty()) {  // the file is open as standard output
       out_.reset();
       kept_ = false;
     }
@@ -135,7 +135,7 @@ void Ledger::set_header(const std::string& header) try {
     number_ = rows_.add(own_);
     return;
   }
-  ::flock(out_->descriptor(), LOCK_EX | LOCK_NB);  // as long as this process is there
+  ::flock(out_->descriptor(), LOCK_EX | LOCK_NB);  // released when this process ends
   place_ = out_->partial();
   own_ = OpenFile(::fcntl(out_->descriptor(), F_DUPFD_CLOEXEC, 3));
   Rows copied;
@@ -170,7 +170,7 @@ void Ledger::whole() const try {
     write([&file](std::string_view piece) { file.write(piece); });
     file.finish();
   } catch (const std::system_error&) {
-    file.discard();  // the rows are kept in the other one
+    file.discard();  // the partial file stores the rows
     throw;
   }
 } catch (const std::system_error& error) {
@@ -189,7 +189,7 @@ void Ledger::require_file() const {
 }
 
 void Ledger::finish() {
-  if (kept_ && !open()) return;  // all was there
+  if (kept_ && !open()) return;  // the table was complete
   rows_.sort();
   whole();
   finish_elsewhere();

@@ -17,7 +17,7 @@
 namespace eomgen::cli {
 namespace {
 
-/// What a .npy file begins with: version 1.0, padded so that what follows is aligned.
+/// Header of a .npy file: version 1.0, padded so that the data are aligned.
 std::string npy_header(const std::string& type, const std::string& shape) {
   constexpr std::size_t fixed = 10, alignment = 64;
   std::string dictionary = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
@@ -34,11 +34,11 @@ std::vector<std::string_view> fields_of(std::string_view line, std::size_t count
   std::vector<std::string_view> fields;
   for (; fields.size() + 1 < count; line.remove_prefix(fields.back().size() + 1))
     fields.push_back(line.substr(0, line.find(',')));
-  fields.push_back(line);  // the last one may be quoted
+  fields.push_back(line);  // the last field may be quoted
   return fields;
 }
 
-/// A field as it was before commas and quotation marks in it made it a quoted one.
+/// Removes the quotation of a CSV field.
 std::string unquoted(std::string_view field) {
   if (field.empty() || field.front() != '"') return std::string(field);
   std::string text;
@@ -55,7 +55,7 @@ double value_of(std::string_view field) {
   return error == std::errc() && stop == field.data() + field.size() ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Eight bytes, the least significant first.
+/// Eight bytes, little-endian.
 template <class T>
 void put(std::string& text, T value) {
   const auto bits = std::bit_cast<std::uint64_t>(value);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* refused_outcome = "refused";
 
-// A comma, a quotation mark or a line break inside of a field would be read as the end of it.
+// Quotes a field that contains a comma, a quotation mark or a line break.
 std::string field(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');

@@ -17,7 +17,7 @@ namespace {
 
 [[noreturn]] void fail(const char* what, int reason) { throw std::system_error(reason, std::generic_category(), what); }
 
-/// As many bytes as are there, up to `count`.
+/// Reads up to `count` bytes and returns their number.
 std::size_t read_at(int file, char* to, std::size_t count, std::uint64_t offset) {
   std::size_t there = 0;
   while (there < count) {
@@ -74,7 +74,7 @@ std::uint64_t OpenFile::bytes() const {
 void each_line(const OpenFile& file, const std::function<bool(std::string_view, std::uint64_t)>& take) {
   constexpr std::size_t piece = 1 << 18;
   std::string text;
-  std::uint64_t at = 0;  // of what `text` begins with
+  std::uint64_t at = 0;  // file offset of the start of `text`
   for (bool more = true; more;) {
     const std::size_t held = text.size();
     text.resize(held + piece);
@@ -107,14 +107,14 @@ void Rows::add(std::size_t run, std::uint32_t file, std::uint64_t offset, std::s
 void Rows::sort() {
   std::stable_sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return a.run < b.run; });
   const auto same = [](const Place& a, const Place& b) { return a.run == b.run; };
-  const auto first = std::unique(places_.rbegin(), places_.rend(), same);  // from behind: the last of equals stays
+  const auto first = std::unique(places_.rbegin(), places_.rend(), same);  // reversed, so the last of equal rows stays
   places_.erase(places_.begin(), first.base());
 }
 
 void Rows::each(std::size_t first, std::size_t last,
                 const std::function<void(std::size_t, std::string_view)>& take) const {
   constexpr std::size_t piece = 1 << 14;
-  std::string held;  // a piece of one file, since neighbours mostly lie together
+  std::string held;  // a block of one file, since neighbouring rows are mostly adjacent
   std::uint32_t file = 0;
   std::uint64_t from = 0;
   for (std::size_t i = first; i < last; ++i) {

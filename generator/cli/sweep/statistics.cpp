@@ -15,9 +15,9 @@ using analysis::quantile_parts;
 
 namespace {
 
-constexpr std::size_t most_values = 16'000'000;  // in memory at a time
+constexpr std::size_t most_values = 16'000'000;  // in memory at the same time
 
-/// Calls take(number, field) with the fields of a line; what is quoted stands in the last one only.
+/// Calls take(number, field) with the fields of a line. Only the last field may be quoted.
 template <class Take>
 void each_field(std::string_view line, std::size_t most, Take&& take) {
   for (std::size_t k = 0; k < most; ++k) {
@@ -41,7 +41,7 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
   const auto outcome = static_cast<std::size_t>(std::find(names.begin(), names.end(), "outcome") - names.begin());
   std::vector<ColumnStatistics> result;
   const std::size_t at_once = std::max<std::size_t>(1, most_values / std::max<std::size_t>(rows, 1));
-  const std::size_t end = names.size() - 1;  // the last one is a sentence
+  const std::size_t end = names.size() - 1;  // the last column is text
   for (std::size_t first = outcome + 1; first < end; first += at_once) {
     const std::size_t last = std::min(first + at_once, end);
     std::vector<std::vector<double>> values(last - first);

@@ -21,7 +21,7 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::size_t most_runs = 10'000'000;  // of one process; each takes some 40 bytes of memory
+constexpr std::size_t most_runs = 10'000'000;  // limit of a process; each run takes about 40 bytes of memory
 
 analysis::Shard shard_of(const SweepOptions& options, const analysis::Points& points, std::size_t processes) {
   const analysis::Shard shard = options.shard ? parse_shard(*options.shard) : analysis::Shard{};
@@ -39,7 +39,7 @@ analysis::Shard shard_of(const SweepOptions& options, const analysis::Points& po
   return shard;
 }
 
-/// Equilibria move with parameters.
+/// Checks the options of --basins: equilibria depend on parameters, so only initial values may vary.
 void require_basins(const analysis::Points& points, const SweepOptions& options, const model::Model& model) {
   if (!options.basins) return;
   for (const std::string& name : points.names()) {
@@ -127,7 +127,7 @@ void Sweep::make_open_runs() {
 
 std::vector<Stretch> Sweep::open_runs() const {
   std::vector<Stretch> open;
-  std::size_t next = 0;  // of the runs
+  std::size_t next = 0;  // first run of the shard that is not accounted for
   for (std::size_t i = 0; i <= ledger_.rows().size(); ++i) {
     const std::size_t there = i < ledger_.rows().size() ? shard_.place(ledger_.rows().run(i)) : runs();
     if (there > next) open.push_back({next, there - next});
@@ -171,7 +171,7 @@ std::optional<analysis::Basins> Sweep::basins() const {
   return basins;
 }
 
-/// Of a team others have rows too, and the table has all.
+/// In a group of processes the rows are read from the table, because other processes have rows too.
 void Sweep::each_row(const std::function<void(std::string_view row)>& take) const {
   if (team_ == nullptr)
     return ledger_.rows().each(0, ledger_.rows().size(), [&take](std::size_t, std::string_view line) { take(line); });
@@ -215,7 +215,7 @@ bool Sweep::simulate_first(std::size_t run, bool integrate) {
   return true;
 }
 
-/// One of the open runs; where none of these can begin, another one, which tells the columns.
+/// The first open run that can start. If there is none, any other run that can; it determines the columns.
 std::size_t Sweep::first_that_begins(const std::vector<Stretch>& open) {
   pipeline::Beginnings beginnings(load_model(options_.model), options_.scene);
   std::size_t tries = 0;
@@ -298,7 +298,7 @@ void Sweep::compute(const std::vector<std::size_t>& runs, std::size_t threads) {
       Interrupt::flag());
 }
 
-/// In this process alone, which MPI does not want to be forked.
+/// Computes runs in this process, because MPI processes must not fork.
 void Sweep::compute_here(const std::vector<std::size_t>& runs) {
   pipeline::TidyGraph graph(*first_);
   for (const std::size_t run : runs) {

@@ -26,7 +26,7 @@ class Child {
   Child(Child&& other) noexcept
       : id_(std::exchange(other.id_, 0)), pipe_(std::exchange(other.pipe_, -1)), text_(std::move(other.text_)) {}
   Child& operator=(Child&&) = delete;
-  ~Child() {  // left early: by an error or an interruption
+  ~Child() {  // still running after an error or an interruption
     if (id_ <= 0) return;
     close(pipe_);
     kill(id_, SIGKILL);
@@ -36,7 +36,7 @@ class Child {
   int pipe() const { return pipe_; }
   bool open() const { return id_ > 0; }
 
-  /// Reads what is there; whole lines go to `take`. At the end of it all: whether the process ended as it should.
+  /// Reads the available output and passes complete lines to `take`. At its end returns whether the process succeeded.
   template <class Take>
   bool read(Take&& take) {
     char buffer[4096];
@@ -73,7 +73,7 @@ bool write_all(int pipe, const std::string& text) {
   return true;
 }
 
-// Every `stride`-th job from `first`: neighbours of a grid take about as long as one another.
+// Runs every `stride`-th job from `first`, since neighbours of a grid take about the same time.
 [[noreturn]] void work(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t stride, int pipe,
                        const std::function<std::string(std::size_t)>& line) {
   int status = 0;
@@ -88,7 +88,7 @@ bool write_all(int pipe, const std::string& text) {
     status = 1;
   }
   std::fflush(stderr);
-  _exit(status);  // no destructors: what they would clean up is the parent's
+  _exit(status);  // without destructors: the resources belong to the parent
 }
 
 Child start(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t stride,
@@ -104,7 +104,7 @@ Child start(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t
   const pid_t id = fork();
   if (id < 0) lost();
   if (id == 0) {
-    // Nothing else is the child's: it would keep the lock of a table whose process was killed.
+    // Close all other files. Otherwise the child would keep the lock of a table after its parent was killed.
     const unsigned pipe = static_cast<unsigned>(ends[1]);
     ::close_range(STDERR_FILENO + 1, pipe - 1, 0);
     ::close_range(pipe + 1, ~0U, 0);
@@ -137,7 +137,7 @@ void by_processes(const std::vector<std::size_t>& jobs, std::size_t processes,
       of.push_back(&child);
     }
     if (waiting.empty()) return;
-    constexpr int patience = 200;  // ms, until an interruption is seen
+    constexpr int patience = 200;  // ms between checks for an interruption
     const int ready = poll(waiting.data(), waiting.size(), patience);
     if (interrupt) return;
     if (ready <= 0) continue;
