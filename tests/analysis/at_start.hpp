@@ -20,7 +20,7 @@ using symbolic::Ref;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-inline constexpr double rounding = 1e-12;  // relative, of the values that a start has
+inline constexpr double rounding = 1e-12;  // relative, for values at the start
 
 struct AtStart {
   explicit AtStart(model::Model given)
@@ -33,7 +33,7 @@ struct AtStart {
     forces.add_outputs(system);
   }
 
-  /// With accelerations and multipliers where the equations are solved.
+  /// Values of expressions. Accelerations and multipliers require solve().
   std::vector<double> values(const std::vector<Ref>& expressions) const {
     return symbolic::evaluate(*m.dag, expressions, [&](const Symbol& s) -> double {
       switch (s.kind) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curves and surfaces as lines of a figure: all of them on the surface, and the outline where it is seen from its side.
+// Constraint curves and surfaces as lines of a figure: all lines are on the surface, and the silhouette is where the
+// normal is perpendicular to the view.
 #include "analysis/drawing/bound_lines.hpp"
 
 #include <doctest/doctest.h>
@@ -19,12 +20,12 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double on_surface = 1e-9;  // of sizes near 1: Newton's method and 30 halvings have ended
-constexpr double sideways = 1e-5;    // of an outline, whose slopes are differences
+constexpr double on_surface = 1e-9;  // for sizes near 1: converged Newton iterations and 30 bisections
+constexpr double sideways = 1e-5;    // of a silhouette, whose derivatives are differences
 
 View from_above() { return View({Point(0, 0, 0), Point(1, 1, 1)}, Point(0, 0, -1)); }
 
-/// Slopes by differences of what is exact.
+/// Jacobians by differences of exact functions.
 BoundFunction function(const std::function<VectorXd(const VectorXd&)>& psi,
                        const std::function<Point(const VectorXd&)>& x) {
   return [psi, x](const VectorXd& q) -> std::optional<BoundPoint> {
@@ -58,7 +59,7 @@ BoundPlace place(const VectorXd& q, std::vector<bool> angle, double size) {
 
 }  // namespace
 
-TEST_CASE("bound lines: a sphere has meridians, circles and its outline, whatever its coordinates") {
+TEST_CASE("surface lines: a sphere has meridians, circles and its silhouette, in any coordinates") {
   const View view = from_above();
   BoundPlace in_angles = place(numbers({2, 1, 0.5}), {false, true, true}, 2);
   in_angles.low = numbers({0, 0, -infinite});
@@ -85,7 +86,7 @@ TEST_CASE("bound lines: a sphere has meridians, circles and its outline, whateve
   }
 }
 
-TEST_CASE("bound lines: a plane is a parallelogram around its particle") {
+TEST_CASE("surface lines: a plane is a parallelogram around its particle") {
   const Point n = Point(1, 2, 2) / 3;
   const auto lines = bound_lines(function([&](const VectorXd& q) { return one(n.dot(plain(q)) - 0.2); }, plain),
                                  place(numbers({1, 0, 0}), {false, false, false}, 1.5), from_above());
@@ -103,7 +104,7 @@ TEST_CASE("bound lines: a plane is a parallelogram around its particle") {
         1);
 }
 
-TEST_CASE("bound lines: a bowl has circles and spokes from its lowest point to above the particle") {
+TEST_CASE("surface lines: a bowl has circles and spokes from its lowest point to above the particle") {
   BoundPlace in = place(numbers({1, 0.3, 0.5}), {false, true, false}, 1.2);
   in.low[0] = 0;
   const auto lines = bound_lines(function([](const VectorXd& q) { return one(q[2] - q[0] * q[0] / 2); }, cylindrical),
@@ -121,7 +122,7 @@ TEST_CASE("bound lines: a bowl has circles and spokes from its lowest point to a
   CHECK(highest > 0.5);
 }
 
-TEST_CASE("bound lines: curves close or end near their particle, and begin on it from beside") {
+TEST_CASE("surface lines: curves close or end near their particle, and start on the curve from a nearby point") {
   const auto circle = bound_lines(function([](const VectorXd& q) { return one(q.squaredNorm() - 1); }, plain),
                                   place(numbers({0.2, 1.4}), {false, false}, 1), from_above());
   REQUIRE(circle.size() == 1);
@@ -152,12 +153,12 @@ TEST_CASE("bound lines: curves close or end near their particle, and begin on it
   CHECK(std::abs(least + 0.1 * std::numbers::pi) < 0.01);
 }
 
-TEST_CASE("bound lines: nothing where the constraint has no value") {
+TEST_CASE("surface lines: none where the constraint is undefined") {
   const BoundFunction none = [](const VectorXd&) -> std::optional<BoundPoint> { return std::nullopt; };
   CHECK(bound_lines(none, place(numbers({1, 0}), {false, false}, 1), from_above()).empty());
 }
 
-TEST_CASE("level lines: rings are closed, and the box around a surface is found where it ends in it") {
+TEST_CASE("level lines: rings are closed, and the bounding box of a surface inside the given box is found") {
   const Field sphere = [](const VectorXd& q) { return q.squaredNorm() - 1; };
   const VectorXd low = VectorXd::Constant(3, -2), high = VectorXd::Constant(3, 2);
   const auto rings = level_lines(sphere, low, high, 2, 0.6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is drawn of constraints: rods, surfaces, points about which bodies turn, the plane below what bounces.
+// Drawn parts of constraints: rods, surfaces, fixed points of bodies, planes of contacts.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -13,7 +13,7 @@ using test::shipped;
 
 namespace {
 
-constexpr double rounding = 1e-12;  // relative, of the values that a start has
+constexpr double rounding = 1e-12;  // relative, for values at the start
 
 std::vector<std::pair<long, long>> rods(const std::string& name) {
   std::vector<std::pair<long, long>> result;
@@ -24,7 +24,7 @@ std::vector<std::pair<long, long>> rods(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("drawing: rods are where coordinates or a constraint hold two masses at a distance, and nowhere else") {
+TEST_CASE("drawing: rods connect exactly those masses whose distance is fixed by coordinates or a constraint") {
   using Pairs = std::vector<std::pair<long, long>>;
   CHECK(rods("S5_double_pendulum_cartesian") == Pairs{{-1, 0}, {0, 1}});
   CHECK(rods("S6_chain_6") == Pairs{{-1, 0}, {0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}});
@@ -32,11 +32,11 @@ TEST_CASE("drawing: rods are where coordinates or a constraint hold two masses a
   for (const char* none :
        {"S5_double_pendulum", "bouncing_ball", "P5_rough_sphere", "elastic_pendulum", "P13_saddle_field"}) {
     CAPTURE(std::string(none));
-    CHECK(rods(none).empty());  // the first has coordinates that lines are drawn along
+    CHECK(rods(none).empty());  // the first has coordinates with lines
   }
 }
 
-TEST_CASE("drawing: the rods of a long chain are all found") {
+TEST_CASE("drawing: all rods of a long chain are found") {
   mechanics::Mechanics m = mechanics::build_mechanics(model::read_model_text(
       "format = 1\n[[chain]]\nname = \"link\"\nn = 40\nmass = \"1 kg\"\nlength = \"1 m\"\n[[force]]\ngravity = "
       "\"-9.81[m/s^2]*E2\"\n",
@@ -46,16 +46,16 @@ TEST_CASE("drawing: the rods of a long chain are all found") {
   CHECK_FALSE(drawing.parts().untried_rods);
 }
 
-TEST_CASE("drawing: a body whose position turns with it has a joint where it does") {
+TEST_CASE("drawing: a body that rotates about a fixed point has a joint there") {
   const AtStart found = shipped("n_four_bar_2");
   std::vector<Eigen::Vector3d> wanted{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {1, 1, 0}};
   REQUIRE(found.drawing.parts().joints.size() == wanted.size());
   for (std::size_t k = 0; k < wanted.size(); ++k)
     CHECK((found.vector(found.drawing.parts().joints[k].at) - wanted[k]).norm() < rounding);
-  CHECK(shipped("R6_rolling_disk").drawing.parts().joints.empty());  // its contact is fixed in nothing
+  CHECK(shipped("R6_rolling_disk").drawing.parts().joints.empty());  // its point of contact is not fixed in any body
 }
 
-TEST_CASE("drawing: a particle that constraints bind has their surface or curve, unless a rod says it all") {
+TEST_CASE("drawing: a constrained particle has a surface or curve, unless a rod represents the constraint") {
   const auto surfaces = [](const std::string& name) { return shipped(name).drawing.parts().surfaces; };
   const auto sphere = surfaces("P7_moving_sphere");
   REQUIRE(sphere.size() == 1);
@@ -75,7 +75,7 @@ TEST_CASE("drawing: a particle that constraints bind has their surface or curve,
     CHECK(surfaces(none).empty());
 }
 
-TEST_CASE("drawing: a surface goes along with what its place is measured from, and is of bodies' centres too") {
+TEST_CASE("drawing: a surface moves with its reference place, and centres of bodies have surfaces too") {
   const auto surfaces = [](const std::string& text) {
     return AtStart(model::read_model_text("format = 1\n[parameters]\nm = \"1 kg\"\nL = \"2 m\"\n" + text, "m.toml"))
         .drawing.parts()
@@ -84,7 +84,7 @@ TEST_CASE("drawing: a surface goes along with what its place is measured from, a
   const std::string cart = "[[particle]]\nname = \"cart\"\nmass = \"m\"\nposition = \"X*E1\"\n";
   const std::string bead = "[[particle]]\nname = \"bead\"\nmass = \"m\"\n";
   const std::string moving = "[scene.default]\ninitial = { X_dot = 1 }\n";
-  // A bead in a bowl that slides.
+  // A bead in a sliding bowl.
   const auto bowl = surfaces("[coordinates]\nX = \"m\"\n" + cart + bead +
                              "position = { cartesian = [\"x\", \"y\", \"z\"], from = \"cart\" }\n[[constraint]]\nname "
                              "= \"bowl\"\nholonomic = \"z - (x^2 + y^2)/L\"\n" +
@@ -94,7 +94,7 @@ TEST_CASE("drawing: a surface goes along with what its place is measured from, a
   CHECK(bowl[0].others == std::vector<std::uint32_t>{0});
   CHECK(bowl[0].moves);
   CHECK_FALSE(bowl[0].reshapes);
-  // On a wedge that slides, measured from the origin: psi has its coordinate.
+  // On a sliding wedge, relative to the origin: psi depends on its coordinate.
   const auto wedge = surfaces(
       "[coordinates]\nX = \"m\"\n" + cart + bead +
       "position = { cartesian = [\"x\", \"y\"] }\n[[constraint]]\nname = \"wedge\"\nholonomic = \"y + (x - X)/2\"\n" +
@@ -102,7 +102,7 @@ TEST_CASE("drawing: a surface goes along with what its place is measured from, a
   REQUIRE(wedge.size() == 1);
   CHECK(wedge[0].place == 1);
   CHECK(wedge[0].reshapes);
-  // A rod to the cart is a rod, a thread over the origin to the cart no surface of the bead.
+  // A rod to the cart is a rod. A thread over the origin to the cart is no surface of the bead.
   CHECK(surfaces(
             "[coordinates]\nX = \"m\"\n" + cart + bead +
             "position = { cartesian = [\"x\", \"y\"], from = \"cart\" }\n[[constraint]]\nname = \"rod\"\nholonomic = "
@@ -125,7 +125,7 @@ TEST_CASE("drawing: a surface goes along with what its place is measured from, a
   CHECK(body[0].others.empty());
 }
 
-TEST_CASE("drawing: the plane of a contact is below what has not come down to it") {
+TEST_CASE("drawing: the plane of an open contact is below the body") {
   const AtStart found = shipped("bouncing_sphere");
   const analysis::DrawnContact& floor = found.drawing.parts().contacts.at(0);
   CHECK((found.vector(floor.at) - Eigen::Vector3d(0, 0, 1)).norm() < rounding);

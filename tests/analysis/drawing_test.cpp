@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The figure of a document: from where a system is seen, what bodies look like, and that what is drawn is where the
-// start puts it.
+// Figure of a document: direction of view, shapes of bodies, and positions at the start.
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
@@ -24,7 +23,7 @@ using print::Figure;
 
 namespace {
 
-constexpr double rounding = 1e-12;                       // of a few operations on numbers near 1
+constexpr double rounding = 1e-12;                       // for a few operations on numbers near 1
 constexpr double paper_width = 170, paper_height = 130;  // mm; a text of A4 is 174 wide
 
 struct Drawn {
@@ -61,7 +60,7 @@ std::set<std::string> names(const Figure& figure) {
   return result;
 }
 
-/// Mass, then the nine entries of an inertia, as a drawing has them.
+/// Mass, then the nine entries of the inertia, as in the sizes of a drawing.
 std::pair<analysis::DrawnBody, std::vector<double>> body(double mass, const Eigen::Matrix3d& inertia) {
   analysis::DrawnBody result{};
   std::vector<double> sizes{mass};
@@ -85,7 +84,7 @@ Point extent(const analysis::Solid& solid) {
 
 }  // namespace
 
-TEST_CASE("view: a plane is seen along its normal with what falls falling, space from above") {
+TEST_CASE("view: a plane is seen along its normal with gravity downwards, space from above") {
   const std::vector<Point> plane{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}, space{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const View upright(plane, Point(0, -9.81, 0));
   CHECK(upright.flat());
@@ -94,7 +93,7 @@ TEST_CASE("view: a plane is seen along its normal with what falls falling, space
   const View along_x(plane, Point(9.81, 0, 0));
   CHECK((along_x({1, 0, 0}) - analysis::PlanePoint(0, -1)).norm() < rounding);
   CHECK((along_x({0, 1, 0}) - analysis::PlanePoint(1, 0)).norm() < rounding);
-  // Things that fall out of their plane are not looked at from above.
+  // With gravity out of the plane, the view is not from above.
   CHECK_FALSE(View(plane, Point(0, 0, -1)).flat());
   const View spatial(space, Point(0, 0, -1));
   CHECK_FALSE(spatial.flat());
@@ -102,7 +101,7 @@ TEST_CASE("view: a plane is seen along its normal with what falls falling, space
   CHECK(spatial({0, 0, 1}).y() > 0.5);
 }
 
-TEST_CASE("solids: homogeneous bodies are found from their mass and moments, turned or not") {
+TEST_CASE("solids: homogeneous bodies are found from mass and moments, in any orientation") {
   const double m = 3;
   // A box 0.2 x 0.5 x 1.
   const Eigen::Matrix3d box = (m / 12 * Point(0.25 + 1, 0.04 + 1, 0.04 + 0.25)).asDiagonal();
@@ -115,23 +114,23 @@ TEST_CASE("solids: homogeneous bodies are found from their mass and moments, tur
   for (std::vector<Point>& face : back.faces) {
     for (Point& r : face) r = turn.transpose() * r;
   }
-  CHECK((extent(back) - Point(0.2, 0.5, 1)).norm() < 1e3 * rounding);  // of an eigenvalue's vector
+  CHECK((extent(back) - Point(0.2, 0.5, 1)).norm() < 1e3 * rounding);  // of an eigenvector
   // A cylinder of radius 0.4 and length 1 about the second axis; a ball of radius 0.7.
   const double across = m / 12 * (3 * 0.16 + 1);
   const auto [roller, roller_sizes] = body(m, Point(across, m / 2 * 0.16, across).asDiagonal());
   CHECK(extent(*analysis::solid_of_inertia(roller, roller_sizes)).y() == doctest::Approx(1));
   const auto [ball, ball_sizes] = body(m, Point::Constant(0.4 * m * 0.49).asDiagonal());
   CHECK(analysis::solid_of_inertia(ball, ball_sizes)->ball == doctest::Approx(0.7));
-  // One moment alone is of no homogeneous body: a bar as long as a uniform one, towards what holds it.
+  // No homogeneous body has a single moment: it is a bar as long as a uniform one, towards its attachment.
   const auto [link, link_sizes] = body(m, Point(0, 0, m / 12 * 4).asDiagonal());
   CHECK_FALSE(analysis::solid_of_inertia(link, link_sizes));
   CHECK(extent(*analysis::bar_of_inertia(link, link_sizes, {-1, 0, 0})).x() == doctest::Approx(2));
 }
 
-TEST_CASE("solids: the hull of points has the faces around them, each once and with its outside to the left") {
+TEST_CASE("solids: the convex hull of points has each face once, oriented outwards") {
   std::vector<Point> points;
   for (unsigned k = 0; k < 8; ++k) points.emplace_back(k & 1u ? 1 : -1, k & 2u ? 2 : -2, k & 4u ? 3 : -3);
-  points.emplace_back(0.2, 0.3, 0.1);  // inside, in a face, on an edge, a corner once more
+  points.emplace_back(0.2, 0.3, 0.1);  // inside, in a face, on an edge, a repeated corner
   points.emplace_back(0.5, 0.5, 3);
   points.emplace_back(1, 2, 0);
   points.emplace_back(1, 2, 3);
@@ -141,7 +140,7 @@ TEST_CASE("solids: the hull of points has the faces around them, each once and w
   for (const std::vector<Point>& face : faces) {
     CHECK(face.size() == 4);
     const Point across = (face[1] - face[0]).cross(face[2] - face[1]);
-    CHECK(across.dot(face[0]) > 0);  // the middle is inside
+    CHECK(across.dot(face[0]) > 0);  // the centre is inside
     surface += across.norm();
   }
   CHECK(surface == doctest::Approx(2 * (2 * 4 + 4 * 6 + 2 * 6)));
@@ -149,7 +148,7 @@ TEST_CASE("solids: the hull of points has the faces around them, each once and w
   CHECK(analysis::hull({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).empty());
 }
 
-TEST_CASE("figure: rods stand at the angles of the start, with arcs and lengths beside them") {
+TEST_CASE("figure: rods have the angles of the start, with arcs and lengths") {
   const Figure figure = shipped("S5_double_pendulum").figure.value();
   const std::vector<Figure::Stroke> rods = strokes(figure, Figure::Weight::strong);
   REQUIRE(rods.size() == 2);
@@ -169,8 +168,8 @@ TEST_CASE("figure: rods stand at the angles of the start, with arcs and lengths 
   }
 }
 
-TEST_CASE("figure: a line whose length changes is no rod; particles have their shapes, wheels their pitch circles") {
-  // The radius of a sphere that grows; a pendulum; a coordinate that is free.
+TEST_CASE("figure: a line of variable length is no rod; particles have shapes, wheels pitch circles") {
+  // The radius of a growing sphere; a pendulum; a free coordinate.
   CHECK(strokes(*shipped("P7_moving_sphere").figure, Figure::Weight::strong).empty());
   CHECK(strokes(*shipped("P1_spherical_pendulum").figure, Figure::Weight::strong).size() == 1);
   CHECK(strokes(*shipped("G1_spherical").figure, Figure::Weight::strong).empty());
@@ -193,7 +192,7 @@ TEST_CASE("figure: a line whose length changes is no rod; particles have their s
   CHECK(strokes(*shipped("geared_hoist").figure, Figure::Weight::plain).size() >= 2 * 2 * 40 + 2);
 }
 
-TEST_CASE("figure: of a body the edges that it does not hide itself") {
+TEST_CASE("figure: a body has the edges that it does not hide itself") {
   // A box seen from above and the side shows three faces: nine edges.
   analysis::Solid solid;
   const auto [box, sizes] = body(1, (Point(0.25 + 1, 0.04 + 1, 0.04 + 0.25) / 12).asDiagonal());
@@ -204,7 +203,7 @@ TEST_CASE("figure: of a body the edges that it does not hide itself") {
   CHECK(sketch.finish().strokes.size() == 9);
 }
 
-TEST_CASE("figure: every shipped model that has positions has one, of the size of a page") {
+TEST_CASE("figure: every shipped model with positions has one that fits a page") {
   for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() + "/models")) {
     if (entry.path().extension() != ".toml") continue;
     INFO(entry.path().filename().string());
@@ -217,7 +216,7 @@ TEST_CASE("figure: every shipped model that has positions has one, of the size o
   }
 }
 
-TEST_CASE("figure: a picture with too many strokes for a page is refused with their number, never left out unsaid") {
+TEST_CASE("figure: a figure with too many strokes is refused with their number") {
   const auto model = [](int springs) {
     std::string text =
         "format = 1\n[parameters]\nm = \"1 kg\"\nk = \"1 N/m\"\nl = \"1 m\"\n[[particle]]\nname = \"P\"\n"

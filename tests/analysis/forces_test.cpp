@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// That the forces and moments which are drawn are what moves masses and turns bodies.
+// Drawn forces and moments satisfy the laws of Newton and Euler.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ Vector value_of(const AtStart& start, std::size_t at) {
   return Vector(v.data());
 }
 
-/// 1 where an arrow acts on the body, -1 where its opposite does, else 0.
+/// 1 if an arrow acts on the body, -1 if its opposite does, otherwise 0.
 double sense(const AtStart& start, const analysis::DrawnForce& force, const model::Body& body) {
   const analysis::DrawnParts& parts = start.drawing.parts();
   const std::size_t place = body.place - 1;
@@ -46,8 +46,8 @@ double sense(const AtStart& start, const analysis::DrawnForce& force, const mode
   return 0;
 }
 
-/// Of a body about its centre: how far the moments that are drawn are from dH/dt, relative to their sizes; and the
-/// sizes.
+/// Balance of moments of a body about its centre: relative difference of the drawn moments from dH/dt, and their
+/// magnitude.
 std::pair<double, double> off(AtStart& start, std::size_t b) {
   symbolic::Dag& dag = *start.m.dag;
   symbolic::Derivation ddt = symbolic::total_time(dag, start.m.q.size(), start.model.functions.size());
@@ -76,7 +76,7 @@ std::pair<double, double> off(AtStart& start, std::size_t b) {
 
 AtStart of_text(const std::string& text) { return AtStart(model::read_model_text("format = 1\n" + text, "m.toml")); }
 
-// Two bars in a row with a torsion spring between them, a motor at the first, and an angle of its own for each.
+// Two bars in a row, each with its own angle, a torsion spring between them and a motor at the first.
 const char* const bars = R"([parameters]
 m = "1 kg"
 a = "0.5 m"
@@ -113,8 +113,8 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 }  // namespace
 
-// Applied, of constraints, at contacts: together m a of all masses, as the equations of motion have it.
-TEST_CASE("drawing: the forces that are drawn move the masses as they move") {
+// The applied, constraint and contact forces sum up to m a of every mass.
+TEST_CASE("drawing: the drawn forces satisfy Newton's law for the masses") {
   for (const char* name :
        {"P7_moving_sphere", "P8_smooth_helix", "P9_paraboloid", "P3_moving_plane", "elastic_pendulum",
         "S5_double_pendulum", "S5_double_pendulum_cartesian", "S6_chain_1", "S6_chain_2", "R6_rolling_disk",
@@ -135,7 +135,7 @@ TEST_CASE("drawing: the forces that are drawn move the masses as they move") {
       wanted += v[0] * Vector(v[1], v[2], v[3]);
     }
     for (const analysis::DrawnForce& force : start.forces.list()) {
-      if (force.turns || force.at >= start.drawing.outputs().size()) continue;  // of a spring on the ground
+      if (force.turns || force.at >= start.drawing.outputs().size()) continue;  // spring force on the ground
       const Vector value = value_of(start, force.value);
       sum += value;
       size += value.norm();
@@ -145,8 +145,8 @@ TEST_CASE("drawing: the forces that are drawn move the masses as they move") {
   }
 }
 
-TEST_CASE("drawing: the moments that are drawn, with those of the forces, turn the bodies as they turn") {
-  // All that are held by joints and contacts, not by coordinates that fix a point of them.
+TEST_CASE("drawing: the drawn moments and forces satisfy Euler's law for the bodies") {
+  // All bodies held by joints and contacts, not by coordinates that fix one of their points.
   for (const char* name :
        {"R7_satellite", "R7_satellite_in_orbit", "R11_constant_moment", "R12_pinned_body", "R15_pin_joint",
         "R15_ball_joint", "R8_pendulum_body_joint", "R5_chaplygin_sphere", "R3_sphere_on_incline", "R6_rolling_disk",
@@ -164,7 +164,7 @@ TEST_CASE("drawing: the moments that are drawn, with those of the forces, turn t
   }
 }
 
-TEST_CASE("drawing: what acts along an angle is a moment on the body that it turns, and the opposite on the other") {
+TEST_CASE("drawing: a force along an angle is a moment on the rotated body, and the opposite one on the other") {
   for (const auto& [angle, twist] : {std::pair{"v", "v - u"}, std::pair{"u + v", "v"}}) {
     const std::string of = twist;
     CAPTURE(of);
@@ -194,7 +194,7 @@ TEST_CASE("drawing: a constraint on an angle is a moment on the body that does n
   CHECK(std::string_view(found->kind) == "constraint");
 }
 
-TEST_CASE("drawing: a generalised force on a mass that its coordinate holds is no part of what the constraints exert") {
+TEST_CASE("drawing: a generalised force on a mass fixed by its coordinate is not part of the constraint forces") {
   AtStart start = of_text(
       "[parameters]\nm = \"1 kg\"\nL = \"2 m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = "
       "[\"L\", "
@@ -206,7 +206,7 @@ TEST_CASE("drawing: a generalised force on a mass that its coordinate holds is n
   CHECK((value_of(start, start.forces.list()[1].value) - Vector(-18, 0, 0)).norm() < 100 * rounding);
 }
 
-TEST_CASE("drawing: what is no arrow is named, and arrows beyond what anybody tells apart are counted") {
+TEST_CASE("drawing: forces without arrow are named, and surplus arrows are counted") {
   const AtStart pushed = of_text(
       "[parameters]\nm = \"1 kg\"\nL = \"2 m\"\n[coordinates]\nX = \"m\"\nu = \"rad\"\n[[particle]]\nname = "
       "\"A\"\nmass = \"m\"\n"

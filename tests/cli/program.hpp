@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program under test, called as a user calls it, in a folder of its own.
+// Runs the program under test as a user does, in a temporary folder.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@ namespace eomgen::test {
 using Json = nlohmann::ordered_json;
 using Words = std::vector<std::string>;
 
-/// A folder under the system's temporary one; gone when this is.
+/// Temporary folder, removed by the destructor.
 class Folder {
  public:
   Folder();
@@ -24,7 +24,7 @@ class Folder {
   const std::string& path() const { return path_; }
   std::string operator/(const std::string& name) const { return path_ + "/" + name; }
   void write(const std::string& name, const std::string& text) const;
-  std::string read(const std::string& name) const;  // throws std::runtime_error if it is not there
+  std::string read(const std::string& name) const;  // throws std::runtime_error if it does not exist
   bool has(const std::string& name) const;
   std::vector<std::string> names() const;  // sorted
 
@@ -32,22 +32,22 @@ class Folder {
   std::string path_;
 };
 
-/// What calls get beside their words: compiled code is cached in one folder for all tests, models are the shipped ones.
+/// Command with the environment of tests: one cache folder for all tests, and the shipped models.
 ChildCommand command(const Folder& folder, const Words& words);
 Words with(Words words, const Words& more);
 ChildResult eomgen(const Folder& folder, const Words& words);
-/// The same where success is expected: a failure is a doctest failure that shows what was printed.
+/// The same, with a doctest failure that shows the output if the exit status differs from `status`.
 ChildResult expect(int status, const Folder& folder, const Words& words);
-/// `words` with --json, which must end with `status` and print a document that fits docs/schema/WORDS[0].
+/// Runs `words` with --json. Requires exit status `status` and a document that satisfies docs/schema/WORDS[0].
 Json document(const Folder& folder, Words words, int status = 0);
 
-/// A particle under gravity on a rod of length L, by x and y: the constraint stays.
+/// Model of a particle under gravity on a rod of length L in x and y, with a multiplier.
 std::string pendulum_text(const std::string& scene);
 /// x'' = -(k/m) x from x = 1, for 1 s: cos(sqrt(k/m) t).
 std::string oscillator_text();
-/// x'' = k x^2 from x = 1: infinite at a finite time.
+/// x'' = k x^2 from x = 1: diverges in finite time.
 std::string diverging_text();
-/// Falls towards x = 0, where its inertia vanishes; Euler's step of length 1 from the start ends there exactly.
+/// Falls towards x = 0, where its inertia vanishes. One step of length 1 of Euler's method ends there exactly.
 std::string singular_text();
 
 struct Table {
@@ -56,7 +56,7 @@ struct Table {
   std::string outcome;  // of the trailing line
   double at(std::size_t row, const std::string& column) const;
 };
-/// A CSV file that holds to the contract; a doctest failure where it does not.
+/// Parses a CSV file, with a doctest failure if it violates the documented format.
 Table read_table(const std::string& text);
 
 std::vector<std::string> shipped_models();  // names, sorted

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sound models that the certificate of compiled code, or the self test, would refuse if numbers were compared relative
-// to the wrong size.
+// Valid models that the certificate of compiled code, or the self test, would refuse if differences were taken relative
+// to the wrong magnitude.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -33,7 +33,7 @@ initial = {{ x = 0.5, y = 1 }}
 
 }  // namespace
 
-TEST_CASE("verify: a motion that is wholly prescribed has constraint forces to hold") {
+TEST_CASE("verify: a fully prescribed motion has constraint forces to check") {
   const Folder folder;
   for (const char* model : {"P10_rocket", "R9_robot_arm"}) {
     CAPTURE(model);
@@ -44,9 +44,7 @@ TEST_CASE("verify: a motion that is wholly prescribed has constraint forces to h
   }
 }
 
-TEST_CASE(
-    "verify: compiled code may be off by what rounding does to large angles, far places, stiff springs and faint "
-    "forces") {
+TEST_CASE("verify: tolerances allow for rounding with large angles, distant places, stiff springs and weak forces") {
   const Folder folder;
   for (const auto& [parameters, force] :
        {std::pair{"F = 1\nw = 1e7", "generalized = { x = \"F*sin(w*t)\" }"},
@@ -61,17 +59,16 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "verify: a force that is narrow and far away in numbers acts all the same, and an acceleration may be 0 because "
-    "the terms of a form cancel") {
+    "verify: a narrow force far from the sampled states passes, and so does an acceleration of 0 by cancelling terms") {
   const Folder folder;
   folder.write("pulse.toml", particle("", "generalized = { x = \"exp(-((t - 5)/0.01)^2)\" }"));
   CHECK(document(folder, {"verify", "pulse.toml", "--points", "4"})["verdict"] == "pass");
-  // exp(-1e11) is a number of 5e10 digits before its first.
+  // exp(-1e11) has about 4e10 zeros after the decimal point.
   folder.write("barrier.toml",
                "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"5*exp(-((x - "
                "3)/1e-5)^2)\"\n");
   CHECK(document(folder, {"verify", "barrier.toml", "--points", "4"})["verdict"] == "pass");
-  // x goes on as it is, and y without inertia follows: by the null space x_ddot is cos(y) y_ddot - sin(y) y_dot^2 = 0.
+  // x moves uniformly, and y without inertia follows: by the null space x_ddot = cos(y) y_ddot - sin(y) y_dot^2 = 0.
   folder.write("follows.toml", R"toml(format = 1
 [coordinates]
 x = {}
@@ -97,7 +94,7 @@ TEST_CASE("run: shipped models with springs of 1e8 and 1e10 load their compiled 
   }
 }
 
-TEST_CASE("verify: every shipped model passes in every function that may be emitted") {
+TEST_CASE("verify: every shipped model passes with every function that can be emitted") {
   const Folder folder;
   for (const std::string& model : shipped_models()) {
     CAPTURE(model);
@@ -105,7 +102,7 @@ TEST_CASE("verify: every shipped model passes in every function that may be emit
   }
 }
 
-TEST_CASE("run: what falls into a corner of two walls comes to rest there, whatever the tolerance") {
+TEST_CASE("run: a body that falls into a corner of two walls comes to rest there, at any tolerance") {
   const Folder folder;
   folder.write("corner.toml", R"toml(format = 1
 [parameters]
@@ -123,7 +120,7 @@ holds = "unilateral"
 t = [0, 3]
 initial = { x = 0, y = 1 }
 )toml");
-  // At rest the walls bear the weight: 0.3 r = 0.5 l, r + l = m g.
+  // At rest the walls carry the weight: 0.3 r = 0.5 l, r + l = m g.
   for (const char* tolerance : {"1e-9", "1e-11", "1e-13"}) {
     CAPTURE(tolerance);
     const Json found =
@@ -136,7 +133,7 @@ initial = { x = 0, y = 1 }
   }
 }
 
-TEST_CASE("run: what bounces from wall to wall in a corner comes to rest there") {
+TEST_CASE("run: a body that bounces between the walls of a corner comes to rest there") {
   const Folder folder;
   const auto corner = [](const std::string& at) {
     return R"toml(format = 1
@@ -162,7 +159,7 @@ initial = { x = )toml" +
            at + R"toml( , y = 3, x_dot = 0.3 }
 )toml";
   };
-  // Away from the origin gaps are known less well; both walls bear the weight in the end: 0.3 r = 0.5 l, r + l = m g.
+  // Far from the origin gaps are less accurate. At the end both walls carry the weight: 0.3 r = 0.5 l, r + l = m g.
   for (const char* at : {"0", "1.7"}) {
     folder.write("bounces.toml", corner(at));
     for (const char* side : {"0.01", "0.2", "-0.5"}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Starts: what breaks a constraint is refused with its size and place, what may move is moved, a guess picks the
-// closure.
+// Initial states: inconsistent values are refused with residual and position, coordinates in `solve` are adjusted, a
+// guess selects the configuration of a closed loop.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,8 @@ using namespace eomgen::test;
 
 namespace {
 
-// Two cranks of length 1 about (0, 0) and (3, 0), joined by a rod of length 2.5. With A given, B has two places.
+// Two cranks of length 1 about (0, 0) and (3, 0), joined by a rod of length 2.5. For a given A there are two positions
+// of B.
 std::string loop(const std::string& scene) {
   return R"(format = 1
 [parameters]
@@ -52,7 +53,7 @@ Json start_of(const Folder& folder, const std::string& scene) {
 
 }  // namespace
 
-TEST_CASE("a start that breaks a constraint is refused: by how much, which, where") {
+TEST_CASE("an inconsistent start is refused, with residual, constraint and position") {
   const Folder folder;
   folder.write("off.toml", pendulum_text("[scene.default]\ninitial = { x = 0.6, y = -0.9 }\n"));
   const ChildResult result = expect(2, folder, {"run", "off.toml", "--out", "a.csv"});
@@ -65,10 +66,10 @@ TEST_CASE("a start that breaks a constraint is refused: by how much, which, wher
   CHECK(contains(expect(2, folder, {"run", "rate.toml"}).err,
                  "the start breaks constraint 'rod' in its rates: it is off by -0.4 "));
   CHECK(contains(expect(2, folder, {"emit", "off.toml", "-o", "out"}).err, "the start breaks constraint 'rod'"));
-  expect(0, folder, {"check", "off.toml"});  // a scene does not make the equations wrong
+  expect(0, folder, {"check", "off.toml"});  // a scene does not affect the equations
 }
 
-TEST_CASE("numbers that have no value are told with their place by every command") {
+TEST_CASE("undefined numbers are reported with their position by every command") {
   const Folder folder;
   std::string text = pendulum_text("[scene.default]\nt = [\"log(0) s\", \"1 s\"]\n");
   folder.write("start.toml", text);
@@ -81,7 +82,7 @@ TEST_CASE("numbers that have no value are told with their place by every command
                  "error: this has no value: sqrt of a negative number"));
 }
 
-TEST_CASE("a value for an eliminated coordinate must be the one that the constraint gives") {
+TEST_CASE("a value of an eliminated coordinate must agree with the constraint") {
   const Folder folder;
   std::string text = pendulum_text("[scene.default]\ninitial = { r = 1.5, theta = 0.1 }\n");
   text.replace(text.find("cartesian = [\"x\", \"y\"]"), 22, "cylindrical = [\"r\", \"theta\"]");
@@ -91,7 +92,7 @@ TEST_CASE("a value for an eliminated coordinate must be the one that the constra
                  "r = 1.5 breaks constraint 'rod', which fixes it at 1 (off by 0.5)"));
 }
 
-TEST_CASE("solve moves what it may, and nothing else") {
+TEST_CASE("solve adjusts the listed coordinates and nothing else") {
   const Folder folder;
   folder.write(
       "move.toml",
@@ -104,7 +105,7 @@ TEST_CASE("solve moves what it may, and nothing else") {
   CHECK(run["solved"].size() == 2);
 }
 
-TEST_CASE("a guess picks the closure of a loop") {
+TEST_CASE("a guess selects the configuration of a loop") {
   const Folder folder;
   // A at (0.6, 0.8): B lies 1 from (3, 0) and 2.5 from A, above or below the line between them.
   const std::string given = "initial = { x1 = 0.6, y1 = 0.8, x1_dot = 0 }\n";
@@ -122,7 +123,7 @@ TEST_CASE("a guess picks the closure of a loop") {
   }
 }
 
-TEST_CASE("a start that no values can close is refused") {
+TEST_CASE("a start without any consistent configuration is refused") {
   const Folder folder;
   folder.write("loop.toml",
                loop("initial = { x1 = -1, y1 = 0, x1_dot = 0 }\n"));  // 4 from the other pivot; 3.5 at most
@@ -130,9 +131,9 @@ TEST_CASE("a start that no values can close is refused") {
   CHECK(contains(result.err, "the start breaks constraint"));
 }
 
-TEST_CASE("initial(q) is the start value of each scene, also of a coordinate that follows from a constraint") {
+TEST_CASE("initial(q) is the initial value in each scene, also for a dependent coordinate") {
   const Folder folder;
-  // A spring that is slack at the start, and a slide that is tied to the crank by x - initial(x) = R (theta -
+  // A spring that is relaxed at the start, and a slider coupled to the crank by x - initial(x) = R (theta -
   // initial(theta)).
   folder.write("slack.toml", R"toml(format = 1
 [parameters]
@@ -163,7 +164,7 @@ from = "default"
 initial = { x = -3, y = 2 }
 )toml");
   expect(0, folder, {"verify", "slack.toml"});
-  // y = y0 + (m g/k)(1 - cos 2t); both tied masses move on without forces.
+  // y = y0 + (m g/k)(1 - cos 2t); both coupled masses move uniformly.
   for (const auto& [scene, x0, y0] : {std::tuple("default", 1.0, 0.125), std::tuple("other", -3.0, 2.0)}) {
     const Json run = document(folder, {"run", "slack.toml", "--scene", scene});
     CHECK(run["final"]["y"].get<double>() == doctest::Approx(y0 + 0.75 * (1 - std::cos(2.0))).epsilon(1e-9));
@@ -174,7 +175,7 @@ initial = { x = -3, y = 2 }
   CHECK(contains(set.err, "'initial_y' is the start value of a coordinate: it cannot be set"));
 }
 
-TEST_CASE("of Euler parameters the fourth follows from three that are given, and what no constraint feels stays 0") {
+TEST_CASE("the fourth Euler parameter follows from three given ones, and coordinates without constraint stay 0") {
   const Folder folder;
   const std::string body =
       "format = 1\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { disk = 0.2 }\nposition = { cartesian = [\"x\", \"y\", "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command stress: its document, its exit codes, and a few shipped models through the quick variations.
+// Command stress: document, exit codes, and the quick variations of a few shipped models.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 using namespace eomgen::test;
 
-TEST_CASE("stress: no shipped model of these loses its way without a word") {
+TEST_CASE("stress: no run of these shipped models fails undetected") {
   const Folder folder;
   for (const char* model :
        {"elastic_pendulum", "P2_planar_pendulum", "cart_pendulum", "R1_free_body_euler_parameters"}) {
@@ -25,18 +25,18 @@ TEST_CASE("stress: no shipped model of these loses its way without a word") {
     CHECK(audit["digits_lost"]["value"].get<double>() >= 0);
     CHECK(audit["mass_condition"]["value"].get<double>() >= 1);
     if (std::string(model) != "elastic_pendulum") continue;
-    // r'' = .. - k (r - L)/m, theta'' = (..)/r: that and nothing else; near r = 0 the mass matrix diag(m, m r^2) is
+    // r'' = .. - k (r - L)/m, theta'' = (..)/r: no other terms; near r = 0 the mass matrix diag(m, m r^2) is
     // that of a point.
     CHECK(audit["denominators"].size() == 2);
     for (const Json& d : audit["denominators"]) CHECK(d["zero"] == d["expression"].get<std::string>() + " = 0");
     CHECK(audit["mass_condition"]["case"] == "r at 0 + 1e-09");
     CHECK(audit["mass_condition"]["value"].get<double>() == doctest::Approx(1e18));
     CHECK(audit["scaled_mass_condition"]["value"].get<double>() == doctest::Approx(1));
-    CHECK(audit["digits_lost"]["value"].get<double>() > 3);  // a stiff spring that is hardly stretched
+    CHECK(audit["digits_lost"]["value"].get<double>() > 3);  // a stiff spring that is barely stretched
   }
 }
 
-TEST_CASE("stress: a start near where coordinates fail meets the constraints") {
+TEST_CASE("stress: a start near a coordinate singularity satisfies the constraints") {
   const Folder folder;
   const Json found = document(folder, {"stress", "R8_pendulum_body_joint", "--quick", "--steps", "1000", "--seconds",
                                        "1e6", "--solver", "dop853", "--solver", "auto", "--t-end", "0.5"});
@@ -49,9 +49,9 @@ TEST_CASE("stress: a start near where coordinates fail meets the constraints") {
     CHECK_FALSE(contains(left["reason"].get<std::string>(), "constraints allow no start"));
 }
 
-// A stiff spring through its centre: whatever the number of steps, the force turns within one of them, and some of
-// these numbers agree by chance.
-TEST_CASE("run: the estimate of fixed steps sees a force that turns within one of them") {
+// A stiff spring through its centre: for any number of steps the force reverses within a step, and some of the results
+// agree by chance.
+TEST_CASE("run: the estimate of fixed steps detects a force that reverses within a step") {
   const Folder folder;
   const auto end = [&](const char* solver, const char* how, const char* much) {
     return document(folder, {"run", "P13_saddle_field", "--set", "K=9e12", "--t-end", "5.15473e-06", "--solver", solver,
@@ -64,24 +64,24 @@ TEST_CASE("run: the estimate of fixed steps sees a force that turns within one o
       CAPTURE(std::string(state));
       const double error = std::abs(fixed["final"][state].get<double>() - right["final"][state].get<double>());
       CHECK(fixed["error_estimate"][state].get<double>() >=
-            error / 10);  // design: told is within ten times the estimate
+            error / 10);  // design: a reported error is within ten times the estimate
     }
     CHECK(contains(fixed.dump(), "a force turns within one step"));
   }
 }
 
-// Close to the pole the rate follows from the momentum and an angle whose last digit is 4e-4 of its distance from
-// there: orders 2 and 6 agree, and are wrong alike.
-TEST_CASE("run: the estimate of variational solvers knows what rates lose near the pole") {
+// Close to the pole, the rate follows from the momentum and an angle whose last digit is 4e-4 of its distance from the
+// pole. Orders 2 and 6 agree and are equally wrong.
+TEST_CASE("run: the estimate of variational solvers includes the loss of digits of rates near the pole") {
   const Folder folder;
   const Json found = document(folder, {"stress", "G1_spherical", "--steps", "1000", "--seconds", "1e6", "--solver",
                                        "variational2", "--solver", "variational6"});
   CHECK(found["silent"] == 0);
 }
 
-// P5: slip that starts all but at rest, and has to grow; P6: it ends within the first step; R16: it lasts for 2e-4 s
-// before contact is lost.
-TEST_CASE("stress: slip that is slow or short is not lost by fixed steps, nor by what they are held against") {
+// P5: slip starts almost at rest and grows. P6: it ends within the first step. R16: it lasts 2e-4 s before the contact
+// opens.
+TEST_CASE("stress: slow or short slip is detected with fixed steps, and in the reference solution") {
   const Folder folder;
   for (const auto& [model, solver] :
        {std::pair{"P5_rough_sphere", "rk4"}, {"P6_rough_circle", "midpoint"}, {"R16_disk_on_disk", "rodas"}}) {
@@ -93,7 +93,7 @@ TEST_CASE("stress: slip that is slow or short is not lost by fixed steps, nor by
   }
 }
 
-TEST_CASE("stress: wrong input is refused before anything is run") {
+TEST_CASE("stress: invalid input is refused before any run") {
   const Folder folder;
   CHECK(contains(expect(2, folder, {"stress", "P2_planar_pendulum", "--solver", "dopri"}).err, "did you mean"));
   CHECK(contains(expect(2, folder, {"stress", "P2_planar_pendulum", "--set", "nothing=1"}).err, "nothing"));

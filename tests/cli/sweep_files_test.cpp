@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables of sweeps that were killed, cut or damaged, and the memory that many runs take.
+// Tables of sweeps that were killed, truncated or damaged; memory of sweeps with many runs.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using namespace eomgen::test;
 
 namespace {
 
-/// The place behind so many lines.
+/// Offset of the end of the first `lines` lines.
 std::size_t behind(const std::string& text, int lines) {
   std::size_t at = 0;
   for (int i = 0; i < lines; ++i) at = text.find('\n', at) + 1;
@@ -23,7 +23,7 @@ std::size_t behind(const std::string& text, int lines) {
 
 }  // namespace
 
-TEST_CASE("sweep: killed at any time again and again, it ends with the bytes of one that was left alone") {
+TEST_CASE("sweep: after repeated kills at any time, it ends with the bytes of an uninterrupted sweep") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   std::mt19937 random(5);  // fixed: NOLINT(cert-msc32-c,cert-msc51-cpp)
@@ -46,13 +46,13 @@ TEST_CASE("sweep: killed at any time again and again, it ends with the bytes of 
     }
     CHECK(killed > 0);
     if (ended < 0) ended = eomgen::test::eomgen(folder, with(with(words, {"killed.csv"}), how)).status;
-    CHECK(ended == 3);  // masses below 0 are refused
+    CHECK(ended == 3);  // negative masses are refused
     CHECK(folder.read("killed.csv") == folder.read("whole.csv"));
     CHECK(folder.names() == Words{"killed.csv", "oscillator.toml", "whole.csv"});
   }
 }
 
-TEST_CASE("sweep: rows that a full disk cut in the middle of the table, and runs that are none of it, are made again") {
+TEST_CASE("sweep: rows truncated by a full disk, and runs that do not belong to the sweep, are computed again") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Words words{"sweep", "oscillator.toml", "--grid", "k=1:9:9", "--out", "all.csv"};
@@ -64,13 +64,13 @@ TEST_CASE("sweep: rows that a full disk cut in the middle of the table, and runs
   folder.write("all.csv.partial", damaged + "9,9,done,1,6,74,0,0,0,0,\n77,9,done,1,6,74,0,0,0,0,\n");
   CHECK(document(folder, words)["resumed"] == 8);
   CHECK(folder.read("all.csv") == whole);
-  // So is one row of a table that is whole otherwise.
+  // The same for one row of an otherwise complete table.
   folder.write("all.csv", damaged);
   CHECK(document(folder, words)["resumed"] == 8);
   CHECK(folder.read("all.csv") == whole);
 }
 
-TEST_CASE("sweep: runs that cannot begin cost no derivation each, wherever they lie") {
+TEST_CASE("sweep: runs that cannot start cost no derivation each, at any position") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Json found =
@@ -79,8 +79,8 @@ TEST_CASE("sweep: runs that cannot begin cost no derivation each, wherever they 
   CHECK(found["failed"] == 2001);
 }
 
-TEST_CASE("sweep: memory does not hold rows, nor what runs put into the graph of the model" *
-          doctest::skip(sanitized)) {  // the sanitizers' own would be measured
+TEST_CASE("sweep: memory stores neither rows nor the nodes that runs add to the graph of the model" *
+          doctest::skip(sanitized)) {  // would measure the memory of the sanitizers
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const auto peak = [&](const char* samples, const Words& how) {
@@ -90,8 +90,8 @@ TEST_CASE("sweep: memory does not hold rows, nor what runs put into the graph of
     expect(0, folder, with(words, {"--out", "first.csv"}));  // compiles
     return expect(0, folder, with(words, {"--out", "second.csv"})).peak_kilobytes;
   };
-  // 24 bytes of a row, 8 of a run that is open, 9 of one side by side, 64 of its values while statistics are made; the
-  // row itself has 120.
+  // Per run: 24 bytes for a row, 8 for an open run, 9 for a run of an ensemble, 64 for its values during statistics.
+  // The row itself has 120.
   for (const Words& how : {Words{"--ensemble", "--jobs", "1"},
                            Words{"--no-error-estimate", "--jobs", "1", "--solver", "rk4", "--step", "0.01"}}) {
     CAPTURE(how.front());
@@ -99,7 +99,7 @@ TEST_CASE("sweep: memory does not hold rows, nor what runs put into the graph of
   }
 }
 
-TEST_CASE("merge: a table that ends in the middle of a line lacks that run; one shard is a sweep as well") {
+TEST_CASE("merge: a table that ends in the middle of a line lacks that run; a single shard is a whole sweep") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Words sweep{"sweep", "oscillator.toml", "--grid", "k=1:9:7", "--no-error-estimate"};

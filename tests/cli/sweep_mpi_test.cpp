@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// eomgen-mpi: any number of ranks writes the bytes of one process, also where ranks were killed on the way. Left out
-// where there is no MPI.
+// eomgen-mpi: any number of ranks writes the bytes of a single process, also after ranks were killed. Skipped without
+// MPI.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using namespace eomgen::test;
 
 #if !defined(EOMGEN_MPI_PROGRAM)
 
-TEST_CASE("sweep: without MPI there is no eomgen-mpi, and its tests are left out") {
+TEST_CASE("sweep: without MPI there is no eomgen-mpi, and its tests are skipped") {
   MESSAGE("CMake found no MPI: eomgen-mpi is not built, and not tested");
 }
 
@@ -30,11 +30,11 @@ ChildCommand by_ranks(const char* ranks, const Folder& folder, const Words& word
       with({EOMGEN_MPIRUN, "--oversubscribe", "--allow-run-as-root", "-n", ranks, EOMGEN_MPI_PROGRAM}, words);
   result.limit = 120;
   result.environment["OMPI_MCA_odls_base_sigkill_timeout"] =
-      "0";  // else mpirun waits seconds wherever an exit code is not 0
+      "0";  // otherwise mpirun waits for seconds after a nonzero exit code
   return result;
 }
 
-/// Processes of eomgen-mpi that work in this folder.
+/// Processes of eomgen-mpi that run in this folder.
 std::vector<pid_t> ranks_in(const Folder& folder) {
   namespace fs = std::filesystem;
   std::vector<pid_t> found;
@@ -58,7 +58,7 @@ std::size_t times(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("sweep by ranks: the bytes, the counts and the statistics of one process") {
+TEST_CASE("sweep by ranks: same bytes, counts and statistics as a single process") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   for (const Words& how : {Words{"--ensemble"}, Words{"--no-error-estimate"}}) {
@@ -89,7 +89,7 @@ TEST_CASE("sweep by ranks: the bytes, the counts and the statistics of one proce
   CHECK(folder.read("ranks.csv") == folder.read("alone.csv"));
 }
 
-TEST_CASE("sweep by ranks: where a rank is killed, or all are, other ranks go on from the rows of all") {
+TEST_CASE("sweep by ranks: after one or all ranks are killed, other ranks continue from all rows") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Words words{"sweep", "oscillator.toml",     "--sample", "k=1:9", "--samples",
@@ -126,14 +126,14 @@ TEST_CASE("sweep by ranks: where a rank is killed, or all are, other ranks go on
   }
   CHECK(killed > 0);
   CHECK(resumed);
-  // One process ends what ranks began.
+  // A single process completes the sweep of several ranks.
   expect(0, folder, with(words, {"killed.csv"}));
   CHECK(folder.read("killed.csv") == folder.read("whole.csv"));
   CHECK(folder.read("once.csv") == folder.read("whole.csv"));
   CHECK(folder.names() == Words{"killed.csv", "once.csv", "oscillator.toml", "whole.csv"});
 }
 
-TEST_CASE("sweep by ranks: what is wrong is told once") {
+TEST_CASE("sweep by ranks: an error is reported once") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const auto told = [&](const Words& words, int status, const std::string& what) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sweeps as archives of columns: read by Python's zipfile, and by numpy where it is there; left out without Python.
+// Sweeps as .npz archives: read by Python's zipfile, and by numpy if installed. Skipped without Python.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -10,7 +10,7 @@ using namespace eomgen::test;
 
 namespace {
 
-/// Holds every array of argv[1] against the table argv[2]; prints "same" and the names of the arrays.
+/// Script: compares every array of argv[1] with the table argv[2]; prints "same" and the names of the arrays.
 const char* const comparison = R"(
 import ast, csv, io, math, struct, sys, zipfile
 archive = zipfile.ZipFile(sys.argv[1])
@@ -64,14 +64,14 @@ std::string compared(const Folder& folder, const std::string& archive, const std
 
 }  // namespace
 
-TEST_CASE("sweep: an archive of columns holds the numbers, outcomes and sentences of the table") {
+TEST_CASE("sweep: an archive has the numbers, outcomes and details of the table") {
   const Folder folder;
   if (run_child({{"python3", "-c", "import zipfile"}, folder.path()}).status != 0) {
     MESSAGE("there is no python3: archives of columns are not read");
     return;
   }
   folder.write("oscillator.toml", oscillator_text());
-  // More rows than are written at a time; some are refused, and the sentence has quotation marks or commas.
+  // More rows than are written at a time. Some runs are refused, with quotation marks or commas in the detail.
   const Words words{"sweep", "oscillator.toml", "--grid",  "m=1,-1", "--sample", "k=1:9", "--samples",
                     "2500",  "--ensemble",      "--t-end", "0.1",    "--output", "all",   "--out"};
   for (const char* name : {"all.csv", "all.npz"}) expect(3, folder, with(words, {name}));
@@ -79,7 +79,7 @@ TEST_CASE("sweep: an archive of columns holds the numbers, outcomes and sentence
   const std::string bytes = folder.read("all.npz");
   expect(3, folder, with(words, {"all.npz"}));
   CHECK(folder.read("all.npz") == bytes);
-  // From shards, of one row, and of none that ended well.
+  // From shards, with one row, and without any successful row.
   const Words sweep{"sweep", "oscillator.toml", "--grid", "k=1:9:5"};
   expect(0, folder, with(sweep, {"--out", "whole.csv"}));
   for (const char* i : {"1", "2"})
@@ -89,7 +89,7 @@ TEST_CASE("sweep: an archive of columns holds the numbers, outcomes and sentence
   const Words one{"sweep", "oscillator.toml", "--grid", "k=1"};
   for (const char* name : {"one.csv", "one.npz"}) expect(0, folder, with(one, {"--out", name}));
   CHECK(compared(folder, "one.npz", "one.csv") == "same 1\n");
-  // Rows that a killed call has left are taken over.
+  // Rows of a killed call are taken over.
   std::string part = folder.read("all.csv");
   part.resize(part.size() / 2);
   std::filesystem::remove(folder / "all.npz");
@@ -99,7 +99,7 @@ TEST_CASE("sweep: an archive of columns holds the numbers, outcomes and sentence
   CHECK_FALSE(folder.has("all.npz.partial"));
 }
 
-TEST_CASE("sweep: where no archive of columns can be written that is told") {
+TEST_CASE("sweep: an archive that cannot be written is reported") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Words words{"sweep", "oscillator.toml", "--grid", "k=1,2", "--out", "a.npz"};

@@ -10,7 +10,7 @@ using namespace eomgen::test;
 
 namespace {
 
-/// Without the first line, which tells sweeps apart.
+/// Without the first line, which identifies the sweep.
 std::string rows(const std::string& text) { return text.substr(text.find('\n')); }
 
 }  // namespace
@@ -19,13 +19,13 @@ TEST_CASE("sweep: the lines of a file are points, alone and with a grid") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   folder.write("points.csv",
-               "# made elsewhere\r\n k , m\r\n1,1\r\n\r\n2.5, 1e0\n0.1,3");  // the last line without its end
+               "# made elsewhere\r\n k , m\r\n1,1\r\n\r\n2.5, 1e0\n0.1,3");  // the last line has no line break
   expect(0, folder, {"sweep", "oscillator.toml", "--points", "points.csv", "--out", "points_sweep.csv"});
   const std::string table = folder.read("points_sweep.csv");
   CHECK(contains(table, "\nrun,k,m,outcome,"));
   for (const char* row : {"\n0,1,1,done,", "\n1,2.5,1,done,", "\n2,0.10000000000000001,3,done,"})
     CHECK(contains(table, row));
-  // What a grid gives too is the same to the last bit.
+  // The same points by a grid give identical results.
   folder.write("grid.csv", "k\n1\n2\n9.3\n");
   expect(0, folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--points", "grid.csv", "--out", "a.csv"});
   expect(0, folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--grid", "k=1,2,9.3", "--out", "b.csv"});
@@ -36,7 +36,7 @@ TEST_CASE("sweep: the lines of a file are points, alone and with a grid") {
                           "a.csv"})["resumed"] == 0);
 }
 
-TEST_CASE("sweep: what is wrong with a file of points is told with its line") {
+TEST_CASE("sweep: errors in a file of points are reported with their line") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const auto refused = [&](const std::string& text, const std::string& what, const Words& more = {}) {
@@ -62,7 +62,7 @@ TEST_CASE("sweep: what is wrong with a file of points is told with its line") {
   CHECK(folder.names() == Words{"oscillator.toml", "points.csv"});
 }
 
-TEST_CASE("sweep: histograms count every value once, in equal parts from the least to the greatest") {
+TEST_CASE("sweep: histograms count every value once, in equal bins from the least to the greatest") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Json found =
@@ -70,7 +70,7 @@ TEST_CASE("sweep: histograms count every value once, in equal parts from the lea
   for (const Json& column : found["statistics"]) {
     const auto counts = column["histogram"].get<std::vector<std::size_t>>();
     CHECK(std::accumulate(counts.begin(), counts.end(), std::size_t{0}) == column["count"].get<std::size_t>());
-    if (column["column"] == "energy") {  // k/2 = 0, 0.5, .. 20: two in each part, and the greatest in the last
+    if (column["column"] == "energy") {  // k/2 = 0, 0.5, .. 20: two per bin, and the greatest in the last
       REQUIRE(counts.size() == 20);
       for (std::size_t i = 0; i < 20; ++i) CHECK(counts[i] == (i == 19 ? 3u : 2u));
     }

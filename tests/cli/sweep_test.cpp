@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command sweep: its table against single runs, going on after an interruption, and what it refuses.
+// Command sweep: table against single runs, continuation after an interruption, refusals.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::vector<Words> rows(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("sweep: every point of the grid is the run that it stands for, the last parameter fastest") {
+TEST_CASE("sweep: every point of the grid equals the corresponding run, the last parameter fastest") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Json found = document(folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--grid", "k=1:100:log:3",
@@ -52,13 +52,13 @@ TEST_CASE("sweep: every point of the grid is the run that it stands for, the las
     CHECK(std::stod(row[2]) == doctest::Approx(k[i]).epsilon(1e-15));
     CHECK(row[3] == "done");
     const double w = std::sqrt(k[i] / m[i]);
-    CHECK(std::abs(std::stod(row[7]) - std::cos(w)) < 1e-9);  // some hundred tolerances of a step
+    CHECK(std::abs(std::stod(row[7]) - std::cos(w)) < 1e-9);  // a few hundred tolerances of a step
     CHECK(std::abs(std::stod(row[8]) + w * std::sin(w)) < 1e-8);
   }
   CHECK_FALSE(folder.has("oscillator_sweep.csv.partial"));
 }
 
-TEST_CASE("sweep: starts are varied as parameters are, in processes and side by side") {
+TEST_CASE("sweep: initial values are varied like parameters, in processes and in an ensemble") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Words sweep{"sweep",       "oscillator.toml", "--grid", "x=1,2",  "--grid",
@@ -86,14 +86,14 @@ TEST_CASE("sweep: starts are varied as parameters are, in processes and side by 
   CHECK(document(folder, {"run", "oscillator.toml", "--set", "x=3", "--t-end", "0"})["final"]["x"] == 3);
 }
 
-TEST_CASE("sweep: goes on from what is there, and comes to the same bytes") {
+TEST_CASE("sweep: continues from existing rows and gives the same bytes") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Words words{"sweep", "oscillator.toml", "--grid", "k=1:9:5", "--out", "all.csv"};
   expect(0, folder, words);
   const std::string whole = folder.read("all.csv");
   CHECK(document(folder, words)["resumed"] == 5);
-  // The first two lines, two rows, and a row that was cut off.
+  // The first two lines, two rows, and a truncated row.
   std::size_t at = 0;
   for (int line = 0; line < 4; ++line) at = whole.find('\n', at) + 1;
   folder.write("all.csv.partial", whole.substr(0, at + 7));
@@ -107,7 +107,7 @@ TEST_CASE("sweep: goes on from what is there, and comes to the same bytes") {
   CHECK(folder.read("all.csv.partial") == whole.substr(0, at));
 }
 
-TEST_CASE("sweep: runs that cannot begin or that fail are kept and counted") {
+TEST_CASE("sweep: runs that cannot start or that fail are stored and counted") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Json found = document(folder, {"sweep", "oscillator.toml", "--grid", "m=-1,1,0"}, 3);
@@ -123,7 +123,7 @@ TEST_CASE("sweep: runs that cannot begin or that fail are kept and counted") {
   CHECK(contains(none.err, "no run of the grid can begin"));
 }
 
-TEST_CASE("sweep: what is wrong with a grid is told") {
+TEST_CASE("sweep: errors of a grid are reported") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const auto refused = [&](const Words& more, const std::string& what) {
@@ -155,8 +155,8 @@ TEST_CASE("sweep: what is wrong with a grid is told") {
 }
 
 TEST_CASE(
-    "sweep: an ensemble gives the bytes of runs one by one, for any number of threads, and goes on from what is "
-    "there") {
+    "sweep: an ensemble gives the same bytes as separate runs, for any number of threads, and continues from existing "
+    "rows") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   folder.write("stepped.toml", oscillator_text() + "step = 0.01\n");
@@ -166,7 +166,7 @@ TEST_CASE(
                "{}\n[energy]\nkinetic = \"m*x_dot^2/2\"\n"
                "[[force]]\nname = \"push\"\ngeneralized = { x = \"F - c*x_dot\" }\n[scene.default]\nt = [0, "
                "3]\ninitial = { x = 1 }\ninputs = { F = \"2*m\" }\n");
-  // Some of its runs end at a wall, after passing the middle so many times; others never get there.
+  // Some runs end at a wall after several passages of the middle; others never reach it.
   const auto watched = [&](const std::string& file, const std::string& force) {
     folder.write(file,
                  "format = 1\n[parameters]\nm = 1\nk = 9\nc = 0.1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = "
@@ -180,7 +180,7 @@ TEST_CASE(
   watched("watched_energy.toml", "");
   const auto rows_of = [&](const std::string& file) {
     const std::string text = folder.read(file);
-    return text.substr(text.find('\n'));  // the first line tells sweeps apart
+    return text.substr(text.find('\n'));  // the first line identifies the sweep
   };
   struct Case {
     const char* model;
@@ -217,7 +217,7 @@ TEST_CASE(
     CHECK(rows_of("one.csv") == rows_of("alone.csv"));
     CHECK(folder.read("three.csv") == folder.read("one.csv"));
   }
-  // The rows of some runs are there.
+  // The rows of some runs exist.
   const Words words{"sweep", "oscillator.toml", "--grid", "k=1:9:50", "--ensemble", "--out", "all.csv"};
   expect(0, folder, words);
   const std::string whole = folder.read("all.csv");
@@ -229,9 +229,9 @@ TEST_CASE(
   CHECK(folder.read("all.csv") == whole);
 }
 
-TEST_CASE("sweep: --basins counts the runs that ended at each equilibrium, angles but for turns, and what did not") {
+TEST_CASE("sweep: --basins counts the runs that end at each equilibrium, with angles modulo turns, and elsewhere") {
   const Folder folder;
-  // Two wells, at a = -1 and 1, and an angle that comes to rest hanging, after a turn too.
+  // Two wells, at a = -1 and 1, and an angle that comes to rest hanging, also after a full turn.
   folder.write("wells.toml",
                "format = 1\n[parameters]\nc = 2\n[coordinates]\na = {}\nphi = {}\n[energy]\nkinetic = \"(a_dot^2 + "
                "phi_dot^2)/2\"\npotential = \"a^4/4 - a^2/2 - 9*cos(phi)\"\n[[force]]\nname = \"drag\"\ngeneralized = "
@@ -257,7 +257,7 @@ TEST_CASE("sweep: --basins counts the runs that ended at each equilibrium, angle
   CHECK(contains(told, "these move with 'c'"));
 }
 
-TEST_CASE("sweep: what an ensemble cannot look after is told") {
+TEST_CASE("sweep: features without support in an ensemble are reported") {
   const Folder folder;
   const auto refused = [&](const Words& more, const std::string& what) {
     CAPTURE(what);
@@ -283,7 +283,7 @@ std::vector<double> column(const std::string& table, const std::string& name) {
   return values;
 }
 
-/// How many of `parts` equal parts of [0, 1) hold exactly one value.
+/// Number of parts out of `parts` equal parts of [0, 1) that contain exactly one value.
 std::size_t held_once(const std::vector<double>& values, std::size_t parts) {
   std::vector<int> held(parts);
   for (const double value : values) ++held[static_cast<std::size_t>(value * static_cast<double>(parts))];
@@ -292,7 +292,7 @@ std::size_t held_once(const std::vector<double>& values, std::size_t parts) {
 
 }  // namespace
 
-TEST_CASE("sweep: samples lie as their design says, follow from the seed, and go with every point of the grid") {
+TEST_CASE("sweep: samples follow their design and the seed, and are combined with every point of the grid") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const auto table = [&](const Words& more) {
@@ -315,7 +315,7 @@ TEST_CASE("sweep: samples lie as their design says, follow from the seed, and go
     CHECK((held_once(m, 64) == 64) == even);
     CHECK((held_once(k, 64) == 64) == even);
     if (std::string(design) != "sobol") continue;
-    std::vector<double> squares;  // of 8 by 8: a net holds one point in each
+    std::vector<double> squares;  // 8 by 8 squares: a net has one point in each
     for (std::size_t i = 0; i < 64; ++i) squares.push_back((std::floor(8 * m[i]) + std::floor(8 * k[i]) / 8) / 8);
     CHECK(held_once(squares, 64) == 64);
   }
@@ -358,7 +358,7 @@ TEST_CASE("sweep: Sobol' points fill every axis of ten evenly") {
   CHECK(contains(expect(2, folder, words).err, "at most 10 parameters"));
 }
 
-TEST_CASE("sweep: statistics are those of the table's columns") {
+TEST_CASE("sweep: statistics agree with the columns of the table") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Json found = document(folder, {"sweep", "oscillator.toml", "--sample", "m=10:2:normal", "--samples", "400",
@@ -372,23 +372,23 @@ TEST_CASE("sweep: statistics are those of the table's columns") {
   CHECK(of("x")["count"] == 800);
   CHECK(of("x")["mean"] == 1);
   CHECK(of("x")["deviation"] == 0);
-  CHECK(of("energy")["mean"].get<double>() == 0);  // k/2 of either sign
+  CHECK(of("energy")["mean"].get<double>() == 0);  // k/2 with both signs
   CHECK(of("energy")["min"] == -0.5);
   CHECK(of("energy")["max"] == 0.5);
   CHECK(of("energy")["deviation"].get<double>() == doctest::Approx(0.5 * std::sqrt(800.0 / 799)).epsilon(1e-14));
   CHECK(of("energy")["quantiles"][0]["value"] == -0.5);
   CHECK(of("detail").is_null());
-  // The samples themselves are normal: a Latin hypercube has their moments closely.
+  // The samples are normal; a Latin hypercube reproduces their moments closely.
   std::vector<double> m = column(folder.read("oscillator_sweep.csv"), "m");
   double mean = 0, square = 0;
   for (const double value : m) mean += value / 800, square += (value - 10) * (value - 10) / 800;
   CHECK(std::abs(mean - 10) < 0.02);
   CHECK(std::abs(square - 4) < 0.2);
   std::sort(m.begin(), m.end());
-  CHECK(std::abs(m[671] - 12) < 0.06);  // 84.1 % lie below one deviation
+  CHECK(std::abs(m[671] - 12) < 0.06);  // 84.1 % are below one standard deviation
 }
 
-TEST_CASE("merge: shards come to the bytes of the sweep in one call, interrupted or not") {
+TEST_CASE("merge: shards give the bytes of the sweep in one call, interrupted or not") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const Words sweep{"sweep", "oscillator.toml", "--grid", "m=1,2,-1",           "--sample",
@@ -402,7 +402,7 @@ TEST_CASE("merge: shards come to the bytes of the sweep in one call, interrupted
   CHECK(found["shards"] == 4);
   CHECK(found["statistics"].size() > 0);
   CHECK(folder.read("merged.csv") == folder.read("whole.csv"));
-  // One that was interrupted lacks runs, and its call makes them.
+  // An interrupted shard lacks runs, and its own call computes them.
   const std::string whole = folder.read("2.csv");
   const std::size_t cut = whole.rfind('\n', whole.size() - 2) + 1;
   folder.write("2.csv", whole.substr(0, cut));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wrong words on the command line: exit code 2 before any work, and what to do instead.
+// Errors on the command line: exit code 2 before any work, with a remedy.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ const std::string P2 = "P2_planar_pendulum";
 
 }  // namespace
 
-TEST_CASE("commands and options that are not there: the nearest one is told") {
+TEST_CASE("unknown commands and options: the nearest one is suggested") {
   refuse({
       {{}, "a command is missing", "eomgen --help"},
       {{"dervie", P2}, "there is no command 'dervie'", "did you mean 'derive'?"},
@@ -56,7 +56,7 @@ TEST_CASE("commands and options that are not there: the nearest one is told") {
   });
 }
 
-TEST_CASE("names that are not there: the nearest one is told") {
+TEST_CASE("unknown names: the nearest one is suggested") {
   refuse({
       {{"check", "P7"}, "P7: error: there is no such model file", "did you mean P7_moving_sphere?"},
       {{"check", "P2_planar_pendulums"}, "there is no such model file", "did you mean P2_planar_pendulum?"},
@@ -90,7 +90,7 @@ TEST_CASE("names that are not there: the nearest one is told") {
   });
 }
 
-TEST_CASE("values that cannot be are refused") {
+TEST_CASE("invalid values are refused") {
   refuse({
       {{"run", P2, "--rtol", "-1"}, "--rtol: '-1' is not a number, 0 or greater", "eomgen run --help"},
       {{"run", P2, "--rtol", "nan"}, "--rtol: 'nan' is not a number", "eomgen run --help"},
@@ -119,7 +119,7 @@ TEST_CASE("values that cannot be are refused") {
   });
 }
 
-TEST_CASE("places that cannot be written to are told before any work is done") {
+TEST_CASE("unwritable paths are reported before any work") {
   refuse({
       {{"run", P2, "--out", "nowhere/a.csv"},
        "--out nowhere/a.csv: there is no folder nowhere",
@@ -134,7 +134,7 @@ TEST_CASE("places that cannot be written to are told before any work is done") {
   });
 }
 
-TEST_CASE("a list takes one word each time, so that MODEL may stand after it") {
+TEST_CASE("a list option takes one word each time, so MODEL may follow it") {
   const Folder folder;
   const Json run = document(folder, {"run", "--set", "m=2", "--set", "L=4", "--output", "kinetic,potential", P2});
   CHECK(run["final"]["r"] == 4.0);
@@ -143,7 +143,7 @@ TEST_CASE("a list takes one word each time, so that MODEL may stand after it") {
   expect(0, folder, {"emit", "--with", "jac", "--fix", "m", "-o", "out", P2});
 }
 
-TEST_CASE("help: three examples, new first, and where the documentation is; help is a word for it too") {
+TEST_CASE("help: three examples, new first, and the path of the documentation; help is a command too") {
   const Folder folder;
   const std::string help = expect(0, folder, {"--help"}).out;
   CHECK(help.starts_with("Examples:\n  eomgen new "));
@@ -158,7 +158,7 @@ TEST_CASE("help: three examples, new first, and where the documentation is; help
   CHECK(std::filesystem::is_regular_file(page));
 }
 
-TEST_CASE("a file one letter away is named; so is the page that a message sends to") {
+TEST_CASE("a file name one letter away is suggested; messages name the page of the documentation") {
   const Folder folder;
   folder.write("pendulum.toml", pendulum_text(""));
   for (const char* typed : {"pendulum.tml", "pendulun.toml", "pendulun", "Pendulum.toml", "./pendulm.toml"}) {
@@ -173,7 +173,7 @@ TEST_CASE("a file one letter away is named; so is the page that a message sends 
   CHECK(std::filesystem::is_regular_file(told.substr(begin, told.find('\n', begin) - begin)));
 }
 
-TEST_CASE("-o and --out are one option, of every command that writes") {
+TEST_CASE("-o and --out are the same option in every command that writes") {
   const Folder folder;
   folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 0.1]\ninitial = { x = 1, y = 0, x_dot = 0 }\n"));
   for (const char* option : {"-o", "--out"}) {
@@ -189,8 +189,7 @@ TEST_CASE("-o and --out are one option, of every command that writes") {
   CHECK(folder.names() == Words{"p.toml"});
 }
 
-TEST_CASE(
-    "emit: --print-name tells of every target the name that its files have; --help and messages list all targets") {
+TEST_CASE("emit: --print-name prints the name of the files for every target; --help and messages list all targets") {
   const Folder folder;
   const Json targets = document(folder, {"list"})["targets"];
   const std::string help = expect(0, folder, {"emit", "--help"}).out;
@@ -217,7 +216,7 @@ TEST_CASE(
   for (const Json& target : targets) CHECK(contains(wrong.err, target["name"].get<std::string>()));
 }
 
-TEST_CASE("a run of no length gives the state, accelerations and reactions at the start") {
+TEST_CASE("a run of zero length gives the state, accelerations and reactions at the start") {
   const Folder folder;
   folder.write("p.toml",
                pendulum_text("[scene.default]\nt = [2, 3]\ninitial = { x = 0, y = -1, x_dot = 3, y_dot = 0 }\n"));
@@ -231,7 +230,7 @@ TEST_CASE("a run of no length gives the state, accelerations and reactions at th
   CHECK(2 * std::abs(run["final"]["reaction.rod"].get<double>()) == doctest::Approx(9.81 + 9).epsilon(1e-14));
   CHECK(read_table(folder.read("a.csv")).rows.size() == 1);
   CHECK(contains(expect(0, folder, {"run", "p.toml", "--t-end", "2"}).out, "y_ddot"));
-  // Of the poles of an exchanged chart too, and where a constraint fixes a coordinate.
+  // Also at the poles of an exchanged chart, and for a coordinate fixed by a constraint.
   const Json fixed = document(folder, {"run", "P7_moving_sphere", "--t-end", "0"});
   CHECK(fixed["final"]["R_ddot"].get<double>() == doctest::Approx(0));  // d0 + a sin(w t)
   expect(0, folder, {"run", "R1_free_body", "--t-end", "0"});
@@ -248,7 +247,7 @@ TEST_CASE("accelerations are outputs like any other") {
   const Table table = read_table(folder.read("a.csv"));
   CHECK(table.at(0, "y_ddot") == doctest::Approx(-9.81));
   CHECK(table.at(table.rows.size() - 1, "x_ddot") == run["final"]["x_ddot"].get<double>());
-  for (std::size_t i = 1; i + 1 < table.rows.size(); i += 50) {  // by differences of the rates
+  for (std::size_t i = 1; i + 1 < table.rows.size(); i += 50) {  // against differences of the rates
     const double by_rates = (table.at(i + 1, "x_dot") - table.at(i - 1, "x_dot")) / 0.002;
     CHECK(table.at(i, "x_ddot") == doctest::Approx(by_rates).epsilon(1e-4));
   }
@@ -258,7 +257,7 @@ TEST_CASE("accelerations are outputs like any other") {
   CHECK(document(folder, {"run", "R1_free_body", "--output", "all", "--t-end", "0.1"})["outcome"] == "done");
 }
 
-TEST_CASE("a scene without initial values says where it starts") {
+TEST_CASE("a scene without initial values reports where it starts") {
   const Folder folder;
   folder.write("free.toml",
                "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-x\"\n");
@@ -266,7 +265,7 @@ TEST_CASE("a scene without initial values says where it starts") {
                  "no initial values: all coordinates and rates start at 0\n"));
 }
 
-TEST_CASE("inputs are in check's list; of an input that is set as a parameter it is told how") {
+TEST_CASE("check lists inputs; setting an input as a parameter is refused with the right option") {
   const Folder folder;
   folder.write("cart.toml",
                "format = 1\n[parameters]\nm = \"1 kg\"\n[inputs]\nF = { unit = \"N\", default = 2 }\nG = { unit = "
@@ -281,7 +280,7 @@ TEST_CASE("inputs are in check's list; of an input that is set as a parameter it
                  "it is an input: a scene gives it, as inputs = { F = 2 }"));
 }
 
-TEST_CASE("report: a hundred coordinates have room in its plots, and the page stays below 1 MB") {
+TEST_CASE("report: plots fit a hundred coordinates, and the page stays below 1 MB") {
   const Folder folder;
   std::string text = "format = 1\n[coordinates]\n", kinetic = "0", potential = "0", start;
   for (int k = 1; k <= 100; ++k) {
@@ -304,7 +303,7 @@ TEST_CASE("report: a hundred coordinates have room in its plots, and the page st
   CHECK(folder.read("report.html").size() < 1000000);
 }
 
-TEST_CASE("a constraint without a real solution is told as one") {
+TEST_CASE("a constraint without real solution is reported as such") {
   const Folder folder;
   std::string text = pendulum_text("");
   text.replace(text.find("x^2 + y^2 - L^2"), 15, "x^2 + y^2 + L^2");

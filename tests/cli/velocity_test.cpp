@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Constraints on velocities from the command line: what check says, starts that break them, kinds in the emitted code.
+// Velocity constraints from the command line: output of check, inconsistent starts, kinds in emitted code.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ t = [0, 0.2]
 
 }  // namespace
 
-TEST_CASE("check tells the kind of a constraint, whether it is integrable, why, and its integral") {
+TEST_CASE("check reports the kind of a constraint, its integrability with the reason, and its integral") {
   const Folder folder;
   const Json constraints = document(folder, {"check", "P12_pfaffian_set"})["constraints"];
   REQUIRE(constraints.size() == 3);
@@ -61,7 +61,7 @@ TEST_CASE("derive shows the constraint, the verdict and the integral") {
   CHECK(has("binds velocities, not integrable", "y2_dot + (z2/l0) x2_dot = 0"));
 }
 
-TEST_CASE("a start that breaks a constraint on velocities is refused, unless a velocity may be moved") {
+TEST_CASE("a start that violates a velocity constraint is refused, unless a velocity may be adjusted") {
   const Folder folder;
   folder.write("skate.toml", skate("initial = { theta = 0.5, x_dot = 1, y_dot = 1 }\n"));
   const ChildResult refused = expect(2, folder, {"run", "skate.toml"});
@@ -74,7 +74,7 @@ TEST_CASE("a start that breaks a constraint on velocities is refused, unless a v
   CHECK(document(folder, {"run", "skate.toml"})["final"]["x"] == 0.0);
 }
 
-TEST_CASE("emitted code tells which of its constraints bind velocities") {
+TEST_CASE("emitted code states which of its constraints are on velocities") {
   const Folder folder;
   folder.write("skate.toml", skate(""));
   expect(0, folder, {"emit", "skate.toml", "-o", "out", "--with", "constraints,mass"});

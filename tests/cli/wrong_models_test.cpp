@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of tests/model once more, through the program: exit code 2, the same words, under a second.
+// The table of wrong models of tests/model through the program: exit code 2, same message, less than a second.
 #include "wrong_models.hpp"
 
 #include <doctest/doctest.h>
@@ -8,7 +8,7 @@
 
 using namespace eomgen::test;
 
-TEST_CASE("every wrong model is refused by the program, in the same words, in under a second") {
+TEST_CASE("every wrong model is refused by the program, with the same message, in less than a second") {
   using namespace eomgen::model;
   const Folder folder;
   std::size_t count = 0;
@@ -21,7 +21,7 @@ TEST_CASE("every wrong model is refused by the program, in the same words, in un
       CHECK(result.out.empty());
       CHECK(result.seconds < 1.0);
       ++count;
-      if (wrong.text.size() > (std::size_t{1} << 20)) {  // not read to its end, so that its size is not known
+      if (wrong.text.size() > (std::size_t{1} << 20)) {  // not read completely, so its size is unknown
         CHECK(contains(result.err, "the file has more than 1048576 bytes"));
         continue;
       }

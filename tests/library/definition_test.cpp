@@ -5,7 +5,7 @@
 
 using namespace eomgen;
 
-TEST_CASE("library: values are TOML, with everything escaped that would end a string") {
+TEST_CASE("library: values are valid TOML with escaped strings") {
   CHECK(Value("a").toml() == "\"a\"");
   CHECK(Value(0.1).toml() == "0.1");
   CHECK(Value(3).toml() == "3");
@@ -15,7 +15,7 @@ TEST_CASE("library: values are TOML, with everything escaped that would end a st
   CHECK(Value::table({{"a b", 1}, {"c", "d"}}).toml() == "{ \"a b\" = 1, c = \"d\" }");
 }
 
-TEST_CASE("library: what is made in code is the file that says the same") {
+TEST_CASE("library: a definition gives the equivalent model file") {
   const std::string text = test::pendulum().text();
   const Model made = Model::from(test::pendulum(), "pendulum"), read = Model::from_text(text, "pendulum");
   CHECK(made.id() == "pendulum");
@@ -26,7 +26,7 @@ TEST_CASE("library: what is made in code is the file that says the same") {
   CHECK(made.equations().text() == read.equations().text());
 }
 
-TEST_CASE("library: what is wrong in code has line, column and remedy in the text of the definition") {
+TEST_CASE("library: errors of a definition have line, column and remedy in its text") {
   Definition d = test::pendulum();
   d.add("constraint", {{"name", "wall"}, {"holonomic", "r - widht"}});
   try {

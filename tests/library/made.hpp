@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models that tests make in code.
+// Example models built in code.
 #pragma once
 
 #include "eomgen/model.hpp"
@@ -21,7 +21,7 @@ inline Definition pendulum() {
   return d;
 }
 
-/// A chain of n pendulums in the plane in coordinates relative to one another: its derivation takes long.
+/// A planar chain of n pendulums in relative angles, whose derivation takes long.
 inline Definition chain(int n) {
   Definition d("Chain");
   std::string x = "0", z = "0", angle = "0";

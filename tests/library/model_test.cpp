@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each call of the library on models whose answers are known.
+// Every function of the library on models with known results.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ double value(const Derivation& d, std::uint32_t index, const std::map<std::strin
 
 }  // namespace
 
-TEST_CASE("library: the spherical pendulum, examined, derived, as data") {
+TEST_CASE("library: the spherical pendulum: examination, equations, compiled form") {
   const Model model = Model::from(test::pendulum(), "pendulum");
   const Examination found = model.examine();
   CHECK(found.degrees_of_freedom == 2);
@@ -66,7 +66,7 @@ TEST_CASE("library: the spherical pendulum, examined, derived, as data") {
             .epsilon(1e-13));
 }
 
-TEST_CASE("library: verified, emitted and run, with rows and with a function for them") {
+TEST_CASE("library: verification, code generation and run, with stored rows and with a callback") {
   const Model model = Model::from(test::pendulum(), "pendulum");
   const Certificate certificate = model.verify({.points = 3, .compile = false});
   CHECK(certificate.pass);
@@ -103,14 +103,14 @@ TEST_CASE("library: verified, emitted and run, with rows and with a function for
                  }});
   CHECK(rows == 5);
   CHECK(other.rows.empty());
-  // Without gravity a great circle, at the speed of the start.
+  // Without gravity: a great circle at the initial speed.
   const double speed = 2 * 2 * std::sin(1.0);
   CHECK(other.at_end("energy") == doctest::Approx(speed * speed / 2).epsilon(1e-9));
   CHECK_THROWS_AS(model.run({.solver = "euler1768"}), Error);
   CHECK_THROWS_AS(model.run({.parameters = {{"g", NAN}}}), Error);
 }
 
-TEST_CASE("library: linearised, steady motions, inverse dynamics, error against time, stress") {
+TEST_CASE("library: linearisation, steady motions, inverse dynamics, benchmark, stress test") {
   Definition d("Pendulum");
   d.set("coordinates", "q", Value::table({}));
   d.set("energy", "kinetic", "1/2*q_dot^2").set("energy", "potential", "-4*cos(q)");

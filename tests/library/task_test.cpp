@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a call is told and asked while it works, and calls from several threads.
+// Callbacks and stop requests of calls, and calls from several threads.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 using namespace eomgen;
 
-TEST_CASE("library: stages are told, and a stop ends a derivation soon; the next call is not touched by it") {
+TEST_CASE("library: stages are reported, and a stop request ends a derivation soon without effect on the next call") {
   const Model model = Model::from(test::chain(40), "chain");
   std::stop_source source;
   std::vector<std::string> stages;
@@ -27,14 +27,14 @@ TEST_CASE("library: stages are told, and a stop ends a derivation soon; the next
     });
   };
   CHECK_THROWS_AS(model.verify({.points = 1000, .compile = false}, task), Interrupted);
-  // The contract says 0.2 s; machines that run other tests beside this one are slower.
+  // The contract is 0.2 s; machines under load are slower.
   CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(2));
   REQUIRE_FALSE(stages.empty());
   CHECK(stages.front() == "deriving the equations");
   CHECK(Model::from(test::pendulum()).derivation().coordinates.size() == 2);
 }
 
-TEST_CASE("library: a stop that was asked for before leaves at once, and during a run gives what there is") {
+TEST_CASE("library: an earlier stop request ends a call immediately; during a run it gives a partial result") {
   const Model model = Model::from(test::pendulum(), "pendulum");
   std::stop_source before;
   before.request_stop();
@@ -53,7 +53,7 @@ TEST_CASE("library: a stop that was asked for before leaves at once, and during 
   CHECK(motion.t < 1e7);
 }
 
-TEST_CASE("library: threads on two models get what one after the other gets") {
+TEST_CASE("library: calls from two threads give the same results as sequential calls") {
   Definition other = test::pendulum();
   other.add("force", {{"on", "P"}, {"force", "-0.1*P.e_theta"}});
   const Model models[] = {Model::from(test::pendulum(), "pendulum"), Model::from(other, "pushed")};

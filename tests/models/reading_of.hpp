@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reading form of a shipped model in a test: equations and tables by the names of coordinates.
+// Display form of a shipped model for tests: equations and tables by names of coordinates.
 #pragma once
 
 #include <string>
@@ -14,13 +14,13 @@ struct Read {
   Sum operator()(const std::string& name) { return s.symbol(name); }
   reading::ReadingForm form(system::Approach approach);
   const reading::Equation& equation(const reading::ReadingForm& form, const std::string& coordinate) const;
-  /// The equation as left-hand side minus applied forces; multipliers left out.
+  /// The equation as left-hand side minus applied forces, without multipliers.
   Sum motion(const reading::ReadingForm& form, const std::string& coordinate) const;
 
   System s;
 };
 
-/// Components along E1, E2, E3.
+/// Whether v has these components along E1, E2, E3.
 bool same(const reading::Components& v, const Sum& x, const Sum& y, const Sum& z);
 
 }  // namespace eomgen::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For models with friction: what the derived code says at any state, and equations written by hand integrated beside a
-// run.
+// Tools for models with friction: evaluation of derived equations at any state, and integration of hand-written
+// equations for comparison with a run.
 #pragma once
 
 #include <cmath>
@@ -15,21 +15,21 @@
 
 namespace eomgen::test {
 
-/// Steps at rtol 1e-12 on both sides over some seconds.
+/// Tolerance between a run and hand-written equations: a few seconds at rtol 1e-12 on both sides.
 constexpr double by_hand = 1e-10;
-/// Some hundred operations in binary64.
+/// Tolerance for about a hundred operations in binary64.
 constexpr double rounding = 1e-12;
 
 Finished run_rough(const std::string& model, const std::string& scene = "default",
                    const std::function<void(pipeline::SimulationRequest&)>& adjust = {});
 
-/// Other values of parameters, exactly.
+/// Sets parameters to exact values.
 std::function<void(pipeline::SimulationRequest&)> with(std::map<std::string, double> parameters);
 
-/// "slip", "stick", ... of each event in order, with the time.
+/// Events "slip", "stick", ... in order of time.
 std::vector<run::RunEvent> events_of(const Finished& run);
 
-/// Equations by hand, from one time to another.
+/// Integrates hand-written equations.
 class Hand {
  public:
   using Rates = std::function<void(double t, const double* x, double* dx)>;
@@ -43,12 +43,13 @@ class Hand {
   Rates rates_;
 };
 
-/// Derived equations of a shipped model at chosen states; its contacts slide as the velocities say.
+/// Evaluates the derived equations of a shipped model at chosen states. Contacts slide in the direction of the
+/// velocity.
 class AtState {
  public:
   explicit AtState(const Finished& run, const std::string& model);
 
-  /// False where the law has no single solution with |N| pressing as one of the modes says.
+  /// Returns false unless the friction law has exactly one solution with the normal force of a mode.
   bool slide(double t, std::vector<double> x);
   double output(const std::string& name) const { return rough_.output(name, t_, x_.data(), mode_); }
 
@@ -61,7 +62,7 @@ class AtState {
   int mode_ = 0;
 };
 
-/// Values between two bounds, the same in every run.
+/// Uniform random values between two bounds, with a fixed seed.
 class Draw {
  public:
   double operator()(double lower, double upper) {
@@ -72,10 +73,10 @@ class Draw {
   std::mt19937_64 engine_{7};
 };
 
-/// Composite Simpson of a smooth function.
+/// Integral of a smooth function by the composite Simpson rule.
 double simpson(const std::function<double(double)>& f, double a, double b, int intervals = 4000);
 
-/// A root between a and b, where f changes its sign.
+/// Root of f between a and b, where f changes sign.
 double root_between(const std::function<double(double)>& f, double a, double b);
 
 }  // namespace eomgen::test

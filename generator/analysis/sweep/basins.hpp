@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Basins of attraction: counts how many runs of a sweep end at each equilibrium or steady motion. In: equilibria and
-// steady motions, final states of runs. Out: counts.
+// Statistics of basins of attraction: how many runs of a sweep end at each equilibrium or steady motion. In: equilibria
+// and steady motions, final states of runs. Out: counts.
 #pragma once
 
 #include <cstddef>

@@ -40,7 +40,7 @@ class Sweep {
   const Counts& counts() const { return counts_; }
   /// Statistics of the existing rows. In a group of processes: of all rows, or empty if the table is incomplete.
   std::vector<analysis::ColumnStatistics> statistics() const;
-  /// Basins of attraction of the same rows; nullopt if the table is incomplete.
+  /// Statistics of the basins of attraction, over the same rows; nullopt if the table is incomplete.
   std::optional<analysis::Basins> basins() const;
 
  private:
