@@ -1,13 +1,13 @@
 # eom_generate(TARGET name MODEL file [WITH jac mass ...] [OUTPUT energy ...] [FIX g ...] [APPROACH I|II] [FORM name])
 #
-# A static library `name` of the C code that eomgen writes for the model (docs/abi.md); who links it can include NAME.h and
-# NAME.hpp, where NAME is the file's name without its last suffix, as an identifier. The code is generated at build time,
-# again only when the model, or eomgen itself, is newer. WITH, OUTPUT, FIX, APPROACH, FORM are the options of `eomgen emit`.
-# A relative MODEL is looked for in the current source folder; shipped models lie in ${eomgen_MODELS_DIR}.
-# The target's property EOM_NAME tells NAME.
+# Adds a static library `name` with the C code that eomgen generates for the model (docs/abi.md). Targets that link it can
+# include NAME.h and NAME.hpp, where NAME is the base name of the file as an identifier; the target property EOM_NAME
+# contains it. The code is generated at build time, and again if the model or eomgen is newer. WITH, OUTPUT, FIX,
+# APPROACH, FORM are the options of `eomgen emit`. A relative MODEL refers to the current source folder; shipped models
+# are in ${eomgen_MODELS_DIR}.
 include_guard(GLOBAL)
 
-# NAME of the C ABI, which eomgen alone knows: `int.toml` becomes int_, as C reserves int.
+# Asks eomgen for NAME of the C ABI: `int.toml` becomes int_, for example, because C reserves int.
 function(_eom_name model result)
   get_target_property(program eomgen::cli LOCATION)
   execute_process(COMMAND "${program}" emit "${model}" -o . --print-name
@@ -23,7 +23,7 @@ function(_eom_refuse what)
     "  usage: eom_generate(TARGET name MODEL file [WITH jac ...] [OUTPUT energy ...] [FIX g ...] [APPROACH I|II] [FORM name])")
 endfunction()
 
-# The options of `eomgen emit` that ARG_WITH, .. stand for; lists are separated by commas there.
+# Converts ARG_WITH, .. to the options of `eomgen emit`, which separate lists by commas.
 function(_eom_options result)
   set(options)
   foreach(list WITH OUTPUT FIX APPROACH FORM)

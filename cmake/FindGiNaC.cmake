@@ -1,4 +1,4 @@
-# Finds GiNaC and CLN through pkg-config; gives GiNaC::ginac and GiNaC::cln.
+# Finds GiNaC and CLN through pkg-config; defines GiNaC::ginac and GiNaC::cln.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(EOMGEN_GINAC IMPORTED_TARGET ginac>=1.8)
 pkg_check_modules(EOMGEN_CLN IMPORTED_TARGET cln>=1.3)

@@ -1,4 +1,4 @@
-# cmake --install gives bin/eomgen, the runtime headers, and a package with eomgen::runtime, eomgen::cli and eom_generate.
+# cmake --install installs bin/eomgen, the runtime headers, and a package with eomgen::runtime, eomgen::cli, eom_generate.
 include(CMakePackageConfigHelpers)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/eomgenConfig.cmake.in
   ${PROJECT_BINARY_DIR}/eomgenConfig.cmake
@@ -10,7 +10,7 @@ install(FILES ${PROJECT_BINARY_DIR}/eomgenConfig.cmake ${PROJECT_BINARY_DIR}/eom
   ${CMAKE_CURRENT_LIST_DIR}/EomGenerate.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/eomgen)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATADIR}/eomgen)
-# The pages that messages and `eomgen --help` name.
+# The pages of the documentation that messages and `eomgen --help` refer to.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/lib/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.runtime)

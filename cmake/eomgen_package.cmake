@@ -1,4 +1,4 @@
-# `cpack -G DEB` in a build folder: a Debian package of what cmake --install gives; `cpack -G TGZ` the same as an archive.
+# `cpack -G DEB` in a build folder: a Debian package with the files of cmake --install; `cpack -G TGZ`: the same as an archive.
 set(CPACK_PACKAGE_NAME eomgen)
 set(CPACK_PACKAGE_VENDOR "eomgen contributors")
 set(CPACK_PACKAGE_CONTACT "eomgen contributors")
@@ -12,7 +12,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
-# Libraries are read off the programs. `run` calls a C compiler; the runtime's headers include Eigen.
+# Library dependencies are determined from the programs. `run` calls a C compiler; the runtime's headers include Eigen.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gcc | c-compiler, libeigen3-dev")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, texlive-latex-recommended")

@@ -1,9 +1,9 @@
-# gcc 12 takes strings for too short once their headers are precompiled: it no longer knows them as the system's.
+# gcc 12 reports false overflows in std::string from precompiled headers: it no longer treats them as system headers.
 set(EOMGEN_PRECOMPILED_OPTIONS
   "$<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-restrict>")
 
-# eomgen_precompile(TARGET header ...): what most files of it include is parsed once. Every file still names what it
-# needs: builds without precompiled headers (the sanitizers') tell where one does not.
+# eomgen_precompile(TARGET header ...): precompiles headers that most files include. Every file still includes what it
+# needs: builds without precompiled headers (with sanitizers) fail otherwise.
 function(eomgen_precompile target)
   if(EOMGEN_PRECOMPILE)
     target_precompile_headers(${target} PRIVATE ${ARGN})
@@ -11,7 +11,7 @@ function(eomgen_precompile target)
   endif()
 endfunction()
 
-# eomgen_take_precompiled(TARGET OWNER): the precompiled headers of another target, compiled with the same options.
+# eomgen_take_precompiled(TARGET OWNER): uses the precompiled headers of another target with the same options.
 function(eomgen_take_precompiled target owner)
   if(EOMGEN_PRECOMPILE)
     target_precompile_headers(${target} REUSE_FROM ${owner})
@@ -20,10 +20,9 @@ function(eomgen_take_precompiled target owner)
 endfunction()
 
 # eomgen_stage(NAME [OWN_HEADERS] [COLD] SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
-# One static library per stage. NEEDS is the dependency rule: a stage sees only what it names.
-# Headers are included as "stage/file.hpp" from generator/. OWN_HEADERS: it precompiles others than the stages share.
-# COLD: no time is spent in it, no integrator compiled; the compiler takes a quarter less of its own without the last
-# optimisations.
+# One static library per stage. NEEDS is the dependency rule: a stage uses only the stages it names.
+# Headers are included as "stage/file.hpp" from generator/. OWN_HEADERS: no shared precompiled headers.
+# COLD: not critical for run time, contains no integrator; lower optimisation saves a quarter of the compile time.
 function(eomgen_stage name)
   cmake_parse_arguments(ARG "OWN_HEADERS;COLD" "" "SOURCES;NEEDS;LINKS" ${ARGN})
   add_library(eomgen_${name} STATIC ${ARG_SOURCES})
@@ -36,12 +35,12 @@ function(eomgen_stage name)
   if(ARG_COLD)
     target_compile_options(eomgen_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
-  if(ARG_NEEDS AND NOT ARG_OWN_HEADERS)  # those without are tables
+  if(ARG_NEEDS AND NOT ARG_OWN_HEADERS)  # stages without are tables
     eomgen_take_precompiled(eomgen_${name} eomgen_error)
   endif()
 endfunction()
 
-# eomgen_registered(FOLDER RESULT): NAME.cpp for each line WORD(NAME) of generator/FOLDER/registry.inc, which is read again where it changes.
+# eomgen_registered(FOLDER RESULT): NAME.cpp for each line WORD(NAME) of generator/FOLDER/registry.inc; CMake runs again if it changes.
 function(eomgen_registered folder result)
   set(registry ${PROJECT_SOURCE_DIR}/generator/${folder}/registry.inc)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${registry})
@@ -50,16 +49,16 @@ function(eomgen_registered folder result)
   set(${result} ${lines} PARENT_SCOPE)
 endfunction()
 
-# Most of the time of the whole is the compiler's; tests gain nothing from its last optimisations. Their libraries go into
-# programs alone, and are compiled as those are, so that they share precompiled headers.
+# Compilation dominates the time of testing, so tests use lower optimisation. Their libraries use the same options as
+# their programs, so that they share precompiled headers.
 set(EOMGEN_TEST_OPTIONS $<$<CONFIG:Release>:-O1> -fPIE)
 
-# What most files of the tests include.
+# Headers that most test files include.
 set(EOMGEN_TEST_HEADERS <doctest/doctest.h> <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional>
   <random> <set> <span> <sstream> <string> <string_view> <utility> <variant> <vector>)
 
 # eomgen_test(NAME [OWN_OPTIONS] SOURCES a.cpp ... LINKS target ...): one doctest executable and one ctest entry.
-# OWN_OPTIONS: it is compiled with others than the tests share, so that it precompiles the headers by itself.
+# OWN_OPTIONS: compiled with options of its own, so it has its own precompiled headers.
 function(eomgen_test name)
   cmake_parse_arguments(ARG "OWN_OPTIONS" "" "SOURCES;LINKS" ${ARGN})
   add_executable(test_${name} ${ARG_SOURCES})

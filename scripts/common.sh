@@ -1,13 +1,13 @@
 # shellcheck shell=bash
-# What the scripts share; sourced, never run. Gives: root, say, fail, jobs, configure, build.
-# Exit codes are those of docs/commands.md: 1 a check came out negative, 2 bad usage, 4 a tool is missing or failed.
+# Functions shared by the scripts; sourced, never run. Defines: root, say, fail, jobs, configure, build.
+# Exit codes are those of docs/commands.md: 1 a check failed, 2 bad usage, 4 a tool is missing or failed.
 
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd -P)
 program=${0##*/}
 
 say() { printf '%s: %s\n' "$program" "$*" >&2; }
 
-# fail CODE MESSAGE...: says why and ends.
+# fail CODE MESSAGE...: prints the message and exits with CODE.
 fail() {
   local code=$1
   shift
@@ -15,7 +15,7 @@ fail() {
   exit "$code"
 }
 
-# How many compilers or tests at once: one per core, but at most one per 1.5 GiB of free memory (files that include
+# Number of parallel compilers or tests: one per core, but at most one per 1.5 GiB of free memory (files that include
 # GiNaC need about 1 GiB under a sanitizer).
 jobs() {
   local cores memory
@@ -25,10 +25,10 @@ jobs() {
   echo "$cores"
 }
 
-# configure PRESET: about a second where nothing changed; always run, since a new folder is found only by configuring.
+# configure PRESET: takes about a second if nothing changed. Always run, since only configuring finds a new folder.
 configure() {
   local preset=$1 folder="$root/build/$1" fresh=() log
-  # A build folder of a source tree that was moved or copied cannot be used again.
+  # The build folder of a moved or copied source tree cannot be reused.
   if [[ -f $folder/CMakeCache.txt ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
     say "build/$preset was configured for another folder: configuring afresh"
     fresh=(--fresh)
@@ -42,7 +42,7 @@ configure() {
   fi
 }
 
-# build PRESET [TARGET...]: ninja's progress goes to standard error, so that results stay alone on standard output.
+# build PRESET [TARGET...]: ninja's progress goes to standard error, so that standard output has results only.
 build() {
   local preset=$1
   shift

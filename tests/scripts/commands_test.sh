@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# docs/commands.md against the program: every command has its chapter, every option its row, no row is invented, and
-# examples print what stands there.
+# Checks docs/commands.md against the program: every command has a section, every option a row, every row an option, and
+# examples print what is shown.
 #   commands_test.sh PROGRAM DOCUMENT
 set -euo pipefail
 program=$(realpath -- "$1") document=$2
@@ -22,7 +22,7 @@ for command in "${commands[@]}"; do
     refuse "$command has no chapter"
     continue
   fi
-  # Of the help only what stands at the beginning of a line is an option; the rest is words about it.
+  # In the help, only flags at the beginning of a line are options; the rest is description.
   there=$("$program" "$command" --help | grep -E '^ +-' | sed -E 's/^ +//; s/(  ).*//' | options)
   told=$(printf '%s\n%s\n' "$common" "$(chapter "$command" | grep -E '^\| `' | awk -F'|' '{ print $2 }' | options)" | LC_ALL=C sort -u)
   while read -r option; do
@@ -33,8 +33,8 @@ for command in "${commands[@]}"; do
   done < <(LC_ALL=C comm -13 <(echo "$there") <(echo "$told"))
 done
 
-# Examples of shipped models: what is printed is what the page shows, but for blanks, digits beyond the sixth, how far the
-# certificate goes and times; `...` stands for any lines.
+# Examples with shipped models: the output is as shown, except for blanks, digits beyond the sixth, the differences in the
+# certificate, and times. `...` stands for any lines.
 models=$(cd -- "$(dirname -- "$document")/../models" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf -- "$scratch"' EXIT
@@ -47,7 +47,7 @@ plain() {
       $1 = $1
       print }' "$1"
 }
-# as_shown SHOWN PRINTED: the lines of SHOWN in their order, and none between them that it does not have.
+# as_shown SHOWN PRINTED: whether PRINTED has exactly the lines of SHOWN, in order.
 as_shown() {
   awk 'NR == FNR { shown[++n] = $0; next }
     { while (at < n && shown[at + 1] == "...") { ++at; any = 1 }

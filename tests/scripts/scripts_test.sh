@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The scripts where nothing is installed or built: usage, missing packages (with stand-ins for Debian's tools), the ledger.
+# Tests the scripts without installing or building: usage, missing packages (with stand-ins for Debian's tools), ledger.
 #   scripts_test.sh SOURCE SCRATCH
 set -euo pipefail
 source=$1 scratch=$2
@@ -14,7 +14,7 @@ refuse() {
   exit 1
 }
 
-# expect CODE CLAIM COMMAND...: runs the command, keeps what it prints in $scratch/output.
+# expect CODE CLAIM COMMAND...: runs the command and stores its output in $scratch/output.
 expect() {
   local wanted=$1 claim=$2 code=0
   shift 2
@@ -43,7 +43,7 @@ for script in setup test demo; do
 done
 
 # --- setup, with stand-ins: dpkg-query knows the packages of the file "installed"; apt-get install adds to it, unless
-# the file "refusals" says how often it is to fail first.
+# the file "refusals" states how often it fails first.
 mkdir stand_ins
 cat >stand_ins/dpkg-query <<'TEXT'
 #!/bin/bash
