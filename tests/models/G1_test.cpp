@@ -7,11 +7,11 @@
 
 using namespace eomgen;
 
-TEST_CASE("G1: the same throw in Cartesian, cylindrical and spherical coordinates ends where the parabola does") {
+TEST_CASE("G1: the same throw in Cartesian, cylindrical and spherical coordinates ends at the end of the parabola") {
   // From (1, 0, 2) with (0.5, 1, 5): each component is a polynomial of t.
   constexpr double t = 2, g = 9.81;
   const double x = 1 + 0.5 * t, y = t, z = 2 + 5 * t - g * t * t / 2;
-  constexpr double tolerance = 1e-9;  // of runs at rtol 1e-11
+  constexpr double tolerance = 1e-9;  // for runs at rtol 1e-11
   for (const char* name : {"G1_cartesian", "G1_cylindrical", "G1_spherical"}) {
     INFO(name);
     const test::Finished run = test::run_model(name, [](pipeline::SimulationRequest& request) {

@@ -43,7 +43,7 @@ TEST_CASE("G2: the equations are (2.169)") {
   check("theta", m * square(u * v) * dth, Sum(), Sum());
 }
 
-TEST_CASE("G2: the throw ends where the parabola does") {
+TEST_CASE("G2: the throw ends at the end of the parabola") {
   const Finished run = check_throw("G2_parabolic");
   CHECK(run.drift("momentum.theta") < 1e-9);
 }

@@ -7,7 +7,7 @@
 using namespace eomgen;
 using namespace eomgen::test;
 
-TEST_CASE("G3: the basis is (1.71), which is not orthogonal; the dual basis belongs to it") {
+TEST_CASE("G3: the basis is (1.71), which is not orthogonal, with its dual basis") {
   Read g3("G3_helical");
   const reading::Geometry g = reading::geometry(g3.s.mechanics).at(0);
   const Sum r = g3("r"), th = g3("theta"), al = g3("alpha"), c = cos(th), s = sin(th);
@@ -34,4 +34,4 @@ TEST_CASE("G3: the kinetic energy is (1.72)") {
   CHECK(same(g3.form(system::Approach::two).kinetic, kinetic));
 }
 
-TEST_CASE("G3: the throw ends where the parabola does") { check_throw("G3_helical"); }
+TEST_CASE("G3: the throw ends at the end of the parabola") { check_throw("G3_helical"); }

@@ -38,7 +38,7 @@ TEST_CASE("G4: components of a given vector in both bases, and the throw") {
   CHECK(square == doctest::Approx(161).epsilon(tolerance));  // b.b = b^i b_i
 }
 
-TEST_CASE("G4: the failure at a right angle is told, by check and by a run") {
+TEST_CASE("G4: the singularity at a right angle is reported by check and by a run") {
   Read g4("G4_oblique");
   const auto sets = reading::singular_sets(g4.s.mechanics);
   REQUIRE(sets.size() == 1);

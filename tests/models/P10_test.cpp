@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rocket of varying mass, Ex 2.6: the thrust of a prescribed climb against its closed form, by hand from (2.163).
+// Rocket with variable mass, Ex 2.6: thrust of a prescribed climb against its closed form from (2.163).
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using namespace eomgen;
 
 namespace {
 
-constexpr double rounding = 1e-14;  // some ten operations, beside cancellation within the sum of at most a factor 5
+constexpr double rounding = 1e-14;  // about ten operations, with cancellation in the sum by at most a factor of 5
 constexpr double of_a_run = 1e-9;   // relative, a minute at rtol 1e-12
 
 struct Numbers {
@@ -39,7 +39,7 @@ TEST_CASE("P10: the thrust is radial and equals d(m Rdot)/dt + alpha m/R^2 at al
     INFO(route.name);
     system::EquationSystem& s = *derived;
     const std::vector<std::string> names = analysis::add_prescribed_forces(m, s, analysis::prescribing_constraints(m));
-    // No force turns the rocket: those of theta and phi vanish identically and are left out.
+    // No force acts along theta and phi: these generalised forces vanish identically and are omitted.
     CHECK(names == std::vector<std::string>{"force.R", "P.force1", "P.force2", "P.force3", "prescribed.power"});
     std::vector<symbolic::Ref> values;
     for (const std::string& name : names) {
@@ -61,7 +61,7 @@ TEST_CASE("P10: the thrust is radial and equals d(m Rdot)/dt + alpha m/R^2 at al
   }
 }
 
-TEST_CASE("P10: free to turn, the moment of momentum is that of the side force, and the radial thrust follows it") {
+TEST_CASE("P10: free to rotate, angular momentum follows from the side force, and the radial thrust from both") {
   const test::Finished run = test::run_model("P10_rocket_pitching", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-15;

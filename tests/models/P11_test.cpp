@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The wall presses with m f'' = m b; the pull along it is F0 t.
+// The normal force of the wall is m f'' = m b; the tangential force is F0 t.
 #include <doctest/doctest.h>
 
 #include "models/rough.hpp"
@@ -19,7 +19,7 @@ struct Wall {
         mu_s(run.parameter("mu_s")),
         mu_d(run.parameter("mu_d")) {}
   double slips_at() const { return mu_s * m * b / F0; }
-  /// From rest at the time of slip.
+  /// From rest at the onset of slip.
   double y_dot(double t) const { return F0 / (2 * m) * (t * t - square(slips_at())) - mu_d * b * (t - slips_at()); }
   double y(double t) const {
     const double s = slips_at();
@@ -31,7 +31,7 @@ struct Wall {
 
 }  // namespace
 
-TEST_CASE("P11: the particle is held by static friction until the pull is mu_s m f'', and slides by the closed form") {
+TEST_CASE("P11: the particle sticks until the tangential force reaches mu_s m f'', then slides by the closed form") {
   const Finished run = run_rough("P11_rough_wall");
   const Wall wall(run);
   REQUIRE(events_of(run).size() == 1);
@@ -49,12 +49,12 @@ TEST_CASE("P11: the particle is held by static friction until the pull is mu_s m
     if (std::abs(t - wall.slips_at()) > 1e-6)
       CHECK(run.rows.at(i, "friction.wall.2") == doctest::Approx(friction).epsilon(1e-11).scale(1));
     CHECK(run.rows.at(i, "friction.wall.1") == 0);
-    CHECK(run.rows.at(i, "friction.wall.3") == 0);  // the floor lets nothing slide up or down the wall
+    CHECK(run.rows.at(i, "friction.wall.3") == 0);  // the floor prevents vertical sliding
   }
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
-TEST_CASE("P11: thrown against the pull it slides, is held, and slides again") {
+TEST_CASE("P11: thrown against the tangential force it slides, sticks, and slides again") {
   const Finished run = run_rough("P11_rough_wall", "moving");
   const Wall wall(run);
   // -2 + mu_d b t + F0 t^2/(2 m) = 0
@@ -67,7 +67,7 @@ TEST_CASE("P11: thrown against the pull it slides, is held, and slides again") {
   CHECK(std::abs(run.final("y") - (y + wall.y(run.simulation.result.t))) < by_hand);
 }
 
-TEST_CASE("P11: under the smooth law it creeps before it slides, as its one equation integrated by hand does") {
+TEST_CASE("P11: with the smooth law it creeps before it slides, as in the hand-written equation") {
   std::string text = read_text(model_path("P11_rough_wall"));
   const std::string law = "static = \"mu_s\", dynamic = \"mu_d\"",
                     static_value = "mu_s = { value = 0.5, unit = \"1\" }\n";

@@ -22,9 +22,9 @@ TEST_CASE("P12: of the set (1.79) the first constraint is integrable, the others
   CHECK(print::render_expression(m, "", "", m.integrals[0].psi).text == "1/2 (x1^2 + y1^2 + 2 h0 sin(w t)/w)");
 }
 
-TEST_CASE("P12: the integral is kept with the constant of the start, and all three constraints hold") {
+TEST_CASE("P12: the integral keeps its initial value, and all three constraints hold") {
   const test::Finished run = test::run_model("P12_pfaffian_set", [](pipeline::SimulationRequest& request) {
-    request.overrides.rtol = 1e-6;  // so loose that the distance would drift
+    request.overrides.rtol = 1e-6;  // a tolerance at which the distance would drift
     request.overrides.atol = 1e-6;
   });
   const double h0 = run.parameter("h0"), w = run.parameter("w");
@@ -32,10 +32,10 @@ TEST_CASE("P12: the integral is kept with the constant of the start, and all thr
     const double x = run.rows.at(i, "x1"), y = run.rows.at(i, "y1");
     return (x * x + y * y) / 2 + h0 / w * std::sin(w * run.rows.t[i]);
   };
-  const std::size_t last = run.rows.size() - 1;  // the end of a step; rows before it lie between steps
+  const std::size_t last = run.rows.size() - 1;  // end of a step; earlier rows are between steps
   CHECK(integral(last) == doctest::Approx(integral(0)).epsilon(1e-13));
   CHECK(run.drift("integral.first") < 1e-13);
-  CHECK(run.simulation.result.projection_position > 1e-10);  // it had something to do
+  CHECK(run.simulation.result.projection_position > 1e-10);  // the projection was necessary
   CHECK(run.simulation.result.constraint_drift < 1e-14);
   const auto y = [&](const char* name) { return run.rows.at(last, name); };
   CHECK(std::abs(y("y2_dot") + y("z2") * y("x2_dot")) < 1e-14);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Force fields of Ex 2.1: verdicts by hand (2.20), potentials by their differences between places, which no constant
-// changes.
+// Force fields of Ex 2.1: verdicts from (2.20), potentials by their differences between two points, which do not depend
+// on a constant.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using namespace eomgen;
 
 namespace {
 
-constexpr double rounding = 1e-13;  // some twenty operations on numbers of the size of 1
+constexpr double rounding = 1e-13;  // about twenty operations on numbers of magnitude 1
 constexpr double k = 2, GM = 3, c = 0.4;
 
 struct Place {
@@ -30,7 +30,7 @@ struct Expected {
   std::string name;
   conservation::Verdict verdict;
   bool many_valued;
-  Field U;  // nothing where there is no potential
+  Field U;  // empty: no potential
 };
 
 const std::vector<Expected>& expected() {
@@ -79,8 +79,7 @@ void check_fields(const std::string& name, const std::function<std::vector<doubl
 
 }  // namespace
 
-TEST_CASE(
-    "P13: in Cartesian coordinates two of the four fields of (2.155) are conservative or not as their curl says") {
+TEST_CASE("P13: in Cartesian coordinates two of the four fields of (2.155) are conservative, as their curl shows") {
   check_fields("P13_force_fields", [](const Place& p) { return std::vector<double>{p.x, p.y, p.z}; });
 }
 
@@ -90,8 +89,7 @@ TEST_CASE("P13: in cylindrical coordinates the verdicts and the potentials are t
   });
 }
 
-TEST_CASE(
-    "P13: e_theta/r does work 2 pi c along each turn, though its curl vanishes, and its domain leaves out the axis") {
+TEST_CASE("P13: e_theta/r does work 2 pi c per turn although its curl vanishes, and its domain excludes the axis") {
   const model::Model model = model::read_model(test::model_path("P13_force_fields_cylindrical"));
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   const conservation::ForceClass vortex = conservation::classify_forces(m).back();
@@ -105,7 +103,7 @@ TEST_CASE(
   CHECK_FALSE(same.domain.empty());
 }
 
-TEST_CASE("P13: forces with potentials leave the energy with them conserved, and T + U not") {
+TEST_CASE("P13: the energy with the potentials of forces is conserved, T + U is not") {
   const test::Finished run = test::run_model("P13_saddle_field", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;

@@ -21,7 +21,7 @@ void tighten(pipeline::SimulationRequest& request) {
 
 }  // namespace
 
-TEST_CASE("P14: in Cartesian, spherical and parabolic coordinates it follows Kepler's equation and keeps E and h") {
+TEST_CASE("P14: in Cartesian, spherical and parabolic coordinates, Kepler's equation holds and E and h are conserved") {
   for (const char* name : {"P14_kepler_cartesian", "P14_kepler_spherical", "P14_kepler_parabolic"}) {
     INFO(name);
     const test::Finished run = test::run_model(name, tighten);
@@ -36,7 +36,8 @@ TEST_CASE("P14: in Cartesian, spherical and parabolic coordinates it follows Kep
     }
     CHECK(worst < tolerance);
     CHECK(run.drift("energy") < 1e-11);
-    // Cyclic or not, in every chart; at the start H.E1 vanishes but for rounding, and its drift is measured by |r||v|.
+    // In every chart, with and without ignorable coordinates. H.E1 is 0 up to rounding; its drift is relative to
+    // |r||v|.
     const bool cyclic = name != std::string("P14_kepler_cartesian");
     for (const char* h :
          {"angular_momentum.E1", "angular_momentum.E2", cyclic ? "momentum.theta" : "angular_momentum.E3"}) {

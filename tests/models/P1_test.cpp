@@ -7,7 +7,7 @@
 
 using namespace eomgen;
 
-TEST_CASE("P1: of constant length it keeps E and h_z to 1e-10 over 100 s") {
+TEST_CASE("P1: with constant length, E and h_z are conserved to 1e-10 over 100 s") {
   const test::Finished run = test::run_model("P1_spherical_pendulum", [](pipeline::SimulationRequest& request) {
     request.scene = "long";  // DOP853, rtol = atol = 1e-12, 100 s
   });
@@ -17,12 +17,12 @@ TEST_CASE("P1: of constant length it keeps E and h_z to 1e-10 over 100 s") {
   CHECK(run.drift("momentum.theta") < 1e-10);
 }
 
-TEST_CASE("P1: a conical pendulum circles at a constant height with the tension that the circle needs") {
+TEST_CASE("P1: a conical pendulum has constant height and the tension of circular motion") {
   const test::Finished run =
       test::run_model("P1_spherical_pendulum", [](pipeline::SimulationRequest& request) { request.scene = "conical"; });
   const double m = run.parameter("m"), g = run.parameter("g"), L = run.parameter("L");
   const double rate = std::sqrt(2 * g / L);  // phi = 2 pi/3: rate^2 = -g/(L cos phi)
-  // The circle is neutral to first order: errors of the steps (rtol 1e-9) grow linearly over some 44 radians.
+  // The circle is neutrally stable to first order: errors (rtol 1e-9) grow linearly over about 44 radians.
   constexpr double tolerance = 1e-7;
   CHECK(run.final("phi") == doctest::Approx(2 * std::acos(-1.0) / 3).epsilon(tolerance));
   CHECK(run.final("theta") == doctest::Approx(rate * run.simulation.scene.t1).epsilon(tolerance));
@@ -32,7 +32,7 @@ TEST_CASE("P1: a conical pendulum circles at a constant height with the tension 
 
 TEST_CASE("P1: with L(t), dE/dt = lambda Ldot along the run") {
   const test::Finished run = test::run_model("P1_spherical_pendulum_varying", [](pipeline::SimulationRequest& request) {
-    // Rows are read off the dense output, whose error the differences below divide by 0.01.
+    // Rows come from the dense output; the differences below divide its error by 0.01.
     request.overrides.rtol = 1e-14;
     request.overrides.atol = 1e-14;
     request.overrides.every = 0.01;
@@ -52,7 +52,7 @@ TEST_CASE("P1: with L(t), dE/dt = lambda Ldot along the run") {
     worst_slope = std::max(worst_slope, std::abs(slope - power));
     scale = std::max(scale, std::abs(power));
   }
-  CHECK(scale > 1);  // the moving rod really does work
+  CHECK(scale > 1);  // the moving rod does work
   CHECK(worst_power / scale < 1e-12);
   CHECK(worst_slope / scale < 1e-9);
 }

@@ -8,7 +8,7 @@
 
 using namespace eomgen;
 
-TEST_CASE("P2: of constant length it swings as the elliptic functions say, and both reactions are known") {
+TEST_CASE("P2: with constant length it follows the elliptic functions, and both reactions are correct") {
   const test::Finished run = test::run_model("P2_planar_pendulum", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
@@ -21,14 +21,14 @@ TEST_CASE("P2: of constant length it swings as the elliptic functions say, and b
     // The rod pulls inwards: lambda = -(m L w^2 + m g cos(theta)).
     const double rod = -(m * L * swing.rate * swing.rate + m * g * std::cos(swing.angle));
     worst_rod = std::max(worst_rod, std::abs(run.rows.at(i, "reaction.rod") - rod));
-    CHECK(run.rows.at(i, "reaction.plane") == 0);  // nothing pushes it out of its plane
+    CHECK(run.rows.at(i, "reaction.plane") == 0);  // no force out of the plane
   }
   CHECK(run.rows.size() > 400);
   CHECK(worst_angle < 1e-10);  // ten seconds at rtol 1e-12, dense output included
   CHECK(worst_rod < 1e-9);
 }
 
-TEST_CASE("P2: of varying length it keeps the power balance and the reaction of (2.43)") {
+TEST_CASE("P2: with variable length it satisfies the power balance and the reaction of (2.43)") {
   const test::Finished run = test::run_model("P2_planar_pendulum_varying", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;

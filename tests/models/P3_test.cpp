@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A horizontal plane that moves with v(t) E3, eq. (1.35): z - h is the integral of v from the start of the run. The
-// verdict of every run here holds both approaches against the judge, which integrates v by quadrature.
+// A horizontal plane that moves with v(t) E3, eq. (1.35): z - h is the integral of v from the start of the run. Every
+// run here checks both approaches against the independent oracle, which integrates v by quadrature.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ void tight(pipeline::SimulationRequest& request) {
   request.overrides.atol = 1e-12;
 }
 
-// What the spring does in the plane, whatever the plane does: x and y swing with sqrt(k/m).
+// Motion by the spring in the plane, independent of the plane: x and y oscillate with sqrt(k/m).
 void check_swing(const test::Finished& run, std::size_t i) {
   const double w = std::sqrt(run.parameter("k") / run.parameter("m")), phase = w * (run.rows.t[i] - run.rows.t[0]);
   CHECK(run.rows.at(i, "x") == doctest::Approx(std::cos(phase)).epsilon(1e-10));
@@ -26,7 +26,7 @@ void check_swing(const test::Finished& run, std::size_t i) {
 
 }  // namespace
 
-TEST_CASE("P3: height and reaction have their closed forms, wherever the run starts") {
+TEST_CASE("P3: height and reaction have their closed forms, for any start time") {
   for (const char* scene : {"default", "later"}) {
     CAPTURE(scene);
     const test::Finished run = test::run_model("P3_moving_plane", [&](pipeline::SimulationRequest& request) {
@@ -49,7 +49,7 @@ TEST_CASE("P3: height and reaction have their closed forms, wherever the run sta
   }
 }
 
-TEST_CASE("P3: in the reading form the integral stays one, and its rate is v") {
+TEST_CASE("P3: in the display form the integral remains an integral, and its rate is v") {
   test::Read read("P3_moving_plane");
   const reading::ReadingForm form = read.form(system::Approach::one);
   REQUIRE(form.reactions.size() == 1);
@@ -60,7 +60,7 @@ TEST_CASE("P3: in the reading form the integral stays one, and its rate is v") {
   CHECK(test::same(form.constraints[0].value_acceleration, read("v_dot")));
 }
 
-TEST_CASE("P3: an integral that is no elementary function is a state, and has the value of the error function") {
+TEST_CASE("P3: an integral that is not elementary is a state with the value of the error function") {
   const test::Finished run = test::run_model("P3_moving_plane_gust", tight);
   CHECK(run.simulation.certificate.pass);
   CHECK(run.simulation.program.integrals.size() == 1);
@@ -77,7 +77,7 @@ TEST_CASE("P3: an integral that is no elementary function is a state, and has th
   CHECK(run.simulation.result.power_balance < 1e-10);
 }
 
-TEST_CASE("P3: the start of the run is the scene's affair, and a factor of t that is 0 is told") {
+TEST_CASE("P3: the start time is set by the scene, and a zero factor of t is reported") {
   const auto problem = [](const char* parameter, long value) -> std::string {
     try {
       test::run_model("P3_moving_plane",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Newton's law in spherical coordinates, phi = pi/2 - alpha(t) put in by hand.
+// Newton's law in spherical coordinates with phi = pi/2 - alpha(t).
 #include <doctest/doctest.h>
 
 #include "models/rough.hpp"
@@ -25,7 +25,7 @@ struct Cone {
   double phi(double t) const { return std::acos(-1.0) / 2 - alpha0 - A * std::sin(w * t); }
   double phi1(double t) const { return -A * w * std::cos(w * t); }
   double phi2(double t) const { return A * w * w * std::sin(w * t); }
-  /// The force of the cone along e_phi.
+  /// Force of the cone along e_phi.
   double normal(double t, const double* x) const {
     const double s = std::sin(phi(t)), c = std::cos(phi(t));
     return m * (x[0] * phi2(t) + 2 * x[2] * phi1(t) - x[0] * s * c * x[3] * x[3]) - m * g * s;
@@ -39,7 +39,7 @@ struct Cone {
         x[0] * (phi1(t) * phi1(t) + s * s * x[3] * x[3]) - g * c - K / m * (x[0] - L0) - mu_d * N / m * along / speed;
     dx[3] = (-mu_d * N / m * round / speed - 2 * x[2] * s * x[3] - 2 * x[0] * c * phi1(t) * x[3]) / (x[0] * s);
   }
-  /// What friction has to hold at rest on the cone.
+  /// Friction force required for rest on the cone.
   double pull(double t, double R) const {
     return m * (-R * phi1(t) * phi1(t)) + m * g * std::cos(phi(t)) + K * (R - L0);
   }
@@ -70,9 +70,7 @@ void follows_newton(const std::string& model, bool moves) {
 
 }  // namespace
 
-TEST_CASE(
-    "P4: on the cone that stands, and on the one that moves, the particle slides as Newton's law in spherical "
-    "coordinates says") {
+TEST_CASE("P4: on the fixed and on the moving cone the particle slides by Newton's law in spherical coordinates") {
   follows_newton("P4_rough_cone", false);
   follows_newton("P4_moving_cone", true);
 }
@@ -95,7 +93,7 @@ TEST_CASE("P4: at random states the derived accelerations are those of Newton's 
   }
 }
 
-TEST_CASE("P4: at rest it stays where friction within its cone holds spring and weight, and slides off beyond") {
+TEST_CASE("P4: at rest it sticks if the friction cone contains the required force, and slides otherwise") {
   const Finished held = run_rough("P4_rough_cone", "held");
   CHECK(events_of(held).empty());
   const Cone cone(held, false);
@@ -113,8 +111,8 @@ TEST_CASE("P4: at rest it stays where friction within its cone holds spring and 
   CHECK(events_of(slides)[0].t == 0);
 }
 
-TEST_CASE("P4: released along its meridian it stops where the closed form says") {
-  // m R'' = -m g sin(alpha) - K (R - L0) - mu_d N: half a swing about the place where these vanish.
+TEST_CASE("P4: released along its meridian it stops at the point of the closed form") {
+  // m R'' = -m g sin(alpha) - K (R - L0) - mu_d N: half an oscillation about the point where these vanish.
   const Finished run = run_rough("P4_rough_cone", "released");
   const Cone cone(run, false);
   const double N = cone.m * cone.g * std::sin(cone.phi(0));
@@ -126,7 +124,7 @@ TEST_CASE("P4: released along its meridian it stops where the closed form says")
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
-TEST_CASE("P4: carried by the cone it slips when its pull first exceeds what friction can hold") {
+TEST_CASE("P4: carried by the cone it slips when the required force first exceeds the static friction") {
   const Finished run = run_rough("P4_moving_cone", "shaken");
   const Cone cone(run, true);
   const double R = 0.45;

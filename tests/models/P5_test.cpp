@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rough sphere of Ex 2.5, (2.157)-(2.160) written out by hand; inside (psi = R0 - R) and outside (psi = R - R0, can
-// be left).
+// The rough sphere of Ex 2.5 with hand-written (2.157)-(2.160): inside (psi = R0 - R), and outside (psi = R - R0,
+// unilateral).
 #include <doctest/doctest.h>
 
 #include "models/reading_of.hpp"
@@ -75,7 +75,7 @@ void sliding_is_2_157(const std::string& model, bool leaves) {
 
 }  // namespace
 
-TEST_CASE("P5: the reading form is (2.157) and (2.158) but for friction, by proof") {
+TEST_CASE("P5: the display form equals (2.157) and (2.158) without friction, symbolically") {
   Read p5("P5_inside_rough_sphere");
   const Sum m = p5("m"), g = p5("g"), R0 = p5("R0"), K = p5("K"), L0 = p5("L0"), a = p5("a"), b = p5("b");
   const Sum s = sin(p5("phi")), c = cos(p5("phi")), st = sin(p5("theta")), ct = cos(p5("theta"));
@@ -101,7 +101,7 @@ TEST_CASE(
   sliding_is_2_157("P5_rough_sphere", true);
 }
 
-TEST_CASE("P5: inside it slides by (2.157) until it sticks, and is held there with (2.159)") {
+TEST_CASE("P5: inside it slides by (2.157) until it sticks, with the friction of (2.159)") {
   const Finished run = run_rough("P5_inside_rough_sphere");
   const Sphere sphere(run);
   REQUIRE(events_of(run).size() == 1);
@@ -117,7 +117,7 @@ TEST_CASE("P5: inside it slides by (2.157) until it sticks, and is held there wi
     before = run.rows.at(i, "energy");
   }
   CHECK(compared > 100);
-  // Fc = m g E3 + K (x - L) x/|x|, of which N is along e_R.
+  // Fc = m g E3 + K (x - L) x/|x|; N is its component along e_R.
   const double phi = run.final("phi"), theta = run.final("theta"), N = -run.final("reaction.sphere");
   const std::array<double, 3> f = sphere.spring(phi, theta);
   const double s = std::sin(phi), c = std::cos(phi);
@@ -131,7 +131,7 @@ TEST_CASE("P5: inside it slides by (2.157) until it sticks, and is held there wi
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
-TEST_CASE("P5: at rest it stays for as long as mu_s N covers the force along the sphere, and slides beyond") {
+TEST_CASE("P5: at rest it sticks while mu_s N exceeds the tangential force, and slides otherwise") {
   const Finished held = run_rough("P5_rough_sphere", "held");
   const Sphere sphere(held);
   CHECK(events_of(held).empty());
@@ -150,7 +150,7 @@ TEST_CASE("P5: at rest it stays for as long as mu_s N covers the force along the
 }
 
 TEST_CASE(
-    "P5: it leaves the sphere where (2.158) vanishes along the motion by hand, and flies without friction from there") {
+    "P5: it leaves the sphere where (2.158) vanishes along the hand-written motion, then flies without friction") {
   const Finished run = run_rough("P5_rough_sphere");
   const Sphere sphere(run);
   REQUIRE(events_of(run).size() == 1);
@@ -168,14 +168,14 @@ TEST_CASE(
     CHECK(run.rows.at(i, "R") > sphere.R0);
     CHECK(run.rows.at(i, "reaction.sphere") == 0);
     CHECK(run.rows.at(i, "mode.sphere") == 2);
-    CHECK(std::abs(run.rows.at(i, "energy") - run.final("energy")) < by_hand);  // the spring's is in it
+    CHECK(std::abs(run.rows.at(i, "energy") - run.final("energy")) < by_hand);  // includes the energy of the spring
     ++flying;
   }
   CHECK(flying > 10);
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
-TEST_CASE("P5: smooth and without spring it leaves at cos(phi) = 2/3, and inside it keeps h and (2.160)") {
+TEST_CASE("P5: smooth and without spring it leaves at cos(phi) = 2/3, and inside it conserves h and (2.160)") {
   const Finished outside = run_rough("P5_rough_sphere", "smooth");
   REQUIRE(events_of(outside).size() == 1);
   const double g = outside.parameter("g"), R0 = outside.parameter("R0"), leaves = std::acos(2.0 / 3);

@@ -54,7 +54,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("P6: between its events the particle follows the equation by hand, until it is held") {
+TEST_CASE("P6: between events the particle follows the hand-written equation, until it sticks") {
   const Finished run = run_rough("P6_rough_circle");
   const Circle c(run);
   const std::vector<run::RunEvent> events = events_of(run);
@@ -65,7 +65,7 @@ TEST_CASE("P6: between its events the particle follows the equation by hand, unt
   for (std::size_t k = 0; k < events.size(); ++k) {
     CHECK(events[k].kind == (k + 1 < events.size() ? "reverse" : "stick"));
     hand.to(events[k].t);
-    CHECK(std::abs(hand.x[1]) < 100 * by_hand);  // it stands there: some 10 rad/s^2 times the error of the time
+    CHECK(std::abs(hand.x[1]) < 100 * by_hand);  // at rest: about 10 rad/s^2 times the error of the time
     sign = -sign;
   }
   CHECK(std::abs(run.final("theta") - hand.x[0]) < by_hand);
@@ -86,9 +86,7 @@ TEST_CASE("P6: on a level circle of constant radius it stops after asinh(L w^2/g
   CHECK(std::abs(events_of(run)[0].t - time) < by_hand);
 }
 
-TEST_CASE(
-    "P6: a circle that grows and shrinks carries what friction holds, and its power is all that the energy changes "
-    "by") {
+TEST_CASE("P6: an oscillating circle carries a sticking particle, and its power is the rate of the energy") {
   const Finished run = run_rough("P6_rough_circle", "held");
   CHECK(events_of(run).empty());
   const Circle c(run);

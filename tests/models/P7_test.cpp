@@ -7,7 +7,7 @@
 
 using namespace eomgen;
 
-TEST_CASE("P7: both approaches and the reading form agree with the judge to 45 digits at 20 random points") {
+TEST_CASE("P7: both approaches and the display form agree with the oracle to 45 digits at 20 random points") {
   const std::unique_ptr<pipeline::Derived> derived =
       pipeline::derive_model(test::model_at(test::model_path("P7_moving_sphere")), pipeline::ApproachChoice::automatic);
   const program::Program program = pipeline::make_program(*derived, {});
@@ -23,7 +23,7 @@ TEST_CASE("P7: both approaches and the reading form agree with the judge to 45 d
     CHECK(c.max_relative_difference < 1e-45);
     ++against_judge;
   }
-  CHECK(against_judge >= 6);  // three routes in two approaches
+  CHECK(against_judge >= 6);  // three formulations in two approaches
 }
 
 TEST_CASE("P7: the reaction along the run is (2.111), and the power balance holds") {
@@ -43,7 +43,7 @@ TEST_CASE("P7: the reaction along the run is (2.111), and the power balance hold
   }
 }
 
-TEST_CASE("P7: with a constraint on velocities both reactions are those of (2.114)") {
+TEST_CASE("P7: with a velocity constraint both reactions are those of (2.114)") {
   const test::Finished run = test::run_model("P7_moving_sphere_pfaffian", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rough helix: (2.143), (2.145) with its indices put right, and what follows from them by quadrature.
+// The rough helix: (2.143), (2.145) with corrected indices, and quadratures of these.
 #include <doctest/doctest.h>
 
 #include "models/rough.hpp"
@@ -53,7 +53,7 @@ TEST_CASE("P8: at random states the derived equations are (2.143), the normal fo
   }
 }
 
-TEST_CASE("P8: thrown up it stops where and when the quadrature of (2.143) says, and is held with (2.145)") {
+TEST_CASE("P8: thrown up it stops at the place and time of the quadrature of (2.143), and sticks with (2.145)") {
   const Finished run = run_rough("P8_rough_helix");
   const Helix h(run);
   REQUIRE(events_of(run).size() == 1);
@@ -63,7 +63,7 @@ TEST_CASE("P8: thrown up it stops where and when the quadrature of (2.143) says,
   CHECK(std::abs(events_of(run)[0].t - time) < by_hand);
   const double theta = run.final("theta");
   CHECK(std::abs(theta - 0.5 - angle) < by_hand);
-  // Components of the whole force of the wire along a_1, a_2, a_3 are those of -Fa.
+  // The components of the total force of the wire along a_1, a_2, a_3 are those of -Fa.
   const double l1 = run.final("reaction.wire.1"), l2 = run.final("reaction.wire.2");
   const double f1 = run.final("friction.wire.1"), f2 = run.final("friction.wire.2"), f3 = run.final("friction.wire.3");
   const double along_r = f1 * std::cos(theta) + f2 * std::sin(theta),
@@ -75,7 +75,7 @@ TEST_CASE("P8: thrown up it stops where and when the quadrature of (2.143) says,
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
-TEST_CASE("P8: on a wire that cannot hold it it turns, and slides down as the quadrature says") {
+TEST_CASE("P8: on a wire with too little friction it reverses and slides down by the quadrature") {
   const Finished run = run_rough("P8_rough_helix", "slips");
   const Helix h(run);
   REQUIRE(events_of(run).size() == 1);
@@ -88,7 +88,7 @@ TEST_CASE("P8: on a wire that cannot hold it it turns, and slides down as the qu
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
-TEST_CASE("P8: from rest it stays if mu_s is at least alpha, and slides if it is less") {
+TEST_CASE("P8: from rest it sticks if mu_s is at least alpha, and slides otherwise") {
   const double alpha = 0.3;
   CHECK(events_of(run_rough("P8_rough_helix", "rest")).empty());
   CHECK(events_of(run_rough("P8_rough_helix", "rest", with({{"mu_s", alpha * (1 + 1e-9)}}))).empty());

@@ -9,7 +9,7 @@
 using namespace eomgen;
 using namespace eomgen::test;
 
-TEST_CASE("P8: theta is left, with (2.150); both constraint forces are those of (2.149)") {
+TEST_CASE("P8: theta remains, with (2.150); both constraint forces are those of (2.149)") {
   Read p8("P8_smooth_helix");
   const Sum m = p8("m"), g = p8("g"), R = p8("R"), al = p8("alpha"), th = p8("theta"), dth = p8("theta_dot"),
             ddth = p8("theta_ddot");

@@ -31,7 +31,7 @@ TEST_CASE("P9: the normal force is (2.171), h is conserved, and with it the moti
   CHECK(same(two.kinetic + two.potential, energy));
 }
 
-TEST_CASE("P9: energy and h are kept over 100 s, and u stays between the roots of (2.173)") {
+TEST_CASE("P9: energy and h are conserved over 100 s, and u stays between the roots of (2.173)") {
   const Finished run = run_model("P9_paraboloid", [](pipeline::SimulationRequest& request) { request.scene = "long"; });
   CHECK(run.drift("energy") < 1e-10);
   CHECK(run.drift("momentum.theta") < 1e-10);
@@ -51,7 +51,7 @@ TEST_CASE("P9: energy and h are kept over 100 s, and u stays between the roots o
   CHECK(most > outer - 0.02);
 }
 
-TEST_CASE("P9: circles of any height turn at the same rate") {
+TEST_CASE("P9: circular motions at any height have the same rate") {
   const Finished run =
       run_model("P9_paraboloid", [](pipeline::SimulationRequest& request) { request.scene = "circle"; });
   const double rate = std::sqrt(run.parameter("g")) / run.parameter("c");

@@ -22,7 +22,7 @@ Finished top(const std::string& scene) {
   });
 }
 
-// The moment G is there in every scene, and 0 in most: no invariant is told.
+// Every scene has the moment G, which is 0 in most: no invariant is reported.
 double spread(const Finished& run, const std::string& name) {
   double least = run.rows.at(0, name), greatest = least;
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
@@ -62,7 +62,7 @@ TEST_CASE("R10: the moment along E3 is not conservative, spring and weight are")
   CHECK(found[2].conservative == conservation::Verdict::no);
 }
 
-TEST_CASE("R10: let go without precession it nods between two tilts, roots of the cubic of its energy, in cusps") {
+TEST_CASE("R10: released without precession it nutates between two roots of the cubic of its energy, with cusps") {
   const Finished run = top("default");
   const double m = run.parameter("m"), g = run.parameter("g"), L = run.parameter("L"),
                u0 = std::cos(run.parameter("tilt"));
@@ -74,7 +74,7 @@ TEST_CASE("R10: let go without precession it nods between two tilts, roots of th
     least = std::min(least, run.rows.at(i, "theta"));
     greatest = std::max(greatest, run.rows.at(i, "theta"));
     CHECK(run.rows.at(i, "top.omega3") == doctest::Approx(150).epsilon(1e-11));
-    CHECK(run.rows.at(i, "psi_dot") > -1e-6);  // cusps: it stops, and does not go back
+    CHECK(run.rows.at(i, "psi_dot") > -1e-6);  // cusps: the precession stops and does not reverse
   }
   CHECK(least == doctest::Approx(run.parameter("tilt")).epsilon(1e-9));
   CHECK(greatest == doctest::Approx(std::acos(u1)).epsilon(1e-9));
@@ -84,13 +84,13 @@ TEST_CASE("R10: let go without precession it nods between two tilts, roots of th
     CHECK(momentum(run, i) == doctest::Approx(momentum(run, 0)).epsilon(1e-10));
 }
 
-TEST_CASE("R10: started with the slow rate of steady precession it keeps its tilt") {
+TEST_CASE("R10: started with the slow rate of steady precession, its tilt is constant") {
   const Finished run = top("steady");
   for (std::size_t i = 0; i < run.rows.size(); ++i) CHECK(std::abs(run.rows.at(i, "theta") - 0.6) < 1e-9);
   CHECK(run.final("psi") == doctest::Approx(5 * run.parameter("slow")).epsilon(1e-9));
 }
 
-TEST_CASE("R10: a torsional spring keeps the energy and takes the momentum of psi; a moment G E3 adds G t to it") {
+TEST_CASE("R10: a torsional spring conserves energy but not the momentum of psi; a moment G E3 adds G t to it") {
   const Finished spring = top("spring");
   CHECK(spread(spring, "energy") < 1e-10);
   CHECK(std::abs(momentum(spring, spring.rows.size() - 1) - momentum(spring, 0)) > 0.01);

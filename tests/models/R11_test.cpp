@@ -10,7 +10,7 @@
 using namespace eomgen;
 using namespace eomgen::test;
 
-TEST_CASE("R11: a constant moment is not conservative, and is where the body turns about its direction only") {
+TEST_CASE("R11: a constant moment is conservative only if the body rotates about its direction") {
   Read r11("R11_constant_moment"), axis("R11_constant_moment_fixed_axis");
   CHECK(conservation::classify_forces(r11.s.mechanics).at(0).conservative == conservation::Verdict::no);
   const conservation::ForceClass fixed = conservation::classify_forces(axis.s.mechanics).at(0);
@@ -20,7 +20,7 @@ TEST_CASE("R11: a constant moment is not conservative, and is where the body tur
 }
 
 // Ziegler's two ways to one attitude: half a turn about E3, or half turns about E1 and then E2, which do no work.
-TEST_CASE("R11: two ways to the same attitude with different work") {
+TEST_CASE("R11: two paths to the same attitude with different work") {
   const auto rotation = [](int axis) {
     std::array<std::array<int, 3>, 3> R{};
     for (int k = 0; k < 3; ++k) R[static_cast<std::size_t>(k)][static_cast<std::size_t>(k)] = k == axis ? 1 : -1;
@@ -45,7 +45,8 @@ TEST_CASE("R11: two ways to the same attitude with different work") {
 }
 
 TEST_CASE(
-    "R11: the energy gains what the moment does; about the fixed axis T + U is kept and the turn is that of M0/J") {
+    "R11: the energy increases by the work of the moment; about a fixed axis T + U is conserved and the rotation "
+    "is that of M0/J") {
   const Finished run = run_model("R11_constant_moment");
   CHECK(run.simulation.result.power_balance < 1e-8);
   for (std::size_t i = 0; i < run.rows.size(); ++i)

@@ -9,7 +9,7 @@ using namespace eomgen;
 
 // Balance of momentum and of moment of momentum about the pin, along the body's axes: F = m a + m g E3 with a = d
 // (alpha e2 - W^2 e1), and dH/dt = M + r x (-m g E3) with H = W (J13 - m d h, J23, J33 + m d^2).
-TEST_CASE("R12: the five reactions of the pin are those of Euler's laws, of an unbalanced body and of a balanced one") {
+TEST_CASE("R12: the five reactions of the pin satisfy Euler's laws for an unbalanced and a balanced body") {
   for (const char* scene : {"default", "balanced"}) {
     INFO(scene);
     const test::Finished run = test::run_model("R12_pinned_body", [&](pipeline::SimulationRequest& request) {

@@ -27,7 +27,7 @@ TEST_CASE("R13: the constraint and the equations are (9.102), and it is not inte
 
 // With v the speed of the centre along e1: vdot = L1 w^2, (J + m L1^2) wdot = -m L1 v w, so that v = c tanh(L1 c t/k^2
 // + ..), k^2 = L1^2 + J/m, c^2 = v^2 + k^2 w^2.
-TEST_CASE("R13: it turns round and goes straight ahead as tanh says, and keeps its energy") {
+TEST_CASE("R13: it turns around and approaches straight motion as tanh, and conserves energy") {
   const Finished run = run_model("R13_sleigh", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = request.overrides.atol = 1e-12;
   });

@@ -26,7 +26,7 @@ TEST_CASE("R14: T is (9.104), the motion (9.106), the constraint force and momen
              r14("Jt") * r14("phi_ddot") * cos(n) - r14("Ja") * dphi * dn * sin(n)));  // and phi_ddot = 0
 }
 
-TEST_CASE("R14: theta = 0, pi is singular for approach I and ordinary for approach II, which turns through it") {
+TEST_CASE("R14: theta = 0, pi is singular in approach I and regular in approach II, which passes through it") {
   Read r14("R14_sliding_cylinder");
   const std::vector<reading::SingularSet> sets = reading::singular_sets(r14.s.mechanics);
   REQUIRE(sets.size() == 1);

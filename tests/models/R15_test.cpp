@@ -22,7 +22,7 @@ void replace(std::string& text, const std::string& old, const std::string& with)
   text.replace(at, old.size(), with);
 }
 
-/// The shipped model without its joint: the second body is placed by the joint instead.
+/// The shipped model without the joint, which is replaced by relative coordinates of the second body.
 std::string built_in(const std::string& name) {
   std::string text = read_text(model_path(name));
   const std::size_t joint = text.find("[[joint]]"), next = text.find("[definitions]");
@@ -45,7 +45,7 @@ void check_balance(const Finished& run, const std::string& joint) {
       CHECK(std::abs(run.rows.at(i, "reaction." + joint + "." + k) - run.rows.at(i, std::string("F") + k)) <
             same);  // Newton's law of the second
       CHECK(std::abs(run.rows.at(i, std::string("H") + k) - run.rows.at(0, std::string("H") + k)) <
-            same);  // nothing acts from outside
+            same);  // no external force
     }
   }
   CHECK(run.drift("energy") < 1e-11);
@@ -53,7 +53,7 @@ void check_balance(const Finished& run, const std::string& joint) {
 
 }  // namespace
 
-TEST_CASE("R15: two bodies with a ball joint move as if it were built into the coordinates, relative angles 1-3-1") {
+TEST_CASE("R15: a ball joint gives the same motion as relative coordinates, angles 1-3-1") {
   const Finished joint = run_model("R15_ball_joint", tighten),
                  tree = run_text("R15_ball_built_in", built_in("R15_ball_joint"));
   CHECK(joint.simulation.derived->mechanics.freedom() == 9);
@@ -65,7 +65,7 @@ TEST_CASE("R15: two bodies with a ball joint move as if it were built into the c
   }
 }
 
-TEST_CASE("R15: two bodies with a pin, each by angles 3-2-1, move as if one turned about an axis of the other") {
+TEST_CASE("R15: a pin gives the same motion as a relative angle, angles 3-2-1") {
   std::string text = built_in("R15_pin_joint");
   replace(text, "{ euler = \"321\", angles = [\"n1\", \"n2\", \"n3\"] }",
           "{ axis = \"first.e3\", angle = \"q\" }\nrelative_to = \"first\"");
@@ -81,7 +81,7 @@ TEST_CASE("R15: two bodies with a pin, each by angles 3-2-1, move as if one turn
   }
 }
 
-TEST_CASE("R15: two bodies with a spring (7.65) keep energy, linear and angular momentum; relative angles 3-2-1") {
+TEST_CASE("R15: two bodies with a spring (7.65) conserve energy, linear and angular momentum; angles 3-2-1") {
   const Finished run = run_model("R15_spring", tighten);
   CHECK(run.simulation.derived->mechanics.freedom() == 12);
   for (const char* name :

@@ -49,14 +49,14 @@ std::string model_text(const std::string& rotation, const std::string& start) {
 
 }  // namespace
 
-TEST_CASE("R1: the angular velocity is Jacobi's, in angles and in Euler parameters, and E and H are kept") {
+TEST_CASE("R1: the angular velocity is Jacobi's solution, in angles and Euler parameters, and E and H are conserved") {
   for (const char* name : {"R1_free_body", "R1_free_body_euler_parameters"}) {
     INFO(name);
     const test::Finished run = test::run_model(name, tighten);
     CHECK(worst_against_jacobi(run) < tolerance);
     CHECK(run.drift("energy") < 1e-11);
     for (const char* h : {"angular_momentum.E1", "angular_momentum.E2"}) CHECK(run.drift(h) < 1e-10);
-    // On the ellipsoid of the energy and the sphere of the momentum.
+    // On the energy ellipsoid and the momentum sphere.
     for (std::size_t i = 0; i < run.rows.size(); ++i) {
       double energy = 0, momentum = 0;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -70,7 +70,7 @@ TEST_CASE("R1: the angular velocity is Jacobi's, in angles and in Euler paramete
   }
 }
 
-TEST_CASE("R1: with two equal moments w turns at a constant rate, with three it does not change") {
+TEST_CASE("R1: with two equal moments w rotates at a constant rate, with three it is constant") {
   for (const char* scene : {"axisymmetric", "symmetric"}) {
     INFO(scene);
     const test::Finished run = test::run_model("R1_free_body", [&](pipeline::SimulationRequest& request) {
@@ -87,7 +87,7 @@ TEST_CASE("R1: with two equal moments w turns at a constant rate, with three it 
   }
 }
 
-TEST_CASE("R1: near the middle axis it tumbles: e2 turns over, and E and H are kept") {
+TEST_CASE("R1: near the intermediate axis it tumbles: e2 reverses, and E and H are conserved") {
   const test::Finished run = test::run_model("R1_free_body_euler_parameters", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.rtol = request.overrides.atol = 1e-13;

@@ -60,7 +60,7 @@ TEST_CASE("R2: without drag the ball follows the closed form of (8.63)") {
   CHECK(run.final("x2") > 1);  // the lift bends the flight
 }
 
-TEST_CASE("R2: with drag it follows an integration of vdot alone") {
+TEST_CASE("R2: with drag it agrees with a separate integration of vdot") {
   const test::Finished run = test::run_model("R2_ball_in_flight", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.scene = "drag";

@@ -91,7 +91,7 @@ TEST_CASE(
 // With K = phi_dot sin^2(theta): dK/dtheta = (J3/J) w3 sin(theta), dw3/dtheta = m R^2 K/((J3 + m R^2) sin(theta)). Both
 // follow from Euler's equations about the centre and hold whatever theta does in time: carried back to theta = pi/2 the
 // pair is constant.
-TEST_CASE("R6: the integrals of Appell, Chaplygin and Korteweg keep their values along the run") {
+TEST_CASE("R6: the integrals of Appell, Chaplygin and Korteweg are constant along the run") {
   const Finished run = run_model("R6_rolling_disk", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
@@ -123,6 +123,6 @@ TEST_CASE("R6: the integrals of Appell, Chaplygin and Korteweg keep their values
     least = {std::min(least[0], K), std::min(least[1], w3)};
     most = {std::max(most[0], K), std::max(most[1], w3)};
   }
-  CHECK(most[0] - least[0] > 0.5);  // while neither of the two is constant itself
+  CHECK(most[0] - least[0] > 0.5);  // although neither of the two is constant by itself
   CHECK(most[1] - least[1] > 0.1);
 }

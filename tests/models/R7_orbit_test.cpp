@@ -41,7 +41,7 @@ Attitude attitude(const analysis::SteadyMotions& all, const analysis::SteadyMoti
 // W^2 s^2 + 4 a b W^4 = 0 with a = (J_across - J_radial)/J_along, b = (J_across - J_along)/J_radial. The orbit of the
 // full force differs by J/(m R^2).
 TEST_CASE(
-    "R7_orbit: 24 attitudes rest against the orbit; the rate is Kepler's but for the second order; stable ones have "
+    "R7_orbit: 24 relative equilibria; the rate is Kepler's up to second order; stable ones have "
     "J_across > J_along > J_radial") {
   analysis::SteadyRequest request;
   request.model = test::model_at(test::model_path("R7_satellite_in_orbit"));
@@ -73,7 +73,7 @@ TEST_CASE(
   CHECK(stable == 4);
 }
 
-TEST_CASE("R7_orbit: energy and the angular momentum about the axis of the frame are kept") {
+TEST_CASE("R7_orbit: energy and the angular momentum about the axis of the frame are conserved") {
   const test::Finished run = test::run_model("R7_satellite_in_orbit", [](pipeline::SimulationRequest& r) {
     r.overrides.rtol = 1e-11;
     r.overrides.atol = 1e-12;

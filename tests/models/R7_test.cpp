@@ -27,8 +27,8 @@ TEST_CASE("R7: energy and H_O are conserved with the full attraction of second o
   CHECK(std::abs(run.final("R") - 1) > 1e-4);
 }
 
-// (9.31) has the moment 3GM/R^3 c x Jc on the right, (9.32) the slope of U: the judge takes force and moment, the
-// routes take U.
+// (9.31) has the moment 3GM/R^3 c x Jc on the right, (9.32) the slope of U: the oracle uses force and moment, the
+// formulations use U.
 TEST_CASE("R7: force and moment of (7.72), (9.31) and the potential (7.71), (9.32) give the same equations") {
   const model::Model model = model::read_model(test::model_path("R7_satellite"));
   mechanics::Mechanics m = mechanics::build_mechanics(model);

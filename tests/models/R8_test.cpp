@@ -18,8 +18,8 @@ TEST_CASE("R8: the constrained energies are (9.99)") {
 }
 
 TEST_CASE(
-    "R8: the joint's force is Newton's, the moment that stops the spin Euler's, and the motion is the same without the "
-    "joint") {
+    "R8: the joint force satisfies Newton's law, the moment without spin Euler's, and the motion is the same without "
+    "the joint") {
   const auto tighten = [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = request.overrides.atol = 1e-12;
   };

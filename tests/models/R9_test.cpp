@@ -81,7 +81,7 @@ struct PayloadArm {
 
 }  // namespace
 
-TEST_CASE("R9: the drives of the payload arm give the moments of Newton and Euler") {
+TEST_CASE("R9: the moments of the drives of the payload arm satisfy the laws of Newton and Euler") {
   const model::Model model = model::read_model(test::model_path("R9_payload_arm"));
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   const auto s = derive::lagrange(m, system::Approach::one);

@@ -8,7 +8,7 @@
 
 using namespace eomgen;
 
-TEST_CASE("S1: the two masses move as the sum of their two modes") {
+TEST_CASE("S1: the motion of the two masses is the sum of their modes") {
   const test::Finished run = test::run_model("S1_two_masses", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;

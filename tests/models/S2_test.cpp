@@ -33,7 +33,7 @@ struct Masses {
 
 }  // namespace
 
-TEST_CASE("S2: the multiplier form moves as y' = f(y) with the dependent velocity solved by hand") {
+TEST_CASE("S2: the multiplier form agrees with y' = f(y) with a hand-eliminated velocity") {
   const test::Finished run = test::run_model("S2_two_masses_pfaffian", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
@@ -56,7 +56,7 @@ TEST_CASE("S2: the multiplier form moves as y' = f(y) with the dependent velocit
   CHECK(run.simulation.result.constraint_drift < 1e-14);
 }
 
-TEST_CASE("S2: the start gives the velocity that the constraint fixes") {
+TEST_CASE("S2: the start determines the dependent velocity") {
   const test::Finished run = test::run_model(
       "S2_two_masses_pfaffian", [](pipeline::SimulationRequest& request) { request.overrides.t_end = 0.1; });
   CHECK(run.rows.at(0, "x1_dot") == doctest::Approx((0.3 - 0.5 * 0.1) / 0.64).epsilon(1e-15));

@@ -16,7 +16,7 @@ struct Line {
     g = p("g");
     mu_s = p("mu_s"), mu_d = p("mu_d");
   }
-  /// What acts along the line without friction.
+  /// Force along the line without friction.
   double on1(double, const double* x) const { return -k1 * x[0] - k2 * (x[0] - x[1]) - c1 * x[2] - c2 * (x[2] - x[3]); }
   double on2(double t, const double* x) const {
     return -k2 * (x[1] - x[0]) - c2 * (x[3] - x[2]) + P0 * std::sin(w * t);
@@ -29,7 +29,7 @@ double sign(double v) { return v > 0 ? 1 : -1; }
 }  // namespace
 
 TEST_CASE(
-    "S3: at random states the equations are (3.68) with pull and dashpots, and the lines press with the weights") {
+    "S3: at random states the equations are (3.68) with applied force and dashpots, and normal forces are weights") {
   const Finished run = run_rough("S3_rough_line", "free");
   const Finished pulled = run_rough("S3_rough_line");
   for (const Finished* of : {&run, &pulled}) {
@@ -51,7 +51,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("S3: let go, the second mass swings once while the first is held, and both stay; by the closed form") {
+TEST_CASE("S3: released, the second mass makes one half oscillation while the first sticks, then both stick") {
   const Finished run = run_rough("S3_rough_line", "free");
   const Line line(run);
   REQUIRE(events_of(run).size() == 2);
@@ -65,9 +65,7 @@ TEST_CASE("S3: let go, the second mass swings once while the first is held, and 
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
-TEST_CASE(
-    "S3: pulled, each mass sticks and slides by itself: equations by hand from event to event, the static law in "
-    "between") {
+TEST_CASE("S3: under the applied force each mass sticks and slides by hand-written equations and the static law") {
   const Finished run = run_rough("S3_rough_line");
   const Line line(run);
   const std::vector<run::RunEvent> events = events_of(run);
@@ -108,8 +106,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("S3: a run at any tolerance goes on where a mass starts from rest at rounding") {
-  // Velocities of 1e-17 beside a small atol once asked for first steps that were lost in the rounding of t.
+TEST_CASE("S3: a run at any tolerance continues when a mass starts from rest with rounding errors") {
+  // Velocities of 1e-17 with a small atol used to give first steps below the rounding of t.
   for (const char* solver : {"dopri5", "tsit5", "dop853"}) {
     const Finished run = run_rough("S3_rough_line", "default", [=](pipeline::SimulationRequest& request) {
       request.overrides.solver = solver;

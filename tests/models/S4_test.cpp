@@ -74,7 +74,7 @@ TEST_CASE("S4: the kinetic energy is (3.73), and there are six equations") {
   CHECK(same(form.potential, half(s4("k")) * square(R - s4("L"))));
 }
 
-TEST_CASE("S4: momentum, moment of momentum and energy are conserved") {
+TEST_CASE("S4: momentum, angular momentum and energy are conserved") {
   const Finished run = run_model("S4_two_particles", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
@@ -94,5 +94,5 @@ TEST_CASE("S4: momentum, moment of momentum and energy are conserved") {
     least = std::min(least, run.rows.at(i, "distance"));
     most = std::max(most, run.rows.at(i, "distance"));
   }
-  CHECK(most > 1.2 * least);  // the spring really works
+  CHECK(most > 1.2 * least);  // the spring is active
 }

@@ -19,8 +19,7 @@ void tighten(pipeline::SimulationRequest& request) {
 
 }  // namespace
 
-TEST_CASE(
-    "S5: polar coordinates with rods eliminated and Cartesian ones with multipliers give one motion, one tension") {
+TEST_CASE("S5: polar coordinates without rods and Cartesian ones with multipliers give the same motion and tension") {
   const test::Finished polar = test::run_model("S5_double_pendulum", tighten);
   const test::Finished cartesian = test::run_model("S5_double_pendulum_cartesian", tighten);
   REQUIRE(polar.rows.size() == cartesian.rows.size());
@@ -63,7 +62,7 @@ TEST_CASE("S5: approach I and approach II give the same motion, planar and spher
   }
 }
 
-TEST_CASE("S5: the spherical double pendulum keeps E and the moment of momentum about the vertical") {
+TEST_CASE("S5: the spherical double pendulum conserves E and the vertical angular momentum") {
   const test::Finished run = test::run_model("S5_spherical_double_pendulum", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.outputs = {"P1.position1", "P1.position2", "P1.velocity1", "P1.velocity2",
@@ -81,7 +80,7 @@ TEST_CASE("S5: the spherical double pendulum keeps E and the moment of momentum 
   for (std::size_t i = 0; i < run.rows.size(); ++i) CHECK(h(i) == doctest::Approx(h(0)).epsilon(1e-9));
 }
 
-TEST_CASE("S5: a spherical double pendulum that starts in a plane swings as the planar one") {
+TEST_CASE("S5: a spherical double pendulum that starts in a plane moves as the planar one") {
   const test::Finished planar = test::run_model("S5_double_pendulum", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.t_end = 3;
@@ -126,7 +125,7 @@ initial = { phi1 = "pi/2", phi2 = "pi/2", theta1 = 0.8, theta2 = 0.4 }
 }
 
 TEST_CASE(
-    "S5: a constraint on the velocities of both masses holds, by either approach, and does the work that balances") {
+    "S5: a velocity constraint on both masses holds in either approach, and the power balance includes its work") {
   const auto run = [](pipeline::ApproachChoice approach) {
     return test::run_model("S5_double_pendulum_pfaffian", [approach](pipeline::SimulationRequest& request) {
       tighten(request);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chains of 1 to 20 links in absolute and in relative angles, every mass and length different: each route that applies
-// against the judge; runs that keep their energy; and the same motion in either kind of angle.
+// Chains of 1 to 20 links in absolute and relative angles with different masses and lengths: every applicable
+// formulation against the oracle, conservation of energy, and the same motion with both kinds of angles.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -19,8 +19,7 @@ namespace {
 
 constexpr int longest = 20;
 
-/// The start hangs aslant: rod k at 0.3 + 0.05 k from the vertical, turning at 0.1 k; `relative` says it in other
-/// words.
+/// Initial state: rod k at 0.3 + 0.05 k from the vertical with rate 0.1 k. `relative`: the same in relative angles.
 std::string chain_text(int n, bool relative) {
   std::string mass, length, start;
   for (int k = 1; k <= n; ++k) {
@@ -53,7 +52,7 @@ test::Finished run_chain(int n, bool relative) {
 
 }  // namespace
 
-TEST_CASE("S6: chains of 1 to 20 links in absolute and relative angles agree with the judge by every route") {
+TEST_CASE("S6: chains of 1 to 20 links in absolute and relative angles agree with the oracle in every formulation") {
   for (const bool relative : {false, true}) {
     for (int n = 1; n <= longest; ++n) {
       CAPTURE(n);
@@ -61,7 +60,7 @@ TEST_CASE("S6: chains of 1 to 20 links in absolute and relative angles agree wit
       const model::Model model = model::read_model_text(chain_text(n, relative), "chain.toml");
       mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
       verify::Subjects subjects;
-      // Nothing is eliminated, so that the approaches are one.
+      // Nothing is eliminated, so the approaches are identical.
       for (const derive::RouteEntry& route : derive::routes()) {
         if (auto system = route.derive(mechanics, system::Approach::two))
           subjects.systems.push_back(std::move(*system));
@@ -70,14 +69,14 @@ TEST_CASE("S6: chains of 1 to 20 links in absolute and relative angles agree wit
         const auto of_route = [&](const system::EquationSystem& s) { return s.route == route; };
         CHECK(std::any_of(subjects.systems.begin(), subjects.systems.end(), of_route));
       }
-      const bool large = n > 8;  // the judge's work grows with n^3 and more
+      const bool large = n > 8;  // the cost of the oracle grows with n^3 or more
       const verify::Certificate c = verify::certify(mechanics, subjects, {large ? 15 : 25, large ? 1u : 2u, 1});
       CHECK_MESSAGE(c.pass, c.summary());
     }
   }
 }
 
-TEST_CASE("S6: chains of unlike links keep their energy") {
+TEST_CASE("S6: chains of different links conserve energy") {
   for (const auto& [n, relative] : {std::pair{3, true}, std::pair{4, false}, std::pair{12, false}}) {
     const auto& shown = n;
     CAPTURE(shown);
@@ -85,7 +84,7 @@ TEST_CASE("S6: chains of unlike links keep their energy") {
   }
 }
 
-TEST_CASE("S6: absolute and relative angles are the same motion") {
+TEST_CASE("S6: absolute and relative angles give the same motion") {
   const test::Finished absolute = run_chain(5, false), relative = run_chain(5, true);
   double sum = 0;
   for (int k = 1; k <= 5; ++k) {

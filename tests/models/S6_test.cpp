@@ -63,7 +63,7 @@ TEST_CASE("S6: two links move as the equations written by hand") { compare<2>();
 
 TEST_CASE("S6: six links move as the equations written by hand") { compare<6>(); }
 
-TEST_CASE("S6: the emitted operations stay within what the routes are known to need") {
+TEST_CASE("S6: the emitted operation counts are within the known counts of the formulations") {
   CHECK(chain(2).simulation.program.functions.front().operations.flops() <= 40);
   CHECK(chain(6).simulation.program.functions.front().operations.flops() <= 460);
 }

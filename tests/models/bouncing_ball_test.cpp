@@ -7,7 +7,7 @@ using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE(
-    "bouncing_ball: bounces follow at e^k of the first fall, accumulate, and end in sliding that friction stops") {
+    "bouncing_ball: flight times decrease with e^k, the bounces accumulate, and end in sliding that friction stops") {
   const Finished run = run_rough("bouncing_ball");
   const double g = run.parameter("g"), e = run.parameter("e"), mu = run.parameter("mu_d"), first = std::sqrt(2 / g);
   const std::vector<run::RunEvent> events = events_of(run);
@@ -35,7 +35,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("bouncing_ball: a plastic impact stays, an elastic one keeps the energy") {
+TEST_CASE("bouncing_ball: a plastic impact ends in contact, an elastic one conserves energy") {
   const Finished plastic = run_rough("bouncing_ball", "plastic");
   const double g = plastic.parameter("g"), mu = plastic.parameter("mu_d"), fall = std::sqrt(2 / g);
   REQUIRE(events_of(plastic).size() == 2);

@@ -8,7 +8,7 @@
 
 using namespace eomgen;
 
-TEST_CASE("cart_pendulum: p_x + c x stays, since friction is the only force along the track") {
+TEST_CASE("cart_pendulum: p_x + c x is constant, since friction is the only force along the track") {
   const test::Finished run = test::run_model("cart_pendulum", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
@@ -23,7 +23,7 @@ TEST_CASE("cart_pendulum: p_x + c x stays, since friction is the only force alon
   CHECK(run.final("energy") < run.rows.at(0, "energy"));
 }
 
-TEST_CASE("cart_pendulum: a force that jumps restarts the run, and its work is in the balance") {
+TEST_CASE("cart_pendulum: a jump of a force restarts the integration, and its work is in the power balance") {
   const std::string path = test::build_folder() + "/cart_pushed.toml";
   std::string text = test::read_text(test::model_path("cart_pendulum"));
   text += "\n[scene.pushed]\nfrom = \"default\"\nt = [0, 4]\ninputs = { F = { t = [0, 1, 2], value = [0, 5, 0] } }\n";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs through the places where angles fail: against Euler parameters, straight lines, Jacobi's solution and what must
-// be conserved.
+// Runs through singularities of angles: against Euler parameters, straight lines, Jacobi's solution and conserved
+// quantities.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -118,8 +118,7 @@ TEST_CASE(
   CHECK(sets == 12);
 }
 
-TEST_CASE(
-    "charts: a turn that leads exactly through where the angles fail, reported in them and continuous but there") {
+TEST_CASE("charts: a rotation exactly through the singularity of the angles is continuous except there") {
   for (const char* set : {"313", "321"}) {
     INFO(set);
     const bool symmetric = set[2] == '3';
@@ -149,8 +148,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "charts: a start where the angles fail goes on in the second chart at once; without charts it does not go on") {
+TEST_CASE("charts: a start at a singularity continues in the second chart; without charts it fails") {
   const std::string text =
       "[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 2, 2.5] }\nrotation = { euler = \"313\", angles = "
       "[\"a\", \"b\", \"c\"] }\n"
@@ -169,7 +167,7 @@ TEST_CASE(
       doctest::Contains("the start is a singular configuration"), Error);
 }
 
-TEST_CASE("charts: a particle in spherical coordinates goes straight past the pole and through it") {
+TEST_CASE("charts: a particle in spherical coordinates moves straight past the pole and through it") {
   for (const double miss : {0.0, 1e-6, 0.1}) {
     INFO(miss);
     // From (1, miss, 1) along -E1.
@@ -269,7 +267,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("charts: where a constraint names an angle the run keeps to its coordinates") {
+TEST_CASE("charts: if a constraint contains an angle, the run keeps its coordinates") {
   const test::Finished run = test::run_model("R14_sliding_cylinder");
   CHECK(exchanges(run, "rod") == 0);
   CHECK_FALSE(run.simulation.charts);

@@ -6,7 +6,7 @@
 using namespace eomgen;
 using namespace eomgen::test;
 
-TEST_CASE("dry_friction_oscillator: it stops at -0.1 after three half swings, when and where the closed form says") {
+TEST_CASE("dry_friction_oscillator: it stops at -0.1 after three half oscillations, as in the closed form") {
   const Finished run = run_rough("dry_friction_oscillator");
   const std::vector<run::RunEvent> events = events_of(run);
   REQUIRE(events.size() == 4);
@@ -25,12 +25,12 @@ TEST_CASE("dry_friction_oscillator: it stops at -0.1 after three half swings, wh
     const double x = swing == 3 ? -0.1 : centre + (start - centre) * std::cos(t - swing * std::acos(-1.0));
     CHECK(std::abs(run.rows.at(i, "x") - x) < by_hand);
   }
-  // What is lost is F times the way.
+  // The energy loss is F times the distance.
   CHECK(run.rows.at(0, "kinetic") == 0);
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
-TEST_CASE("dry_friction_oscillator: within the band it stays, on its edge from outside it does not") {
+TEST_CASE("dry_friction_oscillator: it sticks within the band, and slides just outside") {
   CHECK(events_of(run_rough("dry_friction_oscillator", "held")).empty());
   CHECK(run_rough("dry_friction_oscillator", "held").final("x") == doctest::Approx(0.2).epsilon(rounding));
   // mu N/k = 0.25 (1 -+ 1e-9) against x = 0.25

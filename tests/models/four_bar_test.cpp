@@ -67,7 +67,7 @@ TEST_CASE(
   CHECK(std::abs(spatial.final("reaction.C.2") + flat.final("reaction.across")) < 1e-8);
 }
 
-TEST_CASE("four_bar: how the forces across the plane are shared is not told") {
+TEST_CASE("four_bar: undetermined reactions out of the plane are not reported") {
   const Finished run = run_model("four_bar_spatial_pins");
   const auto& joints = run.simulation.derived->mechanics.joints;
   REQUIRE(joints.size() == 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emitted Jacobian is that of the emitted function, also where the constraints do not hold.
+// The emitted Jacobian is the derivative of the emitted function, also at states that violate constraints.
 #include <doctest/doctest.h>
 
 #include "program/interpret.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the target javascript computes is what the C of the same program computes.
+// The target javascript computes the same values as the C code of the same program.
 #include <doctest/doctest.h>
 
 #include <cmath>

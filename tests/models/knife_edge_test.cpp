@@ -21,7 +21,7 @@ test::Finished skate() {
 }  // namespace
 
 // theta = theta0 + w t; along the blade v = v0 + k (sin(theta) - sin(theta0)) with k = g sin(beta)/w.
-TEST_CASE("knife_edge: the skate moves as the closed form says") {
+TEST_CASE("knife_edge: the skate follows the closed form") {
   const test::Finished run = skate();
   const double w = 1.5, theta0 = 0.2, v0 = 0.5 / std::cos(theta0),
                k = run.parameter("g") * std::sin(run.parameter("beta")) / w;
@@ -53,7 +53,7 @@ TEST_CASE("knife_edge: lambda has the sign of the normality prescription") {
   }
 }
 
-TEST_CASE("knife_edge: the constraint is in the reading form, with its multiplier and its time derivative") {
+TEST_CASE("knife_edge: the display form has the constraint with its multiplier and time derivative") {
   const model::Model model = model::read_model(test::model_path("knife_edge"));
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
   const reading::ReadingForm form = reading::derive_reading(m, system::Approach::two);

@@ -28,7 +28,7 @@ test::Finished run_scene(const char* scene, const char* solver = "dop853") {
 
 }  // namespace
 
-TEST_CASE("leaving_sphere: it leaves at cos(phi) = 2/3, when the closed form says") {
+TEST_CASE("leaving_sphere: it leaves at cos(phi) = 2/3, at the time of the closed form") {
   for (const char* solver : {"dopri5", "tsit5", "dop853"}) {
     const test::Finished run = run_scene("default", solver);
     const run::RunResult& result = run.simulation.result;

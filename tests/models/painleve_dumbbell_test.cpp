@@ -46,7 +46,7 @@ TEST_CASE(
   CHECK(run.final("reaction.floor") == doctest::Approx(d.normal(hand.x[1], hand.x[3], 1)).epsilon(1e-9));
 }
 
-TEST_CASE("painleve_dumbbell: below it, nothing ends the run, which follows the balances by hand until it sticks") {
+TEST_CASE("painleve_dumbbell: below it, the run follows the hand-written balances until it sticks") {
   const Finished run = run_rough("painleve_dumbbell", "below");
   const Dumbbell d(run);
   CHECK(d.mu < 2 * std::sqrt(2.0));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Problems that others publish, against the values of docs/benchmark-problems.md: from exact decimals, by equations
-// written by hand in quadruple precision (bench/published_equations.cpp) and by the reference route, which agree in 23
-// digits and more.
+// Published problems against the values of docs/benchmark-problems.md. The values come from hand-written equations in
+// quadruple precision (bench/published_equations.cpp) and from the reference solution, with exact decimals as input;
+// both agree in 23 digits or more.
 #include <cln/dfloat.h>
 #include <cln/real.h>
 #include <doctest/doctest.h>
@@ -191,7 +191,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("published: bench tells that explicit solvers are inefficient for the stiff pendulum, and of no other") {
+TEST_CASE("published: bench reports explicit solvers as inefficient for the stiff pendulum only") {
   const auto row = [](const char* solver, std::size_t steps) {
     bench::Row result;
     result.solver = solver;
@@ -235,8 +235,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "published: solvers that choose their steps pass the flat places of the N-four-bar mechanism as well, and tell "
-    "them") {
+    "published: adaptive solvers pass the singular configurations of the N-four-bar mechanism too, and report them") {
   const test::Finished run = test::run_model("n_four_bar_2", [](pipeline::SimulationRequest& request) {
     request.scene = "chosen";
     request.estimate = false;
@@ -284,7 +283,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("published: the reference starts where the constraints hold in all digits") {
+TEST_CASE("published: the reference solution starts at a state that satisfies the constraints to all digits") {
   pipeline::SimulationRequest request;
   request.model = test::model_at(test::model_path("andrews_squeezer"));
   request.overrides.solver = "dop853";

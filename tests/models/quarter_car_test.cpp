@@ -49,12 +49,12 @@ TEST_CASE("quarter_car: the accelerations are those of Lagrange's equations by h
     CHECK(at("a_ddot") == doctest::Approx((A * f2 - B * f1) / det).epsilon(rounding).scale(10));
     stroke = std::max(stroke, std::abs(d - p("d0")));
   }
-  CHECK(stroke > 1e-3);  // the strut works
+  CHECK(stroke > 1e-3);  // the strut moves
   CHECK(run.simulation.result.power_balance < followed);
   CHECK(run.simulation.certificate.pass);
 }
 
-TEST_CASE("quarter_car: on a flat road the strut bears M g L cos(a)/(dd/da), the tyre (M + m) g, and nothing moves") {
+TEST_CASE("quarter_car: on a flat road the strut carries M g L cos(a)/(dd/da), the tyre (M + m) g, and nothing moves") {
   const test::Finished run = run_scene("flat");
   CHECK(std::abs(run.final("a") - run.parameter("a0")) < followed);
   CHECK(std::abs(run.final("z") - run.parameter("z0")) < followed);

@@ -60,7 +60,7 @@ TEST_CASE("rolling: R4: on a turntable the centre circles at 2/7 of its rate") {
   CHECK(run.rows.t.back() * rate > 2 * 3.1415);  // more than one turn
 }
 
-TEST_CASE("rolling: R5: Chaplygin's sphere keeps its energy and the angular momentum about the point of contact") {
+TEST_CASE("rolling: R5: Chaplygin's sphere conserves energy and the angular momentum about the point of contact") {
   const Finished run = run_model("R5_chaplygin_sphere", tighten);
   CHECK(run.drift("energy") < 1e-10);
   for (const char* name : {"HP1", "HP2", "HP3"}) CHECK(spread(run, name) < 1e-10);
@@ -86,7 +86,7 @@ TEST_CASE("rolling: R6: the constraints are (9.79), two not integrable and one t
   CHECK(same(form.constraints[2].psi, r6("x3") - R * sin(theta)));
 }
 
-TEST_CASE("rolling: R6: the disk keeps its energy to 1e-10 over 100 s") {
+TEST_CASE("rolling: R6: the disk conserves energy to 1e-10 over 100 s") {
   const Finished run =
       run_model("R6_rolling_disk", [](pipeline::SimulationRequest& request) { request.scene = "long"; });
   CHECK(run.simulation.result.solver == "dop853");
@@ -96,7 +96,7 @@ TEST_CASE("rolling: R6: the disk keeps its energy to 1e-10 over 100 s") {
 
 // Euler's equations about the centre along e1', e2'', e3 with the force of the plane from Newton's: of theta, its rate,
 // w2 = phi_dot sin(theta) and w3 alone.
-TEST_CASE("rolling: R6: the disk moves as Newton's and Euler's equations, integrated apart, say") {
+TEST_CASE("rolling: R6: the disk agrees with a separate integration of Newton's and Euler's equations") {
   const Finished run = run_model("R6_rolling_disk", tighten);
   const double m = run.parameter("m"), R = run.parameter("R"), g = run.parameter("g"), J = m * R * R / 4,
                J3 = m * R * R / 2;
@@ -124,7 +124,7 @@ TEST_CASE("rolling: R6: the disk moves as Newton's and Euler's equations, integr
   CHECK(run.final("disk.omega3") == doctest::Approx(x[3]).epsilon(1e-9));
 }
 
-TEST_CASE("rolling: R6: on ice the disk keeps energy, its spin, and the velocity of its centre along the ice") {
+TEST_CASE("rolling: R6: on ice the disk conserves energy, spin, and the horizontal velocity of its centre") {
   const Finished run = run_model("R6_sliding_disk", tighten);
   CHECK(run.drift("energy") < 1e-11);
   CHECK(spread(run, "x1_dot") < 1e-11);

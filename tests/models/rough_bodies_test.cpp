@@ -86,7 +86,7 @@ TEST_CASE("rough_bodies: R3: rolling at the start of an incline that is too stee
 
 // The slip velocity obeys that of a puck with mu = (7/2) mu_d: its stop is the closed form of rough_incline_puck.
 // Elsewhere v - (2/7) w has the acceleration (5/7) g sin b alone.
-TEST_CASE("rough_bodies: R3: thrown across the incline the sphere rolls when and as the closed form says") {
+TEST_CASE("rough_bodies: R3: thrown across the incline the sphere starts to roll as in the closed form") {
   const Finished run = run_rough("R3_rough_sphere");
   const Incline k(run);
   const double w1 = -0.5 - 3 * k.R, w2 = 1.5 + 4 * k.R, w0 = std::hypot(w1, w2), ratio = 3.5 * k.mu_d / std::tan(k.b),
@@ -158,7 +158,7 @@ TEST_CASE(
 }
 
 // With too little friction for the circle it goes on sliding, and never rolls faster than mu_s g = (2/7) W |v| allows.
-TEST_CASE("rough_bodies: R4: on a slippery turntable the sphere does not get to roll") {
+TEST_CASE("rough_bodies: R4: on a slippery turntable the sphere never rolls") {
   const Finished run = run_rough("R4_rough_turntable", "default", with({{"mu_s", 0.005}, {"mu_d", 0.005}}));
   CHECK(events_of(run).empty());
   CHECK(run.final("mode.contact") == 1);

@@ -8,7 +8,7 @@
 using namespace eomgen;
 using namespace eomgen::test;
 
-TEST_CASE("rough_incline_puck: thrown across it stops where and when the closed form says") {
+TEST_CASE("rough_incline_puck: thrown across the slope it stops at the place and time of the closed form") {
   const Finished run = run_rough("rough_incline_puck");
   const double g = run.parameter("g"), beta = run.parameter("beta"), k = run.parameter("mu_d") / std::tan(beta),
                down = g * std::sin(beta);
