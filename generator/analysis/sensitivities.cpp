@@ -59,7 +59,7 @@ class Directions {
 
   run::Direction by_start(std::size_t state, const std::string& name) const {
     if (code_.active_constraints > 0)
-      refuse("values of the start are bound to one another by constraints, so that one alone cannot change",
+      refuse("constraints couple the initial values, so that one alone cannot change",
              "ask for parameters, and write the start by them");
     if (state >= 2 * code_.free.size())
       refuse(name + " is an integral over time, 0 at the start", "ask for a coordinate");

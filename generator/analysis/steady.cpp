@@ -36,7 +36,8 @@ void require_one_mode(const std::string& command, const Derived& derived) {
   }
   throw Error(
       command, where,
-      fmt::format("'{}' sticks, slides or lets go, and each has equations of its own: there are no slopes across them",
+      fmt::format("'{}' sticks, slides or opens, and each mode has equations of its own, so there is no linearisation "
+                  "across modes",
                   contacts.front().name),
       "linearise a copy of the model without the friction (or with the contact held) where it stays in one mode");
 }

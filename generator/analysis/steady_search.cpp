@@ -222,7 +222,7 @@ void require_not_ignored(const SteadyMotions& result, const SteadyRequest& reque
   for (std::size_t k = 0; k < s.chart.positions; ++k) {
     const std::string& name = result.problem.flow->names()[s.chart.independent[k]];
     if (!s.retained[k] && request.hold.contains(name))
-      refuse_hold(name, "nothing feels it, and it advances in a steady motion");
+      refuse_hold(name, "it is ignorable, and it advances in a steady motion");
   }
 }
 

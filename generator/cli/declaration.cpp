@@ -39,7 +39,7 @@ Error unexpected(const CLI::App& app) {
       std::find_if(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
   if (option == extra.end()) {
     return Error("usage", {},
-                 fmt::format("{} is one word too many", extra.empty() ? "there" : model::quote(extra.back())), help);
+                 fmt::format("unexpected argument{}", extra.empty() ? "" : " " + model::quote(extra.back())), help);
   }
   const std::string name = option->substr(0, option->find('='));
   // A single letter is close to every other one. It only matches a longer name that begins with it.

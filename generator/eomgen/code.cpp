@@ -9,7 +9,8 @@ namespace eomgen {
 
 Certificate Model::verify(const VerifyOptions& options, const Task& task) const {
   if (options.digits < 20 || options.digits > 300 || options.points < 1)
-    throw Error("library", {}, "a verification has 20 to 300 digits, and points", "leave VerifyOptions as they are");
+    throw Error("library", {}, "a verification needs 20 to 300 digits and at least one point",
+                "set VerifyOptions::digits and VerifyOptions::points accordingly");
   return called(task, [&](Call&) {
     const verify::Certificate found =
         pipeline::verify_model(read_, {options.digits, options.points, options.seed, options.compile});

@@ -173,7 +173,7 @@ TEST_CASE("derive: headings describe the formulas, and a legend explains the mul
        {"\nconstraint 'contact.1', binds velocities, not integrable\n",
         "\nconstraint 'contact.3', its first time derivative\n", "\nequations of motion\n  d/dt(m x1_dot)",
         "\nequations of motion, written out\n", "\nconstraint force on 'disk'\n", "\nwhere both approaches fail\n",
-        "\nwhich multiplier is which\n  lambda_1: of the constraint 'contact.1'\n"}) {
+        "\nmeaning of the multipliers\n  lambda_1: of the constraint 'contact.1'\n"}) {
     CAPTURE(heading);
     CHECK(contains(disk, heading));
   }

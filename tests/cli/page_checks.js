@@ -1,9 +1,9 @@
-// Opens pages of `eomgen report` in frames of two widths and tells what it finds, as JSON in the element `found`. In: `cases`, each {name, page, slider, csv}.
+// Opens pages of `eomgen report` in frames of two widths and writes the results as JSON into the element `found`. In: `cases`, each {name, page, slider, csv}.
 "use strict";
 const widths = [1280, 390];
 const later = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
 
-// What the page writes to the console or throws.
+// Messages of the page on the console, and exceptions.
 const listen = "<script>window.messages = []; for (const kind of ['log', 'info', 'warn', 'error']) console[kind] = (...all) => messages.push(kind + ': ' + all.join(' '));" +
   "addEventListener('error', (e) => messages.push('error: ' + e.message)); addEventListener('unhandledrejection', (e) => messages.push('rejected: ' + e.reason));" +
   "addEventListener('securitypolicyviolation', (e) => messages.push('policy: ' + e.violatedDirective));<" + "/script>";
@@ -13,7 +13,7 @@ async function open(page, width) {
   frame.style.cssText = "border: 0; width: " + width + "px; height: 900px";
   frame.srcdoc = page.replace("<head>", "<head>" + listen);
   await new Promise((done) => { frame.addEventListener("load", done); document.body.prepend(frame); });
-  for (const folded of frame.contentDocument.querySelectorAll("details")) folded.open = true;  // so that all is measured
+  for (const folded of frame.contentDocument.querySelectorAll("details")) folded.open = true;  // so that all parts are measured
   await later(50);
   return frame;
 }
@@ -21,7 +21,7 @@ async function open(page, width) {
 const box = (node) => node.getBoundingClientRect();
 const hasInk = (node) => { const b = box(node); return b.width > 0.5 && b.height > 0.5 && node.textContent.trim() !== ""; };
 
-// Of every formula: neighbours that lie on one another, functions that run into what they are applied to, lines wider than their column.
+// Layout of every formula: overlapping neighbours, functions without gap to their argument, lines wider than their column.
 function formulas(frame) {
   const found = {count: 0, overlaps: [], tight: [], wide: []};
   for (const math of frame.contentDocument.querySelectorAll("math")) {
@@ -54,7 +54,7 @@ function picture(canvas) {
   return {sum, ink};
 }
 
-// How far, in pixels, drawn positions are from where the rows of the run put them.
+// Largest distance, in pixels, of drawn positions from those in the rows of the run.
 function furthest(report, csv) {
   let far = 0;
   for (const row of csv.rows) {
@@ -69,9 +69,9 @@ function furthest(report, csv) {
   return far;
 }
 
-// Frames are drawn in the browser's time, timers run in a time of their own, which passes faster.
-// How far, in pixels, the nearest drawn corner of a body is from the place of this name in the rows of the run, at most.
-// Of the shape from which it is the farthest.
+// Frames use the time of the browser; timers use virtual time, which passes faster.
+// Largest distance, in pixels, of the nearest drawn corner of a body from the place of this name in the rows of the run.
+// Uses the shape with the largest distance.
 function cornerOff(report, csv, name) {
   const column = csv.columns.indexOf(name + ".position1"), {scene} = report;
   let far = 0;
@@ -85,14 +85,14 @@ function cornerOff(report, csv, name) {
   return far;
 }
 
-// Surfaces of constraints: how many lines, and how far their ends are at most from being as far from the origin as the particle is (of a sphere about it).
+// Constraint surfaces: number of lines, and for a sphere about the origin the largest difference of their radii from that of the particle.
 function surfaces(report) {
   const {scene} = report, y = scene.now, lines = scene.surfaces.flatMap((surface) => surface.find(report.player.at, y)), place = scene.surfaces[0].place;
   const radius = Math.hypot(...scene.placeAt(y, place));
   return {lines: lines.length, off: Math.max(...lines.flat().map((r) => Math.abs(Math.hypot(...r) - radius)))};
 }
 
-// A bowl z = x^2 + y^2 that goes along with the place that its particle is measured from: how far its lines are off at most, and how far they go along.
+// A bowl z = x^2 + y^2 that moves with the reference place of its particle: largest error of its lines, and their displacement.
 function carried(report) {
   const {scene, player} = report, lines = () => scene.surfaces[0].find(player.at, scene.now), cart = () => scene.placeAt(scene.now, 0);
   let off = 0;
@@ -103,7 +103,7 @@ function carried(report) {
   return {moved: Math.abs(look() - before), off, lines: lines().length};
 }
 
-// Pixels that forces add to the drawing when they are asked for, by the box that a reader ticks.
+// Pixels that forces add to the drawing when the reader ticks the box.
 function forces(page, report) {
   const box = [...page.querySelectorAll("label")].find((label) => label.textContent.trim() === "forces"), canvas = page.getElementById("scene");
   if (!box) return 0;
@@ -120,7 +120,7 @@ async function wait(condition) {
   return condition();
 }
 
-// Takes a drawn point by hand and pulls it; where it is put, and how far off the constraints that is.
+// Drags a drawn point. Returns its new position and the residual of the constraints.
 async function drag(frame, report, name) {
   const page = frame.contentDocument, canvas = page.getElementById("scene"), place = report.data.parts.places.find((p) => p.name === name), {camera} = report.scene;
   const at = () => camera.project(report.scene.position(report.scene.now, place.at)), corner = box(canvas);

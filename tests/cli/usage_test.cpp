@@ -42,7 +42,7 @@ TEST_CASE("unknown commands and options: the nearest one is suggested") {
       {{"run"}, "MODEL is required", "eomgen run --help"},
       {{"emit", P2}, "-o is required", "eomgen emit --help"},
       {{"run", P2, "--rotl", "1e-3"}, "there is no option '--rotl'", "did you mean '--rtol'?"},
-      {{"run", P2, "another"}, "'another' is one word too many", "eomgen run --help"},
+      {{"run", P2, "another"}, "unexpected argument 'another'", "eomgen run --help"},
       {{"simulate", P2}, "there is no command 'simulate'", "did you mean 'run'?"},
       {{"Run", P2}, "there is no command 'Run'", "did you mean 'run'?"},
       {{"init", "p"}, "there is no command 'init'", "did you mean 'new'?"},

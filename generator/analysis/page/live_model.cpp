@@ -57,7 +57,7 @@ class Live {
     context.tests.clear();
     const emit::EmittedFile file = emit::emit(program, context, "javascript").front();
     if (file.text.size() > largest_script) {
-      live.reason = fmt::format("its code of {} kB is more than a page should carry", file.text.size() / 1000);
+      live.reason = fmt::format("its code of {} kB is too long for a page", file.text.size() / 1000);
       return live;
     }
     live.script = file.text;
@@ -70,9 +70,9 @@ class Live {
   /// Feature of the model that the page's integrator does not support, or "".
   std::string obstacle() const {
     if (!s_.program.contacts.empty())
-      return "its contacts stick, slide or part, and each of these has equations of its own";
+      return "its contacts stick, slide or open, and each mode has equations of its own";
     if (!s_.scene.jumps.functions.empty())
-      return "something jumps on its way, with an impulse that only the program works out";
+      return "a velocity jumps during the run, and the page does not compute impulses";
     if (!s_.program.integrals.empty()) return "an integral over time has no closed form and is a state of its own";
     for (const model::SceneInput& input : model_scene().inputs) {
       if (std::holds_alternative<model::InputTable>(input.signal))

@@ -94,7 +94,7 @@ std::string readable(const std::vector<print::Item>& items, const std::string& a
   }
   if (!left_out.empty()) text += "\nleft out\n";
   for (const work::LeftOut& l : left_out) text += fmt::format("  {}: {}\n", l.what, l.why);
-  if (!multipliers.empty()) text += "\nwhich multiplier is which\n";
+  if (!multipliers.empty()) text += "\nmeaning of the multipliers\n";
   for (const analysis::Multiplier& entry : multipliers) text += fmt::format("  {}: {}\n", entry.name, entry.meaning);
   return text;
 }

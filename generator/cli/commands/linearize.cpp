@@ -53,7 +53,7 @@ struct Answer {
             : "";
     switch (l.kind) {
       case linear::Kind::equilibrium: return "an equilibrium" + off;
-      case linear::Kind::steady: return "a steady motion" + off + ": only coordinates that nothing feels advance";
+      case linear::Kind::steady: return "a steady motion" + off + ": only ignorable coordinates change";
       case linear::Kind::motion: break;
     }
     return l.symmetry.autonomous ? "neither an equilibrium nor a steady motion: A(t) along the motion, at this instant"
