@@ -61,12 +61,12 @@ def row(eomgen, compiler, family, n, folder):
     compiling, _, _, _ = measured([compiler, "-O2", "-c", "-o", folder / "model.o", folder / f"{family}_{n}.c"])
     stages = document["seconds"]
     chosen = document["operations"]
-    return {"n": n, "route": document["route"], "emit": seconds, "derive": stages["read"] + stages["derive"], "optimise": stages["optimise"], "verify": stages["verify"],
+    return {"n": n, "formulation": document["formulation"], "emit": seconds, "derive": stages["read"] + stages["derive"], "optimise": stages["optimise"], "verify": stages["verify"],
             "compile": compiling, "flops": chosen["add"] + chosen["mul"], "memory": memory, "pass": document["certificate"].startswith("pass")}
 
 
 def table(eomgen, families):
-    yield "| model | n | route | emit | exponent | derive | optimise | verify | compile | flops | exponent | MB |"
+    yield "| model | n | formulation | emit | exponent | derive | optimise | verify | compile | flops | exponent | MB |"
     yield "|---|---|---|---|---|---|---|---|---|---|---|---|"
     compiler = shutil.which(os.environ.get("CC", "gcc"))
     with tempfile.TemporaryDirectory() as name:
@@ -81,7 +81,7 @@ def table(eomgen, families):
                     before = None
                     continue
                 of = lambda key: exponent(r[key], before and before[key], n, before and before["n"])
-                yield (f"| {family} | {n} | {r['route']}{'' if r['pass'] else ' (fails)'} | {r['emit']:.2f} | {of('emit')} | {r['derive']:.2f} | {r['optimise']:.2f} | {r['verify']:.2f} | {r['compile']:.2f} |"
+                yield (f"| {family} | {n} | {r['formulation']}{'' if r['pass'] else ' (fails)'} | {r['emit']:.2f} | {of('emit')} | {r['derive']:.2f} | {r['optimise']:.2f} | {r['verify']:.2f} | {r['compile']:.2f} |"
                        f" {r['flops']} | {of('flops')} | {r['memory']:.0f} |")
                 before = r
 

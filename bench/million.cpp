@@ -205,7 +205,7 @@ int main(int argc, char** argv) {
   }
   if (references == 0) return 0;
   fmt::print(
-      "\nErrors of {} members drawn at random, against the reference route:\n\n| | median | 95 % | largest "
+      "\nErrors of {} members drawn at random, against the reference solution:\n\n| | median | 95 % | largest "
       "|\n|---|---|---|---|\n",
       references);
   const auto row = [](const std::string& name, const std::vector<double>& of) {

@@ -23,8 +23,8 @@ def row(name, found):
 
 def main(folder, steps, document):
     lines = [f"At most {steps} steps a run.", "",
-             "| model | cases | kept | told | silent | left out | condition of M | scaled | digits lost (in) |", "|---|---:|---:|---:|---:|---:|---:|---:|---|"]
-    total, silent, still, missing = [0, 0, 0], [], [], []
+             "| model | cases | pass | reported | undetected | left out | condition of M | scaled | digits lost (in) |", "|---|---:|---:|---:|---:|---:|---:|---:|---|"]
+    total, undetected, still, missing = [0, 0, 0], [], [], []
     for model in sorted(pathlib.Path("models").glob("*.toml"), key=lambda path: path.stem):
         path = pathlib.Path(folder, model.stem + ".json")
         if not path.exists():
@@ -34,19 +34,19 @@ def main(folder, steps, document):
             continue
         found = json.loads(path.read_text())
         lines.append(row(model.stem, found))
-        total = [a + found[k] for a, k in zip(total, ("kept", "told", "silent"))]
-        silent += [f"- {model.stem}, {r['case']}, {r['solver']}: error {r['error']}, estimate {r['estimate']}" for r in found["rows"] if r["verdict"] == "silent"]
-    lines += ["", f"Together {sum(total)} rows: {total[0]} kept, {total[1]} told, {total[2]} silent."]
+        total = [a + found[k] for a, k in zip(total, ("pass", "reported", "undetected"))]
+        undetected += [f"- {model.stem}, {r['case']}, {r['solver']}: error {r['error']}, estimate {r['estimate']}" for r in found["rows"] if r["verdict"] == "undetected"]
+    lines += ["", f"Together {sum(total)} rows: {total[0]} pass, {total[1]} reported, {total[2]} undetected."]
     if still:
         lines += [f"Without a motion of their own, and so without rows: {', '.join(still)}."]
     if missing:
         lines += [f"Not in this table: {', '.join(missing)}."]
-    lines += ["", "Silent:", ""] * bool(silent) + silent
+    lines += ["", "Undetected:", ""] * bool(undetected) + undetected
     text = pathlib.Path(document).read_text()
     before, rest = text.split(BEGIN)
     after = rest.split(END)[1]
     pathlib.Path(document).write_text(before + BEGIN + "\n" + "\n".join(lines) + "\n" + END + after)
-    return 1 if silent or missing else 0
+    return 1 if undetected or missing else 0
 
 
 if __name__ == "__main__":

@@ -19,12 +19,12 @@ function(eomgen_take_precompiled target owner)
   endif()
 endfunction()
 
-# eomgen_stage(NAME [OWN_HEADERS] [COLD] SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
+# eomgen_stage(NAME [OWN_HEADERS] [UNOPTIMISED] SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
 # One static library per stage. NEEDS is the dependency rule: a stage uses only the stages it names.
 # Headers are included as "stage/file.hpp" from generator/. OWN_HEADERS: no shared precompiled headers.
-# COLD: not critical for run time, contains no integrator; lower optimisation saves a quarter of the compile time.
+# UNOPTIMISED: not critical for run time, contains no integrator; lower optimisation saves a quarter of the compile time.
 function(eomgen_stage name)
-  cmake_parse_arguments(ARG "OWN_HEADERS;COLD" "" "SOURCES;NEEDS;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_HEADERS;UNOPTIMISED" "" "SOURCES;NEEDS;LINKS" ${ARGN})
   add_library(eomgen_${name} STATIC ${ARG_SOURCES})
   target_include_directories(eomgen_${name} PUBLIC ${PROJECT_SOURCE_DIR}/generator)
   target_link_libraries(eomgen_${name} PRIVATE eomgen_warnings)

@@ -26,13 +26,13 @@ thread_local std::size_t left = std::numeric_limits<std::size_t>::max();
 
 void request_stop() noexcept { stop.store(true, std::memory_order_relaxed); }
 
-Kept::Kept() noexcept {
+DeferInterrupt::DeferInterrupt() noexcept {
   ++keeping;
   clear_line();
 }
-Kept::~Kept() { --keeping; }
+DeferInterrupt::~DeferInterrupt() { --keeping; }
 
-bool abandoned() noexcept {
+bool stop_requested() noexcept {
   const bool asked = stop.load(std::memory_order_relaxed) || (listener != nullptr && listener->stop_ != nullptr &&
                                                               listener->stop_->load(std::memory_order_relaxed));
   return asked && keeping.load(std::memory_order_relaxed) == 0;
@@ -52,10 +52,10 @@ const std::atomic<bool>& stop_flag() noexcept {
 }
 
 void check() {
-  if (abandoned()) throw Interrupted{};
+  if (stop_requested()) throw Interrupted{};
 }
 
-void spend(std::size_t operations) {
+void consume_budget(std::size_t operations) {
   check();
   if (operations > left) {
     left = 0;

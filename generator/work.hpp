@@ -31,15 +31,15 @@ void request_stop() noexcept;
 
 /// Defers interruption while it exists: the owner handles a request to stop, work::spend does not throw for it, and no
 /// progress is shown.
-class Kept {
+class DeferInterrupt {
  public:
-  Kept() noexcept;
-  ~Kept();
-  Kept(const Kept&) = delete;
-  Kept& operator=(const Kept&) = delete;
+  DeferInterrupt() noexcept;
+  ~DeferInterrupt();
+  DeferInterrupt(const DeferInterrupt&) = delete;
+  DeferInterrupt& operator=(const DeferInterrupt&) = delete;
 };
 /// Whether the current work must end: a stop was requested, and no object defers it.
-bool abandoned() noexcept;
+bool stop_requested() noexcept;
 
 /// Receives the stages and warnings of the work of this thread while it exists. It may request a stop of this work, as
 /// request_stop does for the process. A nested listener replaces the outer one.
@@ -56,7 +56,7 @@ class Listener {
   virtual void warns(const std::string& text);
 
  private:
-  friend bool abandoned() noexcept;
+  friend bool stop_requested() noexcept;
   friend const std::atomic<bool>& stop_flag() noexcept;
   const std::atomic<bool>* stop_;
   Listener* around_;
@@ -68,7 +68,7 @@ const std::atomic<bool>& stop_flag() noexcept;
 
 /// Subtracts operations from the current budget; one operation takes between ten nanoseconds and a microsecond.
 /// Throws Interrupted, OverBudget.
-void spend(std::size_t operations);
+void consume_budget(std::size_t operations);
 /// Throws Interrupted after a request to stop.
 void check();
 

@@ -4,7 +4,7 @@
  *
  * model       P7_moving_sphere
  * content     21882b45b1cb5277745fe3e155be4ec7b9bcdb9ac2eb1b2e6e200dd73960e063
- * equations   approach II, route christoffel
+ * equations   approach II, formulation christoffel
  * verified    pass: 5 points at 50 digits, 103 comparisons
  * singular    R = 0
  * singular    phi = 0, phi = pi

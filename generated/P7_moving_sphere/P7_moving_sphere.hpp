@@ -4,7 +4,7 @@
 //
 // model       P7_moving_sphere
 // content     21882b45b1cb5277745fe3e155be4ec7b9bcdb9ac2eb1b2e6e200dd73960e063
-// equations   approach II, route christoffel
+// equations   approach II, formulation christoffel
 // verified    pass: 5 points at 50 digits, 103 comparisons
 // singular    R = 0
 // singular    phi = 0, phi = pi
@@ -77,7 +77,7 @@ inline const char* info() {
       ":[\"smooth\"],\"units\":{\"phi\":\"rad\",\"theta\":\"rad\",\"phi_dot\":\"rad/s\",\"theta_dot\":\""
       "rad/s\",\"R\":\"m\",\"m\":\"kg\",\"g\":\"m/s^2\",\"D\":\"N/m\",\"d0\":\"m\",\"a\":\"m\",\"w\":\""
       "rad/s\"},\"defaults\":{\"t\":0.0,\"x\":[1.0,0.0,0.0,2.0],\"p\":[1.0,9.81,0.3,1.0,0.1,2.0],\"u\":"
-      "[]},\"approach\":\"II\",\"route\":\"christoffel\",\"verdict\":\"pass: 5 points at 50 digits, 103"
+      "[]},\"approach\":\"II\",\"formulation\":\"christoffel\",\"verdict\":\"pass: 5 points at 50 digits, 103"
       " comparisons\",\"singular\":[\"R = 0\",\"phi = 0, phi = pi\",\"d = 0\"],\"operations\":{\"rhs\":"
       "{\"add\":5,\"mul\":19,\"div\":2,\"sqrt\":0,\"trig\":4,\"other\":0},\"jac\":{\"add\":17,\"mul\":6"
       "1,\"div\":3,\"sqrt\":0,\"trig\":4,\"other\":0},\"mass\":{\"add\":5,\"mul\":23,\"div\":0,\"sqrt\""

@@ -8,7 +8,7 @@ namespace {
 
 std::vector<Function> all() {
   using enum Input;
-  using enum Comes;
+  using enum Availability;
 #define TAKES(...) \
   std::vector<Input> { __VA_ARGS__ }
 #define GIVES(...) \
@@ -54,7 +54,7 @@ const Function* find(std::string_view name) {
 std::vector<std::string> asked_for() {
   std::vector<std::string> names;
   for (const Function& function : functions()) {
-    if (function.comes == Comes::with || function.comes == Comes::with_outputs) names.push_back(function.name);
+    if (function.availability == Availability::with || function.availability == Availability::with_outputs) names.push_back(function.name);
   }
   return names;
 }

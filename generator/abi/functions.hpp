@@ -15,7 +15,7 @@ enum class Input : std::uint8_t { time, state, parameters, prepared, inputs, mod
 const char* name(Input input);
 
 /// When a function is emitted.
-enum class Comes : std::uint8_t {
+enum class Availability : std::uint8_t {
   always,
   where_it_saves,  // if some part is worth computing only once
   with,            // emit --with NAME
@@ -33,7 +33,7 @@ struct Function {
   std::string name;  // without NAME_
   std::vector<Input> inputs;
   std::vector<Result> results;
-  Comes comes = Comes::always;
+  Availability availability = Availability::always;
   std::string purpose;
 
   bool takes(Input input) const;

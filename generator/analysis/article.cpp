@@ -9,7 +9,7 @@
 #include "analysis/named_functions.hpp"
 #include "analysis/steady_search.hpp"
 #include "conservation/conservative.hpp"
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "mechanics/dependent.hpp"
 #include "pipeline/pipeline.hpp"
 #include "print/article.hpp"
@@ -19,7 +19,7 @@ namespace eomgen::analysis {
 namespace {
 
 using mechanics::Mechanics;
-using reading::ReadingForm;
+using reading::DisplayForm;
 
 // The cost of a search grows with coordinates and starts. Larger searches are left to `equilibria`.
 constexpr std::size_t most_coordinates = 3, starts = 40;
@@ -32,7 +32,7 @@ std::vector<print::ForceFinding> forces_of(Mechanics& m) {
   return result;
 }
 
-std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const ReadingForm& two,
+std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const DisplayForm& two,
                                                   const std::vector<conservation::Conserved>& conserved) {
   std::vector<print::ConservedFinding> result;
   for (const conservation::Conserved& c : conserved) {
@@ -42,15 +42,15 @@ std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const Read
   return result;
 }
 
-void judge(Mechanics& m, const ReadingForm& one, const ReadingForm& two, std::uint64_t seed,
+void check_against_oracle(Mechanics& m, const DisplayForm& one, const DisplayForm& two, std::uint64_t seed,
            print::Findings& findings) {
   const work::Stage stage("holding the derivations against one another");
   verify::Subjects subjects;
-  subjects.systems = verify::all_routes(m, &subjects.left_out);
-  for (const ReadingForm* form : {&one, &two}) {
+  subjects.systems = verify::all_formulations(m, &subjects.left_out);
+  for (const DisplayForm* form : {&one, &two}) {
     if (!form->by_parts)
       subjects.reading.push_back(
-          {fmt::format("reading form {}", system::name(form->approach)), reading::residuals_on_dag(*form, m)});
+          {fmt::format("display form {}", system::name(form->approach)), reading::residuals_on_dag(*form, m)});
   }
   if (findings.routh) subjects.reading.push_back({"Routh's reduction", reading::residuals_on_dag(*findings.routh, m)});
   const verify::Certificate certificate = verify::certify(m, subjects, {50, pipeline::emission_points, seed, {}});
@@ -60,7 +60,7 @@ void judge(Mechanics& m, const ReadingForm& one, const ReadingForm& two, std::ui
   findings.certificate = fmt::format("{} at {} random states in {} digits, {} comparisons", certificate.verdict(),
                                      certificate.points, certificate.options.digits, certificate.comparisons.size());
   for (const std::string& name : certificate.agreeing())
-    findings.judged += (findings.judged.empty() ? "" : ", ") + name;
+    findings.checked_formulations += (findings.checked_formulations.empty() ? "" : ", ") + name;
 }
 
 /// Figure at the start of the default scene.
@@ -96,7 +96,7 @@ print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion)
   return result;
 }
 
-void look_for_steady_motions(const Mechanics& m, const ReadingForm& two, std::uint64_t seed,
+void look_for_steady_motions(const Mechanics& m, const DisplayForm& two, std::uint64_t seed,
                              print::Findings& findings) {
   if (m.freedom() <= 0) {
     findings.no_steady = "the constraints prescribe the motion";
@@ -127,7 +127,7 @@ std::string article(std::shared_ptr<const model::Model> model, std::uint64_t see
   const work::Stage stage("deriving the equations");
   Mechanics m = mechanics::build_mechanics(std::move(model));
   reading::Forms forms(m);
-  const ReadingForm &one = forms(system::Approach::one), &two = forms(system::Approach::two);
+  const DisplayForm &one = forms(system::Approach::one), &two = forms(system::Approach::two);
   print::Findings findings;
   findings.forces = forces_of(m);
   system::EquationSystem system = derive::lagrange(m, system::Approach::two);
@@ -136,7 +136,7 @@ std::string article(std::shared_ptr<const model::Model> model, std::uint64_t see
   const std::vector<std::uint32_t> cyclic = conservation::cyclic_coordinates(conserved);
   if (!cyclic.empty()) findings.routh = forms.routh(cyclic);
   draw(m, system, findings);
-  judge(m, one, two, seed, findings);
+  check_against_oracle(m, one, two, seed, findings);
   look_for_steady_motions(m, two, seed, findings);
   return print::latex_document(m, one, two, findings);
 }

@@ -119,7 +119,7 @@ bool Benchmark::conclusive() const {
 Benchmark benchmark(const BenchmarkRequest& asked) {
   Benchmark result{pipeline::simulate(simulation_request(asked)), {}, {}, {}, {}, 0};
   const Simulation& simulation = result.simulation;
-  const work::Kept kept;
+  const work::DeferInterrupt kept;
   const auto show = [&asked](const std::string& what) {
     if (asked.progress) asked.progress(what);
   };

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "analysis/named_functions.hpp"
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "error.hpp"
 #include "mechanics/dependent.hpp"
 #include "model/names.hpp"
@@ -42,7 +42,7 @@ std::string name_of(const print::Item& item) {
 }
 
 /// Items that exceeded their budget, and equations that are shown in parts.
-std::vector<work::LeftOut> left_out_of(const std::vector<print::Item>& items, const reading::ReadingForm& form) {
+std::vector<work::LeftOut> left_out_of(const std::vector<print::Item>& items, const reading::DisplayForm& form) {
   std::vector<work::LeftOut> result;
   if (form.by_parts) result.push_back({"equations written out", form.why_by_parts});
   if (!form.no_spins.empty()) result.push_back({"angular velocities", form.no_spins});
@@ -53,7 +53,7 @@ std::vector<work::LeftOut> left_out_of(const std::vector<print::Item>& items, co
 }
 
 /// Meaning of the multipliers, if there are several.
-std::vector<Multiplier> legend(const mechanics::Mechanics& m, const reading::ReadingForm& form) {
+std::vector<Multiplier> legend(const mechanics::Mechanics& m, const reading::DisplayForm& form) {
   std::vector<Multiplier> result;
   const print::Notation notation(m);
   const auto stands = [&](std::uint32_t k) {
@@ -77,7 +77,7 @@ void add_conserved(mechanics::Mechanics& mechanics, reading::Forms& forms, const
       std::any_of(show.begin(), show.end(), [](const auto& key) { return key == "conserved" || key == "all"; });
   if (!wanted) return;
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
-  const reading::ReadingForm& form = forms(system::Approach::two, reading::Extent::equations);
+  const reading::DisplayForm& form = forms(system::Approach::two, reading::Extent::equations);
   for (const conservation::Conserved& c : conservation::conserved_quantities(mechanics, system)) {
     const auto named = in_named_functions(mechanics, form, c);
     print::Item item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
@@ -115,7 +115,7 @@ system::Approach approach_to_show(const mechanics::Mechanics& m) {
 
 }  // namespace
 
-reading::ReadingForm form_to_show(const mechanics::Mechanics& m) {
+reading::DisplayForm form_to_show(const mechanics::Mechanics& m) {
   return reading::derive_reading(m, approach_to_show(m));
 }
 
@@ -125,7 +125,7 @@ Equations equations(std::shared_ptr<const model::Model> model, const EquationsRe
   const work::Stage stage("deriving the equations");
   mechanics::Mechanics mechanics = mechanics::build_mechanics(std::move(model));
   reading::Forms forms(mechanics);
-  const reading::ReadingForm& form = forms(request.approach == ApproachChoice::automatic ? approach_to_show(mechanics)
+  const reading::DisplayForm& form = forms(request.approach == ApproachChoice::automatic ? approach_to_show(mechanics)
                                            : request.approach == ApproachChoice::one     ? system::Approach::one
                                                                                          : system::Approach::two);
   Equations result;
@@ -140,7 +140,7 @@ Equations equations(std::shared_ptr<const model::Model> model, const EquationsRe
   } catch (const work::Interrupted&) {
     result.interrupted = true;
   }
-  const work::Kept kept;
+  const work::DeferInterrupt kept;
   result.left_out = left_out_of(result.items, form);
   const bool about_forces = std::any_of(request.show.begin(), request.show.end(), [](const auto& key) {
     return key == "equations" || key == "reactions" || key == "all";

@@ -38,7 +38,7 @@ struct Equations {
 
 /// Derives the display form by the default approach. Approach I also yields constraint forces; it is chosen if a
 /// constraint eliminates something or a contact has a force.
-reading::ReadingForm form_to_show(const mechanics::Mechanics& mechanics);
+reading::DisplayForm form_to_show(const mechanics::Mechanics& mechanics);
 
 /// Throws Error{stage "derive"} for an unknown key. On interruption returns a partial result with `interrupted` set.
 Equations equations(std::shared_ptr<const model::Model> model, const EquationsRequest& request);

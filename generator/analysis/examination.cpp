@@ -8,7 +8,7 @@
 
 #include "conservation/conservative.hpp"
 #include "conservation/conserved.hpp"
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "pipeline/charts.hpp"
 #include "reading/reading.hpp"
 #include "symbolic/decimal.hpp"

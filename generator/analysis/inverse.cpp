@@ -11,7 +11,7 @@
 
 #include "analysis/prescribed_forces.hpp"
 #include "conservation/conserved.hpp"
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "model/names.hpp"
 #include "symbolic/evaluate.hpp"
 
@@ -75,7 +75,7 @@ class Prescribed {
   InverseAnswer answer(const InverseRequest& request) {
     InverseAnswer result;
     verify::Subjects subjects;
-    subjects.systems = verify::all_routes(m_);
+    subjects.systems = verify::all_formulations(m_);
     const verify::Certificate certificate =
         verify::certify(m_, subjects, {50, pipeline::emission_points, request.seed, {}});
     pipeline::require_pass(certificate, model_);

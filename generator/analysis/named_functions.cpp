@@ -7,7 +7,7 @@ namespace eomgen::analysis {
 
 using system::OutputKind;
 
-std::optional<reading::Sum> in_named_functions(const mechanics::Mechanics& m, const reading::ReadingForm& form,
+std::optional<reading::Sum> in_named_functions(const mechanics::Mechanics& m, const reading::DisplayForm& form,
                                                const conservation::Conserved& conserved) {
   if (form.by_parts) return std::nullopt;
   if (conserved.kind == OutputKind::energy && mechanics::impose_dependent(m).fixed.empty())

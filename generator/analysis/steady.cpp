@@ -44,7 +44,7 @@ void require_one_mode(const std::string& command, const Derived& derived) {
 
 std::string certified(Derived& derived, std::uint64_t seed) {
   verify::Subjects subjects;
-  subjects.systems = verify::all_routes(derived.mechanics);
+  subjects.systems = verify::all_formulations(derived.mechanics);
   const verify::Certificate certificate =
       verify::certify(derived.mechanics, subjects, {50, pipeline::emission_points, seed, {}});
   pipeline::require_pass(certificate, derived.model);
@@ -71,7 +71,7 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
     }
     return names;
   };
-  std::optional<work::Kept> interrupt;
+  std::optional<work::DeferInterrupt> interrupt;
   request.ready = [&interrupt] { interrupt.emplace(); };
   request.interrupt = &work::stop_flag();
   const Simulation run = pipeline::simulate(request);

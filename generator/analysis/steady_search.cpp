@@ -241,7 +241,7 @@ void require_ends(const SteadyMotions& result) {
       "put a smooth law in place of the one that has a kink or a root there, or begin the search at another start");
 }
 
-void judge(SteadyMotions& result, const SteadyRequest& request, const Kept& kept) {
+void classify_stability(SteadyMotions& result, const SteadyRequest& request, const Kept& kept) {
   SteadyProblem& p = result.problem;
   const linear::StabilityTest test(*p.flow, *p.derived->mechanics.dag, kept.energies, kept.momenta);
   for (const linear::FoundPoint& point : result.search.points) {
@@ -276,7 +276,7 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
     }
     // Small models: classify and show what was found so far.
     constexpr std::size_t small = 8;  // coordinates
-    std::optional<work::Kept> kept;
+    std::optional<work::DeferInterrupt> kept;
     if (result.search.interrupted) {
       if (p.flow->coordinates() > small || result.search.points.empty()) throw work::Interrupted{};
       kept.emplace();
@@ -294,7 +294,7 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
       result.held.push_back({p.flow->names()[i], linear::to_double(p.z[i]), why});
     }
     const work::Stage stage("judging stability");
-    judge(result, request, quantities);
+    classify_stability(result, request, quantities);
     if (result.points.empty()) require_ends(result);
   } catch (const std::domain_error& error) {
     const Source source = without_slope(p, p.z);

@@ -99,7 +99,7 @@ void repeat_constraints(const model::Model& given, std::vector<Row>& rows, LeftO
       mechanics::build_mechanics(model);
       rows.push_back({.test = test,
                       .solver = "none",
-                      .verdict = Verdict::unreported,
+                      .verdict = Verdict::undetected,
                       .outcome = "accepted",
                       .note = "a constraint that repeats another is taken for one more"});
     } catch (const Error& error) {
@@ -134,7 +134,7 @@ StressFindings stress_test(const StressRequest& asked) {
   found.solvers = run::solvers_among("stress", asked.solvers);
   const pipeline::SimulationRequest wanted = simulation_request(asked);
   const pipeline::Simulation simulation = pipeline::simulate(wanted);
-  const work::Kept kept;
+  const work::DeferInterrupt kept;
   found.scene = simulation.scene.name;
   const run::Code code = simulation.code.for_run();
   const Variation variation(simulation, wanted.overrides, code);
@@ -154,7 +154,7 @@ StressFindings stress_test(const StressRequest& asked) {
     std::string why;
     try {
       if (const std::optional<run::Scene> scene = variation.scene(test, why)) {
-        for (Row& row : stress::judge(test, *scene, request, why)) found.rows.push_back(std::move(row));
+        for (Row& row : stress::assess(test, *scene, request, why)) found.rows.push_back(std::move(row));
       }
     } catch (const Error& error) {  // a refused value or initial state counts as reported
       if (error.stage() != "scene") throw;

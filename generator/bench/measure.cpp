@@ -34,7 +34,7 @@ class Measurement {
     options.fixed_step = step;
     options.interrupt = request_.run.interrupt;
     run::Integration integration(request_.run, solver);
-    const eom::Result result = judged(integration, options, row);
+    const eom::Result result = integrate_and_assess(integration, options, row);
     row.steps = result.statistics.steps;
     row.rejected = result.statistics.rejected;
     row.rhs_evaluations = result.statistics.rhs_evaluations;
@@ -60,7 +60,7 @@ class Measurement {
 
  private:
   /// The run that determines the error, evaluated at the times of the reference.
-  eom::Result judged(run::Integration& integration, const eom::Options& options, Row& row) {
+  eom::Result integrate_and_assess(run::Integration& integration, const eom::Options& options, Row& row) {
     const Clock::time_point start = Clock::now();
     const auto& reference = request_.reference.x;
     bool late = false;

@@ -17,7 +17,7 @@ class Interrupt {
   static const std::atomic<bool>& flag();
 
  private:
-  work::Kept kept_;
+  work::DeferInterrupt kept_;
 };
 
 }  // namespace eomgen::cli

@@ -8,10 +8,10 @@ namespace eomgen::cli {
 std::span<const Command> commands() {
   static constexpr std::array entries{
       Command{"new", "write a commented starter model", declare_new},
-      Command{"list", "coordinates, routes, solvers and targets that there are", declare_list},
+      Command{"list", "coordinates, formulations, solvers and targets that there are", declare_list},
       Command{"check", "read a model, classify its constraints and forces, check its units", declare_check},
       Command{"derive", "the equations of motion for reading", declare_derive},
-      Command{"verify", "every derivation against an independent judge", declare_verify},
+      Command{"verify", "every derivation against an independent oracle", declare_verify},
       Command{"emit", "C and C++ sources, or a LaTeX document", declare_emit},
       Command{"run", "derive, emit, compile and integrate a scene", declare_run},
       Command{"equilibria", "equilibria and steady motions, and whether they are stable", declare_equilibria},

@@ -154,7 +154,7 @@ Json RunReport::json() const {
       {"kinks", kinks},
       {"solved", scene.solved},
       {"undetermined", undetermined(simulation)},
-      {"route", program.route},
+      {"formulation", program.formulation},
       {"approach", system::name(program.approach)},
       {"operations", to_json(program.functions.front().operations)},
       {"certificate", certificate.summary()}};
@@ -192,8 +192,8 @@ std::string RunReport::text() const {
   for (const std::string& sentence : scene.solved) out += line("start", sentence);
   out += line("certificate", certificate.summary());
   out +=
-      line("right-hand side", fmt::format("{} (route {}, approach {})", to_text(program.functions.front().operations),
-                                          program.route, system::name(program.approach)));
+      line("right-hand side", fmt::format("{} (formulation {}, approach {})", to_text(program.functions.front().operations),
+                                          program.formulation, system::name(program.approach)));
   const std::string accuracy =
       scene.step > 0 ? fmt::format("step {}", scene.step) : fmt::format("rtol {}, atol {}", scene.rtol, scene.atol);
   out += line("solver", fmt::format("{} ({}), {}", result.solver, run::to_text(result.reason), accuracy));

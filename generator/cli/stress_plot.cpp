@@ -49,9 +49,9 @@ std::string rectangle(double x, double y, double width, double height, const cha
 // The verdicts also differ in shape: a square, a bar, a square with a cross.
 std::string mark(Verdict verdict, double x, double y) {
   switch (verdict) {
-    case Verdict::kept: return rectangle(x, y, cell, cell, eom::plot::colours[0]);
+    case Verdict::pass: return rectangle(x, y, cell, cell, eom::plot::colours[0]);
     case Verdict::reported: return rectangle(x, y + cell / 2 - 2, cell, 4, eom::plot::colours[3]);
-    case Verdict::unreported: break;
+    case Verdict::undetected: break;
   }
   using eom::plot::number;
   return rectangle(x, y, cell, cell, eom::plot::colours[1]) +
@@ -70,7 +70,7 @@ std::string told(const stress::Row& row) {
                      value(row.error), value(row.estimate), row.outcome);
 }
 
-constexpr std::array verdicts{Verdict::kept, Verdict::reported, Verdict::unreported};
+constexpr std::array verdicts{Verdict::pass, Verdict::reported, Verdict::undetected};
 
 std::string counted(const analysis::StressFindings& found, Verdict verdict) {
   return fmt::format("{} {}", found.count(verdict), stress::name(verdict));

@@ -59,7 +59,7 @@ void Watch::look() {
   while (!ended_.wait_for(lock, interval, [this] { return end_; })) {
     const Clock::time_point now = Clock::now();
     const char* stage = work::stage();
-    if (!work::abandoned())
+    if (!work::stop_requested())
       asked = {};
     else if (asked == Clock::time_point{})
       asked = now;

@@ -306,12 +306,12 @@ std::vector<Ref> generalized_forces(Mechanics& m) {
   return Q;
 }
 
-EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquations* motion, const char* route,
+EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquations* motion, const char* formulation,
                         system::Approach approach) {
   Dag& dag = *m.dag;
   EquationSystem s;
   s.dag = m.dag;
-  s.route = route;
+  s.formulation = formulation;
   s.approach = approach;
   s.free = m.free;
   s.active = m.active;

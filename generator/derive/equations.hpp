@@ -18,7 +18,7 @@ struct FullEquations {
 /// the free coordinates if a formulation derived them from the constrained energies (Approach II). Otherwise they are
 /// the rows of `full` with the constraints imposed (Approach I).
 system::EquationSystem assemble(Mechanics& mechanics, const FullEquations& full, const FullEquations* motion,
-                                const char* route, system::Approach approach);
+                                const char* formulation, system::Approach approach);
 
 /// Q_i = sum F . dr/dq_i + given generalised forces, eq. (3.20), for all coordinates.
 std::vector<Ref> generalized_forces(Mechanics& mechanics);

@@ -88,7 +88,7 @@ std::vector<std::string> banner_lines(const program::Program& program, const Emi
                                  context.title.empty() ? context.id : context.title, ""};
   lines.push_back("model       " + context.id);
   lines.push_back("content     " + context.content_hash);
-  lines.push_back(fmt::format("equations   approach {}, route {}", system::name(program.approach), program.route));
+  lines.push_back(fmt::format("equations   approach {}, formulation {}", system::name(program.approach), program.formulation));
   lines.push_back("verified    " + (context.verdict.empty() ? "no" : context.verdict));
   for (const std::string& set : context.singular) lines.push_back("singular    " + set);
   for (const program::Function& function : program.functions) {
@@ -265,7 +265,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   if (!dependent.empty()) info["dependent"] = dependent;
   if (!context.start_parameter.empty()) info["start_parameter"] = context.start_parameter;
   info["approach"] = system::name(program.approach);
-  info["route"] = program.route;
+  info["formulation"] = program.formulation;
   if (program.active_constraints > 0) info["form"] = system::name(program.form);
   info["verdict"] = context.verdict;
   info["singular"] = context.singular;

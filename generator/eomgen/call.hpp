@@ -47,7 +47,7 @@ class Call : public work::Listener {
 
 /// Runs `work(call)` under the lock and returns its result. Throws Interrupted if the call was stopped.
 template <class Work>
-auto called(const Task& task, Work&& work) {
+auto with_lock(const Task& task, Work&& work) {
   const std::scoped_lock lock(one_at_a_time());
   Call call(task);
   try {

@@ -11,7 +11,7 @@ Certificate Model::verify(const VerifyOptions& options, const Task& task) const 
   if (options.digits < 20 || options.digits > 300 || options.points < 1)
     throw Error("library", {}, "a verification needs 20 to 300 digits and at least one point",
                 "set VerifyOptions::digits and VerifyOptions::points accordingly");
-  return called(task, [&](Call&) {
+  return with_lock(task, [&](Call&) {
     const verify::Certificate found =
         pipeline::verify_model(read_, {options.digits, options.points, options.seed, options.compile});
     Certificate result;
@@ -31,7 +31,7 @@ Sources Model::emit(const EmitOptions& options, const Task& task) const {
   if (options.real != "double" && options.real != "float")
     throw Error("library", {}, "code computes in `double` or in `float`",
                 "leave EmitOptions::real as it is, or set one");
-  return called(task, [&](Call&) {
+  return with_lock(task, [&](Call&) {
     pipeline::EmissionRequest request{options.target,
                                       choice_of(options.approach),
                                       pipeline::form_choice(options.form),
@@ -43,7 +43,7 @@ Sources Model::emit(const EmitOptions& options, const Task& task) const {
     const pipeline::Emission emission = pipeline::emit_model(read_, request);
     Sources result;
     for (const emit::EmittedFile& file : emission.files) result.files.push_back({file.name, file.text});
-    result.route = emission.program.route;
+    result.formulation = emission.program.formulation;
     result.approach = system::name(emission.program.approach);
     result.form = system::name(emission.program.form);
     result.flops = emission.program.functions.front().operations.flops();

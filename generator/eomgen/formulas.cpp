@@ -10,7 +10,7 @@
 #include "analysis/article.hpp"
 #include "analysis/equations.hpp"
 #include "analysis/examination.hpp"
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "eomgen/call.hpp"
 #include "eomgen/model.hpp"
 #include "symbolic/op_names.hpp"
@@ -70,7 +70,7 @@ class Writer {
 }  // namespace
 
 Examination Model::examine(const Task& task) const {
-  return called(task, [&](Call&) {
+  return with_lock(task, [&](Call&) {
     const analysis::Examination found = analysis::examine(read_);
     Examination result;
     for (const auto& c : found.coordinates) {
@@ -93,7 +93,7 @@ Examination Model::examine(const Task& task) const {
 }
 
 Equations Model::equations(const EquationsOptions& options, const Task& task) const {
-  return called(task, [&](Call& call) {
+  return with_lock(task, [&](Call& call) {
     const analysis::Equations found = analysis::equations(read_, {choice_of(options.approach), options.show});
     for (const std::string& note : found.notes) call.warns(note);
     Equations result;
@@ -109,7 +109,7 @@ Equations Model::equations(const EquationsOptions& options, const Task& task) co
 }
 
 Derivation Model::derivation(Approach approach, const Task& task) const {
-  return called(task, [&](Call&) {
+  return with_lock(task, [&](Call&) {
     const work::Stage stage("deriving the equations");
     mechanics::Mechanics mechanics = mechanics::build_mechanics(read_);
     const system::EquationSystem system =
@@ -120,7 +120,7 @@ Derivation Model::derivation(Approach approach, const Task& task) const {
     Writer write(*read_, *system.dag, roots);
     Derivation result;
     result.approach = system::name(system.approach);
-    result.route = system.route;
+    result.formulation = system.formulation;
     for (const std::uint32_t q : system.free) result.coordinates.push_back(read_->coordinates[q].name);
     for (const std::uint32_t k : system.active) result.constraints.push_back(mechanics.constraints[k].label);
     result.M = write(system.M);
@@ -135,7 +135,7 @@ Derivation Model::derivation(Approach approach, const Task& task) const {
 }
 
 std::string Model::article(const Task& task, std::uint64_t seed) const {
-  return called(task, [&](Call&) { return analysis::article(read_, seed); });
+  return with_lock(task, [&](Call&) { return analysis::article(read_, seed); });
 }
 
 }  // namespace eomgen

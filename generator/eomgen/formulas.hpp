@@ -76,7 +76,7 @@ struct Node {
 ///   M qddot = f + A^T lambda,   A qddot + gamma = 0.
 /// Every entry is an index into `nodes`. Units are SI, as in the model.
 struct Derivation {
-  std::string approach, route;
+  std::string approach, formulation;
   std::vector<std::string> coordinates;  // n
   std::vector<std::string> constraints;  // m, labels
   std::vector<Node> nodes;

@@ -29,7 +29,7 @@ Request request_of(const std::shared_ptr<const model::Model>& model, const Optio
 }  // namespace
 
 Benchmark Model::benchmark(const BenchmarkOptions& options, const Task& task) const {
-  return called(task, [&](Call& call) {
+  return with_lock(task, [&](Call& call) {
     auto request = request_of<analysis::BenchmarkRequest>(read_, options, task, call);
     request.libraries = options.libraries;
     const analysis::Benchmark found = analysis::benchmark(request);
@@ -46,7 +46,7 @@ Benchmark Model::benchmark(const BenchmarkOptions& options, const Task& task) co
 }
 
 StressTest Model::stress_test(const StressOptions& options, const Task& task) const {
-  return called(task, [&](Call& call) {
+  return with_lock(task, [&](Call& call) {
     auto request = request_of<analysis::StressRequest>(read_, options, task, call);
     request.steps = options.steps;
     request.quick = options.quick;
@@ -56,9 +56,9 @@ StressTest Model::stress_test(const StressOptions& options, const Task& task) co
       result.rows.push_back(
           {row.test, row.solver, stress::name(row.verdict), row.error, row.estimate, row.outcome, row.note});
     for (const auto& [test, why] : found.left_out) result.left_out.push_back({test, why});
-    result.kept = found.count(stress::Verdict::kept);
-    result.told = found.count(stress::Verdict::reported);
-    result.silent = found.count(stress::Verdict::unreported);
+    result.pass = found.count(stress::Verdict::pass);
+    result.reported = found.count(stress::Verdict::reported);
+    result.undetected = found.count(stress::Verdict::undetected);
     return result;
   });
 }

@@ -51,8 +51,8 @@ struct StressOptions {
   std::uint64_t seed = 1;
 };
 
-/// Result of one solver on one variation. Verdicts: "kept" (the error is within 100 tolerances), "told" (the error is
-/// larger and was reported), "silent" (the error is larger and undetected).
+/// Result of one solver on one variation. Verdicts: "pass" (the error is within 100 tolerances), "reported" (the error is
+/// larger and was reported), "undetected" (the error is larger and undetected).
 struct StressRow {
   std::string test, solver, verdict;
   double error = 0, estimate = 0;
@@ -63,7 +63,7 @@ struct StressRow {
 struct StressTest {
   std::vector<StressRow> rows;
   std::vector<LeftOut> left_out;
-  std::size_t kept = 0, told = 0, silent = 0;  // rows of each verdict
+  std::size_t pass = 0, reported = 0, undetected = 0;  // rows of each verdict
 };
 
 }  // namespace eomgen

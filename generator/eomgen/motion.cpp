@@ -81,12 +81,12 @@ double Motion::at_end(const std::string& name) const {
 }
 
 Motion Model::run(const RunOptions& options, const Task& task) const {
-  return called(task, [&](Call& call) {
+  return with_lock(task, [&](Call& call) {
     Motion motion;
     std::vector<std::size_t> index;
     std::vector<double> values;
     pipeline::SimulationRequest request = request_of(read_, options);
-    std::optional<work::Kept> kept;  // from the first step on, an interruption returns the partial motion
+    std::optional<work::DeferInterrupt> kept;  // from the first step on, an interruption returns the partial motion
     request.ready = [&kept] { kept.emplace(); };
     request.interrupt = call.stopped();
     request.progress = call.progress();
@@ -111,7 +111,7 @@ Motion Model::run(const RunOptions& options, const Task& task) const {
 }
 
 InverseDynamics Model::inverse_dynamics(const InverseOptions& options, const Task& task) const {
-  return called(task, [&](Call& call) {
+  return with_lock(task, [&](Call& call) {
     InverseDynamics result;
     analysis::InverseRequest request;
     request.model = read_;

@@ -30,7 +30,7 @@ struct SourceFile {
 /// Result of Model::emit().
 struct Sources {
   std::vector<SourceFile> files;
-  std::string route, approach, form;
+  std::string formulation, approach, form;
   std::size_t flops = 0;    // floating-point operations of rhs
   std::string certificate;  // summary of the verification, which passed
   /// Single precision: error of rhs at the states of the self test, relative to its largest entry. Otherwise 0.

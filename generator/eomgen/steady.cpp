@@ -25,7 +25,7 @@ std::vector<std::complex<double>> eigenvalues(const linear::Spectrum& spectrum) 
 }  // namespace
 
 Linearisation Model::linearise(const LineariseOptions& options, const Task& task) const {
-  return called(task, [&](Call&) {
+  return with_lock(task, [&](Call&) {
     run::Overrides overrides;
     overrides.values = exact(options.parameters);
     const analysis::SteadyProblem problem =
@@ -45,7 +45,7 @@ Linearisation Model::linearise(const LineariseOptions& options, const Task& task
 }
 
 SteadyMotions Model::steady_motions(const SteadyOptions& options, const Task& task) const {
-  return called(task, [&](Call& call) {
+  return with_lock(task, [&](Call& call) {
     analysis::SteadyRequest request;
     request.model = read_;
     request.scene = options.scene;

@@ -12,29 +12,29 @@ Kind bushing() {
   const std::string moment =
       "(rotational_coefficient1*dot(wB - wA, A1)*A1 + rotational_coefficient2*dot(wB - wA, A2)*A2 + "
       "rotational_coefficient3*dot(wB - wA, A3)*A3)";
-  const When slides{Is::given, "coefficient"}, turns{Is::given, "rotational_coefficient"};
+  const When slides{Predicate::given, "coefficient"}, turns{Predicate::given, "rotational_coefficient"};
   return {
       .name = "bushing",
       .title = "springs and dampers along and about the axes of one of two bodies",
-      .keys = {{.name = "bodies", .asks = Asks::bodies},
-               {.name = "at", .asks = Asks::points, .on = On::motion},
-               {.name = "stiffness", .asks = Asks::triple, .unit = "N/m"},
-               {.name = "coefficient", .asks = Asks::triple, .unit = "N*s/m", .on = On::state, .optional = true},
-               {.name = "rotational_stiffness", .asks = Asks::triple, .unit = "N*m", .optional = true},
+      .keys = {{.name = "bodies", .type = ValueType::bodies},
+               {.name = "at", .type = ValueType::points, .dependency = Dependency::motion},
+               {.name = "stiffness", .type = ValueType::triple, .unit = "N/m"},
+               {.name = "coefficient", .type = ValueType::triple, .unit = "N*s/m", .dependency = Dependency::state, .optional = true},
+               {.name = "rotational_stiffness", .type = ValueType::triple, .unit = "N*m", .optional = true},
                {.name = "rotational_coefficient",
-                .asks = Asks::triple,
+                .type = ValueType::triple,
                 .unit = "N*m*s",
-                .on = On::state,
+                .dependency = Dependency::state,
                 .optional = true}},
       .terms = {{.formula = "(stiffness1*" + x1 + "^2 + stiffness2*" + x2 + "^2 + stiffness3*" + x3 + "^2)/2"},
                 {.formula = "(rotational_stiffness1*" + p1 + "^2 + rotational_stiffness2*" + p2 +
                             "^2 + rotational_stiffness3*" + p3 + "^2)/2",
-                 .when = {{Is::given, "rotational_stiffness"}}},
-                {.acts = Acts::work, .formula = "-(coefficient1*ddt(" + x1 + "))", .at = x1, .when = {slides}},
-                {.acts = Acts::work, .formula = "-(coefficient2*ddt(" + x2 + "))", .at = x2, .when = {slides}},
-                {.acts = Acts::work, .formula = "-(coefficient3*ddt(" + x3 + "))", .at = x3, .when = {slides}},
-                {.acts = Acts::moment, .formula = "-" + moment, .at = "B", .when = {turns}},
-                {.acts = Acts::moment, .formula = moment, .at = "A", .when = {turns}}},
+                 .when = {{Predicate::given, "rotational_stiffness"}}},
+                {.load_type = LoadType::work, .formula = "-(coefficient1*ddt(" + x1 + "))", .at = x1, .when = {slides}},
+                {.load_type = LoadType::work, .formula = "-(coefficient2*ddt(" + x2 + "))", .at = x2, .when = {slides}},
+                {.load_type = LoadType::work, .formula = "-(coefficient3*ddt(" + x3 + "))", .at = x3, .when = {slides}},
+                {.load_type = LoadType::moment, .formula = "-" + moment, .at = "B", .when = {turns}},
+                {.load_type = LoadType::moment, .formula = moment, .at = "A", .when = {turns}}},
       .spring = {"rA", "rB"},
       .damper = {"rA", "rB"},
   };

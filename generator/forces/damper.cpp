@@ -7,9 +7,9 @@ Kind damper() {
   return {
       .name = "damper",
       .title = "a force against the rate of the distance of two points",
-      .keys = {{.name = "between", .asks = Asks::ends, .on = On::motion},
-               {.name = "coefficient", .unit = "N*s/m", .on = On::state}},
-      .terms = {{.acts = Acts::damping, .formula = "coefficient"}},
+      .keys = {{.name = "between", .type = ValueType::ends, .dependency = Dependency::motion},
+               {.name = "coefficient", .unit = "N*s/m", .dependency = Dependency::state}},
+      .terms = {{.load_type = LoadType::damping, .formula = "coefficient"}},
       .damper = {"a", "b"},
   };
 }

@@ -7,11 +7,11 @@ Kind drag() {  // -(1/2) rho A C |v| v, eq. (8.53)
   return {
       .name = "drag",
       .title = "air drag of a point",
-      .keys = {{.name = "on", .asks = Asks::place, .remedy = "add on = \"P\""},
-               {.name = "density", .unit = "kg/m^3", .on = On::state},
-               {.name = "area", .unit = "m^2", .on = On::state},
-               {.name = "coefficient", .unit = "1", .on = On::state}},
-      .terms = {{.acts = Acts::force,
+      .keys = {{.name = "on", .type = ValueType::place, .remedy = "add on = \"P\""},
+               {.name = "density", .unit = "kg/m^3", .dependency = Dependency::state},
+               {.name = "area", .unit = "m^2", .dependency = Dependency::state},
+               {.name = "coefficient", .unit = "1", .dependency = Dependency::state}},
+      .terms = {{.load_type = LoadType::force,
                  .formula = "ddt(on)*(-1/2*(norm(ddt(on))*(density*(area*coefficient))))",
                  .at = "on"}},
   };

@@ -8,13 +8,13 @@ Kind force() {
       .name = "force",
       .title = "a vector at a point",
       .form = Form::value,
-      .keys = {{.name = "force", .asks = Asks::vector, .unit = "N", .on = On::state},
+      .keys = {{.name = "force", .type = ValueType::vector, .unit = "N", .dependency = Dependency::state},
                {.name = "on",
-                .asks = Asks::point,
-                .on = On::motion,
+                .type = ValueType::point,
+                .dependency = Dependency::motion,
                 .what = "the point where a force acts",
                 .remedy = "add on = \"P\", the particle or point on which the force acts"}},
-      .terms = {{.acts = Acts::force, .formula = "force", .at = "on"}},
+      .terms = {{.load_type = LoadType::force, .formula = "force", .at = "on"}},
   };
 }
 

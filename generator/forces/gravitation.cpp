@@ -8,7 +8,7 @@ Kind gravitation() {
       .name = "gravitation",
       .title = "mutual attraction of all masses",
       .keys = {{.name = "G", .unit = "m^3/(kg*s^2)"}},
-      .terms = {{.formula = "-(G*(m1*m2)/norm(r1 - r2))", .over = Over::pairs}},
+      .terms = {{.formula = "-(G*(m1*m2)/norm(r1 - r2))", .domain = Domain::pairs}},
   };
 }
 

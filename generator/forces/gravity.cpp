@@ -9,12 +9,12 @@ Kind gravity() {
       .title = "an acceleration of every mass",
       .form = Form::value,
       .keys = {{.name = "gravity",
-                .asks = Asks::vector,
+                .type = ValueType::vector,
                 .unit = "m/s^2",
                 .what = "gravity",
                 .remedy = "gravity is one acceleration for all masses; write force = \"<vector>\" with on = P, or "
                           "central_gravity"}},
-      .terms = {{.acts = Acts::acceleration, .formula = "gravity"}},
+      .terms = {{.load_type = LoadType::acceleration, .formula = "gravity"}},
   };
 }
 

@@ -17,7 +17,7 @@
 
 namespace eomgen::forces {
 
-enum class Asks {
+enum class ValueType {
   scalar,
   vector,
   triple,  // an array of three scalars
@@ -33,7 +33,7 @@ enum class Asks {
 };
 
 /// The variables that a value may depend on, besides parameters. Each entry includes the previous ones.
-enum class On { time, motion, state };  // t; coordinates; velocities and inputs
+enum class Dependency { time, motion, state };  // t; coordinates; velocities and inputs
 
 struct Choice {
   std::string text;
@@ -42,9 +42,9 @@ struct Choice {
 
 struct Key {
   std::string name;
-  Asks asks = Asks::scalar;
+  ValueType type = ValueType::scalar;
   std::string unit = {};  // required; empty: any
-  On on = On::time;
+  Dependency dependency = Dependency::time;
   bool optional = false;
   std::string fallback = {};  // default formula of an optional key; empty: no value
   std::string with = {};      // the default applies only if this other key is given
@@ -56,18 +56,18 @@ struct Key {
 
 /// A condition on two keys. Messages follow the name of the force: "'f' has both a stiffness and an energy".
 struct Rule {
-  enum class Asks { not_both, one_of, needs };  // not both; at least one; the first needs the second
-  Asks asks = Asks::not_both;
+  enum class Type { not_both, one_of, needs };  // not both; at least one; the first needs the second
+  Type type = Type::not_both;
   std::string first, second;
   std::string what, remedy;
 };
 
 /// The objects over which a term is summed, and the names that its formula may use:
 /// once: none; masses: m, r; pairs: m1, r1, m2, r2; bodies: m, r, d = arm, dJd = d . J d, trJ = trace of J.
-enum class Over { once, masses, pairs, bodies };
+enum class Domain { once, masses, pairs, bodies };
 
 /// The meaning of the formula of a term.
-enum class Acts {
+enum class LoadType {
   acceleration,  // vector: an acceleration of every mass
   potential,     // scalar: a potential energy
   force,         // vector: at the point `at`
@@ -77,21 +77,21 @@ enum class Acts {
 };
 
 /// A condition on a key. An omitted key with a default counts as given with this default.
-enum class Is { given, left_out, zero, not_zero, chosen };
+enum class Predicate { given, left_out, zero, not_zero, chosen };
 struct When {
-  Is is = Is::given;
+  Predicate predicate = Predicate::given;
   std::string key;
   std::string choice = {};
 };
 
 struct Term {
-  Acts acts = Acts::potential;
+  LoadType load_type = LoadType::potential;
   std::string formula;
   std::string at = {};
   std::vector<When> when = {};  // the term applies if all of them hold
   std::string extension = {};   // the formula for which `extension` stands
-  Over over = Over::once;
-  std::string arm = {};  // of Over::bodies
+  Domain domain = Domain::once;
+  std::string arm = {};  // of Domain::bodies
 };
 
 /// How a force of this kind is written in a model file.

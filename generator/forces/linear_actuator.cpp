@@ -7,10 +7,10 @@ Kind linear_actuator() {
   return {
       .name = "linear_actuator",
       .title = "a force along the line between two points, which pushes them apart",
-      .keys = {{.name = "between", .asks = Asks::ends, .on = On::motion},
-               {.name = "force", .unit = "N", .on = On::state}},
-      .terms = {{.acts = Acts::force, .formula = "force*unit(a - b)", .at = "a"},
-                {.acts = Acts::force, .formula = "force*unit(b - a)", .at = "b"}},
+      .keys = {{.name = "between", .type = ValueType::ends, .dependency = Dependency::motion},
+               {.name = "force", .unit = "N", .dependency = Dependency::state}},
+      .terms = {{.load_type = LoadType::force, .formula = "force*unit(a - b)", .at = "a"},
+                {.load_type = LoadType::force, .formula = "force*unit(b - a)", .at = "b"}},
       .damper = {"a", "b"},
   };
 }

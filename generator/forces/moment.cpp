@@ -8,11 +8,11 @@ Kind moment() {
       .name = "moment",
       .title = "a moment on a body or frame",
       .form = Form::value,
-      .keys = {{.name = "moment", .asks = Asks::vector, .unit = "N*m", .on = On::state},
+      .keys = {{.name = "moment", .type = ValueType::vector, .unit = "N*m", .dependency = Dependency::state},
                {.name = "on",
-                .asks = Asks::frame,
+                .type = ValueType::frame,
                 .remedy = "add on = \"B\", the body or frame on which the moment acts"}},
-      .terms = {{.acts = Acts::moment, .formula = "moment", .at = "on"}},
+      .terms = {{.load_type = LoadType::moment, .formula = "moment", .at = "on"}},
   };
 }
 

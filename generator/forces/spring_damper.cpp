@@ -7,13 +7,13 @@ Kind spring_damper() {
   return {
       .name = "spring_damper",
       .title = "a linear spring and a damper between two points",
-      .keys = {{.name = "between", .asks = Asks::ends, .on = On::motion},
+      .keys = {{.name = "between", .type = ValueType::ends, .dependency = Dependency::motion},
                {.name = "stiffness", .unit = "N/m"},
                {.name = "length", .unit = "m", .optional = true, .fallback = "0"},
-               {.name = "coefficient", .unit = "N*s/m", .on = On::state}},
-      .terms = {{.formula = "stiffness*dot(a - b, a - b)/2", .when = {{Is::zero, "length"}}},
-                {.formula = "stiffness*(norm(a - b) - length)^2/2", .when = {{Is::not_zero, "length"}}},
-                {.acts = Acts::damping, .formula = "coefficient"}},
+               {.name = "coefficient", .unit = "N*s/m", .dependency = Dependency::state}},
+      .terms = {{.formula = "stiffness*dot(a - b, a - b)/2", .when = {{Predicate::zero, "length"}}},
+                {.formula = "stiffness*(norm(a - b) - length)^2/2", .when = {{Predicate::not_zero, "length"}}},
+                {.load_type = LoadType::damping, .formula = "coefficient"}},
       .spring = {"a", "b"},
       .damper = {"a", "b"},
   };

@@ -71,7 +71,7 @@ class Search {
     };
     std::vector<End> seen;
     for (std::size_t k = 0; k < r_.starts; ++k) {
-      if (work::abandoned()) {
+      if (work::stop_requested()) {
         result_.interrupted = true;
         return;
       }

@@ -258,7 +258,7 @@ bool Closure::is_regular() {
     for (Eigen::Index k = A.rows(); k-- > 0;) {
       const Constraint& c = m_.constraints[static_cast<std::size_t>(k)];
       const double length = A.row(k).norm();
-      if (c.unilateral || c.need != Need::holds) {
+      if (c.unilateral || c.need != Need::independent) {
         if (k + 1 < A.rows()) A.row(k) = A.row(A.rows() - 1).eval();
         A.conservativeResize(A.rows() - 1, Eigen::NoChange);
       } else if (length == 0) {

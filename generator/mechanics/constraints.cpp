@@ -189,7 +189,7 @@ void add_constraints(Mechanics& m, Lowering& lower) {
         add_position_form(m, lower, result);
       }
       if (may_hold(constraint) && says_nothing(m, result)) result.need = Need::identity;
-      if (result.need == Need::holds && vanishes(*m.dag, result.gradient)) {
+      if (result.need == Need::independent && vanishes(*m.dag, result.gradient)) {
         throw Error(
             "mechanics", m.model->where(constraint.span),
             "constraint '" + result.label + "' does not depend on any " + (velocities ? "velocity" : "coordinate"),
@@ -198,9 +198,9 @@ void add_constraints(Mechanics& m, Lowering& lower) {
             : velocities ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
                          : "a constraint relates coordinates, such as holonomic = \"R - d\"");
       }
-      if (result.need == Need::holds && !velocities && !constraint.joint && !constraint.rolling && !constraint.unit)
+      if (result.need == Need::independent && !velocities && !constraint.joint && !constraint.rolling && !constraint.unit)
         refuse_power(m, result);
-      result.determined = result.need == Need::holds;
+      result.determined = result.need == Need::independent;
       m.constraints.push_back(std::move(result));
     }
     require_something(m, constraint);

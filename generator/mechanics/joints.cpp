@@ -9,7 +9,7 @@
 namespace eomgen::mechanics {
 const char* name(Need need) {
   switch (need) {
-    case Need::holds: return "holds";
+    case Need::independent: return "independent";
     case Need::identity: return "identity";
     default: return "redundant";
   }

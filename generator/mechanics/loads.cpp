@@ -28,15 +28,15 @@ class ForceReader {
 
  private:
   void add(const model::Effect& effect) {
-    using Acts = model::Effect::Acts;
-    switch (effect.acts) {
-      case Acts::acceleration: return accelerate(lower_.vector(effect.value));
-      case Acts::potential: return add_potential(effect);
-      case Acts::force: return load(lower_.vector(effect.value), lower_.vector(effect.at));
-      case Acts::moment: return turn(lower_.vector(effect.value), lower_.angular_velocity(effect.index));
-      case Acts::work: return work(lower_.scalar(effect.value), lower_.scalar(effect.at));
-      case Acts::damping: return damp(effect);
-      case Acts::component:
+    using LoadType = model::Effect::LoadType;
+    switch (effect.load_type) {
+      case LoadType::acceleration: return accelerate(lower_.vector(effect.value));
+      case LoadType::potential: return add_potential(effect);
+      case LoadType::force: return load(lower_.vector(effect.value), lower_.vector(effect.at));
+      case LoadType::moment: return turn(lower_.vector(effect.value), lower_.angular_velocity(effect.index));
+      case LoadType::work: return work(lower_.scalar(effect.value), lower_.scalar(effect.at));
+      case LoadType::damping: return damp(effect);
+      case LoadType::component:
         generalized_[effect.index] = dag_.add(generalized_[effect.index], lower_.scalar(effect.value));
     }
   }

@@ -50,8 +50,8 @@ enum class ConstraintKind { holonomic, velocity };
 
 /// Whether a constraint equation is independent. An identity holds for all coordinates. A redundant equation follows
 /// from the other constraints. Both are neither imposed nor active and have no multiplier.
-enum class Need { holds, identity, redundant };
-const char* name(Need need);  // "holds", "identity", "redundant"
+enum class Need { independent, identity, redundant };
+const char* name(Need need);  // "independent", "identity", "redundant"
 
 /// One scalar equation: psi(q, t) = 0, or f . qdot + b = 0 with f(q, t), b(q, t). In both cases the force on the system
 /// is lambda f, eqs. (2.31), (2.50), with f = d psi/d q for a holonomic constraint.
@@ -64,7 +64,7 @@ struct Constraint {
   Ref rate;                                // b: d psi/d t at fixed q
   model::NodeId written = model::no_node;  // psi or the velocity form, in the model
   bool unilateral = false;                 // psi >= 0: never eliminated
-  Need need = Need::holds;
+  Need need = Need::independent;
   bool determined = true;  // whether the motion determines its force; for joints see JointReaction
 
   bool holonomic() const { return kind == ConstraintKind::holonomic; }
@@ -184,7 +184,7 @@ struct Mechanics {
   /// Degrees of freedom: free coordinates minus constraints that always hold.
   long freedom() const;
   /// Whether a constraint is independent: imposed or active.
-  bool holds(std::uint32_t constraint) const { return constraints[constraint].need == Need::holds; }
+  bool holds(std::uint32_t constraint) const { return constraints[constraint].need == Need::independent; }
   /// f . qdot + b of a constraint.
   Ref velocity_form(const Constraint& constraint) const;
 };

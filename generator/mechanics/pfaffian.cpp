@@ -151,15 +151,15 @@ bool FormSpace::move_onto_constraints(std::map<Symbol, cln::cl_R>& point) const 
 Vanishing FormSpace::vanishing(Ref expression) {
   if (dag_.is_zero(expression)) return Vanishing::proven;
   if (!effort_.take(dag_.reachable({expression}).size())) return Vanishing::unknown;
-  bool judged = false;
+  bool is_decided = false;
   for (std::size_t point = 0; point < points_.size(); ++point) {
     try {
       if (cln::abs(values({expression}, point)[0]) > small(agreed_digits)) return Vanishing::no;
-      judged = true;
+      is_decided = true;
     } catch (const std::domain_error&) {  // no value at this point
     }
   }
-  if (!judged) return Vanishing::unknown;
+  if (!is_decided) return Vanishing::unknown;
   return symbolic::is_proven_zero(dag_, expression, &effort_) ? Vanishing::proven : Vanishing::at_points;
 }
 

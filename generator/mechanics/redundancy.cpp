@@ -268,7 +268,7 @@ void drop_repeated_equations(Mechanics& m) {
   const Refusals refusals = drop_repeated(m);
   for (const model::Constraint& whole : m.model->constraints) {
     if (whole.joint || whole.unit) continue;
-    const auto needed = [&](const Constraint& c) { return c.name == whole.name && c.need == Need::holds; };
+    const auto needed = [&](const Constraint& c) { return c.name == whole.name && c.need == Need::independent; };
     if (std::any_of(m.constraints.begin(), m.constraints.end(), needed)) continue;
     const auto why = refusals.find(whole.name);
     if (why != refusals.end()) throw why->second;

@@ -28,7 +28,7 @@ class Collector {
       of_ = fmt::format("'{}'", force.name);
       for (const Argument& argument : force.arguments) more({argument.value});
       for (const Effect& effect : force.effects) {
-        if (effect.acts == Effect::Acts::component) rubbed(effect.index);
+        if (effect.load_type == Effect::LoadType::component) rubbed(effect.index);
       }
       if (force.dry) more({force.dry->normal}), law(force.dry->law), rubbed(force.dry->coordinate);
     }

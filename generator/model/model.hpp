@@ -138,7 +138,7 @@ struct Argument {
 };
 /// An effect of a force: an expanded term of the description of its kind.
 struct Effect {
-  enum class Acts {
+  enum class LoadType {
     acceleration,  // vector `value`: an acceleration of every mass
     potential,     // scalar: a potential energy, of the points `at`, `other` if given; Op::extension is `extension`
     force,         // vector: at the point `at`
@@ -147,7 +147,7 @@ struct Effect {
     damping,       // scalar: coefficient of a damper between the points `at` and `other`
     component,     // scalar: a generalised force along the coordinate `index`
   };
-  Acts acts = Acts::potential;
+  LoadType load_type = LoadType::potential;
   NodeId value = no_node;
   NodeId at = no_node, other = no_node, extension = no_node;
   std::uint32_t index = 0;

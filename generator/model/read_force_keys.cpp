@@ -9,13 +9,13 @@
 namespace eomgen::model {
 namespace {
 
-using forces::Asks;
+using forces::ValueType;
 
-Facts allowed(forces::On on) {
-  switch (on) {
-    case forces::On::time: return on_time;
-    case forces::On::motion: return on_motion;
-    case forces::On::state: break;
+Facts allowed(forces::Dependency dependency) {
+  switch (dependency) {
+    case forces::Dependency::time: return on_time;
+    case forces::Dependency::motion: return on_motion;
+    case forces::Dependency::state: break;
   }
   return on_time | on_input | on_coordinate | on_velocity;
 }
@@ -37,7 +37,7 @@ Context ForcesReader::context(const Open& open, const forces::Key& key, Shape sh
                 : !itself         ? fmt::format("the {} of {}", key.name, open.what)
                 : open.named      ? fmt::format("the {} {}", open.kind.name, open.what)
                                   : open.what;
-  result.allowed = allowed(key.on);
+  result.allowed = allowed(key.dependency);
   result.shape = shape;
   if (!key.unit.empty()) result.dimension = dimension_of(key.unit);
   result.remedy = key.remedy;
@@ -46,18 +46,18 @@ Context ForcesReader::context(const Open& open, const forces::Key& key, Shape sh
 
 void ForcesReader::read_value(Open& open, const forces::Key& key, const Value& value) {
   const std::string quoted = fmt::format("'{}' of {}", key.name, open.what);
-  switch (key.asks) {
-    case Asks::scalar: return keep(open, key.name, resolver_.value(value, context(open, key, Shape::scalar)));
-    case Asks::vector: return keep(open, key.name, resolver_.value(value, context(open, key, Shape::vector)));
-    case Asks::triple: return read_triple(open, key, value);
-    case Asks::point: return keep(open, key.name, point(value, context(open, key, Shape::vector).what));
-    case Asks::points:
-    case Asks::ends: return read_pair(open, key, value);
-    case Asks::place: {
+  switch (key.type) {
+    case ValueType::scalar: return keep(open, key.name, resolver_.value(value, context(open, key, Shape::scalar)));
+    case ValueType::vector: return keep(open, key.name, resolver_.value(value, context(open, key, Shape::vector)));
+    case ValueType::triple: return read_triple(open, key, value);
+    case ValueType::point: return keep(open, key.name, point(value, context(open, key, Shape::vector).what));
+    case ValueType::points:
+    case ValueType::ends: return read_pair(open, key, value);
+    case ValueType::place: {
       const std::uint32_t index = place_named(value, quoted);
       return keep(open, key.name, resolver_.place(index, value.span), index);
     }
-    case Asks::frame: {
+    case ValueType::frame: {
       const std::uint32_t index = frame_named(value, quoted);
       if (index == 0)
         source_.fail(value.span, fmt::format("a {} on the ground changes nothing", open.kind.name),
@@ -65,10 +65,10 @@ void ForcesReader::read_value(Open& open, const forces::Key& key, const Value& v
       open.force.arguments.push_back({key.name, no_node, index});
       return;
     }
-    case Asks::body: return read_body(open, key, value);
-    case Asks::bodies: return read_bodies(open, key, value);
-    case Asks::energy: return read_energy(open, key, value);
-    case Asks::choice: return read_choice(open, key, value);
+    case ValueType::body: return read_body(open, key, value);
+    case ValueType::bodies: return read_bodies(open, key, value);
+    case ValueType::energy: return read_energy(open, key, value);
+    case ValueType::choice: return read_choice(open, key, value);
   }
 }
 
@@ -89,7 +89,7 @@ void ForcesReader::read_triple(Open& open, const forces::Key& key, const Value& 
 }
 
 void ForcesReader::read_pair(Open& open, const forces::Key& key, const Value& value) {
-  const bool ends = key.asks == Asks::ends;
+  const bool ends = key.type == ValueType::ends;
   const std::string remedy = fmt::format("write {} = {} with particles, points, \"origin\" or vectors", key.name,
                                          ends ? "[\"P\", \"Q\"]" : "[\"point of A\", \"point of B\"]");
   as(Value::Kind::array, value, fmt::format("'{}'", key.name), remedy);

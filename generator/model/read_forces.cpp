@@ -36,12 +36,12 @@ bool has_key(const forces::Kind& kind, std::string_view name) {
 
 /// The default remedy for a missing key, if the description of its kind has none.
 std::string remedy_for(const forces::Key& key) {
-  switch (key.asks) {
-    case forces::Asks::ends: return "write between = [\"P\", \"Q\"] with particles, points, \"origin\" or vectors";
-    case forces::Asks::triple: return fmt::format("add {} = [\"..\", \"..\", \"..\"], along three axes", key.name);
-    case forces::Asks::bodies: return fmt::format("add {} = [\"A\", \"B\"]; one of them may be \"ground\"", key.name);
-    case forces::Asks::points: return fmt::format("add {} = [\"point of A\", \"point of B\"]", key.name);
-    case forces::Asks::vector: return fmt::format("add {} = \"<vector>\"", key.name);
+  switch (key.type) {
+    case forces::ValueType::ends: return "write between = [\"P\", \"Q\"] with particles, points, \"origin\" or vectors";
+    case forces::ValueType::triple: return fmt::format("add {} = [\"..\", \"..\", \"..\"], along three axes", key.name);
+    case forces::ValueType::bodies: return fmt::format("add {} = [\"A\", \"B\"]; one of them may be \"ground\"", key.name);
+    case forces::ValueType::points: return fmt::format("add {} = [\"point of A\", \"point of B\"]", key.name);
+    case forces::ValueType::vector: return fmt::format("add {} = \"<vector>\"", key.name);
     default: return fmt::format("add {} = \"..\"", key.name);
   }
 }
@@ -129,10 +129,10 @@ void ForcesReader::check_rules(const Open& open) const {
   }
   for (const forces::Rule& rule : open.kind.rules) {
     const bool first = open.table.find(rule.first) != nullptr, second = open.table.find(rule.second) != nullptr;
-    using Asks = forces::Rule::Asks;
-    if ((rule.asks == Asks::not_both && first && second) || (rule.asks == Asks::needs && first && !second))
+    using Type = forces::Rule::Type;
+    if ((rule.type == Type::not_both && first && second) || (rule.type == Type::needs && first && !second))
       source_.fail(key_span(open.table, rule.first), fmt::format("{} {}", open.what, rule.what), rule.remedy);
-    if (rule.asks == Asks::one_of && !first && !second)
+    if (rule.type == Type::one_of && !first && !second)
       source_.fail(open.table.span, fmt::format("{} {}", open.what, rule.what), rule.remedy);
   }
 }
@@ -161,7 +161,7 @@ void ForcesReader::read_components(Force& force, const Value& table, const std::
     const NodeId value = resolver_.value(entry.value, component).node;
     force.arguments.push_back({entry.key, value, symbol->index});
     Effect effect;
-    effect.acts = Effect::Acts::component;
+    effect.load_type = Effect::LoadType::component;
     effect.value = value;
     effect.index = symbol->index;
     force.effects.push_back(effect);

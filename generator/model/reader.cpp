@@ -178,7 +178,7 @@ NodeId Force::value(std::string_view key) const {
 }
 
 NodeId Force::acceleration() const {
-  return effects.size() == 1 && effects[0].acts == Effect::Acts::acceleration ? effects[0].value : no_node;
+  return effects.size() == 1 && effects[0].load_type == Effect::LoadType::acceleration ? effects[0].value : no_node;
 }
 
 Where Model::where(const Span& span) const { return where_in(file, lines, span); }

@@ -9,21 +9,21 @@
 namespace eomgen::model {
 namespace {
 
-using forces::Acts;
-using forces::Is;
-using forces::Over;
+using forces::LoadType;
+using forces::Predicate;
+using forces::Domain;
 
-const std::map<Acts, Effect::Acts>& effects() {
-  static const std::map<Acts, Effect::Acts> all{{Acts::acceleration, Effect::Acts::acceleration},
-                                                {Acts::potential, Effect::Acts::potential},
-                                                {Acts::force, Effect::Acts::force},
-                                                {Acts::moment, Effect::Acts::moment},
-                                                {Acts::work, Effect::Acts::work},
-                                                {Acts::damping, Effect::Acts::damping}};
+const std::map<LoadType, Effect::LoadType>& effects() {
+  static const std::map<LoadType, Effect::LoadType> all{{LoadType::acceleration, Effect::LoadType::acceleration},
+                                                {LoadType::potential, Effect::LoadType::potential},
+                                                {LoadType::force, Effect::LoadType::force},
+                                                {LoadType::moment, Effect::LoadType::moment},
+                                                {LoadType::work, Effect::LoadType::work},
+                                                {LoadType::damping, Effect::LoadType::damping}};
   return all;
 }
 
-bool is_vector(Acts acts) { return acts == Acts::acceleration || acts == Acts::force || acts == Acts::moment; }
+bool is_vector(LoadType acts) { return acts == LoadType::acceleration || acts == LoadType::force || acts == LoadType::moment; }
 
 Typed known(NodeId node) {
   Typed result;
@@ -49,12 +49,12 @@ bool ForcesReader::is_written_zero(NodeId id) const {
 bool ForcesReader::applies(const Open& open, const forces::Term& term) const {
   return std::all_of(term.when.begin(), term.when.end(), [&](const forces::When& when) {
     const Argument* argument = open.force.argument(when.key);
-    switch (when.is) {
-      case Is::given: return argument != nullptr;
-      case Is::left_out: return argument == nullptr;
-      case Is::zero: return argument != nullptr && is_written_zero(argument->value);
-      case Is::not_zero: return argument != nullptr && !is_written_zero(argument->value);
-      case Is::chosen: break;
+    switch (when.predicate) {
+      case Predicate::given: return argument != nullptr;
+      case Predicate::left_out: return argument == nullptr;
+      case Predicate::zero: return argument != nullptr && is_written_zero(argument->value);
+      case Predicate::not_zero: return argument != nullptr && !is_written_zero(argument->value);
+      case Predicate::chosen: break;
     }
     const auto& keys = open.kind.keys;
     const auto key = std::find_if(keys.begin(), keys.end(),
@@ -69,16 +69,16 @@ void ForcesReader::add_effect(const Open& open, const forces::Term& term, const 
     return resolver_.text(written, local, span, formula(shape)).node;
   };
   Effect effect;
-  effect.acts = effects().at(term.acts);
-  if (term.acts == Acts::moment) {
+  effect.load_type = effects().at(term.load_type);
+  if (term.load_type == LoadType::moment) {
     effect.index = open.force.argument(term.at)->index;
     if (effect.index == 0) return;  // the ground
   }
-  effect.value = text(term.formula, is_vector(term.acts) ? Shape::vector : Shape::scalar);
+  effect.value = text(term.formula, is_vector(term.load_type) ? Shape::vector : Shape::scalar);
   if (!term.extension.empty()) effect.extension = text(term.extension, Shape::scalar);
-  if (term.acts == Acts::force) effect.at = text(term.at, Shape::vector);
-  if (term.acts == Acts::work) effect.at = text(term.at, Shape::scalar);
-  if (term.acts == Acts::damping || term.acts == Acts::potential) {
+  if (term.load_type == LoadType::force) effect.at = text(term.at, Shape::vector);
+  if (term.load_type == LoadType::work) effect.at = text(term.at, Shape::scalar);
+  if (term.load_type == LoadType::damping || term.load_type == LoadType::potential) {
     effect.at = open.force.value("a");
     effect.other = open.force.value("b");
   }
@@ -120,10 +120,10 @@ void ForcesReader::spell(Open& open) {
   for (const Body& body : model_.bodies) masses.push_back({body.place, body.mass});
   for (const forces::Term& term : open.kind.terms) {
     if (!applies(open, term)) continue;
-    if (term.over == Over::once) add_effect(open, term, open.local);
-    if (term.over == Over::bodies) add_over_bodies(open, term);
-    for (std::size_t i = 0; i < masses.size() && (term.over == Over::masses || term.over == Over::pairs); ++i) {
-      const bool pairs = term.over == Over::pairs;
+    if (term.domain == Domain::once) add_effect(open, term, open.local);
+    if (term.domain == Domain::bodies) add_over_bodies(open, term);
+    for (std::size_t i = 0; i < masses.size() && (term.domain == Domain::masses || term.domain == Domain::pairs); ++i) {
+      const bool pairs = term.domain == Domain::pairs;
       std::map<std::string, Typed> local = open.local;
       local.merge(mass_names(masses[i].place, masses[i].mass, pairs ? "1" : "", open.force.span));
       if (!pairs) add_effect(open, term, local);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "error.hpp"
 #include "symbolic/evaluate.hpp"
 

@@ -48,7 +48,7 @@ void add_second_charts(Derived& own, program::Program& program, const std::vecto
                    request.approach, request.form);
   // Uses the cheapest formulation of the own charts: a second search would take longer than it could save.
   std::stable_partition(derived->candidates.begin(), derived->candidates.end(), [&](const system::EquationSystem& s) {
-    return s.route == program.route && s.approach == program.approach && s.form == program.form;
+    return s.formulation == program.formulation && s.approach == program.approach && s.form == program.form;
   });
   derived->candidates.resize(1);
   std::vector<std::uint32_t> exchanged;

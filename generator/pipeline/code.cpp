@@ -119,7 +119,7 @@ CompiledCode compile(const program::Program& program, const emit::EmissionContex
     if (file.name == name + ".h") header = file.text;
   }
   if (source.empty() || header.empty()) throw std::logic_error("the cpp target emitted no C source");
-  const work::Kept heeded;  // the wait for the compiler handles an interrupt itself, and leaves no files
+  const work::DeferInterrupt heeded;  // the wait for the compiler handles an interrupt itself, and leaves no files
   emit::Compiled compiled = emit::compile_and_load(source, header, name, &work::stop_flag());
   if (!compiled.note.empty() && !again) {
     work::warn(format_warning({{},

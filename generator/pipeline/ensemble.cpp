@@ -34,7 +34,7 @@ emit::LoadedBatch compile_batch(const Simulation& first) {
   std::vector<std::pair<std::string, std::string>> files;
   for (const emit::EmittedFile& file : emit::emit(first.program, context, "batch"))
     files.emplace_back(file.name, file.text);
-  const work::Kept heeded;  // the wait for the compiler handles an interrupt itself
+  const work::DeferInterrupt heeded;  // the wait for the compiler handles an interrupt itself
   return emit::compile_and_load_batch(files, emit::mangled_id(context.id), &work::stop_flag());
 }
 

@@ -8,7 +8,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 #include "emit/self_test.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
@@ -113,7 +113,7 @@ program::AbiArguments abi_arguments(const verify::At& at, const std::vector<veri
 verify::ProgramForm with_functions(verify::ProgramForm form, const program::Program& program,
                                    const std::vector<verify::Real>& default_inputs) {
   form.functions = program::abi_function_names(program);
-  form.route = program.route;
+  form.formulation = program.formulation;
   form.approach = program.approach;
   form.outputs = program.outputs;
   form.default_inputs = default_inputs;
@@ -196,9 +196,9 @@ std::unique_ptr<Derived> derive_model(std::shared_ptr<const model::Model> model,
   derived->mechanics = mechanics::build_mechanics(derived->shared);
   require_freedom(derived->mechanics);
   for (const system::Approach a : approaches(derived->mechanics, approach)) {
-    for (const derive::RouteEntry& route : derive::routes()) {
-      if (auto route_system = derive::derive_where_worth(route, derived->mechanics, a).system)
-        derived->candidates.push_back(std::move(*route_system));
+    for (const derive::FormulationEntry& formulation : derive::formulations()) {
+      if (auto formulation_system = derive::derive_where_worth(formulation, derived->mechanics, a).system)
+        derived->candidates.push_back(std::move(*formulation_system));
     }
   }
   derived->conserved = conservation::conserved_quantities(derived->mechanics, derived->candidates);
@@ -224,8 +224,8 @@ void add_forms(mechanics::Mechanics& mechanics, reading::Forms& forms, verify::S
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
     // Without eliminated coordinates both approaches coincide: a large system is displayed only once.
     if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
-    const reading::ReadingForm& form = forms(approach, reading::Extent::equations);
-    std::string name = fmt::format("reading form {}", system::name(approach));
+    const reading::DisplayForm& form = forms(approach, reading::Extent::equations);
+    std::string name = fmt::format("display form {}", system::name(approach));
     // Too large to be written out: it is displayed in parts, and not compared.
     if (form.by_parts)
       subjects.left_out.push_back({std::move(name), form.why_by_parts});
@@ -270,7 +270,7 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
     }
   }
   verify::Subjects subjects;
-  subjects.systems = verify::all_routes(derived.mechanics, &subjects.left_out);
+  subjects.systems = verify::all_formulations(derived.mechanics, &subjects.left_out);
   reading::Forms written(derived.mechanics);
   add_forms(derived.mechanics, written, subjects);
   if (options.reductions) {

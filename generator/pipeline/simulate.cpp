@@ -149,7 +149,7 @@ namespace {
 std::vector<symbolic::Ref> kink_values(const Derived& derived, const program::Program& program) {
   std::vector<symbolic::Ref> values;
   for (const system::EquationSystem& candidate : derived.candidates) {
-    if (program.kinks.empty() || candidate.route != program.route || candidate.approach != program.approach ||
+    if (program.kinks.empty() || candidate.formulation != program.formulation || candidate.approach != program.approach ||
         candidate.form != program.form)
       continue;
     system::EquationSystem held = candidate;

@@ -32,7 +32,7 @@ std::optional<verify::Certificate> certify_prescribed(const std::shared_ptr<cons
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
   if (mechanics.freedom() > 0) return std::nullopt;
   verify::Subjects subjects;
-  subjects.systems = verify::all_routes(mechanics, &subjects.left_out);
+  subjects.systems = verify::all_formulations(mechanics, &subjects.left_out);
   add_reading_forms(mechanics, subjects);
   return verify::certify(mechanics, subjects, {request.digits, request.points, request.seed, {}});
 }

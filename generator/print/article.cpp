@@ -45,7 +45,7 @@ bool uses_amssymb(const model::Model& model) {
 
 std::string bold(const std::string& name) { return "\\textbf{" + words(name) + "}"; }
 
-std::string latex_document(const Mechanics& m, const reading::ReadingForm& one, const reading::ReadingForm& two,
+std::string latex_document(const Mechanics& m, const reading::DisplayForm& one, const reading::DisplayForm& two,
                            const std::optional<Findings>& findings) {
   const Notation notation(m);
   LatexText out(notation);

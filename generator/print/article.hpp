@@ -51,13 +51,13 @@ struct Findings {
   std::vector<std::pair<std::string, double>> held;  // names and values that the search kept fixed
   std::string no_steady;                             // reason if no search was made, else empty
   std::string certificate;                           // the verdict of the comparison
-  std::string judged;  // compared with d'Alembert's principle: "lagrange I, lagrange II, ..."
+  std::string checked_formulations;  // compared with d'Alembert's principle: "lagrange I, lagrange II, ..."
   std::vector<work::LeftOut> left_out;
 };
 
 /// Returns the document. Without findings it contains the sections up to the equations, the constraint forces and the
 /// singular sets.
-std::string latex_document(const mechanics::Mechanics& mechanics, const reading::ReadingForm& one,
-                           const reading::ReadingForm& two, const std::optional<Findings>& findings = {});
+std::string latex_document(const mechanics::Mechanics& mechanics, const reading::DisplayForm& one,
+                           const reading::DisplayForm& two, const std::optional<Findings>& findings = {});
 
 }  // namespace eomgen::print

@@ -13,7 +13,7 @@ using reading::Formula;
 using reading::Layout;
 using reading::mark;
 using reading::Partials;
-using reading::ReadingForm;
+using reading::DisplayForm;
 using symbolic::SymbolKind;
 
 namespace {
@@ -27,7 +27,7 @@ bool equal(const Partials& a, const Partials& b) {
 
 void write_energies(Article& a) {
   a.out.section("Energies");
-  const auto show = [&](const ReadingForm& form) {
+  const auto show = [&](const DisplayForm& form) {
     std::vector<Statement> all;
     if (!form.by_parts) add_angular_velocities(form, all);
     add_energies(a.m, form, all);
@@ -71,7 +71,7 @@ void write_law(Article& a) {
   a.out.paragraph(text + ".");
 }
 
-void write_partials(Article& a, const ReadingForm& form, std::vector<Partials>& first) {
+void write_partials(Article& a, const DisplayForm& form, std::vector<Partials>& first) {
   if (form.by_parts) {
     a.out.paragraph("The partial derivatives are too large to be written out (" + words(form.why_by_parts) + ").");
     return;

@@ -102,7 +102,7 @@ class Equations {
   }
 
   /// Definitions of letters in equations that are not written out; shown once if both approaches share them.
-  void parts(const reading::ReadingForm& form) {
+  void parts(const reading::DisplayForm& form) {
     std::vector<Statement> all;
     add_equations(m_, form, all);
     for (const Statement& s : all) {

@@ -204,7 +204,7 @@ void write_singular(Article& a) {
 void write_certificate(Article& a) {
   if (a.findings != nullptr) {
     a.out.section("Certificate");
-    a.out.paragraph("The equations above and the routes " + words(a.findings->judged) +
+    a.out.paragraph("The equations above and the formulations " + words(a.findings->checked_formulations) +
                     " were compared with d'Alembert's principle, evaluated from the model alone: " +
                     words(a.findings->certificate) + ".");
   }

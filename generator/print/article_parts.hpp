@@ -14,7 +14,7 @@ namespace eomgen::print {
 struct Article {
   const mechanics::Mechanics& m;
   const model::Model& model;
-  const reading::ReadingForm &one, &two;
+  const reading::DisplayForm &one, &two;
   const Findings* findings;
   LatexText& out;
   std::vector<work::LeftOut> left_out = {};
@@ -36,7 +36,7 @@ void write_energies(Article& article);
 void write_law(Article& article);
 /// dT/dqdot, its rate, dT/dq, dU/dq, Q of each coordinate. Approach I fills `first`; approach II shows only those that
 /// differ from `first`.
-void write_partials(Article& article, const reading::ReadingForm& form, std::vector<reading::Partials>& first);
+void write_partials(Article& article, const reading::DisplayForm& form, std::vector<reading::Partials>& first);
 void write_equations(Article& article);
 void write_constraint_forces(Article& article);
 void write_contacts(Article& article);

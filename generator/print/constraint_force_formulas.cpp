@@ -15,7 +15,7 @@ namespace {
 using mechanics::Mechanics;
 using reading::Formula;
 using reading::mark;
-using reading::ReadingForm;
+using reading::DisplayForm;
 using reading::Sum;
 using symbolic::Ref;
 using symbolic::SymbolKind;
@@ -24,7 +24,7 @@ using symbolic::SymbolKind;
 /// contain them are omitted.
 class Multipliers {
  public:
-  Multipliers(const Mechanics& m, const ReadingForm& form) : m_(m), built_in_(m.constraints.size(), false) {
+  Multipliers(const Mechanics& m, const DisplayForm& form) : m_(m), built_in_(m.constraints.size(), false) {
     if (form.approach != system::Approach::two) return;
     for (const reading::ReadConstraint& c : form.constraints) built_in_[c.constraint] = c.fixes.has_value();
   }
@@ -225,7 +225,7 @@ void add_particle_forces(const Mechanics& m, const Multipliers& multipliers, std
 
 }  // namespace
 
-void add_constraint_forces(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
+void add_constraint_forces(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
   const Multipliers multipliers(m, form);
   add_particle_forces(m, multipliers, out);
   for (std::uint32_t body = 0; body < m.spins.size(); ++body) BodyForces(m, multipliers, body, out).add();

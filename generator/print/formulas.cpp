@@ -15,7 +15,7 @@ using reading::Form;
 using reading::Formula;
 using reading::Layout;
 using reading::mark;
-using reading::ReadingForm;
+using reading::DisplayForm;
 using reading::Sum;
 using reading::Symbol;
 using reading::SymbolKind;
@@ -122,7 +122,7 @@ std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named)
 }
 
 /// T as squares of velocities and of components of angular velocities; unchanged for a model without bodies.
-Formula kinetic_formula(const ReadingForm& form) {
+Formula kinetic_formula(const DisplayForm& form) {
   if (form.spins.empty()) return arrange(form.kinetic);
   std::vector<Formula> terms =
       form.translation.is_zero() ? std::vector<Formula>{} : reading::arranged_terms(form.translation, Layout::grouped);
@@ -133,7 +133,7 @@ Formula kinetic_formula(const ReadingForm& form) {
 }
 
 // m r_dot . r_dot/2 + w.Jw/2, with named components of w.
-void add_rotations(const Mechanics& m, const ReadingForm& form, const Formula& T, std::vector<Statement>& out) {
+void add_rotations(const Mechanics& m, const DisplayForm& form, const Formula& T, std::vector<Statement>& out) {
   std::vector<Formula> terms;
   for (const mechanics::PointMass& mass : m.masses) {
     const Formula place = reading::number(static_cast<long>(mass.place)), v = dotted(mark("r", {place}));
@@ -180,7 +180,7 @@ Formula explicit_form(const Equation& equation) {
   return reading::relation({arrange(equation.expanded, Layout::terms), right_side(equation)});
 }
 
-void add_angular_velocities(const ReadingForm& form, std::vector<Statement>& out) {
+void add_angular_velocities(const DisplayForm& form, std::vector<Statement>& out) {
   for (const reading::ReadSpin& spin : form.spins) {
     for (std::size_t k = 0; k < 3; ++k) {
       out.push_back({"energies", "angular velocity of " + spin.name, "", "",
@@ -189,7 +189,7 @@ void add_angular_velocities(const ReadingForm& form, std::vector<Statement>& out
   }
 }
 
-void add_energies(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
+void add_energies(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
   const bool two = form.approach == system::Approach::two;
   const Letters letters(*m.model, two);
   if (form.by_parts && !form.spins.empty()) add_rotations(m, form, mark(letters.T), out);
@@ -209,7 +209,7 @@ void add_energies(const Mechanics& m, const ReadingForm& form, std::vector<State
   add(two ? "constrained potential energy" : "potential energy", mark(letters.U), form.potential);
 }
 
-void add_lagrangian(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
+void add_lagrangian(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
   if (form.by_parts) return;
   const Formula L = mark(Letters(*m.model, form.approach == system::Approach::two).L);
   std::vector<Formula> terms = form.spins.empty() ? reading::arranged_terms(form.kinetic, Layout::grouped)
@@ -220,7 +220,7 @@ void add_lagrangian(const Mechanics& m, const ReadingForm& form, std::vector<Sta
   out.push_back({"lagrangian", "Lagrangian", "", "", reading::relation({L, reading::sum(std::move(terms))})});
 }
 
-void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
+void add_constraints(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
   const Letters letters(*m.model, false);
   for (std::uint32_t f = 0; f < m.model->functions.size(); ++f) {
     const model::Function& function = m.model->functions[f];
@@ -282,7 +282,7 @@ namespace {
 
 constexpr std::size_t most_terms = 300;  // terms of a readable equation
 
-std::size_t longest_equation(const ReadingForm& form) {
+std::size_t longest_equation(const DisplayForm& form) {
   std::size_t longest = 0;
   for (const Equation& e : form.equations) longest = std::max(longest, e.expanded.size() + e.force.size());
   return longest;
@@ -290,7 +290,7 @@ std::size_t longest_equation(const ReadingForm& form) {
 
 }  // namespace
 
-void add_equations(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
+void add_equations(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
   const auto add = [&](const char* key, bool of_motion, auto&& formula) {
     for (const Equation& equation : form.equations) {
       if (equation.of_motion != of_motion) continue;
@@ -308,7 +308,7 @@ void add_equations(const Mechanics& m, const ReadingForm& form, std::vector<Stat
   for (const bool of_motion : {true, false}) add("explicit", of_motion, explicit_form);
 }
 
-void add_reactions(const ReadingForm& form, std::vector<Statement>& out) {
+void add_reactions(const DisplayForm& form, std::vector<Statement>& out) {
   for (const reading::ReadReaction& reaction : form.reactions) {
     if (!reaction.value) continue;
     const bool long_sum = reaction.value->size() > 8;  // lines break between terms, not within brackets
@@ -318,7 +318,7 @@ void add_reactions(const ReadingForm& form, std::vector<Statement>& out) {
   }
 }
 
-void add_statements(const Mechanics& m, const ReadingForm& form, const std::vector<std::string>& show,
+void add_statements(const Mechanics& m, const DisplayForm& form, const std::vector<std::string>& show,
                     std::vector<Statement>& out) {
   const auto wanted = [&](const char* key) {
     return std::any_of(show.begin(), show.end(), [&](const std::string& s) { return s == key || s == "all"; });

@@ -36,7 +36,7 @@ std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vecto
 
 /// Adds the statements that `show` selects, in a fixed order of keys. If an interruption is thrown, the statements so
 /// far are complete.
-void add_statements(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+void add_statements(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                     const std::vector<std::string>& show, std::vector<Statement>& out);
 
 /// d/dt(dL/dqdot) - dL/dq = Q + lambda grad psi, eq. (2.109).
@@ -44,24 +44,24 @@ reading::Formula momentum_form(const reading::Equation& equation);
 /// M qddot + h = Q + lambda grad psi.
 reading::Formula explicit_form(const reading::Equation& equation);
 
-void add_energies(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
+void add_energies(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form, std::vector<Statement>& out);
 /// Components of the angular velocities along the axes of the inertia tensors.
-void add_angular_velocities(const reading::ReadingForm& form, std::vector<Statement>& out);
-void add_constraints(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+void add_angular_velocities(const reading::DisplayForm& form, std::vector<Statement>& out);
+void add_constraints(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                      std::vector<Statement>& out);
-void add_equations(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+void add_equations(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                    std::vector<Statement>& out);
 /// The letter of a mass: its parameter if that is a single letter, else m with the index of its place.
 reading::Formula mass_letter(const mechanics::Mechanics& mechanics, const mechanics::PointMass& mass);
 /// Equations that are too long to write out, in terms of named parts. The definitions of the parts have the key
 /// "parts".
-void add_equations_by_parts(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+void add_equations_by_parts(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                             std::vector<Statement>& out);
-void add_lagrangian(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+void add_lagrangian(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                     std::vector<Statement>& out);
-void add_reactions(const reading::ReadingForm& form, std::vector<Statement>& out);
+void add_reactions(const reading::DisplayForm& form, std::vector<Statement>& out);
 /// Constraint force and constraint moment on every body that has coordinates and angles of its own.
-void add_constraint_forces(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+void add_constraint_forces(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                            std::vector<Statement>& out);
 /// The linear combination x e_1 + y e_2 + z e_3.
 reading::Formula combination(const reading::Components& components, const std::vector<reading::Formula>& vectors);

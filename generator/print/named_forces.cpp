@@ -13,7 +13,7 @@ using reading::Formula;
 using reading::mark;
 using symbolic::Ref;
 using symbolic::Vec3;
-using Acts = model::Effect::Acts;
+using LoadType = model::Effect::LoadType;
 
 namespace {
 
@@ -26,21 +26,21 @@ std::vector<Formula> lower_index(std::uint32_t j, std::uint32_t k) {
 
 bool NamedForces::are_vectors(const model::Force& force) {
   return std::all_of(force.effects.begin(), force.effects.end(),
-                     [](const model::Effect& e) { return e.acts != Acts::work && e.acts != Acts::component; });
+                     [](const model::Effect& e) { return e.load_type != LoadType::work && e.load_type != LoadType::component; });
 }
 
 bool NamedForces::work(std::uint32_t j, std::uint32_t k, std::uint32_t i, std::vector<Formula>& terms) {
   const model::Effect& effect = m_.model->forces[j].effects[k];
-  if (effect.acts == Acts::acceleration || effect.acts == Acts::potential) return true;  // in U
+  if (effect.load_type == LoadType::acceleration || effect.load_type == LoadType::potential) return true;  // in U
   const std::vector<Formula> of = lower_index(j, k);
-  const bool moment = effect.acts == Acts::moment;
+  const bool moment = effect.load_type == LoadType::moment;
   const Formula F = mark(moment ? "bold M" : "bold F", of), s = mark("bold s", of);
   if (moment && std::none_of(m_.spins.begin(), m_.spins.end(),
                              [&](const mechanics::Spin& spin) { return spin.frame == effect.index; }))
     return false;
   if (!std::count(effects_.begin(), effects_.end(), std::pair(j, k))) {
     const std::string& name = m_.model->forces[j].name;
-    if (effect.acts == Acts::damping) {
+    if (effect.load_type == LoadType::damping) {
       const std::optional<Formula> between = line(j, k), c = scalar(effect.value);
       if (!between || !c) return false;
       const Formula part = reading::fraction(dot_product(s, dotted(s)), dot_product(s, s));
@@ -76,8 +76,8 @@ std::optional<Formula> NamedForces::spring(std::uint32_t j) {
   std::vector<Formula> terms;
   for (std::uint32_t k = 0; k < force.effects.size(); ++k) {
     const model::Effect& effect = force.effects[k];
-    if (effect.acts == Acts::acceleration) return std::nullopt;
-    if (effect.acts != Acts::potential) continue;  // no energy
+    if (effect.load_type == LoadType::acceleration) return std::nullopt;
+    if (effect.load_type != LoadType::potential) continue;  // no energy
     if (effect.other == model::no_node || stiffness == model::no_node) return std::nullopt;
     const std::optional<Formula> s = line(j, k), c = scalar(stiffness),
                                  free = length == model::no_node ? reading::number(0) : scalar(length);

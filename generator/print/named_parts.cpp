@@ -20,7 +20,7 @@ using reading::Equation;
 using reading::Form;
 using reading::Formula;
 using reading::mark;
-using reading::ReadingForm;
+using reading::DisplayForm;
 using reading::Sum;
 using symbolic::Ref;
 using symbolic::Symbol;
@@ -45,7 +45,7 @@ Formula linear_combination(const std::vector<Formula>& components, const std::ve
 
 class NamedParts {
  public:
-  NamedParts(const Mechanics& given, const ReadingForm& form, std::vector<Statement>& out)
+  NamedParts(const Mechanics& given, const DisplayForm& form, std::vector<Statement>& out)
       : two_(form.approach == system::Approach::two),
         m_(two_ ? mechanics::impose_dependent(given) : given),
         form_(form),
@@ -317,7 +317,7 @@ class NamedParts {
 
   bool two_;
   Mechanics m_;
-  const ReadingForm& form_;
+  const DisplayForm& form_;
   Letters letters_;
   symbolic::Substitution imposed_;
   std::vector<Statement>& out_;
@@ -333,7 +333,7 @@ Formula mass_letter(const Mechanics& m, const mechanics::PointMass& mass) {
                                          : mark("m", {index(mass.place)});
 }
 
-void add_equations_by_parts(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
+void add_equations_by_parts(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
   NamedParts parts(m, form, out);
   parts.equations();
   parts.definitions();

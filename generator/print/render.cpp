@@ -23,10 +23,10 @@ std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vecto
   return items;
 }
 
-std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                          const std::vector<std::string>& show, bool* interrupted) {
   std::vector<Statement> all;
-  std::optional<work::Kept> kept;  // partial results are printed after a stop request
+  std::optional<work::DeferInterrupt> kept;  // partial results are printed after a stop request
   try {
     add_statements(mechanics, form, show, all);
   } catch (const work::Interrupted&) {

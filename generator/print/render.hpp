@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Printed formulas for `derive`, `check` and documents. In: Mechanics and ReadingForm. Out: printed formulas.
+// Printed formulas for `derive`, `check` and documents. In: Mechanics and DisplayForm. Out: printed formulas.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct Item {
 
 /// The formulas that `show` selects (keys, or "all"); "equations" includes the explicit form. On an interruption it
 /// throws work::Interrupted, or, if `interrupted` is given, sets it and returns the formulas so far.
-std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                          const std::vector<std::string>& show, bool* interrupted = nullptr);
 
 /// M, C, K, B under the key "linear": along a motion, or at rest with the equilibrium equations.

@@ -129,7 +129,7 @@ std::vector<Tried> tried(const std::vector<Candidate>& candidates, const std::ve
   for (const Candidate& candidate : candidates) {
     const system::EquationSystem& system = systems[candidate.index];
     if (last != candidate.index) {
-      result.push_back({system.route, system.approach, system.form, candidate.operations});
+      result.push_back({system.formulation, system.approach, system.form, candidate.operations});
     } else if (candidate.operations.cost() < result.back().operations.cost()) {
       result.back().operations = candidate.operations;
     }
@@ -169,7 +169,7 @@ WantedFunction wanted_function(AbiFunctions& functions, const std::string& name,
 
 Program build_program(std::vector<system::EquationSystem>& systems, const Request& request) {
   if (systems.empty()) {
-    throw Error("program", {}, "no route derives this model", "choose another approach or form");
+    throw Error("program", {}, "no formulation derives this model", "choose another approach or form");
   }
   std::vector<Candidate> candidates = raw_candidates(systems, request);
   std::size_t best = 0;
@@ -180,7 +180,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   Program program;
   program.free = system.free;
   for (const system::IntegralState& integral : system.integrals) program.integrals.push_back(integral.integral);
-  program.route = system.route;
+  program.formulation = system.formulation;
   program.approach = system.approach;
   program.form = system.form;
   program.tried = tried(candidates, systems);

@@ -95,7 +95,7 @@ bool vanishes_where_they_hold(const Dag& dag, const std::vector<Ref>& A, std::si
   for (const std::size_t k : block.rows)
     roots.insert(roots.end(), A.begin() + static_cast<std::ptrdiff_t>(k * n),
                  A.begin() + static_cast<std::ptrdiff_t>((k + 1) * n));
-  bool judged = false;
+  bool is_decided = false;
   for (const Point& point : points) {
     const std::vector<double> value =
         symbolic::evaluate(dag, roots, [&](const symbolic::Symbol& s) -> double { return point.at(s); });
@@ -107,9 +107,9 @@ bool vanishes_where_they_hold(const Dag& dag, const std::vector<Ref>& A, std::si
     }
     if (!std::isfinite(value[0]) || !std::isfinite(scale)) continue;
     if (std::abs(value[0]) > rounding * scale) return false;
-    judged = true;
+    is_decided = true;
   }
-  return judged;
+  return is_decided;
 }
 
 /// Chooses the dependent columns: those whose determinant never vanishes, or else the shortest determinant that is not

@@ -101,7 +101,7 @@ class Factoring {
       for (; i < saved_.size() && saved_[i].first == key; ++i) count += saved_[i].second;
       if (count < most || count < 1) continue;
       const auto node = static_cast<NodeId>(key / 2);
-      const std::uint64_t rank = seed_ == 0 ? node : scramble(node, seed_);
+      const std::uint64_t rank = seed_ == 0 ? node : hash_mix(node, seed_);
       if (count == most && rank <= tie) continue;
       most = count;
       tie = rank;

@@ -17,7 +17,7 @@ class Writer {
   void program(const Program& p) {
     list(p.free);
     list(p.integrals);
-    words(p.route, system::name(p.approach), system::name(p.form));
+    words(p.formulation, system::name(p.approach), system::name(p.form));
     for (const auto* names : {&p.reactions, &p.outputs, &p.events, &p.kinks}) {
       words(names->size());
       for (const std::string& name : *names) words(name);

@@ -64,11 +64,11 @@ class Frequency {
   };
   static constexpr int first_bits = 6;
 
-  std::uint64_t rank(std::uint64_t key) const { return seed_ == 0 ? ~key : scramble(key, seed_); }
+  std::uint64_t rank(std::uint64_t key) const { return seed_ == 0 ? ~key : hash_mix(key, seed_); }
 
   Entry& place(std::uint64_t key) {
     const std::size_t mask = entries_.size() - 1;
-    std::size_t i = scramble(key, 0) & mask;
+    std::size_t i = hash_mix(key, 0) & mask;
     while (entries_[i].taken && entries_[i].key != key) i = (i + 1) & mask;
     return entries_[i];
   }

@@ -31,7 +31,7 @@ Term power(const Term& a, std::int32_t exponent) {
   return {cln::expt(a.coefficient, cln::cl_I(exponent)), multiply({}, a.factors, exponent)};
 }
 
-std::uint64_t scramble(std::uint64_t a, std::uint64_t b) {
+std::uint64_t hash_mix(std::uint64_t a, std::uint64_t b) {
   std::uint64_t z = a * 0x9e3779b97f4a7c15ull + b + 0x7f4a7c15ull;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
@@ -75,7 +75,7 @@ std::uint64_t hash(const std::vector<Term>& terms, std::uint64_t start) {
     take(symbolic::hash_of(term.coefficient));
     for (const Factor& f : term.factors) take((std::uint64_t{f.node} << 32) + static_cast<std::uint32_t>(f.exponent));
   }
-  return scramble(h, 0);
+  return hash_mix(h, 0);
 }
 std::uint64_t hash_of_call(Op op, const std::vector<Term>& arguments) {
   return hash(arguments, static_cast<std::uint64_t>(op) + 1000);
@@ -84,7 +84,7 @@ std::uint64_t hash_of_call(Op op, const std::vector<Term>& arguments) {
 }  // namespace
 
 NodeId Polynomials::leaf(const Operand& operand) {
-  const std::uint64_t h = scramble(static_cast<std::uint64_t>(operand.slot) + 1, operand.index);
+  const std::uint64_t h = hash_mix(static_cast<std::uint64_t>(operand.slot) + 1, operand.index);
   const NodeId* const known = index_.find(h, [&](NodeId id) {
     const Node& node = nodes_[id];
     return node.kind == Node::Kind::leaf && node.leaf.slot == operand.slot && node.leaf.index == operand.index;

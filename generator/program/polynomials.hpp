@@ -200,7 +200,7 @@ void share_products(Polynomials& graph, std::uint64_t seed);
 void share_sums(Polynomials& graph, std::uint64_t seed);
 
 /// A pseudo-random number that depends on the arguments only.
-std::uint64_t scramble(std::uint64_t a, std::uint64_t b);
+std::uint64_t hash_mix(std::uint64_t a, std::uint64_t b);
 
 /// The cheapest graph found by several seeded orders of the passes, starting from equivalent graphs.
 Polynomials optimise(const std::vector<Polynomials>& starts);

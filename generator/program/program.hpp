@@ -102,7 +102,7 @@ struct Taylor {
 };
 
 struct Tried {
-  std::string route;
+  std::string formulation;
   system::Approach approach = system::Approach::two;
   system::Form form = system::Form::multipliers;
   Operations operations;
@@ -147,7 +147,7 @@ struct Program {
   }
   std::size_t event_count() const { return entries("events"); }  // length of the array g
   std::size_t state_count() const { return 2 * free.size() + integrals.size(); }
-  std::string route;
+  std::string formulation;
   system::Approach approach = system::Approach::two;
   system::Form form = system::Form::multipliers;
   std::vector<Function> functions;  // rhs first; `prepare` and `rhs_prepared` last, if they save work

@@ -185,7 +185,7 @@ class SumSharing {
   Item monomial(const Monomial& factors) {
     std::uint64_t hash = 0;
     for (const Factor& f : factors)
-      hash = scramble(hash, (std::uint64_t{f.node} << 32) + static_cast<std::uint32_t>(f.exponent));
+      hash = hash_mix(hash, (std::uint64_t{f.node} << 32) + static_cast<std::uint32_t>(f.exponent));
     const Item* const known = index_.find(hash, [&](Item i) { return monomials_[i] == factors; });
     if (known != nullptr) return *known;
     monomials_.push_back(factors);

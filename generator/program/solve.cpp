@@ -194,17 +194,17 @@ bool is_singular_everywhere(const Dag& dag, const std::vector<Ref>& M, std::size
   }
   // Points without a value are ignored.
   constexpr std::uint64_t points = 8;
-  bool judged = false;
+  bool is_decided = false;
   for (std::uint64_t point = 0; point < points; ++point) {
     const auto value = [point](const Symbol& s) -> cln::cl_R { return symbolic::sample(s, point); };
     try {
       if (!is_singular(symbolic::evaluate(dag, M, value, 40), n)) return false;
-      judged = true;
+      is_decided = true;
     } catch (const std::domain_error&) {
     } catch (const std::runtime_error&) {
     }
   }
-  return judged;
+  return is_decided;
 }
 
 }  // namespace eomgen::program

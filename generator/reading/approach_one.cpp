@@ -9,7 +9,7 @@ namespace eomgen::reading {
 namespace {
 
 // The (b) equations from the last fixed coordinate to the first: each has one new multiplier.
-std::vector<ReadReaction> solve_reactions(const mechanics::Mechanics& m, Bridge& bridge, const ReadingForm& form) {
+std::vector<ReadReaction> solve_reactions(const mechanics::Mechanics& m, Bridge& bridge, const DisplayForm& form) {
   std::vector<std::optional<Sum>> lambda(m.constraints.size());
   for (auto fixed = m.fixed.rbegin(); fixed != m.fixed.rend(); ++fixed) {
     const Equation& equation = form.equations[fixed->coordinate];
@@ -32,7 +32,7 @@ std::vector<ReadReaction> solve_reactions(const mechanics::Mechanics& m, Bridge&
 }  // namespace
 
 void approach_one(const mechanics::Mechanics& m, Bridge& bridge, const std::vector<ReadSpin>& spins,
-                  ReadingForm& form) {
+                  DisplayForm& form) {
   const std::map<Symbol, Sum> values = imposed_values(m, bridge);
   const Sum translation = translational_energy(m, bridge);
   if (!spins.empty()) form.translation = translation;

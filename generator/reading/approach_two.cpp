@@ -7,7 +7,7 @@
 namespace eomgen::reading {
 
 void approach_two(const mechanics::Mechanics& m, Bridge& bridge, const std::vector<ReadSpin>& spins,
-                  ReadingForm& form) {
+                  DisplayForm& form) {
   const std::map<Symbol, Sum> values = imposed_values(m, bridge);
   const Sum translation = translational_energy(m, bridge);
   if (!spins.empty()) form.translation = simplify(bridge.substitute(translation, values));

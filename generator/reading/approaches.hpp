@@ -8,8 +8,8 @@
 namespace eomgen::reading {
 
 void approach_one(const mechanics::Mechanics& mechanics, Bridge& bridge, const std::vector<ReadSpin>& spins,
-                  ReadingForm& form);
+                  DisplayForm& form);
 void approach_two(const mechanics::Mechanics& mechanics, Bridge& bridge, const std::vector<ReadSpin>& spins,
-                  ReadingForm& form);
+                  DisplayForm& form);
 
 }  // namespace eomgen::reading

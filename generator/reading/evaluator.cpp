@@ -24,7 +24,7 @@ double power(double base, int exponent) {
 }  // namespace
 
 double Evaluator::operator()(const std::vector<double>& at) {
-  work::spend(size_ / factors_a_unit + 1);
+  work::consume_budget(size_ / factors_a_unit + 1);
   for (Item& item : items_) item.value = item.op == Op::symbol ? at[item.symbol] : function(item);
   return value(whole_);
 }

@@ -228,7 +228,7 @@ std::optional<Sum> divide(const Letters& letters, const Sum& a, const std::vecto
   const std::optional<Terms> terms = divide(*std::move(dividend), *divisor);
   if (!terms) return std::nullopt;
   Sum whole = letters.sum(*terms);
-  work::spend(operations_of_reading(whole) + 2 * whole.size());
+  work::consume_budget(operations_of_reading(whole) + 2 * whole.size());
   return whole;
 }
 
@@ -248,7 +248,7 @@ std::optional<Sum> divide_exactly(const Sum& a, const Sum& b) {
   const std::vector<Rational> common_a = letters.common(a), common_b = letters.common(b);
   if (letters.opens(a, common_a) || letters.opens(b, common_b)) return divide_opened(a, content(a), b, content(b));
   // The operations of extracting the common factors.
-  work::spend(2 * (a.size() + b.size()));
+  work::consume_budget(2 * (a.size() + b.size()));
   const std::optional<Sum> whole = divide(letters, a, common_a, b, common_b);
   if (!whole) return std::nullopt;
   return Sum(letters.monomial(common_a), 1) * multiply(inverse(letters.monomial(common_b)), {}) * *whole;

@@ -16,7 +16,7 @@ Forms::Forms(const mechanics::Mechanics& mechanics) try
   throw no_value(mechanics);
 }
 
-const ReadingForm& Forms::operator()(Approach approach, Extent extent) {
+const DisplayForm& Forms::operator()(Approach approach, Extent extent) {
   for (const Extent enough : {extent, Extent::whole}) {
     if (const auto found = known_.find({approach, enough}); found != known_.end()) return found->second;
   }
@@ -24,7 +24,7 @@ const ReadingForm& Forms::operator()(Approach approach, Extent extent) {
   for (const Extent enough : {extent, Extent::whole}) {
     const auto found = known_.find({other, enough});
     if (!nothing_imposed_ || found == known_.end() || !found->second.by_parts) continue;
-    ReadingForm same = found->second;
+    DisplayForm same = found->second;
     same.approach = approach;
     return known_.emplace(std::pair(approach, enough), std::move(same)).first->second;
   }
@@ -36,7 +36,7 @@ RouthForm Forms::routh(const std::vector<std::uint32_t>& cyclic) {
   return routh_form(m_, cyclic, (*this)(Approach::two, Extent::equations));
 }
 
-ReadingForm derive_reading(const mechanics::Mechanics& mechanics, Approach approach) {
+DisplayForm derive_reading(const mechanics::Mechanics& mechanics, Approach approach) {
   return derive_reading(mechanics, approach, Extent::whole);
 }
 

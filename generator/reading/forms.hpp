@@ -17,25 +17,25 @@ namespace eomgen::reading {
 enum class Extent { equations, whole };
 
 /// Like derive_reading of reading.hpp, which derives the whole form.
-ReadingForm derive_reading(const mechanics::Mechanics& mechanics, system::Approach approach, Extent extent);
+DisplayForm derive_reading(const mechanics::Mechanics& mechanics, system::Approach approach, Extent extent);
 /// `two`: the form by Approach II, which provides the Lagrangian. Parts that are too long there are too long here.
 RouthForm routh_form(const mechanics::Mechanics& mechanics, const std::vector<std::uint32_t>& cyclic,
-                     const ReadingForm& two);
-LinearForm linear_form(const mechanics::Mechanics& mechanics, const ReadingForm& two);
+                     const DisplayForm& two);
+LinearForm linear_form(const mechanics::Mechanics& mechanics, const DisplayForm& two);
 
 class Forms {
  public:
   /// `mechanics` must outlive the object and stay unchanged.
   explicit Forms(const mechanics::Mechanics& mechanics);
 
-  const ReadingForm& operator()(system::Approach approach, Extent extent = Extent::whole);
+  const DisplayForm& operator()(system::Approach approach, Extent extent = Extent::whole);
   RouthForm routh(const std::vector<std::uint32_t>& cyclic);
   LinearForm linear();
 
  private:
   const mechanics::Mechanics& m_;
   bool nothing_imposed_;  // both approaches are the same equations
-  std::map<std::pair<system::Approach, Extent>, ReadingForm> known_;
+  std::map<std::pair<system::Approach, Extent>, DisplayForm> known_;
 };
 
 }  // namespace eomgen::reading

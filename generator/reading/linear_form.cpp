@@ -11,7 +11,7 @@ namespace {
 
 using mechanics::Mechanics;
 
-std::string obstacle(const Mechanics& m, const ReadingForm& form) {
+std::string obstacle(const Mechanics& m, const DisplayForm& form) {
   if (form.by_parts) return form.why_by_parts;
   if (!m.model->integrals.empty())
     return "integrals over time are states of their own: eomgen linearize gives A and B at a state";
@@ -62,7 +62,7 @@ class Linearisation {
 
 }  // namespace
 
-LinearForm linear_form(const Mechanics& mechanics, const ReadingForm& read) {
+LinearForm linear_form(const Mechanics& mechanics, const DisplayForm& read) {
   LinearForm form;
   form.why_not = obstacle(mechanics, read);
   if (!form.why_not.empty()) return form;

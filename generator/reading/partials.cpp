@@ -9,7 +9,7 @@
 
 namespace eomgen::reading {
 
-std::vector<Partials> partial_derivatives(const mechanics::Mechanics& m, const ReadingForm& form) try {
+std::vector<Partials> partial_derivatives(const mechanics::Mechanics& m, const DisplayForm& form) try {
   std::vector<Partials> result;
   if (form.by_parts) return result;
   Bridge bridge(m);

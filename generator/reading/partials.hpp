@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The intermediate steps between energies and Lagrange's equations, as in (2.108), (2.110). In: the energies of a
-// ReadingForm. Out: per coordinate dT/dqdot, its rate, dT/dq, dU/dq and the generalised force. Constraints are imposed
+// DisplayForm. Out: per coordinate dT/dqdot, its rate, dT/dq, dU/dq and the generalised force. Constraints are imposed
 // only as far as in the energies.
 #pragma once
 
@@ -19,6 +19,6 @@ struct Partials {
 };
 
 /// One entry for each equation of `form`, in its order; none if by_parts. Each has its own budget.
-std::vector<Partials> partial_derivatives(const mechanics::Mechanics& mechanics, const ReadingForm& form);
+std::vector<Partials> partial_derivatives(const mechanics::Mechanics& mechanics, const DisplayForm& form);
 
 }  // namespace eomgen::reading

@@ -96,7 +96,7 @@ Factorisation factorise(const Sum& whole) {
   }
   if (primitive.is_number()) return result;
   if (primitive.size() <= factored_terms && is_irreducible(primitive)) {
-    work::spend(operations_of_reading(primitive) + 2 * primitive.size());
+    work::consume_budget(operations_of_reading(primitive) + 2 * primitive.size());
     result.factors.emplace_back(primitive, 1);
     return result;
   }

@@ -19,7 +19,7 @@ namespace {
 using mechanics::Mechanics;
 
 // For equations that are too long to display: keeps the list of coordinates and forces only.
-void leave_by_parts(const Mechanics& m, ReadingForm& form, const std::string& why) {
+void leave_by_parts(const Mechanics& m, DisplayForm& form, const std::string& why) {
   form.by_parts = true;
   form.why_by_parts = why;
   form.kinetic = form.potential = form.lagrangian = form.translation = Sum();
@@ -49,7 +49,7 @@ std::string within_budget(Read&& read) {
 }
 
 /// The value of the coordinate that the constraint fixes, if any.
-void read_value(const Mechanics& m, Bridge& bridge, ReadConstraint& c, ReadingForm& form) {
+void read_value(const Mechanics& m, Bridge& bridge, ReadConstraint& c, DisplayForm& form) {
   const auto fixes = [&c](const mechanics::FixedCoordinate& f) { return f.constraint == c.constraint; };
   const auto found = std::find_if(m.fixed.begin(), m.fixed.end(), fixes);
   if (found == m.fixed.end()) return;
@@ -80,7 +80,7 @@ void read_rates(const Mechanics& m, Bridge& bridge, ReadConstraint& c) {
     c.no_acceleration = within_budget([&] { c.acceleration = bridge.total_derivative(c.rate); });
 }
 
-void add_constraints(const Mechanics& m, Bridge& bridge, Extent extent, ReadingForm& form) {
+void add_constraints(const Mechanics& m, Bridge& bridge, Extent extent, DisplayForm& form) {
   const work::Budget budget(form_budget);  // of all items together
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     if (!m.holds(k)) continue;
@@ -95,7 +95,7 @@ void add_constraints(const Mechanics& m, Bridge& bridge, Extent extent, ReadingF
 }
 
 /// The rotations; in Approach II with the constraints imposed. Throws work::OverBudget.
-std::vector<ReadSpin> add_spins(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
+std::vector<ReadSpin> add_spins(const Mechanics& m, Bridge& bridge, DisplayForm& form) {
   std::vector<ReadSpin> spins;
   try {
     spins = form.spins = read_spins(m, bridge);
@@ -131,9 +131,9 @@ double most_terms(const symbolic::Dag& dag, symbolic::Ref expression) {
 
 }  // namespace
 
-ReadingForm derive_reading(const Mechanics& given, system::Approach approach, Extent extent) try {
+DisplayForm derive_reading(const Mechanics& given, system::Approach approach, Extent extent) try {
   const Mechanics m = approach == system::Approach::two ? mechanics::impose_dependent(given) : given;
-  ReadingForm form;
+  DisplayForm form;
   form.approach = approach;
   Bridge bridge(m);
   // A result that would be too long is not started: along chains of relative rotations its length grows exponentially.
@@ -158,7 +158,7 @@ ReadingForm derive_reading(const Mechanics& given, system::Approach approach, Ex
   throw no_value(given);
 }
 
-std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::Mechanics& m) {
+std::vector<symbolic::Ref> residuals_on_dag(const DisplayForm& form, mechanics::Mechanics& m) {
   std::vector<symbolic::Ref> result;
   if (form.by_parts) return result;
   symbolic::Dag& dag = *m.dag;
@@ -187,11 +187,11 @@ Sum read(const Mechanics& m, symbolic::Ref expression) try {
   throw no_value(m);
 }
 
-ReadingForm::ReadingForm() = default;
-ReadingForm::ReadingForm(const ReadingForm&) = default;
-ReadingForm::ReadingForm(ReadingForm&&) noexcept = default;
-ReadingForm& ReadingForm::operator=(const ReadingForm&) = default;
-ReadingForm& ReadingForm::operator=(ReadingForm&&) noexcept = default;
-ReadingForm::~ReadingForm() = default;
+DisplayForm::DisplayForm() = default;
+DisplayForm::DisplayForm(const DisplayForm&) = default;
+DisplayForm::DisplayForm(DisplayForm&&) noexcept = default;
+DisplayForm& DisplayForm::operator=(const DisplayForm&) = default;
+DisplayForm& DisplayForm::operator=(DisplayForm&&) noexcept = default;
+DisplayForm::~DisplayForm() = default;
 
 }  // namespace eomgen::reading

@@ -75,14 +75,14 @@ struct ReadSpin {
   std::array<Components, 3> J;
 };
 
-struct ReadingForm {
+struct DisplayForm {
   // Defined in reading.cpp, so that they are compiled only once.
-  ReadingForm();
-  ReadingForm(const ReadingForm&);
-  ReadingForm(ReadingForm&&) noexcept;
-  ReadingForm& operator=(const ReadingForm&);
-  ReadingForm& operator=(ReadingForm&&) noexcept;
-  ~ReadingForm();
+  DisplayForm();
+  DisplayForm(const DisplayForm&);
+  DisplayForm(DisplayForm&&) noexcept;
+  DisplayForm& operator=(const DisplayForm&);
+  DisplayForm& operator=(DisplayForm&&) noexcept;
+  ~DisplayForm();
 
   system::Approach approach = system::Approach::one;
   bool by_parts = false;  // too large to expand: m r_ddot . dr/dq in place of the expanded equations
@@ -98,7 +98,7 @@ struct ReadingForm {
 };
 
 /// Derives the equations in display form. Never throws work::OverBudget, but sets by_parts.
-ReadingForm derive_reading(const mechanics::Mechanics& mechanics, system::Approach approach);
+DisplayForm derive_reading(const mechanics::Mechanics& mechanics, system::Approach approach);
 
 /// Curvilinear coordinates of one particle: bases, metric, Christoffel symbols; n = 1, 2 or 3 coordinates.
 struct Geometry {
@@ -128,9 +128,9 @@ std::optional<Geometry> configuration_space(const mechanics::Mechanics& mechanic
 /// reported in `left_out`.
 std::vector<SingularSet> singular_sets(const mechanics::Mechanics& mechanics, std::vector<LeftOut>* left_out = nullptr);
 
-/// lhs - rhs of each equation of motion, in the order of ReadingForm::equations, on the Dag of `mechanics`. Symbols: q,
+/// lhs - rhs of each equation of motion, in the order of DisplayForm::equations, on the Dag of `mechanics`. Symbols: q,
 /// qdot, qddot of free coordinates, parameters, functions of time, inputs, multipliers. Empty if form.by_parts.
-std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::Mechanics& mechanics);
+std::vector<symbolic::Ref> residuals_on_dag(const DisplayForm& form, mechanics::Mechanics& mechanics);
 
 /// A scalar expression as the model's author wrote it, not expanded. Empty if it contains vectors.
 std::optional<Formula> as_written(const model::Model& model, model::NodeId expression);

@@ -51,18 +51,18 @@ bool solve_rates(Bridge& bridge, RouthForm& form) {
 
 /// The constrained Lagrangian: that of the form, unless the form imposes more constraints than those that fix
 /// coordinates.
-Sum lagrangian(const Mechanics& m, Bridge& bridge, const ReadingForm& two) {
+Sum lagrangian(const Mechanics& m, Bridge& bridge, const DisplayForm& two) {
   if (two.equations.size() == m.free.size()) {
     if (two.by_parts) throw work::OverBudget(two.why_by_parts);
     return two.lagrangian;
   }
-  ReadingForm whole;
+  DisplayForm whole;
   whole.approach = system::Approach::two;
   approach_two(m, bridge, read_spins(m, bridge), whole);
   return std::move(whole.lagrangian);
 }
 
-void reduce(const Mechanics& m, Bridge& bridge, const ReadingForm& two, RouthForm& form) {
+void reduce(const Mechanics& m, Bridge& bridge, const DisplayForm& two, RouthForm& form) {
   const Sum L = lagrangian(m, bridge, two);
   for (const std::uint32_t c : form.cyclic) {
     form.momenta.push_back(simplify(bridge.derivative(L, coordinate_symbol(c, 1))));
@@ -92,7 +92,7 @@ void reduce(const Mechanics& m, Bridge& bridge, const ReadingForm& two, RouthFor
 
 Symbol momentum_symbol(std::uint32_t coordinate) { return {SymbolKind::extra, coordinate, 3}; }
 
-RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cyclic, const ReadingForm& two) try {
+RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cyclic, const DisplayForm& two) try {
   RouthForm form;
   form.cyclic = cyclic;
   Bridge bridge(m);
@@ -120,7 +120,7 @@ std::vector<symbolic::Ref> residuals_on_dag(const RouthForm& form, Mechanics& m)
     result.push_back(ddt(p));
   }
   symbolic::Substitution written(dag, momenta);
-  ReadingForm reduced;
+  DisplayForm reduced;
   reduced.equations = form.equations;
   for (const symbolic::Ref r : residuals_on_dag(reduced, m)) result.push_back(written(r));
   return result;

@@ -44,7 +44,7 @@ class Merging {
   void run() {
     while (pass()) {
     }
-    work::spend(spent_);
+    work::consume_budget(spent_);
   }
 
  private:
@@ -152,11 +152,11 @@ PackedSum replace_square(PackedSum& sum, std::uint32_t f) {
       coefficient = coefficient * Rational(k - pairs) / Rational(k + 1);
     }
     if (result.size() > term_budget) {
-      work::spend(spent);
+      work::consume_budget(spent);
       throw TermBudget();
     }
   }
-  work::spend(spent);
+  work::consume_budget(spent);
   return result;
 }
 
@@ -258,7 +258,7 @@ bool may_recombine(const Sum& sum) {
       }
     }
   }
-  work::spend(spent);
+  work::consume_budget(spent);
   return false;
 }
 

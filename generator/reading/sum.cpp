@@ -24,7 +24,7 @@ long to_long(const Rational& r) { return cln::cl_I_to_long(cln::numerator(r)); }
 template <class Key>
 void Sum::add_term(Key&& monomial, const Rational& coefficient) {
   if (cln::zerop(coefficient)) return;
-  work::spend(1);
+  work::consume_budget(1);
   auto [found, inserted] = terms_.try_emplace(std::forward<Key>(monomial), coefficient);
   if (inserted) return;
   found->second = found->second + coefficient;
@@ -42,7 +42,7 @@ Sum Sum::ascending(std::vector<std::pair<Monomial, Rational>> terms) {
 
 void Sum::scale(const Rational& factor) {
   if (cln::zerop(factor)) terms_.clear();
-  work::spend(terms_.size());
+  work::consume_budget(terms_.size());
   for (auto& [monomial, coefficient] : terms_) coefficient = factor * coefficient;
 }
 
@@ -97,7 +97,7 @@ bool multiply_factors(const Monomial& a, const Monomial& b, Monomial& product) {
 void add_product(Sum& sum, const Monomial& a, const Monomial& b, const Rational& coefficient) {
   Monomial plain;
   if (multiply_factors(a, b, plain)) {
-    work::spend(1);
+    work::consume_budget(1);
     sum.add(std::move(plain), coefficient);
     return;
   }

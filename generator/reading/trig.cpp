@@ -68,7 +68,7 @@ constexpr std::size_t operations_of_a_product = 2;  // the atom's and the produc
 
 /// monomial atom^exponent, for an atom that is no sum under a power.
 Monomial times(const Monomial& monomial, const AtomPtr& atom, long exponent) {
-  work::spend(operations_of_a_product);
+  work::consume_budget(operations_of_a_product);
   auto at = monomial.begin();
   int order = 1;
   for (; at != monomial.end(); ++at) {

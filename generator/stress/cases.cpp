@@ -157,11 +157,11 @@ std::vector<Case> cases(const mechanics::Mechanics& mechanics, const run::Scene&
 
 const char* name(Verdict verdict) {
   switch (verdict) {
-    case Verdict::kept: return "kept";
-    case Verdict::reported: return "told";
-    case Verdict::unreported: break;
+    case Verdict::pass: return "pass";
+    case Verdict::reported: return "reported";
+    case Verdict::undetected: break;
   }
-  return "silent";
+  return "undetected";
 }
 
 }  // namespace eomgen::stress

@@ -38,7 +38,7 @@ std::vector<Case> cases(const mechanics::Mechanics& mechanics, const run::Scene&
 using Vary = std::function<std::optional<run::Scene>(const Case&)>;
 
 /// The error is within 100 tolerances; or larger, but covered by the estimate or the outcome; or not reported at all.
-enum class Verdict { kept, reported, unreported };
+enum class Verdict { pass, reported, undetected };
 const char* name(Verdict verdict);
 
 struct Row {
@@ -68,6 +68,6 @@ struct Request {
 };
 
 /// One row for each eligible solver; none if there is no reference solution, with the reason in `left_out`.
-std::vector<Row> judge(const Case& test, const run::Scene& scene, const Request& request, std::string& left_out);
+std::vector<Row> assess(const Case& test, const run::Scene& scene, const Request& request, std::string& left_out);
 
 }  // namespace eomgen::stress

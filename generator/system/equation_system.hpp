@@ -118,7 +118,7 @@ struct EquationSystem {
   ~EquationSystem();
 
   std::shared_ptr<Dag> dag;
-  std::string route;  // "lagrange", "jacobian"
+  std::string formulation;  // "lagrange", "jacobian"
   Approach approach = Approach::two;
   Form form = Form::multipliers;
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <eom/modes/contact_state.hpp>
 
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 #include "verify/comparisons.hpp"
 #include "verify/points.hpp"
 #include "verify/system_values.hpp"
@@ -67,8 +67,8 @@ void note_uncompared(const Subjects& subjects, Tally& tally) {
 int digits_of_range(const mechanics::Mechanics& mechanics) {
   constexpr int usual = 30, most = 1500;  // decades of binary64 numbers and their squares
   constexpr int coarse = 30;
-  const Judge judge(*mechanics.model, coarse);
-  const double largest = Points(judge, 0, 0).decades();
+  const Oracle oracle(*mechanics.model, coarse);
+  const double largest = Points(oracle, 0, 0).decades();
   return largest < usual ? 0 : std::min(most, static_cast<int>(2 * largest));
 }
 
@@ -98,9 +98,9 @@ std::string Certificate::summary() const {
 std::vector<std::string> Certificate::agreeing() const {
   std::vector<std::string> names;
   for (const Comparison& c : comparisons) {
-    if (c.b != judge_name || c.a.find(" of ") != std::string::npos) continue;
+    if (c.b != oracle_name || c.a.find(" of ") != std::string::npos) continue;
     const auto its_own = [&](const Comparison& row) {
-      return row.b == judge_name && (row.a == c.a || row.a.ends_with(" of " + c.a));
+      return row.b == oracle_name && (row.a == c.a || row.a.ends_with(" of " + c.a));
     };
     const bool all = std::all_of(comparisons.begin(), comparisons.end(),
                                  [&](const Comparison& row) { return row.pass || !its_own(row); });
@@ -109,19 +109,19 @@ std::vector<std::string> Certificate::agreeing() const {
   return names;
 }
 
-std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics, std::vector<work::LeftOut>* left_out) {
+std::vector<system::EquationSystem> all_formulations(mechanics::Mechanics& mechanics, std::vector<work::LeftOut>* left_out) {
   constexpr std::size_t large = 16;  // coordinates
   std::vector<system::EquationSystem> systems;
-  for (const derive::RouteEntry& route : derive::routes())
+  for (const derive::FormulationEntry& formulation : derive::formulations())
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
       // Without eliminated coordinates both approaches coincide: a large system is derived only once.
       if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
-      derive::Outcome outcome = derive::derive_where_worth(route, mechanics, approach);
+      derive::Outcome outcome = derive::derive_where_worth(formulation, mechanics, approach);
       if (outcome.system)
         systems.push_back(std::move(*outcome.system));
       else if (left_out != nullptr)
         left_out->push_back(
-            {fmt::format("{} {}", route.name, system::name(approach)), std::move(outcome.why), outcome.over_budget});
+            {fmt::format("{} {}", formulation.name, system::name(approach)), std::move(outcome.why), outcome.over_budget});
     }
   return systems;
 }
@@ -131,11 +131,11 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
     throw Error("verify", Where{}, fmt::format("{} digits cannot be compared", options.digits),
                 fmt::format("ask for {} to {}", least_digits, most_digits));
   const int range = options.range ? *options.range : digits_of_range(mechanics);
-  Judge judge(*mechanics.model, options.digits + guard_digits + range);
+  Oracle oracle(*mechanics.model, options.digits + guard_digits + range);
   for (std::uint32_t k = 0; k < mechanics.constraints.size(); ++k) {
-    if (!mechanics.holds(k)) judge.imply(k);
+    if (!mechanics.holds(k)) oracle.imply(k);
   }
-  Points points(judge, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed,
+  Points points(oracle, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed,
                 leavable(mechanics));
   Tally tally(options.digits);
   bool interrupted = false;
@@ -144,7 +144,7 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
     state.mode = mode_at(mechanics, state);
     Tally with_this_point = tally;
     try {
-      compare_at(mechanics, subjects, judge, state, with_this_point);
+      compare_at(mechanics, subjects, oracle, state, with_this_point);
     } catch (const work::Interrupted&) {
       if (tally.points() == 0) throw;
       interrupted = true;
@@ -171,7 +171,7 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
 
 Certificate verify(mechanics::Mechanics& mechanics, const Options& options) {
   Subjects subjects;
-  subjects.systems = all_routes(mechanics, &subjects.left_out);
+  subjects.systems = all_formulations(mechanics, &subjects.left_out);
   return certify(mechanics, subjects, options);
 }
 

@@ -33,7 +33,7 @@ struct Options {
 /// Expressions that vanish for the true motion, in t, q, qdot, qddot of all coordinates, functions of time, parameters,
 /// inputs and the multipliers of all constraints, on the Dag of the Mechanics. A form without residuals (it was too
 /// long) is not compared.
-struct ReadingForm {
+struct DisplayForm {
   std::string name;  // "display form I"
   std::vector<symbolic::Ref> residuals;
 };
@@ -59,7 +59,7 @@ struct ProgramForm {
   std::function<std::optional<Arrays>(const std::string& function, const At& at, int digits)> call = {};
   /// First-order bounds of the rounding errors in binary64.
   std::function<std::vector<std::vector<double>>(const std::string& function, const At& at)> bounds = {};
-  std::string route = {};  // the formulation of its equations
+  std::string formulation = {};  // the formulation of its equations
   system::Approach approach = system::Approach::two;
   std::vector<std::string> outputs = {};  // names of the values of its function `outputs`
   std::vector<Real> default_inputs = {};
@@ -77,7 +77,7 @@ struct CompiledForm {
 struct Subjects {
   std::vector<work::LeftOut> left_out = {};
   std::vector<system::EquationSystem> systems;
-  std::vector<ReadingForm> reading;
+  std::vector<DisplayForm> reading;
   std::vector<ProgramForm> programs;
   std::vector<CompiledForm> compiled;
 };
@@ -115,9 +115,9 @@ struct Certificate {
   std::vector<std::string> agreeing() const;
 };
 
-/// Every formulation of derive::routes(), by both approaches, that applies within its budget. The others are listed in
+/// Every formulation of derive::formulations(), by both approaches, that applies within its budget. The others are listed in
 /// `left_out`.
-std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics,
+std::vector<system::EquationSystem> all_formulations(mechanics::Mechanics& mechanics,
                                                std::vector<work::LeftOut>* left_out = nullptr);
 
 /// Extra digits for parameters, starts, rates and times far from 1: next to a mass of 1e300 kg all other terms would be

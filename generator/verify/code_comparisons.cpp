@@ -46,8 +46,8 @@ std::vector<double> rounded(const std::vector<Real>& values) {
 }
 
 /// The state rounded to binary64.
-State in_binary64(const State& state, const Judge& judge) {
-  const auto exactly = [&](const Real& value) { return judge.precision().round(exact(to_binary64(value))); };
+State in_binary64(const State& state, const Oracle& oracle) {
+  const auto exactly = [&](const Real& value) { return oracle.precision().round(exact(to_binary64(value))); };
   State at = state;
   at.t = exactly(at.t);
   for (auto* part : {&at.q, &at.qdot, &at.parameters, &at.inputs, &at.integrals})
@@ -56,14 +56,14 @@ State in_binary64(const State& state, const Judge& judge) {
 }
 
 /// Scales of dx at a state that correspond to its rounding errors; empty if these are unknown.
-std::vector<Real> rounding_of_rhs(const ProgramForm& program, const At& at, const Judge& judge) {
+std::vector<Real> rounding_of_rhs(const ProgramForm& program, const At& at, const Oracle& oracle) {
   std::vector<Real> sizes;
   if (!program.bounds) return sizes;
   constexpr double least_number = 1e-290;  // smaller numbers have fewer digits
   const std::vector<std::vector<double>> bounds = program.bounds("rhs", at);
   for (const double bound : bounds[0]) {
     if (!std::isfinite(bound)) return {};
-    sizes.push_back(size_of_rounding(std::max(bound, least_number), judge.precision()));
+    sizes.push_back(size_of_rounding(std::max(bound, least_number), oracle.precision()));
   }
   return sizes;
 }
@@ -76,15 +76,15 @@ bool overflows(const Subjects& subjects, const At& at) {
 
 /// Compares code in binary64 with the system at the same binary64 numbers.
 double compiled_difference(const CompiledForm& form, const Subjects& subjects, State at, const SystemValues& v,
-                           const Judge& judge, int mode) {
+                           const Oracle& oracle, int mode) {
   const EquationSystem& s = subjects.systems.front();
-  if (!s.contacts.empty()) at.phi = lawful_friction(s, judge, at);
-  const std::vector<Real> reference = right_hand_side(s, judge, at);
+  if (!s.contacts.empty()) at.phi = lawful_friction(s, oracle, at);
+  const std::vector<Real> reference = right_hand_side(s, oracle, at);
   const At arguments = arguments_at(s, at, mode);
   const auto dx =
       form.rhs(cln::double_approx(at.t), rounded(arguments.x), rounded(at.parameters), rounded(at.inputs), mode);
   const std::vector<Real> rounding =
-      subjects.programs.empty() ? std::vector<Real>{} : rounding_of_rhs(subjects.programs.front(), arguments, judge);
+      subjects.programs.empty() ? std::vector<Real>{} : rounding_of_rhs(subjects.programs.front(), arguments, oracle);
   const bool finite = dx && std::all_of(dx->begin(), dx->end(), [](double value) { return std::isfinite(value); });
   if (!finite) {
     // If the bounds are not finite either, an intermediate value overflows.
@@ -101,7 +101,7 @@ double compiled_difference(const CompiledForm& form, const Subjects& subjects, S
 }
 
 /// Compares compiled functions with those of the first program at the same binary64 numbers.
-void compare_compiled_functions(const Subjects& subjects, const State& rounded, const Judge& judge, int mode,
+void compare_compiled_functions(const Subjects& subjects, const State& rounded, const Oracle& oracle, int mode,
                                 Tally& tally) {
   if (subjects.programs.empty() || !subjects.programs.front().call) return;
   const ProgramForm& program = subjects.programs.front();
@@ -110,7 +110,7 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
   for (const CompiledForm& form : subjects.compiled) {
     if (!form.call) continue;
     for (const std::string& function : program.functions) {
-      const std::optional<Arrays> expected = program.call(function, at, judge.digits());
+      const std::optional<Arrays> expected = program.call(function, at, oracle.digits());
       if (!expected) continue;
       const std::vector<std::vector<double>> bounds = program.bounds(function, at);
       const std::optional<std::vector<std::vector<double>>> got = form.call(function, at);
@@ -126,7 +126,7 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
             largest = 1;
             continue;
           }
-          const Real size = cln::abs(value) + size_of_rounding(std::max(bounds[r][i], least_number), judge.precision());
+          const Real size = cln::abs(value) + size_of_rounding(std::max(bounds[r][i], least_number), oracle.precision());
           largest = std::max(largest, relative(exact(entry) - value, size));
         }
       }
@@ -138,7 +138,7 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
 
 }  // namespace
 
-void compare_code(const Subjects& subjects, const SystemValues& v, const Judge& judge, int mode, Tally& tally) {
+void compare_code(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode, Tally& tally) {
   const EquationSystem& first = subjects.systems.front();
   bool undecided = false;  // the friction law has no solution here, or several
   for (const ProgramForm& form : subjects.programs) {
@@ -147,19 +147,19 @@ void compare_code(const Subjects& subjects, const SystemValues& v, const Judge& 
     undecided = undecided || (dx.empty() && !first.contacts.empty());
     if (undecided) continue;
     // An acceleration may be 0 because its terms cancel: it is compared relative to these terms.
-    const std::vector<Real> rounding = rounding_of_rhs(form, arguments, judge);
+    const std::vector<Real> rounding = rounding_of_rhs(form, arguments, oracle);
     tally.note(form.name, name_of(first), true,
-               rhs_difference(dx, right_hand_side(first, judge, v.state), first, v, rounding));
+               rhs_difference(dx, right_hand_side(first, oracle, v.state), first, v, rounding));
   }
   if (undecided) return;
-  compare_functions(subjects, v, judge, mode, tally);
+  compare_functions(subjects, v, oracle, mode, tally);
   if (subjects.compiled.empty()) return;
-  const State at = in_binary64(v.state, judge);
+  const State at = in_binary64(v.state, oracle);
   for (const CompiledForm& form : subjects.compiled) {
-    tally.note(form.name, name_of(first), true, compiled_difference(form, subjects, at, v, judge, mode),
+    tally.note(form.name, name_of(first), true, compiled_difference(form, subjects, at, v, oracle, mode),
                Kind::binary64);
   }
-  compare_compiled_functions(subjects, at, judge, mode, tally);
+  compare_compiled_functions(subjects, at, oracle, mode, tally);
 }
 
 }  // namespace eomgen::verify

@@ -45,7 +45,7 @@ double difference(const SystemValues& a, const SystemValues& b) {
 /// Absolute tolerance of a constraint acceleration. The rounding error of an equation that holds identically, and whose
 /// derivatives cancel to the last digit, has no other scale. The tolerance is far above rounding in 20 or more digits,
 /// and far below any significant derivative.
-Real nothing_beside(const State& state) {
+Real absolute_tolerance(const State& state) {
   Real fastest = 0;
   for (std::size_t i = 0; i < state.qddot.size(); ++i) {
     fastest = cln::max(fastest, cln::max(cln::abs(state.qddot[i]), state.qdot[i] * state.qdot[i]));
@@ -56,7 +56,7 @@ Real nothing_beside(const State& state) {
 /// d'Alembert's residuals and psi_ddot = 0 with the accelerations and multipliers of the system.
 double motion_residual(const SystemValues& v) {
   double largest = 0;
-  const Real nothing = nothing_beside(v.state);
+  const Real nothing = absolute_tolerance(v.state);
   for (const Residual& row : v.rows) largest = std::max(largest, row.relative());
   for (std::size_t k = 0; k < v.constraints.psi_ddot.size(); ++k) {
     if (v.state.apart.contains(k)) continue;
@@ -102,25 +102,25 @@ double constraint_residual(const EquationSystem& s, const SystemValues& v) {
   return largest;
 }
 
-void compare_energies(const EquationSystem& s, const SystemValues& v, const Judge& judge, Tally& tally) {
-  const EnergyValues e = judge.energy_values(v.state);
+void compare_energies(const EquationSystem& s, const SystemValues& v, const Oracle& oracle, Tally& tally) {
+  const EnergyValues e = oracle.energy_values(v.state);
   const std::string name = name_of(s);
-  tally.note("energies of " + name, judge_name, false,
+  tally.note("energies of " + name, oracle_name, false,
              worst({relative(v.kinetic - e.kinetic, e.scale), relative(v.potential - e.potential, e.scale),
                     relative(v.energy - e.kinetic - e.potential, e.scale)}));
   Real scale = e.rate_scale + cln::abs(v.power);  // plus the power of every term of the equations
   for (std::size_t i = 0; i < v.rows.size(); ++i) scale = scale + cln::abs(v.state.qdot[i]) * v.rows[i].scale;
-  tally.note("power of " + name, judge_name, false, relative(v.power - e.kinetic_rate - e.potential_rate, scale));
-  const Real rate = energy_rate(s, judge, v, judge.digits() - guard_digits);
+  tally.note("power of " + name, oracle_name, false, relative(v.power - e.kinetic_rate - e.potential_rate, scale));
+  const Real rate = energy_rate(s, oracle, v, oracle.digits() - guard_digits);
   // The difference of two energies has no more digits than these.
   const Real noise = e.scale * cln::expt(cln::cl_RA(1) / 10, cln::cl_I(tally.digits()));
   tally.note("power of " + name, "its energy along the path", true, relative(v.power - rate, scale + noise));
 }
 
 /// Outputs that the oracle can compute from the model: coordinates, positions, velocities, scalar definitions.
-void compare_outputs(const EquationSystem& s, const SystemValues& v, const Judge& judge, Tally& tally) {
-  const model::Model& m = judge.model();
-  Interpreter now = judge.interpreter(v.state);
+void compare_outputs(const EquationSystem& s, const SystemValues& v, const Oracle& oracle, Tally& tally) {
+  const model::Model& m = oracle.model();
+  Interpreter now = oracle.interpreter(v.state);
   Interpreter& later = now.along_time();
   std::map<std::string, std::pair<Real, Real>> expected;  // value, scale
   const auto expect = [&](const std::string& name, const Real& value, const Real& scale) {
@@ -157,31 +157,31 @@ void compare_outputs(const EquationSystem& s, const SystemValues& v, const Judge
     if (const auto found = expected.find(s.outputs[i].name); found != expected.end())
       // eliminated coordinates come from a projection and may be 0 up to rounding
       largest = std::max(largest, relative(v.outputs[i] - found->second.first, found->second.second + 1));
-  tally.note("outputs of " + name_of(s), judge_name, false, largest);
+  tally.note("outputs of " + name_of(s), oracle_name, false, largest);
 }
 
 /// Compares closed forms with quadrature, and the rates of integrals that are states with their integrands.
 void compare_integrals(const mechanics::Mechanics& mechanics, const EquationSystem& s, const SystemValues& v,
-                       const Judge& judge, Tally& tally) {
-  const model::Model& m = judge.model();
+                       const Oracle& oracle, Tally& tally) {
+  const model::Model& m = oracle.model();
   if (m.integrals.empty()) return;
-  const Lookup lookup(judge, v.state);
+  const Lookup lookup(oracle, v.state);
   symbolic::Substitution written = derive::write_out(mechanics);
-  const Interpreter now = judge.interpreter(v.state);
+  const Interpreter now = oracle.interpreter(v.state);
   double largest = 0;
   for (std::uint32_t i = 0; i < m.integrals.size(); ++i) {
     const Ref form = written(mechanics.dag->symbol({symbolic::SymbolKind::integral, i, 0}));
-    const Real value = symbolic::evaluate(*mechanics.dag, {form}, lookup, judge.digits())[0];
+    const Real value = symbolic::evaluate(*mechanics.dag, {form}, lookup, oracle.digits())[0];
     const Real span = v.state.t - v.state.parameters[*m.start_time];
     const Real scale = cln::abs(span * now.environment().integrals[i][1].real());
     largest = std::max(largest, relative(value - v.state.integrals[i], cln::abs(v.state.integrals[i]) + scale));
   }
-  const std::vector<Real> rates = integral_rates(s, lookup, judge.digits());
+  const std::vector<Real> rates = integral_rates(s, lookup, oracle.digits());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Real expected = now.environment().integrals[s.integrals[k].integral][1].real();
     largest = std::max(largest, relative(rates[k] - expected, cln::abs(expected)));
   }
-  tally.note("integrals of time", judge_name, false, largest);
+  tally.note("integrals of time", oracle_name, false, largest);
 }
 
 void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
@@ -203,8 +203,8 @@ void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
 
 /// The largest residual, each relative to the sum of the absolute values of its terms, with unknowns as large as their
 /// scales.
-double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const Lookup& at, const Motion& motion,
-                        const Judge& judge) {
+double largest_residual(const DisplayForm& form, const symbolic::Dag& dag, const Lookup& at, const Motion& motion,
+                        const Oracle& oracle) {
   Lookup sized = at;
   for (std::size_t i = 0; i < sized.state.qddot.size(); ++i)
     sized.state.qddot[i] = cln::max(cln::abs(at.state.qddot[i]), motion.scale[i]);
@@ -216,8 +216,8 @@ double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const
     top_level_terms(dag, residual, roots);
   }
   first.push_back(roots.size());
-  const std::vector<Real> value = symbolic::evaluate(dag, roots, at, judge.digits());
-  const std::vector<Real> size = symbolic::evaluate(dag, roots, sized, judge.digits());
+  const std::vector<Real> value = symbolic::evaluate(dag, roots, at, oracle.digits());
+  const std::vector<Real> size = symbolic::evaluate(dag, roots, sized, oracle.digits());
   double largest = 0;
   for (std::size_t r = 0; r + 1 < first.size(); ++r) {
     Real scale = 0;
@@ -230,11 +230,11 @@ double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const
 
 /// Whether an acceleration enters d'Alembert's principle; the acceleration of a coordinate without inertia follows from
 /// the constraints alone.
-bool has_inertia(const Judge& judge, State at, const std::vector<Real>& lambda, std::uint32_t coordinate,
+bool has_inertia(const Oracle& oracle, State at, const std::vector<Real>& lambda, std::uint32_t coordinate,
                  const Real& wrong) {
-  const std::vector<Residual> before = judge.dalembert(at, lambda);
+  const std::vector<Residual> before = oracle.dalembert(at, lambda);
   at.qddot[coordinate] = wrong;
-  const std::vector<Residual> after = judge.dalembert(at, lambda);
+  const std::vector<Residual> after = oracle.dalembert(at, lambda);
   for (std::size_t i = 0; i < before.size(); ++i) {
     if (relative(after[i].value - before[i].value, before[i].scale) > 1e-9) return true;
   }
@@ -243,34 +243,34 @@ bool has_inertia(const Judge& judge, State at, const std::vector<Real>& lambda, 
 
 /// Residuals of the display form for the motion by the oracle. The form also has to detect a wrong acceleration: 0 = 0
 /// holds for every motion.
-double reading_residual(const ReadingForm& form, const mechanics::Mechanics& mechanics, const Motion& motion,
-                        const Judge& judge, bool try_wrong_ones) {
-  Lookup lookup(judge, motion.state);
+double reading_residual(const DisplayForm& form, const mechanics::Mechanics& mechanics, const Motion& motion,
+                        const Oracle& oracle, bool try_wrong_ones) {
+  Lookup lookup(oracle, motion.state);
   lookup.lambda = motion.lambda;
-  const double largest = largest_residual(form, *mechanics.dag, lookup, motion, judge);
+  const double largest = largest_residual(form, *mechanics.dag, lookup, motion, oracle);
   for (const std::uint32_t i : mechanics.free) {
     if (!try_wrong_ones) break;
     const Real right = lookup.state.qddot[i];
     // The error is as large as the terms, so that it is not lost among them.
     const Real wrong = right + cln::abs(right) + motion.scale[i] + 1;
     lookup.state.qddot[i] = wrong;
-    const bool noticed = largest_residual(form, *mechanics.dag, lookup, motion, judge) > 1e-9;
+    const bool noticed = largest_residual(form, *mechanics.dag, lookup, motion, oracle) > 1e-9;
     lookup.state.qddot[i] = right;
-    if (!noticed && has_inertia(judge, lookup.state, lookup.lambda, i, wrong)) return 1;
+    if (!noticed && has_inertia(oracle, lookup.state, lookup.lambda, i, wrong)) return 1;
   }
   return largest;
 }
 
 /// A state with arbitrary friction forces: the equations must hold for any of them.
-State with_any_friction(const mechanics::Mechanics& mechanics, const Judge& judge, const State& at) {
+State with_any_friction(const mechanics::Mechanics& mechanics, const Oracle& oracle, const State& at) {
   State state = at;
   std::vector<Real> phi;
   for (const mechanics::Contact& contact : mechanics.contacts) {
     for (std::size_t a = 0; a < contact.dimensions(); ++a) {
-      phi.push_back(judge.precision().round(cln::cl_RA(static_cast<long>(2 * phi.size() + 3)) / 7));
+      phi.push_back(oracle.precision().round(cln::cl_RA(static_cast<long>(2 * phi.size() + 3)) / 7));
     }
   }
-  if (!phi.empty()) set_friction(mechanics, judge, state, std::move(phi));
+  if (!phi.empty()) set_friction(mechanics, oracle, state, std::move(phi));
   return state;
 }
 
@@ -328,39 +328,39 @@ void Tally::note(const std::string& a, const std::string& b, bool shares_code, d
   row->digits_agreed = std::clamp(digits, 0, digits_);
 }
 
-void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Judge& judge, const State& at,
+void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Oracle& oracle, const State& at,
                 Tally& tally) {
   std::vector<SystemValues> values;
-  const State state = with_any_friction(mechanics, judge, at);
-  for (const EquationSystem& s : subjects.systems) values.push_back(values_of(s, mechanics, judge, state));
+  const State state = with_any_friction(mechanics, oracle, at);
+  for (const EquationSystem& s : subjects.systems) values.push_back(values_of(s, mechanics, oracle, state));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const EquationSystem& s = subjects.systems[i];
-    tally.note(name_of(s), judge_name, false, motion_residual(values[i]));
+    tally.note(name_of(s), oracle_name, false, motion_residual(values[i]));
     if (!s.active.empty())
-      tally.note("constraints of " + name_of(s), judge_name, false, constraint_residual(s, values[i]));
-    compare_energies(s, values[i], judge, tally);
-    compare_outputs(s, values[i], judge, tally);
+      tally.note("constraints of " + name_of(s), oracle_name, false, constraint_residual(s, values[i]));
+    compare_energies(s, values[i], oracle, tally);
+    compare_outputs(s, values[i], oracle, tally);
     for (std::size_t k = 0; k < i; ++k)
       tally.note(name_of(subjects.systems[k]), name_of(s), true, difference(values[k], values[i]));
   }
   if (!subjects.reading.empty()) {
-    const Motion motion = motion_at(judge, state);
-    for (const ReadingForm& form : subjects.reading)
+    const Motion motion = motion_at(oracle, state);
+    for (const DisplayForm& form : subjects.reading)
       if (!form.residuals.empty())
-        tally.note(form.name, judge_name, false, reading_residual(form, mechanics, motion, judge, tally.points() == 0));
+        tally.note(form.name, oracle_name, false, reading_residual(form, mechanics, motion, oracle, tally.points() == 0));
   }
   if (values.empty()) return;
   const EquationSystem& first = subjects.systems.front();
-  compare_integrals(mechanics, first, values.front(), judge, tally);
-  if (first.contacts.empty()) return compare_code(subjects, values.front(), judge, 0, tally);
+  compare_integrals(mechanics, first, values.front(), oracle, tally);
+  if (first.contacts.empty()) return compare_code(subjects, values.front(), oracle, 0, tally);
   for (const int mode : modes_of(first, state)) {
     State lawful = in_mode(first, values.front(), state, mode);
-    set_friction(mechanics, judge, lawful, lawful_friction(first, judge, lawful));
-    const SystemValues in_mode = values_of(first, mechanics, judge, lawful);
+    set_friction(mechanics, oracle, lawful, lawful_friction(first, oracle, lawful));
+    const SystemValues in_mode = values_of(first, mechanics, oracle, lawful);
     double largest = 0;
     for (const Residual& row : in_mode.rows) largest = std::max(largest, row.relative());
-    tally.note("contacts of " + name_of(first), judge_name, false, largest);
-    compare_code(subjects, in_mode, judge, mode, tally);
+    tally.note("contacts of " + name_of(first), oracle_name, false, largest);
+    compare_code(subjects, in_mode, oracle, mode, tally);
   }
 }
 

@@ -12,7 +12,7 @@ namespace eomgen::verify {
 
 enum class Kind { precise, binary64 };
 
-inline constexpr const char* judge_name = "d'Alembert";
+inline constexpr const char* oracle_name = "d'Alembert";
 
 /// Binary64 has 16 digits. A thousand operations and cancellation leave 11 of them, relative to the terms.
 inline constexpr double tolerance_binary64 = 1e-11;
@@ -36,7 +36,7 @@ class Tally {
 
 /// Compares all subjects at one state. Throws std::domain_error if one of them has no value or is nearly singular
 /// there.
-void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Judge& judge, const State& state,
+void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Oracle& oracle, const State& state,
                 Tally& tally);
 
 }  // namespace eomgen::verify

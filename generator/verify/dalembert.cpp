@@ -7,7 +7,7 @@
 #include <set>
 
 #include "verify/plain_forces.hpp"
-#include "verify/standing.hpp"
+#include "verify/affine_residual_cache.hpp"
 #include "verify/uses.hpp"
 
 namespace eomgen::verify {
@@ -44,7 +44,7 @@ double relative(const Real& difference, const Real& scale) {
 
 double Residual::relative() const { return verify::relative(value, scale); }
 
-Judge::Judge(const model::Model& model, int digits) : model_(model), digits_(digits), precision_(digits) {
+Oracle::Oracle(const model::Model& model, int digits) : model_(model), digits_(digits), precision_(digits) {
   for (const model::Constraint& constraint : model.constraints) {
     psi_.insert(psi_.end(), constraint.psi.begin(), constraint.psi.end());
     for (std::size_t k = 0; k < constraint.psi.size(); ++k) holonomic_.push_back(!constraint.binds_velocities(k));
@@ -53,11 +53,11 @@ Judge::Judge(const model::Model& model, int digits) : model_(model), digits_(dig
   if (!model.integrals.empty()) quadrature_.emplace(digits - rounding, precision_);
 }
 
-bool Judge::is_independent_parameter(std::size_t index) const {
+bool Oracle::is_independent_parameter(std::size_t index) const {
   return !uses(model_, model_.parameters[index].value, model::Op::parameter);
 }
 
-std::vector<Real> Judge::default_parameters() const {
+std::vector<Real> Oracle::default_parameters() const {
   std::vector<Real> values;
   for (std::size_t i = 0; i < model_.parameters.size(); ++i) {
     const bool number = is_independent_parameter(i);
@@ -69,7 +69,7 @@ std::vector<Real> Judge::default_parameters() const {
 }
 
 // Parameters may depend on one another in any order of the file, without cycles: each round computes some.
-std::vector<Real> Judge::parameters(std::vector<Real> given) const {
+std::vector<Real> Oracle::parameters(std::vector<Real> given) const {
   given.resize(model_.parameters.size(), Real(0));
   std::vector<bool> known;
   for (std::size_t i = 0; i < given.size(); ++i) known.push_back(is_independent_parameter(i));
@@ -84,7 +84,7 @@ std::vector<Real> Judge::parameters(std::vector<Real> given) const {
   return given;
 }
 
-void Judge::add_functions(Environment& environment, const std::vector<Real>& integrals, std::size_t orders) const {
+void Oracle::add_functions(Environment& environment, const std::vector<Real>& integrals, std::size_t orders) const {
   environment.functions.assign(model_.functions.size(), {});
   environment.integrals.assign(model_.integrals.size(), {});
   // A function may use others, and integrals, declared before or after it.
@@ -121,7 +121,7 @@ void Judge::add_functions(Environment& environment, const std::vector<Real>& int
   }
 }
 
-Interpreter Judge::interpreter(const State& state, Margin* margin) const {
+Interpreter Oracle::interpreter(const State& state, Margin* margin) const {
   Environment environment;
   environment.t = Jet(state.t);
   for (const Real& value : state.parameters) environment.parameters.emplace_back(value);
@@ -136,7 +136,7 @@ Interpreter Judge::interpreter(const State& state, Margin* margin) const {
 }
 
 // Whether the expression, or a function or integral in it, contains a time derivative.
-bool Judge::needs_derivatives(model::NodeId expression) const {
+bool Oracle::needs_derivatives(model::NodeId expression) const {
   bool found = false;
   std::vector<model::NodeId> open{expression};
   std::set<model::NodeId> seen;
@@ -153,7 +153,7 @@ bool Judge::needs_derivatives(model::NodeId expression) const {
   return found;
 }
 
-Real Judge::integral_value(std::uint32_t integral, const State& state) const {
+Real Oracle::integral_value(std::uint32_t integral, const State& state) const {
   const model::NodeId integrand = model_.integrals[integral].integrand;
   const std::size_t orders = needs_derivatives(integrand) ? function_orders : 0;
   const auto value = [&](const Real& t) {
@@ -174,17 +174,17 @@ Real Judge::integral_value(std::uint32_t integral, const State& state) const {
   return (*quadrature_)(value, state.parameters.at(*model_.start_time), state.t);
 }
 
-std::vector<Real> Judge::integrals(const State& state) const {
+std::vector<Real> Oracle::integrals(const State& state) const {
   std::vector<Real> values;
   for (std::uint32_t i = 0; i < model_.integrals.size(); ++i) values.push_back(integral_value(i, state));
   return values;
 }
 
-Real Judge::value(model::NodeId expression, const State& state) const {
+Real Oracle::value(model::NodeId expression, const State& state) const {
   return interpreter(state).scalar(expression).real();
 }
 
-Real Judge::constant(model::NodeId expression, const std::vector<Real>& parameters) const {
+Real Oracle::constant(model::NodeId expression, const std::vector<Real>& parameters) const {
   Environment environment;
   for (const Real& value : parameters) environment.parameters.emplace_back(value);
   try {
@@ -194,7 +194,7 @@ Real Judge::constant(model::NodeId expression, const std::vector<Real>& paramete
   }
 }
 
-Judge::~Judge() = default;
+Oracle::~Oracle() = default;
 
 // Whether two states differ in accelerations and constraint forces at most.
 namespace {
@@ -211,13 +211,13 @@ bool same_place(const State& a, const State& b) {
 
 }  // namespace
 
-Standing& Judge::standing(const State& state) const {
-  if (!standing_ || !same_place(standing_->state, state)) standing_ = std::make_unique<Standing>(*this, state);
-  return *standing_;
+AffineResidualCache& Oracle::residual_cache(const State& state) const {
+  if (!residual_cache_ || !same_place(residual_cache_->state, state)) residual_cache_ = std::make_unique<AffineResidualCache>(*this, state);
+  return *residual_cache_;
 }
 
-std::vector<Residual> Judge::dalembert(const State& state, const std::vector<Real>& lambda, Margin* margin) const {
-  Standing& at = standing(state);
+std::vector<Residual> Oracle::dalembert(const State& state, const std::vector<Real>& lambda, Margin* margin) const {
+  AffineResidualCache& at = residual_cache(state);
   std::vector<Residual> sums = at.inertia().at(state.qddot);
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(at.rest()[i].value, at.rest()[i].scale);
   subtract_friction(state, at.now(), sums);
@@ -237,7 +237,7 @@ std::vector<Residual> Judge::dalembert(const State& state, const std::vector<Rea
   return sums;
 }
 
-void Judge::subtract_friction(const State& state, Interpreter& now, std::vector<Residual>& sums) const {
+void Oracle::subtract_friction(const State& state, Interpreter& now, std::vector<Residual>& sums) const {
   Interpreter& by_q = now.by_coordinates(false);
   for (const FrictionForce& friction : state.friction) {
     if (friction.place == 0) {
@@ -257,7 +257,7 @@ void Judge::subtract_friction(const State& state, Interpreter& now, std::vector<
 
 // A contact force on a body: at its centre of mass, with its moment about it, F . dr/dq_i + (p x F) . dw/dqdot_i. The
 // other body has the opposite force.
-void Judge::subtract_contact(const model::BodyContact& contact, const std::array<Real, 3>& force, Interpreter& now,
+void Oracle::subtract_contact(const model::BodyContact& contact, const std::array<Real, 3>& force, Interpreter& now,
                              std::vector<Residual>& sums) const {
   Interpreter& by_q = now.by_coordinates(false);
   const auto act = [&](std::uint32_t place, std::uint32_t frame, model::NodeId arm, int sign) {
@@ -275,11 +275,11 @@ void Judge::subtract_contact(const model::BodyContact& contact, const std::array
   if (contact.other_frame > 0) act(contact.other_place, contact.other_frame, contact.other_arm, -1);
 }
 
-ConstraintValues Judge::constraint_values(const State& state, Margin* margin) const {
-  Standing& at = standing(state);
+ConstraintValues Oracle::constraint_values(const State& state, Margin* margin) const {
+  AffineResidualCache& at = residual_cache(state);
   ConstraintValues values;
   for (std::size_t k = 0; k < psi_.size(); ++k) {
-    const Standing::Along& along = at.along(k);
+    const AffineResidualCache::Along& along = at.along(k);
     values.psi.push_back(along.psi);
     values.psi_dot.push_back(along.rate);
     values.gradient.push_back(at.row(k));
@@ -295,7 +295,7 @@ ConstraintValues Judge::constraint_values(const State& state, Margin* margin) co
   return values;
 }
 
-EnergyValues Judge::energy_values(const State& state) const {
+EnergyValues Oracle::energy_values(const State& state) const {
   Interpreter now = interpreter(state);
   Interpreter& later = now.along_time();
   EnergyValues sum;

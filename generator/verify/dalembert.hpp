@@ -72,12 +72,12 @@ struct NoValue : Singular {
   Where where;
 };
 
-class Standing;
+class AffineResidualCache;
 
-class Judge {
+class Oracle {
  public:
-  Judge(const model::Model& model, int digits);
-  ~Judge();
+  Oracle(const model::Model& model, int digits);
+  ~Oracle();
 
   const model::Model& model() const { return model_; }
   const Precision& precision() const { return precision_; }
@@ -116,7 +116,7 @@ class Judge {
   void subtract_contact(const model::BodyContact& contact, const std::array<Real, 3>& force, Interpreter& now,
                         std::vector<Residual>& sums) const;
   /// The terms that are independent of accelerations and constraint forces, cached for the last state.
-  Standing& standing(const State& state) const;
+  AffineResidualCache& residual_cache(const State& state) const;
 
   const model::Model& model_;
   int digits_;
@@ -125,7 +125,7 @@ class Judge {
   std::vector<bool> holonomic_;
   std::set<std::size_t> implied_;
   std::optional<GaussLegendre> quadrature_;  // if the model has integrals
-  mutable std::unique_ptr<Standing> standing_;
+  mutable std::unique_ptr<AffineResidualCache> residual_cache_;
 };
 
 }  // namespace eomgen::verify

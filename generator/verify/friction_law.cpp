@@ -17,7 +17,7 @@ using symbolic::Ref;
 
 class Law {
  public:
-  Law(const system::EquationSystem& s, const Judge& judge, const State& state) : s_(s), judge_(judge), state_(state) {
+  Law(const system::EquationSystem& s, const Oracle& oracle, const State& state) : s_(s), oracle_(oracle), state_(state) {
     for (const system::Contact& contact : s.contacts) {
       for (const auto* list : {&contact.gram, &contact.slip, &contact.slip_rate}) {
         roots_.insert(roots_.end(), list->begin(), list->end());
@@ -36,9 +36,9 @@ class Law {
   std::vector<Real> residual(const std::vector<Real>& phi) const {
     State state = state_;
     state.phi = phi;
-    Lookup lookup(judge_, state);
-    solve_into(s_, lookup, judge_.digits());
-    const std::vector<Real> value = symbolic::evaluate(*s_.dag, roots_, lookup, judge_.digits());
+    Lookup lookup(oracle_, state);
+    solve_into(s_, lookup, oracle_.digits());
+    const std::vector<Real> value = symbolic::evaluate(*s_.dag, roots_, lookup, oracle_.digits());
     auto next = value.begin();
     const auto take = [&](std::size_t count) {
       std::vector<Real> part(next, next + static_cast<std::ptrdiff_t>(count));
@@ -92,7 +92,7 @@ class Law {
   }
   int slides(std::size_t j) const { return eom::contact_leaf(state_.mode, 2 * j); }
   int presses(std::size_t j) const { return eom::contact_leaf(state_.mode, 2 * j + 1); }
-  Real root(const Real& x) const { return cln::realpart(cln::sqrt(judge_.precision().round(x))); }
+  Real root(const Real& x) const { return cln::realpart(cln::sqrt(oracle_.precision().round(x))); }
 
   Real normal_force(std::size_t j, const std::vector<Real>& gram, const Real& given,
                     const std::vector<Real>& lambda) const {
@@ -113,24 +113,24 @@ class Law {
   }
 
   const system::EquationSystem& s_;
-  const Judge& judge_;
+  const Oracle& oracle_;
   const State& state_;
   std::vector<Ref> roots_;
 };
 
 }  // namespace
 
-void set_friction(const mechanics::Mechanics& m, const Judge& judge, State& state, std::vector<Real> phi) {
+void set_friction(const mechanics::Mechanics& m, const Oracle& oracle, State& state, std::vector<Real> phi) {
   state.phi = std::move(phi);
   state.friction.clear();
-  const Lookup lookup(judge, state);
+  const Lookup lookup(oracle, state);
   for (const mechanics::Contact& contact : m.contacts) {
     if (contact.dimensions() == 0) continue;
     FrictionForce friction{contact.place, contact.coordinate, {Real(0), Real(0), Real(0)}, contact.body_contact};
     if (contact.place == 0) friction.force[0] = state.phi[contact.first];
     for (std::size_t a = 0; a < contact.directions.size(); ++a) {
       const mechanics::Vec3& t = contact.directions[a];
-      const std::vector<Real> direction = symbolic::evaluate(*m.dag, {t[0], t[1], t[2]}, lookup, judge.digits());
+      const std::vector<Real> direction = symbolic::evaluate(*m.dag, {t[0], t[1], t[2]}, lookup, oracle.digits());
       for (std::size_t k = 0; k < 3; ++k)
         friction.force[k] = friction.force[k] + state.phi[contact.first + a] * direction[k];
     }
@@ -138,13 +138,13 @@ void set_friction(const mechanics::Mechanics& m, const Judge& judge, State& stat
   }
 }
 
-std::vector<Real> lawful_friction(const system::EquationSystem& s, const Judge& judge, const State& state) {
-  const Law law(s, judge, state);
+std::vector<Real> lawful_friction(const system::EquationSystem& s, const Oracle& oracle, const State& state) {
+  const Law law(s, oracle, state);
   std::size_t n = 0;
   for (const system::Contact& contact : s.contacts) n += contact.slip.size();
-  std::vector<Real> phi(n, judge.precision().round(Real(0)));
-  const Real h = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge.digits() / 2));
-  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge.digits()));
+  std::vector<Real> phi(n, oracle.precision().round(Real(0)));
+  const Real h = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(oracle.digits() / 2));
+  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(oracle.digits()));
   // Linear except for the magnitude of a normal force of two components: a few iterations suffice.
   for (int round = 0; round < 60; ++round) {
     const std::vector<Real> r = law.residual(phi);

@@ -8,9 +8,9 @@
 namespace eomgen::verify {
 
 /// Sets State::phi and the corresponding forces along the tangents of the mechanics.
-void set_friction(const mechanics::Mechanics& mechanics, const Judge& judge, State& state, std::vector<Real> phi);
+void set_friction(const mechanics::Mechanics& mechanics, const Oracle& oracle, State& state, std::vector<Real> phi);
 
 /// phi of the law in the mode of the state. Throws std::domain_error if the iteration does not converge.
-std::vector<Real> lawful_friction(const system::EquationSystem& system, const Judge& judge, const State& state);
+std::vector<Real> lawful_friction(const system::EquationSystem& system, const Oracle& oracle, const State& state);
 
 }  // namespace eomgen::verify

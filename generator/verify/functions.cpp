@@ -23,21 +23,21 @@ using system::EquationSystem;
 
 class Functions {
  public:
-  Functions(const Subjects& subjects, const SystemValues& v, const Judge& judge, int mode, Tally& tally)
+  Functions(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode, Tally& tally)
       : program_(subjects.programs.front()),
         v_(v),
-        judge_(judge),
+        oracle_(oracle),
         tally_(tally),
         s_(system_of(subjects)),
         at_(arguments_at(subjects.systems.front(), v.state, mode)),
-        lookup_(judge, v.state) {
+        lookup_(oracle, v.state) {
     lookup_.lambda = v.lambda;
   }
 
   void operator()() {
     for (const std::string& function : program_.functions) {
       if (function == "rhs" || function == "prepare") continue;  // compared elsewhere, or through other functions
-      const std::optional<Arrays> values = program_.call(function, at_, judge_.digits());
+      const std::optional<Arrays> values = program_.call(function, at_, oracle_.digits());
       if (!values) continue;
       sizes_ = sizes(function, *values);
       if (sizes_.empty()) continue;  // too close to another branch
@@ -64,7 +64,7 @@ class Functions {
   /// The system of the program's formulation.
   const EquationSystem& system_of(const Subjects& subjects) const {
     for (const EquationSystem& s : subjects.systems) {
-      if (s.route == program_.route && s.approach == program_.approach) return s;
+      if (s.formulation == program_.formulation && s.approach == program_.approach) return s;
     }
     return subjects.systems.front();
   }
@@ -78,7 +78,7 @@ class Functions {
       for (std::size_t i = 0; i < values[r].size(); ++i) {
         if (!std::isfinite(bounds[r][i])) return {};
         result.back().push_back(cln::abs(values[r][i]) +
-                                size_of_rounding(std::max(bounds[r][i], least_number), judge_.precision()));
+                                size_of_rounding(std::max(bounds[r][i], least_number), oracle_.precision()));
       }
     }
     return result;
@@ -89,7 +89,7 @@ class Functions {
   }
 
   std::vector<Real> evaluate(const std::vector<Ref>& roots, const Lookup& lookup) const {
-    return symbolic::evaluate(*s_.dag, roots, lookup, judge_.digits());
+    return symbolic::evaluate(*s_.dag, roots, lookup, oracle_.digits());
   }
 
   /// Values of the system's expressions, each with the size of its terms. The size comes from the digits lost in the
@@ -108,13 +108,13 @@ class Functions {
     Real forces = 0;
     for (const Residual& row : v_.rows) forces = cln::max(forces, row.scale);
     for (Real& phi : large.state.phi) phi = cln::abs(phi) + forces;
-    const std::vector<Real> precise = symbolic::evaluate(*s_.dag, roots, lookup, judge_.digits() + more);
+    const std::vector<Real> precise = symbolic::evaluate(*s_.dag, roots, lookup, oracle_.digits() + more);
     const std::vector<Real> largest = evaluate(roots, large);
     Sized result{evaluate(roots, lookup), {}};
     for (std::size_t i = 0; i < roots.size(); ++i) {
       const Real& value = result.values[i];
       result.sizes.push_back(cln::abs(value) + cln::abs(largest[i]) +
-                             cln::abs(value - precise[i]) * ten_to(judge_.digits() + caution));
+                             cln::abs(value - precise[i]) * ten_to(oracle_.digits() + caution));
     }
     return result;
   }
@@ -130,13 +130,13 @@ class Functions {
   }
 
   /// Steps of differences are small relative to 1/range: with rates of 1e300 a time of 1e-50 is long.
-  int step_digits() const { return judge_.digits() - guard_digits; }
+  int step_digits() const { return oracle_.digits() - guard_digits; }
   std::optional<Slope> slope(const std::string& function, const Shift& shift) const {
     return verify::slope(program_, function, at_, shift, step_digits());
   }
   /// The rounding error of differences of the right-hand side.
   std::vector<Real> noise(const std::string& function) const {
-    const std::optional<Arrays> values = program_.call(function, at_, judge_.digits());
+    const std::optional<Arrays> values = program_.call(function, at_, oracle_.digits());
     if (!values) return {};
     const Arrays size = sizes(function, *values);
     if (size.empty()) return {};
@@ -146,7 +146,7 @@ class Functions {
   }
 
   void prepared(const Arrays& values) {
-    const std::optional<Arrays> rhs = program_.call("rhs", at_, judge_.digits());
+    const std::optional<Arrays> rhs = program_.call("rhs", at_, oracle_.digits());
     if (!rhs) return;
     // An exact 0 in one of them may be a rounded sum in the other.
     const Arrays own = sizes("rhs", *rhs);
@@ -279,7 +279,7 @@ class Functions {
     note("momenta", "the Lagrangian of " + name_of(s_),
          relative(sum - (lagrangian(h) - lagrangian(-h)) / (2 * h), size));
 
-    const std::optional<Arrays> rhs = program_.call("rhs", at_, judge_.digits());
+    const std::optional<Arrays> rhs = program_.call("rhs", at_, oracle_.digits());
     if (!rhs) return;
     const std::optional<Slope> slopes = slope("momenta", [&](At& at, const Real& step) {
       at.t = at.t + step;
@@ -355,7 +355,7 @@ class Functions {
 
   const ProgramForm& program_;
   const SystemValues& v_;
-  const Judge& judge_;
+  const Oracle& oracle_;
   Tally& tally_;
   const EquationSystem& s_;
   At at_;
@@ -377,10 +377,10 @@ At arguments_at(const EquationSystem& s, const State& state, int mode) {
   return at;
 }
 
-void compare_functions(const Subjects& subjects, const SystemValues& values, const Judge& judge, int mode,
+void compare_functions(const Subjects& subjects, const SystemValues& values, const Oracle& oracle, int mode,
                        Tally& tally) {
   if (subjects.programs.empty() || !subjects.programs.front().call) return;
-  Functions(subjects, values, judge, mode, tally)();
+  Functions(subjects, values, oracle, mode, tally)();
 }
 
 }  // namespace eomgen::verify

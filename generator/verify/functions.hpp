@@ -12,7 +12,7 @@ namespace eomgen::verify {
 At arguments_at(const system::EquationSystem& system, const State& state, int mode);
 
 /// Compares the functions of the first program with its right-hand side, with its system, and with the energies.
-void compare_functions(const Subjects& subjects, const SystemValues& values, const Judge& judge, int mode,
+void compare_functions(const Subjects& subjects, const SystemValues& values, const Oracle& oracle, int mode,
                        Tally& tally);
 
 /// The scale of an entry that corresponds to its rounding error: the first-order bound over 2^-53.

@@ -15,7 +15,7 @@ struct Motion {
 
 /// Solves for qddot and lambda. The residuals are affine in them: N + 1 evaluations and one solve. Throws Singular if
 /// qddot and lambda are not determined.
-Motion motion_at(const Judge& judge, const State& state);
+Motion motion_at(const Oracle& oracle, const State& state);
 
 /// Smallest scale of an acceleration, or multiplier, of a system with constraints, relative to the largest one: smaller
 /// values may be zero up to rounding.

@@ -28,9 +28,9 @@ bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text 
 
 }  // namespace
 
-Points::Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed,
+Points::Points(const Oracle& oracle, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed,
                std::vector<std::size_t> leavable)
-    : judge_(judge), engine_(seed), cap_(cap), fixed_(std::move(fixed)), leavable_(std::move(leavable)), choosings_(1) {
+    : oracle_(oracle), engine_(seed), cap_(cap), fixed_(std::move(fixed)), leavable_(std::move(leavable)), choosings_(1) {
   try {
     read_scene();
   } catch (const NoValue& none) {
@@ -41,30 +41,30 @@ Points::Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map
 
 double Points::uniform() { return (static_cast<double>(engine_() >> 12) + 0.5) * 0x1p-52; }
 double Points::symmetric() { return 2 * uniform() - 1; }
-Real Points::exact(double value) const { return judge_.precision().round(verify::exact(value)); }
+Real Points::exact(double value) const { return oracle_.precision().round(verify::exact(value)); }
 
 // ---- ranges and scales from the model file
 
 void Points::read_scene() {
-  const model::Model& m = judge_.model();
+  const model::Model& m = oracle_.model();
   State start;
   start.integrals.assign(m.integrals.size(), Real(0));  // integrals begin at the start
-  start.parameters = judge_.default_parameters();
+  start.parameters = oracle_.default_parameters();
   const model::Scene* scene = m.scenes.empty() ? nullptr : &m.scenes.front();
   if (scene != nullptr)
     for (const auto& [index, value] : scene->parameters)
-      start.parameters[index] = judge_.constant(value, judge_.parameters(start.parameters));
+      start.parameters[index] = oracle_.constant(value, oracle_.parameters(start.parameters));
   defaults_ = start.parameters;
-  start.parameters = judge_.parameters(defaults_);
+  start.parameters = oracle_.parameters(defaults_);
   if (scene != nullptr && scene->t0 != model::no_node) {
-    t0_ = cln::double_approx(judge_.constant(scene->t0, start.parameters));
+    t0_ = cln::double_approx(oracle_.constant(scene->t0, start.parameters));
     t1_ = t0_ + 1;
-    if (scene->t1 != model::no_node) t1_ = cln::double_approx(judge_.constant(scene->t1, start.parameters));
+    if (scene->t1 != model::no_node) t1_ = cln::double_approx(oracle_.constant(scene->t1, start.parameters));
   }
   t1_ = std::min(t1_, t0_ + longest_span);
   start.t = exact(t0_);  // before functions of time are evaluated: they may be undefined at other times
   for (const model::Input& input : m.inputs) {
-    start.inputs.push_back(judge_.constant(input.fallback, start.parameters));
+    start.inputs.push_back(oracle_.constant(input.fallback, start.parameters));
     input_defaults_.push_back(cln::double_approx(start.inputs.back()));
   }
   start.q.assign(m.coordinates.size(), exact(0));
@@ -75,7 +75,7 @@ void Points::read_scene() {
       for (const model::InitialValue& value : *values) {
         std::vector<Real>& target = value.order == 0 ? start.q : start.qdot;
         try {
-          target[value.coordinate] = judge_.value(value.value, start);
+          target[value.coordinate] = oracle_.value(value.value, start);
           if (values == &scene->initial && value.order == 0) given[value.coordinate] = true;
         } catch (const std::domain_error&) {
           continue;  // the start depends on values that only the constraints determine, or a function has no rate at
@@ -91,8 +91,8 @@ void Points::read_scene() {
 /// and scales.
 void Points::settle(State start, const std::vector<bool>& given) {
   const bool holonomic = [&] {
-    for (std::size_t k = 0; k < judge_.constraints().size(); ++k)
-      if (judge_.holonomic(k)) return true;
+    for (std::size_t k = 0; k < oracle_.constraints().size(); ++k)
+      if (oracle_.holonomic(k)) return true;
     return false;
   }();
   if (!holonomic || std::find(given.begin(), given.end(), false) == given.end()) return;
@@ -111,22 +111,22 @@ void Points::settle(State start, const std::vector<bool>& given) {
 }
 
 void Points::read_ranges(const State& start) {
-  const model::Model& m = judge_.model();
+  const model::Model& m = oracle_.model();
   for (std::size_t i = 0; i < m.coordinates.size(); ++i) {
     Choice c;
     c.center = cln::double_approx(start.q[i]);
     c.rate_center = cln::double_approx(start.qdot[i]);
     c.has_lower = m.coordinates[i].lower != model::no_node;
     c.has_upper = m.coordinates[i].upper != model::no_node;
-    if (c.has_lower) c.lower = cln::double_approx(judge_.constant(m.coordinates[i].lower, start.parameters));
-    if (c.has_upper) c.upper = cln::double_approx(judge_.constant(m.coordinates[i].upper, start.parameters));
+    if (c.has_lower) c.lower = cln::double_approx(oracle_.constant(m.coordinates[i].lower, start.parameters));
+    if (c.has_upper) c.upper = cln::double_approx(oracle_.constant(m.coordinates[i].upper, start.parameters));
     choices_.push_back(c);
   }
 }
 
 /// Coordinates of the same unit share a scale: an orbit that starts at (7e6, 0) m has this scale in both.
 void Points::read_scales() {
-  const model::Model& m = judge_.model();
+  const model::Model& m = oracle_.model();
   for (std::size_t i = 0; i < choices_.size(); ++i) {
     Choice& c = choices_[i];
     const model::Unit& unit = m.coordinates[i].unit;
@@ -181,11 +181,11 @@ double Points::draw_coordinate(const Choice& c) {
 }
 
 void Points::fix(std::vector<Real>& parameters) const {
-  for (const auto& [index, value] : fixed_) parameters[index] = judge_.precision().round(value);
+  for (const auto& [index, value] : fixed_) parameters[index] = oracle_.precision().round(value);
 }
 
 State Points::draw() {
-  const model::Model& m = judge_.model();
+  const model::Model& m = oracle_.model();
   State s;
   s.t = exact(t0_ + uniform() * (t1_ - t0_));
   for (std::size_t i = 0; i < m.parameters.size(); ++i) {
@@ -195,9 +195,9 @@ State Points::draw() {
                                 : defaults_[i] * exact(1 + parameter_spread * spread_ * u));
   }
   fix(s.parameters);  // before: others depend on them; after: they may depend on others
-  s.parameters = judge_.parameters(std::move(s.parameters));
+  s.parameters = oracle_.parameters(std::move(s.parameters));
   fix(s.parameters);
-  s.integrals = judge_.integrals(s);
+  s.integrals = oracle_.integrals(s);
   for (const double fallback : input_defaults_)
     s.inputs.push_back(exact(fallback + symmetric() * std::max(1.0, std::fabs(fallback))));
   for (std::size_t i = 0; i < choices_.size(); ++i) {
@@ -222,8 +222,8 @@ void Points::require_inside(const State& s) const {
 
 void Points::require_smooth(const State& s) const {
   Margin margin;
-  const std::vector<Real> no_forces(judge_.constraints().size(), Real(0));
-  judge_.dalembert(s, no_forces, &margin);
+  const std::vector<Real> no_forces(oracle_.constraints().size(), Real(0));
+  oracle_.dalembert(s, no_forces, &margin);
   if (margin.kink < kink_margin) throw Rejected("too near a kink");
 }
 
@@ -301,13 +301,13 @@ void Points::reject(const std::string& why) {
   ++rejected_[why];
   // The more loops a model has, the fewer random states can be projected onto its constraints.
   constexpr std::size_t often = 10, few = 8;
-  const std::size_t rows = std::max(few, judge_.constraints().size());
+  const std::size_t rows = std::max(few, oracle_.constraints().size());
   if (++rejections_ % std::max<std::size_t>(1, often * few / rows) == 0) spread_ *= 0.8;
   if (rejections_ <= cap_) return;
   std::string reasons;
   for (const auto& [reason, count] : rejected_)
     reasons += (reasons.empty() ? "" : ", ") + reason + " (" + std::to_string(count) + ")";
-  throw Error("verify", Where{judge_.model().file, 0, 0, 1, ""},
+  throw Error("verify", Where{oracle_.model().file, 0, 0, 1, ""},
               "no states were found at which the equations can be checked: " + reasons,
               "look at the ranges of the coordinates, the constraints and the start of the default scene",
               Fault::check);

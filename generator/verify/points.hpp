@@ -41,7 +41,7 @@ class Points {
   /// the constraints, and onto implied ones that do not hold by themselves. The unilateral scalar constraints in
   /// `leavable` are closed, or, if they cannot all be closed, as many as possible, in turn; the others are
   /// State::apart.
-  Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed = {},
+  Points(const Oracle& oracle, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed = {},
          std::vector<std::size_t> leavable = {});
 
   /// The next state, with qddot = 0. Throws Error (Fault::check) after too many rejections.
@@ -88,7 +88,7 @@ class Points {
   void require_inside(const State& state) const;
   void require_smooth(const State& state) const;
 
-  const Judge& judge_;
+  const Oracle& oracle_;
   std::mt19937_64 engine_;
   std::size_t cap_;
   std::map<std::uint32_t, cln::cl_RA> fixed_;

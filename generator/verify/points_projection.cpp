@@ -45,12 +45,12 @@ std::vector<Real> Points::correction(const State& state, bool rates, const std::
                                      bool by_room) const {
   State at = state;
   at.qddot.clear();  // psi_ddot is not needed
-  ConstraintValues c = judge_.constraint_values(at);
+  ConstraintValues c = oracle_.constraint_values(at);
   const std::size_t n = choices_.size();
   std::vector<Real> defect = rates ? c.psi_dot : c.psi;
   for (std::size_t k = c.gradient.size(); k-- > 0;) {
-    const bool follows = judge_.implied(k) && (rates || !open_.contains(k));
-    if ((rates || judge_.holonomic(k)) && !follows && !state.apart.contains(k))
+    const bool follows = oracle_.implied(k) && (rates || !open_.contains(k));
+    if ((rates || oracle_.holonomic(k)) && !follows && !state.apart.contains(k))
       continue;  // otherwise: a velocity constraint, implied, or open
     c.gradient.erase(c.gradient.begin() + static_cast<std::ptrdiff_t>(k));
     defect.erase(defect.begin() + static_cast<std::ptrdiff_t>(k));
@@ -86,10 +86,10 @@ std::vector<Real> Points::correction(const State& state, bool rates, const std::
 }
 
 void Points::project_positions(State& s, const std::vector<bool>* held) const {
-  if (judge_.constraints().empty()) return;
+  if (oracle_.constraints().empty()) return;
   // Convergence is quadratic: after a step of relative size 10^-h the error is of the order 10^-2h.
-  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() / 2 + 2));
-  const Real own = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() / 2 - 8));
+  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(oracle_.digits() / 2 + 2));
+  const Real own = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(oracle_.digits() / 2 - 8));
   constexpr int most_settling = 8;
   int settled = 0;
   bool by_room = false;  // after a step would have left a range: coordinates near an end then change less
@@ -113,9 +113,9 @@ void Points::project_positions(State& s, const std::vector<bool>* held) const {
 }
 
 void Points::project_velocities(State& s) const {
-  if (judge_.constraints().empty()) return;
+  if (oracle_.constraints().empty()) return;
   // Linear; the second round gains digits for small velocities. A remainder where no motion is possible becomes 0.
-  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() - 6));
+  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(oracle_.digits() - 6));
   std::vector<Real> size;
   for (std::size_t i = 0; i < choices_.size(); ++i)
     size.push_back(cln::max(cln::abs(s.qdot[i]), exact(choices_[i].rate_scale)) * small);
@@ -131,9 +131,9 @@ void Points::project_velocities(State& s) const {
 /// A constraint implied on the velocity level, as a joint of a body that velocity constraints hold, still constrains
 /// positions. Such constraints are closed one by one, as long as this closes more of them.
 void Points::close_implied(State& s) {
-  for (std::size_t round = 0; judge_.any_implied() && round < judge_.constraints().size(); ++round) {
+  for (std::size_t round = 0; oracle_.any_implied() && round < oracle_.constraints().size(); ++round) {
     const std::optional<std::size_t> open = first_open(s, false);
-    if (!open || !judge_.holonomic(*open) || open_.contains(*open)) break;
+    if (!open || !oracle_.holonomic(*open) || open_.contains(*open)) break;
     open_.insert(*open);
     project_positions(s);
   }
@@ -147,11 +147,11 @@ void Points::require_implied(const State& s) const {
 
 /// The first implied constraint that does not hold, in positions or also in rates.
 std::optional<std::size_t> Points::first_open(const State& s, bool rates) const {
-  if (!judge_.any_implied()) return std::nullopt;
-  const ConstraintValues c = judge_.constraint_values(s);
-  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() - 15));
+  if (!oracle_.any_implied()) return std::nullopt;
+  const ConstraintValues c = oracle_.constraint_values(s);
+  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(oracle_.digits() - 15));
   for (std::size_t k = 0; k < c.psi.size(); ++k) {
-    if (!judge_.implied(k)) continue;
+    if (!oracle_.implied(k)) continue;
     Real size = 1, rate = 1;
     for (std::size_t i = 0; i < s.q.size(); ++i) {
       size = size + cln::abs(c.gradient[k][i] * s.q[i]);

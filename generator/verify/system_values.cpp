@@ -127,10 +127,10 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
 }
 
 /// Accelerations of eliminated coordinates from psi_ddot = 0 of their constraints, by the oracle.
-void complete_accelerations(const mechanics::Mechanics& mechanics, const Judge& judge, State& state) {
+void complete_accelerations(const mechanics::Mechanics& mechanics, const Oracle& oracle, State& state) {
   const std::size_t count = mechanics.fixed.size();
   if (count == 0) return;
-  const ConstraintValues c = judge.constraint_values(state);
+  const ConstraintValues c = oracle.constraint_values(state);
   std::vector<Real> matrix, right;
   for (const mechanics::FixedCoordinate& row : mechanics.fixed) {
     for (const mechanics::FixedCoordinate& column : mechanics.fixed)
@@ -213,9 +213,9 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
 
 }  // namespace
 
-Lookup::Lookup(const Judge& of, State at) : judge(of), state(std::move(at)), lambda(of.constraints().size(), Real(0)) {
-  if (state.integrals.empty()) state.integrals = judge.integrals(state);
-  const Interpreter now = judge.interpreter(state);
+Lookup::Lookup(const Oracle& of, State at) : oracle(of), state(std::move(at)), lambda(of.constraints().size(), Real(0)) {
+  if (state.integrals.empty()) state.integrals = oracle.integrals(state);
+  const Interpreter now = oracle.interpreter(state);
   for (const std::vector<Jet>& orders : now.environment().functions) {
     functions.emplace_back();
     for (const Jet& jet : orders) functions.back().push_back(jet.real());
@@ -246,40 +246,40 @@ void solve_into(const EquationSystem& s, Lookup& lookup, int digits) {
   for (std::size_t k = 0; k < s.active.size(); ++k) lookup.lambda[s.active[k]] = solved.lambda[k];
 }
 
-SystemValues values_of(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Judge& judge,
+SystemValues values_of(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Oracle& oracle,
                        const State& state) {
-  Lookup lookup(judge, state);
-  const Solved solved = solve_system(s, lookup, judge.digits(), true);
+  Lookup lookup(oracle, state);
+  const Solved solved = solve_system(s, lookup, oracle.digits(), true);
   for (std::size_t i = 0; i < s.free.size(); ++i) lookup.state.qddot[s.free[i]] = solved.qddot[i];
   for (std::size_t k = 0; k < s.active.size(); ++k) lookup.lambda[s.active[k]] = solved.lambda[k];
-  complete_accelerations(mechanics, judge, lookup.state);
+  complete_accelerations(mechanics, oracle, lookup.state);
   std::vector<Ref> roots{s.kinetic, s.potential, s.energy, s.power};
   for (const system::Reaction& reaction : s.reactions) roots.push_back(reaction.value);
   for (const system::Output& output : s.outputs) roots.push_back(output.value);
-  const std::vector<Real> value = symbolic::evaluate(*s.dag, roots, lookup, judge.digits());
+  const std::vector<Real> value = symbolic::evaluate(*s.dag, roots, lookup, oracle.digits());
   SystemValues v;
   v.state = lookup.state;
-  v.lambda.assign(judge.constraints().size(), Real(0));
+  v.lambda.assign(oracle.constraints().size(), Real(0));
   v.kinetic = value[0], v.potential = value[1], v.energy = value[2], v.power = value[3];
   for (std::size_t i = 0; i < s.reactions.size(); ++i) v.lambda[s.reactions[i].constraint] = value[4 + i];
   v.outputs.assign(value.begin() + static_cast<std::ptrdiff_t>(4 + s.reactions.size()), value.end());
   v.psi = solved.psi, v.A = solved.A, v.b = solved.b;
   v.condition = solved.condition;
-  v.rows = judge.dalembert(v.state, v.lambda);
-  v.constraints = judge.constraint_values(v.state);
+  v.rows = oracle.dalembert(v.state, v.lambda);
+  v.constraints = oracle.constraint_values(v.state);
   add_scales(s, mechanics, solved, v);
   return v;
 }
 
-std::string name_of(const EquationSystem& s) { return s.route + " " + system::name(s.approach); }
+std::string name_of(const EquationSystem& s) { return s.formulation + " " + system::name(s.approach); }
 
-std::vector<Real> right_hand_side(const EquationSystem& s, const Judge& judge, const State& state) {
-  const Lookup lookup(judge, state);
-  const Solved solved = solve_system(s, lookup, judge.digits(), false);
+std::vector<Real> right_hand_side(const EquationSystem& s, const Oracle& oracle, const State& state) {
+  const Lookup lookup(oracle, state);
+  const Solved solved = solve_system(s, lookup, oracle.digits(), false);
   std::vector<Real> dx;
   for (const std::uint32_t i : s.free) dx.push_back(state.qdot[i]);
   dx.insert(dx.end(), solved.qddot.begin(), solved.qddot.end());
-  for (const Real& rate : integral_rates(s, lookup, judge.digits())) dx.push_back(rate);
+  for (const Real& rate : integral_rates(s, lookup, oracle.digits())) dx.push_back(rate);
   return dx;
 }
 
@@ -289,7 +289,7 @@ std::vector<Real> integral_rates(const EquationSystem& s, const Lookup& lookup, 
   return symbolic::evaluate(*s.dag, rates, lookup, digits);
 }
 
-Real energy_rate(const EquationSystem& s, const Judge& judge, const SystemValues& v, int digits) {
+Real energy_rate(const EquationSystem& s, const Oracle& oracle, const SystemValues& v, int digits) {
   // In 3 d digits a step of 10^-d makes truncation and rounding errors both 10^-2d. Fast motions take a shorter step,
   // and correspondingly more digits.
   Real fastest = 1;
@@ -300,9 +300,9 @@ Real energy_rate(const EquationSystem& s, const Judge& judge, const SystemValues
   const Precision precision(more);
   const Real h =
       precision.round(cln::expt(cln::cl_RA(1) / 10, cln::cl_I(digits)) / cln::expt(cln::cl_RA(2), cln::cl_I(bits)));
-  const std::vector<Real> rates = integral_rates(s, Lookup(judge, v.state), more);
+  const std::vector<Real> rates = integral_rates(s, Lookup(oracle, v.state), more);
   const auto energy_at = [&](const Real& step) {
-    Lookup lookup(judge, v.state);
+    Lookup lookup(oracle, v.state);
     State& at = lookup.state;
     at.t = precision.round(at.t) + step;
     for (const std::uint32_t i : s.free) {

@@ -14,11 +14,11 @@ namespace eomgen::verify {
 
 /// Values of the symbols at a state: all coordinates to second order, functions, parameters, inputs, multipliers.
 struct Lookup {
-  const Judge& judge;
+  const Oracle& oracle;
   State state;
   std::vector<Real> lambda;                  // per Mechanics::constraints entry
   std::vector<std::vector<Real>> functions;  // [function][order]
-  Lookup(const Judge& judge, State state);
+  Lookup(const Oracle& oracle, State state);
   Real operator()(const symbolic::Symbol& symbol) const;
 };
 
@@ -39,7 +39,7 @@ struct SystemValues {
 std::string name_of(const system::EquationSystem& system);
 
 /// Evaluates a system. Throws std::domain_error if a value is undefined, Singular if the system is ill-conditioned.
-SystemValues values_of(const system::EquationSystem& system, const mechanics::Mechanics& mechanics, const Judge& judge,
+SystemValues values_of(const system::EquationSystem& system, const mechanics::Mechanics& mechanics, const Oracle& oracle,
                        const State& state);
 
 /// Solves for accelerations of the free coordinates and multipliers of the active constraints, and sets them in
@@ -50,9 +50,9 @@ void solve_into(const system::EquationSystem& system, Lookup& lookup, int digits
 std::vector<Real> integral_rates(const system::EquationSystem& system, const Lookup& lookup, int digits);
 
 /// The right-hand side: qdot and qddot of the free coordinates, the rates of integrals.
-std::vector<Real> right_hand_side(const system::EquationSystem& system, const Judge& judge, const State& state);
+std::vector<Real> right_hand_side(const system::EquationSystem& system, const Oracle& oracle, const State& state);
 
 /// dE/dt of the system's energy by central differences along the path of `values`, at three times the digits.
-Real energy_rate(const system::EquationSystem& system, const Judge& judge, const SystemValues& values, int digits);
+Real energy_rate(const system::EquationSystem& system, const Oracle& oracle, const SystemValues& values, int digits);
 
 }  // namespace eomgen::verify

@@ -69,7 +69,7 @@ struct Emitted {
   /// Whether NAME_info lists a function.
   bool tells_of(const abi::Function& function) const {
     if (function.name == "taylor") return info.contains("taylor_order");
-    if (function.comes == abi::Comes::with_charts) return info.contains("charts") && info.contains("chart_operations");
+    if (function.availability == abi::Availability::with_charts) return info.contains("charts") && info.contains("chart_operations");
     return info["operations"].contains(function.name);
   }
 };
@@ -134,8 +134,8 @@ TEST_CASE("abi: exactly the requested functions are emitted") {
     const bool charts = emitted.info.contains("charts");
     for (const abi::Function& function : abi::functions()) {
       CAPTURE(function.name);
-      if (function.comes == abi::Comes::where_it_saves) continue;
-      const bool expected = function.name == "taylor" ? !charts : function.comes != abi::Comes::with_charts || charts;
+      if (function.availability == abi::Availability::where_it_saves) continue;
+      const bool expected = function.name == "taylor" ? !charts : function.availability != abi::Availability::with_charts || charts;
       CHECK(emitted.loaded.contains(function.name) == expected);
     }
   }

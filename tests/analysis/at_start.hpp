@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/drawing/forces.hpp"
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "run/scene.hpp"
 #include "support/folders.hpp"
 #include "symbolic/evaluate.hpp"

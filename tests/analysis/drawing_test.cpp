@@ -13,7 +13,7 @@
 #include "analysis/drawing/sketch.hpp"
 #include "analysis/drawing/solids.hpp"
 #include "analysis/drawing/view.hpp"
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "support/folders.hpp"
 
 using namespace eomgen;

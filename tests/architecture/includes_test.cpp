@@ -185,12 +185,12 @@ TEST_CASE("products include only products and the graph, no implementation of a 
 
 TEST_CASE("the oracle includes only the Model and its own files") {
   const Generator generator = read_generator();
-  REQUIRE(generator.stages.count("judge") == 1);
-  const Stage& judge = generator.stages.at("judge");
-  CHECK(reachable("judge", generator.stages) == std::set<std::string>{"judge", "error", "GiNaC::cln"});
+  REQUIRE(generator.stages.count("oracle") == 1);
+  const Stage& oracle = generator.stages.at("oracle");
+  CHECK(reachable("oracle", generator.stages) == std::set<std::string>{"oracle", "error", "GiNaC::cln"});
   std::set<std::string> own;  // "verify/jet" for jet.cpp and jet.hpp
-  for (const std::string& source : judge.sources)
-    own.insert(judge.folder + "/" + fs::path(source).replace_extension().string());
+  for (const std::string& source : oracle.sources)
+    own.insert(oracle.folder + "/" + fs::path(source).replace_extension().string());
   for (const fs::path& file : files_below(root / "generator/verify/forces", {".cpp", ".hpp"}))
     own.insert("verify/forces/" + file.stem().string());
   REQUIRE(own.count("verify/forces/spring") == 1);
@@ -238,7 +238,7 @@ TEST_CASE("the command line includes only registries and values of the computing
                                          "program/program.hpp",
                                          "coordinates/coordinate_system.hpp",
                                          "couplings/coupling.hpp",
-                                         "derive/routes.hpp",
+                                         "derive/formulations.hpp",
                                          "forces/kind.hpp",
                                          "joints/joint.hpp",
                                          "rotations/rotation.hpp"};

@@ -52,7 +52,7 @@ std::vector<Stage> parse_stages(const std::string& folder, const std::string& cm
         list = &stage.needs;
       else if (*word == "LINKS")
         list = &stage.links;
-      else if (*word == "OWN_HEADERS" || *word == "COLD")
+      else if (*word == "OWN_HEADERS" || *word == "UNOPTIMISED")
         continue;  // a compiler option, not a dependency
       else if (list == nullptr)
         throw std::runtime_error("eomgen_stage: what is " + *word + " in " + folder);

@@ -7,17 +7,17 @@ using namespace architecture;
 TEST_CASE("the stages of a CMakeLists.txt are parsed with their lists, without comments") {
   const std::vector<Stage> stages = parse_stages("verify", R"(
 # eomgen_stage(ghost NEEDS everything)
-eomgen_stage(judge SOURCES a.cpp  # the judge
+eomgen_stage(oracle SOURCES a.cpp  # the oracle
   b.cpp NEEDS error
   LINKS GiNaC::cln)
-eomgen_stage(verify SOURCES c.cpp NEEDS judge program)
+eomgen_stage(verify SOURCES c.cpp NEEDS oracle program)
 )");
   REQUIRE(stages.size() == 2);
-  CHECK(stages[0].name == "judge");
+  CHECK(stages[0].name == "oracle");
   CHECK(stages[0].sources == std::vector<std::string>{"a.cpp", "b.cpp"});
   CHECK(stages[0].needs == std::vector<std::string>{"error"});
   CHECK(stages[0].links == std::vector<std::string>{"GiNaC::cln"});
-  CHECK(stages[1].needs == std::vector<std::string>{"judge", "program"});
+  CHECK(stages[1].needs == std::vector<std::string>{"oracle", "program"});
 }
 
 TEST_CASE("include lines are found with their line number; those in comments and strings are ignored") {

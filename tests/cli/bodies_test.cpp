@@ -214,7 +214,7 @@ TEST_CASE(
   CHECK(derived["equations"].size() == 7);
   const Json verified = document(folder, {"verify", "e.toml", "--points", "1", "--no-compile"});
   CHECK(verified["verdict"] == "pass");
-  CHECK(left_out(verified, "reading form"));
+  CHECK(left_out(verified, "display form"));
   CHECK(left_out(verified, "articulated"));
 }
 

@@ -27,7 +27,7 @@ TEST_CASE("list: the document contains the registries, and the readable output h
   const Json all = document(folder, {"list"});
   has_keys(all, {"coordinates", "rotations", "joints", "couplings", "forces", "solvers", "targets"});
   const std::string readable = expect(0, folder, {"list"}).out;
-  for (const char* key : {"coordinates", "solvers", "targets", "routes"}) {
+  for (const char* key : {"coordinates", "solvers", "targets", "formulations"}) {
     CHECK_FALSE(all[key].empty());
     for (const Json& entry : all[key]) CHECK(contains(readable, "  " + entry["name"].get<std::string>() + " "));
   }
@@ -208,11 +208,11 @@ TEST_CASE("verify: formulations with the code they share, and a verdict") {
   for (const char* model : {"P7_moving_sphere", "S5_double_pendulum_cartesian"}) {
     CAPTURE(model);
     const Json certificate = document(folder, {"verify", model, "--points", "5"});
-    has_keys(certificate, {"routes", "points", "rejected", "verdict"});
+    has_keys(certificate, {"formulations", "points", "rejected", "verdict"});
     CHECK(certificate["verdict"] == "pass");
     CHECK(certificate["points"] == 5);
     std::size_t independent = 0, emitted = 0;
-    for (const Json& row : certificate["routes"]) {
+    for (const Json& row : certificate["formulations"]) {
       independent += row["shares_code"] == false ? 1 : 0;
       emitted += row["a"] == "emitted code" ? 1 : 0;
     }
@@ -223,18 +223,18 @@ TEST_CASE("verify: formulations with the code they share, and a verdict") {
   CHECK_FALSE(contains(readable, "{"));
   CHECK_FALSE(contains(readable, "emitted code"));
   // Comparisons without shared code come first.
-  CHECK(readable.find("they share code") > readable.rfind("reading form II "));
+  CHECK(readable.find("they share code") > readable.rfind("display form II "));
 }
 
 TEST_CASE("emit: the files exist; the operation counts are those of the chosen formulation") {
   const Folder folder;
   const Json emitted = document(folder, {"emit", "P7_moving_sphere", "-o", "out"});
-  has_keys(emitted, {"files", "route", "tried", "operations", "seconds"});
+  has_keys(emitted, {"files", "formulation", "tried", "operations", "seconds"});
   CHECK(emitted["files"] == Json({"out/P7_moving_sphere.hpp", "out/P7_moving_sphere.c", "out/P7_moving_sphere.h"}));
   for (const Json& file : emitted["files"]) CHECK(folder.has(file));
   bool among = false;
   for (const Json& tried : emitted["tried"])
-    among = among || (tried["route"] == emitted["route"] && tried["operations"] == emitted["operations"]);
+    among = among || (tried["formulation"] == emitted["formulation"] && tried["operations"] == emitted["operations"]);
   CHECK(among);
   const Json paper = document(folder, {"emit", "P7_moving_sphere", "-o", "paper", "--target", "latex"});
   CHECK(paper["files"] == Json({"paper/P7_moving_sphere.tex"}));

@@ -45,7 +45,7 @@ exec cc "$@"
   CHECK(certificate["verdict"] == "fail");
   // Functions without sine stay correct; only the emitted code fails.
   bool blamed = false;
-  for (const Json& row : certificate["routes"]) {
+  for (const Json& row : certificate["formulations"]) {
     if (!contains(row["a"].get<std::string>(), "emitted code")) CHECK(row["pass"] == true);
     if (row["a"] == "emitted code") blamed = row["pass"] == false;
   }

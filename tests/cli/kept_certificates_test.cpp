@@ -29,7 +29,7 @@ ChildResult with_cache(const Folder& folder, const Words& words) {
 void change(const std::filesystem::path& path) {
   std::ifstream in(path);
   Json document = Json::parse(in);
-  document["comparisons"][0][0] = "another route";
+  document["comparisons"][0][0] = "another formulation";
   document["comparisons"][0][3] = 1.25e-50;
   std::ofstream(path) << document.dump();
 }
@@ -47,7 +47,7 @@ TEST_CASE(
   CHECK(with_cache(folder, emit).out == first.out);
   CHECK(kept(folder).size() == 1);
   change(kept(folder).front());
-  CHECK(contains(with_cache(folder, emit).out, "worst 1.2e-50 (another route"));
+  CHECK(contains(with_cache(folder, emit).out, "worst 1.2e-50 (another formulation"));
   // Another seed, function, byte of the model or other code: each is verified again.
   for (const Words& other :
        {Words{"emit", "p.toml", "-o", "out", "--seed", "2"}, Words{"emit", "p.toml", "-o", "out", "--with", "jac"},
@@ -56,11 +56,11 @@ TEST_CASE(
     const std::size_t before = kept(folder).size();
     const ChildResult result = with_cache(folder, other);
     CHECK(result.status == 0);
-    CHECK_FALSE(contains(result.out, "another route"));
+    CHECK_FALSE(contains(result.out, "another formulation"));
     CHECK(kept(folder).size() == before + 1);
   }
   folder.write("p.toml", folder.read("p.toml") + "# the same\n");
-  CHECK_FALSE(contains(with_cache(folder, emit).out, "another route"));
+  CHECK_FALSE(contains(with_cache(folder, emit).out, "another formulation"));
 }
 
 TEST_CASE("cached certificates: verify ignores the cache, and damaged entries are replaced") {
@@ -70,7 +70,7 @@ TEST_CASE("cached certificates: verify ignores the cache, and damaged entries ar
   REQUIRE(kept(folder).size() == 1);
   CHECK(contains(with_cache(folder, {"run", "p.toml"}).out, "(kept)"));
   change(kept(folder).front());
-  CHECK_FALSE(contains(with_cache(folder, {"verify", "p.toml", "--points", "5"}).out, "another route"));
+  CHECK_FALSE(contains(with_cache(folder, {"verify", "p.toml", "--points", "5"}).out, "another formulation"));
   for (const char* damaged :
        {"", "{", "[]", "{\"key\": 1}",
         "{\"key\": \"x\", \"points\": -1, \"rejected\": {}, \"comparisons\": [[1]], \"left_out\": []}"}) {

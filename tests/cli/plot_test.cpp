@@ -167,17 +167,17 @@ initial = { x = 0.1 }
   const std::string svg = folder.read("s.svg");
   CHECK(contains(svg, "<title>&lt;b&gt; &amp; &quot;both&quot;</title>"));
   CHECK_FALSE(contains(svg, "<b>"));
-  CHECK(found["kept"].get<std::size_t>() > 3);
-  CHECK(found["told"].get<std::size_t>() > 3);
-  CHECK(count(svg, ": kept, ") == found["kept"].get<std::size_t>());
-  CHECK(count(svg, ": told, ") == found["told"].get<std::size_t>());
-  CHECK(count(svg, "height=\"13\" fill=\"#0b6ab0\"") == found["kept"].get<std::size_t>() + 1);  // and one in the legend
-  CHECK(count(svg, "height=\"4\" fill=\"#e08e0b\"") == found["told"].get<std::size_t>() + 1);
+  CHECK(found["pass"].get<std::size_t>() > 3);
+  CHECK(found["reported"].get<std::size_t>() > 3);
+  CHECK(count(svg, ": pass, ") == found["pass"].get<std::size_t>());
+  CHECK(count(svg, ": reported, ") == found["reported"].get<std::size_t>());
+  CHECK(count(svg, "height=\"13\" fill=\"#0b6ab0\"") == found["pass"].get<std::size_t>() + 1);  // and one in the legend
+  CHECK(count(svg, "height=\"4\" fill=\"#e08e0b\"") == found["reported"].get<std::size_t>() + 1);
   plotted("s.png", {});
   CHECK(folder.read("s.png").starts_with("\x89PNG"));
   const std::string text = plotted("-", {});
   check_characters(text);
-  CHECK(contains(text, "+ " + std::to_string(found["kept"].get<int>()) + " kept"));
+  CHECK(contains(text, "+ " + std::to_string(found["pass"].get<int>()) + " pass"));
   CHECK(contains(text, "as it is"));
 }
 

@@ -105,12 +105,12 @@ TEST_CASE("--seed does not change a run; verify uses other points") {
   const Json one = document(folder, {"run", "S5_double_pendulum", "--seed", "1"});
   CHECK(one["final"] == document(folder, {"run", "S5_double_pendulum", "--seed", "1"})["final"]);
   CHECK(one["final"] == document(folder, {"run", "S5_double_pendulum", "--seed", "2"})["final"]);
-  const auto routes = [&](const char* seed) {
+  const auto formulations = [&](const char* seed) {
     return document(folder,
-                    {"verify", "S5_double_pendulum", "--points", "3", "--no-compile", "--seed", seed})["routes"];
+                    {"verify", "S5_double_pendulum", "--points", "3", "--no-compile", "--seed", seed})["formulations"];
   };
-  CHECK(routes("7") == routes("7"));
-  CHECK(routes("7") != routes("8"));
+  CHECK(formulations("7") == formulations("7"));
+  CHECK(formulations("7") != formulations("8"));
 }
 
 TEST_CASE("--approach: I and II are the same motion") {

@@ -40,7 +40,7 @@ TEST_CASE("verify: a fully prescribed motion has constraint forces to check") {
     const Json found = document(folder, {"verify", model, "--points", "4"});
     CHECK(found["verdict"] == "pass");
     CHECK(found["points"] == 4);
-    CHECK(found["routes"].size() > 4);
+    CHECK(found["formulations"].size() > 4);
   }
 }
 

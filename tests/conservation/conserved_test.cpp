@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "support/particles.hpp"
 
 using namespace eomgen;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "conservation/conserved.hpp"
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "symbolic/evaluate.hpp"
 
 using namespace eomgen;

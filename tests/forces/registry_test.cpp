@@ -20,7 +20,7 @@ bool has_key(const forces::Kind& kind, const std::string& name) {
 
 bool has_potential(const forces::Kind& kind) {
   return std::any_of(kind.terms.begin(), kind.terms.end(), [](const forces::Term& term) {
-    return term.acts == forces::Acts::potential || term.acts == forces::Acts::acceleration;
+    return term.load_type == forces::LoadType::potential || term.load_type == forces::LoadType::acceleration;
   });
 }
 
@@ -50,7 +50,7 @@ TEST_CASE("keys, rules and terms of a kind refer to existing keys") {
       CHECK(keys.insert(key.name).second);
       CHECK(model::is_identifier(key.name));
       for (const std::string& other : {key.with, key.unless}) CHECK((other.empty() || has_key(kind, other)));
-      CHECK(key.choices.empty() == (key.asks != forces::Asks::choice));
+      CHECK(key.choices.empty() == (key.type != forces::ValueType::choice));
     }
     for (const forces::Rule& rule : kind.rules) {
       CHECK(has_key(kind, rule.first));
@@ -60,7 +60,7 @@ TEST_CASE("keys, rules and terms of a kind refer to existing keys") {
     }
     for (const forces::Term& term : kind.terms) {
       CHECK_FALSE(term.formula.empty());
-      CHECK((term.over == forces::Over::bodies) == !term.arm.empty());
+      CHECK((term.domain == forces::Domain::bodies) == !term.arm.empty());
       for (const forces::When& when : term.when) CHECK(has_key(kind, when.key));
     }
     for (const forces::Line& line : {kind.spring, kind.damper}) CHECK(line.from.empty() == line.to.empty());

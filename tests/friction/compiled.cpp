@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "program/build.hpp"
 #include "program/interpret.hpp"
 

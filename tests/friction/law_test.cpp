@@ -17,11 +17,11 @@ namespace {
 
 constexpr double rounding = 1e-12;  // some hundred operations in binary64
 
-void check_routes(const std::string& text) {
+void check_formulations(const std::string& text) {
   const model::Model model = model::read_model_text(text, "rough");
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   verify::Subjects subjects;
-  subjects.systems = verify::all_routes(m);
+  subjects.systems = verify::all_formulations(m);
   // Compares the program in CLN, in every mode, with Newton's iteration on the law.
   program::Program program = program::build_program(subjects.systems, {});
   const program::Function& rhs = program.functions[0];
@@ -45,7 +45,7 @@ TEST_CASE("friction: the equations contain forces of any size, and the program s
   for (const std::string* text :
        {&test::belt, &test::dry, &test::rough_line, &test::sphere, &test::helix, &test::dumbbell, &test::floor,
         &test::drop, &test::dome, &test::creeping, &test::hinge, &test::wires}) {
-    check_routes(*text);
+    check_formulations(*text);
   }
 }
 

@@ -78,7 +78,7 @@ TEST_CASE("a constraint of the model takes precedence over an equivalent equatio
                             {{"[[joint]]", "[[constraint]]\nname = \"level\"\nholonomic = \"theta\"\n[[joint]]"}}));
   CHECK(built.mechanics.freedom() == 1);
   for (const mechanics::Constraint& c : built.mechanics.constraints) {
-    if (c.name == "level") CHECK(c.need == mechanics::Need::holds);
+    if (c.name == "level") CHECK(c.need == mechanics::Need::independent);
   }
   CHECK(built.redundant() == 4);
 }

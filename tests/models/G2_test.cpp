@@ -29,7 +29,7 @@ TEST_CASE("G2: the bases are (2.167) and (2.168), the metric is diagonal, T is h
 
 TEST_CASE("G2: the equations are (2.169)") {
   Read g2("G2_parabolic");
-  const reading::ReadingForm form = g2.form(system::Approach::two);
+  const reading::DisplayForm form = g2.form(system::Approach::two);
   const Sum u = g2("u"), v = g2("v"), m = g2("m"), w = square(u) + square(v);
   const Sum du = g2("u_dot"), dv = g2("v_dot"), dth = g2("theta_dot"), mg = m * g2("g");
   // the weight is -m g E3: F.a_u = -m g u, F.a_v = m g v, F.a_theta = 0

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "analysis/prescribed_forces.hpp"
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 #include "reading_of.hpp"
 #include "support/simulation.hpp"
 #include "symbolic/evaluate.hpp"
@@ -33,10 +33,10 @@ TEST_CASE("P10: the thrust is radial and equals d(m Rdot)/dt + alpha m/R^2 at al
   CHECK(analysis::prescribing_constraints(m) == std::vector<std::string>{"radial", "meridian", "cone"});
   const Numbers n;
   const double e[] = {std::sin(n.phi0) * std::cos(n.theta0), std::sin(n.phi0) * std::sin(n.theta0), std::cos(n.phi0)};
-  for (const derive::RouteEntry& route : derive::routes()) {
-    std::optional<system::EquationSystem> derived = route.derive(m, system::Approach::one);
+  for (const derive::FormulationEntry& formulation : derive::formulations()) {
+    std::optional<system::EquationSystem> derived = formulation.derive(m, system::Approach::one);
     if (!derived) continue;
-    INFO(route.name);
+    INFO(formulation.name);
     system::EquationSystem& s = *derived;
     const std::vector<std::string> names = analysis::add_prescribed_forces(m, s, analysis::prescribing_constraints(m));
     // No force acts along theta and phi: these generalised forces vanish identically and are omitted.

@@ -83,7 +83,7 @@ TEST_CASE("P5: the display form equals (2.157) and (2.158) without friction, sym
   const Sum to = a * ct + b * st, across = b * ct - a * st;
   const Sum length = sqrt(square(R0) + square(a) + square(b) - Sum(2) * R0 * s * to);
   const Sum F = K - over(K * L0, length);
-  const reading::ReadingForm form = p5.form(system::Approach::one);
+  const reading::DisplayForm form = p5.form(system::Approach::one);
   CHECK(same(p5.equation(form, "phi").expanded,
              m * square(R0) * (p5("phi_ddot") - s * c * square(dtheta)) - m * g * R0 * s - F * R0 * c * to));
   CHECK(same(p5.equation(form, "theta").expanded,

@@ -14,16 +14,16 @@ TEST_CASE("P7: both approaches and the display form agree with the oracle to 45 
   const verify::Certificate certificate = pipeline::certify(*derived, program, {50, 20, 1, nullptr});
   CHECK(certificate.pass);
   CHECK(certificate.points == 20);
-  std::size_t against_judge = 0;
+  std::size_t against_oracle = 0;
   for (const verify::Comparison& c : certificate.comparisons) {
     INFO(c.a, " against ", c.b);
     CHECK(c.pass);
     if (c.a.find("d'Alembert") == std::string::npos && c.b.find("d'Alembert") == std::string::npos) continue;
     CHECK_FALSE(c.shares_code);
     CHECK(c.max_relative_difference < 1e-45);
-    ++against_judge;
+    ++against_oracle;
   }
-  CHECK(against_judge >= 6);  // three formulations in two approaches
+  CHECK(against_oracle >= 6);  // three formulations in two approaches
 }
 
 TEST_CASE("P7: the reaction along the run is (2.111), and the power balance holds") {

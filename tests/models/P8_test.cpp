@@ -14,12 +14,12 @@ TEST_CASE("P8: theta remains, with (2.150); both constraint forces are those of 
   const Sum m = p8("m"), g = p8("g"), R = p8("R"), al = p8("alpha"), th = p8("theta"), dth = p8("theta_dot"),
             ddth = p8("theta_ddot");
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
-    const reading::ReadingForm form = p8.form(approach);
+    const reading::DisplayForm form = p8.form(approach);
     CHECK(same(p8.motion(form, "theta"), m * (Sum(1) + square(al)) * square(R) * ddth + m * g * al * R));
     CHECK(p8.equation(form, "theta").multipliers.empty());
   }
   // -F.a_r = m g alpha theta and -F.a_nu = m g of the weight, as in (2.145) with its indices put right
-  const reading::ReadingForm one = p8.form(system::Approach::one);
+  const reading::DisplayForm one = p8.form(system::Approach::one);
   REQUIRE(one.reactions.size() == 2);
   CHECK(one.reactions[0].label == "radius");
   CHECK(same(*one.reactions[0].value, m * square(al) * R * th * ddth - m * R * square(dth) + m * g * al * th));

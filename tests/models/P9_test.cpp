@@ -15,7 +15,7 @@ TEST_CASE("P9: the normal force is (2.171), h is conserved, and with it the moti
             dth = p9("theta_dot");
   const Sum h = m * square(c * u) * dth;
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
-    const reading::ReadingForm form = p9.form(approach);
+    const reading::DisplayForm form = p9.form(approach);
     CHECK(same(p9.equation(form, "theta").momentum, h));
     CHECK(p9.equation(form, "theta").slope.is_zero());
     CHECK(p9.equation(form, "theta").force.is_zero());
@@ -23,7 +23,7 @@ TEST_CASE("P9: the normal force is (2.171), h is conserved, and with it the moti
         m * (square(u) + square(c)) * ddu + m * u * square(du) - over(square(h), m * u * u * u * square(c)) + m * g * u;
     CHECK(same(p9.motion(form, "u"), single));
   }
-  const reading::ReadingForm one = p9.form(system::Approach::one), two = p9.form(system::Approach::two);
+  const reading::DisplayForm one = p9.form(system::Approach::one), two = p9.form(system::Approach::two);
   REQUIRE(one.reactions.size() == 1);
   CHECK(same(*one.reactions[0].value, -(m * c * square(du) + m * square(u) * c * square(dth) + m * g * c)));
   const Sum energy = half(m) * (square(u) + square(c)) * square(du) + half(over(square(h), m * square(u * c))) +

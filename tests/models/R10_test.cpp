@@ -42,7 +42,7 @@ double momentum(const Finished& run, std::size_t i) {
 
 TEST_CASE("R10: T is (7.111), U (7.112), and the moment along E3 has the components G, 0, G cos(theta)") {
   Read r10("R10_lagrange_top");
-  const reading::ReadingForm form = r10.form(system::Approach::two);
+  const reading::DisplayForm form = r10.form(system::Approach::two);
   const Sum n = r10("theta"), psi = r10("psi_dot"), theta = r10("theta_dot"), phi = r10("phi_dot");
   const Sum across = r10("Jt") + r10("m") * square(r10("L"));
   CHECK(same(form.kinetic,

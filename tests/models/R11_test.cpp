@@ -37,7 +37,7 @@ TEST_CASE("R11: two paths to the same attitude with different work") {
   // In the model: with 1-2-3 angles the moment's components along n1, n2 vanish on the second way, and not along n3 at
   // n1 = n2 = 0.
   Read r11("R11_constant_moment");
-  const reading::ReadingForm form = r11.form(system::Approach::two);
+  const reading::DisplayForm form = r11.form(system::Approach::two);
   const Sum M0 = r11("M0"), n1 = r11("n1"), n2 = r11("n2");
   CHECK(r11.equation(form, "n1").force.is_zero());
   CHECK(same(r11.equation(form, "n2").force, M0 * sin(n1)));

@@ -15,7 +15,7 @@ TEST_CASE("R13: the constraint and the equations are (9.102), and it is not inte
   REQUIRE(m.constraints.size() == 1);
   CHECK(m.classification[0].integrable == mechanics::Integrable::no);
   const Sum phi = r13("phi"), dphi = r13("phi_dot"), mu = r13.s.symbol.multiplier(0);
-  const reading::ReadingForm form = r13.form(system::Approach::one);
+  const reading::DisplayForm form = r13.form(system::Approach::one);
   const auto multiplier = [&](const char* q) { return r13.equation(form, q).multipliers.at(0).slope; };
   CHECK(same(r13.motion(form, "x1"), r13("m") * r13("x1_ddot")));
   CHECK(same(r13.motion(form, "phi"), r13("J") * r13("phi_ddot")));

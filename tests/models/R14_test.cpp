@@ -11,7 +11,7 @@ using namespace eomgen::test;
 
 TEST_CASE("R14: T is (9.104), the motion (9.106), the constraint force and moment (9.107)") {
   Read r14("R14_sliding_cylinder");
-  const reading::ReadingForm one = r14.form(system::Approach::one);
+  const reading::DisplayForm one = r14.form(system::Approach::one);
   const Sum n = r14("theta"), psi = r14("psi"), dphi = r14("phi_dot"), dn = r14("theta_dot"), dpsi = r14("psi_dot");
   const Sum v2 = square(r14("x1_dot")) + square(r14("x2_dot")) + square(r14("x3_dot"));
   const Sum T = half(r14("m") * v2) +

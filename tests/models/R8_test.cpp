@@ -11,7 +11,7 @@ using namespace eomgen::test;
 
 TEST_CASE("R8: the constrained energies are (9.99)") {
   Read r8("R8_pendulum_body");
-  const reading::ReadingForm two = r8.form(system::Approach::two);
+  const reading::DisplayForm two = r8.form(system::Approach::two);
   const Sum phi = r8("phi_dot"), theta = r8("theta_dot"), n = r8("theta");
   CHECK(same(two.kinetic, half(r8("J1") * square(phi * cos(n)) + r8("J") * (square(theta) + square(phi * sin(n))))));
   CHECK(same(two.potential, -(r8("m") * r8("g") * r8("L") * cos(n))));

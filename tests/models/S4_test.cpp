@@ -59,7 +59,7 @@ TEST_CASE("S4: the six covariant basis vectors are (3.71), and (3.72) is dual to
 
 TEST_CASE("S4: the kinetic energy is (3.73), and there are six equations") {
   Read s4("S4_two_particles");
-  const reading::ReadingForm form = s4.form(system::Approach::two);
+  const reading::DisplayForm form = s4.form(system::Approach::two);
   CHECK(form.equations.size() == 6);
   const Sum m1 = s4("m1"), m2 = s4("m2"), r = s4("r1"), R = s4("R2"), cp = cos(s4("phi2")), sp = sin(s4("phi2"));
   const Sum c = cos(s4("theta2") - s4("theta1")), s = sin(s4("theta2") - s4("theta1"));

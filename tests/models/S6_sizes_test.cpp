@@ -8,7 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 #include "support/folders.hpp"
 #include "support/simulation.hpp"
 #include "verify/certificate.hpp"
@@ -61,13 +61,13 @@ TEST_CASE("S6: chains of 1 to 20 links in absolute and relative angles agree wit
       mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
       verify::Subjects subjects;
       // Nothing is eliminated, so the approaches are identical.
-      for (const derive::RouteEntry& route : derive::routes()) {
-        if (auto system = route.derive(mechanics, system::Approach::two))
+      for (const derive::FormulationEntry& formulation : derive::formulations()) {
+        if (auto system = formulation.derive(mechanics, system::Approach::two))
           subjects.systems.push_back(std::move(*system));
       }
-      for (const char* route : {"lagrange", "recursive", "articulated"}) {
-        const auto of_route = [&](const system::EquationSystem& s) { return s.route == route; };
-        CHECK(std::any_of(subjects.systems.begin(), subjects.systems.end(), of_route));
+      for (const char* formulation : {"lagrange", "recursive", "articulated"}) {
+        const auto of_formulation = [&](const system::EquationSystem& s) { return s.formulation == formulation; };
+        CHECK(std::any_of(subjects.systems.begin(), subjects.systems.end(), of_formulation));
       }
       const bool large = n > 8;  // the cost of the oracle grows with n^3 or more
       const verify::Certificate c = verify::certify(mechanics, subjects, {large ? 15 : 25, large ? 1u : 2u, 1});

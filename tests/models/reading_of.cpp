@@ -7,16 +7,16 @@ namespace eomgen::test {
 
 Read::Read(const std::string& name) : s(model::read_model(shipped(name))) {}
 
-reading::ReadingForm Read::form(system::Approach approach) { return reading::derive_reading(s.mechanics, approach); }
+reading::DisplayForm Read::form(system::Approach approach) { return reading::derive_reading(s.mechanics, approach); }
 
-const reading::Equation& Read::equation(const reading::ReadingForm& form, const std::string& coordinate) const {
+const reading::Equation& Read::equation(const reading::DisplayForm& form, const std::string& coordinate) const {
   for (const reading::Equation& e : form.equations) {
     if (s.model.coordinates[e.coordinate].name == coordinate) return e;
   }
   throw std::logic_error("no equation of " + coordinate);
 }
 
-Sum Read::motion(const reading::ReadingForm& form, const std::string& coordinate) const {
+Sum Read::motion(const reading::DisplayForm& form, const std::string& coordinate) const {
   const reading::Equation& e = equation(form, coordinate);
   return e.expanded - e.force;
 }

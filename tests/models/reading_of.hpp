@@ -12,10 +12,10 @@ struct Read {
   explicit Read(const std::string& name);
 
   Sum operator()(const std::string& name) { return s.symbol(name); }
-  reading::ReadingForm form(system::Approach approach);
-  const reading::Equation& equation(const reading::ReadingForm& form, const std::string& coordinate) const;
+  reading::DisplayForm form(system::Approach approach);
+  const reading::Equation& equation(const reading::DisplayForm& form, const std::string& coordinate) const;
   /// The equation as left-hand side minus applied forces, without multipliers.
-  Sum motion(const reading::ReadingForm& form, const std::string& coordinate) const;
+  Sum motion(const reading::DisplayForm& form, const std::string& coordinate) const;
 
   System s;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Routh's reduction of shipped models against the judge, against (2.172) and (2.173), and along a run.
+// Routh's reduction of shipped models against the oracle, against (2.172) and (2.173), and along a run.
 #include "reading/routh.hpp"
 
 #include <doctest/doctest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "conservation/conserved.hpp"
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "models/reading_of.hpp"
 #include "support/by_hand.hpp"
 #include "support/simulation.hpp"
@@ -26,7 +26,7 @@ reading::RouthForm reduced(mechanics::Mechanics& m) {
 
 verify::Certificate certificate(mechanics::Mechanics& m, const std::vector<symbolic::Ref>& residuals) {
   verify::Subjects subjects;
-  subjects.systems = verify::all_routes(m);
+  subjects.systems = verify::all_formulations(m);
   subjects.reading.push_back({"Routh's reduction", residuals});
   return verify::certify(m, subjects, {50, 5, 1, {}});
 }
@@ -58,7 +58,7 @@ TEST_CASE("routh: of P9 with h is the single equation (2.172), with the energy (
                                half(m * g) * (square(u) - square(c))));
 }
 
-TEST_CASE("routh: the reduced equations vanish for the motion that the judge alone gives") {
+TEST_CASE("routh: the reduced equations vanish for the motion that the oracle alone gives") {
   for (const char* name : {"P9_paraboloid", "P1_spherical_pendulum", "P1_spherical_pendulum_varying",
                            "P14_kepler_spherical", "P14_kepler_parabolic", "S5_spherical_double_pendulum"}) {
     INFO(name);

@@ -12,7 +12,7 @@
 #include <regex>
 #include <set>
 
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "print/formulas.hpp"
 #include "print/render.hpp"
 #include "support/folders.hpp"
@@ -181,7 +181,7 @@ TEST_CASE("named parts: with their definitions the equations are the equations o
     if (!is_plain(model)) continue;
     INFO(model.id);
     mechanics::Mechanics m = mechanics::build_mechanics(model);
-    const reading::ReadingForm form = reading::derive_reading(m, system::Approach::two);
+    const reading::DisplayForm form = reading::derive_reading(m, system::Approach::two);
     std::vector<Statement> statements;
     print::add_equations_by_parts(m, form, statements);
     if (std::any_of(statements.begin(), statements.end(), [](const Statement& s) { return !s.left_out.empty(); }))
@@ -236,7 +236,7 @@ TEST_CASE("named parts: long forms use them, also for the constraint forces of a
   const model::Model model = model::read_model(test::source_folder() + "/models/R4_turntable.toml");
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
-    const reading::ReadingForm form = reading::derive_reading(m, approach);
+    const reading::DisplayForm form = reading::derive_reading(m, approach);
     REQUIRE(form.by_parts);
     std::vector<Statement> statements;
     print::add_statements(m, form, {"equations"}, statements);
@@ -261,7 +261,7 @@ TEST_CASE("named parts: equations and constraints use the same letters for const
     CAPTURE(model);
     const mechanics::Mechanics m =
         mechanics::build_mechanics(model::read_model(test::source_folder() + "/models/" + model + ".toml"));
-    const reading::ReadingForm form = reading::derive_reading(m, system::Approach::two);
+    const reading::DisplayForm form = reading::derive_reading(m, system::Approach::two);
     REQUIRE(form.by_parts);
     const std::vector<print::Item> constraints = print::render(m, form, {"constraints"});
     for (const print::Item& item : print::render(m, form, {"equations"})) {
@@ -311,7 +311,7 @@ spring = { between = ["A", "G"], stiffness = "k" }
 )toml";
   const model::Model model = model::read_model_text(text, "forces.toml");
   mechanics::Mechanics m = mechanics::build_mechanics(model);
-  const reading::ReadingForm form = reading::derive_reading(m, system::Approach::two);
+  const reading::DisplayForm form = reading::derive_reading(m, system::Approach::two);
   std::vector<Statement> statements;
   print::add_equations_by_parts(m, form, statements);
   std::set<std::string> roles;

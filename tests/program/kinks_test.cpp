@@ -27,7 +27,7 @@ system::EquationSystem one_mass(Make make) {
   system::EquationSystem s;
   s.dag = std::make_shared<symbolic::Dag>();
   symbolic::Dag& dag = *s.dag;
-  s.route = "test";
+  s.formulation = "test";
   s.free = {0};
   s.M = {dag.one()};
   const Ref x = dag.symbol({SymbolKind::coordinate, 0, 0}), v = dag.symbol({SymbolKind::coordinate, 0, 1});

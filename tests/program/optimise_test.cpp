@@ -38,7 +38,7 @@ symbolic::Ref random_expression(Maker& k, std::uint64_t seed) {
   refs.push_back(k.number(-3, 2).ref);
   refs.push_back(k.number(2).ref);
   for (std::uint64_t step = 0; step < 40; ++step) {
-    const std::uint64_t r = program::scramble(seed, step);
+    const std::uint64_t r = program::hash_mix(seed, step);
     const symbolic::Ref a = refs[(r >> 8) % refs.size()], b = refs[(r >> 24) % refs.size()];
     switch (r % 11) {
       case 0:

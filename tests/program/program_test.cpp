@@ -89,18 +89,18 @@ TEST_CASE("program: fixed parameters become numbers and fold") {
 
 TEST_CASE("program: the cheapest formulation is selected, the first in a tie, and expensive ones are not optimised") {
   std::vector<system::EquationSystem> candidates{chain(2), double_pendulum()};
-  candidates[0].route = "first";
-  candidates[1].route = "second";
+  candidates[0].formulation = "first";
+  candidates[1].formulation = "second";
   auto built = program::build_program(candidates, {});
-  CHECK(built.route == "second");
+  CHECK(built.formulation == "second");
   REQUIRE(built.tried.size() == 2);
-  CHECK(built.tried[0].route == "first");
+  CHECK(built.tried[0].formulation == "first");
   CHECK(built.tried[1].operations.cost() <= built.tried[0].operations.cost());
   CHECK(built.functions[0].operations.cost() == built.tried[1].operations.cost());
   candidates = {double_pendulum(), double_pendulum()};
-  candidates[0].route = "first";
-  candidates[1].route = "second";
-  CHECK(program::build_program(candidates, {}).route == "first");
+  candidates[0].formulation = "first";
+  candidates[1].formulation = "second";
+  CHECK(program::build_program(candidates, {}).formulation == "first");
 }
 
 TEST_CASE("program: unknown functions and outputs are rejected by name") {

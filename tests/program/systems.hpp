@@ -39,7 +39,7 @@ struct Maker {
 inline system::EquationSystem lagrange(const Maker& k, std::uint32_t n, Scalar T, Scalar V, std::vector<Scalar> Q) {
   system::EquationSystem system;
   system.dag = k.dag;
-  system.route = "lagrange";
+  system.formulation = "lagrange";
   for (std::uint32_t i = 0; i < n; ++i) {
     system.free.push_back(i);
     const Scalar momentum = k.d(T, {SymbolKind::coordinate, i, 1});
@@ -104,7 +104,7 @@ inline system::EquationSystem chain(std::uint32_t n) {
   const Scalar g = k.p(2 * n);
   system::EquationSystem system;
   system.dag = k.dag;
-  system.route = "jacobian";
+  system.formulation = "jacobian";
   system.M.assign(n * n, dag.zero());
   system.f.assign(n, dag.zero());
   for (std::uint32_t i = 0; i < n; ++i) system.free.push_back(i);

@@ -83,7 +83,7 @@ system::EquationSystem one(const std::function<Scalar(const Maker&)>& g) {
   const Maker k;
   system::EquationSystem system;
   system.dag = k.dag;
-  system.route = "lagrange";
+  system.formulation = "lagrange";
   system.free = {0};
   system.M = {k.dag->one()};
   system.f = {g(k).ref};

@@ -14,7 +14,7 @@ namespace test_systems {
 /// A value in (0.3, 1.3) for a symbol.
 inline symbolic::Rational value_at(const symbolic::Symbol& s, std::uint64_t point) {
   const std::uint64_t key = (static_cast<std::uint64_t>(s.kind) << 40) + (std::uint64_t{s.order} << 32) + s.index;
-  return symbolic::Rational(static_cast<long>(program::scramble(key, point + 77) % 1009) + 300) / 1009;
+  return symbolic::Rational(static_cast<long>(program::hash_mix(key, point + 77) % 1009) + 300) / 1009;
 }
 
 /// The same point as arguments of a Function.

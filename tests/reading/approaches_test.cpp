@@ -8,13 +8,13 @@
 using namespace eomgen;
 using namespace eomgen::test;
 using reading::Equation;
-using reading::ReadingForm;
+using reading::DisplayForm;
 
 namespace {
 
-ReadingForm derive(System& s, system::Approach approach) { return reading::derive_reading(s.mechanics, approach); }
+DisplayForm derive(System& s, system::Approach approach) { return reading::derive_reading(s.mechanics, approach); }
 
-const Equation& of(const ReadingForm& form, System& s, const std::string& coordinate) {
+const Equation& of(const DisplayForm& form, System& s, const std::string& coordinate) {
   for (const Equation& equation : form.equations) {
     if (s.model.coordinates[equation.coordinate].name == coordinate) return equation;
   }
@@ -36,7 +36,7 @@ TEST_CASE("P7: approach I gives (2.111), approach II gives (2.109)") {
   const Sum m = v("m"), g = v("g"), D = v("D"), d = v("d"), sn = sin(v("phi")), cs = cos(v("phi"));
   const Sum dphi = v("phi_dot"), dtheta = v("theta_dot");
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
-    const ReadingForm form = derive(s, approach);
+    const DisplayForm form = derive(s, approach);
     const Equation& theta = of(form, s, "theta");
     CHECK(theta.momentum == m * d * d * sn * sn * dtheta);
     CHECK(theta.slope.is_zero());
@@ -48,7 +48,7 @@ TEST_CASE("P7: approach I gives (2.111), approach II gives (2.109)") {
     CHECK(theta.of_motion);
     CHECK(phi.multipliers.empty());
   }
-  const ReadingForm one = derive(s, system::Approach::one);
+  const DisplayForm one = derive(s, system::Approach::one);
   CHECK(one.equations.size() == 3);
   CHECK(derive(s, system::Approach::two).equations.size() == 2);
   const Equation& R = of(one, s, "R");
@@ -67,7 +67,7 @@ TEST_CASE("P7: energies are (2.105) and (2.106)") {
   System s(model::read_model(shipped("P7_moving_sphere")));
   const auto v = [&](const char* name) { return s.symbol(name); };
   const Sum sn = sin(v("phi"));
-  const ReadingForm one = derive(s, system::Approach::one), two = derive(s, system::Approach::two);
+  const DisplayForm one = derive(s, system::Approach::one), two = derive(s, system::Approach::two);
   CHECK(same(one.kinetic, half(v("m")) * (square(v("R_dot")) + square(v("R") * sn * v("theta_dot")) +
                                           square(v("R") * v("phi_dot")))));
   CHECK(same(one.potential, v("m") * v("g") * v("R") * cos(v("phi"))));
@@ -81,7 +81,7 @@ TEST_CASE("constrained kinetic energies: T2 + T1 + T0 is T, and T1, T0 come from
                            "P2_planar_pendulum_varying", "S5_double_pendulum", "S1_two_masses", "cart_pendulum"}) {
     CAPTURE(name);
     System s(model::read_model(shipped(name)));
-    const ReadingForm form = derive(s, system::Approach::two);
+    const DisplayForm form = derive(s, system::Approach::two);
     REQUIRE(form.by_degree);
     const auto& [T2, T1, T0] = *form.by_degree;
     CHECK(T2 + T1 + T0 == form.kinetic);
@@ -100,7 +100,7 @@ TEST_CASE("approach I and approach II give the same motion") {
         "P7_moving_sphere", "S5_double_pendulum", "S5_spherical_double_pendulum", "S5_double_pendulum_cartesian"}) {
     CAPTURE(name);
     System s(model::read_model(shipped(name)));
-    const ReadingForm one = derive(s, system::Approach::one), two = derive(s, system::Approach::two);
+    const DisplayForm one = derive(s, system::Approach::one), two = derive(s, system::Approach::two);
     for (const Equation& equation : two.equations) {
       const Equation& other = of(one, s, s.model.coordinates[equation.coordinate].name);
       CHECK(other.of_motion);
@@ -112,7 +112,7 @@ TEST_CASE("approach I and approach II give the same motion") {
 TEST_CASE("P1: the tension of the rod is -lambda") {
   System s(model::read_model(shipped("P1_spherical_pendulum")));
   const auto v = [&](const char* name) { return s.symbol(name); };
-  const ReadingForm form = derive(s, system::Approach::one);
+  const DisplayForm form = derive(s, system::Approach::one);
   REQUIRE(form.reactions.size() == 1);
   // along the rod: weight component towards the centre and centripetal force
   const Sum tension = v("m") * v("L") * (square(v("phi_dot")) + square(sin(v("phi")) * v("theta_dot"))) -
@@ -123,7 +123,7 @@ TEST_CASE("P1: the tension of the rod is -lambda") {
 TEST_CASE("P2: both constraint forces of a pendulum of varying length") {
   System s(model::read_model(shipped("P2_planar_pendulum_varying")));
   const auto v = [&](const char* name) { return s.symbol(name); };
-  const ReadingForm form = derive(s, system::Approach::one);
+  const DisplayForm form = derive(s, system::Approach::one);
   REQUIRE(form.reactions.size() == 2);
   CHECK(same(*form.reactions[0].value,
              v("m") * v("L_ddot") - v("m") * v("L") * square(v("theta_dot")) - v("m") * v("g") * cos(v("theta"))));
@@ -135,7 +135,7 @@ TEST_CASE("S5: the planar double pendulum and the forces along its rods") {
   const auto v = [&](const char* name) { return s.symbol(name); };
   const Sum m1 = v("m1"), m2 = v("m2"), L1 = v("L1"), L2 = v("L2"), g = v("g"), t1 = v("theta1"), t2 = v("theta2");
   const Sum w1 = square(v("theta1_dot")), w2 = square(v("theta2_dot"));
-  const ReadingForm form = derive(s, system::Approach::one);
+  const DisplayForm form = derive(s, system::Approach::one);
   CHECK(same(residual(s, of(form, s, "theta1")),
              (m1 + m2) * L1 * L1 * v("theta1_ddot") +
                  m2 * L1 * L2 * (cos(t1 - t2) * v("theta2_ddot") + sin(t1 - t2) * w2) + (m1 + m2) * g * L1 * sin(t1)));
@@ -151,7 +151,7 @@ TEST_CASE("S5: the planar double pendulum and the forces along its rods") {
 TEST_CASE("S5 in Cartesian coordinates: constraints keep their multipliers and two time derivatives") {
   System s(model::read_model(shipped("S5_double_pendulum_cartesian")));
   const auto v = [&](const char* name) { return s.symbol(name); };
-  const ReadingForm form = derive(s, system::Approach::two);
+  const DisplayForm form = derive(s, system::Approach::two);
   REQUIRE(form.constraints.size() == 2);
   CHECK_FALSE(form.constraints[0].fixes);
   CHECK(same(form.constraints[0].rate, v("x1") * v("x1_dot") + v("y1") * v("y1_dot")));
@@ -164,7 +164,7 @@ TEST_CASE("S5 in Cartesian coordinates: constraints keep their multipliers and t
 TEST_CASE("pure energies: cart and pendulum with an input") {
   System s(model::read_model(shipped("cart_pendulum")));
   const auto v = [&](const char* name) { return s.symbol(name); };
-  const ReadingForm form = derive(s, system::Approach::two);
+  const DisplayForm form = derive(s, system::Approach::two);
   CHECK(same(residual(s, of(form, s, "x")),
              (v("M") + v("m")) * v("x_ddot") +
                  v("m") * v("l") * (cos(v("theta")) * v("theta_ddot") - sin(v("theta")) * square(v("theta_dot"))) -
@@ -191,7 +191,7 @@ force = "-c*x_dot*E1"
 )",
                                   "rocket"));
   const auto v = [&](const char* name) { return s.symbol(name); };
-  const ReadingForm form = derive(s, system::Approach::one);
+  const DisplayForm form = derive(s, system::Approach::one);
   CHECK(same(residual(s, of(form, s, "x")), v("m") * v("x_ddot") + v("m_dot") * v("x_dot") + v("c") * v("x_dot")));
 }
 
@@ -218,7 +218,7 @@ holonomic = "y - 3*x"
 )",
                                   "chain of constraints"));
   const auto v = [&](const char* name) { return s.symbol(name); };
-  const ReadingForm form = derive(s, system::Approach::one);
+  const DisplayForm form = derive(s, system::Approach::one);
   REQUIRE(form.reactions.size() == 2);
   CHECK(same(*form.reactions[1].value, Sum(3) * v("m") * v("d_ddot")));
   CHECK(same(*form.reactions[0].value, Sum(10) * v("m") * v("d_ddot")));  // m x_ddot = lambda1 - 3 lambda2

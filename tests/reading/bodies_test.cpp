@@ -49,7 +49,7 @@ bool is_canonical(const Sum& sum) {
 TEST_CASE(
     "a rolling disk in Euler parameters: constraint and time derivative are canonical, and factors S/S are gone") {
   System s(model::read_model_text(rolling_disk, "disk"));
-  const reading::ReadingForm form = reading::derive_reading(s.mechanics, system::Approach::two);
+  const reading::DisplayForm form = reading::derive_reading(s.mechanics, system::Approach::two);
   std::size_t seen = 0;
   for (const reading::ReadConstraint& c : form.constraints) {
     if (c.holonomic) continue;
@@ -80,7 +80,7 @@ TEST_CASE("a budget ends a calculation that exceeds it, also when nested; the ou
     bool over = false;
     try {
       const work::Budget budget(inner);
-      work::spend(operations);
+      work::consume_budget(operations);
     } catch (const work::OverBudget&) {
       over = true;
     }
@@ -92,8 +92,8 @@ TEST_CASE("a budget ends a calculation that exceeds it, also when nested; the ou
   const work::Budget around(100);
   {
     const work::Budget budget(60);
-    work::spend(50);
+    work::consume_budget(50);
   }
-  CHECK_NOTHROW(work::spend(50));
-  CHECK_THROWS_AS(work::spend(1), work::OverBudget);
+  CHECK_NOTHROW(work::consume_budget(50));
+  CHECK_THROWS_AS(work::consume_budget(1), work::OverBudget);
 }

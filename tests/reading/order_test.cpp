@@ -14,7 +14,7 @@ using namespace eomgen::test;
 namespace {
 
 // All results of a derivation, term by term in canonical order, as an expression of a fresh Dag.
-std::size_t nodes_of(const reading::ReadingForm& form) {
+std::size_t nodes_of(const reading::DisplayForm& form) {
   symbolic::Dag dag;
   std::size_t signature = 0;
   for (const reading::Equation& equation : form.equations) {

@@ -31,7 +31,7 @@ std::string relative_chain(int n) {
 TEST_CASE("a chain of 15 relative angles is displayed by parts, with every coordinate, in seconds") {
   System s(model::read_model_text(relative_chain(15), "chain"));
   const auto start = std::chrono::steady_clock::now();
-  const reading::ReadingForm form = reading::derive_reading(s.mechanics, system::Approach::one);
+  const reading::DisplayForm form = reading::derive_reading(s.mechanics, system::Approach::one);
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
   CHECK(form.by_parts);
   CHECK(form.equations.size() == 15);
@@ -41,10 +41,10 @@ TEST_CASE("a chain of 15 relative angles is displayed by parts, with every coord
 TEST_CASE("a form too long in one approach is not tried in the other if both have the same equations") {
   System s(model::read_model_text(relative_chain(15), "chain"));
   reading::Forms forms(s.mechanics);
-  const reading::ReadingForm& one = forms(system::Approach::one);
+  const reading::DisplayForm& one = forms(system::Approach::one);
   CHECK(one.by_parts);
   const work::Budget nothing(0);
-  const reading::ReadingForm& two = forms(system::Approach::two);
+  const reading::DisplayForm& two = forms(system::Approach::two);
   CHECK(two.by_parts);
   CHECK(two.approach == system::Approach::two);
   CHECK(two.equations.size() == 15);
@@ -54,7 +54,7 @@ TEST_CASE("a form too long in one approach is not tried in the other if both hav
 
 TEST_CASE("a chain of 4 relative angles is expanded, with residuals on the Dag") {
   System s(model::read_model_text(relative_chain(4), "chain"));
-  const reading::ReadingForm form = reading::derive_reading(s.mechanics, system::Approach::one);
+  const reading::DisplayForm form = reading::derive_reading(s.mechanics, system::Approach::one);
   CHECK_FALSE(form.by_parts);
   CHECK(reading::residuals_on_dag(form, s.mechanics).size() == 4);
 }

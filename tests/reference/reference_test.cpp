@@ -82,7 +82,7 @@ TEST_CASE("reference: a run that cannot continue reports the time and the reason
       k;  // qddot = -sqrt(q) from rest at 1 meets 0, where the root is singular, at B(2/3, 1/2)/sqrt(3) = 1.49371
   system::EquationSystem system;
   system.dag = k.dag;
-  system.route = "lagrange";
+  system.formulation = "lagrange";
   system.free = {0};
   system.M = {k.dag->one()};
   system.f = {k.dag->neg(k.dag->call(Op::sqrt, k.q(0).ref))};

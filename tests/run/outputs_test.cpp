@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "conservation/conserved.hpp"
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "run/scene.hpp"
 
 using namespace eomgen;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 #include "support/particles.hpp"
 
 using namespace eomgen;

@@ -12,19 +12,19 @@ refuse() {
 
 # Words like --option, one a line, sorted.
 options() { grep -oE -- '(^|[ ,`])(-o|--[a-z][a-z-]*)' | grep -oE -- '-.*' | LC_ALL=C sort -u; }
-chapter() { awk -v title="## $1" '$0 == title { on = 1; next } /^## / { on = 0 } on' "$document"; }
+section() { awk -v title="## $1" '$0 == title { on = 1; next } /^## / { on = 0 } on' "$document"; }
 
 common=$(awk '/^## / { exit } 1' "$document" | options)
 mapfile -t commands < <("$program" --help | awk '/^Subcommands:/ { on = 1; next } on && /^  [a-z]/ { print $1 }')
 ((${#commands[@]} >= 7)) || refuse "the program shows ${#commands[@]} commands only"
 for command in "${commands[@]}"; do
-  if [[ -z $(chapter "$command") ]]; then
-    refuse "$command has no chapter"
+  if [[ -z $(section "$command") ]]; then
+    refuse "$command has no section"
     continue
   fi
   # In the help, only flags at the beginning of a line are options; the rest is description.
   there=$("$program" "$command" --help | grep -E '^ +-' | sed -E 's/^ +//; s/(  ).*//' | options)
-  told=$(printf '%s\n%s\n' "$common" "$(chapter "$command" | grep -E '^\| `' | awk -F'|' '{ print $2 }' | options)" | LC_ALL=C sort -u)
+  told=$(printf '%s\n%s\n' "$common" "$(section "$command" | grep -E '^\| `' | awk -F'|' '{ print $2 }' | options)" | LC_ALL=C sort -u)
   while read -r option; do
     [[ -z $option ]] || refuse "$command: the document does not tell of $option"
   done < <(LC_ALL=C comm -23 <(echo "$there") <(echo "$told"))

@@ -59,12 +59,12 @@ struct Oscillator {
 
 TEST_CASE("stress: solvers with error control pass an easy motion, with their true error") {
   Oscillator o;
-  const std::vector<stress::Row> rows = stress::judge({.name = "as it is"}, o.scene, o.request, o.why);
+  const std::vector<stress::Row> rows = stress::assess({.name = "as it is"}, o.scene, o.request, o.why);
   CHECK(o.why.empty());
   REQUIRE(rows.size() == 4);
   for (const stress::Row& row : rows) {
     CAPTURE(row.solver);
-    CHECK(row.verdict == (row.solver == "rk4" ? stress::Verdict::reported : stress::Verdict::kept));
+    CHECK(row.verdict == (row.solver == "rk4" ? stress::Verdict::reported : stress::Verdict::pass));
     CHECK(row.outcome == "done");
     CHECK(row.error < 1e-7);
     CHECK(row.condition >= 1);
@@ -77,9 +77,9 @@ TEST_CASE("stress: a wrong result with a small estimate is undetected") {
   o.request.progress = [](const std::string&) {
     rate = 1.001;
   };  // from here on the runs, no longer their reference solution
-  for (const stress::Row& row : stress::judge({.name = "another motion"}, o.scene, o.request, o.why)) {
+  for (const stress::Row& row : stress::assess({.name = "another motion"}, o.scene, o.request, o.why)) {
     CAPTURE(row.solver);
-    CHECK(row.verdict == stress::Verdict::unreported);
+    CHECK(row.verdict == stress::Verdict::undetected);
     CHECK(row.error > 1e-4);
     CHECK(row.estimate < 1e-5);
   }
@@ -91,11 +91,11 @@ TEST_CASE(
   Oscillator o;
   const stress::Case test{.name = "p = nan", .without_value = true};
   const auto all = [&](stress::Verdict verdict) {
-    const std::vector<stress::Row> rows = stress::judge(test, o.scene, o.request, o.why);
+    const std::vector<stress::Row> rows = stress::assess(test, o.scene, o.request, o.why);
     CHECK(rows.size() == 4);
     for (const stress::Row& row : rows) CHECK(row.verdict == verdict);
   };
-  all(stress::Verdict::unreported);
+  all(stress::Verdict::undetected);
   o.scene.parameters = {std::numeric_limits<double>::infinity()};  // the right-hand side does not check parameters
   all(stress::Verdict::reported);
   o.scene.parameters = {1};
@@ -111,15 +111,15 @@ TEST_CASE(
   o.request.solvers = {"dopri5"};
   o.scene.t1 = 3000;
   o.request.steps_limit = 2000;
-  const std::vector<stress::Row> rows = stress::judge({.name = "long"}, o.scene, o.request, o.why);
+  const std::vector<stress::Row> rows = stress::assess({.name = "long"}, o.scene, o.request, o.why);
   REQUIRE(rows.size() == 1);
   CHECK(rows[0].note.find("until t = ") == 0);
-  CHECK(rows[0].verdict != stress::Verdict::unreported);
+  CHECK(rows[0].verdict != stress::Verdict::undetected);
   o.scene.t1 = 300;
   o.scene.rtol = o.scene.atol =
       1e-15;  // dop853 and radau5 reach the end with their tolerances, dopri5 does not with this one
   o.request.steps_limit = 50000;
-  const std::vector<stress::Row> slower = stress::judge({.name = "long"}, o.scene, o.request, o.why);
+  const std::vector<stress::Row> slower = stress::assess({.name = "long"}, o.scene, o.request, o.why);
   REQUIRE(slower.size() == 1);
   CHECK(slower[0].outcome == "max_steps");
   CHECK(slower[0].verdict == stress::Verdict::reported);
@@ -130,7 +130,7 @@ TEST_CASE("stress: fixed steps that damp unresolved oscillations are detected by
   o.request.solvers = {"rk4"};
   o.request.steps_limit = 1000000;
   rate = 1000;  // 2000 steps: of 1.5 each in the phase, 9 % of the amplitude lost in one
-  const std::vector<stress::Row> rows = stress::judge({.name = "fast"}, o.scene, o.request, o.why);
+  const std::vector<stress::Row> rows = stress::assess({.name = "fast"}, o.scene, o.request, o.why);
   REQUIRE(rows.size() == 1);
   CHECK(rows[0].error > 0.5);
   CHECK(rows[0].estimate > 0.1);
@@ -141,7 +141,7 @@ TEST_CASE("stress: fixed steps that damp unresolved oscillations are detected by
 TEST_CASE("stress: if the clock ends a tight run the case is skipped, and this is reported") {
   Oscillator o;
   o.request.seconds_limit = -1;
-  CHECK(stress::judge({.name = "as it is"}, o.scene, o.request, o.why).empty());
+  CHECK(stress::assess({.name = "as it is"}, o.scene, o.request, o.why).empty());
   CHECK(o.why.find("time limit") != std::string::npos);
 }
 

@@ -122,10 +122,10 @@ Result verified(const std::string& text) {
   const model::Model model = model::read_model_text(text, "tree");
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   verify::Subjects subjects;
-  subjects.systems = verify::all_routes(m);
+  subjects.systems = verify::all_formulations(m);
   Result result{verify::certify(m, subjects, {40, 4, 1}), {}};
   for (const system::EquationSystem& s : subjects.systems) {
-    if (s.approach == system::Approach::two) result.systems.emplace(s.route, s);
+    if (s.approach == system::Approach::two) result.systems.emplace(s.formulation, s);
   }
   return result;
 }
@@ -147,31 +147,31 @@ double residual(const system::EquationSystem& s) {
   return worst;
 }
 
-void check_both_routes(const std::string& text) {
+void check_both_formulations(const std::string& text) {
   const Result result = verified(text);
   INFO(result.certificate.summary());
   CHECK(result.certificate.pass);
-  for (const char* route : {"recursive", "articulated"}) {
-    CAPTURE(route);
-    REQUIRE(result.systems.contains(route));
-    REQUIRE(result.systems.at(route).solution);
-    CHECK(residual(result.systems.at(route)) < 1e-11);  // sums of hundreds of terms in binary64
+  for (const char* formulation : {"recursive", "articulated"}) {
+    CAPTURE(formulation);
+    REQUIRE(result.systems.contains(formulation));
+    REQUIRE(result.systems.at(formulation).solution);
+    CHECK(residual(result.systems.at(formulation)) < 1e-11);  // sums of hundreds of terms in binary64
   }
 }
 
 }  // namespace
 
-TEST_CASE("body trees: pins, ball joints, sliders and particles on a shaken cart") { check_both_routes(mixed); }
+TEST_CASE("body trees: pins, ball joints, sliders and particles on a shaken cart") { check_both_formulations(mixed); }
 TEST_CASE("body trees: ball joints with springs in angles of both kinds") {
   for (const auto& [first, second] :
        std::map<std::string, std::string>{{"321", "123"}, {"313", "121"}, {"232", "213"}}) {
     const auto& shown = first;
     CAPTURE(shown);
-    check_both_routes(ball_joints(first, second));
+    check_both_formulations(ball_joints(first, second));
   }
 }
 TEST_CASE("body trees: a rotor in a driven ring, and a body on it by a Rodrigues vector") {
-  check_both_routes(gimbals);
+  check_both_formulations(gimbals);
 }
 
 TEST_CASE("body trees: a loop that is closed by a constraint keeps its multipliers") {
@@ -212,15 +212,15 @@ TEST_CASE("body trees: Euler parameters of a free body, and of one that hangs on
     const Result result = verified(text);
     INFO(result.certificate.summary());
     CHECK(result.certificate.pass);
-    for (const char* route : {"recursive", "articulated"}) {
-      REQUIRE(result.systems.contains(route));
-      CHECK(result.systems.at(route).solution);
+    for (const char* formulation : {"recursive", "articulated"}) {
+      REQUIRE(result.systems.contains(formulation));
+      CHECK(result.systems.at(formulation).solution);
     }
   }
 }
 
 TEST_CASE("body trees: bodies that rotate about their own centres of mass on one shaft") {
-  check_both_routes(parameters + body("shaft", "\"L/2*E3\"", "{ axis = \"E3\", angle = \"psi\" }") +
+  check_both_formulations(parameters + body("shaft", "\"L/2*E3\"", "{ axis = \"E3\", angle = \"psi\" }") +
                     body("A", "\"L*E3\"", "{ axis = \"shaft.e2\", angle = \"theta\" }", "shaft") +
                     body("payload", "\"L*E3 + b*A.e3 + b*payload.e1\"", "{ axis = \"A.e3\", angle = \"phi\" }", "A"));
 }

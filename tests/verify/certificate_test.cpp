@@ -28,13 +28,13 @@ const Comparison& find(const Certificate& c, const std::string& a, const std::st
 }
 
 /// The certificate of `model` with a fault in one formulation.
-Certificate with_fault(const model::Model& model, const std::string& route, system::Approach approach,
+Certificate with_fault(const model::Model& model, const std::string& formulation, system::Approach approach,
                        const std::function<void(symbolic::Dag&, EquationSystem&)>& fault) {
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   Subjects subjects;
-  subjects.systems = all_routes(m);
+  subjects.systems = all_formulations(m);
   const auto chosen = std::find_if(subjects.systems.begin(), subjects.systems.end(),
-                                   [&](const EquationSystem& s) { return s.route == route && s.approach == approach; });
+                                   [&](const EquationSystem& s) { return s.formulation == formulation && s.approach == approach; });
   REQUIRE(chosen != subjects.systems.end());
   fault(*m.dag, *chosen);
   return certify(m, subjects, {50, 3, 1});
@@ -63,8 +63,8 @@ TEST_CASE("certificate: P7 by every formulation and both approaches agrees with 
   const Certificate c = verify::verify(m, {50, 20, 1});
   CHECK(c.points == 20);
   CHECK(c.pass);
-  for (const char* route : {"lagrange I", "lagrange II", "jacobian I", "jacobian II"}) {
-    const Comparison& row = find(c, route, "d'Alembert");
+  for (const char* formulation : {"lagrange I", "lagrange II", "jacobian I", "jacobian II"}) {
+    const Comparison& row = find(c, formulation, "d'Alembert");
     CHECK(!row.shares_code);
     CHECK(row.digits_agreed >= 45);
     CHECK(row.max_relative_difference < 1e-45);
@@ -169,7 +169,7 @@ namespace {
 const Certificate& certificate_with(Certificate& keep, const model::Model& model, double error) {
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   Subjects subjects;
-  subjects.systems = all_routes(m);
+  subjects.systems = all_formulations(m);
   // phi_ddot = theta_dot^2 sin cos + g/d sin - 2 d_dot/d phi_dot; theta_ddot = D/(m sin) - 2 (d_dot/d + phi_dot cot)
   // theta_dot
   const auto by_hand = [](auto t, const auto& x, const auto& p, const auto& sine, const auto& cosine, auto off) {
@@ -200,8 +200,8 @@ const Certificate& certificate_with(Certificate& keep, const model::Model& model
       sum = dag.add(sum, dag.mul(s.M[i * s.free.size() + k], m.qddot[s.free[k]]));
     residuals.push_back(error == 0 ? sum : dag.add(sum, dag.constant(cln::rational(Real(error)))));
   }
-  subjects.reading.push_back({"reading form II", residuals});
-  subjects.reading.push_back({"half a reading form", {residuals.front()}});  // without an equation for theta
+  subjects.reading.push_back({"display form II", residuals});
+  subjects.reading.push_back({"half a display form", {residuals.front()}});  // without an equation for theta
   return keep = certify(m, subjects, {50, 5, 1});
 }
 
@@ -211,25 +211,25 @@ TEST_CASE("certificate: program, compiled code and display form match the first 
   const model::Model model = moving_sphere();
   Certificate good, bad;
   certificate_with(good, model, 0);
-  CHECK(!find(good, "half a reading form", "d'Alembert").pass);
+  CHECK(!find(good, "half a display form", "d'Alembert").pass);
   for (const Comparison& row : good.comparisons)
-    if (row.a != "half a reading form") CHECK(row.pass);
+    if (row.a != "half a display form") CHECK(row.pass);
   CHECK(find(good, "program", "lagrange I").max_relative_difference < 1e-45);
   CHECK(find(good, "emitted code", "lagrange I").max_relative_difference > 0);
   CHECK(find(good, "emitted code", "lagrange I").max_relative_difference < 1e-14);
-  CHECK(find(good, "reading form II", "d'Alembert").digits_agreed >= 45);
+  CHECK(find(good, "display form II", "d'Alembert").digits_agreed >= 45);
   certificate_with(bad, model, 1e-9);
   CHECK(!bad.pass);
   for (const char* name : {"program", "emitted code"}) CHECK(!find(bad, name, "lagrange I").pass);
-  CHECK(!find(bad, "reading form II", "d'Alembert").pass);
+  CHECK(!find(bad, "display form II", "d'Alembert").pass);
 }
 
 TEST_CASE("certificate: code that reports undecided friction at every state fails") {
   const model::Model model = model::read_model(eomgen::test::source_folder() + "/models/rough_incline_puck.toml");
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   Subjects subjects;
-  subjects.systems = all_routes(m);
-  const std::string first = subjects.systems.front().route + " " + system::name(subjects.systems.front().approach);
+  subjects.systems = all_formulations(m);
+  const std::string first = subjects.systems.front().formulation + " " + system::name(subjects.systems.front().approach);
   CHECK(certify(m, subjects, {50, 3, 1}).pass);
   subjects.programs.push_back({"program", [](const Real&, const std::vector<Real>&, const std::vector<Real>&,
                                              const std::vector<Real>&, int) { return std::vector<Real>{}; }});

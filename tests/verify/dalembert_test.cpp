@@ -13,7 +13,7 @@
 
 using namespace eomgen;
 using namespace eomgen::verify::test;
-using verify::Judge;
+using verify::Oracle;
 using verify::Real;
 using verify::State;
 
@@ -31,18 +31,18 @@ struct Dice {
   }
 };
 
-State random_state(const Judge& judge, Dice& dice) {
+State random_state(const Oracle& oracle, Dice& dice) {
   State s;
   s.t = dice(0, 3);
-  for (std::size_t i = 0; i < judge.model().coordinates.size(); ++i) {
+  for (std::size_t i = 0; i < oracle.model().coordinates.size(); ++i) {
     s.q.push_back(dice(1, 2));
     s.qdot.push_back(dice(-2, 2));
     s.qddot.push_back(dice(-3, 3));
   }
   std::vector<Real> given;
-  for (std::size_t i = 0; i < judge.model().parameters.size(); ++i) given.push_back(dice(1, 3));
-  s.parameters = judge.parameters(given);
-  for (std::size_t i = 0; i < judge.model().inputs.size(); ++i) s.inputs.push_back(dice(-2, 2));
+  for (std::size_t i = 0; i < oracle.model().parameters.size(); ++i) given.push_back(dice(1, 3));
+  s.parameters = oracle.parameters(given);
+  for (std::size_t i = 0; i < oracle.model().inputs.size(); ++i) s.inputs.push_back(dice(-2, 2));
   return s;
 }
 
@@ -58,17 +58,17 @@ void check_rows(const std::vector<verify::Residual>& rows, const std::vector<Rea
 
 TEST_CASE("oracle: the particle on a moving sphere obeys (2.109) in spherical coordinates") {
   const model::Model m = moving_sphere();
-  const Judge judge(m, digits);
+  const Oracle oracle(m, digits);
   Dice dice;
   for (int point = 0; point < 5; ++point) {
-    const State s = random_state(judge, dice);
+    const State s = random_state(oracle, dice);
     const Real lambda = dice(-4, 4);
     const Real &mass = s.parameters[0], &g = s.parameters[1], &D = s.parameters[2];
     const Real &R = s.q[0], &Rd = s.qdot[0], &Rdd = s.qddot[0], &pd = s.qdot[1], &pdd = s.qddot[1], &td = s.qdot[2],
                &tdd = s.qddot[2];
     const Real sp = cln::sin(s.q[1]), cp = cln::cos(s.q[1]);
     check_rows(
-        judge.dalembert(s, {lambda}),
+        oracle.dalembert(s, {lambda}),
         {mass * (Rdd - R * pd * pd - R * sp * sp * td * td) + mass * g * cp - lambda,
          mass * (R * R * pdd + 2 * R * Rd * pd - R * R * sp * cp * td * td) - mass * g * R * sp,
          mass * (R * R * sp * sp * tdd + 2 * R * Rd * sp * sp * td + 2 * R * R * sp * cp * pd * td) - D * R * R * sp});
@@ -77,11 +77,11 @@ TEST_CASE("oracle: the particle on a moving sphere obeys (2.109) in spherical co
 
 TEST_CASE("oracle: constraint rates along the path are those of R - d(t)") {
   const model::Model m = moving_sphere();
-  const Judge judge(m, digits);
+  const Oracle oracle(m, digits);
   Dice dice;
-  const State s = random_state(judge, dice);
+  const State s = random_state(oracle, dice);
   const Real &d0 = s.parameters[3], &a = s.parameters[4], &w = s.parameters[5];
-  const verify::ConstraintValues c = judge.constraint_values(s);
+  const verify::ConstraintValues c = oracle.constraint_values(s);
   CHECK(near(c.psi[0], s.q[0] - d0 - a * cln::sin(w * s.t), agreement));
   CHECK(near(c.psi_dot[0], s.qdot[0] - a * w * cln::cos(w * s.t), agreement));
   CHECK(near(c.psi_ddot[0], s.qddot[0] + a * w * w * cln::sin(w * s.t), agreement));
@@ -91,14 +91,14 @@ TEST_CASE("oracle: constraint rates along the path are those of R - d(t)") {
 
 TEST_CASE("oracle: cart and pendulum from their energies give Lagrange's equations") {
   const model::Model m = cart_pendulum();
-  const Judge judge(m, digits);
+  const Oracle oracle(m, digits);
   Dice dice;
   for (int point = 0; point < 5; ++point) {
-    const State s = random_state(judge, dice);
+    const State s = random_state(oracle, dice);
     const Real &M = s.parameters[0], &mass = s.parameters[1], &l = s.parameters[2], &g = s.parameters[3],
                &c = s.parameters[4], &F = s.inputs[0];
     const Real sn = cln::sin(s.q[1]), cs = cln::cos(s.q[1]);
-    check_rows(judge.dalembert(s, {}),
+    check_rows(oracle.dalembert(s, {}),
                {(M + mass) * s.qddot[0] + mass * l * (s.qddot[1] * cs - s.qdot[1] * s.qdot[1] * sn) - F + c * s.qdot[0],
                 mass * l * cs * s.qddot[0] + mass * l * l * s.qddot[1] + mass * g * l * sn});
   }
@@ -106,14 +106,14 @@ TEST_CASE("oracle: cart and pendulum from their energies give Lagrange's equatio
 
 TEST_CASE("oracle: the double pendulum in absolute angles") {
   const model::Model m = chain(2);
-  const Judge judge(m, digits);
+  const Oracle oracle(m, digits);
   Dice dice;
   for (int point = 0; point < 5; ++point) {
-    const State s = random_state(judge, dice);
+    const State s = random_state(oracle, dice);
     const Real &m1 = s.parameters[0], &l1 = s.parameters[1], &m2 = s.parameters[2], &l2 = s.parameters[3],
                &g = s.parameters[4];
     const Real c12 = cln::cos(s.q[0] - s.q[1]), s12 = cln::sin(s.q[0] - s.q[1]);
-    check_rows(judge.dalembert(s, {}),
+    check_rows(oracle.dalembert(s, {}),
                {(m1 + m2) * l1 * l1 * s.qddot[0] + m2 * l1 * l2 * (s.qddot[1] * c12 + s.qdot[1] * s.qdot[1] * s12) +
                     (m1 + m2) * g * l1 * cln::sin(s.q[0]),
                 m2 * l2 * l2 * s.qddot[1] + m2 * l1 * l2 * (s.qddot[0] * c12 - s.qdot[0] * s.qdot[0] * s12) +
@@ -123,16 +123,16 @@ TEST_CASE("oracle: the double pendulum in absolute angles") {
 
 TEST_CASE("oracle: spring, damper and rod of a pendulum in Cartesian coordinates") {
   const model::Model m = rod_pendulum();
-  const Judge judge(m, digits);
+  const Oracle oracle(m, digits);
   Dice dice;
-  const State s = random_state(judge, dice);
+  const State s = random_state(oracle, dice);
   const Real lambda = dice(-4, 4);
   const Real &mass = s.parameters[0], &g = s.parameters[1], &k = s.parameters[3], &c = s.parameters[4];
   const Real dx = s.q[0] - 2, dy = s.q[1] - 1;
-  const Real length = cln::sqrt(judge.precision().round(dx * dx + dy * dy));
+  const Real length = cln::sqrt(oracle.precision().round(dx * dx + dy * dy));
   const Real speed = (dx * s.qdot[0] + dy * s.qdot[1]) / length;
   const Real tension = k * (length - cln::cl_RA(3) / 2) + c * speed;
-  check_rows(judge.dalembert(s, {lambda}),
+  check_rows(oracle.dalembert(s, {lambda}),
              {mass * s.qddot[0] + tension * dx / length - 2 * lambda * s.q[0],
               mass * s.qddot[1] + mass * g + tension * dy / length - 2 * lambda * s.q[1]});
 }
@@ -149,22 +149,22 @@ TEST_CASE("oracle: variable mass, drag, attraction, torsion, an energy of the ex
   const Formula e = leaf(m, Op::extension, 0);
   force(m, "spring", {{"a", vector(zero, zero, zero).id}, {"b", P.id}, {"length", k.id}, {"energy", (k * (e ^ 4)).id}});
   applied(m, diff(ddt(x ^ 3), rate(x)) * E(m, 1), P);  // 3 x^2
-  const Judge judge(m, digits);
+  const Oracle oracle(m, digits);
   Dice dice;
-  const State s = random_state(judge, dice);
+  const State s = random_state(oracle, dice);
   const Real &K = s.parameters[0], &X = s.q[0], &V = s.qdot[0];
   const Real drag = -K * K * K / 2 * cln::abs(V) * V, pull = -K * (K * s.t) / ((X + K) * (X + K));
   const Real torsion = -(K * X * X + K * 2 * X * V) * 2 * X, spring = -4 * K * cln::expt(X - K, 3);
-  check_rows(judge.dalembert(s, {}), {K * s.t * s.qddot[0] + K * V - drag - pull - torsion - spring - 3 * X * X});
+  check_rows(oracle.dalembert(s, {}), {K * s.t * s.qddot[0] + K * V - drag - pull - torsion - spring - 3 * X * X});
 }
 
 TEST_CASE("oracle: energies and their rates balance for the true motion") {
   const model::Model m = cart_pendulum();
-  const Judge judge(m, digits);
+  const Oracle oracle(m, digits);
   Dice dice;
-  State s = random_state(judge, dice);
-  const verify::EnergyValues e = judge.energy_values(s);
-  const auto rows = judge.dalembert(s, {});
+  State s = random_state(oracle, dice);
+  const verify::EnergyValues e = oracle.energy_values(s);
+  const auto rows = oracle.dalembert(s, {});
   // dT/dt + dU/dt = sum (residual_i + Q_i) qdot_i for a scleronomic system
   const Real work = (rows[0].value + s.inputs[0] - s.parameters[4] * s.qdot[0]) * s.qdot[0] + rows[1].value * s.qdot[1];
   CHECK(near(e.kinetic_rate + e.potential_rate, work, agreement, e.rate_scale));
@@ -176,11 +176,11 @@ TEST_CASE("oracle: dependent parameters are computed, basis vectors are dual to 
   J.name = "J";
   J.value = (leaf(m, Op::parameter, 0) * leaf(m, Op::parameter, 3)).id;
   m.parameters.push_back(J);
-  const Judge judge(m, digits);
-  CHECK(judge.is_independent_parameter(0));
-  CHECK(!judge.is_independent_parameter(6));
+  const Oracle oracle(m, digits);
+  CHECK(oracle.is_independent_parameter(0));
+  CHECK(!oracle.is_independent_parameter(6));
   Dice dice;
-  const State s = random_state(judge, dice);
+  const State s = random_state(oracle, dice);
   CHECK(near(s.parameters[6], s.parameters[0] * s.parameters[3], agreement));
   model::Chart chart;
   chart.system = "spherical";
@@ -191,8 +191,8 @@ TEST_CASE("oracle: dependent parameters are computed, basis vectors are dual to 
     for (std::uint32_t k = 0; k < 3; ++k) {
       const Formula a = basis(Op::covariant_basis, P, leaf(m, Op::coordinate, i));
       const Formula g = basis(Op::contravariant_basis, P, leaf(m, Op::coordinate, k));
-      CHECK(near(judge.value(dot(a, g).id, s), i == k ? 1 : 0, agreement, 1));
+      CHECK(near(oracle.value(dot(a, g).id, s), i == k ? 1 : 0, agreement, 1));
     }
   const Formula e_phi = basis(Op::unit_basis, P, leaf(m, Op::coordinate, 1));
-  CHECK(near(judge.value(dot(e_phi, E(m, 3)).id, s), -cln::sin(s.q[1]), agreement));
+  CHECK(near(oracle.value(dot(e_phi, E(m, 3)).id, s), -cln::sin(s.q[1]), agreement));
 }

@@ -134,26 +134,26 @@ inline void force(model::Model& m, std::string kind, std::vector<model::Argument
                       std::nullopt,
                       {}});
 }
-using Acts = model::Effect::Acts;
-inline model::Effect effect(Acts acts, Formula value, Formula at = {}, Formula other = {}) {
+using LoadType = model::Effect::LoadType;
+inline model::Effect effect(LoadType load_type, Formula value, Formula at = {}, Formula other = {}) {
   return {acts, value.id, at.id, other.id, model::no_node, 0};
 }
 inline void gravity(model::Model& m, Formula g) {
-  force(m, "gravity", {{"gravity", g.id}}, {effect(Acts::acceleration, g)});
+  force(m, "gravity", {{"gravity", g.id}}, {effect(LoadType::acceleration, g)});
 }
 inline void applied(model::Model& m, Formula F, Formula at) {
-  force(m, "force", {{"force", F.id}, {"on", at.id}}, {effect(Acts::force, F, at)});
+  force(m, "force", {{"force", F.id}, {"on", at.id}}, {effect(LoadType::force, F, at)});
 }
 inline void spring(model::Model& m, Formula a, Formula b, Formula stiffness, Formula length) {
   const Formula energy = ((norm(a - b) - length) ^ 2) * stiffness / 2;
   force(m, "spring", {{"a", a.id}, {"b", b.id}, {"stiffness", stiffness.id}, {"length", length.id}},
-        {effect(Acts::potential, energy)});
+        {effect(LoadType::potential, energy)});
 }
 inline void damper(model::Model& m, Formula a, Formula b, Formula c) {
-  force(m, "damper", {{"a", a.id}, {"b", b.id}, {"coefficient", c.id}}, {effect(Acts::damping, c, a, b)});
+  force(m, "damper", {{"a", a.id}, {"b", b.id}, {"coefficient", c.id}}, {effect(LoadType::damping, c, a, b)});
 }
 inline void generalized(model::Model& m, std::uint32_t coordinate, Formula F) {
-  model::Effect along = effect(Acts::component, F);
+  model::Effect along = effect(LoadType::component, F);
   along.index = coordinate;
   force(m, "generalized", {{m.coordinates[coordinate].name, F.id, coordinate}}, {along});
 }

@@ -20,11 +20,11 @@ constexpr std::size_t many = 100;
 
 TEST_CASE("points: states satisfy the constraints and their rates to all digits") {
   for (const model::Model& m : {moving_sphere(), rod_pendulum()}) {
-    const Judge judge(m, 60);
-    Points points(judge, 7, many);
+    const Oracle oracle(m, 60);
+    Points points(oracle, 7, many);
     for (int i = 0; i < 10; ++i) {
       const State s = points.next();
-      const ConstraintValues c = judge.constraint_values(s);
+      const ConstraintValues c = oracle.constraint_values(s);
       CHECK(near(c.psi[0], 0, 57, 1));
       CHECK(near(c.psi_dot[0], 0, 57, 1));
     }
@@ -33,8 +33,8 @@ TEST_CASE("points: states satisfy the constraints and their rates to all digits"
 
 TEST_CASE("points: the same seed gives the same states, another seed others") {
   const model::Model m = moving_sphere();
-  const Judge judge(m, 60);
-  Points a(judge, 3, many), b(judge, 3, many), c(judge, 4, many);
+  const Oracle oracle(m, 60);
+  Points a(oracle, 3, many), b(oracle, 3, many), c(oracle, 4, many);
   for (int i = 0; i < 3; ++i) {
     const State x = a.next(), y = b.next(), z = c.next();
     CHECK(x.q == y.q);
@@ -46,8 +46,8 @@ TEST_CASE("points: the same seed gives the same states, another seed others") {
 
 TEST_CASE("points: coordinates stay inside their ranges, away from the ends, and parameters keep their signs") {
   const model::Model m = moving_sphere();
-  const Judge judge(m, 60);
-  Points points(judge, 11, many);
+  const Oracle oracle(m, 60);
+  Points points(oracle, 11, many);
   for (int i = 0; i < 50; ++i) {
     const State s = points.next();
     CHECK(cln::double_approx(s.q[1]) > 0.07);
@@ -60,8 +60,8 @@ TEST_CASE("points: undefined states are rejected and counted; too many rejection
   model::Model m = chain(1);
   const Formula th = leaf(m, Op::coordinate, 0);
   generalized(m, 0, call(Fn::log, th));  // undefined for negative angles
-  const Judge judge(m, 60);
-  Points points(judge, 5, many);
+  const Oracle oracle(m, 60);
+  Points points(oracle, 5, many);
   for (int i = 0; i < 20; ++i) CHECK(cln::plusp(points.next().q[0]));
   REQUIRE(points.rejected().size() == 1);
   CHECK(points.rejected().begin()->first == "log of a number that is not positive");
@@ -69,7 +69,7 @@ TEST_CASE("points: undefined states are rejected and counted; too many rejection
 
   model::Model never = chain(1);
   generalized(never, 0, call(Fn::log, number(never, -1)));
-  const Judge of_never(never, 60);
+  const Oracle of_never(never, 60);
   Points none(of_never, 5, many);
   try {
     none.next();
@@ -85,7 +85,7 @@ TEST_CASE("points: undefined numbers of a scene, an input or a parameter are rep
     model::Model m = cart_pendulum();
     spoil(m, call(Fn::log, number(m, 0)).id);
     try {
-      Points(Judge(m, 60), 5, many);
+      Points(Oracle(m, 60), 5, many);
     } catch (const Error& error) {
       CHECK(error.fault() == Fault::input);
       return error.message();
@@ -108,15 +108,15 @@ TEST_CASE("points: states keep a distance from kinks, contradictory constraints 
   model::Model m = chain(1);
   const Formula th = leaf(m, Op::coordinate, 0);
   generalized(m, 0, call(Fn::abs, th - th));  // always at the kink
-  const Judge judge(m, 60);
-  Points points(judge, 5, many);
+  const Oracle oracle(m, 60);
+  Points points(oracle, 5, many);
   CHECK_THROWS_AS(points.next(), Error);
   CHECK(points.rejected().count("too near a kink") == 1);
 
   model::Model twice = rod_pendulum();
   const Formula x = leaf(twice, Op::coordinate, 0), y = leaf(twice, Op::coordinate, 1);
   holonomic(twice, "again", {2 * ((x ^ 2) + (y ^ 2)) - 2 * (leaf(twice, Op::parameter, 2) ^ 2)});
-  const Judge of_twice(twice, 60);
+  const Oracle of_twice(twice, 60);
   Points none(of_twice, 5, many);
   CHECK_THROWS_AS(none.next(), Error);
   CHECK(none.rejected().count("the constraints lose rank") == 1);
@@ -124,10 +124,10 @@ TEST_CASE("points: states keep a distance from kinks, contradictory constraints 
 
 TEST_CASE("oracle: the solved motion of P7 satisfies (2.109), and its reaction is (2.111)") {
   const model::Model m = moving_sphere();
-  const Judge judge(m, 60);
-  Points points(judge, 9, many);
+  const Oracle oracle(m, 60);
+  Points points(oracle, 9, many);
   for (int i = 0; i < 5; ++i) {
-    const Motion motion = motion_at(judge, points.next());
+    const Motion motion = motion_at(oracle, points.next());
     const State& s = motion.state;
     const Real &mass = s.parameters[0], &g = s.parameters[1], &D = s.parameters[2];
     const Real d = s.q[0], d1 = s.qdot[0], &pd = s.qdot[1], &td = s.qdot[2];

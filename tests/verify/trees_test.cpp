@@ -101,21 +101,21 @@ std::string chain(int n, const std::string& angles) {
          "\nmass = \"m1\"\nlength = \"L1\"\nangles = \"" + angles + "\"\n[[force]]\ngravity = \"-g*E2\"\n";
 }
 
-std::set<std::string> routes_that_agree(const std::string& text) {
+std::set<std::string> formulations_that_agree(const std::string& text) {
   const model::Model model = model::read_model_text(text, "tree");
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   verify::Subjects subjects;
-  subjects.systems = verify::all_routes(m);
+  subjects.systems = verify::all_formulations(m);
   const verify::Certificate certificate = verify::certify(m, subjects, {40, 4, 1});
   INFO(certificate.summary());
   CHECK(certificate.pass);
   std::set<std::string> names;
-  for (const system::EquationSystem& s : subjects.systems) names.insert(s.route);
+  for (const system::EquationSystem& s : subjects.systems) names.insert(s.formulation);
   return names;
 }
 
-void check_tree_routes(const std::string& text, bool recursive, bool articulated) {
-  const std::set<std::string> names = routes_that_agree(text);
+void check_tree_formulations(const std::string& text, bool recursive, bool articulated) {
+  const std::set<std::string> names = formulations_that_agree(text);
   CHECK(names.contains("recursive") == recursive);
   CHECK(names.contains("articulated") == articulated);
 }
@@ -123,17 +123,17 @@ void check_tree_routes(const std::string& text, bool recursive, bool articulated
 }  // namespace
 
 TEST_CASE("trees: a planar tree on a shaken table, with springs, dampers and inputs") {
-  check_tree_routes(planar_tree, true, true);
+  check_tree_formulations(planar_tree, true, true);
 }
 TEST_CASE("trees: a cart in space carries planar rods and a free particle") {
-  check_tree_routes(spatial_tree, true, true);
+  check_tree_formulations(spatial_tree, true, true);
 }
 TEST_CASE("trees: with a varying mass the tensions do not follow from accelerations alone") {
-  check_tree_routes(growing_mass, true, false);
+  check_tree_formulations(growing_mass, true, false);
 }
-TEST_CASE("trees: a particle between two others closes a loop") { check_tree_routes(closed, false, false); }
+TEST_CASE("trees: a particle between two others closes a loop") { check_tree_formulations(closed, false, false); }
 TEST_CASE("trees: chains in absolute and in relative angles") {
-  for (const char* angles : {"absolute", "relative"}) check_tree_routes(chain(5, angles), true, true);
+  for (const char* angles : {"absolute", "relative"}) check_tree_formulations(chain(5, angles), true, true);
 }
 
 TEST_CASE("quasi-coordinates: the running sums of relative angles; none if positions contain no sums") {
@@ -199,13 +199,13 @@ const std::string squares_of_rods =
 }  // namespace
 
 TEST_CASE("trees: a kinetic energy that is a sum of squared velocities of points counts as that of particles") {
-  check_tree_routes(energies_of_rods + "kinetic = \"" + squares_of_rods + "\"\n", true, true);
+  check_tree_formulations(energies_of_rods + "kinetic = \"" + squares_of_rods + "\"\n", true, true);
 }
 
 TEST_CASE("trees: other kinetic energies, and systems that are not trees, are left to other formulations") {
   for (const char* more :
        {" + m0*L1^2/2*a2_dot^2", " + m0*L1^2/4*a1_dot*a2_dot", " + m0/2*(sin(a1)*sin(a2)*L1*a1_dot)^2"}) {
     CAPTURE(more);
-    check_tree_routes(energies_of_rods + "kinetic = \"" + squares_of_rods + more + "\"\n", false, false);
+    check_tree_formulations(energies_of_rods + "kinetic = \"" + squares_of_rods + more + "\"\n", false, false);
   }
 }

@@ -7,7 +7,7 @@
 #include <set>
 #include <string_view>
 
-#include "analysis/drawing/anywhere.hpp"
+#include "analysis/drawing/sample_value.hpp"
 #include "analysis/drawing/parts.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/evaluate.hpp"
@@ -41,7 +41,7 @@ bool is_moving(const symbolic::Dag& dag, const std::vector<Ref>& expressions) {
 
 /// Constraints on the position of a particle: not those of joints, contacts of bodies and Euler parameters.
 bool binds_places(const mechanics::Mechanics& m, const mechanics::Constraint& c, const model::Constraint& of) {
-  return c.holonomic() && c.need == mechanics::Need::holds && !of.joint && !of.contact && !of.unit && !of.coupled &&
+  return c.holonomic() && c.need == mechanics::Need::independent && !of.joint && !of.contact && !of.unit && !of.coupled &&
          !m.dag->is_zero(c.psi);
 }
 
@@ -54,7 +54,7 @@ const model::Constraint& written(const model::Model& model, const mechanics::Con
 bool are_parallel(const symbolic::Dag& dag, const std::vector<Ref>& slopes) {
   for (int state = 0; state < 2; ++state) {
     const std::vector<double> v =
-        symbolic::evaluate(dag, slopes, [state](const Symbol& s) { return anywhere(s, state); });
+        symbolic::evaluate(dag, slopes, [state](const Symbol& s) { return sample_value(s, state); });
     double pp = 0, ps = 0, ss = 0;
     for (std::size_t k = 0; k < v.size(); k += 2) {
       pp += v[k] * v[k];
@@ -77,7 +77,7 @@ class DistancesAnywhere {
     }
     for (int state = 0; state < 2; ++state) {
       positions_.push_back(symbolic::evaluate(*m.dag, all, [state](const Symbol& s) {
-        return anywhere(s, s.kind == SymbolKind::parameter ? 0 : state);  // same parameters
+        return sample_value(s, s.kind == SymbolKind::parameter ? 0 : state);  // same parameters
       }));
     }
   }

@@ -121,7 +121,7 @@ class Collection {
 
   void force(std::size_t i) {
     const model::Force& force = model_.forces[i];
-    using Acts = model::Effect::Acts;
+    using LoadType = model::Effect::LoadType;
     if (force.dry) {
       all_are_vectors_ = false;
       return;
@@ -130,16 +130,16 @@ class Collection {
     turns_.clear();
     bool is_vector = true;
     for (const model::Effect& effect : force.effects) {
-      if (effect.acts == Acts::acceleration) {
+      if (effect.load_type == LoadType::acceleration) {
         const Vec3 g = mechanics::lower_vector(m_, effect.value);
         const bool named = force.name != "force " + std::to_string(i + 1);
         for (const PointMass& mass : m_.masses)
           act(named ? force.name : "weight", symbolic::scale(dag_, mass.mass, g), mass.position);
-      } else if (effect.acts == Acts::potential) {
+      } else if (effect.load_type == LoadType::potential) {
         is_vector = spring(force, effect) && is_vector;
-      } else if (effect.acts == Acts::moment) {
+      } else if (effect.load_type == LoadType::moment) {
         is_vector = moment(force, effect) && is_vector;
-      } else if (effect.acts == Acts::work || effect.acts == Acts::component) {
+      } else if (effect.load_type == LoadType::work || effect.load_type == LoadType::component) {
         is_vector = false;
       }
     }
@@ -203,7 +203,7 @@ class Collection {
     if (const model::NodeId own = force.value("angle"); own != model::no_node)
       result.push_back(mechanics::lower_scalar(m_, own));
     for (const model::Effect& effect : force.effects) {
-      if (effect.acts == model::Effect::Acts::component && model_.coordinates[effect.index].unit.text == "rad")
+      if (effect.load_type == model::Effect::LoadType::component && model_.coordinates[effect.index].unit.text == "rad")
         result.push_back(m_.q[effect.index]);
     }
     return result;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/drawing/anywhere.hpp"
+#include "analysis/drawing/sample_value.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/factorisation.hpp"
 
@@ -56,7 +56,7 @@ BodyMoments::BodyMoments(Mechanics& mechanics) : m_(mechanics), moves_(mechanics
   }
   for (int state = 0; state < 2; ++state) {
     const std::vector<double> v =
-        symbolic::evaluate(dag, all, [state](const symbolic::Symbol& s) { return anywhere(s, state); });
+        symbolic::evaluate(dag, all, [state](const symbolic::Symbol& s) { return sample_value(s, state); });
     for (std::size_t i = 0; i < some.size(); ++i) {
       for (std::size_t k = 0; k < 3; ++k)
         numbers_[some[i].first][some[i].second][static_cast<std::size_t>(state)][k] = v[3 * i + k];
@@ -158,7 +158,7 @@ std::vector<BodyMoment> BodyMoments::along_angle(const std::vector<Ref>& Q, Ref 
   std::vector<std::array<double, 2>> at(m_.q.size());
   for (int state = 0; state < 2; ++state) {
     const std::vector<double> v =
-        symbolic::evaluate(dag, slopes, [state](const symbolic::Symbol& s) { return anywhere(s, state); });
+        symbolic::evaluate(dag, slopes, [state](const symbolic::Symbol& s) { return sample_value(s, state); });
     for (std::size_t c = 0; c < v.size(); ++c) at[c][static_cast<std::size_t>(state)] = v[c];
   }
   std::vector<std::optional<std::size_t>> others{std::nullopt};

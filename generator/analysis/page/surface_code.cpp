@@ -15,7 +15,7 @@ SurfaceCode surface_code(const pipeline::Simulation& simulation, const Drawing& 
   const model::Model& model = derived.model;
   const symbolic::Dag& dag = *derived.mechanics.dag;
   program::Program program;
-  program.route = simulation.program.route;
+  program.formulation = simulation.program.formulation;
   program.approach = simulation.program.approach;
   program.free.resize(model.coordinates.size());
   std::iota(program.free.begin(), program.free.end(), 0u);

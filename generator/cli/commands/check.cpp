@@ -109,7 +109,7 @@ Execute declare_check(Arguments& app) {
   return [name](const Common& common) {
     const auto model = load_model(*name);
     const analysis::Examination examination = analysis::examine(model, true);
-    const work::Kept kept;
+    const work::DeferInterrupt kept;
     Json found = to_json(*model, examination);
     if (examination.interrupted) found["left_out"].push_back({{"what", "what is not shown"}, {"why", "interrupted"}});
     if (common.json) {

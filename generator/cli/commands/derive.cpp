@@ -118,14 +118,14 @@ int execute(const Options& options, const Common& common) {
   try {
     if (!found.interrupted && !options.document.empty()) {
       const std::string document = analysis::article(model, common.seed);
-      const work::Kept whole;
+      const work::DeferInterrupt whole;
       write_text(options.document, document);
       written = true;
     }
   } catch (const work::Interrupted&) {
     found.interrupted = true;
   }
-  const work::Kept kept;
+  const work::DeferInterrupt kept;
   if (found.interrupted) found.left_out.push_back({"what is not shown", "interrupted"});
   const std::string approach = system::name(found.approach);
   if (common.json) {

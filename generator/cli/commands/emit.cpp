@@ -43,7 +43,7 @@ int emit_document(const Options& options, const Common& common) {
   }
   const auto model = load_model(options.model);
   const std::string text = analysis::article(model, common.seed);
-  const work::Kept kept;  // writes all files or none
+  const work::DeferInterrupt kept;  // writes all files or none
   const std::vector<std::string> files =
       write_results(options.folder, {{emit::mangled_id(model->id) + ".tex", text}}, model->file);
   if (common.json) {
@@ -101,13 +101,13 @@ int execute(const Options& options, const Common& common) {
   if (common.json) {
     Json tried = Json::array();
     for (const program::Tried& t : program.tried)
-      tried.push_back({{"route", t.route},
+      tried.push_back({{"formulation", t.formulation},
                        {"approach", system::name(t.approach)},
                        {"form", system::name(t.form)},
                        {"operations", to_json(t.operations)}});
     Json document{{"format", 1},
                   {"files", files},
-                  {"route", program.route},
+                  {"formulation", program.formulation},
                   {"approach", system::name(program.approach)},
                   {"form", system::name(program.form)},
                   {"tried", tried},
@@ -128,14 +128,14 @@ int execute(const Options& options, const Common& common) {
   const auto with_form = [constrained](system::Form f) {
     return constrained ? fmt::format(", form {}", system::name(f)) : "";
   };
-  fmt::print("route       {}, approach {}{}\n", program.route, system::name(program.approach), with_form(program.form));
+  fmt::print("formulation       {}, approach {}{}\n", program.formulation, system::name(program.approach), with_form(program.form));
   fmt::print("operations  {}\n", to_text(program.functions.front().operations));
   if (program.prepared_count() > 0) {
     fmt::print("prepared    {}, after {} once for the parameters\n", to_text(program.functions.back().operations),
                to_text(program.functions.rbegin()[1].operations));
   }
   for (const program::Tried& t : program.tried) {
-    fmt::print("tried       {:<10} {:<3} {}{}\n", t.route, system::name(t.approach), to_text(t.operations),
+    fmt::print("tried       {:<10} {:<3} {}{}\n", t.formulation, system::name(t.approach), to_text(t.operations),
                with_form(t.form));
   }
   fmt::print("certificate {}\n", certificate.summary());

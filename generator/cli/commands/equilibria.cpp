@@ -118,7 +118,7 @@ int execute(const Options& options, const Common& common) {
     };
   }
   const analysis::SteadyMotions found = analysis::steady_motions(request);
-  const work::Kept kept;
+  const work::DeferInterrupt kept;
   if (shown) tell(fmt::format("\r{:40}\r", ""));
   if (common.json) {
     print_document(to_json(found, options));

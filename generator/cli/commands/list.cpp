@@ -6,7 +6,7 @@
 #include "cli/output.hpp"
 #include "coordinates/coordinate_system.hpp"
 #include "couplings/coupling.hpp"
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 #include "emit/targets.hpp"
 #include "eom/ode.hpp"
 #include "forces/kind.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 Json registries() {
   Json result{{"format", 1}};
-  Json coordinates = Json::array(), routes = Json::array(), solvers = Json::array(), targets = Json::array();
+  Json coordinates = Json::array(), formulations = Json::array(), solvers = Json::array(), targets = Json::array();
   for (const coordinates::CoordinateSystem* system : coordinates::registry()) {
     Json slots = Json::array();
     for (const coordinates::Slot& slot : system->slots) slots.push_back(slot.name);
@@ -31,8 +31,8 @@ Json registries() {
                          {"title", "coordinates that a model defines, by x(q) or by q(x)"},
                          {"slots", Json::array()},
                          {"singular", ""}});
-  for (const derive::RouteEntry& route : derive::routes())
-    routes.push_back({{"name", route.name}, {"title", route.title}});
+  for (const derive::FormulationEntry& formulation : derive::formulations())
+    formulations.push_back({{"name", formulation.name}, {"title", formulation.title}});
   for (const eom::MethodInfo& method : eom::methods()) {
     const auto requires_feature = [&](eom::Feature feature) { return method.needs.required.has(feature); };
     solvers.push_back({{"name", method.name},
@@ -76,7 +76,7 @@ Json registries() {
   }
   result["solvers"] = solvers;
   result["targets"] = targets;
-  result["routes"] = routes;
+  result["formulations"] = formulations;
   return result;
 }
 

@@ -109,7 +109,7 @@ class Formulas {
 /// `taken`: bytes of the rest of the page.
 void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<conservation::Conserved>& conserved,
                    std::size_t taken) {
-  const reading::ReadingForm form = analysis::form_to_show(m);
+  const reading::DisplayForm form = analysis::form_to_show(m);
   html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(form.approach)));
   Formulas formulas(html, taken);
   const std::vector<std::pair<std::string, std::string>> sections{{"constraints", "Constraints and functions of time"},

@@ -75,11 +75,11 @@ Json document(const model::Model& model, const analysis::StressFindings& found) 
           {"scene", found.scene},
           {"rows", list},
           {"left_out", without},
-          {"kept", found.count(Verdict::kept)},
-          {"told", found.count(Verdict::reported)},
-          {"silent", found.count(Verdict::unreported)},
+          {"pass", found.count(Verdict::pass)},
+          {"reported", found.count(Verdict::reported)},
+          {"undetected", found.count(Verdict::undetected)},
           {"denominator_audit", of(found.audit)},
-          {"verdict", found.count(Verdict::unreported) == 0 ? "pass" : "fail"}};
+          {"verdict", found.count(Verdict::undetected) == 0 ? "pass" : "fail"}};
 }
 
 std::string audited(const Json& audit) {
@@ -122,25 +122,25 @@ std::string readable(const Json& found, const std::vector<std::string>& solvers)
     for (; column < solvers.size() && solvers[column] != row["solver"]; ++column) out += entry(solvers[column], "-");
     ++column;
     out += entry(row["solver"].get<std::string>(),
-                 row["verdict"] == "silent" ? "SILENT" : row["verdict"].get<std::string>());
+                 row["verdict"] == "undetected" ? "UNDETECTED" : row["verdict"].get<std::string>());
   }
   out += "\n\n";
   for (const Json& l : found["left_out"])
     out += fmt::format("left out: {}: {}\n", l["case"].get<std::string>(), l["reason"].get<std::string>());
   out += audited(found["denominator_audit"]);
   for (const Json& row : found["rows"]) {
-    if (row["verdict"] != "silent") continue;
+    if (row["verdict"] != "undetected") continue;
     const auto shown = [&](const char* key) {
       return row[key].is_null() ? std::string("none") : fmt::format("{:.2e}", row[key].get<double>());
     };
     out +=
-        fmt::format("silent: {}, {}: error {}, estimate {}, condition {}, outcome {} {}\n",
+        fmt::format("undetected: {}, {}: error {}, estimate {}, condition {}, outcome {} {}\n",
                     row["case"].get<std::string>(), row["solver"].get<std::string>(), shown("error"), shown("estimate"),
                     shown("condition"), row["outcome"].get<std::string>(), row["note"].get<std::string>());
   }
-  out += fmt::format("{}: {} kept, {} told, {} silent\n", found["verdict"].get<std::string>(),
-                     found["kept"].get<std::size_t>(), found["told"].get<std::size_t>(),
-                     found["silent"].get<std::size_t>());
+  out += fmt::format("{}: {} pass, {} reported, {} undetected\n", found["verdict"].get<std::string>(),
+                     found["pass"].get<std::size_t>(), found["reported"].get<std::size_t>(),
+                     found["undetected"].get<std::size_t>());
   return out;
 }
 

@@ -21,10 +21,10 @@ struct Options {
 };
 
 Json to_json(const verify::Certificate& certificate) {
-  Json routes = Json::array(), reasons = Json::object(), left_out = Json::array();
+  Json formulations = Json::array(), reasons = Json::object(), left_out = Json::array();
   for (const work::LeftOut& l : certificate.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}});
   for (const verify::Comparison& c : certificate.comparisons) {
-    routes.push_back({{"a", c.a},
+    formulations.push_back({{"a", c.a},
                       {"b", c.b},
                       {"shares_code", c.shares_code},
                       {"max_relative_difference", c.max_relative_difference},
@@ -34,7 +34,7 @@ Json to_json(const verify::Certificate& certificate) {
   }
   for (const auto& [reason, count] : certificate.rejected) reasons[reason] = count;
   return {{"format", 1},
-          {"routes", routes},
+          {"formulations", formulations},
           {"points", certificate.points},
           {"digits", certificate.options.digits},
           {"rejected", certificate.rejections()},
@@ -60,7 +60,7 @@ void print_readable(const verify::Certificate& certificate) {
 }
 
 int show(const verify::Certificate& certificate, const Common& common) {
-  const work::Kept kept;
+  const work::DeferInterrupt kept;
   if (common.json) {
     print_document(to_json(certificate));
   } else {

@@ -18,7 +18,7 @@ constexpr std::size_t most_rows = 1 << 16;        // written in one request
 bool Sweep::run_by_team() {
   const std::size_t threads = options_.jobs > 0 ? options_.jobs : 1;
   if (team_->leads()) {
-    ledger_.require_file();
+    checkpoint_.require_file();
     if (!options_.ensemble && options_.jobs > 1)
       throw Error("sweep", {}, "--jobs are threads of an ensemble here, and there is none",
                   "start more processes, or add --ensemble");
@@ -45,8 +45,8 @@ bool Sweep::run_by_team() {
     });
     while (const std::optional<Stretch> block = team_->next()) make_here({*block}, threads);
   }
-  ledger_.sort();
-  const bool all = team_->sum(ledger_.rows().size()) == runs();
+  checkpoint_.sort();
+  const bool all = team_->sum(checkpoint_.rows().size()) == runs();
   count();
   counts_ = {team_->sum(counts_.done), team_->sum(counts_.failed)};
   if (all) write_by_team();
@@ -63,8 +63,8 @@ void Sweep::make_here(const std::vector<Stretch>& stretches, std::size_t threads
 }
 
 void Sweep::write_by_team() {
-  if (team_->sum(ledger_.open() ? 1 : 0) == 0) return;  // the table is complete
-  const Rows& rows = ledger_.rows();
+  if (team_->sum(checkpoint_.open() ? 1 : 0) == 0) return;  // the table is complete
+  const Rows& rows = checkpoint_.rows();
   struct Part {
     std::size_t first, last;
   };
@@ -87,7 +87,7 @@ void Sweep::write_by_team() {
     return lines;
   };
   std::optional<eom::WholeFile> table;
-  const std::string beginning = ledger_.beginning();
+  const std::string beginning = checkpoint_.beginning();
   const auto lost = [&table](const std::string& why) {
     if (table) table->discard();
     throw Error("sweep", {}, why,
@@ -106,7 +106,7 @@ void Sweep::write_by_team() {
     lost(error.what());
   }
   team_->sum(0);  // the table is renamed before any worker continues
-  ledger_.finish_elsewhere();
+  checkpoint_.finish_elsewhere();
 }
 
 }  // namespace eomgen::cli

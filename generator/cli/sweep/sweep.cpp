@@ -89,12 +89,12 @@ Sweep::Sweep(const SweepOptions& options, const Common& common, const model::Mod
       points_(points_of(options, common.seed, points_hash_)),
       shard_(shard_of(options, points_, common.team != nullptr ? common.team->workers() : 1)),
       file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
-      ledger_((require_names(points_, options, model),
+      checkpoint_((require_names(points_, options, model),
                require_places({{"--out", file_, is_npz(file_) ? ".npz" : ".csv"}}, model.file, common.json), file_),
               key_of_table(options, model, common.seed, points_hash_, shard_, points_),
               [this](std::size_t run) { return run < points_.size() && shard_.has(run); },
-              common.team == nullptr || common.team->leads() ? Ledger::Part::whole : Ledger::Part::member),
-      resumed_(ledger_.rows().size()),
+              common.team == nullptr || common.team->leads() ? CheckpointFile::Part::whole : CheckpointFile::Part::member),
+      resumed_(checkpoint_.rows().size()),
       team_(common.team) {
   if (is_npz(file_) && (options.shard || team_ != nullptr)) {
     throw Error("sweep", {},
@@ -106,13 +106,13 @@ Sweep::Sweep(const SweepOptions& options, const Common& common, const model::Mod
 
 bool Sweep::run_alone() {
   make_open_runs();
-  ledger_.sort();
+  checkpoint_.sort();
   count();
-  if (ledger_.rows().size() < runs()) {
-    ledger_.interrupt();
+  if (checkpoint_.rows().size() < runs()) {
+    checkpoint_.interrupt();
     return false;
   }
-  ledger_.finish();
+  checkpoint_.finish();
   return true;
 }
 
@@ -128,8 +128,8 @@ void Sweep::make_open_runs() {
 std::vector<Stretch> Sweep::open_runs() const {
   std::vector<Stretch> open;
   std::size_t next = 0;  // first run of the shard that is not accounted for
-  for (std::size_t i = 0; i <= ledger_.rows().size(); ++i) {
-    const std::size_t there = i < ledger_.rows().size() ? shard_.place(ledger_.rows().run(i)) : runs();
+  for (std::size_t i = 0; i <= checkpoint_.rows().size(); ++i) {
+    const std::size_t there = i < checkpoint_.rows().size() ? shard_.place(checkpoint_.rows().run(i)) : runs();
     if (there > next) open.push_back({next, there - next});
     next = there + 1;
   }
@@ -147,7 +147,7 @@ std::vector<std::size_t> Sweep::runs_of(const std::vector<Stretch>& stretches) c
 void Sweep::count() {
   counts_ = {};
   const std::size_t fields = points_.names().size() + 1;
-  ledger_.rows().each(0, ledger_.rows().size(), [&](std::size_t, std::string_view line) {
+  checkpoint_.rows().each(0, checkpoint_.rows().size(), [&](std::size_t, std::string_view line) {
     for (std::size_t k = 0; k < fields; ++k) line.remove_prefix(line.find(',') + 1);
     ++(ended_well(line.substr(0, line.find(','))) ? counts_.done : counts_.failed);
   });
@@ -155,7 +155,7 @@ void Sweep::count() {
 
 std::vector<analysis::ColumnStatistics> Sweep::statistics() const {
   if (team_ != nullptr && counts_.done + counts_.failed < runs()) return {};
-  return statistics_of_table(ledger_.header(), counts_.done + counts_.failed,
+  return statistics_of_table(checkpoint_.header(), counts_.done + counts_.failed,
                              [this](const auto& take) { each_row(take); });
 }
 
@@ -167,15 +167,15 @@ std::optional<analysis::Basins> Sweep::basins() const {
   request.overrides = overrides_of("sweep", options_);
   request.seed = seed_;
   analysis::Basins basins(analysis::steady_motions(request), *options_.basins);
-  read_basins(basins, ledger_.header(), [this](const auto& take) { each_row(take); });
+  read_basins(basins, checkpoint_.header(), [this](const auto& take) { each_row(take); });
   return basins;
 }
 
 /// In a group of processes the rows are read from the table, because other processes have rows too.
 void Sweep::each_row(const std::function<void(std::string_view row)>& take) const {
   if (team_ == nullptr)
-    return ledger_.rows().each(0, ledger_.rows().size(), [&take](std::size_t, std::string_view line) { take(line); });
-  const OpenFile table(::open(ledger_.place().c_str(), O_RDONLY | O_CLOEXEC));
+    return checkpoint_.rows().each(0, checkpoint_.rows().size(), [&take](std::size_t, std::string_view line) { take(line); });
+  const OpenFile table(::open(checkpoint_.place().c_str(), O_RDONLY | O_CLOEXEC));
   std::size_t number = 0;
   each_line(table, [&](std::string_view line, std::uint64_t) {
     if (++number > 2) take(line);
@@ -209,9 +209,9 @@ bool Sweep::simulate_first(std::size_t run, bool integrate) {
   }
   if (options_.ensemble) require_side_by_side(*first_);
   text_ = RowText(points_.names(), first_->derived->model, first_->scene);
-  const std::size_t there = ledger_.rows().size();
-  ledger_.set_header(text_.header());
-  if (ledger_.rows().size() < there) resumed_ = 0;
+  const std::size_t there = checkpoint_.rows().size();
+  checkpoint_.set_header(text_.header());
+  if (checkpoint_.rows().size() < there) resumed_ = 0;
   return true;
 }
 
@@ -255,7 +255,7 @@ bool Sweep::is_open(const std::vector<Stretch>& open, std::size_t run) const {
 
 void Sweep::take_first(std::size_t run, std::vector<Stretch>& open) {
   if (!is_open(open, run) || first_->result.outcome == eom::Outcome::interrupted) return;
-  ledger_.add(run, text_.of(run, points_.point(run), first_->result));
+  checkpoint_.add(run, text_.of(run, points_.point(run), first_->result));
   const std::size_t place = shard_.place(run);
   const auto holds = std::find_if(open.begin(), open.end(),
                                   [place](const Stretch& stretch) { return place - stretch.first < stretch.count; });
@@ -280,10 +280,10 @@ void Sweep::compute(const std::vector<std::size_t>& runs, std::size_t threads) {
     if (!ensemble_) ensemble_.emplace(*first_);
     ensemble_->run({runs, threads, [this](std::size_t run) { return at(run); },
                     [this](std::size_t run, const run::RunResult& result) {
-                      ledger_.add(run, text_.of(run, points_.point(run), result));
+                      checkpoint_.add(run, text_.of(run, points_.point(run), result));
                     },
                     [this](std::size_t run, const std::string& why) {
-                      ledger_.add(run, text_.refused(run, points_.point(run), why));
+                      checkpoint_.add(run, text_.refused(run, points_.point(run), why));
                     },
                     &Interrupt::flag()});
     return;
@@ -294,7 +294,7 @@ void Sweep::compute(const std::vector<std::size_t>& runs, std::size_t threads) {
     return made(run);
   };
   by_processes(
-      runs, threads, line, [this](std::size_t run, const std::string& text) { ledger_.add(run, text); },
+      runs, threads, line, [this](std::size_t run, const std::string& text) { checkpoint_.add(run, text); },
       Interrupt::flag());
 }
 
@@ -305,7 +305,7 @@ void Sweep::compute_here(const std::vector<std::size_t>& runs) {
     graph.tidy();
     const std::string line = made(run);
     if (line.empty()) return;
-    ledger_.add(run, line);
+    checkpoint_.add(run, line);
   }
 }
 

@@ -8,7 +8,7 @@
 
 #include "cli/command.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/sweep/ledger.hpp"
+#include "cli/sweep/checkpoint_file.hpp"
 #include "cli/sweep/options.hpp"
 #include "cli/sweep/points.hpp"
 #include "cli/sweep/row_text.hpp"
@@ -32,7 +32,7 @@ class Sweep {
   std::size_t runs() const { return shard_.size(points_.size()); }
   std::size_t resumed() const { return resumed_; }
   /// Path of the file that contains the rows.
-  const std::string& place() const { return ledger_.place(); }
+  const std::string& place() const { return checkpoint_.place(); }
   struct Counts {
     std::size_t done = 0, failed = 0;
   };
@@ -73,7 +73,7 @@ class Sweep {
   analysis::Points points_;
   analysis::Shard shard_;
   std::string file_;
-  Ledger ledger_;
+  CheckpointFile checkpoint_;
   std::size_t resumed_;
   Counts counts_;
   Team* team_;

@@ -51,7 +51,7 @@ std::vector<Ref> multipliers_of_lengths(const Mechanics& m, const BodyTree& tree
 
 }  // namespace
 
-std::optional<system::EquationSystem> equations_of_bodies(Mechanics& m, system::Approach approach, const char* route,
+std::optional<system::EquationSystem> equations_of_bodies(Mechanics& m, system::Approach approach, const char* formulation,
                                                           BodySolve solve) {
   if (approach == system::Approach::one && !m.fixed.empty()) return std::nullopt;
   Dag& dag = *m.dag;
@@ -60,11 +60,11 @@ std::optional<system::EquationSystem> equations_of_bodies(Mechanics& m, system::
   const FullEquations motion = in_coordinates(dag, *tree);
   std::optional<system::EquationSystem> s;
   if (m.fixed.empty()) {
-    s = assemble(m, motion, nullptr, route, approach);
+    s = assemble(m, motion, nullptr, formulation, approach);
   } else {
     const std::optional<BodyTree> all = body_tree(m, all_coordinates(m), false);
     if (!all) return std::nullopt;
-    s = assemble(m, in_coordinates(dag, *all), &motion, route, approach);
+    s = assemble(m, in_coordinates(dag, *all), &motion, formulation, approach);
   }
   use_angular_velocities(dag, *tree);
   if (!m.contacts.empty() || !only_lengths(m, *tree)) return s;

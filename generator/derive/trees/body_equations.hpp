@@ -15,6 +15,6 @@ using BodySolve = system::Solution (*)(Dag&, const BodyTree&, const std::vector<
 /// Empty if the bodies form no tree (body_tree.hpp), and in Approach I if there are constraints to impose. Without
 /// multipliers and friction, angular velocities replace the rates of ball joints in the solution.
 std::optional<system::EquationSystem> equations_of_bodies(Mechanics& mechanics, system::Approach approach,
-                                                          const char* route, BodySolve solve);
+                                                          const char* formulation, BodySolve solve);
 
 }  // namespace eomgen::derive

@@ -80,12 +80,12 @@ std::optional<TreeEquations> motion_of_tree(Mechanics& m, system::Approach appro
   return tree_equations(m, m.free, true);
 }
 
-std::optional<system::EquationSystem> assemble_tree(Mechanics& m, const TreeEquations& motion, const char* route,
+std::optional<system::EquationSystem> assemble_tree(Mechanics& m, const TreeEquations& motion, const char* formulation,
                                                     system::Approach approach) {
-  if (m.fixed.empty()) return assemble(m, motion.of_model, nullptr, route, approach);
+  if (m.fixed.empty()) return assemble(m, motion.of_model, nullptr, formulation, approach);
   const std::optional<TreeEquations> full = tree_equations(m, all_coordinates(m), false);
   if (!full) return std::nullopt;
-  return assemble(m, full->of_model, &motion.of_model, route, approach);
+  return assemble(m, full->of_model, &motion.of_model, formulation, approach);
 }
 
 }  // namespace eomgen::derive

@@ -20,6 +20,6 @@ std::optional<TreeEquations> motion_of_tree(Mechanics& mechanics, system::Approa
 /// Calls `assemble` with M and f of the motion. The constraint forces of eliminated coordinates come from the tree of
 /// all coordinates: empty if they form none.
 std::optional<system::EquationSystem> assemble_tree(Mechanics& mechanics, const TreeEquations& motion,
-                                                    const char* route, system::Approach approach);
+                                                    const char* formulation, system::Approach approach);
 
 }  // namespace eomgen::derive

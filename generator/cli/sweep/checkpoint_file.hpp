@@ -18,7 +18,7 @@ namespace eomgen::cli {
 /// files of the same sweep, unless their process still runs, and those of a finished FILE. For safety it follows no
 /// links and reads no files of other users. If FILE is not a regular file, nothing is taken over and the table is
 /// written directly.
-class Ledger {
+class CheckpointFile {
  public:
   enum class Part {
     whole,
@@ -27,7 +27,7 @@ class Ledger {
 
   /// `key` identifies the sweep; it is in the first line of the file. `belongs`: whether the table has this run. Throws
   /// Error if there is an unfinished table of another sweep.
-  Ledger(std::string file, std::string key, std::function<bool(std::size_t run)> belongs, Part part = Part::whole);
+  CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t run)> belongs, Part part = Part::whole);
 
   const Rows& rows() const { return rows_; }  // sorted before the first add() and after finish()
   void sort() { rows_.sort(); }

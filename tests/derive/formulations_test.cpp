@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Each formulation and approach against equations of motion derived by hand.
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 
 #include <doctest/doctest.h>
 
@@ -20,16 +20,16 @@ namespace {
 // Sums of a few dozen terms of order 1 to 100 in binary64.
 constexpr double rounding = 1e-12;
 
-std::string named(const system::EquationSystem& system) { return system.route + " " + system::name(system.approach); }
+std::string named(const system::EquationSystem& system) { return system.formulation + " " + system::name(system.approach); }
 
-void for_each_route(const model::Model& model,
+void for_each_formulation(const model::Model& model,
                     const std::function<void(mechanics::Mechanics&, const system::EquationSystem&)>& check) {
-  for (const derive::RouteEntry& route : derive::routes()) {
+  for (const derive::FormulationEntry& formulation : derive::formulations()) {
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
       mechanics::Mechanics m = mechanics::build_mechanics(model);
-      const std::optional<system::EquationSystem> system = route.derive(m, approach);
+      const std::optional<system::EquationSystem> system = formulation.derive(m, approach);
       if (!system) continue;
-      INFO(route.name, " ", system::name(approach));
+      INFO(formulation.name, " ", system::name(approach));
       check(m, *system);
     }
   }
@@ -37,7 +37,7 @@ void for_each_route(const model::Model& model,
 
 }  // namespace
 
-TEST_CASE("routes: P7 has the equation of motion (2.109) and the reaction (2.111)") {
+TEST_CASE("formulations: P7 has the equation of motion (2.109) and the reaction (2.111)") {
   const model::Model model = model::read_model_text(R"toml(format = 1
 [parameters]
 m = 2
@@ -64,7 +64,7 @@ holonomic = "R - d"
   const double phi_ddot = (m * d * d * s * c * dtheta * dtheta + m * g * d * s - 2 * m * d * d1 * dphi) / (m * d * d);
   const double lambda = m * d2 - m * d * s * s * dtheta * dtheta - m * d * dphi * dphi + m * g * c;
   std::set<std::string> systems;
-  for_each_route(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
+  for_each_formulation(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
     test::Point point(mechanics, {{"t", t},
                                   {"m", m},
                                   {"g", g},
@@ -94,7 +94,7 @@ holonomic = "R - d"
     CHECK_MESSAGE(systems.contains(name), name);
 }
 
-TEST_CASE("routes: the cart and pendulum from its energies, with an input and friction on the cart") {
+TEST_CASE("formulations: the cart and pendulum from its energies, with an input and friction on the cart") {
   const model::Model model = model::read_model_text(R"toml(format = 1
 [parameters]
 M = 2
@@ -121,7 +121,7 @@ generalized = { x = "F - c*x_dot" }
   const double x_ddot = (right_x * m * l * l - coupling * right_th) / det;
   const double theta_ddot = ((M + m) * right_th - coupling * right_x) / det;
   std::set<std::string> systems;
-  for_each_route(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
+  for_each_formulation(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
     test::Point point(mechanics, {{"t", 0},
                                   {"M", M},
                                   {"m", m},
@@ -143,12 +143,12 @@ generalized = { x = "F - c*x_dot" }
   for (const char* name : {"lagrange I", "lagrange II", "christoffel I", "christoffel II", "expanded I", "expanded II"})
     CHECK_MESSAGE(systems.contains(name), name);
   for (const std::string& name : systems) {
-    for (const char* route : {"jacobian", "recursive", "articulated"})
-      CHECK_FALSE_MESSAGE(name.starts_with(route), name);
+    for (const char* formulation : {"jacobian", "recursive", "articulated"})
+      CHECK_FALSE_MESSAGE(name.starts_with(formulation), name);
   }
 }
 
-TEST_CASE("routes: a rod between a particle and the origin as a quadratic constraint keeps its multiplier") {
+TEST_CASE("formulations: a rod between a particle and the origin as a quadratic constraint keeps its multiplier") {
   const model::Model model = model::read_model_text(R"toml(format = 1
 [parameters]
 m = 1.5
@@ -164,7 +164,7 @@ holonomic = "x^2 + y^2 - L^2"
   // Planar pendulum: the rod pulls with N = m L w^2 + m g cos(th) towards the origin; lambda grad psi = 2 lambda r.
   const double lambda = -(m * L * w * w + m * g * std::cos(th)) / (2 * L);
   const double a_t = -g * std::sin(th);
-  for_each_route(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
+  for_each_formulation(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
     REQUIRE(system.active.size() == 1);
     test::Point point(mechanics,
                       {{"t", 0}, {"m", m}, {"g", g}, {"L", L}, {"x", x}, {"y", y}, {"x_dot", vx}, {"y_dot", vy}});
@@ -176,7 +176,7 @@ holonomic = "x^2 + y^2 - L^2"
   });
 }
 
-TEST_CASE("routes: a growing mass and a prescribed position satisfy the power balance") {
+TEST_CASE("formulations: a growing mass and a prescribed position satisfy the power balance") {
   // dE/dt from the energy itself, differentiated along the derived motion.
   const model::Model model = model::read_model_text(R"toml(format = 1
 [parameters]
@@ -198,7 +198,7 @@ force = "-x_dot*E1 + E3"
 x = {}
 )toml",
                                                     "power");
-  for_each_route(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
+  for_each_formulation(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
     test::Point point(mechanics, {{"t", 0.4}, {"m0", 1}, {"k", 3}, {"x", 0.8}, {"x_dot", -0.5}});
     point.solve(system);
     symbolic::Derivation ddt = symbolic::total_time(*mechanics.dag, mechanics.q.size(), 2);

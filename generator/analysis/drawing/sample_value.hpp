@@ -8,7 +8,7 @@
 
 namespace eomgen::analysis {
 
-inline double anywhere(const symbolic::Symbol& s, int state) {
+inline double sample_value(const symbolic::Symbol& s, int state) {
   const double turn = 1.3 * s.index + 0.7 * static_cast<int>(s.kind) + 2.1 * state;
   return 0.9 + 0.4 * std::sin(turn);
 }

@@ -20,9 +20,9 @@ constexpr double limit_of_rk4 = 2.8;  // 2.785 along the real axis, 2.828 along 
 constexpr double fewest_stable = 4;   // least number of stable steps in a span
 constexpr int shortenings = 24;       // of the span, each at least by half, until its end state is well determined
 
-class Judgement {
+class Assessment {
  public:
-  Judgement(const Case& test, const run::Scene& scene, const Request& request, const ReferenceSolution* reference,
+  Assessment(const Case& test, const run::Scene& scene, const Request& request, const ReferenceSolution* reference,
             double stable_step)
       : test_(test), scene_(scene), request_(request), reference_(reference), stable_step_(stable_step) {}
 
@@ -45,7 +45,7 @@ class Judgement {
       compare(result, run::method_named(solver).adaptive, row);
     } else {
       row.error = row.estimate = infinity;
-      row.verdict = Verdict::unreported;
+      row.verdict = Verdict::undetected;
       row.note = "no motion exists, but the outcome is done";
     }
     return row;
@@ -89,11 +89,11 @@ class Judgement {
       row.estimate = std::max(row.estimate, result.error_estimate[i].second / scale);
     }
     if (kept)
-      row.verdict = Verdict::kept;
+      row.verdict = Verdict::pass;
     else if (row.error - reference_->uncertainty <= told_within * row.estimate || result.doubt)
       row.verdict = Verdict::reported;
     else
-      row.verdict = Verdict::unreported;
+      row.verdict = Verdict::undetected;
   }
 
   const Case& test_;
@@ -131,7 +131,7 @@ double stable_step(const run::Scene& scene, const Request& request) {
 
 }  // namespace
 
-std::vector<Row> judge(const Case& test, const run::Scene& given, const Request& request, std::string& left_out) {
+std::vector<Row> assess(const Case& test, const run::Scene& given, const Request& request, std::string& left_out) {
   run::Scene scene = given;
   std::vector<Row> rows;
   std::optional<ReferenceSolution> reference;
@@ -154,13 +154,13 @@ std::vector<Row> judge(const Case& test, const run::Scene& given, const Request&
     left_out = "it has no motion that is fast enough to make a few steps unstable";
     return rows;
   }
-  Judgement judgement(test, scene, request, reference ? &*reference : nullptr, stable);
+  Assessment assessment(test, scene, request, reference ? &*reference : nullptr, stable);
   const run::RunRequest run = request.run(scene);
   for (const std::string& solver : request.solvers) {
     if (interrupted()) break;
     if (!run::eligible(solver, scene, run.code) || (test.of_limit && run::method_named(solver).adaptive)) continue;
     if (request.progress) request.progress(test.name + ", " + solver);
-    rows.push_back(judgement.row(solver));
+    rows.push_back(assessment.row(solver));
     if (scene.t1 != given.t1 && rows.back().note.empty()) rows.back().note = fmt::format("until t = {:g}", scene.t1);
   }
   return rows;

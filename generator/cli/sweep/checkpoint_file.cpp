@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/sweep/ledger.hpp"
+#include "cli/sweep/checkpoint_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ OpenFile open_own(const std::string& path) {
 
 }  // namespace
 
-Ledger::Ledger(std::string file, std::string key, std::function<bool(std::size_t)> belongs, Part part)
+CheckpointFile::CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t)> belongs, Part part)
     : file_(std::move(file)), place_(file_), key_(std::move(key)), belongs_(std::move(belongs)) {
   std::error_code none;
   kept_ = !is_standard_output(file_) && (!fs::exists(file_, none) || fs::is_regular_file(file_, none));
@@ -70,7 +70,7 @@ Ledger::Ledger(std::string file, std::string key, std::function<bool(std::size_t
   rows_.sort();
 }
 
-std::vector<Ledger::Unfinished> Ledger::unfinished() const {
+std::vector<CheckpointFile::Unfinished> CheckpointFile::unfinished() const {
   const fs::path target = eom::WholeFile::followed(file_);
   const std::string name = eom::WholeFile::shortened(target.filename().string()) + ".partial";
   std::vector<Unfinished> found;
@@ -90,7 +90,7 @@ std::vector<Ledger::Unfinished> Ledger::unfinished() const {
   return found;
 }
 
-void Ledger::read(const OpenFile& file) {
+void CheckpointFile::read(const OpenFile& file) {
   const std::uint32_t from = rows_.add(file);
   std::size_t number = 0;
   each_line(file, [&](std::string_view line, std::uint64_t offset) {
@@ -104,9 +104,9 @@ void Ledger::read(const OpenFile& file) {
   });
 }
 
-std::string Ledger::beginning() const { return mark + key_ + "\n" + header_ + "\n"; }
+std::string CheckpointFile::beginning() const { return mark + key_ + "\n" + header_ + "\n"; }
 
-void Ledger::write(const std::function<void(std::string_view)>& to) const {
+void CheckpointFile::write(const std::function<void(std::string_view)>& to) const {
   constexpr std::size_t enough = 1 << 20;
   to(beginning());  // immediately, because a partial file without header cannot be recognised
   std::string text;
@@ -120,7 +120,7 @@ void Ledger::write(const std::function<void(std::string_view)>& to) const {
   to(text);
 }
 
-void Ledger::set_header(const std::string& header) try {
+void CheckpointFile::set_header(const std::string& header) try {
   if (header_ != header) rows_ = Rows();  // a table with other columns cannot be continued
   header_ = header;
   if (kept_) {
@@ -152,7 +152,7 @@ void Ledger::set_header(const std::string& header) try {
   lost(error);
 }
 
-void Ledger::add(std::size_t run, const std::string& line) try {
+void CheckpointFile::add(std::size_t run, const std::string& line) try {
   if (out_)
     out_->write(line + "\n");
   else
@@ -163,7 +163,7 @@ void Ledger::add(std::size_t run, const std::string& line) try {
   lost(error);
 }
 
-void Ledger::whole() const try {
+void CheckpointFile::whole() const try {
   if (is_npz(file_)) return write_npz(file_, mark + key_, header_, rows_);
   eom::WholeFile file = is_standard_output(file_) ? eom::WholeFile::standard_output() : eom::WholeFile(file_);
   try {
@@ -177,31 +177,31 @@ void Ledger::whole() const try {
   lost(error);
 }
 
-void Ledger::remove_others() {
+void CheckpointFile::remove_others() {
   for (const std::string& old : taken_over_) ::unlink(old.c_str());
   taken_over_.clear();
 }
 
-void Ledger::require_file() const {
+void CheckpointFile::require_file() const {
   if (kept_) return;
   throw Error("sweep", {}, fmt::format("several processes write one file, and {} is none", model::quote(file_)),
               "name a file with --out");
 }
 
-void Ledger::finish() {
+void CheckpointFile::finish() {
   if (kept_ && !open()) return;  // the table was complete
   rows_.sort();
   whole();
   finish_elsewhere();
 }
 
-void Ledger::finish_elsewhere() {
+void CheckpointFile::finish_elsewhere() {
   place_ = file_;
   if (out_) out_->discard();
   remove_others();
 }
 
-void Ledger::interrupt() {
+void CheckpointFile::interrupt() {
   if (kept_ || header_.empty()) return;
   rows_.sort();
   whole();

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "derive/equations.hpp"
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 
 namespace eomgen::derive {
 namespace {
@@ -94,12 +94,12 @@ std::optional<system::EquationSystem> by_jacobian(Mechanics& m, system::Approach
 
 }  // namespace
 
-RouteEntry route::jacobian() {
+FormulationEntry formulation::jacobian() {
   return {.name = "jacobian",
           .title = "velocity Jacobians, M = sum m J^T J",
           .applies = "applies to models of particles and bodies without energies of their own",
           .derive = by_jacobian,
-          .worth_on_trees = 16};
+          .max_tree_size = 16};
 }
 
 }  // namespace eomgen::derive

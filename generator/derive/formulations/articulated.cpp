@@ -5,7 +5,7 @@
 // which gives the tensions T by a factorisation without fill-in. Then theta_ddot_k = J_k . (a_k - a_parent - c_k) / J_k
 // . J_k. The cost grows linearly with the number of links. W_k = J_k f_k / J_k . J_k is equivalent to the forces on
 // theta_k. Trees of bodies: derive/trees/body_elimination.hpp.
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 #include "derive/trees/body_elimination.hpp"
 #include "derive/trees/body_equations.hpp"
 #include "derive/trees/tensions.hpp"
@@ -42,7 +42,7 @@ std::optional<system::EquationSystem> by_articulated(Mechanics& m, system::Appro
 
 }  // namespace
 
-RouteEntry route::articulated() {
+FormulationEntry formulation::articulated() {
   return {.name = "articulated",
           .title = "a tree of particles or bodies: link after link, no mass matrix",
           .applies = "applies to trees of particles or of bodies without multipliers and friction",

@@ -2,7 +2,7 @@
 // The recursive formulation: composite masses and forces are collected from the tips of the branches to the ground.
 #include <algorithm>
 
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 #include "derive/trees/body_equations.hpp"
 #include "derive/trees/body_recursion.hpp"
 #include "derive/trees/tree_equations.hpp"
@@ -44,12 +44,12 @@ std::optional<system::EquationSystem> by_recursive(Mechanics& m, system::Approac
 
 }  // namespace
 
-RouteEntry route::recursive() {
+FormulationEntry formulation::recursive() {
   return {.name = "recursive",
           .title = "a tree of particles or bodies: composite masses, forces from the tips inwards",
           .applies = "applies to trees of particles or of bodies",
           .derive = by_recursive,
-          .worth_on_trees = 32,
+          .max_tree_size = 32,
           .over_trees = true};
 }
 

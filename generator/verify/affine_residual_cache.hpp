@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The terms of the oracle at one state that are independent of accelerations and constraint forces. d'Alembert's
 // residuals are affine in these, so that each further evaluation at this state takes only products of numbers. In: the
-// Judge and a State. Out: the residuals at zero acceleration, the contribution of accelerations, constraint gradients.
+// Oracle and a State. Out: the residuals at zero acceleration, the contribution of accelerations, constraint gradients.
 #pragma once
 
 #include <map>
@@ -32,9 +32,9 @@ class Inertia {
   std::vector<std::map<std::size_t, Entry>> rows_;
 };
 
-class Standing {
+class AffineResidualCache {
  public:
-  Standing(const Judge& judge, const State& at);
+  AffineResidualCache(const Oracle& oracle, const State& at);
 
   /// psi and psi_dot; psi is 0 for a constraint on velocities.
   struct Along {
@@ -56,7 +56,7 @@ class Standing {
   void add_rotations();
   void add_energies();
 
-  const Judge& judge_;
+  const Oracle& oracle_;
   const model::Model& model_;
   Margin margin_;
   Interpreter now_;

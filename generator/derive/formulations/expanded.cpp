@@ -2,7 +2,7 @@
 // The expanded formulation: Lagrange's equations of energies that are expanded first, with sin^2 + cos^2 = 1; best for
 // small systems.
 #include "derive/euler_lagrange.hpp"
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 #include "symbolic/polynomial.hpp"
 
 namespace eomgen::derive {
@@ -41,7 +41,7 @@ std::optional<system::EquationSystem> by_expanded(Mechanics& m, system::Approach
 
 }  // namespace
 
-RouteEntry route::expanded() {
+FormulationEntry formulation::expanded() {
   return {.name = "expanded",
           .title = "T and U expanded first, sin^2 + cos^2 = 1 used",
           .applies = "applies to small models whose kinetic energy stays short when it is multiplied out",

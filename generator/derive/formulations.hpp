@@ -17,25 +17,25 @@ namespace eomgen::derive {
 
 inline constexpr std::size_t any_size = static_cast<std::size_t>(-1);
 
-struct RouteEntry {
+struct FormulationEntry {
   const char* name;
   const char* title;
   const char* applies;  // to which models; reported if the formulation is skipped
   /// Empty if the formulation does not apply to the model in this approach.
   std::optional<system::EquationSystem> (*derive)(mechanics::Mechanics&, system::Approach);
   /// The number of coordinates of a tree beyond which a tree formulation with a larger limit is far cheaper.
-  std::size_t worth_on_trees = any_size;
+  std::size_t max_tree_size = any_size;
   bool over_trees = false;  // for trees of particles or bodies
 };
 
-/// In the order of derive/routes/registry.inc, NAME() of derive/routes/NAME.cpp.
-std::span<const RouteEntry> routes();
+/// In the order of derive/formulations/registry.inc, NAME() of derive/formulations/NAME.cpp.
+std::span<const FormulationEntry> formulations();
 
-namespace route {
-#define ROUTE(name) RouteEntry name();
-#include "derive/routes/registry.inc"
-#undef ROUTE
-}  // namespace route
+namespace formulation {
+#define FORMULATION(name) FormulationEntry name();
+#include "derive/formulations/registry.inc"
+#undef FORMULATION
+}  // namespace formulation
 
 /// The equations of a formulation, or why it was skipped.
 struct Outcome {
@@ -45,7 +45,7 @@ struct Outcome {
 };
 
 /// Derives the equations within a budget of operations. A formulation is skipped if another is far cheaper on a tree of
-/// that size: full matrices serve small systems only (docs/theory.md, "Routes").
-Outcome derive_where_worth(const RouteEntry& route, mechanics::Mechanics& mechanics, system::Approach approach);
+/// that size: full matrices serve small systems only (docs/theory.md, "Formulations").
+Outcome derive_where_worth(const FormulationEntry& formulation, mechanics::Mechanics& mechanics, system::Approach approach);
 
 }  // namespace eomgen::derive

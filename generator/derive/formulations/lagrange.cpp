@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "derive/routes/lagrange.hpp"
+#include "derive/formulations/lagrange.hpp"
 
 #include "derive/euler_lagrange.hpp"
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 
 namespace eomgen::derive {
 
@@ -15,13 +15,13 @@ system::EquationSystem lagrange(Mechanics& m, system::Approach approach) {
   return assemble(m, full, &motion, "lagrange", approach);
 }
 
-RouteEntry route::lagrange() {
+FormulationEntry formulation::lagrange() {
   return {
       .name = "lagrange",
       .title = "T and U differentiated as they stand",
       .applies = "applies to every model",
       .derive = [](Mechanics& m, system::Approach approach) { return std::optional(derive::lagrange(m, approach)); },
-      .worth_on_trees = 16};
+      .max_tree_size = 16};
 }
 
 }  // namespace eomgen::derive

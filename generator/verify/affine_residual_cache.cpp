@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/standing.hpp"
+#include "verify/affine_residual_cache.hpp"
 
 #include <cln/real.h>
 
@@ -68,26 +68,26 @@ std::vector<Residual> Inertia::at(const std::vector<Real>& qddot) const {
   return sums;
 }
 
-Standing::Standing(const Judge& judge, const State& at)
+AffineResidualCache::AffineResidualCache(const Oracle& oracle, const State& at)
     : state(without_accelerations(at)),
-      judge_(judge),
-      model_(judge.model()),
-      now_(judge.interpreter(state, &margin_)),
-      row_(judge.constraints().size()),
-      along_(judge.constraints().size()),
-      second_(judge.constraints().size()) {}
+      oracle_(oracle),
+      model_(oracle.model()),
+      now_(oracle.interpreter(state, &margin_)),
+      row_(oracle.constraints().size()),
+      along_(oracle.constraints().size()),
+      second_(oracle.constraints().size()) {}
 
-const Inertia& Standing::inertia() {
+const Inertia& AffineResidualCache::inertia() {
   look();
   return *inertia_;
 }
 
-const std::vector<Residual>& Standing::rest() {
+const std::vector<Residual>& AffineResidualCache::rest() {
   look();
   return rest_;
 }
 
-void Standing::look() {
+void AffineResidualCache::look() {
   if (inertia_) return;
   Inertia inertia(state.q.size());
   inertia_ = std::move(inertia);
@@ -95,11 +95,11 @@ void Standing::look() {
   add_particles();
   add_rotations();
   add_energies();
-  subtract_forces(model_, judge_.precision(), now_, rest_);
+  subtract_forces(model_, oracle_.precision(), now_, rest_);
 }
 
 /// sum over particles of d(m v)/dt . dr/dq_i
-void Standing::add_particles() {
+void AffineResidualCache::add_particles() {
   Interpreter& by_q = now_.by_coordinates(false);
   Interpreter& later = now_.along_time();
   Interpreter& twice = later.along_time();
@@ -123,7 +123,7 @@ void Standing::add_particles() {
 }
 
 /// sum over bodies of dH/dt . dw/dqdot_i, eq. (9.39); sizes as for particles.
-void Standing::add_rotations() {
+void AffineResidualCache::add_rotations() {
   Interpreter& by_q = now_.by_coordinates(false);
   Interpreter& later = now_.along_time();
   for (const model::Body& body : model_.bodies) {
@@ -152,7 +152,7 @@ void Standing::add_rotations() {
 
 /// d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of the energies that the model states directly. The size of the first term is
 /// the sum of the sizes of its part in qddot and of the remainder.
-void Standing::add_energies() {
+void AffineResidualCache::add_energies() {
   if (model_.energy.kinetic != model::no_node) {
     Interpreter& later = now_.along_time().by_rates();
     const Jet momenta = later.scalar(model_.energy.kinetic);
@@ -178,22 +178,22 @@ void Standing::add_energies() {
   }
 }
 
-const std::vector<Real>& Standing::row(std::size_t constraint) {
+const std::vector<Real>& AffineResidualCache::row(std::size_t constraint) {
   if (row_[constraint]) return *row_[constraint];
-  const bool positions = judge_.holonomic(constraint);
+  const bool positions = oracle_.holonomic(constraint);
   Interpreter& varied = positions ? now_.by_coordinates(false) : now_.by_rates();
-  const Jet value = varied.scalar(judge_.constraints()[constraint]);
+  const Jet value = varied.scalar(oracle_.constraints()[constraint]);
   std::vector<Real> result(state.q.size(), Real(0));
   for (const std::size_t i : value.directions(varied.level())) result[i] = value.slope(varied.level(), i).real();
   return row_[constraint].emplace(std::move(result));
 }
 
-const Standing::Along& Standing::along(std::size_t constraint) {
+const AffineResidualCache::Along& AffineResidualCache::along(std::size_t constraint) {
   if (along_[constraint]) return *along_[constraint];
   Interpreter& later = now_.along_time();
-  const Jet value = later.scalar(judge_.constraints()[constraint]);
+  const Jet value = later.scalar(oracle_.constraints()[constraint]);
   Along result;
-  if (judge_.holonomic(constraint)) {
+  if (oracle_.holonomic(constraint)) {
     result.psi = value.real();
     result.rate = value.slope(later.level(), 0).real();
   } else {
@@ -202,11 +202,11 @@ const Standing::Along& Standing::along(std::size_t constraint) {
   return along_[constraint].emplace(std::move(result));
 }
 
-const Real& Standing::second(std::size_t constraint) {
+const Real& AffineResidualCache::second(std::size_t constraint) {
   if (second_[constraint]) return *second_[constraint];
   Interpreter& later = now_.along_time();
-  const model::NodeId expression = judge_.constraints()[constraint];
-  if (!judge_.holonomic(constraint))
+  const model::NodeId expression = oracle_.constraints()[constraint];
+  if (!oracle_.holonomic(constraint))
     return second_[constraint].emplace(later.scalar(expression).slope(later.level(), 0).real());
   Interpreter& twice = later.along_time();
   return second_[constraint].emplace(twice.scalar(expression).slope(twice.level(), 0).slope(later.level(), 0).real());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The formulations of generator/derive/routes/registry.inc: none includes another, and their shared files are those
+// The formulations of generator/derive/formulations/registry.inc: none includes another, and their shared files are those
 // listed in docs/architecture.md.
 #include <doctest/doctest.h>
 
@@ -30,8 +30,8 @@ std::vector<std::string> matches(const std::string& text, const std::regex& patt
 }
 
 Names registered() {
-  static const std::regex line(R"(\nROUTE\((\w+)\))");
-  const std::vector<std::string> names = matches(read_text(derive / "routes" / "registry.inc"), line);
+  static const std::regex line(R"(\nFORMULATION\((\w+)\))");
+  const std::vector<std::string> names = matches(read_text(derive / "formulations" / "registry.inc"), line);
   return {names.begin(), names.end()};
 }
 
@@ -50,7 +50,7 @@ void reach(const std::string& stem, Names& reached) {
     if (!fs::exists(file)) continue;
     for (const Include& include : parse_includes(read_text(file))) {
       const std::string next = include.quoted ? stem_in_derive(include.path) : "";
-      if (!next.empty() && next != "routes" && reached.insert(next).second) reach(next, reached);
+      if (!next.empty() && next != "formulations" && reached.insert(next).second) reach(next, reached);
     }
   }
 }
@@ -58,32 +58,32 @@ void reach(const std::string& stem, Names& reached) {
 /// The files that several formulations use, by the set of these formulations.
 std::map<Names, Names> shared_files() {
   std::map<std::string, Names> users;
-  for (const std::string& route : registered()) {
+  for (const std::string& formulation : registered()) {
     Names reached;
-    reach("routes/" + route, reached);
+    reach("formulations/" + formulation, reached);
     for (const std::string& stem : reached) {
-      if (stem != "routes/" + route) users[stem].insert(route);
+      if (stem != "formulations/" + formulation) users[stem].insert(formulation);
     }
   }
   std::map<Names, Names> shared;
-  for (const auto& [stem, routes] : users) {
-    if (routes.size() > 1) shared[routes].insert(stem);
+  for (const auto& [stem, formulations] : users) {
+    if (formulations.size() > 1) shared[formulations].insert(stem);
   }
   return shared;
 }
 
-/// The table of docs/architecture.md, "What routes share".
+/// The table of docs/architecture.md, "What formulations share".
 std::map<Names, Names> documented_files() {
   const std::string text = read_text(derive.parent_path().parent_path() / "docs" / "architecture.md");
-  const std::size_t begin = text.find("\n## What routes share\n");
+  const std::size_t begin = text.find("\n## What formulations share\n");
   REQUIRE(begin != std::string::npos);
   const std::string section = text.substr(begin, text.find("\n## ", begin + 1) - begin);
   static const std::regex row(R"(\n\| *([^|]+\|[^|]+)\|)"), word("`([^`]+)`");
   std::map<Names, Names> rows;
   for (const std::string& line : matches(section, row)) {
     const std::size_t bar = line.find('|');
-    const std::vector<std::string> routes = matches(line.substr(0, bar), word), files = matches(line.substr(bar), word);
-    if (!files.empty()) rows[{routes.begin(), routes.end()}] = {files.begin(), files.end()};
+    const std::vector<std::string> formulations = matches(line.substr(0, bar), word), files = matches(line.substr(bar), word);
+    if (!files.empty()) rows[{formulations.begin(), formulations.end()}] = {files.begin(), files.end()};
   }
   return rows;
 }
@@ -96,30 +96,30 @@ std::string text_of(const Names& names) {
 
 std::string text_of(const std::map<Names, Names>& rows) {
   std::string text;
-  for (const auto& [routes, files] : rows) text += text_of(routes) + ": " + text_of(files) + "\n";
+  for (const auto& [formulations, files] : rows) text += text_of(formulations) + ": " + text_of(files) + "\n";
   return text;
 }
 
 }  // namespace
 
 TEST_CASE("every formulation of the registry has its file, and every file of a formulation is in the registry") {
-  const Names routes = registered();
-  REQUIRE(routes.size() >= 6);
+  const Names formulations = registered();
+  REQUIRE(formulations.size() >= 6);
   Names files;
-  for (const fs::path& file : files_below(derive / "routes", {".cpp"})) files.insert(file.stem().string());
-  CHECK(text_of(routes) == text_of(files));
+  for (const fs::path& file : files_below(derive / "formulations", {".cpp"})) files.insert(file.stem().string());
+  CHECK(text_of(formulations) == text_of(files));
 }
 
 TEST_CASE("the formulations never include each other, so that their agreement is evidence") {
-  const Names routes = registered();
-  for (const std::string& route : routes) {
-    REQUIRE(fs::exists(derive / "routes" / (route + ".cpp")));
+  const Names formulations = registered();
+  for (const std::string& formulation : formulations) {
+    REQUIRE(fs::exists(derive / "formulations" / (formulation + ".cpp")));
     Names reached;
-    reach("routes/" + route, reached);
+    reach("formulations/" + formulation, reached);
     CHECK(reached.contains("equations"));  // the include lines are found
-    for (const std::string& other : routes) {
-      INFO(route << " and " << other);
-      CHECK((other == route || !reached.contains("routes/" + other)));
+    for (const std::string& other : formulations) {
+      INFO(formulation << " and " << other);
+      CHECK((other == formulation || !reached.contains("formulations/" + other)));
     }
   }
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "derive/equations.hpp"
-#include "derive/routes.hpp"
+#include "derive/formulations.hpp"
 #include "symbolic/polynomial.hpp"
 
 namespace eomgen::derive {
@@ -113,7 +113,7 @@ std::optional<system::EquationSystem> by_christoffel(Mechanics& m, system::Appro
 
 }  // namespace
 
-RouteEntry route::christoffel() {
+FormulationEntry formulation::christoffel() {
   return {.name = "christoffel",
           .title = "M(q), Christoffel symbols of the first kind, expanded",
           .applies = "applies to small models whose kinetic energy stays short when it is multiplied out",
