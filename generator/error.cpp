@@ -19,7 +19,7 @@ std::string printable(const std::string& line) {
 }
 
 // Only the surroundings of the place are shown of a long line.
-std::string source_excerpt(const Where& where) {
+std::string source_excerpt(const SourceLocation& where) {
   constexpr std::size_t window = 100;
   std::string line = printable(where.text);
   std::size_t caret = where.column > 0 ? where.column - 1 : 0;
@@ -34,7 +34,7 @@ std::string source_excerpt(const Where& where) {
                      std::string(caret, ' '), std::string(length - 1, '~'));
 }
 
-std::string report(const char* grade, const Where& where, const std::string& message, const std::string& remedy) {
+std::string report(const char* grade, const SourceLocation& where, const std::string& message, const std::string& remedy) {
   std::string result;
   if (!where.file.empty()) result += printable(where.file) + ":";
   if (where.line > 0) result += fmt::format("{}:{}:", where.line, where.column);
@@ -47,7 +47,7 @@ std::string report(const char* grade, const Where& where, const std::string& mes
 
 }  // namespace
 
-Error::Error(std::string stage, Where where, std::string what, std::string remedy, Fault fault)
+Error::Error(std::string stage, SourceLocation where, std::string what, std::string remedy, ErrorKind fault)
     : stage_(std::move(stage)),
       where_(std::move(where)),
       message_(std::move(what)),
@@ -57,10 +57,10 @@ Error::Error(std::string stage, Where where, std::string what, std::string remed
 
 int Error::exit_code() const noexcept {
   switch (fault_) {
-    case Fault::check: return 1;
-    case Fault::input: return 2;
-    case Fault::numerical: return 3;
-    case Fault::tool: return 4;
+    case ErrorKind::check: return 1;
+    case ErrorKind::input: return 2;
+    case ErrorKind::numerical: return 3;
+    case ErrorKind::tool: return 4;
   }
   return 2;
 }

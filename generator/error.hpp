@@ -9,7 +9,7 @@
 namespace eomgen {
 
 /// A place in a user's file. Line and column count from 1; 0 means unknown. `text` is the whole source line.
-struct Where {
+struct SourceLocation {
   std::string file;
   std::uint32_t line = 0;
   std::uint32_t column = 0;
@@ -18,7 +18,7 @@ struct Where {
 };
 
 /// The kind of a failure. It determines the exit code (docs/commands.md).
-enum class Fault {
+enum class ErrorKind {
   input,      ///< exit 2: the model file or the command line is wrong
   check,      ///< exit 1: a check failed
   numerical,  ///< exit 3: a run failed numerically
@@ -27,30 +27,30 @@ enum class Fault {
 
 class Error : public std::exception {
  public:
-  Error(std::string stage, Where where, std::string what, std::string remedy, Fault fault = Fault::input);
+  Error(std::string stage, SourceLocation where, std::string what, std::string remedy, ErrorKind fault = ErrorKind::input);
 
   /// "file:line:col: error: ...", the source line, a caret under the place, and the remedy.
   const char* what() const noexcept override { return report_.c_str(); }
 
   const std::string& stage() const noexcept { return stage_; }
-  const Where& where() const noexcept { return where_; }
+  const SourceLocation& where() const noexcept { return where_; }
   const std::string& message() const noexcept { return message_; }
   const std::string& remedy() const noexcept { return remedy_; }
-  Fault fault() const noexcept { return fault_; }
+  ErrorKind fault() const noexcept { return fault_; }
   int exit_code() const noexcept;
 
  private:
   std::string stage_;
-  Where where_;
+  SourceLocation where_;
   std::string message_;
   std::string remedy_;
-  Fault fault_;
+  ErrorKind fault_;
   std::string report_;
 };
 
 /// A warning. format_warning uses the layout of Error::what; the program continues.
 struct Warning {
-  Where where;
+  SourceLocation where;
   std::string message;
   std::string remedy;
 };

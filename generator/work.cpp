@@ -40,26 +40,26 @@ bool stop_requested() noexcept {
 
 Listener::Listener(const std::atomic<bool>* asked) noexcept : stop_(asked), around_(std::exchange(listener, this)) {}
 Listener::~Listener() { listener = around_; }
-void Listener::begins(const char*) {}
-void Listener::warns(const std::string&) {}
+void Listener::on_stage(const char*) {}
+void Listener::on_warning(const std::string&) {}
 
 void warn(const std::string& text) {
-  if (listener != nullptr) listener->warns(text);
+  if (listener != nullptr) listener->on_warning(text);
 }
 
 const std::atomic<bool>& stop_flag() noexcept {
   return listener != nullptr && listener->stop_ != nullptr ? *listener->stop_ : stop;
 }
 
-void check() {
+void throw_if_stopped() {
   if (stop_requested()) throw Interrupted{};
 }
 
 void consume_budget(std::size_t operations) {
-  check();
+  throw_if_stopped();
   if (operations > left) {
     left = 0;
-    throw OverBudget("more operations than are spent on it");
+    throw BudgetExceeded("more operations than are spent on it");
   }
   left -= operations;
 }
@@ -68,7 +68,7 @@ Budget::Budget(std::size_t operations) : around_(left), given_(std::min(operatio
 Budget::~Budget() { left = around_ - (given_ - left); }
 
 Stage::Stage(const char* name) : around_(under_way.exchange(name)) {
-  if (listener != nullptr) listener->begins(name);
+  if (listener != nullptr) listener->on_stage(name);
 }
 Stage::~Stage() {
   under_way.store(around_);
@@ -77,7 +77,7 @@ Stage::~Stage() {
 
 void show_line(const char* text) {
   const std::lock_guard lock(line);
-  if (stage() == nullptr || keeping != 0) return;
+  if (current_stage() == nullptr || keeping != 0) return;
   std::fprintf(stderr, "\r\033[K%s", text);
   std::fflush(stderr);
   line_is_shown = true;
@@ -89,6 +89,6 @@ void clear_line() noexcept {
   line_is_shown = false;
 }
 
-const char* stage() noexcept { return under_way.load(); }
+const char* current_stage() noexcept { return under_way.load(); }
 
 }  // namespace eomgen::work

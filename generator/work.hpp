@@ -22,7 +22,7 @@ struct LeftOut {
 };
 
 /// Thrown by work::spend when a budget is exhausted.
-struct OverBudget : std::length_error {
+struct BudgetExceeded : std::length_error {
   using std::length_error::length_error;
 };
 
@@ -51,9 +51,9 @@ class Listener {
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
   /// Called at the start of each stage.
-  virtual void begins(const char* stage);
+  virtual void on_stage(const char* stage);
   /// Called with each warning, as formatted by format_warning.
-  virtual void warns(const std::string& text);
+  virtual void on_warning(const std::string& text);
 
  private:
   friend bool stop_requested() noexcept;
@@ -67,10 +67,10 @@ void warn(const std::string& text);
 const std::atomic<bool>& stop_flag() noexcept;
 
 /// Subtracts operations from the current budget; one operation takes between ten nanoseconds and a microsecond.
-/// Throws Interrupted, OverBudget.
+/// Throws Interrupted, BudgetExceeded.
 void consume_budget(std::size_t operations);
 /// Throws Interrupted after a request to stop.
-void check();
+void throw_if_stopped();
 
 /// Limits the operations of this thread while it exists: to `operations`, or to the rest of the enclosing budget if
 /// that is less. The count is the same on every machine.
@@ -97,7 +97,7 @@ class Stage {
   const char* around_;
 };
 /// The name of the innermost stage; nullptr outside of stages.
-const char* stage() noexcept;
+const char* current_stage() noexcept;
 
 /// Shows a progress line on a terminal, in place of the previous one. The end of the outermost stage clears it. Nothing
 /// is shown outside of stages, or while interruption is deferred.

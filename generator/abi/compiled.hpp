@@ -13,7 +13,7 @@
 namespace eomgen::abi {
 
 /// The arguments of a compiled function. A function reads only those that it takes.
-struct Given {
+struct CallArguments {
   double t = 0;
   const double *x = nullptr, *p = nullptr, *w = nullptr, *u = nullptr;
   int mode = 0, order = 0, to = 0;
@@ -23,7 +23,7 @@ struct Given {
 constexpr std::size_t count(std::initializer_list<Result> results) { return results.size(); }
 
 template <Input input>
-constexpr auto handed(const Given& given) {
+constexpr auto argument(const CallArguments& given) {
   if constexpr (input == Input::time)
     return given.t;
   else if constexpr (input == Input::state)
@@ -43,25 +43,25 @@ constexpr auto handed(const Given& given) {
 }
 
 template <Input... inputs>
-struct Takes {
+struct Signature {
   template <std::size_t... result>
-  static int call(auto function, const Given& given, std::index_sequence<result...>) {
-    return function(handed<inputs>(given)..., given.results[result]...);
+  static int call(auto function, const CallArguments& given, std::index_sequence<result...>) {
+    return function(argument<inputs>(given)..., given.results[result]...);
   }
   template <std::size_t... result>
   static auto pointer(std::index_sequence<result...>)
-      -> int (*)(decltype(handed<inputs>(Given{}))..., decltype(std::get<result>(Given{}.results) + 0)...);
+      -> int (*)(decltype(argument<inputs>(CallArguments{}))..., decltype(std::get<result>(CallArguments{}.results) + 0)...);
 };
 
 /// The pointer type of a function with these inputs and this number of result arrays.
 template <class Inputs, std::size_t results>
-using Pointer = decltype(Inputs::pointer(std::make_index_sequence<results>{}));
+using FunctionPointer = decltype(Inputs::pointer(std::make_index_sequence<results>{}));
 
 /// Pointers to all functions of the table; null if the code lacks a function.
-struct Compiled {
-#define TAKES(...) Takes<__VA_ARGS__>
-#define GIVES(...) count({__VA_ARGS__})
-#define ABI_FUNCTION(name, takes, gives, comes, purpose) Pointer<takes, gives> name = nullptr;
+struct CompiledFunctions {
+#define INPUTS(...) Signature<__VA_ARGS__>
+#define RESULTS(...) count({__VA_ARGS__})
+#define ABI_FUNCTION(name, signature, result_count, comes, purpose) FunctionPointer<signature, result_count> name = nullptr;
   using enum Input;
 #include "abi/functions.inc"
 #undef ABI_FUNCTION
@@ -69,13 +69,13 @@ struct Compiled {
   /// Calls visit(name, pointer) for each function, with a reference to the pointer.
   template <class Visit>
   void each(Visit&& visit) {
-#define ABI_FUNCTION(name, takes, gives, comes, purpose) visit(#name, name);
+#define ABI_FUNCTION(name, signature, result_count, comes, purpose) visit(#name, name);
 #include "abi/functions.inc"
 #undef ABI_FUNCTION
   }
 
   bool has(std::string_view function) const {
-#define ABI_FUNCTION(name, takes, gives, comes, purpose) \
+#define ABI_FUNCTION(name, signature, result_count, comes, purpose) \
   if (function == #name) return name != nullptr;
 #include "abi/functions.inc"
 #undef ABI_FUNCTION
@@ -83,15 +83,15 @@ struct Compiled {
   }
 
   /// Calls the function of this name, which must not be null, and returns its code.
-  int call(std::string_view function, const Given& given) const {
-#define ABI_FUNCTION(name, takes, gives, comes, purpose) \
-  if (function == #name) return takes::call(name, given, std::make_index_sequence<gives>{});
+  int call(std::string_view function, const CallArguments& given) const {
+#define ABI_FUNCTION(name, signature, result_count, comes, purpose) \
+  if (function == #name) return signature::call(name, given, std::make_index_sequence<result_count>{});
 #include "abi/functions.inc"
 #undef ABI_FUNCTION
     return -1;
   }
-#undef GIVES
-#undef TAKES
+#undef RESULTS
+#undef INPUTS
 };
 
 }  // namespace eomgen::abi

@@ -9,17 +9,17 @@ namespace {
 std::vector<Function> all() {
   using enum Input;
   using enum Availability;
-#define TAKES(...) \
+#define INPUTS(...) \
   std::vector<Input> { __VA_ARGS__ }
-#define GIVES(...) \
+#define RESULTS(...) \
   std::vector<Result> { __VA_ARGS__ }
 #define ABI_FUNCTION(name, takes, gives, comes, purpose) {#name, takes, gives, comes, purpose},
   return {
 #include "abi/functions.inc"
   };
 #undef ABI_FUNCTION
-#undef GIVES
-#undef TAKES
+#undef RESULTS
+#undef INPUTS
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ const char* name(Input input) {
   return "to";
 }
 
-bool Function::takes(Input input) const { return std::find(inputs.begin(), inputs.end(), input) != inputs.end(); }
+bool Function::has_input(Input input) const { return std::find(inputs.begin(), inputs.end(), input) != inputs.end(); }
 
 const std::vector<Function>& functions() {
   static const std::vector<Function> table = all();
@@ -51,10 +51,10 @@ const Function* find(std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-std::vector<std::string> asked_for() {
+std::vector<std::string> optional_functions() {
   std::vector<std::string> names;
   for (const Function& function : functions()) {
-    if (function.availability == Availability::with || function.availability == Availability::with_outputs) names.push_back(function.name);
+    if (function.availability == Availability::on_request || function.availability == Availability::with_outputs) names.push_back(function.name);
   }
   return names;
 }

@@ -17,8 +17,8 @@ const char* name(Input input);
 /// When a function is emitted.
 enum class Availability : std::uint8_t {
   always,
-  where_it_saves,  // if some part is worth computing only once
-  with,            // emit --with NAME
+  when_beneficial,  // if some part is worth computing only once
+  on_request,      // emit --with NAME
   with_outputs,    // emit --output NAMES, or --with outputs
   with_charts      // emit --with charts
 };
@@ -36,7 +36,7 @@ struct Function {
   Availability availability = Availability::always;
   std::string purpose;
 
-  bool takes(Input input) const;
+  bool has_input(Input input) const;
 };
 
 const std::vector<Function>& functions();
@@ -45,7 +45,7 @@ const std::vector<Function>& functions();
 const Function* find(std::string_view name);
 
 /// Names of the functions that are emitted on request: --with NAME.
-std::vector<std::string> asked_for();
+std::vector<std::string> optional_functions();
 
 /// The prototype as printed in docs/abi.md: "int NAME_rhs(double t, const double* x, ...)".
 std::string prototype(const Function& function, const std::string& name);

@@ -68,7 +68,7 @@ void draw(Mechanics& m, const system::EquationSystem& system, print::Findings& f
   try {
     findings.figure = figure(m, run::resolve_scene(m, system, m.model->scene("default"), {}));
   } catch (const Error& error) {
-    if (error.fault() == Fault::check) throw;
+    if (error.fault() == ErrorKind::check) throw;
     findings.left_out.push_back({"the figure", error.message()});
   }
 }
@@ -116,7 +116,7 @@ void look_for_steady_motions(const Mechanics& m, const DisplayForm& two, std::ui
     for (const SteadyMotion& motion : found.points) findings.steady.push_back(finding(found.problem, motion));
     for (const HeldValue& h : found.held) findings.held.emplace_back(h.name, h.value);
   } catch (const Error& error) {
-    if (error.fault() == Fault::check) throw;
+    if (error.fault() == ErrorKind::check) throw;
     findings.no_steady = error.message();
   }
 }

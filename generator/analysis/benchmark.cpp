@@ -45,7 +45,7 @@ void require_smooth(const Simulation& simulation, const run::RunRequest& request
   throw Error("bench", {},
               fmt::format("the run ends at t = {} with '{}' {}", end.t, eom::name(end.outcome), end.detail),
               "give an end before that: --t-end",
-              end.outcome == eom::Outcome::stopped_by_event ? Fault::input : Fault::numerical);
+              end.outcome == eom::Outcome::stopped_by_event ? ErrorKind::input : ErrorKind::numerical);
 }
 
 reference::Problem problem_of(const Simulation& simulation, const run::RunRequest& request,

@@ -28,7 +28,7 @@ void require_keys(const std::vector<std::string>& show) {
   for (const std::string& key : show) {
     if (std::find(equation_keys().begin(), equation_keys().end(), key) == equation_keys().end()) {
       throw Error("derive", {}, fmt::format("there is nothing called {} to show", model::quote(key)),
-                  model::choice_of(key, equation_keys()));
+                  model::suggest_choice(key, equation_keys()));
     }
   }
 }

@@ -112,7 +112,7 @@ void add_singular(const mechanics::Mechanics& m, Examination& found) {
 }
 
 void add_charts(const mechanics::Mechanics& m, Examination& found) {
-  for (const model::SwitchedChart& chart : pipeline::charts_of(m)) {
+  for (const model::ChartPair& chart : pipeline::charts_of(m)) {
     ExaminedChart one{chart.of, chart.own, chart.second, {}, chart.refusal};
     for (const std::uint32_t q : chart.angles) one.angles.push_back(m.model->coordinates[q].name);
     found.charts.push_back(std::move(one));
@@ -152,10 +152,10 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
                                 p.written});
   }
   for (const model::Input& input : model.inputs) {
-    const bool given = input.fallback != model::no_node;
+    const bool given = input.default_value != model::no_node;
     found.inputs.push_back({input.name, unit_of(input),
-                            given ? value_of(m, mechanics::lower_scalar(m, input.fallback),
-                                             fmt::format("input '{}'", input.name), m.model->arena[input.fallback].span)
+                            given ? value_of(m, mechanics::lower_scalar(m, input.default_value),
+                                             fmt::format("input '{}'", input.name), m.model->arena[input.default_value].span)
                                   : "0",
                             ""});
   }

@@ -49,7 +49,7 @@ class Directions {
     }
     std::vector<std::string> known = state_names;
     for (const model::Parameter& p : model.parameters) known.push_back(p.name);
-    refuse("there is no parameter or coordinate '" + name + "'", model::choice_of(name, known));
+    refuse("there is no parameter or coordinate '" + name + "'", model::suggest_choice(name, known));
   }
 
  private:

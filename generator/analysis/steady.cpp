@@ -27,7 +27,7 @@ void require_one_mode(const std::string& command, const Derived& derived) {
   const auto& contacts = derived.candidates.front().contacts;
   if (contacts.empty()) return;
   const model::Model& model = derived.model;
-  Where where{model.file, 0, 0, 1, ""};
+  SourceLocation where{model.file, 0, 0, 1, ""};
   for (const model::Constraint& c : model.constraints) {
     if (c.name == contacts.front().name) where = model.where(c.span);
   }
@@ -79,7 +79,7 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
     throw Error(
         command, {},
         fmt::format("the run ends at t = {} with '{}', before t = {}", run.result.t, eom::name(run.result.outcome), t),
-        fmt::format("give --at a time between {} and {}", scene.t0, run.result.t), Fault::numerical);
+        fmt::format("give --at a time between {} and {}", scene.t0, run.result.t), ErrorKind::numerical);
   }
   const auto value = [&run](const std::string& name) {
     for (const auto& [key, number] : run.result.final) {
@@ -103,7 +103,7 @@ Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, c
   setting.parameters =
       run::exact_parameters(d.mechanics, d.model.scene(p.scene.name), overrides, linear::digits + 20, moved);
   for (std::size_t i = 0; i < setting.parameters.size(); ++i) {
-    if (d.model.parameters[i].start_of || i == d.model.start_time)
+    if (d.model.parameters[i].initial_value_of || i == d.model.start_time)
       setting.parameters[i] = numeric::exact(p.scene.parameters[i]);
     setting.parameters[i] = linear::number<Precise>(setting.parameters[i]);
   }
@@ -166,7 +166,7 @@ Source without_slope(const SteadyProblem& p, const linear::State<Precise>& z) {
   symbolic::Substitution imposed = derive::impose(d.mechanics), written = derive::write_out(d.mechanics);
   const auto fails = [&](std::vector<symbolic::Ref> list, symbolic::Ref energy) {
     for (const symbolic::Symbol& s : p.flow->symbols()) {
-      if (s.order == 0) list.push_back(symbolic::partial(dag, s)(written(imposed(energy))));
+      if (s.order == 0) list.push_back(symbolic::partial_derivative(dag, s)(written(imposed(energy))));
     }
     for (symbolic::Ref& r : list) r = written(imposed(r));
     try {

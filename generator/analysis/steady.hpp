@@ -34,7 +34,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
 /// A term that is not differentiable at a state: a force, an energy or a constraint of the model. `what`: start of a
 /// sentence, "'F' has" or, if no single term is found, "the equations of motion have".
 struct Source {
-  Where where;
+  SourceLocation where;
   std::string what;
 };
 Source without_slope(const SteadyProblem& problem, const linear::State<linear::Precise>& z);

@@ -77,7 +77,7 @@ std::vector<Quantity> candidates(const SteadyProblem& p, bool energies) {
   std::vector<Quantity> result, momenta;
   symbolic::Ref jacobi = dag.sub(s.potential, s.kinetic);
   for (const std::uint32_t i : s.free) {
-    const symbolic::Ref momentum = symbolic::partial(dag, {SymbolKind::coordinate, i, 1})(s.kinetic);
+    const symbolic::Ref momentum = symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 1})(s.kinetic);
     momenta.push_back({"momentum." + p.derived->model.coordinates[i].name, momentum});
     jacobi = dag.add(jacobi, dag.mul(momentum, m.qdot[i]));
   }
@@ -135,8 +135,8 @@ void name_attitudes(SteadyProblem& p, linear::SearchRequest& search) {
     const model::Frame& frame = model.frames[f];
     if (frame.rotation == "euler_parameters") {
       if (const auto places = places_of<4>(p, frame)) search.parameters.push_back(*places);
-    } else if (frame.regular != model::no_node) {
-      const symbolic::Ref regular = written(imposed(mechanics::lower_scalar(p.derived->mechanics, frame.regular)));
+    } else if (frame.singularity != model::no_node) {
+      const symbolic::Ref regular = written(imposed(mechanics::lower_scalar(p.derived->mechanics, frame.singularity)));
       if (const auto places = places_of<3>(p, frame)) search.euler.push_back({*places, regular});
     }
   }
@@ -284,7 +284,7 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
     require_not_ignored(result, request);
     if (result.search.points.empty()) require_ends(result);
     if (!result.search.symmetry.autonomous) {
-      throw Error(command, Where{model.file, 0, 0, 1, ""}, "the accelerations depend on t: no motion stays what it is",
+      throw Error(command, SourceLocation{model.file, 0, 0, 1, ""}, "the accelerations depend on t: no motion stays what it is",
                   "eomgen linearize gives A(t) along a motion");
     }
     for (const std::size_t i : result.search.held) {

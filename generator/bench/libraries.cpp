@@ -72,7 +72,7 @@ struct Calls {
 class Loaded {
  public:
   explicit Loaded(const std::string& path) : handle_(::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
-    if (handle_ == nullptr) throw Error("bench", {}, "cannot load " + path, "install the library anew", Fault::tool);
+    if (handle_ == nullptr) throw Error("bench", {}, "cannot load " + path, "install the library anew", ErrorKind::tool);
   }
   ~Loaded() { ::dlclose(handle_); }
   Loaded(const Loaded&) = delete;

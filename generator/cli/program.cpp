@@ -62,7 +62,7 @@ void take_closed_streams() {
 /// Prints warnings of the stages to standard error.
 class Teller : public work::Listener {
  public:
-  void warns(const std::string& text) override { tell(text); }
+  void on_warning(const std::string& text) override { tell(text); }
 };
 
 }  // namespace
@@ -86,7 +86,7 @@ int run_program(std::span<char* const> typed, const char* name, std::span<const 
   tell_interrupted(nullptr);
   return exit_interrupted;
 } catch (const cln::floating_point_exception&) {
-  return report(Error("numbers", Where{}, "a value of this model is beyond what binary64 holds (1e308 in size)",
+  return report(Error("numbers", SourceLocation{}, "a value of this model is beyond what binary64 holds (1e308 in size)",
                       "use units in which its masses, lengths and times are nearer to 1"));
 } catch (const std::bad_alloc&) {
   tell("error: out of memory\n  remedy: make the model smaller\n");

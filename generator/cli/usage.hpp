@@ -11,7 +11,7 @@
 
 namespace eomgen::cli {
 
-using model::choice_of;
+using model::suggest_choice;
 
 /// Throws Error if the first word is not a command. The remedy is the nearest command, or commands for a model.
 void require_command(std::span<char* const> words, const std::vector<std::string>& commands);

@@ -58,7 +58,7 @@ void Watch::look() {
   std::unique_lock lock(mutex_);
   while (!ended_.wait_for(lock, interval, [this] { return end_; })) {
     const Clock::time_point now = Clock::now();
-    const char* stage = work::stage();
+    const char* stage = work::current_stage();
     if (!work::stop_requested())
       asked = {};
     else if (asked == Clock::time_point{})

@@ -121,7 +121,7 @@ Circulation circulation(mechanics::Mechanics& m, const std::vector<Ref>& Q, cons
     symbolic::Substitution turned = paths.turn(i);
     const Ref work = dag.sub(potential->U, turned(potential->U));
     if (mechanics::vanishes(dag, {work})) continue;
-    return {Circulation::Answer::some, "one turn of " + name, symbolic::tidy(dag, work)};
+    return {Circulation::Answer::some, "one turn of " + name, symbolic::expand_or_keep(dag, work)};
   }
   if (domain_of(m, Q).empty() || (potential && !has_branches(dag, potential->U))) return result;
   if (others.size() < 2 && result.answer == Circulation::Answer::none) return result;  // a line has no closed paths

@@ -54,8 +54,8 @@ class Classifier {
     std::vector<Ref> curl;
     for (std::uint32_t i = 0; i < Q_.size(); ++i) {
       for (std::uint32_t k = i + 1; k < Q_.size(); ++k) {
-        const Ref ik = symbolic::partial(dag_, {SymbolKind::coordinate, k, 0})(Q_[i]);
-        const Ref ki = symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(Q_[k]);
+        const Ref ik = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, k, 0})(Q_[i]);
+        const Ref ki = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0})(Q_[k]);
         curl.push_back(dag_.sub(ik, ki));
       }
     }

@@ -41,9 +41,9 @@ const char* name(Certainty certainty) {
 
 Certainty vanishing(Dag& dag, const std::vector<Ref>& expressions) {
   if (!mechanics::vanishes(dag, expressions)) return Certainty::no;
-  symbolic::Effort effort{proof_effort};
+  symbolic::ProductBudget effort{proof_effort};
   symbolic::Expander expander(dag, proof_terms, &effort);
-  const auto is_empty = [&](Ref r) { return dag.is_zero(r) || dag.is_zero(expander.tidy(r)); };
+  const auto is_empty = [&](Ref r) { return dag.is_zero(r) || dag.is_zero(expander.expand_or_keep(r)); };
   return std::all_of(expressions.begin(), expressions.end(), is_empty) ? Certainty::proven : Certainty::numerical;
 }
 
@@ -74,7 +74,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   const auto offer = [&s](const Conserved& c) { s.outputs.push_back({c.name, c.expression, c.kind, c.index, c.part}); };
   const bool hit =
       std::any_of(m.contacts.begin(), m.contacts.end(), [](const mechanics::Contact& c) { return c.unilateral; });
-  symbolic::Derivation by_time = symbolic::explicit_time(dag, m.model->functions.size());
+  symbolic::Derivation by_time = symbolic::explicit_time_derivative(dag, m.model->functions.size());
   std::vector<Ref> power{s.power};
   for (const Ref surface : jump_surfaces(dag, {s.energy})) power.push_back(by_time(surface));
   if (const Certainty c = hit ? Certainty::no : vanishing(dag, power); c != Certainty::no)
@@ -91,12 +91,12 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   Ref input_power = dag.zero();
   for (std::size_t row = 0; row < s.free.size(); ++row) {
     const std::uint32_t i = s.free[row];
-    const Ref p = symbolic::partial(dag, {SymbolKind::coordinate, i, 1})(L);
+    const Ref p = symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 1})(L);
     const Ref force = written(imposed(Q[i]));
     const Ref rate = s.dag->symbol({SymbolKind::coordinate, i, 1});
     jacobi = dag.add(jacobi, dag.mul(rate, p));
     input_power = dag.add(input_power, dag.mul(written(imposed(applied.Q[i])), rate));
-    symbolic::Derivation by = symbolic::partial(dag, {SymbolKind::coordinate, i, 0});
+    symbolic::Derivation by = symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0});
     std::vector<Ref> must_vanish{by(L), force};
     for (const Ref surface : surfaces) must_vanish.push_back(by(surface));
     for (std::size_t k = 0; k < s.active.size(); ++k) must_vanish.push_back(s.A[k * s.free.size() + row]);
@@ -127,7 +127,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
     };
     // Its differential with respect to the free coordinates and t, for the projection.
     for (const std::uint32_t i : s.free) {
-      const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(integral.psi);
+      const Ref slope = symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0})(integral.psi);
       differential(m.model->coordinates[i].name, slope);
     }
     differential("t", written(by_time(integral.psi)));

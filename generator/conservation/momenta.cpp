@@ -44,7 +44,7 @@ bool is_in_range(const std::vector<double>& J, const std::vector<double>& d, std
     }
     size = std::max(size, N(i, i));
   }
-  const numeric::Elimination<double> factors(std::move(N), 1e-10 * size, numeric::Pivots::diagonal);
+  const numeric::Elimination<double> factors(std::move(N), 1e-10 * size, numeric::Pivoting::diagonal);
   if (factors.rank() < n) return false;
   y = factors.solve(right).a;
   double residual = 0, length = 0;
@@ -82,13 +82,13 @@ class Search {
     }
     for (const Vec3& r : r_) {
       for (const Ref x : r) {
-        for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(x));
+        for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0})(x));
       }
     }
     for (const mechanics::Spin& spin : m.spins) {
       w_.push_back(all(spin.w));
       for (const Ref w : w_.back()) {
-        for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 1})(w));
+        for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1})(w));
       }
       H_.push_back(times(dag_, spin, w_.back()));
       axes_.push_back({all(spin.axes[0]), all(spin.axes[1]), all(spin.axes[2])});
@@ -98,12 +98,12 @@ class Search {
     J_.insert(J_.end(), s.A.begin(), s.A.end());
     const std::vector<Ref> Q = generalized_forces(m);
     for (const std::uint32_t i : s.free) {
-      const Ref slope = symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(s.potential);
+      const Ref slope = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0})(s.potential);
       force_.push_back(dag_.sub(written(imposed(Q[i])), slope));
     }
     for (const Ref surface : jump_surfaces(dag_, {s.kinetic, s.potential})) {
       for (const std::uint32_t i : s.free)
-        across_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(surface));
+        across_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0})(surface));
     }
   }
 
@@ -204,7 +204,7 @@ class Search {
 
   /// J^T J.
   symbolic::Factorisation factorised() {
-    symbolic::Effort effort{gram_effort};
+    symbolic::ProductBudget effort{gram_effort};
     symbolic::Expander expand(dag_, gram_terms, &effort);
     std::vector<Ref> N(n_ * n_, dag_.zero());
     const std::size_t rows = J_.size() / n_;
@@ -212,7 +212,7 @@ class Search {
       for (std::size_t k = 0; k <= i; ++k) {
         Ref sum = dag_.zero();
         for (std::size_t r = 0; r < rows; ++r) sum = dag_.add(sum, dag_.mul(J_[r * n_ + i], J_[r * n_ + k]));
-        N[i * n_ + k] = N[k * n_ + i] = expand.tidy(sum);  // diagonal for orthogonal coordinates
+        N[i * n_ + k] = N[k * n_ + i] = expand.expand_or_keep(sum);  // diagonal for orthogonal coordinates
       }
     }
     return {dag_, std::move(N), n_, symbolic::Ties::ascending};

@@ -50,7 +50,7 @@ class Search {
  private:
   static constexpr std::size_t most_coordinates = 6;  // more coordinates have too many orders and expressions
 
-  Ref slope(Ref f, std::size_t i) { return symbolic::partial(dag_, coordinate(i))(f); }
+  Ref slope(Ref f, std::size_t i) { return symbolic::partial_derivative(dag_, coordinate(i))(f); }
 
   bool is_potential(Ref U) {
     for (const std::size_t i : active_) {
@@ -62,10 +62,10 @@ class Search {
   std::optional<Ref> along_coordinates(const std::vector<std::size_t>& order) {
     Ref U = dag_.zero();
     for (std::size_t step = 0; step < order.size(); ++step) {
-      std::optional<Ref> rest = symbolic::tidy(dag_, dag_.neg(dag_.add(Q_[order[step]], slope(U, order[step]))));
+      std::optional<Ref> rest = symbolic::expand_or_keep(dag_, dag_.neg(dag_.add(Q_[order[step]], slope(U, order[step]))));
       if (mechanics::vanishes(dag_, {*rest})) continue;
       for (std::size_t before = 0; before < step && rest; ++before)
-        rest = symbolic::without(dag_, *rest, coordinate(order[before]));
+        rest = symbolic::eliminate_symbol(dag_, *rest, coordinate(order[before]));
       if (rest) rest = symbolic::antiderivative(dag_, *rest, coordinate(order[step]));
       if (!rest) return std::nullopt;
       U = dag_.add(U, *rest);
@@ -89,7 +89,7 @@ class Search {
     const Ref k_plus_1 = dag_.constant(symbolic::Rational(static_cast<long>(doubled) + 2) / 2);
     const Ref U = dag_.neg(dag_.div(moment, k_plus_1));
     if (!is_potential(U)) return std::nullopt;
-    return symbolic::tidy(dag_, U);
+    return symbolic::expand_or_keep(dag_, U);
   }
 
   mechanics::Mechanics& m_;

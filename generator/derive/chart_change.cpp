@@ -123,20 +123,20 @@ std::vector<Ref> change_of_direction(Dag& dag, const std::vector<std::uint32_t>&
 
 }  // namespace
 
-system::ChartChange chart_change(Dag& dag, const model::Model& model, const model::SwitchedChart& chart) {
+system::ChartChange chart_change(Dag& dag, const model::Model& model, const model::ChartPair& chart) {
   system::ChartChange change{
-      chart.of, chart.own, chart.second, chart.regular(model), chart.angles, chart.guarded, chart.at_sine, true, true,
+      chart.of, chart.own, chart.second, chart.singularity(model), chart.angles, chart.guarded, chart.at_sine, true, true,
       {},       {}};
-  if (chart.kind == model::SwitchedChart::Kind::rotation) {
+  if (chart.kind == model::ChartPair::Kind::rotation) {
     Axes second = chart.axes;
     second[2] = chart.second_axis;
     change.second_at_sine = !chart.at_sine;
-    change.to = change_of_angles(dag, chart.angles, chart.axes, second);
-    change.back = change_of_angles(dag, chart.angles, second, chart.axes);
+    change.to_second = change_of_angles(dag, chart.angles, chart.axes, second);
+    change.to_own = change_of_angles(dag, chart.angles, second, chart.axes);
   } else {
     change.rotation = false;
-    change.to = change_of_direction(dag, chart.angles, 2, 0);
-    change.back = change_of_direction(dag, chart.angles, 0, 2);
+    change.to_second = change_of_direction(dag, chart.angles, 2, 0);
+    change.to_own = change_of_direction(dag, chart.angles, 0, 2);
   }
   return change;
 }

@@ -9,6 +9,6 @@ namespace eomgen::derive {
 
 /// Expresses the attitude or the direction in the one chart and extracts the coordinates of the other. Rates are
 /// converted through the angular velocity or the velocity of the direction.
-system::ChartChange chart_change(symbolic::Dag& dag, const model::Model& model, const model::SwitchedChart& chart);
+system::ChartChange chart_change(symbolic::Dag& dag, const model::Model& model, const model::ChartPair& chart);
 
 }  // namespace eomgen::derive

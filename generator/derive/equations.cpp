@@ -30,7 +30,7 @@ symbolic::Substitution at_rest(const Mechanics& m, const EquationSystem& s) {
 
 void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
   Dag& dag = *m.dag;
-  symbolic::Derivation bias = symbolic::total_time(dag, m.q.size(), m.model->functions.size(), true);
+  symbolic::Derivation bias = symbolic::total_time_derivative(dag, m.q.size(), m.model->functions.size(), true);
   for (const std::uint32_t k : s.active) {
     // The fixed coordinates are imposed first, so that A has only the columns of free coordinates.
     const mechanics::Constraint& constraint = m.constraints[k];
@@ -38,7 +38,7 @@ void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
     s.holonomic.push_back(constraint.holonomic());
     s.psi.push_back(finish(psi));
     for (const std::uint32_t i : s.free) {
-      s.A.push_back(constraint.holonomic() ? finish(symbolic::partial(dag, coordinate(i, 0))(psi))
+      s.A.push_back(constraint.holonomic() ? finish(symbolic::partial_derivative(dag, coordinate(i, 0))(psi))
                                            : finish(constraint.gradient[i]));
     }
     const Ref rate = constraint.holonomic() ? bias(psi) : finish.imposed(m.velocity_form(constraint));  // A qdot + b
@@ -54,10 +54,10 @@ void add_redundant(Mechanics& m, EquationSystem& s, Finish& finish) {
     const mechanics::Constraint& c = m.constraints[k];
     const std::uint8_t order = c.holonomic() ? 0 : 1;
     const Ref psi = finish.imposed(c.holonomic() ? c.psi : m.velocity_form(c));
-    const Ref b = c.holonomic() ? symbolic::explicit_time(*m.dag, m.model->functions.size())(psi) : at_rest(m, s)(psi);
-    system::Watched watched{k, finish(psi), {}, finish(b)};
+    const Ref b = c.holonomic() ? symbolic::explicit_time_derivative(*m.dag, m.model->functions.size())(psi) : at_rest(m, s)(psi);
+    system::RedundantConstraint watched{k, finish(psi), {}, finish(b)};
     for (const std::uint32_t i : s.free)
-      watched.A.push_back(finish(symbolic::partial(*m.dag, coordinate(i, order))(psi)));
+      watched.A.push_back(finish(symbolic::partial_derivative(*m.dag, coordinate(i, order))(psi)));
     s.redundant.push_back(std::move(watched));
   }
 }
@@ -165,7 +165,7 @@ void add_outputs(Mechanics& m, EquationSystem& s) {
   add("kinetic", s.kinetic, OutputKind::kinetic, "J");
   add("potential", s.potential, OutputKind::potential, "J");
   add("power", s.power, OutputKind::power, "W");
-  symbolic::Derivation ddt = symbolic::total_time(*m.dag, m.q.size(), m.model->functions.size());
+  symbolic::Derivation ddt = symbolic::total_time_derivative(*m.dag, m.q.size(), m.model->functions.size());
   for (std::uint32_t i = 1; i < m.model->places.size(); ++i) {
     const Vec3& position = *m.place_position[i];
     const std::string& name = m.model->places[i].name;
@@ -200,7 +200,7 @@ void add_events(Mechanics& m, EquationSystem& s) {
 }
 
 void add_contacts(Mechanics& m, EquationSystem& s, Finish& finish) {
-  symbolic::Derivation ddt = symbolic::total_time(*m.dag, m.q.size(), m.model->functions.size());
+  symbolic::Derivation ddt = symbolic::total_time_derivative(*m.dag, m.q.size(), m.model->functions.size());
   for (const mechanics::Contact& contact : m.contacts) {
     system::Contact result;
     result.name = contact.name;
@@ -242,7 +242,7 @@ void add_slip_outputs(Mechanics& m, std::uint32_t index, EquationSystem& s) {
     s.outputs.push_back(
         {"slip." + name, contact.slip[a], OutputKind::slip, index, a, "", vector ? "slip." + contact.name : ""});
     for (const std::uint32_t i : s.free) {
-      const Ref slope = symbolic::partial(*m.dag, coordinate(i, 1))(contact.slip[a]);
+      const Ref slope = symbolic::partial_derivative(*m.dag, coordinate(i, 1))(contact.slip[a]);
       s.outputs.push_back(
           {"contact.slope." + name + "." + m.model->coordinates[i].name, slope, OutputKind::slip_slope, index, a});
     }
@@ -269,15 +269,15 @@ void add_contact_outputs(Mechanics& m, EquationSystem& s) {
       const std::string vector = "friction." + contact.name;
       s.outputs.push_back({vector + "." + std::to_string(axis + 1), sum, OutputKind::friction, j, axis, "", vector});
     }
-    if (contact.body_contact && m.model->constraints[*contact.body_contact].rolls_by_friction()) {
+    if (contact.body_contact && m.model->constraints[*contact.body_contact].is_rolling_with_friction()) {
       const std::string vector = "reaction." + contact.name;
       for (std::uint32_t a = 0; a < 2; ++a)
         s.outputs.push_back({vector + "." + std::to_string(a + 1), mechanics::rolling_friction(m, contact, a),
                              OutputKind::rolling_reaction, j, a, "", vector});
     }
     add_slip_outputs(m, j, s);
-    const Ref slides = contact.width ? dag.one() : dag.symbol(system::slides_symbol(j));
-    const Ref apart = dag.select(dag.symbol(system::presses_symbol(j)), dag.zero(), dag.integer(2), slides);
+    const Ref slides = contact.width ? dag.one() : dag.symbol(system::slip_direction_symbol(j));
+    const Ref apart = dag.select(dag.symbol(system::normal_sign_symbol(j)), dag.zero(), dag.integer(2), slides);
     s.outputs.push_back({"mode." + contact.name, contact.unilateral ? apart : slides, OutputKind::mode, j});
     if (contact.unilateral)
       s.outputs.push_back({"contact.restitution." + contact.name, contact.restitution, OutputKind::restitution, j});

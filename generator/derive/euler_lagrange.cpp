@@ -7,12 +7,12 @@ FullEquations euler_lagrange(Mechanics& m, Ref T, Ref U, const std::vector<Ref>&
                              const std::vector<std::uint32_t>& which) {
   using symbolic::SymbolKind;
   Dag& dag = *m.dag;
-  symbolic::Derivation bias = symbolic::total_time(dag, m.q.size(), m.model->functions.size(), true);
+  symbolic::Derivation bias = symbolic::total_time_derivative(dag, m.q.size(), m.model->functions.size(), true);
   std::vector<symbolic::Derivation> by_rate;
-  for (const std::uint32_t k : which) by_rate.push_back(symbolic::partial(dag, {SymbolKind::coordinate, k, 1}));
+  for (const std::uint32_t k : which) by_rate.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, k, 1}));
   FullEquations result;
   for (std::size_t i = 0; i < which.size(); ++i) {
-    symbolic::Derivation by = symbolic::partial(dag, {SymbolKind::coordinate, which[i], 0});
+    symbolic::Derivation by = symbolic::partial_derivative(dag, {SymbolKind::coordinate, which[i], 0});
     const Ref p = by_rate[i](T);
     for (std::size_t k = 0; k < which.size(); ++k) {
       // M is symmetric; the mirror entry is the same node by construction.

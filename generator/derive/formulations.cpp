@@ -57,7 +57,7 @@ Outcome derive_where_worth(const FormulationEntry& formulation, mechanics::Mecha
     Outcome outcome{formulation.derive(m, approach), ""};
     if (!outcome.system) outcome.why = formulation.applies;
     return outcome;
-  } catch (const work::OverBudget& over) {
+  } catch (const work::BudgetExceeded& over) {
     return {std::nullopt, over.what(), true};
   }
 }

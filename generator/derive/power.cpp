@@ -55,10 +55,10 @@ bool is_quadratic_form(Mechanics& m, Ref T) {
   symbolic::Substitution at_rest = rates_at_rest(m);
   if (!dag.is_zero(at_rest(T))) return false;
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {
-    const Ref p = symbolic::partial(dag, rate_symbol(i))(T);
+    const Ref p = symbolic::partial_derivative(dag, rate_symbol(i))(T);
     if (!dag.is_zero(at_rest(p))) return false;
     for (std::uint32_t k = 0; k < m.q.size(); ++k) {
-      const Ref inertia = symbolic::partial(dag, rate_symbol(k))(p);
+      const Ref inertia = symbolic::partial_derivative(dag, rate_symbol(k))(p);
       for (const Symbol& symbol : dag.symbols({inertia})) {
         if (symbol.kind == SymbolKind::coordinate && symbol.order > 0) return false;
       }
@@ -74,7 +74,7 @@ Prescribed of_given_energy(Mechanics& m, symbolic::Derivation& at_fixed_motion) 
   if (is_quadratic_form(m, T)) return result;
   Ref virial = dag.zero();  // qdot . dT/dqdot
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {
-    virial = dag.add(virial, dag.mul(m.qdot[i], symbolic::partial(dag, rate_symbol(i))(T)));
+    virial = dag.add(virial, dag.mul(m.qdot[i], symbolic::partial_derivative(dag, rate_symbol(i))(T)));
   }
   result.moving = dag.sub(dag.mul(dag.integer(2), T), virial);
   return result;
@@ -84,7 +84,7 @@ Prescribed of_given_energy(Mechanics& m, symbolic::Derivation& at_fixed_motion) 
 
 Ref power(Mechanics& m, const system::EquationSystem& s) {
   Dag& dag = *m.dag;
-  symbolic::Derivation at_fixed_motion = symbolic::explicit_time(dag, m.model->functions.size());
+  symbolic::Derivation at_fixed_motion = symbolic::explicit_time_derivative(dag, m.model->functions.size());
   const Prescribed masses = of_masses(m, at_fixed_motion), given = of_given_energy(m, at_fixed_motion);
   Ref result = at_fixed_motion(m.potential);
   result = dag.sub(result, dag.add(masses.inertia, given.inertia));
@@ -93,7 +93,7 @@ Ref power(Mechanics& m, const system::EquationSystem& s) {
   for (const system::Reaction& reaction : s.reactions) {
     result = dag.sub(result, dag.mul(reaction.value, m.constraints[reaction.constraint].rate));
   }
-  symbolic::Derivation ddt = symbolic::total_time(dag, m.q.size(), m.model->functions.size());
+  symbolic::Derivation ddt = symbolic::total_time_derivative(dag, m.q.size(), m.model->functions.size());
   return dag.add(result, ddt(dag.add(masses.moving, given.moving)));
 }
 

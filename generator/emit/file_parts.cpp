@@ -26,7 +26,7 @@ std::string chart_name(int in_charts) {
   return in_charts == 0 ? "own" : fmt::format("chart{}", eom::charts_of(in_charts));
 }
 
-bool is_without_mode(const std::string& name) { return !abi::find(name)->takes(abi::Input::mode); }
+bool is_without_mode(const std::string& name) { return !abi::find(name)->has_input(abi::Input::mode); }
 
 class Parts {
  public:
@@ -93,7 +93,7 @@ class Parts {
         fmt::format("  switch (mode >> {} & {}) {{\n", eom::first_chart_bit, eom::charts_of(eom::chart_bits));
     std::size_t offset = 0;
     for (const Program* p = next(nullptr); p != nullptr; p = next(p)) {
-      const bool prepared = abi::find(name)->takes(abi::Input::prepared);
+      const bool prepared = abi::find(name)->has_input(abi::Input::prepared);
       std::string calls;
       if (!prepared || find(*p, name) != nullptr) {
         calls = call(*p, name, list, prepared && offset > 0 ? fmt::format(" + {}", offset) : "");

@@ -73,7 +73,7 @@ std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context
 /// Functions of the state without inputs in the ABI use the defaults.
 bool takes_inputs(const std::string& function) {
   const abi::Function* found = abi::find(function);
-  return found == nullptr || found->takes(abi::Input::inputs) || !found->takes(abi::Input::state);
+  return found == nullptr || found->has_input(abi::Input::inputs) || !found->has_input(abi::Input::state);
 }
 
 }  // namespace

@@ -257,7 +257,7 @@ class Body {
       arrays += fmt::format(", y{}", r + 1);
     }
     const std::size_t prepared = program_.prepared_count();
-    if (abi::find(function)->takes(abi::Input::prepared))
+    if (abi::find(function)->has_input(abi::Input::prepared))
       text_ += fmt::format("      {} w[{}];\n      if ({}(point + {}, w) != 0) return state + 1;\n", real_, prepared,
                            names_.called("prepare"), at_p_);
     text_ += wrapped(fmt::format("      if ({}({}{}) != 0) return state + 1;", names_.called(function),

@@ -17,13 +17,13 @@ namespace {
 
 }  // namespace
 
-Fault fault_of_writing(const std::error_code& reason) {
+ErrorKind fault_of_writing(const std::error_code& reason) {
   for (const std::errc lost :
        {std::errc::no_space_on_device, std::errc::io_error, std::errc::file_too_large, std::errc::broken_pipe,
         std::errc::too_many_files_open, std::errc::too_many_files_open_in_system}) {
-    if (reason == lost) return Fault::tool;
+    if (reason == lost) return ErrorKind::tool;
   }
-  return reason.value() == EDQUOT ? Fault::tool : Fault::input;
+  return reason.value() == EDQUOT ? ErrorKind::tool : ErrorKind::input;
 }
 
 std::vector<std::string> write_files(const std::string& folder, const std::vector<EmittedFile>& files) {

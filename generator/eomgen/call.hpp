@@ -28,10 +28,10 @@ class Call : public work::Listener {
 
   const std::atomic<bool>* stopped() const { return &stopped_; }
   std::function<void(double)> progress() const { return task_.progress; }
-  void begins(const char* stage) override {
+  void on_stage(const char* stage) override {
     if (task_.begins) task_.begins(stage);
   }
-  void warns(const std::string& text) override {
+  void on_warning(const std::string& text) override {
     if (task_.warns) task_.warns(text);
   }
 

@@ -95,7 +95,7 @@ Examination Model::examine(const Task& task) const {
 Equations Model::equations(const EquationsOptions& options, const Task& task) const {
   return with_lock(task, [&](Call& call) {
     const analysis::Equations found = analysis::equations(read_, {choice_of(options.approach), options.show});
-    for (const std::string& note : found.notes) call.warns(note);
+    for (const std::string& note : found.notes) call.on_warning(note);
     Equations result;
     result.approach = system::name(found.approach);
     for (const print::Item& item : found.items) {

@@ -55,13 +55,13 @@ class Model {
   Equations equations(const EquationsOptions& options = {}, const Task& task = {}) const;
   /// Derives the equations of motion in compiled form by Lagrange's equations. `automatic` means approach II here.
   Derivation derivation(Approach approach = Approach::two, const Task& task = {}) const;
-  /// Returns the whole derivation as a LaTeX document. Throws Error{Fault::check} if the check against the independent
+  /// Returns the whole derivation as a LaTeX document. Throws Error{ErrorKind::check} if the check against the independent
   /// oracle fails. `seed`: of the random states of that check.
   std::string article(const Task& task = {}, std::uint64_t seed = 1) const;
   /// Checks all formulations against the independent oracle in multiple precision. A failed check is a result
   /// (Certificate::pass is false), not an error.
   Certificate verify(const VerifyOptions& options = {}, const Task& task = {}) const;
-  /// Generates verified source code. Throws Error{Fault::check} if the formulations disagree.
+  /// Generates verified source code. Throws Error{ErrorKind::check} if the formulations disagree.
   Sources emit(const EmitOptions& options = {}, const Task& task = {}) const;
   /// Derives, verifies, compiles and integrates a scene. Needs a C compiler; compiled code is cached by content.
   /// A run that fails numerically returns its outcome and throws nothing.

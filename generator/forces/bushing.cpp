@@ -29,12 +29,12 @@ Kind bushing() {
       .terms = {{.formula = "(stiffness1*" + x1 + "^2 + stiffness2*" + x2 + "^2 + stiffness3*" + x3 + "^2)/2"},
                 {.formula = "(rotational_stiffness1*" + p1 + "^2 + rotational_stiffness2*" + p2 +
                             "^2 + rotational_stiffness3*" + p3 + "^2)/2",
-                 .when = {{Predicate::given, "rotational_stiffness"}}},
-                {.load_type = LoadType::work, .formula = "-(coefficient1*ddt(" + x1 + "))", .at = x1, .when = {slides}},
-                {.load_type = LoadType::work, .formula = "-(coefficient2*ddt(" + x2 + "))", .at = x2, .when = {slides}},
-                {.load_type = LoadType::work, .formula = "-(coefficient3*ddt(" + x3 + "))", .at = x3, .when = {slides}},
-                {.load_type = LoadType::moment, .formula = "-" + moment, .at = "B", .when = {turns}},
-                {.load_type = LoadType::moment, .formula = moment, .at = "A", .when = {turns}}},
+                 .conditions = {{Predicate::given, "rotational_stiffness"}}},
+                {.load_type = LoadType::work, .formula = "-(coefficient1*ddt(" + x1 + "))", .at = x1, .conditions = {slides}},
+                {.load_type = LoadType::work, .formula = "-(coefficient2*ddt(" + x2 + "))", .at = x2, .conditions = {slides}},
+                {.load_type = LoadType::work, .formula = "-(coefficient3*ddt(" + x3 + "))", .at = x3, .conditions = {slides}},
+                {.load_type = LoadType::moment, .formula = "-" + moment, .at = "B", .conditions = {turns}},
+                {.load_type = LoadType::moment, .formula = moment, .at = "A", .conditions = {turns}}},
       .spring = {"rA", "rB"},
       .damper = {"rA", "rB"},
   };

@@ -13,10 +13,10 @@ Kind central_gravity() {
                 .type = ValueType::choice,
                 .optional = true,
                 .choices = {{"0", ""}, {"2", "acts on what a [[body]] has of inertia"}}},
-               {.name = "center", .type = ValueType::point, .optional = true, .fallback = "origin"}},
+               {.name = "center", .type = ValueType::point, .optional = true, .default_value = "origin"}},
       .terms = {{.formula = "-(GM*m/norm(r - center))", .domain = Domain::masses},
                 {.formula = "GM*(3*dJd/norm(d)^2 - trJ)/(2*norm(d)^3)",
-                 .when = {{Predicate::chosen, "order", "2"}},
+                 .conditions = {{Predicate::chosen, "order", "2"}},
                  .domain = Domain::bodies,
                  .arm = "r - center"}},
   };

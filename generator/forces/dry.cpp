@@ -7,7 +7,7 @@ Kind dry() {
   return {
       .name = "dry",
       .title = "Coulomb friction on one coordinate",
-      .form = Form::friction,
+      .form = InputFormat::friction,
   };
 }
 

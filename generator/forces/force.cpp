@@ -7,7 +7,7 @@ Kind force() {
   return {
       .name = "force",
       .title = "a vector at a point",
-      .form = Form::value,
+      .form = InputFormat::value,
       .keys = {{.name = "force", .type = ValueType::vector, .unit = "N", .dependency = Dependency::state},
                {.name = "on",
                 .type = ValueType::point,

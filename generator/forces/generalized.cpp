@@ -7,7 +7,7 @@ Kind generalized() {
   return {
       .name = "generalized",
       .title = "generalised forces along coordinates",
-      .form = Form::components,
+      .form = InputFormat::components,
   };
 }
 

@@ -7,7 +7,7 @@ Kind gravity() {
   return {
       .name = "gravity",
       .title = "an acceleration of every mass",
-      .form = Form::value,
+      .form = InputFormat::value,
       .keys = {{.name = "gravity",
                 .type = ValueType::vector,
                 .unit = "m/s^2",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Kinds of forces as data: a kind is one file with a function that returns a Kind, and one line in registry.inc. A Kind
 // lists the keys of the force in a model file, and its effects as formulas in the model language. The model reader
-// checks the keys and expands the formulas (model/spell_forces.cpp), so that no later stage depends on a kind of force.
+// checks the keys and expands the formulas (model/expand_forces.cpp), so that no later stage depends on a kind of force.
 // The oracle has its own statement of each kind, in terms of the keys that the author wrote (verify/forces/).
 //
 // Names in the formulas: the keys. In addition: for `ends` a and b; for `bodies` fA and fB with their axes A1 A2 A3 and
@@ -37,7 +37,7 @@ enum class Dependency { time, motion, state };  // t; coordinates; velocities an
 
 struct Choice {
   std::string text;
-  std::string of_bodies;  // if it needs bodies: the reason, "acts on what a [[body]] has of inertia"
+  std::string body_requirement;  // if it needs bodies: the reason, "acts on what a [[body]] has of inertia"
 };
 
 struct Key {
@@ -46,9 +46,9 @@ struct Key {
   std::string unit = {};  // required; empty: any
   Dependency dependency = Dependency::time;
   bool optional = false;
-  std::string fallback = {};  // default formula of an optional key; empty: no value
-  std::string with = {};      // the default applies only if this other key is given
-  std::string unless = {};    // required only if this other key is not given
+  std::string default_value = {};  // default formula of an optional key; empty: no value
+  std::string default_requires = {};      // the default applies only if this other key is given
+  std::string required_unless = {};    // required only if this other key is not given
   std::string what = {};      // in messages: "gravity"; empty: "the KEY of FORCE"
   std::string remedy = {};    // if it is missing or depends on a forbidden variable
   std::vector<Choice> choices = {};
@@ -77,8 +77,8 @@ enum class LoadType {
 };
 
 /// A condition on a key. An omitted key with a default counts as given with this default.
-enum class Predicate { given, left_out, zero, not_zero, chosen };
-struct When {
+enum class Predicate { given, left_out, zero, nonzero, chosen };
+struct Condition {
   Predicate predicate = Predicate::given;
   std::string key;
   std::string choice = {};
@@ -88,14 +88,14 @@ struct Term {
   LoadType load_type = LoadType::potential;
   std::string formula;
   std::string at = {};
-  std::vector<When> when = {};  // the term applies if all of them hold
+  std::vector<Condition> conditions = {};  // the term applies if all of them hold
   std::string extension = {};   // the formula for which `extension` stands
   Domain domain = Domain::once;
   std::string arm = {};  // of Domain::bodies
 };
 
 /// How a force of this kind is written in a model file.
-enum class Form {
+enum class InputFormat {
   table,       // KIND = { key = value, .. }
   value,       // KIND = value, with the other keys in the same table
   components,  // KIND = { coordinate = force, .. }
@@ -110,7 +110,7 @@ struct Line {
 struct Kind {
   std::string name;   // unique; the key KIND of a model file
   std::string title;  // for lists
-  Form form = Form::table;
+  InputFormat form = InputFormat::table;
   std::vector<Key> keys = {};
   std::vector<Rule> rules = {};
   std::vector<Term> terms = {};

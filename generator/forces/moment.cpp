@@ -7,7 +7,7 @@ Kind moment() {
   return {
       .name = "moment",
       .title = "a moment on a body or frame",
-      .form = Form::value,
+      .form = InputFormat::value,
       .keys = {{.name = "moment", .type = ValueType::vector, .unit = "N*m", .dependency = Dependency::state},
                {.name = "on",
                 .type = ValueType::frame,

@@ -3,6 +3,6 @@
 
 namespace eomgen::joints {
 
-Joint ball() { return {"ball", "a point in common", Axes::none, same_point()}; }
+Joint ball() { return {"ball", "a point in common", AxisLayout::none, same_point()}; }
 
 }  // namespace eomgen::joints

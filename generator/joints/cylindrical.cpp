@@ -4,7 +4,7 @@
 namespace eomgen::joints {
 
 Joint cylindrical() {
-  return {"cylindrical", "slides along an axis and turns about it", Axes::line, together({on_the_axis(), same_axis()})};
+  return {"cylindrical", "slides along an axis and turns about it", AxisLayout::shared, concatenate({point_on_axis(), same_axis()})};
 }
 
 }  // namespace eomgen::joints

@@ -4,8 +4,8 @@
 namespace eomgen::joints {
 
 Joint fixed() {
-  return {"fixed", "no motion of one against the other", Axes::none,
-          together({same_point(),
+  return {"fixed", "no motion of one against the other", AxisLayout::none,
+          concatenate({same_point(),
                     {{"dot(f1, g2)", "", "cross(g2, f1)"},
                      {"dot(f2, g3)", "", "cross(g3, f2)"},
                      {"dot(f3, g1)", "", "cross(g1, f3)"}}})};

@@ -21,12 +21,12 @@ struct Equation {
 };
 
 /// The axes of a joint: none; one line fixed in both bodies; one line in each body, which intersect.
-enum class Axes { none, line, cross };
+enum class AxisLayout { none, shared, crossed };
 
 struct Joint {
   std::string name;  // unique; the value of `type` in a model file: "pin"
   std::string title;
-  Axes axes = Axes::none;
+  AxisLayout axes = AxisLayout::none;
   std::vector<Equation> equations;
 };
 

@@ -14,11 +14,11 @@ Joint universal();
 Joint fixed();
 
 std::vector<Equation> same_point();   // r_B = r_A, eq. (7.16)
-std::vector<Equation> on_the_axis();  // r_B is on the axis through r_A
+std::vector<Equation> point_on_axis();  // r_B is on the axis through r_A
 std::vector<Equation> same_axis();    // the axes are parallel: the two equations that a pin adds, eq. (7.18)
-Equation no_turn_about_the_axis();
+Equation no_rotation_about_axis();
 
 /// Concatenates groups of equations.
-std::vector<Equation> together(std::vector<std::vector<Equation>> groups);
+std::vector<Equation> concatenate(std::vector<std::vector<Equation>> groups);
 
 }  // namespace eomgen::joints

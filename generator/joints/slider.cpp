@@ -4,8 +4,8 @@
 namespace eomgen::joints {
 
 Joint slider() {
-  return {"slider", "slides along an axis, without rotation", Axes::line,
-          together({on_the_axis(), same_axis(), {no_turn_about_the_axis()}})};
+  return {"slider", "slides along an axis, without rotation", AxisLayout::shared,
+          concatenate({point_on_axis(), same_axis(), {no_rotation_about_axis()}})};
 }
 
 }  // namespace eomgen::joints

@@ -4,8 +4,8 @@
 namespace eomgen::joints {
 
 Joint universal() {
-  return {"universal", "a point in common, an axis in each at right angles: two rotations", Axes::cross,
-          together({same_point(), {{"dot(a, b)", "", "cross(b, a)"}}})};
+  return {"universal", "a point in common, an axis in each at right angles: two rotations", AxisLayout::crossed,
+          concatenate({same_point(), {{"dot(a, b)", "", "cross(b, a)"}}})};
 }
 
 }  // namespace eomgen::joints

@@ -79,7 +79,7 @@ std::vector<Candidate> candidates(const Matrix<Precise>& block) {
   std::vector<Candidate> result;
   Candidate best{pivots, 0};
   for (const Places& columns : all) {
-    const Elimination<double> e(columns_of(A, columns), 1e-9, numeric::Pivots::complete);
+    const Elimination<double> e(columns_of(A, columns), 1e-9, numeric::Pivoting::complete);
     const Candidate candidate{columns, e.rank() < columns.size() ? 0 : e.smallest_pivot()};
     if (candidate.quality >= good_chart) result.push_back(candidate);
     if (candidate.quality > best.quality) best = candidate;

@@ -69,7 +69,7 @@ StabilityTest::StabilityTest(const Flow& flow, symbolic::Dag& dag, const std::ve
     : flow_(flow) {
   const auto function = [&](const std::string& name, Ref expression) -> Function {
     std::vector<Ref> gradient{expression};
-    for (const Symbol& s : flow.symbols()) gradient.push_back(symbolic::partial(dag, s)(expression));
+    for (const Symbol& s : flow.symbols()) gradient.push_back(symbolic::partial_derivative(dag, s)(expression));
     return {name, flow.tape(gradient)};
   };
   for (const Quantity& q : energies) energies_.push_back(function(q.name, q.expression));

@@ -18,9 +18,9 @@ using symbolic::Op;
 template <class T>
 auto arithmetic() {
   if constexpr (std::is_same_v<T, double>)
-    return symbolic::Binary64{};
+    return symbolic::Binary64Arithmetic{};
   else
-    return symbolic::Precise{precise_format()};
+    return symbolic::ClnArithmetic{precise_format()};
 }
 
 template <class T>

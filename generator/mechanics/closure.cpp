@@ -182,7 +182,7 @@ void Closure::set_parameters(Configuration& at, std::uint64_t seed) const {
       if (other.kind == SymbolKind::parameter) settle_one(other.index);
     }
     at.parameters[i] = values({value[i]}, at)[0];
-    if (!others.empty() || seed == 0 || model.parameters[i].start_of || model.start_time == i) return;
+    if (!others.empty() || seed == 0 || model.parameters[i].initial_value_of || model.start_time == i) return;
     std::uint64_t state = seed * 977 + i;
     uniform(state);
     const double by = other_values * uniform(state);  // also for parameters that are 0
@@ -208,7 +208,7 @@ Configuration Closure::given(std::vector<bool>& open) const {
     }
   }
   for (std::uint32_t i = 0; i < at.parameters.size(); ++i) {
-    if (const auto& q = m_.model->parameters[i].start_of) at.parameters[i] = at.q[*q];
+    if (const auto& q = m_.model->parameters[i].initial_value_of) at.parameters[i] = at.q[*q];
   }
   return at;
 }

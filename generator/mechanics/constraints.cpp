@@ -35,12 +35,12 @@ bool solve_for_only_coordinate(const Mechanics& m, Ref psi, FixedCoordinate& res
   const std::set<std::uint32_t> present = coordinates_in(dag, psi);
   if (present.size() != 1) return false;
   const Symbol symbol{SymbolKind::coordinate, *present.begin(), 0};
-  const Ref slope = symbolic::partial(dag, symbol)(psi);
+  const Ref slope = symbolic::partial_derivative(dag, symbol)(psi);
   if (!coordinates_in(dag, slope).empty() || dag.is_zero(slope)) return false;
   const Ref at_zero = symbolic::Substitution(dag, {{symbol, dag.zero()}})(psi);
   result.coordinate = symbol.index;
   result.value = dag.neg(dag.div(at_zero, slope));
-  symbolic::Derivation ddt = symbolic::total_time(dag, 0, m.model->functions.size());
+  symbolic::Derivation ddt = symbolic::total_time_derivative(dag, 0, m.model->functions.size());
   result.rate = ddt(result.value);
   result.acceleration = ddt(result.rate);
   return true;
@@ -59,7 +59,7 @@ void refuse_repeated(const Mechanics& m, const Constraint& constraint, Ref reduc
 void add_position_form(const Mechanics& m, Lowering& lower, Constraint& result) {
   result.psi = lower.scalar(result.written);
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {
-    result.gradient.push_back(symbolic::partial(*m.dag, {SymbolKind::coordinate, i, 0})(result.psi));
+    result.gradient.push_back(symbolic::partial_derivative(*m.dag, {SymbolKind::coordinate, i, 0})(result.psi));
   }
   result.rate = lower.explicit_rate(result.psi);
 }
@@ -75,9 +75,9 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
   symbolic::Substitution at_rest(dag, zero);
   std::vector<Ref> curvature;
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {
-    const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 1})(e);
+    const Ref slope = symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 1})(e);
     for (std::uint32_t k = 0; k <= i; ++k)
-      curvature.push_back(symbolic::partial(dag, {SymbolKind::coordinate, k, 1})(slope));
+      curvature.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, k, 1})(slope));
     result.gradient.push_back(slope);
   }
   if (!vanishes(dag, curvature)) {
@@ -178,11 +178,11 @@ void add_constraints(Mechanics& m, Lowering& lower) {
       Constraint result;
       result.name = constraint.name;
       const std::size_t part =
-          constraint.rolls_by_friction() ? 3 : k + 1;  // the normal comes third, as without friction
-      result.label = constraint.reactions() > 1 ? constraint.name + "." + std::to_string(part) : constraint.name;
+          constraint.is_rolling_with_friction() ? 3 : k + 1;  // the normal comes third, as without friction
+      result.label = constraint.reaction_count() > 1 ? constraint.name + "." + std::to_string(part) : constraint.name;
       result.written = constraint.psi[k];
       result.unilateral = constraint.unilateral;
-      const bool velocities = constraint.binds_velocities(k);
+      const bool velocities = constraint.is_velocity_equation(k);
       if (velocities) {
         add_velocity_form(m, lower, result);
       } else {

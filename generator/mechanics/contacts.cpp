@@ -50,7 +50,7 @@ class ContactReader {
     finish(*constraint.friction);
   }
 
-  void read(const model::Force& force, const model::Dry& dry) {
+  void read(const model::Force& force, const model::DryFriction& dry) {
     contact_ = Contact{};
     contact_.name = force.name;
     contact_.coordinate = dry.coordinate;
@@ -74,7 +74,7 @@ class ContactReader {
       const Ref w = lower_.dot(t, slip);
       std::vector<Ref> slopes;
       for (std::uint32_t i = 0; i < m_.q.size(); ++i)
-        slopes.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 1})(w));
+        slopes.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1})(w));
       contact_.directions.push_back(t);
       contact_.numbers.push_back(a);
       contact_.slip.push_back(w);
@@ -88,7 +88,7 @@ class ContactReader {
     return !vanishes(dag_, {tangential_velocity[0], tangential_velocity[1], tangential_velocity[2]});
   }
 
-  Ref tidy(Ref r) { return expand_.tidy(r); }
+  Ref tidy(Ref r) { return expand_.expand_or_keep(r); }
   Vec3 tidy(const Vec3& v) { return {tidy(v[0]), tidy(v[1]), tidy(v[2])}; }
   Vec3 gradient(std::uint32_t i) { return lower_.gradient(lower_.position(contact_.place), i); }
   const std::vector<Ref>& slope(std::size_t k) const { return m_.constraints[contact_.constraints[k]].gradient; }

@@ -34,7 +34,7 @@ bool has_friction(const Mechanics& m, std::uint32_t k) {
   });
 }
 
-Where where(const Mechanics& m, std::uint32_t k) {
+SourceLocation where(const Mechanics& m, std::uint32_t k) {
   return m.model->where(m.model->arena[m.constraints[k].written].span);
 }
 

@@ -26,7 +26,7 @@ bool is_touched(const Mechanics& m, std::uint32_t constraint) {
 // unchanged; otherwise the last one.
 bool in_configuration(const Mechanics& m, std::uint32_t constraint, std::uint32_t coordinate) {
   Dag& dag = *m.dag;
-  symbolic::Derivation by = symbolic::partial(dag, {SymbolKind::coordinate, coordinate, 0});
+  symbolic::Derivation by = symbolic::partial_derivative(dag, {SymbolKind::coordinate, coordinate, 0});
   if (!dag.is_zero(by(m.kinetic))) return true;
   return std::any_of(m.active.begin(), m.active.end(), [&](std::uint32_t k) {
     return k != constraint && !dag.is_zero(m.constraints[k].gradient[coordinate]);
@@ -40,7 +40,7 @@ std::optional<FixedCoordinate> solve(const Mechanics& m, std::uint32_t constrain
   bool best_is_plain = false;
   for (const std::uint32_t i : m.free) {
     const Symbol symbol{SymbolKind::coordinate, i, 0};
-    const Ref slope = symbolic::partial(dag, symbol)(psi);
+    const Ref slope = symbolic::partial_derivative(dag, symbol)(psi);
     const bool certain =
         !dag.is_zero(slope) && (dag.is_constant(slope) || dag.is_positive(slope) || dag.is_positive(dag.neg(slope)));
     if (!certain || moves(dag, slope)) continue;
@@ -55,7 +55,7 @@ std::optional<FixedCoordinate> solve(const Mechanics& m, std::uint32_t constrain
 
 // Coordinates fixed earlier may depend on this one.
 void take(Mechanics& m, FixedCoordinate next) {
-  symbolic::Derivation ddt = symbolic::total_time(*m.dag, m.q.size(), m.model->functions.size());
+  symbolic::Derivation ddt = symbolic::total_time_derivative(*m.dag, m.q.size(), m.model->functions.size());
   next.rate = ddt(next.value);
   next.acceleration = ddt(next.rate);
   m.fixed.push_back(next);

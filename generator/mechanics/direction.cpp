@@ -77,11 +77,11 @@ std::optional<Vec3> line(Lowering& lower, Dag& dag, std::size_t coordinates, con
     Vec3 slope = lower.gradient(along, k);
     if (symbolic::is_zero(dag, slope)) continue;
     symbolic::Expander expander(dag, term_budget);
-    for (Ref& x : slope) x = expander.tidy(x);
+    for (Ref& x : slope) x = expander.expand_or_keep(x);
     if (std::any_of(slope.begin(), slope.end(), [&](Ref x) { return depends_on_coordinates(dag, x); }))
       return std::nullopt;
     const Vec3 across = lower.cross(along, slope);
-    if (std::all_of(across.begin(), across.end(), [&](Ref x) { return dag.is_zero(expander.tidy(x)); })) return slope;
+    if (std::all_of(across.begin(), across.end(), [&](Ref x) { return dag.is_zero(expander.expand_or_keep(x)); })) return slope;
     return std::nullopt;
   }
   return std::nullopt;

@@ -30,7 +30,7 @@ std::size_t sticking_directions(const Contact& contact, std::size_t index, const
 
 class Search {
  public:
-  explicit Search(Mechanics& m, FormSpace::Where where) : m_(m), space_(m, where) {
+  explicit Search(Mechanics& m, FormSpace::SourceLocation where) : m_(m), space_(m, where) {
     for (const std::uint32_t k : m.active) {
       const auto leavable = std::find_if(m.contacts.begin(), m.contacts.end(), [k](const Contact& contact) {
         return contact.unilateral && contact.constraints[0] == k;
@@ -117,7 +117,7 @@ class Search {
       for (std::size_t j = 0; j < values.size(); ++j) matrix(i, j) = values[j];
     }
     const Real small = cln::expt(symbolic::Rational(1) / 10, 30);
-    return numeric::Elimination<Real>(std::move(matrix), small, numeric::Pivots::complete).rank();
+    return numeric::Elimination<Real>(std::move(matrix), small, numeric::Pivoting::complete).rank();
   }
 
   /// The number of directions of slip left under these rows: the maximum over the sample points.
@@ -165,7 +165,7 @@ class Search {
     for (std::size_t a = 0; a < 2; ++a) {
       std::vector<Row> replaced = rows;
       replaced[a] = g;
-      share.push_back(symbolic::simpler(*m_.dag, determinant(of(replaced, columns)), 60));
+      share.push_back(symbolic::expand_if_shorter(*m_.dag, determinant(of(replaced, columns)), 60));
     }
     // The rest of g is a part of the normal.
     const Ref whole = determinant(of(rows, columns));
@@ -219,8 +219,8 @@ void find_held_directions(Mechanics& m) {
   if (m.free.size() < m.active.size()) return;  // reported elsewhere
   // Sample points on the constraints, if any are found: some directions are blocked only there.
   std::optional<Search> search;
-  search.emplace(m, FormSpace::Where::on_constraints);
-  if (!search->sees()) search.emplace(m, FormSpace::Where::anywhere);
+  search.emplace(m, FormSpace::SourceLocation::on_constraints);
+  if (!search->sees()) search.emplace(m, FormSpace::SourceLocation::anywhere);
   if (search->sees()) {
     for (std::uint32_t j = 0; j < m.contacts.size(); ++j)
       if (sticks(m.contacts[j])) search->look_at(j);

@@ -31,7 +31,7 @@ using Values = std::map<Symbol, Ref>;
 
 Values with_derivatives(Dag& dag, const std::vector<Ref>& value) {
   Values values;
-  symbolic::Derivation ddt = symbolic::total_time(dag, 0, value.size());
+  symbolic::Derivation ddt = symbolic::total_time_derivative(dag, 0, value.size());
   for (std::uint32_t i = 0; i < value.size(); ++i) {
     Ref derivative = value[i];
     for (std::uint8_t order = 0; order <= highest_order; ++order) {

@@ -20,7 +20,7 @@ using symbolic::SymbolKind;
 // Part of a row outside the span of others, in 50 digits.
 cln::cl_R independent_part() { return cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 20)); }
 
-constexpr std::uint32_t first_constant = 0x20000000u;  // of SymbolKind::extra: constants of known integrals
+constexpr std::uint32_t first_constant = 0x20000000u;  // of SymbolKind::auxiliary: constants of known integrals
 
 /// A surface psi = c on which further integrals are sought: one variable is a function of the others.
 struct Leaf {
@@ -181,7 +181,7 @@ class Classifier {
     for (const bool constant_slope : {true, false}) {
       for (std::size_t i = 0; i + 1 < space_.variables().size(); ++i) {
         const Symbol x = space_.variables()[i];
-        const Ref slope = symbolic::partial(dag_, x)(psi);
+        const Ref slope = symbolic::partial_derivative(dag_, x)(psi);
         if (dag_.is_zero(slope) || symbolic::depends_on(dag_, slope, x)) continue;
         const std::vector<Symbol> symbols = dag_.symbols({slope});
         const auto moves = [](const Symbol& s) { return s.kind != SymbolKind::parameter; };
@@ -219,7 +219,7 @@ class Classifier {
   }
 
   static Symbol constant(std::size_t j) {
-    return {SymbolKind::extra, first_constant + static_cast<std::uint32_t>(j), 0};
+    return {SymbolKind::auxiliary, first_constant + static_cast<std::uint32_t>(j), 0};
   }
 
   bool seek(const Form& form, std::uint32_t constraint) {

@@ -76,7 +76,7 @@ class Search {
       std::optional<Ref> rest = space_.simpler(dag_.sub(form[i], d(psi, i)));
       if (space_.vanishing(*rest) == Vanishing::proven) continue;
       for (std::size_t before = 0; before < step && rest; ++before)
-        rest = symbolic::without(dag_, *rest, x_[order[before]]);
+        rest = symbolic::eliminate_symbol(dag_, *rest, x_[order[before]]);
       if (rest) rest = symbolic::antiderivative(dag_, *rest, x_[i]);
       if (!rest) return std::nullopt;
       psi = dag_.add(psi, *rest);
@@ -95,7 +95,7 @@ class Search {
       for (std::size_t i = 0; i < form_.size() && h; ++i) {
         if (i == k) continue;
         if (space_.vanishing(d(*h, i)) != Vanishing::proven) return std::nullopt;
-        h = symbolic::without(dag_, *h, x_[i]);
+        h = symbolic::eliminate_symbol(dag_, *h, x_[i]);
       }
       if (h) h = symbolic::antiderivative(dag_, *h, x_[k]);
       if (!h) return std::nullopt;

@@ -58,7 +58,7 @@ numeric::Matrix<cl_R> dense(const Matrix& A) {
 
 /// Columns in which the rows are regular, by elimination with complete pivoting; none if the rows are dependent.
 std::vector<std::size_t> pivots(const Matrix& A) {
-  const numeric::Elimination<cl_R> factors(dense(A), small(zero_digits), numeric::Pivots::complete);
+  const numeric::Elimination<cl_R> factors(dense(A), small(zero_digits), numeric::Pivoting::complete);
   if (factors.rank() < A.size()) return {};
   std::vector<std::size_t> columns = factors.pivot_columns();
   std::sort(columns.begin(), columns.end());
@@ -67,7 +67,7 @@ std::vector<std::size_t> pivots(const Matrix& A) {
 
 Matrix inverse(const Matrix& A) {
   const std::size_t n = A.size();
-  const numeric::Elimination<cl_R> factors(dense(A), small(regular_digits), numeric::Pivots::complete);
+  const numeric::Elimination<cl_R> factors(dense(A), small(regular_digits), numeric::Pivoting::complete);
   if (factors.rank() < n) throw std::domain_error("singular");
   numeric::Matrix<cl_R> unit(n, n);
   for (std::size_t i = 0; i < n; ++i) unit(i, i) = 1;
@@ -205,7 +205,7 @@ class Path {
     Vector next(n_, cl_R(0));
     for (const std::size_t j : independent_) {
       next[j] =
-          cln::cl_float(cl_R(symbolic::sample({symbolic::SymbolKind::extra, static_cast<std::uint32_t>(j), 0}, 7 + k) -
+          cln::cl_float(cl_R(symbolic::sample({symbolic::SymbolKind::auxiliary, static_cast<std::uint32_t>(j), 0}, 7 + k) -
                              symbolic::Rational(7) / 10),
                         cln::float_format(digits));
     }

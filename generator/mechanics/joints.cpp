@@ -48,7 +48,7 @@ void add_joints(Mechanics& m, Lowering& lower) {
 bool holds_identically(Dag& dag, Ref psi) {
   if (vanishes(dag, {psi})) return true;
   if (is_somewhere_nonzero(dag, psi)) return false;
-  symbolic::Effort effort{2'000'000};
+  symbolic::ProductBudget effort{2'000'000};
   return symbolic::is_proven_zero(dag, psi, &effort);
 }
 

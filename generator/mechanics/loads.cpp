@@ -58,8 +58,8 @@ class ForceReader {
     const Vec3 along = lower_.subtract(a, b);
     if (const auto w = direction(lower_, dag_, m_.q.size(), along)) {
       // For points that may coincide, c (w . v)/(w . w) w with the line w between them also has a value there.
-      const Ref size = symbolic::tidy(dag_, lower_.dot(*w, *w)), rate = lower_.dot(*w, lower_.ddt(along, force_->span));
-      const Ref pull = dag_.div(dag_.mul(lower_.scalar(effect.value), symbolic::simpler(dag_, rate, 60)), size);
+      const Ref size = symbolic::expand_or_keep(dag_, lower_.dot(*w, *w)), rate = lower_.dot(*w, lower_.ddt(along, force_->span));
+      const Ref pull = dag_.div(dag_.mul(lower_.scalar(effect.value), symbolic::expand_if_shorter(dag_, rate, 60)), size);
       load(lower_.scale(dag_.neg(pull), *w), a);
       load(lower_.scale(pull, *w), b);
       return;
@@ -73,13 +73,13 @@ class ForceReader {
   }
   void turn(const Vec3& moment, const Vec3& w) {  // Q_i = M . dw/dqdot_i, eq. (9.2)
     for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
-      symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, i, 1});
+      symbolic::Derivation by = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1});
       generalized_[i] = dag_.add(generalized_[i], lower_.dot(moment, Vec3{by(w[0]), by(w[1]), by(w[2])}));
     }
   }
   void work(Ref force, Ref through) {  // Q_i = S dx/dq_i
     for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
-      symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, i, 0});
+      symbolic::Derivation by = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0});
       generalized_[i] = dag_.add(generalized_[i], dag_.mul(force, by(through)));
     }
   }
@@ -115,7 +115,7 @@ class ForceReader {
   void refuse_if_idle(std::size_t first_load) const {
     std::vector<Ref> effect = components(first_load);
     for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
-      effect.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(potential_));
+      effect.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0})(potential_));
     }
     if (!force_->dry && vanishes(dag_, effect)) {
       fail("'" + force_->name + "' changes no equation of motion: it does no work in any motion of the coordinates",

@@ -45,8 +45,8 @@ sym::Op op_of(model::Fn fn) {
 Lowering::Lowering(Mechanics& mechanics)
     : m_(mechanics),
       dag_(*mechanics.dag),
-      ddt_(sym::total_time(dag_, mechanics.model->coordinates.size(), mechanics.model->functions.size())),
-      explicit_rate_(sym::explicit_time(dag_, mechanics.model->functions.size())),
+      ddt_(sym::total_time_derivative(dag_, mechanics.model->coordinates.size(), mechanics.model->functions.size())),
+      explicit_rate_(sym::explicit_time_derivative(dag_, mechanics.model->functions.size())),
       extension_(dag_.zero()),
       slip_(dag_.zero()) {}
 
@@ -119,7 +119,7 @@ Lowering::Value Lowering::lower_leaf(const model::Node& node) {
     case Op::function: return of(dag_.symbol({SymbolKind::function, node.index, node.order}));
     case Op::input: return of(dag_.symbol({SymbolKind::input, node.index, 0}));
     case Op::coordinate: return of(dag_.symbol({SymbolKind::coordinate, node.index, node.order}));
-    case Op::definition: return value(m_.model->definitions[node.index].is);
+    case Op::definition: return value(m_.model->definitions[node.index].expression);
     case Op::integral: return of(dag_.symbol({SymbolKind::integral, node.index, 0}));
     case Op::reaction: return of(multiplier(node));
     case Op::slip: return of(slip_);
@@ -158,7 +158,7 @@ Ref Lowering::joint_force(const model::Node& node) {
 // The multiplier of one equation of a constraint; Mechanics lists the equations of all constraints consecutively.
 Ref Lowering::multiplier(const model::Node& node) {
   const model::Constraint& wanted = m_.model->constraints[node.index];
-  if (wanted.rolls_by_friction()) return rolling_reaction(node);
+  if (wanted.is_rolling_with_friction()) return rolling_reaction(node);
   if (wanted.joint) return joint_force(node);
   for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
     if (m_.constraints[k].name != wanted.name) continue;
@@ -273,7 +273,7 @@ Lowering::Value Lowering::lower_derivative(const model::Node& node) {
   const Ref by = scalar(node.args[1]);
   const Symbol symbol = dag_.symbol_of(by);
   if (symbol.kind == SymbolKind::time) return apply([&](Ref r) { return explicit_rate(r); });
-  sym::Derivation derivative = sym::partial(dag_, symbol);
+  sym::Derivation derivative = sym::partial_derivative(dag_, symbol);
   return apply([&](Ref r) { return derivative(r); });
 }
 
@@ -360,7 +360,7 @@ Ref Lowering::norm(const Vec3& a) {
 }
 
 Vec3 Lowering::gradient(const Vec3& a, std::uint32_t coordinate) {
-  sym::Derivation by = sym::partial(dag_, {SymbolKind::coordinate, coordinate, 0});
+  sym::Derivation by = sym::partial_derivative(dag_, {SymbolKind::coordinate, coordinate, 0});
   return {by(a[0]), by(a[1]), by(a[2])};
 }
 

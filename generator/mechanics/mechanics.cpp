@@ -27,7 +27,7 @@ void add_symbols(Mechanics& m) {
 void add_known_values(Mechanics& m, Lowering& lower) {
   m.function_value.clear();
   m.parameter_value.clear();
-  for (const model::Function& function : m.model->functions) m.function_value.push_back(lower.scalar(function.is));
+  for (const model::Function& function : m.model->functions) m.function_value.push_back(lower.scalar(function.expression));
   for (const model::Parameter& parameter : m.model->parameters)
     m.parameter_value.push_back(lower.scalar(parameter.value));
 }
@@ -37,7 +37,7 @@ void add_values(Mechanics& m, Lowering& lower) {
   add_known_values(m, lower);
   for (std::uint32_t i = 0; i < m.model->places.size(); ++i) m.place_position.emplace_back(lower.position(i));
   for (const model::Definition& definition : m.model->definitions) {
-    m.scalar_definition.push_back(definition.vector ? m.dag->zero() : lower.scalar(definition.is));
+    m.scalar_definition.push_back(definition.vector ? m.dag->zero() : lower.scalar(definition.expression));
   }
 }
 
@@ -69,7 +69,7 @@ void add_assumptions(Mechanics& m, Lowering& lower) {
 void require_equations(const Mechanics& m) {
   Dag& dag = *m.dag;
   for (const std::uint32_t i : m.free) {
-    symbolic::Derivation by_rate = symbolic::partial(dag, {SymbolKind::coordinate, i, 1});
+    symbolic::Derivation by_rate = symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 1});
     std::vector<Ref> presence;
     for (const PointMass& mass : m.masses) {
       for (const Ref v : mass.velocity) presence.push_back(by_rate(v));
@@ -88,7 +88,7 @@ void require_equations(const Mechanics& m) {
         "it");
   }
   if (m.q.empty()) {
-    throw Error("mechanics", Where{m.model->file, 0, 0, 1, ""}, "the model has no coordinates",
+    throw Error("mechanics", SourceLocation{m.model->file, 0, 0, 1, ""}, "the model has no coordinates",
                 "add a [[particle]] with a position, or [coordinates] and [energy]");
   }
 }

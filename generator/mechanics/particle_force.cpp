@@ -27,7 +27,7 @@ bool has(const std::vector<std::uint32_t>& list, std::uint32_t i) {
 }
 
 bool turns(const Mechanics& m, std::uint32_t i) {
-  symbolic::Derivation by = symbolic::partial(*m.dag, {SymbolKind::coordinate, i, 1});
+  symbolic::Derivation by = symbolic::partial_derivative(*m.dag, {SymbolKind::coordinate, i, 1});
   return std::any_of(m.spins.begin(), m.spins.end(), [&](const Spin& spin) {
     return !vanishes(*m.dag, {by(spin.w[0]), by(spin.w[1]), by(spin.w[2])});
   });
@@ -60,7 +60,7 @@ std::optional<Vec3> force_on_particle(Mechanics& m, std::size_t p, const std::ve
   symbolic::Substitution imposed = impose(m), written = write_out(m);
   std::vector<Ref> J(3 * n), N(n * n, dag.zero()), components;
   for (std::size_t i = 0; i < n; ++i) {
-    symbolic::Derivation by = symbolic::partial(dag, {SymbolKind::coordinate, own[i], 0});
+    symbolic::Derivation by = symbolic::partial_derivative(dag, {SymbolKind::coordinate, own[i], 0});
     for (std::size_t k = 0; k < 3; ++k) J[k * n + i] = written(imposed(by(m.masses[p].position[k])));
     components.push_back(Q[own[i]]);
   }

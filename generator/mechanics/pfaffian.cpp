@@ -54,13 +54,13 @@ bool solve_small(const std::vector<std::vector<cln::cl_R>>& A, const std::vector
     for (std::size_t j = 0; j < n; ++j) matrix(i, j) = A[i][j];
     side(i, 0) = b[i];
   }
-  const numeric::Elimination<cln::cl_R> factors(std::move(matrix), small(agreed_digits), numeric::Pivots::complete);
+  const numeric::Elimination<cln::cl_R> factors(std::move(matrix), small(agreed_digits), numeric::Pivoting::complete);
   if (factors.rank() < n) return false;
   x = factors.solve(side).a;
   return true;
 }
 
-FormSpace::FormSpace(Mechanics& m, Where where)
+FormSpace::FormSpace(Mechanics& m, SourceLocation where)
     : m_(m),
       dag_(*m.dag),
       imposed_(impose(m)),
@@ -79,7 +79,7 @@ FormSpace::FormSpace(Mechanics& m, Where where)
     for (const Symbol& variable : variables_) values[variable] = value_at(variable, point);
     for (std::uint32_t i = 0; i < m.parameter_value.size(); ++i)
       values[{SymbolKind::parameter, i, 0}] = value_at({SymbolKind::parameter, i, 0}, point);
-    if (where == Where::anywhere || move_onto_constraints(values)) points_.push_back(std::move(values));
+    if (where == SourceLocation::anywhere || move_onto_constraints(values)) points_.push_back(std::move(values));
   }
 }
 
@@ -103,8 +103,8 @@ Form FormSpace::differential(Ref psi) {
 }
 
 Ref FormSpace::derivative(Ref f, std::size_t variable) {
-  if (variables_[variable].kind != SymbolKind::time) return symbolic::partial(dag_, variables_[variable])(f);
-  return written(symbolic::explicit_time(dag_, m_.model->functions.size())(f));
+  if (variables_[variable].kind != SymbolKind::time) return symbolic::partial_derivative(dag_, variables_[variable])(f);
+  return written(symbolic::explicit_time_derivative(dag_, m_.model->functions.size())(f));
 }
 
 std::vector<cln::cl_R> FormSpace::values(const std::vector<Ref>& expressions, std::size_t point) const {
@@ -150,7 +150,7 @@ bool FormSpace::move_onto_constraints(std::map<Symbol, cln::cl_R>& point) const 
 
 Vanishing FormSpace::vanishing(Ref expression) {
   if (dag_.is_zero(expression)) return Vanishing::proven;
-  if (!effort_.take(dag_.reachable({expression}).size())) return Vanishing::unknown;
+  if (!effort_.consume(dag_.reachable({expression}).size())) return Vanishing::unknown;
   bool is_decided = false;
   for (std::size_t point = 0; point < points_.size(); ++point) {
     try {
@@ -163,7 +163,7 @@ Vanishing FormSpace::vanishing(Ref expression) {
   return symbolic::is_proven_zero(dag_, expression, &effort_) ? Vanishing::proven : Vanishing::at_points;
 }
 
-Ref FormSpace::simpler(Ref expression) { return symbolic::simpler(dag_, expression, term_budget, &effort_); }
+Ref FormSpace::simpler(Ref expression) { return symbolic::expand_if_shorter(dag_, expression, term_budget, &effort_); }
 
 // Chooses a constant pivot if there is one, otherwise the one with the smallest expression, to keep results short.
 bool FormSpace::choose_pivot(const std::vector<Form>& rows, const std::vector<bool>& used, std::size_t columns,

@@ -29,8 +29,8 @@ struct Echelon {
 class FormSpace {
  public:
   /// The set of sample points: on the active holonomic constraints, or unrestricted.
-  enum class Where { on_constraints, anywhere };
-  explicit FormSpace(Mechanics& mechanics, Where where = Where::on_constraints);
+  enum class SourceLocation { on_constraints, anywhere };
+  explicit FormSpace(Mechanics& mechanics, SourceLocation where = SourceLocation::on_constraints);
 
   Dag& dag() const { return dag_; }
   const std::vector<symbolic::Symbol>& variables() const { return variables_; }
@@ -73,7 +73,7 @@ class FormSpace {
   std::vector<Ref> psi_;  // of the active holonomic constraints
   std::vector<Form> gradient_;
   std::vector<std::map<symbolic::Symbol, cln::cl_R>> points_;
-  symbolic::Effort effort_;  // of all proofs and simplifications together
+  symbolic::ProductBudget effort_;  // of all proofs and simplifications together
 };
 
 /// Solves A x = b of few rows by elimination with complete pivoting. False if A is singular.

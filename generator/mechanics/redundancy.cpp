@@ -178,7 +178,7 @@ Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints,
   const Constraint& constraint = m.constraints[constraints[k]];
   const std::string others = listed(m, constraints, independent, here),
                     formula = named(m, constraints, independent, here, there);
-  const Where where = m.model->where(m.model->arena[constraint.written].span);
+  const SourceLocation where = m.model->where(m.model->arena[constraint.written].span);
   std::string what = "constraint '" + constraint.label + "' ";
   if (here.same_rate) {
     what += others.empty() ? "follows from the constraints that fix its coordinates"
@@ -206,7 +206,7 @@ Refusals drop_repeated(Mechanics& m) {
     }
   }
   if (constraints.empty()) return {};
-  FormSpace space(m, FormSpace::Where::anywhere);
+  FormSpace space(m, FormSpace::SourceLocation::anywhere);
   std::vector<Ref> entries;
   for (const std::uint32_t k : constraints) {
     const Form form = space.of(m.constraints[k]);

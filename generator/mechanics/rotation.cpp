@@ -22,7 +22,7 @@ std::array<Ref, 3> Lowering::rates_before(std::uint32_t frame, std::size_t stage
 
 // w_k = sum_j R_kj v_j + the stage's own: recursion over the tree of frames, without differentiation.
 std::array<Ref, 3> Lowering::rates(std::uint32_t frame, std::size_t stage) {
-  const model::Stage& step = m_.model->frames[frame].stages[stage];
+  const model::RotationStage& step = m_.model->frames[frame].stages[stage];
   const std::array<Ref, 3> before = rates_before(frame, stage);
   std::array<Ref, 3> result;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -48,7 +48,7 @@ Vec3 Lowering::angular_velocity(std::uint32_t frame) {
 namespace {
 
 /// The rotation axis of the last stage, if it is one of the axes and J is symmetric about it.
-std::optional<std::size_t> axis_of_symmetry(const Dag& dag, const model::Stage& last,
+std::optional<std::size_t> axis_of_symmetry(const Dag& dag, const model::RotationStage& last,
                                             const std::array<std::array<Ref, 3>, 3>& J) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;

@@ -15,8 +15,8 @@ void ChainsReader::declare(const Value& table) {
   chain.table = &table;
   chain.name = text_of_key(table, "name", "this [[chain]]");
   const std::string what = fmt::format("the chain {}", quote(chain.name));
-  const Value& n = needed(table, "n", what, "add n = 6, the number of links");
-  as(Value::Kind::integer, n, "the number of links", fmt::format("write a whole number from 1 to {}", max_chain));
+  const Value& n = require_value(table, "n", what, "add n = 6, the number of links");
+  require_kind(Value::Kind::integer, n, "the number of links", fmt::format("write a whole number from 1 to {}", max_chain));
   chain.n = n.text.size() > 4 ? 0 : std::stol(n.text);
   if (chain.n < 1 || chain.n > max_chain) {
     source_.fail(n.span, fmt::format("a chain of {} links", quote(n.text)),
@@ -42,18 +42,18 @@ void ChainsReader::declare(const Value& table) {
     }
     known->used = true;
     chain.coordinates.push_back(known->index);
-    if (measured_.insert(known->index).second) model_.coordinates[known->index].unit = Unit{"rad", Dimension{}};
+    if (coordinates_with_unit_.insert(known->index).second) model_.coordinates[known->index].unit = Unit{"rad", Dimension{}};
     chain.places.push_back(PlacesReader(context_).declare_place(
-        fmt::format("{}{}", chain.name, k), table.find("name")->span, PlaceSource{&table, true, false, index, k}));
+        fmt::format("{}{}", chain.name, k), table.find("name")->span, PlaceDeclaration{&table, true, false, index, k}));
   }
   chains_.push_back(std::move(chain));
 }
 
 // A value for all links, "m", or an array with one entry per link.
-Typed ChainsReader::entry(const Value& table, std::string_view key, long link, const Context& context) {
+TypedNode ChainsReader::entry(const Value& table, std::string_view key, long link, const Context& context) {
   const std::string what = "this [[chain]]";
   const Value& value =
-      needed(table, key, what, fmt::format("add {} = \"..\" for all links, or an array with one entry for each", key));
+      require_value(table, key, what, fmt::format("add {} = \"..\" for all links, or an array with one entry for each", key));
   if (!value.is(Value::Kind::array)) return resolver_.value(value, context);
   const Chain& chain =
       chains_[place_sources_[scope_.find(table.find("name")->text + std::to_string(link))->index].chain - 1];
@@ -65,15 +65,15 @@ Typed ChainsReader::entry(const Value& table, std::string_view key, long link, c
   return resolver_.value(value.items[static_cast<std::size_t>(link - 1)], context);
 }
 
-Typed ChainsReader::position(const PlaceSource& where) {
+TypedNode ChainsReader::position(const PlaceDeclaration& where) {
   const Chain& chain = chains_[where.chain - 1];
   const Value& table = *chain.table;
   const Span span = table.span;
   const auto k = static_cast<std::size_t>(where.link - 1);
   const Context context{"the length of a link", on_time, Shape::scalar, dimension_of("m"), ""};
-  std::map<std::string, Typed> local;
+  std::map<std::string, TypedNode> local;
   local["length"] = entry(table, "length", where.link, context);
-  Typed angle = resolver_.coordinate(chain.coordinates[k], 0, span);
+  TypedNode angle = resolver_.coordinate(chain.coordinates[k], 0, span);
   if (chain.relative) {
     angle = resolver_.coordinate(chain.coordinates[0], 0, span);
     for (std::size_t j = 1; j <= k; ++j)
@@ -81,7 +81,7 @@ Typed ChainsReader::position(const PlaceSource& where) {
   }
   local["angle"] = angle;
   const Context scalar{"the position of a link", on_motion, Shape::scalar, std::nullopt, ""};
-  const Typed step =
+  const TypedNode step =
       resolver_.array_of({resolver_.text("length*sin(angle)", local, span, scalar),
                           resolver_.text("-length*cos(angle)", local, span, scalar), resolver_.number(0, span)},
                          span);
@@ -89,7 +89,7 @@ Typed ChainsReader::position(const PlaceSource& where) {
   if (k > 0) {
     base = chain.places[k - 1];
   } else if (const Value* from = table.find("from")) {
-    base = place_named(*from, "'from'");
+    base = require_place(*from, "'from'");
   }
   model_.places[chain.places[k]].from = base;
   return base == 0 ? step : resolver_.sum_of(resolver_.place(base, span), step, span);

@@ -10,8 +10,8 @@ class ChainsReader : private SectionReader {
  public:
   explicit ChainsReader(ReaderContext& context) : SectionReader(context) {}
   void declare(const Value& table);
-  Typed position(const PlaceSource& where);
-  Typed entry(const Value& table, std::string_view key, long link, const Context& context);
+  TypedNode position(const PlaceDeclaration& where);
+  TypedNode entry(const Value& table, std::string_view key, long link, const Context& context);
 };
 
 }  // namespace eomgen::model

@@ -36,14 +36,14 @@ std::string contact_of(const Model& model) {
   return "";
 }
 
-void refuse(const Model& model, SwitchedChart& chart, std::vector<NodeId> entries) {
+void refuse(const Model& model, ChartPair& chart, std::vector<NodeId> entries) {
   chart.angles = plain(model, entries);
   if (chart.angles.empty()) {
     chart.refusal = "an angle is an expression or the same as another: only coordinates can be exchanged";
     return;
   }
-  const bool rotation = chart.kind == SwitchedChart::Kind::rotation;
-  const std::string name = mention(model, [&](const Node& node, const Root& root) {
+  const bool rotation = chart.kind == ChartPair::Kind::rotation;
+  const std::string name = find_mention(model, [&](const Node& node, const ModelExpression& root) {
     const bool own = rotation ? root.frame == chart.index : root.place == chart.index;
     if (own) return std::string();
     if (node.op == Op::coordinate &&
@@ -96,11 +96,11 @@ class Builder {
 };
 
 /// Replaces the axis of the last step: the same entries in other rows.
-void turn(Model& model, const SwitchedChart& chart) {
+void turn(Model& model, const ChartPair& chart) {
   Builder build(model);
   Frame& frame = model.frames[chart.index];
-  const Stage own = frame.stages[2];
-  Stage& stage = frame.stages[2];
+  const RotationStage own = frame.stages[2];
+  RotationStage& stage = frame.stages[2];
   const std::size_t by = (3 + chart.second_axis - chart.axes[2]) % 3;
   for (std::size_t a = 0; a < 3; ++a) {
     stage.w[(a + by) % 3] = own.w[a];
@@ -117,12 +117,12 @@ void turn(Model& model, const SwitchedChart& chart) {
     stage.e[a] = sum;
   }
   frame.rotation = chart.second;
-  frame.regular = build.call(chart.at_sine ? Fn::cos : Fn::sin, frame.entries[1]);
+  frame.singularity = build.call(chart.at_sine ? Fn::cos : Fn::sin, frame.entries[1]);
 }
 
 /// Moves the pole to E1: x2 = R sin(phi) cos(theta), x3 = R sin(phi) sin(theta), x1 = R cos(phi), a cyclic permutation
 /// of the components.
-void move_pole(Model& model, const SwitchedChart& chart) {
+void move_pole(Model& model, const ChartPair& chart) {
   Builder build(model);
   Place& place = model.places[chart.index];
   const auto shifted = [&](NodeId id) {
@@ -138,17 +138,17 @@ void move_pole(Model& model, const SwitchedChart& chart) {
 
 }  // namespace
 
-std::string SwitchedChart::regular(const Model& model) const {
+std::string ChartPair::singularity(const Model& model) const {
   return fmt::format("{}({})", at_sine ? "sin" : "cos", model.coordinates[angles.at(guarded)].name);
 }
 
-std::vector<SwitchedChart> charts(const Model& model) {
-  std::vector<SwitchedChart> result;
+std::vector<ChartPair> charts(const Model& model) {
+  std::vector<ChartPair> result;
   for (std::uint32_t k = 1; k < model.frames.size(); ++k) {
     const Frame& frame = model.frames[k];
     const rotations::Rotation* rotation = rotations::find(frame.rotation);
     if (rotation == nullptr || rotation->family != "euler") continue;
-    SwitchedChart chart;
+    ChartPair chart;
     chart.of = frame.name;
     chart.index = k;
     chart.own = frame.rotation;
@@ -163,8 +163,8 @@ std::vector<SwitchedChart> charts(const Model& model) {
   for (std::uint32_t k = 1; k < model.places.size(); ++k) {
     const Place& place = model.places[k];
     if (!place.chart || place.chart->system != "spherical") continue;
-    SwitchedChart chart;
-    chart.kind = SwitchedChart::Kind::position;
+    ChartPair chart;
+    chart.kind = ChartPair::Kind::position;
     const bool body =
         std::any_of(model.bodies.begin(), model.bodies.end(), [k](const Body& b) { return b.place == k; });
     chart.of = body ? place.name + ".position" : place.name;
@@ -178,11 +178,11 @@ std::vector<SwitchedChart> charts(const Model& model) {
   return result;
 }
 
-Model in_second_charts(const Model& model, const std::vector<SwitchedChart>& charts, unsigned mask) {
+Model in_second_charts(const Model& model, const std::vector<ChartPair>& charts, unsigned mask) {
   Model result = model;
   for (std::size_t j = 0; j < charts.size(); ++j) {
     if ((mask >> j & 1) == 0) continue;
-    if (charts[j].kind == SwitchedChart::Kind::rotation) {
+    if (charts[j].kind == ChartPair::Kind::rotation) {
       turn(result, charts[j]);
     } else {
       move_pole(result, charts[j]);

@@ -16,7 +16,7 @@
 
 namespace eomgen::model {
 
-struct SwitchedChart {
+struct ChartPair {
   enum class Kind { rotation, position };
   Kind kind = Kind::rotation;
   std::string of;                     // "B"; "B.position" of a body's centre of mass
@@ -30,14 +30,14 @@ struct SwitchedChart {
   std::string refusal;                // why it cannot be exchanged; empty: it can
 
   /// "sin(theta)": an expression that is 0 where the own chart is singular.
-  std::string regular(const Model& model) const;
+  std::string singularity(const Model& model) const;
 };
 
 /// All charts of a model with a singularity, rotations first, including those that cannot be exchanged.
-std::vector<SwitchedChart> charts(const Model& model);
+std::vector<ChartPair> charts(const Model& model);
 
 /// The model with the second charts of those whose bit in `mask` is set: the same names, other meanings of the angles.
 /// Scenes still refer to the own charts.
-Model in_second_charts(const Model& model, const std::vector<SwitchedChart>& charts, unsigned mask);
+Model in_second_charts(const Model& model, const std::vector<ChartPair>& charts, unsigned mask);
 
 }  // namespace eomgen::model

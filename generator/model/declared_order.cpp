@@ -12,7 +12,7 @@ namespace {
 // Items that the program added come last.
 template <class T>
 bool is_made_up(const T& item) {
-  if constexpr (std::is_same_v<T, Parameter>) return item.start_of.has_value();
+  if constexpr (std::is_same_v<T, Parameter>) return item.initial_value_of.has_value();
   return false;
 }
 

@@ -104,7 +104,7 @@ void convert_table(const Source& source, const toml::table& table, Value& value)
 void convert_string(const Source& source, const toml::node& node, Value& value) {
   value.kind = Value::Kind::text;
   value.text = node.as_string()->get();
-  value.origin = StringWalk(source.text(), value.begin, value.text).origin();
+  value.text_offsets = StringWalk(source.text(), value.begin, value.text).origin();
 }
 
 Value convert(const Source& source, const toml::node& node) {
@@ -121,7 +121,7 @@ Value convert(const Source& source, const toml::node& node) {
     convert_string(source, node, value);
   } else if (const auto* truth = node.as_boolean()) {
     value.kind = Value::Kind::boolean;
-    value.truth = truth->get();
+    value.boolean = truth->get();
   } else if (const auto* integer = node.as_integer()) {
     value.kind = Value::Kind::integer;
     value.text = std::to_string(integer->get());

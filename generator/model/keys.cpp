@@ -12,7 +12,7 @@ void SectionReader::check_keys(const Value& table, const Keys& keys) const {
   for (const Entry& entry : table.entries) {
     if (std::find(keys.known.begin(), keys.known.end(), entry.key) != keys.known.end()) continue;
     const std::string what = fmt::format("{} has no key {}", keys.what, quote(entry.key));
-    if (const auto other = keys.others.find(entry.key); other != keys.others.end())
+    if (const auto other = keys.synonyms.find(entry.key); other != keys.synonyms.end())
       source_.fail(entry.span, what, other->second);
     const std::vector<std::string> candidates(keys.known.begin(), keys.known.end());
     const std::string hint = did_you_mean(entry.key, candidates);
@@ -20,14 +20,14 @@ void SectionReader::check_keys(const Value& table, const Keys& keys) const {
   }
 }
 
-const Value& SectionReader::needed(const Value& table, std::string_view key, const std::string& what,
+const Value& SectionReader::require_value(const Value& table, std::string_view key, const std::string& what,
                                    const std::string& remedy) const {
   const Value* value = table.find(key);
   if (value == nullptr) source_.fail(table.span, fmt::format("{} has no {}", what, key), remedy);
   return *value;
 }
 
-const Value& SectionReader::as(Value::Kind kind, const Value& value, const std::string& what,
+const Value& SectionReader::require_kind(Value::Kind kind, const Value& value, const std::string& what,
                                const std::string& remedy) const {
   if (!value.is(kind)) {
     source_.fail(value.span,
@@ -40,7 +40,7 @@ const Value& SectionReader::as(Value::Kind kind, const Value& value, const std::
 const Value* SectionReader::section(std::string_view name) const {
   const Entry* entry = root_.entry(name);
   if (entry == nullptr) return nullptr;
-  return &as(Value::Kind::table, entry->value, fmt::format("[{}]", name),
+  return &require_kind(Value::Kind::table, entry->value, fmt::format("[{}]", name),
              fmt::format("write [{}] and its keys below", name));
 }
 
@@ -53,13 +53,13 @@ std::vector<const Value*> SectionReader::sections(std::string_view name) const {
     source_.fail(entry->span, fmt::format("[{}] is a list of entries", name), remedy);
   }
   for (const Value& item : entry->value.items)
-    result.push_back(&as(Value::Kind::table, item, fmt::format("[[{}]]", name), remedy));
+    result.push_back(&require_kind(Value::Kind::table, item, fmt::format("[[{}]]", name), remedy));
   return result;
 }
 
 std::string SectionReader::text_of_key(const Value& table, std::string_view key, const std::string& what) const {
-  const Value& value = needed(table, key, what, fmt::format("add {} = \"...\"", key));
-  return as(Value::Kind::text, value, fmt::format("the {} of {}", key, what), "write it in quotes").text;
+  const Value& value = require_value(table, key, what, fmt::format("add {} = \"...\"", key));
+  return require_kind(Value::Kind::text, value, fmt::format("the {} of {}", key, what), "write it in quotes").text;
 }
 
 Span SectionReader::key_span(const Value& table, std::string_view key) const {
@@ -70,8 +70,8 @@ Span SectionReader::key_span(const Value& table, std::string_view key) const {
 std::string SectionReader::tex_of(const Value& table, const std::string& what) const {
   const Value* value = table.find("tex");
   if (value == nullptr) return "";
-  as(Value::Kind::text, *value, fmt::format("the tex of {}", what), "write it in quotes, such as '\\theta_{1}'");
-  if (const auto problem = illegal_tex(value->text)) {
+  require_kind(Value::Kind::text, *value, fmt::format("the tex of {}", what), "write it in quotes, such as '\\theta_{1}'");
+  if (const auto problem = tex_error(value->text)) {
     source_.fail(
         value->span, fmt::format("the tex of {} is refused: {}", what, *problem),
         "letters, digits, blanks, _ ^ { } , ' and commands for Greek letters, accents and text styles are allowed");
@@ -80,7 +80,7 @@ std::string SectionReader::tex_of(const Value& table, const std::string& what) c
 }
 
 MeasuredUnit SectionReader::any_unit(const Value& value, const std::string& what) const {
-  as(Value::Kind::text, value, fmt::format("the unit of {}", what), "write it in quotes, such as \"m/s\"");
+  require_kind(Value::Kind::text, value, fmt::format("the unit of {}", what), "write it in quotes, such as \"m/s\"");
   const auto unit = parse_unit(value.text);
   if (!unit) {
     const std::string hint = unit_hint(value.text);

@@ -20,7 +20,7 @@ cln::cl_I integer_of(const std::string& digits) { return digits.empty() ? cln::c
 
 class Lexer {
  public:
-  explicit Lexer(const Text& text) : text_(text) {}
+  explicit Lexer(const SourceText& text) : text_(text) {}
 
   std::vector<Token> all() {
     std::vector<Token> result;
@@ -103,7 +103,7 @@ class Lexer {
       fail(begin, at_ - begin + 1, fmt::format("a name follows the number {} at once", quote(token.text)),
            fmt::format("there is no implicit multiplication: write {}*{}", token.text, word));
     }
-    const ExactNumber exact = exact_number(token.text);
+    const ExactNumber exact = parse_exact_number(token.text);
     if (!exact.problem.empty())
       fail(begin, at_ - begin, exact.problem, "a number has to fit a double: from 1e-300 to 1e300");
     token.value = exact.value;
@@ -116,7 +116,7 @@ class Lexer {
     const std::size_t end = std::min(text_.text.find_first_of(" \t\r\n", at_), text_.text.size());
     const bool last = text_.text.find_first_not_of(" \t\r\n", end) == std::string_view::npos;
     const std::string word(text_.text.substr(at_, end - at_));
-    const std::string unit = parse_unit(word) ? word : completed_unit(word).value_or("");
+    const std::string unit = parse_unit(word) ? word : suggest_unit(word).value_or("");
     const bool a_name = word.size() == 1 || word.find('*') != std::string::npos;  // may be a product
     if (last && !unit.empty()) {
       return fmt::format("write \"{}{} {}\"{}", text_.text.substr(0, token.at), token.text, unit,
@@ -147,27 +147,27 @@ class Lexer {
     token.length = at_ - token.at;
   }
 
-  const Text& text_;
+  const SourceText& text_;
   std::size_t at_ = 0;
 };
 
 }  // namespace
 
-Span Text::span(std::size_t at, std::size_t length) const {
-  if (value == nullptr || value->origin.empty()) return fixed;
-  const std::size_t last_index = value->origin.size() - 1;
+Span SourceText::span(std::size_t at, std::size_t length) const {
+  if (value == nullptr || value->text_offsets.empty()) return fixed;
+  const std::size_t last_index = value->text_offsets.size() - 1;
   const std::size_t first = std::min(offset + at, last_index);
   const std::size_t last = std::min(offset + at + (length > 0 ? length - 1 : 0), last_index);
-  const std::size_t begin = value->origin[first];
-  const std::size_t end = value->origin[last] + 1;
+  const std::size_t begin = value->text_offsets[first];
+  const std::size_t end = value->text_offsets[last] + 1;
   return source->span(begin, end > begin ? end - begin : 1);
 }
 
-Text text_in(const Source& source, const Value& value) { return Text{value.text, &source, &value, 0, value.span}; }
+SourceText source_text(const Source& source, const Value& value) { return SourceText{value.text, &source, &value, 0, value.span}; }
 
-std::vector<Token> tokens_of(const Text& text) { return Lexer(text).all(); }
+std::vector<Token> tokenize(const SourceText& text) { return Lexer(text).all(); }
 
-ExactNumber exact_number(std::string_view text) {
+ExactNumber parse_exact_number(std::string_view text) {
   std::string digits;
   long exponent = 0;
   std::size_t at = 0;

@@ -12,8 +12,8 @@ class Collector {
  public:
   explicit Collector(const Model& model) : model_(model) {}
 
-  std::vector<Root> run() {
-    for (const Definition& d : model_.definitions) add(fmt::format("definition '{}'", d.name), {d.is});
+  std::vector<ModelExpression> run() {
+    for (const Definition& d : model_.definitions) add(fmt::format("definition '{}'", d.name), {d.expression});
     places();
     frames();
     for (const Body& b : model_.bodies) {
@@ -57,7 +57,7 @@ class Collector {
     for (std::uint32_t k = 1; k < model_.frames.size(); ++k) {
       const std::string of = fmt::format("the rotation of '{}'", model_.frames[k].name);
       for (const NodeId entry : model_.frames[k].entries) add(of, {entry}, k);
-      for (const Stage& stage : model_.frames[k].stages) add(of, {stage.e[0], stage.e[1], stage.e[2]}, k);
+      for (const RotationStage& stage : model_.frames[k].stages) add(of, {stage.e[0], stage.e[1], stage.e[2]}, k);
     }
   }
   void constraints() {
@@ -85,16 +85,16 @@ class Collector {
   }
 
   const Model& model_;
-  std::vector<Root> roots_;
+  std::vector<ModelExpression> roots_;
   std::string of_;
 };
 
 }  // namespace
 
-std::vector<Root> roots(const Model& model) { return Collector(model).run(); }
+std::vector<ModelExpression> model_expressions(const Model& model) { return Collector(model).run(); }
 
-std::string mention(const Model& model, const std::function<std::string(const Node&, const Root&)>& what) {
-  for (const Root& root : roots(model)) {
+std::string find_mention(const Model& model, const std::function<std::string(const Node&, const ModelExpression&)>& what) {
+  for (const ModelExpression& root : model_expressions(model)) {
     std::vector<NodeId> open{root.expression};
     std::unordered_set<NodeId> seen;
     while (!open.empty()) {

@@ -11,7 +11,7 @@
 namespace eomgen::model {
 
 /// An expression on which the motion depends or that can be an output, and the object to which it belongs.
-struct Root {
+struct ModelExpression {
   NodeId expression = no_node;
   std::string of;           // "constraint 'level'"
   std::uint32_t frame = 0;  // of a rotation: index of its frame; else 0
@@ -19,9 +19,9 @@ struct Root {
 };
 
 /// All expressions of a model except those of scenes, which refer to the start only.
-std::vector<Root> roots(const Model& model);
+std::vector<ModelExpression> model_expressions(const Model& model);
 
 /// "WHAT is named by OF" for the first node for which `what` returns a text; empty if there is none.
-std::string mention(const Model& model, const std::function<std::string(const Node& node, const Root& root)>& what);
+std::string find_mention(const Model& model, const std::function<std::string(const Node& node, const ModelExpression& root)>& what);
 
 }  // namespace eomgen::model

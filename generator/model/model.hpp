@@ -34,11 +34,11 @@ struct Parameter {
   bool positive = false;
   Span span;
   bool used = false;
-  std::optional<std::uint32_t> start_of;  // initial(q): the coordinate whose initial value every run assigns
+  std::optional<std::uint32_t> initial_value_of;  // initial(q): the coordinate whose initial value every run assigns
 };
 struct Function {  // of time
   std::string name;
-  NodeId is = no_node;
+  NodeId expression = no_node;
   Unit unit;
   std::string tex;
   Span span;
@@ -51,7 +51,7 @@ struct Integral {    // integral(e) of a function of time, from the start of the
 };
 struct Input {
   std::string name;
-  NodeId fallback = no_node;  // the value if a scene gives none
+  NodeId default_value = no_node;  // the value if a scene gives none
   Unit unit;
   std::string tex;
   Span span;
@@ -65,7 +65,7 @@ struct Coordinate {
 };
 struct Definition {
   std::string name;
-  NodeId is = no_node;
+  NodeId expression = no_node;
   bool vector = false;
   Unit unit;
   Span span;
@@ -81,7 +81,7 @@ struct Chart {
 };
 /// The axes e1 e2 e3 after one step of a rotation: as vectors, as e_k = sum_j R[k][j] p_j in terms of the previous axes
 /// (at first those of the parent), and the components along e1 e2 e3 of the angular velocity relative to them.
-struct Stage {
+struct RotationStage {
   std::array<NodeId, 3> e{no_node, no_node, no_node};  // vectors
   std::array<std::array<NodeId, 3>, 3> R{};            // no_node: 0
   std::array<NodeId, 3> w{no_node, no_node, no_node};  // no_node: 0
@@ -92,8 +92,8 @@ struct Frame {
   std::string rotation;         // name in rotations::registry()
   std::uint32_t parent = 0;     // the frame relative to which it rotates
   std::vector<NodeId> entries;  // angles, parameters
-  std::vector<Stage> stages;    // the last is its own axes
-  NodeId regular = no_node;     // Euler angles: an expression that is 0 where they are singular
+  std::vector<RotationStage> stages;    // the last is its own axes
+  NodeId singularity = no_node;     // Euler angles: an expression that is 0 where they are singular
   Span span;
 };
 /// A rigid body; its centre of mass is a place.
@@ -125,7 +125,7 @@ struct Friction {
   NodeId surface_velocity = no_node;  // vector: prescribed tangential motion of the surface
   Span span;
 };
-struct Dry {  // Coulomb friction on one coordinate, with a given normal force
+struct DryFriction {  // Coulomb friction on one coordinate, with a given normal force
   std::uint32_t coordinate;
   NodeId normal;
   Friction law;
@@ -157,7 +157,7 @@ struct Force {
   std::string kind;  // name in forces::registry()
   std::vector<Argument> arguments;
   std::vector<Effect> effects;
-  std::optional<Dry> dry;  // dry friction is a contact and has no effects
+  std::optional<DryFriction> dry;  // dry friction is a contact and has no effects
   Span span;
 
   const Argument* argument(std::string_view key) const;  // nullptr if it is not given
@@ -182,7 +182,7 @@ struct BodyContact {
 };
 
 /// A coupling of the rotations of two bodies: gear = { .. } between bodies.
-struct Coupled {
+struct RotationCoupling {
   std::array<std::uint32_t, 3> frames{};         // of A, of B and of the carrier of both axes; 0: the ground
   std::array<NodeId, 2> axes{no_node, no_node};  // unit vectors
   NodeId ratio = no_node;                        // of the speed of A to that of B
@@ -202,13 +202,13 @@ struct Constraint {
   std::optional<Friction> friction;
   std::optional<std::uint32_t> joint;  // the joint to which the equations belong
   bool unit = false;                   // the unit norm of Euler parameters
-  std::optional<Coupled> coupled;
+  std::optional<RotationCoupling> coupled;
   Span span;
 
-  bool binds_velocities(std::size_t equation) const { return velocity || (rolling && equation < 2); }
+  bool is_velocity_equation(std::size_t equation) const { return velocity || (rolling && equation < 2); }
   /// Rolling with friction: one equation; its reactions are two friction components followed by the normal force.
-  bool rolls_by_friction() const { return contact && contact->rolling && friction; }
-  std::size_t reactions() const { return joint ? joint_components : rolls_by_friction() ? 3 : psi.size(); }
+  bool is_rolling_with_friction() const { return contact && contact->rolling && friction; }
+  std::size_t reaction_count() const { return joint ? joint_components : is_rolling_with_friction() ? 3 : psi.size(); }
 };
 
 /// A joint between two bodies, or a body and the ground. Its equations are in a Constraint of the same name.
@@ -236,7 +236,7 @@ struct Event {  // a change of sign of `when`
 const char* name(Event::Direction direction);  // "any", "up", "down"
 
 /// A shape of [draw], centred, along the axes of the body; for a particle along E1 E2 E3.
-struct Drawn {
+struct ShapeSpec {
   std::uint32_t place = 0;
   std::string kind;  // sphere R; box a, b, c; cylinder R, L; disk R; rod L; arrow x, y, z; mesh x, y, z of each point
   std::vector<NodeId> lengths;
@@ -256,7 +256,7 @@ struct InitialValue {
   NodeId value;
   Span span;
 };
-struct InitialRotation {  // "B.omega" = [..]: components along the axes of B
+struct InitialAngularVelocity {  // "B.omega" = [..]: components along the axes of B
   std::uint32_t frame;
   std::array<NodeId, 3> value;
   Span span;
@@ -269,7 +269,7 @@ struct SceneInput {
   std::variant<NodeId, InputTable> signal;
   Span span;
 };
-struct Named {
+struct OutputReference {
   std::string name;
   Span span;
 };
@@ -285,11 +285,11 @@ struct Scene {
   std::string name;
   NodeId t0 = no_node, t1 = no_node;
   std::vector<InitialValue> initial, guess;
-  std::vector<InitialRotation> rotations;
+  std::vector<InitialAngularVelocity> rotations;
   std::vector<std::pair<std::uint32_t, std::uint8_t>> solve;  // (coordinate, order) of values that may be adjusted
   std::vector<std::pair<std::uint32_t, NodeId>> parameters;
   std::vector<SceneInput> inputs;
-  std::vector<Named> outputs;       // existing names only: "energy", "reaction.NAME", ...
+  std::vector<OutputReference> outputs;       // existing names only: "energy", "reaction.NAME", ...
   std::vector<std::uint32_t> stop;  // events that end this scene, regardless of their action
   std::string solver = "auto";
   NodeId rtol = no_node, atol = no_node, step = no_node, every = no_node;
@@ -328,11 +328,11 @@ struct Model {
   std::vector<Constraint> constraints;
   std::vector<Joint> joints;
   std::vector<Event> events;
-  std::vector<Drawn> drawn;
+  std::vector<ShapeSpec> drawn;
   std::vector<Scene> scenes;  // scenes[0] is "default" (generated if the file has none)
   std::vector<Warning> warnings;
 
-  Where where(const Span& span) const;                // for Error
+  SourceLocation where(const Span& span) const;                // for Error
   const Scene& scene(const std::string& name) const;  // throws Error with did-you-mean
 };
 

@@ -14,7 +14,7 @@ constexpr std::size_t many = 64;
 // Names and numbers of arguments are those of symbolic/functions.hpp. This stage, and the oracle, which reads Fn, do
 // not depend on that file; tests/mechanics compares the two. min and max take more than two arguments here, as nested
 // calls.
-constexpr std::array<FunctionName, 17> scalar_functions{{
+constexpr std::array<FunctionSignature, 17> scalar_functions{{
     {"sin", Fn::sin, 1, 1},
     {"cos", Fn::cos, 1, 1},
     {"tan", Fn::tan, 1, 1},
@@ -54,7 +54,7 @@ bool is_reserved(std::string_view name) {
   return std::find(functions.begin(), functions.end(), name) != functions.end();
 }
 
-std::optional<std::string> illegal_name(std::string_view name) {
+std::optional<std::string> name_error(std::string_view name) {
   if (!is_identifier(name)) return "a name starts with a letter and has letters, digits and underscores";
   if (name.size() > max_name_length) return fmt::format("a name has at most {} characters", max_name_length);
   if (is_reserved(name)) return fmt::format("'{}' is reserved", name);
@@ -114,7 +114,7 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
   return meant ? fmt::format("did you mean '{}'?", *meant) : std::string();
 }
 
-std::string choice_of(const std::string& name, const std::vector<std::string>& known) {
+std::string suggest_choice(const std::string& name, const std::vector<std::string>& known) {
   const std::string hint = did_you_mean(name, known);
   const std::string all = fmt::format("choose from: {}", fmt::join(known, ", "));
   return hint.empty() ? all : hint + " " + all;
@@ -162,8 +162,8 @@ std::string quote(std::string_view text) {
   return result + "'";
 }
 
-const FunctionName* find_function(std::string_view name) {
-  for (const FunctionName& function : scalar_functions) {
+const FunctionSignature* find_function(std::string_view name) {
+  for (const FunctionSignature& function : scalar_functions) {
     if (function.name == name) return &function;
   }
   return nullptr;
@@ -172,7 +172,7 @@ const FunctionName* find_function(std::string_view name) {
 const std::vector<std::string>& function_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> result;
-    for (const FunctionName& function : scalar_functions) result.emplace_back(function.name);
+    for (const FunctionSignature& function : scalar_functions) result.emplace_back(function.name);
     for (std::string_view name : other_functions) result.emplace_back(name);
     return result;
   }();

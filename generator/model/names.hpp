@@ -18,7 +18,7 @@ bool is_identifier(std::string_view text);
 /// t, pi, origin, ground, E1..E3 and the names of functions.
 bool is_reserved(std::string_view name);
 /// The reason why a name cannot be declared; nothing if it can.
-std::optional<std::string> illegal_name(std::string_view name);
+std::optional<std::string> name_error(std::string_view name);
 
 /// "theta_ddot" -> {"theta", 2}; {"theta", 0} for other names.
 struct Derivative {
@@ -35,7 +35,7 @@ std::optional<std::string> nearest(std::string_view name, const std::vector<std:
 /// "did you mean 'x'?" or nothing.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
 /// The same, followed by "choose from: ...".
-std::string choice_of(const std::string& name, const std::vector<std::string>& known);
+std::string suggest_choice(const std::string& name, const std::vector<std::string>& known);
 /// Whether two names, one edit apart, look like one name misspelt (theta1 and theta2, x and y do not).
 bool looks_misspelt(std::string_view name, std::string_view known);
 
@@ -43,17 +43,17 @@ bool looks_misspelt(std::string_view name, std::string_view known);
 std::string quote(std::string_view text);
 
 /// A scalar function of the language with its minimum and maximum number of arguments (SIZE_MAX: unlimited).
-struct FunctionName {
+struct FunctionSignature {
   std::string_view name;
   Fn fn;
-  std::size_t least, most;
+  std::size_t min_arguments, max_arguments;
 };
-const FunctionName* find_function(std::string_view name);
+const FunctionSignature* find_function(std::string_view name);
 /// The names of all functions, including ddt, dot, position, ...
 const std::vector<std::string>& function_names();
 
 /// The reason why a LaTeX string is rejected; nothing if it is harmless and valid.
-std::optional<std::string> illegal_tex(std::string_view tex);
+std::optional<std::string> tex_error(std::string_view tex);
 /// Whether it requires the package amssymb.
 bool needs_amssymb(std::string_view tex);
 

@@ -19,7 +19,7 @@ struct Term {
 
 class Parser {
  public:
-  explicit Parser(const Text& text) : text_(text), tokens_(tokens_of(text)) {}
+  explicit Parser(const SourceText& text) : text_(text), tokens_(tokenize(text)) {}
 
   Syntax all() {
     if (now().kind == TokenKind::end)
@@ -228,7 +228,7 @@ class Parser {
     return add(kind, span(token), {left, sum()});
   }
 
-  const Text& text_;
+  const SourceText& text_;
   std::vector<Token> tokens_;
   std::size_t at_ = 0;
   int depth_ = 0;
@@ -241,7 +241,7 @@ bool ends_an_operand(char c) {
 
 }  // namespace
 
-Syntax parse_expression(const Text& text) { return Parser(text).all(); }
+Syntax parse_expression(const SourceText& text) { return Parser(text).all(); }
 
 namespace {
 
@@ -265,7 +265,7 @@ std::optional<MeasuredUnit> trailing_unit(std::string_view text) {
   return last ? parse_unit(last->word) : std::nullopt;
 }
 
-Syntax parse_quantity(const Text& text) {
+Syntax parse_quantity(const SourceText& text) {
   const auto last = last_word(text.text);
   if (!last) return parse_expression(text);
   const auto at = static_cast<std::size_t>(last->word.data() - text.text.data());
@@ -273,7 +273,7 @@ Syntax parse_quantity(const Text& text) {
   if (!unit) {
     // "2 fm/s": the message calls it a unit, as it cannot be anything else.
     const bool unit_like =
-        completed_unit(last->word).has_value() || (std::isalpha(static_cast<unsigned char>(last->word[0])) != 0 &&
+        suggest_unit(last->word).has_value() || (std::isalpha(static_cast<unsigned char>(last->word[0])) != 0 &&
                                                    last->word.find_first_of("(),+-<>.") == std::string_view::npos);
     if (unit_like) {
       const std::string hint = unit_hint(last->word);
@@ -282,7 +282,7 @@ Syntax parse_quantity(const Text& text) {
     }
     return parse_expression(text);
   }
-  Text value = text;
+  SourceText value = text;
   value.text = last->before;
   Syntax syntax = parse_expression(value);
   syntax.unit = std::move(unit);

@@ -14,14 +14,14 @@ class BodiesReader : private SectionReader {
   explicit BodiesReader(ReaderContext& context) : SectionReader(context) {}
   void declare_frame(const Value& table, std::uint32_t place, Symbol& symbol);
   void declare_angles(const Value& table);
-  Typed define_axes(Symbol& symbol);
-  Typed point_on_body(const Value& table, const std::string& what);
+  TypedNode define_axes(Symbol& symbol);
+  TypedNode point_on_body(const Value& table, const std::string& what);
   void read();
   void declare_units();
   void read_units();
   void complete_parameters(Scene& scene);
-  bool read_initial_rotation(Scene& scene, const Entry& entry, bool guess);
-  void check_initial_rotations(const Scene& scene) const;
+  bool read_initial_angular_velocity(Scene& scene, const Entry& entry, bool guess);
+  void check_initial_angular_velocities(const Scene& scene) const;
 
  private:
   const Entry& rotation_entry(const Value& rotation) const;
@@ -29,8 +29,8 @@ class BodiesReader : private SectionReader {
   std::vector<const Value*> rotation_entries(Frame& frame, const rotations::Rotation& found, const Entry& entry,
                                              const Value& rotation);
   std::optional<std::array<cln::cl_RA, 3>> numbers_of(NodeId vector) const;
-  void turn_about(Frame& frame, std::uint32_t index, const Value& rotation, std::map<std::string, Typed>& local);
-  void add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, Typed>& local,
+  void read_axis_rotation(Frame& frame, std::uint32_t index, const Value& rotation, std::map<std::string, TypedNode>& local);
+  void add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, TypedNode>& local,
                  Span span);
 };
 

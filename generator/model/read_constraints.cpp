@@ -42,10 +42,10 @@ void ConstraintsReader::read() {
         constraint,
         velocity != nullptr
             ? *velocity
-            : needed(*table, "holonomic", what,
+            : require_value(*table, "holonomic", what,
                      "add holonomic = \"psi\", the expression that is 0, or velocity = \"..\" for one of velocities"));
-    read_holds(constraint, *table);
-    if (const Value* friction = table->find("friction")) FrictionReader(context_).of_constraint(constraint, *friction);
+    read_unilateral(constraint, *table);
+    if (const Value* friction = table->find("friction")) FrictionReader(context_).read_constraint_friction(constraint, *friction);
   }
 }
 
@@ -61,15 +61,15 @@ bool ConstraintsReader::read_contact(Constraint& constraint, const Value& table)
                  "write one [[constraint]] for each");
   }
   ContactsReader(context_).read(constraint, kind.value, rolling != nullptr, table.find("friction") != nullptr);
-  read_holds(constraint, table);
-  if (const Value* friction = table.find("friction")) FrictionReader(context_).of_constraint(constraint, *friction);
+  read_unilateral(constraint, table);
+  if (const Value* friction = table.find("friction")) FrictionReader(context_).read_constraint_friction(constraint, *friction);
   return true;
 }
 
 // Reads gear = { .. } or another coupling; returns false for any other constraint.
 bool ConstraintsReader::read_coupling(Constraint& constraint, const Value& table) {
   CouplingsReader couplings(context_);
-  const Entry* coupling = couplings.found(table);
+  const Entry* coupling = couplings.find_coupling(table);
   if (coupling == nullptr) return false;
   for (const Entry& other : table.entries) {
     if (other.key == "name" || &other == coupling) continue;
@@ -81,12 +81,12 @@ bool ConstraintsReader::read_coupling(Constraint& constraint, const Value& table
 }
 
 // Reads holds = "unilateral": psi >= 0, with a coefficient of restitution.
-void ConstraintsReader::read_holds(Constraint& constraint, const Value& table) {
+void ConstraintsReader::read_unilateral(Constraint& constraint, const Value& table) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
   const Value* holds = table.find("holds");
   const Value* restitution = table.find("restitution");
   if (holds != nullptr) {
-    as(Value::Kind::text, *holds, fmt::format("'holds' of {}", what), "write holds = \"bilateral\" or \"unilateral\"");
+    require_kind(Value::Kind::text, *holds, fmt::format("'holds' of {}", what), "write holds = \"bilateral\" or \"unilateral\"");
     if (holds->text != "bilateral" && holds->text != "unilateral") {
       source_.fail(holds->span, fmt::format("a constraint cannot hold {}", quote(holds->text)),
                    "write holds = \"bilateral\", or \"unilateral\" for one that can be left");
@@ -132,7 +132,7 @@ void ConstraintsReader::read_equations(Constraint& constraint, const Value& valu
         "a constraint on velocities is made of velocities, coordinates, functions of time, parameters and t";
   }
   // The gradient of a square vanishes on the constraint, so that there would be no constraint force.
-  const auto no_power = [&](const Typed& typed, const Value& of) {
+  const auto no_power = [&](const TypedNode& typed, const Value& of) {
     if (typed.vector || constraint.velocity) return;
     NodeId id = typed.node;
     while (model_.arena[id].op == Op::negate ||
@@ -159,8 +159,8 @@ void ConstraintsReader::read_equations(Constraint& constraint, const Value& valu
                                    what),
                  base.empty() ? "write what is raised to the power" : fmt::format("write \"{}\"", base));
   };
-  const auto with_motion = [&](const Typed& typed, Span span) {
-    if (typed.facts & (constraint.velocity ? on_velocity : on_coordinate)) return;
+  const auto with_motion = [&](const TypedNode& typed, Span span) {
+    if (typed.dependencies & (constraint.velocity ? on_velocity : on_coordinate)) return;
     if (constraint.velocity) {
       source_.fail(span, fmt::format("{} contains no velocity", what),
                    "write holonomic = \"..\" for a constraint on positions, or velocities such as \"y_dot + z*x_dot\"");
@@ -169,7 +169,7 @@ void ConstraintsReader::read_equations(Constraint& constraint, const Value& valu
                  "write the expression of coordinates that is to be 0, such as \"R - L\"");
   };
   if (!value.is(Value::Kind::array) || value.items.size() == 3) {
-    const Typed typed = resolver_.value(value, context);
+    const TypedNode typed = resolver_.value(value, context);
     with_motion(typed, value.span);
     no_power(typed, value);
     if (!typed.vector) {
@@ -187,7 +187,7 @@ void ConstraintsReader::read_equations(Constraint& constraint, const Value& valu
   context.shape = Shape::scalar;
   constraint.curve = value.items.size() == 2;
   for (const Value& item : value.items) {
-    const Typed typed = resolver_.value(item, context);
+    const TypedNode typed = resolver_.value(item, context);
     with_motion(typed, item.span);
     no_power(typed, item);
     constraint.psi.push_back(typed.node);
@@ -200,7 +200,7 @@ void ConstraintsReader::read_energy() {
   check_keys(*table, {"[energy]", {"kinetic", "potential"}});
   if (table->entries.empty())
     source_.fail(table->span, "[energy] is empty", "add kinetic = \"..\" and potential = \"..\"");
-  const auto energy = [&](const char* key, Facts allowed, const char* remedy) {
+  const auto energy = [&](const char* key, Dependencies allowed, const char* remedy) {
     const Value* value = table->find(key);
     if (value == nullptr) return no_node;
     return resolver_

@@ -17,7 +17,7 @@ class ConstraintsReader : private SectionReader {
   bool read_contact(Constraint& constraint, const Value& table);
   bool read_coupling(Constraint& constraint, const Value& table);
   void read_equations(Constraint& constraint, const Value& value);
-  void read_holds(Constraint& constraint, const Value& table);
+  void read_unilateral(Constraint& constraint, const Value& table);
 };
 
 }  // namespace eomgen::model

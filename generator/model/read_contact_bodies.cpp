@@ -14,9 +14,9 @@ bool ContactsReader::touches_body(const Value& on) {
 }
 
 std::optional<std::string> ContactsReader::between_bodies(BodyContact& contact, const Value& table,
-                                                          std::map<std::string, Typed>& local) {
+                                                          std::map<std::string, TypedNode>& local) {
   const Value& on = *table.find("on");
-  contact.other_frame = frame_named(on, "'on'");
+  contact.other_frame = require_frame(on, "'on'");
   contact.other_place = frame_sources_[contact.other_frame].place;
   if (contact.other_place == 0)
     source_.fail(on.span, fmt::format("{} has no mass: contact of two bodies needs two", quote(on.text)),
@@ -44,7 +44,7 @@ std::optional<std::string> ContactsReader::between_bodies(BodyContact& contact, 
 }
 
 // shape = { sphere = "R" }, shape_b = { sphere = "S" } or { hollow = "S" } with the other sphere inside.
-void ContactsReader::spheres_in_contact(const Value& table, std::map<std::string, Typed>& local) {
+void ContactsReader::spheres_in_contact(const Value& table, std::map<std::string, TypedNode>& local) {
   constexpr const char* form =
       "write shape = { sphere = \"R\" }, shape_b = { sphere = \"S\" }, or shape_b = { hollow = \"S\" } where it is "
       "inside of the other";
@@ -54,7 +54,7 @@ void ContactsReader::spheres_in_contact(const Value& table, std::map<std::string
   }
   const auto radius = [&](const char* key, const std::vector<std::string_view>& kinds) {
     const Value& shape =
-        as(Value::Kind::table, needed(table, key, "a contact of two spheres", form), fmt::format("'{}'", key), form);
+        require_kind(Value::Kind::table, require_value(table, key, "a contact of two spheres", form), fmt::format("'{}'", key), form);
     check_keys(shape, {fmt::format("'{}' in a contact of two bodies", key), kinds});
     if (shape.entries.size() != 1)
       source_.fail(shape.span, fmt::format("'{}' is given in {} ways", key, shape.entries.size()), form);
@@ -72,7 +72,7 @@ void ContactsReader::spheres_in_contact(const Value& table, std::map<std::string
 }
 
 // at, at_b and the normal; the default normal is that of a sphere about the centre of mass of the first body.
-void ContactsReader::points_in_contact(const Value& table, std::map<std::string, Typed>& local) {
+void ContactsReader::points_in_contact(const Value& table, std::map<std::string, TypedNode>& local) {
   const std::string what = "a contact of two bodies";
   if (const Value* shape = table.find("shape_b"))
     source_.fail(shape->span, "'shape_b' needs 'shape' of the first body beside it",
@@ -82,8 +82,8 @@ void ContactsReader::points_in_contact(const Value& table, std::map<std::string,
   const std::string remedy = fmt::format(
       "add at = \"<vector>\" from the body and at_b = \"<vector>\" from '{}' to where they touch, or shape and shape_b",
       table.find("on")->text);
-  local["p"] = resolver_.value(needed(table, "at", what, remedy), arm);
-  local["pb"] = resolver_.value(needed(table, "at_b", what, remedy), arm);
+  local["p"] = resolver_.value(require_value(table, "at", what, remedy), arm);
+  local["pb"] = resolver_.value(require_value(table, "at_b", what, remedy), arm);
   const Context direction{"a normal", on_motion, Shape::vector, std::nullopt,
                           "a normal is made of coordinates, axes and t"};
   const Value* normal = table.find("normal");

@@ -14,17 +14,17 @@ class ContactsReader : private SectionReader {
   void read(Constraint& constraint, const Value& table, bool rolling, bool rough);
 
  private:
-  std::map<std::string, Typed> plane_of_contact(const Value& on);
-  void tangent_of_contact(const Value& table, std::map<std::string, Typed>& local);
-  void name_motion(std::uint32_t frame, const std::string& ending, Span span, std::map<std::string, Typed>& local);
-  void read_contact_point(Constraint& constraint, const Value& table, const std::map<std::string, Typed>& local);
-  Typed contact_arm(const Value& table, std::map<std::string, Typed> local);
+  std::map<std::string, TypedNode> plane_of_contact(const Value& on);
+  void tangent_of_contact(const Value& table, std::map<std::string, TypedNode>& local);
+  void name_motion(std::uint32_t frame, const std::string& ending, Span span, std::map<std::string, TypedNode>& local);
+  void read_contact_point(Constraint& constraint, const Value& table, const std::map<std::string, TypedNode>& local);
+  TypedNode contact_arm(const Value& table, std::map<std::string, TypedNode> local);
   bool touches_body(const Value& on);
   /// The text of psi; nothing for the general psi of two points and a normal.
   std::optional<std::string> between_bodies(BodyContact& contact, const Value& table,
-                                            std::map<std::string, Typed>& local);
-  void spheres_in_contact(const Value& table, std::map<std::string, Typed>& local);
-  void points_in_contact(const Value& table, std::map<std::string, Typed>& local);
+                                            std::map<std::string, TypedNode>& local);
+  void spheres_in_contact(const Value& table, std::map<std::string, TypedNode>& local);
+  void points_in_contact(const Value& table, std::map<std::string, TypedNode>& local);
 };
 
 }  // namespace eomgen::model

@@ -17,30 +17,30 @@ std::string form(std::string_view kind) {
 
 }  // namespace
 
-const Entry* CouplingsReader::found(const Value& table) const {
+const Entry* CouplingsReader::find_coupling(const Value& table) const {
   for (const Entry& entry : table.entries) {
     if (couplings::find(entry.key) != nullptr) return &entry;
   }
   return nullptr;
 }
 
-Typed CouplingsReader::turning(std::uint32_t frame, Span span) {
+TypedNode CouplingsReader::relative_angular_velocity(std::uint32_t frame, Span span) {
   if (frame > 0) return resolver_.angular_velocity(frame, span);
-  return resolver_.meet(resolver_.number(0, span), span, {"the ground", 0, Shape::vector, std::nullopt, ""});
+  return resolver_.check_context(resolver_.number(0, span), span, {"the ground", 0, Shape::vector, std::nullopt, ""});
 }
 
-Coupled CouplingsReader::between_bodies(const Value& table, const std::string& what,
-                                        std::map<std::string, Typed>& local) {
+RotationCoupling CouplingsReader::between_bodies(const Value& table, const std::string& what,
+                                        std::map<std::string, TypedNode>& local) {
   const Value& bodies = *table.find("bodies");
   const std::string remedy = "write bodies = [\"A\", \"B\"]; one of them may be \"ground\"";
-  as(Value::Kind::array, bodies, fmt::format("'bodies' of {}", what), remedy);
+  require_kind(Value::Kind::array, bodies, fmt::format("'bodies' of {}", what), remedy);
   if (bodies.items.size() != 2)
     source_.fail(bodies.span, fmt::format("{} is between {} bodies", what, bodies.items.size()), remedy);
-  Coupled coupled;
+  RotationCoupling coupled;
   std::array<std::uint32_t, 3>& frames = coupled.frames;  // A, B, carrier
-  for (std::size_t k = 0; k < 2; ++k) frames[k] = frame_named(bodies.items[k], fmt::format("'bodies' of {}", what));
+  for (std::size_t k = 0; k < 2; ++k) frames[k] = require_frame(bodies.items[k], fmt::format("'bodies' of {}", what));
   const Value* carrier = table.find("carrier");
-  if (carrier != nullptr) frames[2] = frame_named(*carrier, fmt::format("'carrier' of {}", what));
+  if (carrier != nullptr) frames[2] = require_frame(*carrier, fmt::format("'carrier' of {}", what));
   if (frames[0] == frames[1])
     source_.fail(bodies.span, fmt::format("{} is between '{}' and itself", what, bodies.items[0].text), remedy);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -50,7 +50,7 @@ Coupled CouplingsReader::between_bodies(const Value& table, const std::string& w
                  carrier != nullptr ? "the carrier is a third body, or the ground, on which both turn"
                                     : "add carrier = \"C\", the body on which both turn; it is the ground if left out");
   }
-  const Value& axes = needed(table, "axes", what, "add axes = [\"A.e3\", \"B.e3\"], the axes about which they turn");
+  const Value& axes = require_value(table, "axes", what, "add axes = [\"A.e3\", \"B.e3\"], the axes about which they turn");
   const bool two = axes.is(Value::Kind::array) && axes.items.size() == 2;
   if (axes.is(Value::Kind::array) && !two && axes.items.size() != 3)
     source_.fail(axes.span, fmt::format("'axes' of {} has {} entries", what, axes.items.size()),
@@ -61,7 +61,7 @@ Coupled CouplingsReader::between_bodies(const Value& table, const std::string& w
   for (std::size_t k = 0; k < 2; ++k) {
     const Value& axis = two ? axes.items[k] : axes;
     local[k == 0 ? "a" : "b"] = resolver_.unit_of_vector(resolver_.value(axis, direction), axis.span);
-    const std::map<std::string, Typed> speeds{{"w", turning(frames[k], span)}, {"c", turning(frames[2], span)}};
+    const std::map<std::string, TypedNode> speeds{{"w", relative_angular_velocity(frames[k], span)}, {"c", relative_angular_velocity(frames[2], span)}};
     local[k == 0 ? "wA" : "wB"] =
         resolver_.text("w - c", speeds, span, {what, on_anything, Shape::vector, std::nullopt, ""});
     coupled.axes[k] = local[k == 0 ? "a" : "b"].node;
@@ -72,7 +72,7 @@ Coupled CouplingsReader::between_bodies(const Value& table, const std::string& w
 void CouplingsReader::read(Constraint& constraint, const Entry& entry) {
   const couplings::Coupling& kind = *couplings::find(entry.key);
   const std::string what = fmt::format("the {} '{}'", kind.name, constraint.name);
-  const Value& table = as(Value::Kind::table, entry.value, what, form(kind.name));
+  const Value& table = require_kind(Value::Kind::table, entry.value, what, form(kind.name));
   check_keys(table, {what, {"bodies", "axes", "carrier", "angles", "ratio"}});
   const Value *bodies = table.find("bodies"), *angles = table.find("angles");
   if (bodies == nullptr && angles == nullptr)
@@ -82,11 +82,11 @@ void CouplingsReader::read(Constraint& constraint, const Entry& entry) {
     source_.fail(key_span(table, other), fmt::format("{} has both angles and {}", what, other),
                  "keep the angles, or bodies and axes");
   }
-  std::map<std::string, Typed> local;
+  std::map<std::string, TypedNode> local;
   if (bodies != nullptr) constraint.coupled = between_bodies(table, what, local);
   if (angles != nullptr) {
     const std::string remedy = "write angles = [\"phi\", \"psi\"], two expressions of coordinates";
-    as(Value::Kind::array, *angles, fmt::format("'angles' of {}", what), remedy);
+    require_kind(Value::Kind::array, *angles, fmt::format("'angles' of {}", what), remedy);
     if (angles->items.size() != 2)
       source_.fail(angles->span, fmt::format("{} is between {} angles", what, angles->items.size()), remedy);
     for (std::size_t k = 0; k < 2; ++k) {
@@ -96,7 +96,7 @@ void CouplingsReader::read(Constraint& constraint, const Entry& entry) {
     }
   }
   const Value& ratio =
-      needed(table, "ratio", what, "add ratio = \"-2\", the first speed over the second; of a belt it is positive");
+      require_value(table, "ratio", what, "add ratio = \"-2\", the first speed over the second; of a belt it is positive");
   const Context number{fmt::format("the ratio of {}", what), on_motion, Shape::scalar, dimension_of("1"),
                        "a ratio is made of numbers, parameters, coordinates and t"};
   local["ratio"] = resolver_.value(ratio, number);
@@ -106,9 +106,9 @@ void CouplingsReader::read(Constraint& constraint, const Entry& entry) {
     source_.fail(ratio.span,
                  fmt::format("the ratio of {} is 0, which holds the first and leaves the second free", what),
                  "give a ratio that is not 0");
-  const Typed psi = resolver_.text(bodies != nullptr ? kind.of_bodies : kind.of_angles, local, table.span,
+  const TypedNode psi = resolver_.text(bodies != nullptr ? kind.body_equation : kind.angle_equation, local, table.span,
                                    {what, on_anything, Shape::scalar, std::nullopt, ""});
-  if ((psi.facts & on_velocity) == 0 && resolver_.coordinates_in(psi.node).empty())
+  if ((psi.dependencies & on_velocity) == 0 && resolver_.coordinates_in(psi.node).empty())
     source_.fail(table.span, fmt::format("{} binds nothing that moves", what), form(kind.name));
   constraint.velocity = true;
   constraint.psi.push_back(psi.node);

@@ -14,12 +14,12 @@ class CouplingsReader : private SectionReader {
  public:
   explicit CouplingsReader(ReaderContext& context) : SectionReader(context) {}
   /// The entry of the coupling in a [[constraint]]; nullptr if there is none.
-  const Entry* found(const Value& table) const;
+  const Entry* find_coupling(const Value& table) const;
   void read(Constraint& constraint, const Entry& entry);
 
  private:
-  Coupled between_bodies(const Value& table, const std::string& what, std::map<std::string, Typed>& local);
-  Typed turning(std::uint32_t frame, Span span);
+  RotationCoupling between_bodies(const Value& table, const std::string& what, std::map<std::string, TypedNode>& local);
+  TypedNode relative_angular_velocity(std::uint32_t frame, Span span);
 };
 
 }  // namespace eomgen::model

@@ -18,7 +18,7 @@ constexpr const char* give_x = "give x = [\"..\", \"..\", \"..\"] in terms of th
 }  // namespace
 
 PositionsReader::ExpandedPosition PositionsReader::custom_position(const Value& table, const Entry& entry) {
-  as(Value::Kind::array, entry.value, "'custom'", form);
+  require_kind(Value::Kind::array, entry.value, "'custom'", form);
   if (entry.value.items.size() != 3) {
     source_.fail(entry.value.span, fmt::format("'custom' has {} entries", entry.value.items.size()), form);
   }
@@ -29,7 +29,7 @@ PositionsReader::ExpandedPosition PositionsReader::custom_position(const Value& 
   }
   for (const Value* list : {x, q}) {
     if (list == nullptr) continue;
-    as(Value::Kind::array, *list, list == x ? "'x'" : "'q'", form);
+    require_kind(Value::Kind::array, *list, list == x ? "'x'" : "'q'", form);
     if (list->items.size() != 3) {
       source_.fail(list->span, fmt::format("'{}' has {} entries", list == x ? 'x' : 'q', list->items.size()),
                    "give three expressions");
@@ -56,13 +56,13 @@ PositionsReader::ExpandedPosition PositionsReader::custom_position(const Value& 
 }
 
 // Solves q(x), given alone, for x1, x2, x3.
-std::array<Typed, 3> PositionsReader::solved_position(const Value& names, const Value& q, const Context& context) {
+std::array<TypedNode, 3> PositionsReader::solved_position(const Value& names, const Value& q, const Context& context) {
   std::array<Syntax, 3> f;
   std::array<std::string, 3> of;
   for (std::size_t k = 0; k < 3; ++k) {
     const Value& item =
-        as(Value::Kind::text, q.items[k], "an entry of q", "write an expression of x1, x2, x3 in quotes");
-    f[k] = parse_quantity(text_in(source_, item));
+        require_kind(Value::Kind::text, q.items[k], "an entry of q", "write an expression of x1, x2, x3 in quotes");
+    f[k] = parse_quantity(source_text(source_, item));
     of[k] = names.items[k].text;
     for (const char* cartesian : cartesian_names) {
       if (of[k] != cartesian) continue;
@@ -79,7 +79,7 @@ std::array<Typed, 3> PositionsReader::solved_position(const Value& names, const 
     source_.fail(q.span, "q(x) cannot be solved for x1, x2, x3: no unknown can be isolated with a single value",
                  give_x);
   }
-  std::array<Typed, 3> x;
+  std::array<TypedNode, 3> x;
   for (std::size_t k = 0; k < 3; ++k) x[k] = resolver_.tree((*solution)[k], context);
   return x;
 }
@@ -88,13 +88,13 @@ std::array<Typed, 3> PositionsReader::solved_position(const Value& names, const 
 void PositionsReader::check_inverse(const ExpandedPosition& expanded, const Value& q, bool both) {
   constexpr int tries = 200, enough = 8;
   constexpr double tolerance = 1e-8;  // for values around 1 and a few roots and quotients
-  std::map<std::string, Typed> local;
+  std::map<std::string, TypedNode> local;
   for (std::size_t k = 0; k < 3; ++k) local[cartesian_names[k]] = expanded.x[k];
   std::array<NodeId, 3> back{};
   for (std::size_t k = 0; k < 3; ++k) {
     const Context context{"an entry of q", on_time, Shape::scalar, std::nullopt,
                           "q is made of x1, x2, x3, parameters and functions of time"};
-    back[k] = resolver_.value_with(q.items[k], local, context).node;
+    back[k] = resolver_.value_with_names(q.items[k], local, context).node;
   }
   Samples samples(model_);
   int seen = 0;

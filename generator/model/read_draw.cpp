@@ -54,14 +54,14 @@ void DrawReader::read() {
   }
 }
 
-Drawn DrawReader::drawn_shape(std::uint32_t place, const Value& value) {
+ShapeSpec DrawReader::drawn_shape(std::uint32_t place, const Value& value) {
   const std::string what = fmt::format("the drawing of '{}'", model_.places[place].name);
-  as(Value::Kind::table, value, what, form);
+  require_kind(Value::Kind::table, value, what, form);
   Keys keys{what, {}};
   for (const DrawnShape& shape : shapes) keys.known.push_back(shape.key);
   for (const char* key : {"mesh", "faces", "axis", "at"}) keys.known.emplace_back(key);
   check_keys(value, keys);
-  Drawn drawn;
+  ShapeSpec drawn;
   drawn.place = place;
   drawn.span = value.span;
   for (const DrawnShape& shape : shapes) {
@@ -83,7 +83,7 @@ Drawn DrawReader::drawn_shape(std::uint32_t place, const Value& value) {
   if (drawn.kind.empty()) source_.fail(value.span, fmt::format("{} has no shape", what), form);
   if (const Value* axis = value.find("axis")) {
     const char* remedy = "write axis = \"e1\", \"e2\" or \"e3\": its own axis that a cylinder, disk or rod is about";
-    const std::string& text = as(Value::Kind::text, *axis, fmt::format("the axis in {}", what), remedy).text;
+    const std::string& text = require_kind(Value::Kind::text, *axis, fmt::format("the axis in {}", what), remedy).text;
     if (text != "e1" && text != "e2" && text != "e3")
       source_.fail(axis->span, fmt::format("there is no own axis {}", quote(text)), remedy);
     drawn.axis = static_cast<std::uint32_t>(text[1] - '1');
@@ -92,9 +92,9 @@ Drawn DrawReader::drawn_shape(std::uint32_t place, const Value& value) {
   return drawn;
 }
 
-void DrawReader::read_mesh(Drawn& drawn, const Value& points, const Value* faces, const std::string& what) {
+void DrawReader::read_mesh(ShapeSpec& drawn, const Value& points, const Value* faces, const std::string& what) {
   drawn.kind = "mesh";
-  as(Value::Kind::array, points, fmt::format("the mesh in {}", what), points_form);
+  require_kind(Value::Kind::array, points, fmt::format("the mesh in {}", what), points_form);
   const std::size_t count = points.items.size();
   if (count < fewest_points || count > most_points)
     source_.fail(points.span, fmt::format("{} has {} points", what, count), points_form);
@@ -103,17 +103,17 @@ void DrawReader::read_mesh(Drawn& drawn, const Value& points, const Value* faces
     drawn.lengths.insert(drawn.lengths.end(), lengths.begin(), lengths.end());
   }
   if (faces == nullptr) return;
-  as(Value::Kind::array, *faces, fmt::format("the faces in {}", what), faces_form);
+  require_kind(Value::Kind::array, *faces, fmt::format("the faces in {}", what), faces_form);
   if (faces->items.empty() || faces->items.size() > most_faces)
     source_.fail(faces->span, fmt::format("{} has {} faces", what, faces->items.size()),
                  fmt::format("give 1 to {} of them, or none: then it is convex", most_faces));
   for (const Value& face : faces->items) {
-    as(Value::Kind::array, face, fmt::format("a face in {}", what), faces_form);
+    require_kind(Value::Kind::array, face, fmt::format("a face in {}", what), faces_form);
     if (face.items.size() < 3)
       source_.fail(face.span, fmt::format("a face in {} has {} points", what, face.items.size()), faces_form);
     drawn.faces.emplace_back();
     for (const Value& number : face.items) {
-      as(Value::Kind::integer, number, fmt::format("a point of a face in {}", what), faces_form);
+      require_kind(Value::Kind::integer, number, fmt::format("a point of a face in {}", what), faces_form);
       const long point = number.text.size() > 3 ? 0 : std::stol(number.text);
       if (point < 1 || point > static_cast<long>(count))
         source_.fail(number.span, fmt::format("{} has no point {}", what, number.text),
@@ -128,13 +128,13 @@ std::vector<NodeId> DrawReader::drawn_lengths(const Value& value, std::size_t co
   const Context context{fmt::format("a length in {}", what), 0, Shape::scalar, dimension_of("m"),
                         "what is drawn is made of numbers and parameters"};
   const auto length = [&](const Value& item) {
-    const Typed typed = resolver_.value(item, context);
+    const TypedNode typed = resolver_.value(item, context);
     if (positive && typed.constant && !cln::plusp(*typed.constant))
       source_.fail(item.span, fmt::format("a length in {} is not greater than 0", what), "give a length");
     return typed.node;
   };
   if (count == 1) return {length(value)};
-  as(Value::Kind::array, value, fmt::format("{}: its lengths", what), form);
+  require_kind(Value::Kind::array, value, fmt::format("{}: its lengths", what), form);
   if (value.items.size() != count)
     source_.fail(value.span, fmt::format("{} has {} lengths here", what, value.items.size()),
                  fmt::format("give {} of them", count));

@@ -12,8 +12,8 @@ class DrawReader : private SectionReader {
   void read();
 
  private:
-  Drawn drawn_shape(std::uint32_t place, const Value& value);
-  void read_mesh(Drawn& drawn, const Value& points, const Value* faces, const std::string& what);
+  ShapeSpec drawn_shape(std::uint32_t place, const Value& value);
+  void read_mesh(ShapeSpec& drawn, const Value& points, const Value* faces, const std::string& what);
   std::vector<NodeId> drawn_lengths(const Value& value, std::size_t count, const std::string& what, bool positive);
 };
 

@@ -35,10 +35,10 @@ void EventsReader::read() {
     Event& event = model_.events[index++];
     const std::string what = fmt::format("the event '{}'", event.name);
     const Value& when =
-        needed(*table, "when", what, "add when = \"expression\": the event is where it changes its sign");
-    const Typed typed =
+        require_value(*table, "when", what, "add when = \"expression\": the event is where it changes its sign");
+    const TypedNode typed =
         resolver_.value(when, Context{what, on_anything | on_reaction, Shape::scalar, std::nullopt, ""});
-    if (typed.facts == 0) {
+    if (typed.dependencies == 0) {
       source_.fail(when.span, fmt::format("{} is of a constant, which never changes its sign", what),
                    "write an expression of coordinates, velocities, accelerations, reaction.NAME, inputs or t");
     }
@@ -46,7 +46,7 @@ void EventsReader::read() {
     if (const Value* direction = table->find("direction")) {
       const char* remedy = "write direction = \"up\", \"down\" or \"any\"";
       const std::string& text =
-          as(Value::Kind::text, *direction, fmt::format("the direction of {}", what), remedy).text;
+          require_kind(Value::Kind::text, *direction, fmt::format("the direction of {}", what), remedy).text;
       if (text != "any" && text != "up" && text != "down")
         source_.fail(direction->span, fmt::format("an event has no direction {}", quote(text)), remedy);
       event.direction = text == "up"     ? Event::Direction::up
@@ -55,7 +55,7 @@ void EventsReader::read() {
     }
     if (const Value* action = table->find("action")) {
       const char* remedy = "write action = \"record\" or \"stop\"";
-      const std::string& text = as(Value::Kind::text, *action, fmt::format("the action of {}", what), remedy).text;
+      const std::string& text = require_kind(Value::Kind::text, *action, fmt::format("the action of {}", what), remedy).text;
       if (text != "record" && text != "stop")
         source_.fail(action->span, fmt::format("an event has no action {}", quote(text)), remedy);
       event.stop = text == "stop";
@@ -65,9 +65,9 @@ void EventsReader::read() {
 
 void EventsReader::read_stop(Scene& scene, const Value& value) {
   const std::string remedy = "write stop = [\"NAME\"] with the name of an [[event]]";
-  as(Value::Kind::array, value, "'stop'", remedy);
+  require_kind(Value::Kind::array, value, "'stop'", remedy);
   for (const Value& item : value.items) {
-    as(Value::Kind::text, item, "an entry of 'stop'", remedy);
+    require_kind(Value::Kind::text, item, "an entry of 'stop'", remedy);
     const Symbol* symbol = scope_.find(item.text);
     if (symbol == nullptr || symbol->kind != SymbolKind::event) {
       const std::string hint = did_you_mean(item.text, scope_.names(SymbolKind::event));

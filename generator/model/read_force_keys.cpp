@@ -11,7 +11,7 @@ namespace {
 
 using forces::ValueType;
 
-Facts allowed(forces::Dependency dependency) {
+Dependencies allowed(forces::Dependency dependency) {
   switch (dependency) {
     case forces::Dependency::time: return on_time;
     case forces::Dependency::motion: return on_motion;
@@ -22,16 +22,16 @@ Facts allowed(forces::Dependency dependency) {
 
 }  // namespace
 
-void ForcesReader::keep(Open& open, const std::string& name, const Typed& typed, std::uint32_t index) {
+void ForcesReader::store_argument(ForceDraft& open, const std::string& name, const TypedNode& typed, std::uint32_t index) {
   open.force.arguments.push_back({name, typed.node, index});
-  Typed known = typed;  // its unit has been checked, the formula's is not
+  TypedNode known = typed;  // its unit has been checked, the formula's is not
   known.dimension = std::nullopt;
-  known.loose = false;
+  known.has_uncertain_dimension = false;
   open.local[name] = known;
 }
 
-Context ForcesReader::context(const Open& open, const forces::Key& key, Shape shape) const {
-  const bool itself = open.kind.form == forces::Form::value && key.name == open.kind.name;
+Context ForcesReader::context(const ForceDraft& open, const forces::Key& key, Shape shape) const {
+  const bool itself = open.kind.form == forces::InputFormat::value && key.name == open.kind.name;
   Context result;
   result.what = !key.what.empty() ? key.what
                 : !itself         ? fmt::format("the {} of {}", key.name, open.what)
@@ -44,21 +44,21 @@ Context ForcesReader::context(const Open& open, const forces::Key& key, Shape sh
   return result;
 }
 
-void ForcesReader::read_value(Open& open, const forces::Key& key, const Value& value) {
+void ForcesReader::read_value(ForceDraft& open, const forces::Key& key, const Value& value) {
   const std::string quoted = fmt::format("'{}' of {}", key.name, open.what);
   switch (key.type) {
-    case ValueType::scalar: return keep(open, key.name, resolver_.value(value, context(open, key, Shape::scalar)));
-    case ValueType::vector: return keep(open, key.name, resolver_.value(value, context(open, key, Shape::vector)));
+    case ValueType::scalar: return store_argument(open, key.name, resolver_.value(value, context(open, key, Shape::scalar)));
+    case ValueType::vector: return store_argument(open, key.name, resolver_.value(value, context(open, key, Shape::vector)));
     case ValueType::triple: return read_triple(open, key, value);
-    case ValueType::point: return keep(open, key.name, point(value, context(open, key, Shape::vector).what));
+    case ValueType::point: return store_argument(open, key.name, point(value, context(open, key, Shape::vector).what));
     case ValueType::points:
     case ValueType::ends: return read_pair(open, key, value);
     case ValueType::place: {
-      const std::uint32_t index = place_named(value, quoted);
-      return keep(open, key.name, resolver_.place(index, value.span), index);
+      const std::uint32_t index = require_place(value, quoted);
+      return store_argument(open, key.name, resolver_.place(index, value.span), index);
     }
     case ValueType::frame: {
-      const std::uint32_t index = frame_named(value, quoted);
+      const std::uint32_t index = require_frame(value, quoted);
       if (index == 0)
         source_.fail(value.span, fmt::format("a {} on the ground changes nothing", open.kind.name),
                      "name a body or frame");
@@ -73,7 +73,7 @@ void ForcesReader::read_value(Open& open, const forces::Key& key, const Value& v
 }
 
 // A single value applies to all three components.
-void ForcesReader::read_triple(Open& open, const forces::Key& key, const Value& value) {
+void ForcesReader::read_triple(ForceDraft& open, const forces::Key& key, const Value& value) {
   const Context entry = context(open, key, Shape::scalar);
   const bool three = value.is(Value::Kind::array);
   if (three && value.items.size() != 3) {
@@ -81,30 +81,30 @@ void ForcesReader::read_triple(Open& open, const forces::Key& key, const Value& 
         value.span, fmt::format("{} has {} entries", entry.what, value.items.size()),
         fmt::format("write {0} = [\"..\", \"..\", \"..\"], along three axes, or {0} = \"..\" for all", key.name));
   }
-  Typed all;
+  TypedNode all;
   if (!three) all = resolver_.value(value, entry);
   for (std::size_t k = 0; k < 3; ++k)
-    keep(open, fmt::format("{}{}", key.name, k + 1), three ? resolver_.value(value.items[k], entry) : all);
+    store_argument(open, fmt::format("{}{}", key.name, k + 1), three ? resolver_.value(value.items[k], entry) : all);
   open.force.arguments.push_back({key.name, no_node, 0});
 }
 
-void ForcesReader::read_pair(Open& open, const forces::Key& key, const Value& value) {
+void ForcesReader::read_pair(ForceDraft& open, const forces::Key& key, const Value& value) {
   const bool ends = key.type == ValueType::ends;
   const std::string remedy = fmt::format("write {} = {} with particles, points, \"origin\" or vectors", key.name,
                                          ends ? "[\"P\", \"Q\"]" : "[\"point of A\", \"point of B\"]");
-  as(Value::Kind::array, value, fmt::format("'{}'", key.name), remedy);
+  require_kind(Value::Kind::array, value, fmt::format("'{}'", key.name), remedy);
   if (value.items.size() != 2)
     source_.fail(value.span, fmt::format("'{}' has {} entries", key.name, value.items.size()), remedy);
   const auto& items = value.items;
   if (ends && items[0].is(Value::Kind::text) && items[1].is(Value::Kind::text) && items[0].text == items[1].text)
     source_.fail(value.span, fmt::format("both ends of {} are the same point", open.what), remedy);
   const std::string what = ends ? fmt::format("an end of {}", open.what) : fmt::format("a point of {}", open.what);
-  keep(open, ends ? "a" : "rA", point(items[0], what));
-  keep(open, ends ? "b" : "rB", point(items[1], what));
+  store_argument(open, ends ? "a" : "rA", point(items[0], what));
+  store_argument(open, ends ? "b" : "rB", point(items[1], what));
 }
 
-void ForcesReader::read_body(Open& open, const forces::Key& key, const Value& value) {
-  const std::uint32_t frame = frame_named(value, fmt::format("'{}' of {}", key.name, open.what));
+void ForcesReader::read_body(ForceDraft& open, const forces::Key& key, const Value& value) {
+  const std::uint32_t frame = require_frame(value, fmt::format("'{}' of {}", key.name, open.what));
   const auto body = std::find_if(model_.bodies.begin(), model_.bodies.end(),
                                  [&](const Body& candidate) { return candidate.frame == frame; });
   if (body == model_.bodies.end())
@@ -115,14 +115,14 @@ void ForcesReader::read_body(Open& open, const forces::Key& key, const Value& va
   open.local["w"] = resolver_.angular_velocity(frame, value.span);
 }
 
-void ForcesReader::read_bodies(Open& open, const forces::Key& key, const Value& value) {
+void ForcesReader::read_bodies(ForceDraft& open, const forces::Key& key, const Value& value) {
   const std::string remedy = fmt::format("write {} = [\"A\", \"B\"]; one of them may be \"ground\"", key.name);
-  as(Value::Kind::array, value, fmt::format("'{}' of {}", key.name, open.what), remedy);
+  require_kind(Value::Kind::array, value, fmt::format("'{}' of {}", key.name, open.what), remedy);
   if (value.items.size() != 2)
     source_.fail(value.span, fmt::format("'{}' has {} entries", key.name, value.items.size()), remedy);
   std::array<std::uint32_t, 2> frames{};
   for (std::size_t k = 0; k < 2; ++k) {
-    frames[k] = frame_named(value.items[k], fmt::format("'{}' of {}", key.name, open.what));
+    frames[k] = require_frame(value.items[k], fmt::format("'{}' of {}", key.name, open.what));
     const std::string letter = k == 0 ? "A" : "B";
     open.force.arguments.push_back({letter, no_node, frames[k]});
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -135,17 +135,17 @@ void ForcesReader::read_bodies(Open& open, const forces::Key& key, const Value& 
     source_.fail(value.span, fmt::format("{} is between '{}' and itself", open.what, value.items[0].text), remedy);
 }
 
-void ForcesReader::read_energy(Open& open, const forces::Key& key, const Value& value) {
+void ForcesReader::read_energy(ForceDraft& open, const forces::Key& key, const Value& value) {
   if (const Symbol* other = scope_.find("extension")) {
     source_.fail(value.span,
                  "'extension' means the extension of this spring here, and it is also declared in the model",
                  fmt::format("rename {} 'extension' of line {}", model::kind_name(other->kind), other->span.line));
   }
-  const Typed extension = resolver_.extension(value.span);
-  keep(open, key.name, resolver_.value_with(value, {{"extension", extension}}, context(open, key, Shape::scalar)));
+  const TypedNode extension = resolver_.extension(value.span);
+  store_argument(open, key.name, resolver_.value_with_names(value, {{"extension", extension}}, context(open, key, Shape::scalar)));
 }
 
-void ForcesReader::read_choice(Open& open, const forces::Key& key, const Value& value) {
+void ForcesReader::read_choice(ForceDraft& open, const forces::Key& key, const Value& value) {
   std::vector<std::string> texts;
   for (const forces::Choice& choice : key.choices) texts.push_back(fmt::format("{} = {}", key.name, choice.text));
   const std::string remedy = fmt::format("write {}", fmt::join(texts, " or "));
@@ -155,10 +155,10 @@ void ForcesReader::read_choice(Open& open, const forces::Key& key, const Value& 
   if (found == key.choices.end()) {
     source_.fail(value.span, fmt::format("{} has no {} {}", open.kind.name, key.name, quote(value.text)), remedy);
   }
-  if (!found->of_bodies.empty() && model_.bodies.empty()) {
+  if (!found->body_requirement.empty() && model_.bodies.empty()) {
     source_.fail(
         value.span,
-        fmt::format("{} of {} {} {}, and the model has none", open.kind.name, key.name, found->text, found->of_bodies),
+        fmt::format("{} of {} {} {}, and the model has none", open.kind.name, key.name, found->text, found->body_requirement),
         "write " + texts.front());
   }
   open.force.arguments.push_back({key.name, no_node, static_cast<std::uint32_t>(found - key.choices.begin())});

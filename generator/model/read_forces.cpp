@@ -10,7 +10,7 @@
 namespace eomgen::model {
 namespace {
 
-constexpr Facts on_state = on_time | on_input | on_coordinate | on_velocity;
+constexpr Dependencies on_state = on_time | on_input | on_coordinate | on_velocity;
 
 std::vector<std::string_view> kinds() {
   std::vector<std::string_view> names;
@@ -22,7 +22,7 @@ std::vector<std::string_view> kinds() {
 std::vector<std::string_view> beside() {
   std::vector<std::string_view> keys;
   for (const forces::Kind& kind : forces::registry()) {
-    if (kind.form != forces::Form::value) continue;
+    if (kind.form != forces::InputFormat::value) continue;
     for (std::size_t k = 1; k < kind.keys.size(); ++k) {
       if (std::find(keys.begin(), keys.end(), kind.keys[k].name) == keys.end()) keys.push_back(kind.keys[k].name);
     }
@@ -89,7 +89,7 @@ const Entry& ForcesReader::kind_of(const Value& table) const {
   }
   const forces::Kind& kind = *forces::find(found->key);
   for (const std::string_view other : others) {
-    if (table.find(other) == nullptr || (kind.form == forces::Form::value && has_key(kind, other))) continue;
+    if (table.find(other) == nullptr || (kind.form == forces::InputFormat::value && has_key(kind, other))) continue;
     source_.fail(key_span(table, other), fmt::format("'{}' does not belong to '{}'", other, kind.name),
                  has_key(kind, other) ? fmt::format("write it within {} = {{ .. }}", kind.name)
                                       : "'on' says where a force vector acts: force = \"<vector>\", on = P");
@@ -103,29 +103,29 @@ void ForcesReader::read_force(Force& force, const Value& table) {
   force.kind = kind.name;
   const bool named = table.find("name") != nullptr;
   const std::string what = named ? fmt::format("'{}'", force.name) : fmt::format("this {}", kind.name);
-  if (kind.form != forces::Form::value)
-    as(Value::Kind::table, entry.value, what, fmt::format("write {} = {{ ... }}", kind.name));
-  if (kind.form == forces::Form::components) return read_components(force, entry.value, what);
-  if (kind.form == forces::Form::friction) {
-    force.dry = FrictionReader(context_).dry(entry.value, what);
+  if (kind.form != forces::InputFormat::value)
+    require_kind(Value::Kind::table, entry.value, what, fmt::format("write {} = {{ ... }}", kind.name));
+  if (kind.form == forces::InputFormat::components) return read_components(force, entry.value, what);
+  if (kind.form == forces::InputFormat::friction) {
+    force.dry = FrictionReader(context_).read_dry_friction(entry.value, what);
     return;
   }
-  Open open{kind, force, kind.form == forces::Form::value ? table : entry.value, what, named, {}};
-  if (kind.form == forces::Form::table) {
+  ForceDraft open{kind, force, kind.form == forces::InputFormat::value ? table : entry.value, what, named, {}};
+  if (kind.form == forces::InputFormat::table) {
     Keys keys{what, {}};
     for (const forces::Key& key : kind.keys) keys.known.push_back(key.name);
     check_keys(entry.value, keys);
   }
   check_rules(open);
   for (const forces::Key& key : kind.keys) read_key(open, key);
-  spell(open);
+  expand_formulas(open);
 }
 
-void ForcesReader::check_rules(const Open& open) const {
+void ForcesReader::check_rules(const ForceDraft& open) const {
   for (const forces::Key& key : open.kind.keys) {
-    const bool elsewhere = !key.unless.empty() && open.table.find(key.unless) != nullptr;
+    const bool elsewhere = !key.required_unless.empty() && open.table.find(key.required_unless) != nullptr;
     if (!key.optional && !elsewhere)
-      needed(open.table, key.name, open.what, key.remedy.empty() ? remedy_for(key) : key.remedy);
+      require_value(open.table, key.name, open.what, key.remedy.empty() ? remedy_for(key) : key.remedy);
   }
   for (const forces::Rule& rule : open.kind.rules) {
     const bool first = open.table.find(rule.first) != nullptr, second = open.table.find(rule.second) != nullptr;
@@ -137,11 +137,11 @@ void ForcesReader::check_rules(const Open& open) const {
   }
 }
 
-void ForcesReader::read_key(Open& open, const forces::Key& key) {
+void ForcesReader::read_key(ForceDraft& open, const forces::Key& key) {
   if (const Value* given = open.table.find(key.name)) return read_value(open, key, *given);
-  if (key.fallback.empty() || (!key.with.empty() && open.table.find(key.with) == nullptr)) return;
+  if (key.default_value.empty() || (!key.default_requires.empty() && open.table.find(key.default_requires) == nullptr)) return;
   const Context any{key.name, on_anything, Shape::either, std::nullopt, ""};
-  keep(open, key.name, resolver_.text(key.fallback, {}, open.table.span, any));
+  store_argument(open, key.name, resolver_.text(key.default_value, {}, open.table.span, any));
 }
 
 void ForcesReader::read_components(Force& force, const Value& table, const std::string& what) {

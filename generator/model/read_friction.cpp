@@ -6,7 +6,7 @@
 namespace eomgen::model {
 namespace {
 
-constexpr Facts on_state = on_time | on_input | on_coordinate | on_velocity;
+constexpr Dependencies on_state = on_time | on_input | on_coordinate | on_velocity;
 
 }  // namespace
 
@@ -14,23 +14,23 @@ Friction FrictionReader::coefficients(const Value& table, const std::string& wha
   Friction law;
   law.span = table.span;
   const auto coefficient = [&](std::string_view key) {
-    const Value& value = needed(table, key, what, "give both coefficients: static = \"..\" and dynamic = \"..\"");
+    const Value& value = require_value(table, key, what, "give both coefficients: static = \"..\" and dynamic = \"..\"");
     if (const Symbol* other = scope_.find("slip")) {
       source_.fail(value.span, "'slip' means the slip speed of this contact here, and it is also declared in the model",
                    fmt::format("rename {} 'slip' of line {}", model::kind_name(other->kind), other->span.line));
     }
-    Typed slip = resolver_.slip(value.span);
+    TypedNode slip = resolver_.slip(value.span);
     if (speed) slip.dimension = *speed;
     const Context context{fmt::format("the {} coefficient of {}", key, what), on_state, Shape::scalar,
                           dimension_of("1"),
                           "a coefficient of friction is made of parameters, slip, velocities, coordinates and t"};
-    return resolver_.value_with(value, {{"slip", slip}}, context).node;
+    return resolver_.value_with_names(value, {{"slip", slip}}, context).node;
   };
   law.dynamic_coefficient = coefficient("dynamic");
   const Value* name = table.find("law");
   const Value* width = table.find("width");
   if (name != nullptr)
-    as(Value::Kind::text, *name, fmt::format("'law' of {}", what), "write law = \"coulomb\" or law = \"smooth\"");
+    require_kind(Value::Kind::text, *name, fmt::format("'law' of {}", what), "write law = \"coulomb\" or law = \"smooth\"");
   if (name != nullptr && name->text != "coulomb" && name->text != "smooth") {
     source_.fail(name->span, fmt::format("there is no law of friction {}", quote(name->text)),
                  "write law = \"coulomb\" (the default), which sticks and slides, or law = \"smooth\"");
@@ -49,7 +49,7 @@ Friction FrictionReader::coefficients(const Value& table, const std::string& wha
                  "remove static, or law = \"smooth\"");
   }
   const Value& given =
-      needed(table, "width", what, "add width = \"1 mm/s\", the slip speed at which friction is mu |N|/sqrt(2)");
+      require_value(table, "width", what, "add width = \"1 mm/s\", the slip speed at which friction is mu |N|/sqrt(2)");
   law.width = resolver_
                   .value(given, Context{fmt::format("the width of {}", what), on_time, Shape::scalar, speed,
                                         "a width is a slip speed made of parameters"})
@@ -57,9 +57,9 @@ Friction FrictionReader::coefficients(const Value& table, const std::string& wha
   return law;
 }
 
-void FrictionReader::of_constraint(Constraint& constraint, const Value& value) {
+void FrictionReader::read_constraint_friction(Constraint& constraint, const Value& value) {
   const std::string what = fmt::format("the friction of '{}'", constraint.name);
-  as(Value::Kind::table, value, what, "write friction = { static = \"mu_s\", dynamic = \"mu_d\" }");
+  require_kind(Value::Kind::table, value, what, "write friction = { static = \"mu_s\", dynamic = \"mu_d\" }");
   check_keys(value, {what, {"static", "dynamic", "surface_velocity", "law", "width"}});
   if (constraint.velocity) {
     source_.fail(value.span,
@@ -83,25 +83,25 @@ void FrictionReader::of_constraint(Constraint& constraint, const Value& value) {
   constraint.friction = law;
 }
 
-Dry FrictionReader::dry(const Value& table, const std::string& what) {
+DryFriction FrictionReader::read_dry_friction(const Value& table, const std::string& what) {
   check_keys(table, {what, {"coordinate", "normal", "static", "dynamic", "law", "width"}});
-  const Value& name = needed(table, "coordinate", what, "add coordinate = \"x\", the coordinate that rubs");
-  as(Value::Kind::text, name, fmt::format("the coordinate of {}", what), "write the name of a coordinate");
+  const Value& name = require_value(table, "coordinate", what, "add coordinate = \"x\", the coordinate that rubs");
+  require_kind(Value::Kind::text, name, fmt::format("the coordinate of {}", what), "write the name of a coordinate");
   const Symbol* symbol = scope_.find(name.text);
   if (symbol == nullptr || symbol->kind != SymbolKind::coordinate) {
     const std::string hint = did_you_mean(name.text, scope_.names(SymbolKind::coordinate));
     source_.fail(name.span, fmt::format("{} is not a coordinate", quote(name.text)),
                  hint.empty() ? "name a coordinate of the model" : hint);
   }
-  Dry rubbing{symbol->index, no_node, {}};
-  const Value& normal = needed(table, "normal", what, "add normal = \"m*g\", the force that presses");
+  DryFriction rubbing{symbol->index, no_node, {}};
+  const Value& normal = require_value(table, "normal", what, "add normal = \"m*g\", the force that presses");
   rubbing.normal = resolver_
                        .value(normal, Context{fmt::format("the normal force of {}", what), on_state, Shape::scalar,
                                               std::nullopt, "a normal force is made of parameters, the state and t"})
                        .node;
   rubbing.law = coefficients(table, what, std::nullopt);
   for (const Force& before : model_.forces) {
-    const std::optional<Dry>& other = before.dry;
+    const std::optional<DryFriction>& other = before.dry;
     if (!other || other->coordinate != rubbing.coordinate || rubbing.law.width != no_node ||
         other->law.width != no_node)
       continue;

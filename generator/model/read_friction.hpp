@@ -9,8 +9,8 @@ namespace eomgen::model {
 class FrictionReader : private SectionReader {
  public:
   explicit FrictionReader(ReaderContext& context) : SectionReader(context) {}
-  void of_constraint(Constraint& constraint, const Value& value);
-  Dry dry(const Value& table, const std::string& what);
+  void read_constraint_friction(Constraint& constraint, const Value& value);
+  DryFriction read_dry_friction(const Value& table, const std::string& what);
   /// Whether it is an output of a contact: friction.NAME, friction.NAME.1 .. 3, slip.NAME, slip.NAME.1 .. 2, mode.NAME.
   bool is_output(const std::vector<std::string>& parts);
 

@@ -36,7 +36,7 @@ Context moment_context(const std::string& what) {
 
 void InertiaReader::read(Body& body, const Value& table) {
   const std::string what = fmt::format("the inertia of '{}'", model_.frames[body.frame].name);
-  const Value& value = needed(table, "inertia", fmt::format("'{}'", model_.frames[body.frame].name), form);
+  const Value& value = require_value(table, "inertia", fmt::format("'{}'", model_.frames[body.frame].name), form);
   const NodeId zero = resolver_.number(0, value.span).node;
   for (auto& row : body.inertia) row = {zero, zero, zero};
   if (value.is(Value::Kind::array)) {
@@ -47,7 +47,7 @@ void InertiaReader::read(Body& body, const Value& table) {
       return true;
     };
     if (!square()) source_.fail(value.span, fmt::format("{} is not an array of three rows of three", what), form);
-    std::array<std::array<Typed, 3>, 3> J;
+    std::array<std::array<TypedNode, 3>, 3> J;
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         J[i][k] = resolver_.value(value.items[i].items[k], moment_context("an entry of " + what));
@@ -80,10 +80,10 @@ std::array<NodeId, 3> InertiaReader::shape_moments(const Body& body, const Entry
   const std::string what = fmt::format("the inertia of '{}'", model_.frames[body.frame].name);
   std::array<NodeId, 3> result{};
   if (shape.key == "principal") {
-    as(Value::Kind::array, shape.value, "'principal'", form);
+    require_kind(Value::Kind::array, shape.value, "'principal'", form);
     if (shape.value.items.size() != 3)
       source_.fail(shape.value.span, fmt::format("'principal' has {} entries", shape.value.items.size()), form);
-    std::array<Typed, 3> J;
+    std::array<TypedNode, 3> J;
     for (std::size_t k = 0; k < 3; ++k) {
       J[k] = resolver_.value(shape.value.items[k], moment_context("a principal moment"));
       if (J[k].constant && cln::minusp(*J[k].constant))
@@ -105,10 +105,10 @@ std::array<NodeId, 3> InertiaReader::shape_moments(const Body& body, const Entry
     const bool one = known.lengths.size() == 1;
     const std::string remedy = one ? fmt::format("write {} = \"{}\"", known.key, known.lengths[0])
                                    : fmt::format("write {} = [\"{}\"]", known.key, fmt::join(known.lengths, "\", \""));
-    if (!one) as(Value::Kind::array, shape.value, fmt::format("'{}'", known.key), remedy);
+    if (!one) require_kind(Value::Kind::array, shape.value, fmt::format("'{}'", known.key), remedy);
     if (!one && shape.value.items.size() != known.lengths.size())
       source_.fail(shape.value.span, fmt::format("'{}' has {} entries", known.key, shape.value.items.size()), remedy);
-    std::map<std::string, Typed> local;
+    std::map<std::string, TypedNode> local;
     for (std::size_t k = 0; k < known.lengths.size(); ++k) {
       const Value& length = one ? shape.value : shape.value.items[k];
       local[std::string(known.lengths[k])] =
@@ -125,9 +125,9 @@ std::array<NodeId, 3> InertiaReader::shape_moments(const Body& body, const Entry
 // One moment of inertia suffices if the body rotates about a direction that is fixed in it and in space.
 void InertiaReader::read_scalar_inertia(Body& body, const Value& value) {
   const Frame& frame = model_.frames[body.frame];
-  const Typed J = resolver_.value(value, moment_context(fmt::format("the inertia of '{}'", frame.name)));
+  const TypedNode J = resolver_.value(value, moment_context(fmt::format("the inertia of '{}'", frame.name)));
   const auto& axis = frame_sources_[body.frame].axis;
-  if (!axis && frame_sources_[body.frame].still) return;  // it does not rotate: the moment has no effect
+  if (!axis && frame_sources_[body.frame].keeps_attitude) return;  // it does not rotate: the moment has no effect
   if (!axis) {
     source_.fail(
         value.span,
@@ -140,7 +140,7 @@ void InertiaReader::read_scalar_inertia(Body& body, const Value& value) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k <= i; ++k) {
       if (!on(i) || !on(k)) continue;
-      const Typed entry =
+      const TypedNode entry =
           own ? J : resolver_.product_of(J, resolver_.product_of(axis->unit[i], axis->unit[k], value.span), value.span);
       body.inertia[i][k] = body.inertia[k][i] = entry.node;
     }

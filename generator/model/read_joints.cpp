@@ -51,7 +51,7 @@ void JointsReader::read() {
 
 void JointsReader::read_joint(Joint& joint, const Value& table) {
   const std::string what = fmt::format("the joint '{}'", joint.name);
-  const Value& type = as(Value::Kind::text, needed(table, "type", what, form), fmt::format("'type' of {}", what), form);
+  const Value& type = require_kind(Value::Kind::text, require_value(table, "type", what, form), fmt::format("'type' of {}", what), form);
   const joints::Joint* kind = joints::find(type.text);
   if (kind == nullptr) {
     std::vector<std::string> names;
@@ -63,29 +63,29 @@ void JointsReader::read_joint(Joint& joint, const Value& table) {
   joint.type = kind->name;
   std::array<JointEnd, 2> ends = joint_ends(table, what);
   for (std::size_t k = 0; k < 2; ++k) joint.frames[k] = ends[k].frame;
-  if (const Value* axes = table.find("axes")) joint.axes = frame_named(*axes, fmt::format("'axes' of {}", what));
+  if (const Value* axes = table.find("axes")) joint.axes = require_frame(*axes, fmt::format("'axes' of {}", what));
   joint_points(joint, ends,
-               needed(table, "at", what, "add at = [\"point of A\", \"point of B\"], the points that coincide"), what);
+               require_value(table, "at", what, "add at = [\"point of A\", \"point of B\"], the points that coincide"), what);
   joint_axes(*kind, ends, table, what);
 
-  AtStart start = at_start(joint.constraint);
+  StartSubstitution start = at_start(joint.constraint);
   const Context any{what, on_anything, Shape::either, std::nullopt, ""};
   const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
-  std::map<std::string, Typed> local{{"rA", ends[0].point}, {"rB", ends[1].point}};
+  std::map<std::string, TypedNode> local{{"rA", ends[0].point}, {"rB", ends[1].point}};
   local["d"] = resolver_.text("rB - rA", local, table.span, vector);
   const auto uses = [&](const std::string& name) {
     return std::any_of(kind->equations.begin(), kind->equations.end(),
                        [&](const joints::Equation& e) { return e.psi.find(name) != std::string::npos; });
   };
-  if (kind->axes != joints::Axes::none) {
+  if (kind->axes != joints::AxisLayout::none) {
     for (std::size_t k = 0; k < 3; ++k) local[std::array{"a", "a1", "a2"}[k]] = ends[0].axis[k];
     local["b"] = ends[1].axis[0];
   }
-  if (uses("b2")) local["b2"] = carried(ends[0].axis[2], ends[1].frame, start, table.span, true);
+  if (uses("b2")) local["b2"] = fixed_in_frame(ends[0].axis[2], ends[1].frame, start, table.span, true);
   for (std::size_t k = 0; k < 3 && uses("f1"); ++k) {
-    const Typed axis = resolver_.own_axis(ends[0].frame, k, table.span);
+    const TypedNode axis = resolver_.own_axis(ends[0].frame, k, table.span);
     local[fmt::format("f{}", k + 1)] = axis;
-    local[fmt::format("g{}", k + 1)] = carried(axis, ends[1].frame, start, table.span, true);
+    local[fmt::format("g{}", k + 1)] = fixed_in_frame(axis, ends[1].frame, start, table.span, true);
   }
   Constraint& constraint = model_.constraints[joint.constraint];
   for (const joints::Equation& equation : kind->equations) {
@@ -100,14 +100,14 @@ void JointsReader::read_joint(Joint& joint, const Value& table) {
 
 std::array<JointsReader::JointEnd, 2> JointsReader::joint_ends(const Value& table, const std::string& what) {
   const Value& bodies =
-      as(Value::Kind::array, needed(table, "bodies", what, form), fmt::format("'bodies' of {}", what), form);
+      require_kind(Value::Kind::array, require_value(table, "bodies", what, form), fmt::format("'bodies' of {}", what), form);
   if (bodies.items.size() != 2) {
     source_.fail(bodies.span, fmt::format("{} is between {} bodies", what, bodies.items.size()),
                  "write bodies = [\"A\", \"B\"]; one of them may be \"ground\"");
   }
   std::array<JointEnd, 2> ends;
   for (std::size_t k = 0; k < 2; ++k) {
-    ends[k].frame = frame_named(bodies.items[k], fmt::format("'bodies' of {}", what));
+    ends[k].frame = require_frame(bodies.items[k], fmt::format("'bodies' of {}", what));
     ends[k].name = bodies.items[k].text;
     if (ends[k].frame > 0 && frame_sources_[ends[k].frame].place == 0) {
       source_.fail(bodies.items[k].span, fmt::format("'{}' is a frame, which has no mass and no place", ends[k].name),
@@ -123,7 +123,7 @@ std::array<JointsReader::JointEnd, 2> JointsReader::joint_ends(const Value& tabl
 }
 
 // Other constraints determine the initial values of some coordinates: these have no default of 0.
-AtStart JointsReader::at_start(std::uint32_t constraint) {
+StartSubstitution JointsReader::at_start(std::uint32_t constraint) {
   std::set<std::uint32_t> open;
   const auto add = [&](NodeId node) {
     for (const auto& [index, order] : resolver_.coordinates_in(node)) open.insert(index);
@@ -142,15 +142,15 @@ AtStart JointsReader::at_start(std::uint32_t constraint) {
       for (std::size_t k = 0; k < 3; ++k) add(resolver_.own_axis(symbol->frame, k, body.span).node);
     }
   }
-  return AtStart(model_, std::move(open));
+  return StartSubstitution(model_, std::move(open));
 }
 
 // A vector fixed in a body that is equal to `direction` at the start.
-Typed JointsReader::carried(const Typed& direction, std::uint32_t frame, AtStart& start, Span span, bool attitude) {
-  const auto known = [&](const Typed& typed) {
-    Typed result = typed;
+TypedNode JointsReader::fixed_in_frame(const TypedNode& direction, std::uint32_t frame, StartSubstitution& start, Span span, bool attitude) {
+  const auto known = [&](const TypedNode& typed) {
+    TypedNode result = typed;
     result.node = start(typed.node);
-    result.facts = 0;
+    result.dependencies = 0;
     if (result.node == no_node) {
       source_.fail(span, fmt::format("this joint is as placed at the start, and {}", start.obstacle()),
                    attitude ? "give that coordinate in 'initial' of [scene.default]: a slider and a fixed joint keep "
@@ -160,11 +160,11 @@ Typed JointsReader::carried(const Typed& direction, std::uint32_t frame, AtStart
     }
     return result;
   };
-  std::map<std::string, Typed> local{{"v", known(direction)}};
+  std::map<std::string, TypedNode> local{{"v", known(direction)}};
   if (frame == 0) return local["v"];
   std::string text;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Typed axis = resolver_.own_axis(frame, k, span);
+    const TypedNode axis = resolver_.own_axis(frame, k, span);
     local[fmt::format("e{}", k + 1)] = axis;
     local[fmt::format("u{}", k + 1)] = known(axis);
     text += fmt::format("{}dot(v, u{})*e{}", k > 0 ? " + " : "", k + 1, k + 1);
@@ -184,7 +184,7 @@ void JointsReader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, con
       joint.points[k] = ends[k].point.node;
       const Node& node = model_.arena[joint.points[k]];
       if (frame == 0 || (node.op == Op::place && node.index == frame_sources_[frame].place)) continue;
-      const std::map<std::string, Typed> local{{"p", ends[k].point},
+      const std::map<std::string, TypedNode> local{{"p", ends[k].point},
                                                {"r", resolver_.place(frame_sources_[frame].place, at.items[k].span)},
                                                {"w", resolver_.angular_velocity(frame, at.items[k].span)}};
       joint.drift[k] = resolver_
@@ -199,24 +199,24 @@ void JointsReader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, con
         at.span, fmt::format("'at' of {} has {} entries", what, at.items.size()),
         "write at = [\"point of A\", \"point of B\"], or at = \"<vector>\" for a point as placed at the start");
   }
-  const Typed point = resolver_.value(at, body);
-  AtStart start = at_start(joint.constraint);
+  const TypedNode point = resolver_.value(at, body);
+  StartSubstitution start = at_start(joint.constraint);
   for (std::size_t k = 0; k < 2; ++k) {
     const std::uint32_t frame = ends[k].frame;
-    const Typed from = resolver_.place(frame == 0 ? 0 : frame_sources_[frame].place, at.span);
+    const TypedNode from = resolver_.place(frame == 0 ? 0 : frame_sources_[frame].place, at.span);
     const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
-    const Typed arm = resolver_.text("p - r", {{"p", point}, {"r", from}}, at.span, vector);
-    ends[k].point = resolver_.text("r + s", {{"r", from}, {"s", carried(arm, frame, start, at.span)}}, at.span, vector);
+    const TypedNode arm = resolver_.text("p - r", {{"p", point}, {"r", from}}, at.span, vector);
+    ends[k].point = resolver_.text("r + s", {{"r", from}, {"s", fixed_in_frame(arm, frame, start, at.span)}}, at.span, vector);
     joint.points[k] = ends[k].point.node;
   }
 }
 
-std::optional<std::size_t> JointsReader::own_axis_of_plane(const Typed& vector, std::uint32_t frame) const {
+std::optional<std::size_t> JointsReader::own_axis_of_plane(const TypedNode& vector, std::uint32_t frame) const {
   const Node& node = model_.arena[vector.node];
   if (node.op != Op::fixed_basis) return std::nullopt;
   if (frame == 0) return node.index;
-  const FrameSource& of = frame_sources_[frame];
-  if (!of.upright || !of.axis || !of.axis->numbers) return std::nullopt;
+  const FrameDeclaration& of = frame_sources_[frame];
+  if (!of.starts_aligned || !of.axis || !of.axis->numbers) return std::nullopt;
   for (std::size_t k = 0; k < 3; ++k) {
     if ((k == node.index) == cln::zerop((*of.axis->numbers)[k])) return std::nullopt;
   }
@@ -224,13 +224,13 @@ std::optional<std::size_t> JointsReader::own_axis_of_plane(const Typed& vector, 
 }
 
 // The axis of one end and two directions normal to it, with constant components along the axes of that body.
-std::array<Typed, 3> JointsReader::triad_about(const Value& written, const JointEnd& end, const std::string& what) {
+std::array<TypedNode, 3> JointsReader::triad_about(const Value& written, const JointEnd& end, const std::string& what) {
   const std::string of = end.frame == 0 ? "E1, E2, E3" : fmt::format("{0}.e1, {0}.e2, {0}.e3", end.name);
-  const Context context{fmt::format("an axis of {}", what), end.frame == 0 ? Facts{0} : on_motion, Shape::vector,
+  const Context context{fmt::format("an axis of {}", what), end.frame == 0 ? Dependencies{0} : on_motion, Shape::vector,
                         std::nullopt, "it is fixed in its body: make it of " + of};
-  const Typed axis = resolver_.value(written, context);
+  const TypedNode axis = resolver_.value(written, context);
   const bool in_plane = own_axis_of_plane(axis, end.frame).has_value();
-  const Typed along = end.frame == 0 || in_plane ? axis : resolver_.in_axes(axis, end.frame);
+  const TypedNode along = end.frame == 0 || in_plane ? axis : resolver_.in_axes(axis, end.frame);
   if (along.node == no_node)
     source_.fail(written.span, fmt::format("this axis is not fixed in '{}'", end.name),
                  "make it of " + of + " with constant components");
@@ -239,7 +239,7 @@ std::array<Typed, 3> JointsReader::triad_about(const Value& written, const Joint
     const std::size_t k = node.index;
     return {own(k), own(k + 1), own(k + 2)};
   }
-  AtStart values(model_, {});
+  StartSubstitution values(model_, {});
   const std::array<double, 3> v = values.vector_value(along.node);
   if (!(length(v) > 0))
     source_.fail(written.span, fmt::format("an axis of {} has no direction", what), "make it of " + of);
@@ -249,14 +249,14 @@ std::array<Typed, 3> JointsReader::triad_about(const Value& written, const Joint
     if (std::abs(v[k]) < std::abs(v[least])) least = k;
   }
   const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
-  std::map<std::string, Typed> local{{"v", along}, {"c", resolver_.own_axis(0, least, written.span)}};
-  std::array<Typed, 3> triad{resolver_.text("unit(v)", local, written.span, vector),
+  std::map<std::string, TypedNode> local{{"v", along}, {"c", resolver_.own_axis(0, least, written.span)}};
+  std::array<TypedNode, 3> triad{resolver_.text("unit(v)", local, written.span, vector),
                              resolver_.text("unit(cross(v, c))", local, written.span, vector),
                              {}};
   triad[2] = resolver_.text("cross(a, a1)", {{"a", triad[0]}, {"a1", triad[1]}}, written.span, vector);
-  for (Typed& direction : triad) {
+  for (TypedNode& direction : triad) {
     if (end.frame == 0) continue;
-    std::map<std::string, Typed> parts;
+    std::map<std::string, TypedNode> parts;
     for (std::uint32_t k = 0; k < 3; ++k) {
       parts[fmt::format("c{}", k + 1)] = resolver_.component(direction, k, written.span);
       parts[fmt::format("e{}", k + 1)] = own(k);
@@ -269,17 +269,17 @@ std::array<Typed, 3> JointsReader::triad_about(const Value& written, const Joint
 void JointsReader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends, const Value& table,
                               const std::string& what) {
   const Value* axis = table.find("axis");
-  if (kind.axes == joints::Axes::none) {
+  if (kind.axes == joints::AxisLayout::none) {
     if (axis != nullptr)
       source_.fail(axis->span, fmt::format("{} is of type {}, which has no axis", what, kind.name),
                    "remove 'axis', or choose another type");
     return;
   }
-  needed(table, "axis", what, "add axis = [\"vector of A\", \"vector of B\"], such as [\"A.e3\", \"B.e3\"]");
+  require_value(table, "axis", what, "add axis = [\"vector of A\", \"vector of B\"], such as [\"A.e3\", \"B.e3\"]");
   if (axis->is(Value::Kind::array) && axis->items.size() == 2) {
     for (std::size_t k = 0; k < 2; ++k) ends[k].axis = triad_about(axis->items[k], ends[k], what);
-    if (kind.axes == joints::Axes::line) return;
-    AtStart start = at_start(static_cast<std::uint32_t>(model_.constraints.size()));
+    if (kind.axes == joints::AxisLayout::shared) return;
+    StartSubstitution start = at_start(static_cast<std::uint32_t>(model_.constraints.size()));
     const NodeId a = start(ends[0].axis[0].node), b = a == no_node ? no_node : start(ends[1].axis[0].node);
     if (b == no_node) return;  // the initial state is checked instead
     const std::array<double, 3> u = start.vector_value(a), v = start.vector_value(b);
@@ -290,7 +290,7 @@ void JointsReader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>
     }
     return;
   }
-  if (kind.axes == joints::Axes::cross) {
+  if (kind.axes == joints::AxisLayout::crossed) {
     source_.fail(axis->span, fmt::format("{} has two axes, one in each body, at right angles", what),
                  "write axis = [\"A.e1\", \"B.e2\"]");
   }
@@ -299,10 +299,10 @@ void JointsReader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>
         axis->span, fmt::format("'axis' of {} has {} entries", what, axis->items.size()),
         "write axis = [\"vector of A\", \"vector of B\"], or axis = \"<vector>\" for one as placed at the start");
   }
-  const Typed direction =
+  const TypedNode direction =
       resolver_.value(*axis, {fmt::format("the axis of {}", what), on_motion, Shape::vector, std::nullopt,
                               "it is made of axes of bodies, E1, E2, E3 and parameters"});
-  AtStart start = at_start(scope_.find(table.find("name")->text)->index);
+  StartSubstitution start = at_start(scope_.find(table.find("name")->text)->index);
   const auto follows = [&](const JointEnd& end) {
     return end.frame != 0 && start(resolver_.own_axis(end.frame, 0, axis->span).node) == no_node;
   };
@@ -315,10 +315,10 @@ void JointsReader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>
 }
 
 // One axis, given by the initial state, with two directions normal to it, all fixed in A; the axis is also fixed in B.
-void JointsReader::axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span,
+void JointsReader::axis_at_start(const TypedNode& direction, std::array<JointEnd, 2>& ends, StartSubstitution& start, Span span,
                                  const std::string& what) {
   const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
-  const Typed placed = carried(direction, 0, start, span);
+  const TypedNode placed = fixed_in_frame(direction, 0, start, span);
   const std::array<double, 3> v = start.vector_value(placed.node);
   if (!(length(v) > 0))
     source_.fail(span, fmt::format("the axis of {} has no direction at the start", what),
@@ -328,18 +328,18 @@ void JointsReader::axis_at_start(const Typed& direction, std::array<JointEnd, 2>
     if (std::abs(v[k]) < std::abs(v[least])) least = k;
     if (model_.arena[placed.node].op == Op::fixed_basis && model_.arena[placed.node].index == k) along = k;
   }
-  std::array<Typed, 3> triad;
+  std::array<TypedNode, 3> triad;
   const auto basis = [&](std::size_t k) { return resolver_.own_axis(0, k % 3, span); };
   if (along < 3) {
     triad = {basis(along), basis(along + 1), basis(along + 2)};
   } else {
-    const std::map<std::string, Typed> local{{"v", placed}, {"c", basis(least)}};
+    const std::map<std::string, TypedNode> local{{"v", placed}, {"c", basis(least)}};
     triad = {
         resolver_.text("unit(v)", local, span, vector), resolver_.text("unit(cross(v, c))", local, span, vector), {}};
     triad[2] = resolver_.text("cross(a, a1)", {{"a", triad[0]}, {"a1", triad[1]}}, span, vector);
   }
   for (std::size_t e = 0; e < 2; ++e) {
-    for (std::size_t k = 0; k < 3; ++k) ends[e].axis[k] = carried(triad[k], ends[e].frame, start, span);
+    for (std::size_t k = 0; k < 3; ++k) ends[e].axis[k] = fixed_in_frame(triad[k], ends[e].frame, start, span);
   }
 }
 

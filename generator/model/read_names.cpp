@@ -46,7 +46,7 @@ std::uint32_t NamesReader::declare_coordinate(const std::string& name, Span span
                  "a model of this size cannot be handled");
   }
   symbol.index = static_cast<std::uint32_t>(model_.coordinates.size());
-  symbol.state = Symbol::State::done;
+  symbol.state = Symbol::State::resolved;
   Coordinate coordinate;
   coordinate.name = name;
   coordinate.span = span;
@@ -62,16 +62,16 @@ void NamesReader::read_coordinate(const Entry& entry) {
   if (entry.value.is(Value::Kind::text)) {
     unit = &entry.value;
   } else {
-    as(Value::Kind::table, entry.value, fmt::format("the coordinate {}", what),
+    require_kind(Value::Kind::table, entry.value, fmt::format("the coordinate {}", what),
        "write x = \"m\", x = {} or x = { unit = \"m\" }");
     check_keys(entry.value, {fmt::format("the coordinate {}", what), {"unit", "tex", "range"}});
     unit = entry.value.find("unit");
     coordinate.tex = tex_of(entry.value, what);
-    if (entry.value.find("range") != nullptr) ranged_.insert(index);
+    if (entry.value.find("range") != nullptr) coordinates_with_range_.insert(index);
   }
   if (unit == nullptr) return;
   coordinate.unit = si_unit(*unit, what);
-  measured_.insert(index);
+  coordinates_with_unit_.insert(index);
 }
 
 // Called once all names are known: the ends of a range may be expressions of parameters.
@@ -82,7 +82,7 @@ void NamesReader::read_ranges() {
     const Value* range = entry.value.find("range");
     if (range == nullptr) continue;
     Coordinate& coordinate = model_.coordinates[scope_.find(entry.key)->index];
-    as(Value::Kind::array, *range, fmt::format("the range of '{}'", entry.key),
+    require_kind(Value::Kind::array, *range, fmt::format("the range of '{}'", entry.key),
        "write range = [0, \"pi\"]; inf means no bound");
     if (range->items.size() != 2)
       source_.fail(range->span, "a range has two ends", "write range = [0, \"pi\"]; inf means no bound");
@@ -92,7 +92,7 @@ void NamesReader::read_ranges() {
       const std::string& text = range->items[k].text;
       const bool unbounded = text == "inf" || text == "+inf" || text == "-inf";
       if (unbounded && (text[0] == '-') == (k == 0)) continue;
-      const Typed end = resolver_.value(range->items[k], context);
+      const TypedNode end = resolver_.value(range->items[k], context);
       ends[k] = end.constant;
       (k == 0 ? coordinate.lower : coordinate.upper) = end.node;
     }
@@ -102,7 +102,7 @@ void NamesReader::read_ranges() {
   }
 }
 
-Typed NamesReader::define(Symbol& symbol) {
+TypedNode NamesReader::define(Symbol& symbol) {
   switch (symbol.kind) {
     case SymbolKind::parameter: return define_parameter(symbol);
     case SymbolKind::function: return define_function(symbol);
@@ -110,11 +110,11 @@ Typed NamesReader::define(Symbol& symbol) {
     case SymbolKind::definition: return define_definition(symbol);
     case SymbolKind::place: return PlacesReader(context_).define_place(symbol);
     case SymbolKind::frame: return BodiesReader(context_).define_axes(symbol);
-    default: return Typed{};
+    default: return TypedNode{};
   }
 }
 
-Typed NamesReader::define_parameter(Symbol& symbol) {
+TypedNode NamesReader::define_parameter(Symbol& symbol) {
   const Value& declared = symbol.entry->value;
   const std::string what = fmt::format("the parameter '{}'", symbol.name);
   const Context context{what, 0, Shape::scalar, std::nullopt, ""};
@@ -125,15 +125,15 @@ Typed NamesReader::define_parameter(Symbol& symbol) {
   std::optional<MeasuredUnit> stated;
   if (declared.is(Value::Kind::table)) {
     check_keys(declared, {what, {"value", "unit", "tex", "note", "positive"}});
-    value = &needed(declared, "value", what, "add value = ...");
+    value = &require_value(declared, "value", what, "add value = ...");
     parameter.tex = tex_of(declared, what);
     if (declared.find("note") != nullptr) parameter.note = text_of_key(declared, "note", what);
     if (const Value* positive = declared.find("positive")) {
-      parameter.positive = as(Value::Kind::boolean, *positive, "positive", "write true or false").truth;
+      parameter.positive = require_kind(Value::Kind::boolean, *positive, "positive", "write true or false").boolean;
     }
     if (const Value* unit = declared.find("unit")) stated = any_unit(*unit, what);
   }
-  Typed typed = resolver_.value(*value, context);
+  TypedNode typed = resolver_.value(*value, context);
   if (stated) typed = resolver_.with_unit(typed, *stated, declared.find("unit")->span);
   if (parameter.positive && typed.constant && !cln::plusp(*typed.constant)) {
     source_.fail(value->span, fmt::format("{} is declared positive and is not", what),
@@ -147,7 +147,7 @@ Typed NamesReader::define_parameter(Symbol& symbol) {
   return typed;
 }
 
-Typed NamesReader::define_function(Symbol& symbol) {
+TypedNode NamesReader::define_function(Symbol& symbol) {
   const Value& declared = symbol.entry->value;
   const std::string what = fmt::format("the function '{}'", symbol.name);
   Function function;
@@ -157,58 +157,58 @@ Typed NamesReader::define_function(Symbol& symbol) {
   Context context{what, on_time, Shape::scalar, std::nullopt, ""};
   if (declared.is(Value::Kind::table)) {
     check_keys(declared, {what, {"is", "unit", "tex"}});
-    is = &needed(declared, "is", what, "add is = \"expression of t\"");
+    is = &require_value(declared, "is", what, "add is = \"expression of t\"");
     function.tex = tex_of(declared, what);
     if (const Value* unit = declared.find("unit")) function.unit = si_unit(*unit, what);
     context.dimension = function.unit.dimension;
   }
-  Typed typed = resolver_.value(*is, context);
+  TypedNode typed = resolver_.value(*is, context);
   if (context.dimension) {
     typed.dimension = context.dimension;
-    typed.loose = false;
+    typed.has_uncertain_dimension = false;
   } else {
     function.unit = stated_or(unit_in(*is), typed.dimension);
   }
   typed.literal = false;
   typed.constant.reset();
-  function.is = typed.node;
+  function.expression = typed.node;
   symbol.index = static_cast<std::uint32_t>(model_.functions.size());
   model_.functions.push_back(std::move(function));
   return typed;
 }
 
-Typed NamesReader::define_input(Symbol& symbol) {
+TypedNode NamesReader::define_input(Symbol& symbol) {
   const Value& declared = symbol.entry->value;
   const std::string what = fmt::format("the input '{}'", symbol.name);
-  as(Value::Kind::table, declared, what, fmt::format("write {} = {{ unit = \"N\", default = 0 }}", symbol.name));
+  require_kind(Value::Kind::table, declared, what, fmt::format("write {} = {{ unit = \"N\", default = 0 }}", symbol.name));
   check_keys(declared, {what, {"unit", "default", "tex"}});
   Input input;
   input.name = symbol.name;
   input.span = symbol.span;
   input.tex = tex_of(declared, what);
-  Typed result;
+  TypedNode result;
   if (const Value* unit = declared.find("unit")) input.unit = si_unit(*unit, what);
   result.dimension = input.unit.dimension;
   if (const Value* fallback = declared.find("default")) {
     const Context context{fmt::format("the default of '{}'", symbol.name), on_time, Shape::scalar, input.unit.dimension,
                           ""};
-    input.fallback = resolver_.value(*fallback, context).node;
+    input.default_value = resolver_.value(*fallback, context).node;
   } else {
-    input.fallback = resolver_.number(0, declared.span).node;
+    input.default_value = resolver_.number(0, declared.span).node;
   }
-  result.facts = on_input;
+  result.dependencies = on_input;
   symbol.index = static_cast<std::uint32_t>(model_.inputs.size());
   model_.inputs.push_back(std::move(input));
   return result;
 }
 
-Typed NamesReader::define_definition(Symbol& symbol) {
+TypedNode NamesReader::define_definition(Symbol& symbol) {
   const Context context{fmt::format("the definition '{}'", symbol.name), on_anything, Shape::either, std::nullopt, ""};
-  Typed typed = resolver_.value(symbol.entry->value, context);
+  TypedNode typed = resolver_.value(symbol.entry->value, context);
   typed.literal = false;
   Definition definition;
   definition.name = symbol.name;
-  definition.is = typed.node;
+  definition.expression = typed.node;
   definition.vector = typed.vector;
   definition.unit = unit_of(typed.dimension);
   definition.span = symbol.span;
@@ -228,7 +228,7 @@ void NamesReader::warn_misspelt(const std::string& name, Span span) {
 
 void NamesReader::warn_unused() {
   for (Parameter& parameter : model_.parameters) {
-    if (parameter.start_of) continue;  // initial(q)
+    if (parameter.initial_value_of) continue;  // initial(q)
     parameter.used = scope_.find(parameter.name)->used;
     if (parameter.used) continue;
     resolver_.warn(parameter.span, fmt::format("the parameter '{}' is not used", parameter.name),

@@ -12,16 +12,16 @@ class NamesReader : private SectionReader {
   explicit NamesReader(ReaderContext& context) : SectionReader(context) {}
   void declare();
   std::uint32_t declare_coordinate(const std::string& name, Span span, const Entry* entry);
-  Typed define(Symbol& symbol);
+  TypedNode define(Symbol& symbol);
   void read_ranges();
   void warn_misspelt(const std::string& name, Span span);
   void warn_unused();
 
  private:
-  Typed define_parameter(Symbol& symbol);
-  Typed define_function(Symbol& symbol);
-  Typed define_input(Symbol& symbol);
-  Typed define_definition(Symbol& symbol);
+  TypedNode define_parameter(Symbol& symbol);
+  TypedNode define_function(Symbol& symbol);
+  TypedNode define_input(Symbol& symbol);
+  TypedNode define_definition(Symbol& symbol);
   void read_coordinate(const Entry& entry);
 };
 

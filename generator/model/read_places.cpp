@@ -11,7 +11,7 @@
 #include "model/read_positions.hpp"
 
 namespace eomgen::model {
-std::uint32_t PlacesReader::declare_place(const std::string& name, Span span, PlaceSource where) {
+std::uint32_t PlacesReader::declare_place(const std::string& name, Span span, PlaceDeclaration where) {
   Symbol& symbol = scope_.declare(SymbolKind::place, name, span);
   if (model_.places.size() > max_places) {
     source_.fail(span, fmt::format("the model has more than {} particles and points", max_places),
@@ -57,7 +57,7 @@ void PlacesReader::declare() {
       BodiesReader(context_).declare_frame(*table, 0, scope_.declare(SymbolKind::frame, name, span));
       continue;
     }
-    const std::uint32_t place = declare_place(name, span, PlaceSource{table, which == 0, which == 3, 0, 0});
+    const std::uint32_t place = declare_place(name, span, PlaceDeclaration{table, which == 0, which == 3, 0, 0});
     if (which == 3) BodiesReader(context_).declare_frame(*table, place, *scope_.find(name));
   }
 }
@@ -83,20 +83,20 @@ void PlacesReader::declare_coordinates() {
   }
 }
 
-Typed PlacesReader::define_place(Symbol& symbol) {
-  const PlaceSource where = place_sources_[symbol.index];
-  Typed position;
+TypedNode PlacesReader::define_place(Symbol& symbol) {
+  const PlaceDeclaration where = place_sources_[symbol.index];
+  TypedNode position;
   if (where.chain > 0) {
     position = ChainsReader(context_).position(where);
   } else if (where.body && where.table->find("position") == nullptr) {
-    position = resolver_.meet(resolver_.number(0, symbol.span), symbol.span,
+    position = resolver_.check_context(resolver_.number(0, symbol.span), symbol.span,
                               Context{"a position", 0, Shape::vector, std::nullopt, ""});
   } else if (!where.particle && !where.body &&
              (where.table->find("on") != nullptr || where.table->find("at") != nullptr)) {
     position = BodiesReader(context_).point_on_body(*where.table, fmt::format("'{}'", symbol.name));
   } else {
     const std::string what = fmt::format("'{}'", symbol.name);
-    const Value& value = needed(*where.table, "position", what,
+    const Value& value = require_value(*where.table, "position", what,
                                 "add position = { cartesian = [\"x\", \"y\", \"z\"] } or a vector expression");
     if (value.is(Value::Kind::table)) {
       position = PositionsReader(context_).position(symbol.index, value);
@@ -113,15 +113,15 @@ void PlacesReader::read_particles() {
   for (std::uint32_t k = 1; k < model_.places.size(); ++k) {
     Symbol& symbol = *scope_.find(model_.places[k].name);
     resolver_.symbol(symbol, symbol.span);
-    const PlaceSource where = place_sources_[k];
+    const PlaceDeclaration where = place_sources_[k];
     if (!where.particle) continue;
     Particle particle;
     particle.place = k;
     particle.span = symbol.span;
     const std::string what = fmt::format("'{}'", symbol.name);
     const Context context{fmt::format("the mass of {}", what), on_time, Shape::scalar, dimension_of("kg"), ""};
-    if (where.chain == 0) needed(*where.table, "mass", what, "add mass = \"m\" or a value such as \"2 kg\"");
-    const Typed mass = where.chain > 0 ? ChainsReader(context_).entry(*where.table, "mass", where.link, context)
+    if (where.chain == 0) require_value(*where.table, "mass", what, "add mass = \"m\" or a value such as \"2 kg\"");
+    const TypedNode mass = where.chain > 0 ? ChainsReader(context_).entry(*where.table, "mass", where.link, context)
                                        : resolver_.value(*where.table->find("mass"), context);
     if (mass.constant && !cln::plusp(*mass.constant)) {
       source_.fail(where.table->find("mass")->span, fmt::format("the mass of {} is not positive", what),

@@ -11,8 +11,8 @@ class PlacesReader : private SectionReader {
   explicit PlacesReader(ReaderContext& context) : SectionReader(context) {}
   void declare();
   void declare_coordinates();
-  std::uint32_t declare_place(const std::string& name, Span span, PlaceSource where);
-  Typed define_place(Symbol& symbol);
+  std::uint32_t declare_place(const std::string& name, Span span, PlaceDeclaration where);
+  TypedNode define_place(Symbol& symbol);
   void read_particles();
 };
 

@@ -41,7 +41,7 @@ void PositionsReader::declare_entry(const Value& entry, std::string_view unit) {
     known = scope_.find(entry.text);
   }
   if (known->kind != SymbolKind::coordinate || unit.empty()) return;
-  if (measured_.insert(known->index).second) {
+  if (coordinates_with_unit_.insert(known->index).second) {
     model_.coordinates[known->index].unit = Unit{std::string(unit), dimension_of(unit)};
   }
 }
@@ -78,16 +78,16 @@ const Entry& PositionsReader::system_entry(const Value& table) const {
   return *found;
 }
 
-std::array<Typed, 3> PositionsReader::chart_entries(const coordinates::CoordinateSystem& system, const Value& entries) {
+std::array<TypedNode, 3> PositionsReader::chart_entries(const coordinates::CoordinateSystem& system, const Value& entries) {
   const std::string remedy =
       fmt::format("write {} = [\"{}\", \"{}\", \"{}\"]{}", system.name, system.slots[0].name, system.slots[1].name,
                   system.slots[2].name, system.planar ? ", or the first two in the plane" : "");
-  as(Value::Kind::array, entries, fmt::format("'{}'", system.name), remedy);
+  require_kind(Value::Kind::array, entries, fmt::format("'{}'", system.name), remedy);
   const std::size_t count = entries.items.size();
   if (count != 3 && !(count == 2 && system.planar)) {
     source_.fail(entries.span, fmt::format("'{}' has {} entries", system.name, count), remedy);
   }
-  std::array<Typed, 3> result;
+  std::array<TypedNode, 3> result;
   for (std::size_t k = 0; k < 3; ++k) {
     if (k >= count) {
       result[k] = resolver_.number(0, entries.span);
@@ -102,7 +102,7 @@ std::array<Typed, 3> PositionsReader::chart_entries(const coordinates::Coordinat
     if (bare) context.dimension.reset();  // [coordinates] may state another
     result[k] = resolver_.value(item, context);
     const bool bounded = !slot.lower.empty() || !slot.upper.empty();
-    if (!bare || !bounded || !ranged_.insert(symbol->index).second) continue;
+    if (!bare || !bounded || !coordinates_with_range_.insert(symbol->index).second) continue;
     const auto bound = [&](std::string_view text) {
       return text.empty() ? no_node : resolver_.text(text, {}, item.span, context).node;
     };
@@ -117,17 +117,17 @@ std::array<Typed, 3> PositionsReader::chart_entries(const coordinates::Coordinat
 PositionsReader::ExpandedPosition PositionsReader::expanded_position(const Value& table, const Entry& entry) {
   const coordinates::CoordinateSystem& system = *coordinates::find(entry.key);
   const Span span = entry.value.span;
-  const std::array<Typed, 3> parts = chart_entries(system, entry.value);
+  const std::array<TypedNode, 3> parts = chart_entries(system, entry.value);
   ExpandedPosition expanded;
   expanded.chart.system = std::string(system.name);
   expanded.chart.planar = entry.value.items.size() == 2;
-  std::map<std::string, Typed> local;
+  std::map<std::string, TypedNode> local;
   for (std::size_t k = 0; k < 3; ++k) {
     expanded.chart.entries[k] = parts[k].node;
     local[std::string(system.slots[k].name)] = parts[k];
   }
   if (const std::string key(system.constant.name); !key.empty()) {
-    const Value& constant = needed(table, key, fmt::format("a position in {} coordinates", system.name),
+    const Value& constant = require_value(table, key, fmt::format("a position in {} coordinates", system.name),
                                    fmt::format("add {} = \"..\" beside {}", key, system.name));
     local[key] = resolver_.value(
         constant, {fmt::format("'{}'", key), on_time, Shape::scalar, dimension_of(system.constant.unit), ""});
@@ -136,7 +136,7 @@ PositionsReader::ExpandedPosition PositionsReader::expanded_position(const Value
   for (std::size_t k = 0; k < 3; ++k) expanded.x[k] = resolver_.text(system.x[k], local, span, context);
   for (std::size_t i = 0; i < 3; ++i) {
     if (system.e[i][0].empty()) continue;
-    std::array<Typed, 3> e;
+    std::array<TypedNode, 3> e;
     for (std::size_t k = 0; k < 3; ++k) e[k] = resolver_.text(system.e[i][k], local, span, context);
     expanded.chart.unit_basis[i] = resolver_.array_of(e, span).node;
   }
@@ -158,7 +158,7 @@ void PositionsReader::check_independent(const ExpandedPosition& expanded, const 
   for (int k = 0; k < points; ++k) {
     samples.next();
     const double independence =
-        samples.independence({expanded.x[0].node, expanded.x[1].node, expanded.x[2].node}, coordinates);
+        samples.gram_determinant({expanded.x[0].node, expanded.x[1].node, expanded.x[2].node}, coordinates);
     if (independence > smallest) return;
     some = some || !std::isnan(independence);
   }
@@ -171,7 +171,7 @@ void PositionsReader::check_independent(const ExpandedPosition& expanded, const 
                             : fmt::format("choose another {}", coordinates::find(entry.key)->constant.name));
 }
 
-Typed PositionsReader::position(std::uint32_t place, const Value& table) {
+TypedNode PositionsReader::position(std::uint32_t place, const Value& table) {
   const Entry& entry = system_entry(table);
   const Span span = entry.value.span;
   const coordinates::CoordinateSystem* system = coordinates::find(entry.key);
@@ -180,11 +180,11 @@ Typed PositionsReader::position(std::uint32_t place, const Value& table) {
   if (system != nullptr && !system->constant.name.empty()) {
     check_independent(expanded, entry, table.find(system->constant.name)->span);
   }
-  Typed position = resolver_.array_of(expanded.x, span);
+  TypedNode position = resolver_.array_of(expanded.x, span);
   if (const Value* axes = table.find("axes")) {
-    const std::uint32_t frame = frame_named(*axes, "'axes'");
-    const auto along = [&](const std::array<Typed, 3>& x) {
-      Typed sum = resolver_.product_of(x[0], resolver_.own_axis(frame, 0, axes->span), span);
+    const std::uint32_t frame = require_frame(*axes, "'axes'");
+    const auto along = [&](const std::array<TypedNode, 3>& x) {
+      TypedNode sum = resolver_.product_of(x[0], resolver_.own_axis(frame, 0, axes->span), span);
       for (std::size_t k = 1; k < 3; ++k) {
         sum = resolver_.sum_of(sum, resolver_.product_of(x[k], resolver_.own_axis(frame, k, axes->span), span), span);
       }
@@ -193,16 +193,16 @@ Typed PositionsReader::position(std::uint32_t place, const Value& table) {
     position = along(expanded.x);
     for (NodeId& e : expanded.chart.unit_basis) {
       if (e == no_node) continue;
-      std::array<Typed, 3> components;
+      std::array<TypedNode, 3> components;
       for (std::size_t k = 0; k < 3; ++k) {
         components[k].node = model_.arena[e].args[k];
-        components[k].literal = components[k].pure = true;
+        components[k].literal = components[k].is_pure_number = true;
       }
       e = along(components).node;
     }
   }
   if (const Value* from = table.find("from")) {
-    const std::uint32_t base = place_named(*from, "'from'");
+    const std::uint32_t base = require_place(*from, "'from'");
     model_.places[place].from = base;
     if (base > 0) position = resolver_.sum_of(resolver_.place(base, from->span), position, span);
   }

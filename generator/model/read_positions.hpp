@@ -12,21 +12,21 @@ class PositionsReader : private SectionReader {
   explicit PositionsReader(ReaderContext& context) : SectionReader(context) {}
   void declare_entries(const Value& position);
   void declare_entry(const Value& entry, std::string_view unit);
-  Typed position(std::uint32_t place, const Value& table);
+  TypedNode position(std::uint32_t place, const Value& table);
 
  private:
   /// A position in a chart, relative to the origin of the chart.
   struct ExpandedPosition {
     Chart chart;
-    std::array<Typed, 3> x;
+    std::array<TypedNode, 3> x;
   };
   const Entry& system_entry(const Value& table) const;
   ExpandedPosition expanded_position(const Value& table, const Entry& entry);
   ExpandedPosition custom_position(const Value& table, const Entry& entry);
-  std::array<Typed, 3> solved_position(const Value& names, const Value& q, const Context& context);
+  std::array<TypedNode, 3> solved_position(const Value& names, const Value& q, const Context& context);
   void check_inverse(const ExpandedPosition& expanded, const Value& q, bool both);
   void check_independent(const ExpandedPosition& expanded, const Entry& entry, Span constant);
-  std::array<Typed, 3> chart_entries(const coordinates::CoordinateSystem& system, const Value& entries);
+  std::array<TypedNode, 3> chart_entries(const coordinates::CoordinateSystem& system, const Value& entries);
 };
 
 }  // namespace eomgen::model

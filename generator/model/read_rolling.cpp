@@ -16,12 +16,12 @@ constexpr const char* form =
 }  // namespace
 
 // The plane: a point, the normal, the tangential surface velocity and the tangents.
-std::map<std::string, Typed> ContactsReader::plane_of_contact(const Value& on) {
+std::map<std::string, TypedNode> ContactsReader::plane_of_contact(const Value& on) {
   const Span span = on.span;
   const Context position{"a plane", on_motion, Shape::vector, std::nullopt, ""};
-  std::map<std::string, Typed> plane;
+  std::map<std::string, TypedNode> plane;
   const auto basis = [&](std::size_t k) { return resolver_.own_axis(0, k, span); };
-  const Typed zero = resolver_.meet(resolver_.number(0, span), span, position);
+  const TypedNode zero = resolver_.check_context(resolver_.number(0, span), span, position);
   if (on.is(Value::Kind::text)) {
     if (on.text != "ground") {
       source_.fail(span, fmt::format("there is no ground and no body {}", quote(on.text)),
@@ -30,9 +30,9 @@ std::map<std::string, Typed> ContactsReader::plane_of_contact(const Value& on) {
     }
     return {{"o", zero}, {"V", zero}, {"n", basis(2)}, {"t1", basis(0)}, {"t2", basis(1)}};
   }
-  as(Value::Kind::table, on, "'on'", "write on = \"ground\" or on = { point = \"<vector>\", normal = \"<vector>\" }");
+  require_kind(Value::Kind::table, on, "'on'", "write on = \"ground\" or on = { point = \"<vector>\", normal = \"<vector>\" }");
   check_keys(on, {"a plane", {"point", "normal", "velocity"}});
-  const auto vector = [&](const char* key, Facts allowed, const char* unit, const char* remedy) {
+  const auto vector = [&](const char* key, Dependencies allowed, const char* unit, const char* remedy) {
     const Value* value = on.find(key);
     if (value == nullptr) return zero;
     return resolver_.value(*value, {fmt::format("the {} of the plane", key), allowed, Shape::vector,
@@ -42,8 +42,8 @@ std::map<std::string, Typed> ContactsReader::plane_of_contact(const Value& on) {
   plane["o"] = vector("point", on_time, "m", moving);
   plane["V"] = vector("velocity", on_motion, "m/s",
                       "the velocity of a plane where it is touched is made of coordinates, functions of time and t");
-  needed(on, "normal", "a plane", "add normal = \"E3\", which points to the side of the body");
-  const Typed normal = vector("normal", on_time, "", moving);
+  require_value(on, "normal", "a plane", "add normal = \"E3\", which points to the side of the body");
+  const TypedNode normal = vector("normal", on_time, "", moving);
   const Node& node = model_.arena[normal.node];
   if (node.op == Op::fixed_basis) {
     const std::size_t k = node.index;
@@ -59,7 +59,7 @@ std::map<std::string, Typed> ContactsReader::plane_of_contact(const Value& on) {
 }
 
 // The vector from the centre of mass to the point of contact.
-Typed ContactsReader::contact_arm(const Value& table, std::map<std::string, Typed> local) {
+TypedNode ContactsReader::contact_arm(const Value& table, std::map<std::string, TypedNode> local) {
   const Value *at = table.find("at"), *shape = table.find("shape");
   if ((at == nullptr) == (shape == nullptr)) {
     source_.fail(table.span,
@@ -70,7 +70,7 @@ Typed ContactsReader::contact_arm(const Value& table, std::map<std::string, Type
   const Context arm{"the vector to the point of contact", on_motion, Shape::vector, dimension_of("m"),
                     "it is made of axes of the body, angles and lengths"};
   if (at != nullptr) return resolver_.value(*at, arm);
-  as(Value::Kind::table, *shape, "'shape'", "write shape = { sphere = \"R\" } or { disk = \"R\" }");
+  require_kind(Value::Kind::table, *shape, "'shape'", "write shape = { sphere = \"R\" } or { disk = \"R\" }");
   check_keys(*shape, {"a shape in contact", {"sphere", "disk"}});
   if (shape->entries.size() != 1)
     source_.fail(shape->span, fmt::format("a shape in contact is given in {} ways", shape->entries.size()),
@@ -84,17 +84,17 @@ Typed ContactsReader::contact_arm(const Value& table, std::map<std::string, Type
 // Names for the motion of a body: its centre of mass x and the velocity v of it, its angular velocity w, its axis e3.
 // The equations use only these names, so that they cannot collide with names of the model.
 void ContactsReader::name_motion(std::uint32_t frame, const std::string& ending, Span span,
-                                 std::map<std::string, Typed>& local) {
+                                 std::map<std::string, TypedNode>& local) {
   const Context vector{"a contact", on_motion | on_velocity, Shape::vector, std::nullopt, ""};
-  const std::map<std::string, Typed> body{{"x", resolver_.place(frame_sources_[frame].place, span)}};
+  const std::map<std::string, TypedNode> body{{"x", resolver_.place(frame_sources_[frame].place, span)}};
   local["x" + ending] = body.at("x");
   local["v" + ending] = resolver_.text("ddt(x)", body, span, vector);
-  local["w" + ending] = resolver_.meet(resolver_.angular_velocity(frame, span), span, vector);
+  local["w" + ending] = resolver_.check_context(resolver_.angular_velocity(frame, span), span, vector);
   local["e3" + ending] = resolver_.own_axis(frame, 2, span);
 }
 
 // The direction to which tangent 1 is closest, if the model gives one.
-void ContactsReader::tangent_of_contact(const Value& table, std::map<std::string, Typed>& local) {
+void ContactsReader::tangent_of_contact(const Value& table, std::map<std::string, TypedNode>& local) {
   const Value* value = table.find("tangent");
   if (value == nullptr) return;
   local["a"] = resolver_.value(*value, {"the tangent of a contact", on_motion, Shape::vector, std::nullopt,
@@ -106,7 +106,7 @@ void ContactsReader::tangent_of_contact(const Value& table, std::map<std::string
 
 // The point of contact and the slip velocity there.
 void ContactsReader::read_contact_point(Constraint& constraint, const Value& table,
-                                        const std::map<std::string, Typed>& local) {
+                                        const std::map<std::string, TypedNode>& local) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
   BodyContact& contact = *constraint.contact;
   contact.arm = local.at("p").node;
@@ -126,18 +126,18 @@ void ContactsReader::read_contact_point(Constraint& constraint, const Value& tab
 
 void ContactsReader::read(Constraint& constraint, const Value& table, bool rolling, bool rough) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
-  as(Value::Kind::table, table, what, form);
+  require_kind(Value::Kind::table, table, what, form);
   check_keys(table, {what, {"body", "on", "at", "shape", "at_b", "shape_b", "normal", "tangent"}});
-  const Value& name = needed(table, "body", what, form);
-  const std::uint32_t frame = frame_named(name, fmt::format("'body' of {}", what));
+  const Value& name = require_value(table, "body", what, form);
+  const std::uint32_t frame = require_frame(name, fmt::format("'body' of {}", what));
   if (frame == 0 || frame_sources_[frame].place == 0)
     source_.fail(name.span, fmt::format("{} needs a body, and this has no mass", what), "name a [[body]]");
   constraint.contact.emplace();
   constraint.contact->frame = frame;
   constraint.contact->place = frame_sources_[frame].place;
   constraint.contact->rolling = rolling;
-  const Value& on = needed(table, "on", what, "add on = \"ground\"");
-  std::map<std::string, Typed> local;
+  const Value& on = require_value(table, "on", what, "add on = \"ground\"");
+  std::map<std::string, TypedNode> local;
   std::string psi = "dot(x + p - o, n)";
   if (touches_body(on)) {
     name_motion(frame, "", table.span, local);

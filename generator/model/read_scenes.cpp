@@ -57,7 +57,7 @@ void ScenesReader::read() {
 // The entries of a scene including those inherited by `from`: tables merge key by key, other keys replace.
 std::vector<const Entry*> ScenesReader::merged(const Entry& scene, std::vector<std::string>& from) const {
   const std::string what = fmt::format("[scene.{}]", scene.key);
-  as(Value::Kind::table, scene.value, what, "write [scene.NAME] and its keys below");
+  require_kind(Value::Kind::table, scene.value, what, "write [scene.NAME] and its keys below");
   check_keys(scene.value, {what,
                            {"from", "t", "initial", "solve", "guess", "parameters", "inputs", "outputs", "solver",
                             "rtol", "atol", "step", "every", "stop"}});
@@ -70,7 +70,7 @@ std::vector<const Entry*> ScenesReader::merged(const Entry& scene, std::vector<s
   from.push_back(scene.key);
   std::vector<const Entry*> result;
   if (const Value* base = scene.value.find("from")) {
-    as(Value::Kind::text, *base, "'from'", "write from = \"default\"");
+    require_kind(Value::Kind::text, *base, "'from'", "write from = \"default\"");
     const Entry* other = section("scene")->entry(base->text);
     if (other == nullptr) {
       std::vector<std::string> names;
@@ -128,7 +128,7 @@ void ScenesReader::read_scene(const Entry& entry) {
     const std::string& key = item->key;
     if (std::find(merging.begin(), merging.end(), key) != merging.end()) {
       if (key != "from")
-        as(Value::Kind::table, value, fmt::format("'{}'", key), fmt::format("write {} = {{ name = value }}", key));
+        require_kind(Value::Kind::table, value, fmt::format("'{}'", key), fmt::format("write {} = {{ name = value }}", key));
     } else if (key == "t") {
       read_span(scene, value);
     } else if (key == "solve") {
@@ -150,16 +150,16 @@ void ScenesReader::read_scene(const Entry& entry) {
   read_initial(scene, merged_table(entries, "initial"), false);
   read_initial(scene, merged_table(entries, "guess"), true);
   BodiesReader(context_).complete_parameters(scene);
-  BodiesReader(context_).check_initial_rotations(scene);
+  BodiesReader(context_).check_initial_angular_velocities(scene);
   model_.scenes.push_back(std::move(scene));
 }
 
 void ScenesReader::read_span(Scene& scene, const Value& value) {
   const std::string remedy = "write t = [0, 10]: start and end in seconds";
-  as(Value::Kind::array, value, "'t'", remedy);
+  require_kind(Value::Kind::array, value, "'t'", remedy);
   if (value.items.size() != 2) source_.fail(value.span, fmt::format("'t' has {} entries", value.items.size()), remedy);
-  const Typed t0 = resolver_.value(value.items[0], plain("the start of the run", "s"));
-  const Typed t1 = resolver_.value(value.items[1], plain("the end of the run", "s"));
+  const TypedNode t0 = resolver_.value(value.items[0], plain("the start of the run", "s"));
+  const TypedNode t1 = resolver_.value(value.items[1], plain("the end of the run", "s"));
   if (t0.constant && t1.constant && *t0.constant >= *t1.constant)
     source_.fail(value.span, "the run ends before it starts", remedy);
   scene.t0 = t0.node;
@@ -170,7 +170,7 @@ NodeId ScenesReader::positive_number(const Value& value, const std::string& what
   if (value.is(Value::Kind::array))
     source_.fail(value.span, fmt::format("{} has {} values", what, value.items.size()),
                  "write one, which holds for all");
-  const Typed typed = resolver_.value(value, plain(what, unit == "1" ? "1" : unit));
+  const TypedNode typed = resolver_.value(value, plain(what, unit == "1" ? "1" : unit));
   if (typed.constant && !cln::plusp(*typed.constant))
     source_.fail(value.span, fmt::format("{} is not positive", what), "write a number greater than 0");
   return typed.node;
@@ -200,7 +200,7 @@ void ScenesReader::read_initial(Scene& scene, const std::vector<const Entry*>& e
     for (const InitialValue& known : scene.initial) given.insert({known.coordinate, known.order});
   }
   for (const Entry* entry : entries) {
-    if (BodiesReader(context_).read_initial_rotation(scene, *entry, guess)) continue;
+    if (BodiesReader(context_).read_initial_angular_velocity(scene, *entry, guess)) continue;
     InitialValue initial{};
     const Symbol& symbol = coordinate_of_key(*entry, what, initial.order);
     initial.coordinate = symbol.index;
@@ -214,7 +214,7 @@ void ScenesReader::read_initial(Scene& scene, const std::vector<const Entry*>& e
         model_.coordinates[symbol.index].unit.dimension,
         "start values are made of numbers, parameters, functions at the start, definitions and values given before"};
     if (context.dimension && initial.order == 1) context.dimension = quotient(*context.dimension, dimension_of("s"));
-    const Typed typed = resolver_.value(entry->value, context);
+    const TypedNode typed = resolver_.value(entry->value, context);
     initial.value = typed.node;
     warn_of_degrees(*entry, typed, initial);
     for (const auto& used : resolver_.coordinates_in(initial.value)) {
@@ -233,7 +233,7 @@ void ScenesReader::read_initial(Scene& scene, const std::vector<const Entry*>& e
 }
 
 // Warns of a value like 45 for an angle in radians, which was probably meant in degrees or has surplus full turns.
-void ScenesReader::warn_of_degrees(const Entry& entry, const Typed& typed, const InitialValue& initial) {
+void ScenesReader::warn_of_degrees(const Entry& entry, const TypedNode& typed, const InitialValue& initial) {
   const Rational turn = Rational(62832) / 10000;
   const bool angle = model_.coordinates[initial.coordinate].unit.text == "rad";
   if (!angle || initial.order != 0 || !typed.literal || !typed.constant || cln::abs(*typed.constant) <= turn) return;
@@ -243,9 +243,9 @@ void ScenesReader::warn_of_degrees(const Entry& entry, const Typed& typed, const
 }
 
 void ScenesReader::read_solve(Scene& scene, const Value& value) {
-  as(Value::Kind::array, value, "'solve'", "write solve = [\"y_dot\"]");
+  require_kind(Value::Kind::array, value, "'solve'", "write solve = [\"y_dot\"]");
   for (const Value& item : value.items) {
-    as(Value::Kind::text, item, "an entry of 'solve'", "write solve = [\"y_dot\"]");
+    require_kind(Value::Kind::text, item, "an entry of 'solve'", "write solve = [\"y_dot\"]");
     std::uint8_t order = 0;
     const Symbol& symbol = coordinate_of_key(Entry{item.text, item.span, {}}, "'solve'", order);
     const std::pair<std::uint32_t, std::uint8_t> wanted{symbol.index, order};

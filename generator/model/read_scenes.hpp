@@ -17,7 +17,7 @@ class ScenesReader : private SectionReader {
   void read_scene(const Entry& entry);
   void read_span(Scene& scene, const Value& value);
   void read_initial(Scene& scene, const std::vector<const Entry*>& entries, bool guess);
-  void warn_of_degrees(const Entry& entry, const Typed& typed, const InitialValue& initial);
+  void warn_of_degrees(const Entry& entry, const TypedNode& typed, const InitialValue& initial);
   void read_solve(Scene& scene, const Value& value);
   void read_scene_parameters(Scene& scene, const std::vector<const Entry*>& entries);
   void read_scene_inputs(Scene& scene, const std::vector<const Entry*>& entries);

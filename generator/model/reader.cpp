@@ -108,7 +108,7 @@ void Reader::read_head() {
              {"a model", {"format",      "title",      "notes",    "parameters", "functions", "inputs", "coordinates",
                           "definitions", "energy",     "particle", "body",       "frame",     "point",  "chain",
                           "force",       "constraint", "joint",    "event",      "draw",      "scene"}});
-  const Value& format = needed(root_, "format", "the model", "add format = 1 at the top");
+  const Value& format = require_value(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {
     source_.fail(format.span, fmt::format("the format {} is not known", quote(format.text)), "write format = 1");
   }
@@ -116,17 +116,17 @@ void Reader::read_head() {
     if (root_.find(key) != nullptr)
       (key[0] == 't' ? model_.title : model_.notes) = text_of_key(root_, key, "the model");
   }
-  resolver_.units_stated(states_units(root_, "", ""));
+  resolver_.set_units_stated(states_units(root_, "", ""));
   Place origin;
   origin.name = "origin";
   origin.position =
-      resolver_.meet(resolver_.number(0, Span{}), Span{}, Context{"the origin", 0, Shape::vector, std::nullopt, ""})
+      resolver_.check_context(resolver_.number(0, Span{}), Span{}, Context{"the origin", 0, Shape::vector, std::nullopt, ""})
           .node;
   model_.places.push_back(std::move(origin));
   place_sources_.emplace_back();
   model_.frames.emplace_back();
   model_.frames.back().name = "ground";
-  frame_sources_.emplace_back().still = true;
+  frame_sources_.emplace_back().keeps_attitude = true;
 }
 
 }  // namespace
@@ -149,7 +149,7 @@ Model read_model_text(const std::string& text, const std::string& file) {
 
 Model read_model(const std::string& path) {
   const auto fail = [&](const std::string& what, const std::string& remedy) -> void {
-    throw Error("model", Where{path, 0, 0, 1, ""}, what, remedy);
+    throw Error("model", SourceLocation{path, 0, 0, 1, ""}, what, remedy);
   };
   std::error_code problem;
   const auto status = std::filesystem::status(path, problem);
@@ -181,7 +181,7 @@ NodeId Force::acceleration() const {
   return effects.size() == 1 && effects[0].load_type == Effect::LoadType::acceleration ? effects[0].value : no_node;
 }
 
-Where Model::where(const Span& span) const { return where_in(file, lines, span); }
+SourceLocation Model::where(const Span& span) const { return locate(file, lines, span); }
 
 const Scene& Model::scene(const std::string& name) const {
   std::vector<std::string> names;
@@ -190,7 +190,7 @@ const Scene& Model::scene(const std::string& name) const {
     names.push_back(candidate.name);
   }
   const std::string hint = did_you_mean(name, names);
-  throw Error("model", Where{file, 0, 0, 1, ""}, fmt::format("there is no scene {}", quote(name)),
+  throw Error("model", SourceLocation{file, 0, 0, 1, ""}, fmt::format("there is no scene {}", quote(name)),
               hint.empty() ? fmt::format("the scenes are {}", fmt::join(names, ", ")) : hint);
 }
 

@@ -31,176 +31,176 @@ std::string side(const std::optional<Dimension>& dimension) { return dimension ?
 
 }  // namespace
 
-void Resolver::check_size(Typed& typed, Span span) {
+void Resolver::check_size(TypedNode& typed, Span span) {
   if (typed.constant && bits(*typed.constant) > largest_bits) {
     source_.fail(span, fmt::format("this number has more than {} bits", largest_bits),
                  "use a number that fits a double");
   }
 }
 
-void Resolver::agree(Typed& result, const Typed& a, const Typed& b, Span span, std::string_view relation) {
+void Resolver::require_same_dimension(TypedNode& result, const TypedNode& a, const TypedNode& b, Span span, std::string_view relation) {
   const bool known_a = a.dimension.has_value(), known_b = b.dimension.has_value();
-  const bool loose = (known_a && a.loose) || (known_b && b.loose);
+  const bool loose = (known_a && a.has_uncertain_dimension) || (known_b && b.has_uncertain_dimension);
   if (known_a && known_b && !same(*a.dimension, *b.dimension)) {
-    clash(span,
+    report_mismatch(span,
           fmt::format("{} on one side and {} on the other side of {}", side(a.dimension), side(b.dimension), relation),
           loose);
-    result.dimension = a.loose ? b.dimension : a.dimension;
-    result.loose = a.loose && b.loose;
+    result.dimension = a.has_uncertain_dimension ? b.dimension : a.dimension;
+    result.has_uncertain_dimension = a.has_uncertain_dimension && b.has_uncertain_dimension;
     return;
   }
   const bool literal = a.literal && b.literal;
   if (known_a || known_b) {
     // An unknown dimension is assumed to match the other side.
     result.dimension = known_a ? a.dimension : b.dimension;
-    result.loose = (!known_a || a.loose) && (!known_b || b.loose);
+    result.has_uncertain_dimension = (!known_a || a.has_uncertain_dimension) && (!known_b || b.has_uncertain_dimension);
   }
   result.literal = literal;
-  result.pure = literal && a.pure && b.pure;
-  result.bare_time = (a.bare_time || a.literal) && (b.bare_time || b.literal) && !literal;
+  result.is_pure_number = literal && a.is_pure_number && b.is_pure_number;
+  result.is_bare_time = (a.is_bare_time || a.literal) && (b.is_bare_time || b.literal) && !literal;
 }
 
 // The dimension of a*b or a/b, for scalars and for dot and cross products.
-void Resolver::combine(Typed& result, const Typed& a, const Typed& b, bool quotient_of) {
-  const bool bare_a = a.bare_time || a.literal, bare_b = b.bare_time || b.literal;
+void Resolver::combine(TypedNode& result, const TypedNode& a, const TypedNode& b, bool quotient_of) {
+  const bool bare_a = a.is_bare_time || a.literal, bare_b = b.is_bare_time || b.literal;
   if (a.literal && b.literal) {
     result.literal = true;
-    result.pure = a.pure && b.pure;
+    result.is_pure_number = a.is_pure_number && b.is_pure_number;
     return;
   }
-  result.bare_time = bare_a && bare_b;
+  result.is_bare_time = bare_a && bare_b;
   if ((a.literal || a.dimension) && (b.literal || b.dimension)) {
     const Dimension left = a.literal ? Dimension{} : *a.dimension;
     const Dimension right = b.literal ? Dimension{} : *b.dimension;
     result.dimension = quotient_of ? quotient(left, right) : product(left, right);
   }
-  result.loose = result.loose || (a.literal && !a.pure) || (b.literal && !b.pure);
+  result.has_uncertain_dimension = result.has_uncertain_dimension || (a.literal && !a.is_pure_number) || (b.literal && !b.is_pure_number);
 }
 
-Typed Resolver::apply_unit(Typed typed, const MeasuredUnit& unit, Span span) {
+TypedNode Resolver::apply_unit(TypedNode typed, const MeasuredUnit& unit, Span span) {
   if (typed.vector) {
     if (typed.dimension && !is_one(*typed.dimension)) {
       source_.fail(span, fmt::format("the units clash: this has the dimension {} already", text_of(*typed.dimension)),
                    "leave the unit out");
     }
   } else if (typed.dimension && !is_one(*typed.dimension)) {
-    clash(span,
+    report_mismatch(span,
           fmt::format("the value already has the dimension {}, and the unit {} is added", text_of(*typed.dimension),
                       unit.text),
-          typed.loose);
+          typed.has_uncertain_dimension);
   }
-  Typed result = typed;
+  TypedNode result = typed;
   if (typed.literal && typed.constant && !typed.vector) {
     result = number(*typed.constant * unit.scale, model_.arena[typed.node].span);
   } else if (unit.scale != 1) {
     result = multiply(typed, number(unit.scale, span), span);
   }
   if (unit.pi_power != 0) {
-    Typed pi = make(Op::pi, false, {}, span);
-    const Typed factor = std::abs(unit.pi_power) == 1 ? pi : power(pi, number(std::abs(unit.pi_power), span), span);
+    TypedNode pi = make(Op::pi, false, {}, span);
+    const TypedNode factor = std::abs(unit.pi_power) == 1 ? pi : power(pi, number(std::abs(unit.pi_power), span), span);
     result = unit.pi_power > 0 ? multiply(result, factor, span) : divide(result, factor, span);
   }
   result.dimension = unit.dimension;
   result.literal = false;
-  result.loose = false;
-  result.bare_time = false;
+  result.has_uncertain_dimension = false;
+  result.is_bare_time = false;
   return result;
 }
 
-Typed Resolver::with_unit(const Typed& typed, const MeasuredUnit& unit, Span span) {
+TypedNode Resolver::with_unit(const TypedNode& typed, const MeasuredUnit& unit, Span span) {
   const bool has_it = typed.dimension && !is_one(unit.dimension) && same(*typed.dimension, unit.dimension);
   if (has_it && unit.scale == 1 && unit.pi_power == 0) return typed;
   return apply_unit(typed, unit, span);
 }
 
-Typed Resolver::number_node(const SyntaxNode& node) {
-  Typed result = number(node.value, node.span);
+TypedNode Resolver::number_node(const SyntaxNode& node) {
+  TypedNode result = number(node.value, node.span);
   return node.unit ? apply_unit(result, *node.unit, node.span) : result;
 }
 
-Typed Resolver::number(const Rational& value, Span span) {
-  Typed result = make(Op::number, false, {}, span);
+TypedNode Resolver::number(const Rational& value, Span span) {
+  TypedNode result = make(Op::number, false, {}, span);
   model_.arena.nodes[result.node].value = value;
   result.literal = true;
-  result.pure = pure_factor(value);
+  result.is_pure_number = pure_factor(value);
   result.constant = value;
   return result;
 }
 
-Typed Resolver::negate(const Typed& a, Span span) {
+TypedNode Resolver::negate(const TypedNode& a, Span span) {
   if (a.literal && a.constant && !a.vector) return number(-*a.constant, span);  // keeps -1 one number
-  Typed result = make(Op::negate, a.vector, {a}, span);
+  TypedNode result = make(Op::negate, a.vector, {a}, span);
   result.dimension = a.dimension;
   result.literal = a.literal;
-  result.pure = a.pure;
-  result.bare_time = a.bare_time;
+  result.is_pure_number = a.is_pure_number;
+  result.is_bare_time = a.is_bare_time;
   if (a.constant) result.constant = -*a.constant;
   return result;
 }
 
-Typed Resolver::add(SyntaxKind kind, Typed a, Typed b, Span span) {
-  const auto zero = [](const Typed& typed) {
+TypedNode Resolver::add(SyntaxKind kind, TypedNode a, TypedNode b, Span span) {
+  const auto zero = [](const TypedNode& typed) {
     return typed.literal && !typed.vector && typed.constant && cln::zerop(*typed.constant);
   };
-  for (Typed* side : {&a, &b}) {
-    const Typed& other = side == &a ? b : a;
+  for (TypedNode* side : {&a, &b}) {
+    const TypedNode& other = side == &a ? b : a;
     if (side->vector || !other.vector) continue;
     if (!zero(*side)) {
       source_.fail(span, "a vector and a scalar cannot be added",
                    "multiply the scalar by a direction such as E1, or take a component dot(a, E1)");
     }
     *side = make(Op::zero_vector, true, {}, span);
-    side->literal = side->pure = true;
+    side->literal = side->is_pure_number = true;
   }
-  Typed result = make(kind == SyntaxKind::add ? Op::add : Op::subtract, a.vector, {a, b}, span);
-  agree(result, a, b, span, kind == SyntaxKind::add ? "'+'" : "'-'");
+  TypedNode result = make(kind == SyntaxKind::add ? Op::add : Op::subtract, a.vector, {a, b}, span);
+  require_same_dimension(result, a, b, span, kind == SyntaxKind::add ? "'+'" : "'-'");
   if (a.constant && b.constant) {
     result.constant = kind == SyntaxKind::add ? *a.constant + *b.constant : *a.constant - *b.constant;
-    result.pure = result.literal && pure_factor(*result.constant);
+    result.is_pure_number = result.literal && pure_factor(*result.constant);
     check_size(result, span);
   }
   return result;
 }
 
-Typed Resolver::multiply(const Typed& a, const Typed& b, Span span) {
+TypedNode Resolver::multiply(const TypedNode& a, const TypedNode& b, Span span) {
   if (a.vector && b.vector) {
     source_.fail(span, "two vectors are multiplied with '*'", "write dot(a, b) or cross(a, b)");
   }
-  Typed result = make(Op::multiply, a.vector || b.vector, {a, b}, span);
+  TypedNode result = make(Op::multiply, a.vector || b.vector, {a, b}, span);
   combine(result, a, b, false);
   if (a.constant && b.constant) {
     result.constant = *a.constant * *b.constant;
-    result.pure = result.literal && pure_factor(*result.constant);
+    result.is_pure_number = result.literal && pure_factor(*result.constant);
     check_size(result, span);
   }
   return result;
 }
 
-Typed Resolver::divide(const Typed& a, const Typed& b, Span span) {
+TypedNode Resolver::divide(const TypedNode& a, const TypedNode& b, Span span) {
   if (b.vector) source_.fail(span, "something is divided by a vector", "divide by norm(a) or by a component");
   if (b.constant && cln::zerop(*b.constant) && b.literal) {
     source_.fail(span, "this is a division by zero", "check the denominator");
   }
-  Typed result = make(Op::divide, a.vector, {a, b}, span);
-  Typed divisor = b;
-  if (b.literal && b.constant) divisor.pure = pure_factor(1 / *b.constant);  // as in x/12 and x/2
+  TypedNode result = make(Op::divide, a.vector, {a, b}, span);
+  TypedNode divisor = b;
+  if (b.literal && b.constant) divisor.is_pure_number = pure_factor(1 / *b.constant);  // as in x/12 and x/2
   combine(result, a, divisor, true);
   if (a.constant && b.constant && !cln::zerop(*b.constant)) {
     result.constant = *a.constant / *b.constant;
-    result.pure = result.literal && pure_factor(*result.constant);
+    result.is_pure_number = result.literal && pure_factor(*result.constant);
     check_size(result, span);
   }
   return result;
 }
 
-Typed Resolver::power(const Typed& a, const Typed& b, Span span) {
+TypedNode Resolver::power(const TypedNode& a, const TypedNode& b, Span span) {
   if (a.vector || b.vector) source_.fail(span, "a vector stands in a power", "write dot(a, a) or norm(a)^2");
   if (b.dimension && !is_one(*b.dimension)) {
-    clash(span, fmt::format("an exponent is a pure number, and this one is in {}", text_of(*b.dimension)), b.loose);
+    report_mismatch(span, fmt::format("an exponent is a pure number, and this one is in {}", text_of(*b.dimension)), b.has_uncertain_dimension);
   }
-  Typed result = make(Op::power, false, {a, b}, span);
+  TypedNode result = make(Op::power, false, {a, b}, span);
   result.literal = a.literal && b.literal;
-  result.bare_time = a.bare_time && b.literal;
+  result.is_bare_time = a.is_bare_time && b.literal;
   if (!b.constant) {
     if (a.dimension && is_one(*a.dimension)) result.dimension = a.dimension;
     return result;
@@ -227,7 +227,7 @@ Typed Resolver::power(const Typed& a, const Typed& b, Span span) {
                  "use a number that fits a double");
   }
   result.constant = cln::expt(*a.constant, whole);
-  result.pure = result.literal && pure_factor(*result.constant);
+  result.is_pure_number = result.literal && pure_factor(*result.constant);
   return result;
 }
 

@@ -4,40 +4,40 @@
 
 namespace eomgen::model {
 
-Typed Resolver::axis(std::uint32_t frame, std::size_t stage, std::size_t axis, Span span) {
-  Typed result = make(frame == 0 ? Op::fixed_basis : Op::axis, true, {}, span);
+TypedNode Resolver::axis(std::uint32_t frame, std::size_t stage, std::size_t axis, Span span) {
+  TypedNode result = make(frame == 0 ? Op::fixed_basis : Op::axis, true, {}, span);
   Node& node = model_.arena.nodes[result.node];
   node.index = frame == 0 ? static_cast<std::uint32_t>(axis) : frame;
   node.order = frame == 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(3 * stage + axis);
-  result.literal = result.pure = true;
+  result.literal = result.is_pure_number = true;
   if (frame == 0) return result;
   const Symbol& axes = scope_.axes(frame);  // its own stages may be used while it is being read
-  result.facts = axes.typed.facts;
+  result.dependencies = axes.typed.dependencies;
   result.depth = axes.typed.depth + 1;
   return result;
 }
 
-Typed Resolver::own_axis(std::uint32_t frame, std::size_t axis, Span span) {
+TypedNode Resolver::own_axis(std::uint32_t frame, std::size_t axis, Span span) {
   if (frame > 0) symbol(scope_.axes(frame), span);
   return this->axis(frame, frame == 0 ? 0 : model_.frames[frame].stages.size() - 1, axis, span);
 }
 
-Typed Resolver::angular_velocity(std::uint32_t frame, Span span) {
-  const Typed axes = frame > 0 ? symbol(scope_.axes(frame), span) : Typed{};
-  Typed result = make(Op::angular_velocity, true, {}, span);
+TypedNode Resolver::angular_velocity(std::uint32_t frame, Span span) {
+  const TypedNode axes = frame > 0 ? symbol(scope_.axes(frame), span) : TypedNode{};
+  TypedNode result = make(Op::angular_velocity, true, {}, span);
   model_.arena.nodes[result.node].index = frame;
-  result.facts = axes.facts;
-  if (axes.facts & on_coordinate) result.facts |= on_velocity;
+  result.dependencies = axes.dependencies;
+  if (axes.dependencies & on_coordinate) result.dependencies |= on_velocity;
   result.depth = axes.depth + 2;
   result.dimension = dimension_of("rad/s");
   return result;
 }
 
-Typed Resolver::in_axes(const Typed& vector, std::uint32_t frame) {
-  Typed none;
+TypedNode Resolver::in_axes(const TypedNode& vector, std::uint32_t frame) {
+  TypedNode none;
   const Node node = model_.arena[vector.node];
   const auto part = [&](std::size_t k) {
-    Typed typed;
+    TypedNode typed;
     typed.node = node.args[k];
     typed.vector = model_.arena[typed.node].vector;
     return typed;
@@ -49,18 +49,18 @@ Typed Resolver::in_axes(const Typed& vector, std::uint32_t frame) {
     case Op::add:
     case Op::subtract:
     case Op::cross: {
-      const Typed a = in_axes(part(0), frame), b = in_axes(part(1), frame);
+      const TypedNode a = in_axes(part(0), frame), b = in_axes(part(1), frame);
       return a.node == no_node || b.node == no_node ? none : make(node.op, true, {a, b}, node.span);
     }
     case Op::negate:
     case Op::unit: {
-      const Typed a = in_axes(part(0), frame);
+      const TypedNode a = in_axes(part(0), frame);
       return a.node == no_node ? none : make(node.op, true, {a}, node.span);
     }
     case Op::multiply:
     case Op::divide: {
       const std::size_t v = part(0).vector ? 0 : 1;
-      const Typed factor = part(1 - v), a = in_axes(part(v), frame);
+      const TypedNode factor = part(1 - v), a = in_axes(part(v), frame);
       if (a.node == no_node || !coordinates_in(factor.node).empty()) return none;
       return v == 0 ? make(node.op, true, {a, factor}, node.span) : make(node.op, true, {factor, a}, node.span);
     }
@@ -68,17 +68,17 @@ Typed Resolver::in_axes(const Typed& vector, std::uint32_t frame) {
   }
 }
 
-Typed Resolver::unit_of_vector(const Typed& vector, Span span) {
-  Typed result = make(Op::unit, true, {vector}, span);
-  result.literal = result.pure = true;
+TypedNode Resolver::unit_of_vector(const TypedNode& vector, Span span) {
+  TypedNode result = make(Op::unit, true, {vector}, span);
+  result.literal = result.is_pure_number = true;
   return result;
 }
 
-Typed Resolver::rate(const Typed& scalar, Span span) {
+TypedNode Resolver::rate(const TypedNode& scalar, Span span) {
   const Node& node = model_.arena.nodes[scalar.node];
   if (node.op == Op::coordinate && node.order == 0) return coordinate(node.index, 1, span);
-  Typed result = make(Op::total_derivative, false, {scalar}, span);
-  if (scalar.facts & on_coordinate) result.facts |= on_velocity;
+  TypedNode result = make(Op::total_derivative, false, {scalar}, span);
+  if (scalar.dependencies & on_coordinate) result.dependencies |= on_velocity;
   if (scalar.dimension) result.dimension = quotient(*scalar.dimension, dimension_of("s"));
   return result;
 }

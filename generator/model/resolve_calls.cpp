@@ -17,9 +17,9 @@ void Resolver::arity(const SyntaxNode& node, std::size_t least, std::size_t most
                "see docs/model-format.md for the functions");
 }
 
-Typed Resolver::call(const Syntax& syntax, const SyntaxNode& node) {
+TypedNode Resolver::call(const Syntax& syntax, const SyntaxNode& node) {
   const std::string& name = node.parts[0];
-  if (const FunctionName* function = find_function(name)) return scalar_call(syntax, node, *function);
+  if (const FunctionSignature* function = find_function(name)) return scalar_call(syntax, node, *function);
   if (name == "if") return conditional(syntax, node);
   if (name == "ddt") return time_derivative(syntax, node);
   if (name == "diff") return partial_derivative(syntax, node);
@@ -38,9 +38,9 @@ Typed Resolver::call(const Syntax& syntax, const SyntaxNode& node) {
                    : hint);
 }
 
-Typed Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, const FunctionName& function) {
-  arity(node, function.least, function.most);
-  std::vector<Typed> arguments;
+TypedNode Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, const FunctionSignature& function) {
+  arity(node, function.min_arguments, function.max_arguments);
+  std::vector<TypedNode> arguments;
   for (const std::uint32_t child : node.children) {
     arguments.push_back(this->node(syntax, child));
     if (arguments.back().vector) {
@@ -50,89 +50,89 @@ Typed Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, const 
   }
   const bool same_kind = function.fn == Fn::min || function.fn == Fn::max || function.fn == Fn::atan2;
   const bool keeps = function.fn == Fn::abs || function.fn == Fn::min || function.fn == Fn::max;
-  Typed result = arguments[0];
+  TypedNode result = arguments[0];
   for (std::size_t k = 0; k < arguments.size(); ++k) {
-    const Typed& a = arguments[k];
+    const TypedNode& a = arguments[k];
     if (!same_kind && !keeps && function.fn != Fn::sqrt && function.fn != Fn::sign && a.dimension &&
         !is_one(*a.dimension)) {
-      clash(syntax.nodes[node.children[k]].span,
+      report_mismatch(syntax.nodes[node.children[k]].span,
             fmt::format("{}() takes a pure number, and this is in {}", function.name, text_of(*a.dimension)),
-            a.loose || a.bare_time);
+            a.has_uncertain_dimension || a.is_bare_time);
     }
     if (k == 0 && arguments.size() > 1) continue;
     // min and max of several arguments become nested pairs.
-    Typed next =
+    TypedNode next =
         arguments.size() == 1 ? make(Op::call, false, {a}, node.span) : make(Op::call, false, {result, a}, node.span);
     model_.arena.nodes[next.node].fn = function.fn;
-    if (same_kind) agree(next, result, a, node.span, fmt::format("{}()", function.name));
+    if (same_kind) require_same_dimension(next, result, a, node.span, fmt::format("{}()", function.name));
     result = next;
   }
-  const Typed& first = arguments[0];
+  const TypedNode& first = arguments[0];
   if (!same_kind) {
     result.dimension = Dimension{};
-    result.loose = result.bare_time = false;
+    result.has_uncertain_dimension = result.is_bare_time = false;
     if (function.fn == Fn::abs || function.fn == Fn::sqrt) {
-      result.loose = first.loose;
+      result.has_uncertain_dimension = first.has_uncertain_dimension;
       result.dimension = first.dimension;
       if (function.fn == Fn::sqrt && first.dimension) result.dimension = raised(*first.dimension, Rational(1) / 2);
       result.literal = first.literal;
-      result.pure = first.pure && function.fn == Fn::abs;
-      result.bare_time = first.bare_time;
+      result.is_pure_number = first.is_pure_number && function.fn == Fn::abs;
+      result.is_bare_time = first.is_bare_time;
     }
   } else if (function.fn == Fn::atan2) {
     result.dimension = Dimension{};
-    result.loose = result.literal = result.bare_time = false;
+    result.has_uncertain_dimension = result.literal = result.is_bare_time = false;
   }
   return result;
 }
 
-Typed Resolver::conditional(const Syntax& syntax, const SyntaxNode& node) {
+TypedNode Resolver::conditional(const Syntax& syntax, const SyntaxNode& node) {
   arity(node, 3, 3);
   const SyntaxNode& test = syntax.nodes[node.children[0]];
   const bool comparison = test.kind == SyntaxKind::less || test.kind == SyntaxKind::less_equal ||
                           test.kind == SyntaxKind::greater || test.kind == SyntaxKind::greater_equal;
   if (!comparison) source_.fail(test.span, "the first argument of if() is a comparison", "write if(a < b, x, y)");
-  Typed a = this->node(syntax, test.children[0]);
-  Typed b = this->node(syntax, test.children[1]);
-  Typed x = this->node(syntax, node.children[1]);
-  Typed y = this->node(syntax, node.children[2]);
+  TypedNode a = this->node(syntax, test.children[0]);
+  TypedNode b = this->node(syntax, test.children[1]);
+  TypedNode x = this->node(syntax, node.children[1]);
+  TypedNode y = this->node(syntax, node.children[2]);
   if (a.vector || b.vector) source_.fail(test.span, "vectors cannot be compared", "compare norm(a) or components");
   if (x.vector != y.vector)
     source_.fail(node.span, "one branch of if() is a vector and the other is not", "make both vectors or both scalars");
-  Typed compared;
-  agree(compared, a, b, test.span, "the comparison");
+  TypedNode compared;
+  require_same_dimension(compared, a, b, test.span, "the comparison");
   // a > b is b < a; a <= b is not (b < a)
   if (test.kind == SyntaxKind::greater || test.kind == SyntaxKind::less_equal) std::swap(a, b);
   const bool swapped = test.kind == SyntaxKind::less_equal || test.kind == SyntaxKind::greater_equal;
-  Typed result = make(Op::conditional, x.vector, {a, b, swapped ? y : x, swapped ? x : y}, node.span);
-  result.loose = false;
-  agree(result, x, y, node.span, "the branches of if()");
+  TypedNode result = make(Op::conditional, x.vector, {a, b, swapped ? y : x, swapped ? x : y}, node.span);
+  result.has_uncertain_dimension = false;
+  require_same_dimension(result, x, y, node.span, "the branches of if()");
   return result;
 }
 
-Typed Resolver::time_derivative(const Syntax& syntax, const SyntaxNode& node) {
+TypedNode Resolver::time_derivative(const Syntax& syntax, const SyntaxNode& node) {
   arity(node, 1, 1);
-  const Typed inner = this->node(syntax, node.children[0]);
-  if (inner.facts & on_input) {
+  const TypedNode inner = this->node(syntax, node.children[0]);
+  if (inner.dependencies & on_input) {
     source_.fail(node.span, "an input has no time derivative", "declare the derivative as an input of its own");
   }
-  if (inner.facts & on_acceleration) {
+  if (inner.dependencies & on_acceleration) {
     source_.fail(node.span, "third time derivatives of coordinates are not supported",
                  "take ddt of positions and velocities only");
   }
-  Typed result = make(Op::total_derivative, inner.vector, {inner}, node.span);
-  if (inner.facts & on_coordinate) result.facts |= on_velocity;
-  if (inner.facts & on_velocity) result.facts |= on_acceleration;
+  TypedNode result = make(Op::total_derivative, inner.vector, {inner}, node.span);
+  if (inner.dependencies & on_coordinate) result.dependencies |= on_velocity;
+  if (inner.dependencies & on_velocity) result.dependencies |= on_acceleration;
   if (inner.dimension) result.dimension = quotient(*inner.dimension, dimension_of("s"));
-  allow(result.facts, node.span, "ddt() here");
+  require_allowed(result.dependencies, node.span, "ddt() here");
   return result;
 }
 
-Typed Resolver::partial_derivative(const Syntax& syntax, const SyntaxNode& node) {
+TypedNode Resolver::partial_derivative(const Syntax& syntax, const SyntaxNode& node) {
   arity(node, 2, 2);
-  const Typed inner = this->node(syntax, node.children[0]);
+  const TypedNode inner = this->node(syntax, node.children[0]);
   const SyntaxNode& by = syntax.nodes[node.children[1]];
-  const Typed variable = this->node(syntax, node.children[1]);
+  const TypedNode variable = this->node(syntax, node.children[1]);
   const Op op = model_.arena[variable.node].op;
   if (by.kind != SyntaxKind::name ||
       (op != Op::coordinate && op != Op::function && op != Op::parameter && op != Op::time && op != Op::input)) {
@@ -143,14 +143,14 @@ Typed Resolver::partial_derivative(const Syntax& syntax, const SyntaxNode& node)
     source_.fail(node.span, "diff() of an integral by what its integrand may depend on is not supported",
                  "write the derivative of the integrand inside: integral(diff(e, p))");
   }
-  Typed result = make(Op::partial_derivative, inner.vector, {inner, variable}, node.span);
-  result.loose = inner.loose;
+  TypedNode result = make(Op::partial_derivative, inner.vector, {inner, variable}, node.span);
+  result.has_uncertain_dimension = inner.has_uncertain_dimension;
   if (inner.dimension && variable.dimension) result.dimension = quotient(*inner.dimension, *variable.dimension);
   return result;
 }
 
 // The initial value of a coordinate: a parameter that every run sets from its own initial state.
-Typed Resolver::initial(const Syntax& syntax, const SyntaxNode& node) {
+TypedNode Resolver::initial(const Syntax& syntax, const SyntaxNode& node) {
   arity(node, 1, 1);
   const SyntaxNode& of = syntax.nodes[node.children[0]];
   Symbol* const found = of.kind == SyntaxKind::name && of.parts.size() == 1 ? scope_.find(of.parts[0]) : nullptr;
@@ -160,12 +160,12 @@ Typed Resolver::initial(const Syntax& syntax, const SyntaxNode& node) {
   }
   symbol(*found, of.span);
   const std::uint32_t coordinate = found->index;
-  allow(on_time, node.span, "initial()");
+  require_allowed(on_time, node.span, "initial()");
   std::uint32_t index = 0;
-  while (index < model_.parameters.size() && model_.parameters[index].start_of != coordinate) ++index;
+  while (index < model_.parameters.size() && model_.parameters[index].initial_value_of != coordinate) ++index;
   if (index == model_.parameters.size()) {
     Parameter start;
-    start.start_of = coordinate;
+    start.initial_value_of = coordinate;
     start.name =
         "initial_" + model_.coordinates[coordinate].name;  // made unlike any other name at the end (start_time.hpp)
     start.value = number(0, node.span).node;
@@ -173,30 +173,30 @@ Typed Resolver::initial(const Syntax& syntax, const SyntaxNode& node) {
     start.span = node.span;
     model_.parameters.push_back(std::move(start));
   }
-  Typed result = make(Op::parameter, false, {}, node.span);
-  result.facts |= on_time;
+  TypedNode result = make(Op::parameter, false, {}, node.span);
+  result.dependencies |= on_time;
   result.dimension = model_.coordinates[coordinate].unit.dimension;
   model_.arena.nodes[result.node].index = index;
   return result;
 }
 
-Typed Resolver::integral(const Syntax& syntax, const SyntaxNode& node) {
+TypedNode Resolver::integral(const Syntax& syntax, const SyntaxNode& node) {
   arity(node, 1, 1);
-  const Typed inner = this->node(syntax, node.children[0]);
+  const TypedNode inner = this->node(syntax, node.children[0]);
   if (inner.vector) {
     source_.fail(syntax.nodes[node.children[0]].span, "integral() takes a scalar, and this is a vector",
                  "integrate its components one by one");
   }
-  const Facts motion = inner.facts & static_cast<Facts>(~on_time);
+  const Dependencies motion = inner.dependencies & static_cast<Dependencies>(~on_time);
   if (motion != 0) {
     source_.fail(syntax.nodes[node.children[0]].span,
                  "integral() is of a function of time, and this depends on the motion or on an input",
                  "use t, functions of time, parameters and numbers");
   }
-  Typed result = make(Op::integral, false, {inner}, node.span);
-  result.facts |= on_time;
+  TypedNode result = make(Op::integral, false, {inner}, node.span);
+  result.dependencies |= on_time;
   if (inner.dimension) result.dimension = product(*inner.dimension, dimension_of("s"));
-  allow(result.facts, node.span, "integral()");
+  require_allowed(result.dependencies, node.span, "integral()");
   model_.arena.nodes[result.node].index = static_cast<std::uint32_t>(model_.integrals.size());
   Integral integral;
   integral.integrand = inner.node;
@@ -220,17 +220,17 @@ bool Resolver::holds_integral(NodeId root) const {
     if (node.op == Op::angular_velocity) {
       for (const NodeId e : model_.frames[node.index].stages.back().e) stack.push_back(e);
     }
-    if (node.op == Op::definition) stack.push_back(model_.definitions[node.index].is);
+    if (node.op == Op::definition) stack.push_back(model_.definitions[node.index].expression);
     stack.insert(stack.end(), node.args.begin(), node.args.end());
   }
   return false;
 }
 
-Typed Resolver::vector_call(const Syntax& syntax, const SyntaxNode& node) {
+TypedNode Resolver::vector_call(const Syntax& syntax, const SyntaxNode& node) {
   const std::string& name = node.parts[0];
   const bool two = name == "dot" || name == "cross";
   arity(node, two ? 2 : 1, two ? 2 : 1);
-  std::vector<Typed> arguments;
+  std::vector<TypedNode> arguments;
   for (const std::uint32_t child : node.children) {
     arguments.push_back(this->node(syntax, child));
     if (!arguments.back().vector) {
@@ -238,22 +238,22 @@ Typed Resolver::vector_call(const Syntax& syntax, const SyntaxNode& node) {
                    "a vector is made of E1, E2, E3, P.e_q, or the name of a particle");
     }
   }
-  const Typed& a = arguments[0];
+  const TypedNode& a = arguments[0];
   if (!two) {
-    Typed result = make(name == "norm" ? Op::norm : Op::unit, name == "unit", {a}, node.span);
+    TypedNode result = make(name == "norm" ? Op::norm : Op::unit, name == "unit", {a}, node.span);
     result.literal = name == "unit" || a.literal;
-    result.pure = name == "unit" || a.pure;
+    result.is_pure_number = name == "unit" || a.is_pure_number;
     result.dimension = name == "norm" ? a.dimension : std::nullopt;
-    result.loose = name == "norm" && a.loose;
+    result.has_uncertain_dimension = name == "norm" && a.has_uncertain_dimension;
     return result;
   }
-  const Typed& b = arguments[1];
-  Typed result = make(name == "dot" ? Op::dot : Op::cross, name == "cross", {a, b}, node.span);
+  const TypedNode& b = arguments[1];
+  TypedNode result = make(name == "dot" ? Op::dot : Op::cross, name == "cross", {a, b}, node.span);
   combine(result, a, b, false);
   return result;
 }
 
-Typed Resolver::omega_call(const Syntax& syntax, const SyntaxNode& node) {
+TypedNode Resolver::omega_call(const Syntax& syntax, const SyntaxNode& node) {
   arity(node, 1, 1);
   const SyntaxNode& argument = syntax.nodes[node.children[0]];
   Symbol* symbol = argument.kind == SyntaxKind::name && argument.parts.size() == 1 && argument.primes == 0
@@ -265,12 +265,12 @@ Typed Resolver::omega_call(const Syntax& syntax, const SyntaxNode& node) {
                  "write omega(B) with a [[body]] or [[frame]]");
   }
   symbol->used = true;
-  const Typed result = angular_velocity(symbol->frame, node.span);
-  allow(result.facts, node.span, "omega()");
+  const TypedNode result = angular_velocity(symbol->frame, node.span);
+  require_allowed(result.dependencies, node.span, "omega()");
   return result;
 }
 
-Typed Resolver::place_call(const Syntax& syntax, const SyntaxNode& node) {
+TypedNode Resolver::place_call(const Syntax& syntax, const SyntaxNode& node) {
   arity(node, 1, 1);
   const std::string& name = node.parts[0];
   const SyntaxNode& argument = syntax.nodes[node.children[0]];
@@ -283,16 +283,16 @@ Typed Resolver::place_call(const Syntax& syntax, const SyntaxNode& node) {
                  "write ddt(...) for the derivative of a vector expression");
   }
   if (symbol != nullptr) symbol->used = true;
-  Typed result = place(origin ? 0 : symbol->index, node.span);
+  TypedNode result = place(origin ? 0 : symbol->index, node.span);
   Node& made = model_.arena.nodes[result.node];
   if (name == "velocity") made.op = Op::place_velocity;
   if (name == "acceleration") made.op = Op::place_acceleration;
-  if (name != "position" && (result.facts & on_coordinate)) result.facts |= on_velocity;
-  if (name == "acceleration" && (result.facts & on_coordinate)) result.facts |= on_acceleration;
+  if (name != "position" && (result.dependencies & on_coordinate)) result.dependencies |= on_velocity;
+  if (name == "acceleration" && (result.dependencies & on_coordinate)) result.dependencies |= on_acceleration;
   if (name != "position" && result.dimension) {
     result.dimension = quotient(*result.dimension, dimension_of(name == "velocity" ? "s" : "s^2"));
   }
-  allow(result.facts, node.span, fmt::format("{}()", name));
+  require_allowed(result.dependencies, node.span, fmt::format("{}()", name));
   return result;
 }
 

@@ -13,7 +13,7 @@ std::string joined(const std::vector<std::string>& parts) { return fmt::format("
 
 }  // namespace
 
-Typed Resolver::node(const Syntax& syntax, std::uint32_t id) {
+TypedNode Resolver::node(const Syntax& syntax, std::uint32_t id) {
   const SyntaxNode& node = syntax.nodes[id];
   const auto child = [&](std::size_t k) { return this->node(syntax, node.children[k]); };
   switch (node.kind) {
@@ -23,26 +23,26 @@ Typed Resolver::node(const Syntax& syntax, std::uint32_t id) {
     case SyntaxKind::negate: return negate(child(0), node.span);
     case SyntaxKind::add:
     case SyntaxKind::subtract: {
-      const Typed a = child(0);
+      const TypedNode a = child(0);
       return add(node.kind, a, child(1), node.span);
     }
     case SyntaxKind::multiply: {
-      const Typed a = child(0);
+      const TypedNode a = child(0);
       return multiply(a, child(1), node.span);
     }
     case SyntaxKind::divide: {
-      const Typed a = child(0);
+      const TypedNode a = child(0);
       return divide(a, child(1), node.span);
     }
     case SyntaxKind::power: {
-      const Typed a = child(0);
+      const TypedNode a = child(0);
       return power(a, child(1), node.span);
     }
     default: source_.fail(node.span, "a comparison is used where a value is required", "write if(a < b, x, y)");
   }
 }
 
-Typed Resolver::name(const SyntaxNode& node) {
+TypedNode Resolver::name(const SyntaxNode& node) {
   if (node.parts.size() == 1 && node.primes == 0) return plain_name(node);
   Symbol* symbol = scope_.find(node.parts[0]);
   if (symbol == nullptr && node.parts[0] == "reaction" && node.primes == 0) return reaction(node);
@@ -65,11 +65,11 @@ Typed Resolver::name(const SyntaxNode& node) {
 }
 
 // B.e1 of a body or frame, with one or two primes for the axes after one or two of its Euler angles; B.omega.
-Typed Resolver::frame_part(const SyntaxNode& node, const Symbol& symbol) {
+TypedNode Resolver::frame_part(const SyntaxNode& node, const Symbol& symbol) {
   const std::string& part = node.parts[1];
   const std::string written = joined(node.parts) + std::string(node.primes, '\'');
   const bool axis = part.size() == 2 && part[0] == 'e' && part[1] >= '1' && part[1] <= '3';
-  Typed result;
+  TypedNode result;
   if (part == "omega" && node.primes == 0) {
     result = angular_velocity(symbol.frame, node.span);
   } else if (axis) {
@@ -87,12 +87,12 @@ Typed Resolver::frame_part(const SyntaxNode& node, const Symbol& symbol) {
     source_.fail(node.span, fmt::format("'{}' has no part {}", symbol.name, quote(part)),
                  "its parts are e1, e2, e3 and omega");
   }
-  allow(result.facts, node.span, fmt::format("'{}'", written));
+  require_allowed(result.dependencies, node.span, fmt::format("'{}'", written));
   return result;
 }
 
 // reaction.NAME or reaction.NAME.k, named like the outputs.
-Typed Resolver::reaction(const SyntaxNode& node) {
+TypedNode Resolver::reaction(const SyntaxNode& node) {
   const std::string written = joined(node.parts);
   const Symbol* symbol = node.parts.size() <= 3 ? scope_.find(node.parts[1]) : nullptr;
   if (symbol == nullptr || symbol->kind != SymbolKind::constraint) {
@@ -100,8 +100,8 @@ Typed Resolver::reaction(const SyntaxNode& node) {
     source_.fail(node.span, fmt::format("{} is no constraint force", quote(written)),
                  hint.empty() ? "write reaction.NAME with the name of a constraint" : hint);
   }
-  allow(on_reaction, node.span, fmt::format("'{}'", written));
-  const std::size_t count = model_.constraints[symbol->index].reactions();
+  require_allowed(on_reaction, node.span, fmt::format("'{}'", written));
+  const std::size_t count = model_.constraints[symbol->index].reaction_count();
   const std::string part = node.parts.size() == 3 ? node.parts[2] : "";
   const std::size_t k =
       part.size() == 1 && part[0] > '0' && part[0] <= '9' ? static_cast<std::size_t>(part[0] - '0') : 0;
@@ -112,20 +112,20 @@ Typed Resolver::reaction(const SyntaxNode& node) {
                  count > 1 ? fmt::format("write reaction.{0}.1 to reaction.{0}.{1}", symbol->name, count)
                            : fmt::format("write reaction.{}", symbol->name));
   }
-  Typed result = make(Op::reaction, false, {}, node.span);
+  TypedNode result = make(Op::reaction, false, {}, node.span);
   model_.arena.nodes[result.node].index = symbol->index;
   model_.arena.nodes[result.node].order = static_cast<std::uint8_t>(k > 0 ? k - 1 : 0);
-  result.facts = on_reaction;
+  result.dependencies = on_reaction;
   return result;
 }
 
-Typed Resolver::basis_vector(const SyntaxNode& node, Symbol& symbol) {
+TypedNode Resolver::basis_vector(const SyntaxNode& node, Symbol& symbol) {
   const std::string& part = node.parts[1];
   const Symbol* coordinate_symbol = part.size() > 2 && part[1] == '_' ? scope_.find(part.substr(2)) : nullptr;
   const bool basis = coordinate_symbol != nullptr && coordinate_symbol->kind == SymbolKind::coordinate &&
                      (part[0] == 'e' || part[0] == 'a' || part[0] == 'g');
   std::vector<std::string> known;
-  const Typed position = this->symbol(symbol, node.span);
+  const TypedNode position = this->symbol(symbol, node.span);
   for (const auto& [index, order] : coordinates_of(position.node)) {
     if (order == 0) known.push_back(model_.coordinates[index].name);
   }
@@ -149,15 +149,15 @@ Typed Resolver::basis_vector(const SyntaxNode& node, Symbol& symbol) {
                    "the contravariant basis exists for a full set of coordinates; use a_q or e_q");
     }
   }
-  allow(position.facts, node.span, fmt::format("'{}'", joined(node.parts)));
-  const Typed leaf = coordinate(coordinate_symbol->index, 0, node.span);
+  require_allowed(position.dependencies, node.span, fmt::format("'{}'", joined(node.parts)));
+  const TypedNode leaf = coordinate(coordinate_symbol->index, 0, node.span);
   const Op op = part[0] == 'e' ? Op::unit_basis : part[0] == 'a' ? Op::covariant_basis : Op::contravariant_basis;
-  Typed result = make(op, true, {leaf}, node.span);
+  TypedNode result = make(op, true, {leaf}, node.span);
   model_.arena.nodes[result.node].index = symbol.index;
-  result.facts = position.facts;
+  result.dependencies = position.dependencies;
   result.depth = position.depth + 2;
   if (op == Op::unit_basis) {
-    result.literal = result.pure = true;
+    result.literal = result.is_pure_number = true;
   } else if (leaf.dimension && position.dimension) {
     const Dimension covariant = quotient(*position.dimension, *leaf.dimension);
     result.dimension = op == Op::covariant_basis ? covariant : raised(covariant, -1);
@@ -165,21 +165,21 @@ Typed Resolver::basis_vector(const SyntaxNode& node, Symbol& symbol) {
   return result;
 }
 
-Typed Resolver::plain_name(const SyntaxNode& node) {
+TypedNode Resolver::plain_name(const SyntaxNode& node) {
   const std::string& name = node.parts[0];
   if (local_ != nullptr) {
     if (const auto found = local_->find(name); found != local_->end()) return found->second;
   }
   if (name == "pi") {
-    Typed result = make(Op::pi, false, {}, node.span);
-    result.literal = result.pure = true;  // a pure number like 2
+    TypedNode result = make(Op::pi, false, {}, node.span);
+    result.literal = result.is_pure_number = true;  // a pure number like 2
     return result;
   }
   if (name == "t") {
-    allow(on_time, node.span, "'t'");
-    Typed result = make(Op::time, false, {}, node.span);
-    result.facts = on_time;
-    result.bare_time = true;
+    require_allowed(on_time, node.span, "'t'");
+    TypedNode result = make(Op::time, false, {}, node.span);
+    result.dependencies = on_time;
+    result.is_bare_time = true;
     result.dimension = dimension_of("s");
     return result;
   }
@@ -191,9 +191,9 @@ Typed Resolver::plain_name(const SyntaxNode& node) {
     return place(0, node.span);
   }
   if (name.size() == 2 && name[0] == 'E' && name[1] >= '1' && name[1] <= '3') {
-    Typed result = make(Op::fixed_basis, true, {}, node.span);
+    TypedNode result = make(Op::fixed_basis, true, {}, node.span);
     model_.arena.nodes[result.node].index = static_cast<std::uint32_t>(name[1] - '1');
-    result.literal = result.pure = true;
+    result.literal = result.is_pure_number = true;
     return result;
   }
   if (Symbol* symbol = scope_.find(name)) return leaf(*symbol, 0, node.span);
@@ -207,7 +207,7 @@ Typed Resolver::plain_name(const SyntaxNode& node) {
   return leaf(*base, derivative.order, node.span);
 }
 
-Typed Resolver::leaf(Symbol& symbol, std::uint8_t order, Span span) {
+TypedNode Resolver::leaf(Symbol& symbol, std::uint8_t order, Span span) {
   symbol.used = true;
   if (symbol.kind == SymbolKind::constraint || symbol.kind == SymbolKind::force || symbol.kind == SymbolKind::event ||
       symbol.kind == SymbolKind::frame) {
@@ -215,34 +215,34 @@ Typed Resolver::leaf(Symbol& symbol, std::uint8_t order, Span span) {
                  "name a parameter, coordinate, function, input, definition, particle or point");
   }
   if (symbol.kind == SymbolKind::coordinate) {
-    Typed result = coordinate(symbol.index, order, span);
+    TypedNode result = coordinate(symbol.index, order, span);
     const std::string name = symbol.name + (order == 0 ? "" : order == 1 ? "_dot" : "_ddot");
-    allow(result.facts, span, fmt::format("'{}'", name));
+    require_allowed(result.dependencies, span, fmt::format("'{}'", name));
     return result;
   }
   if (symbol.kind == SymbolKind::place) {
-    const Typed result = place(symbol.index, span);
-    allow(result.facts, span, fmt::format("'{}'", symbol.name));
+    const TypedNode result = place(symbol.index, span);
+    require_allowed(result.dependencies, span, fmt::format("'{}'", symbol.name));
     return result;
   }
-  const Typed known = this->symbol(symbol, span);
+  const TypedNode known = this->symbol(symbol, span);
   const Op op = symbol.kind == SymbolKind::parameter  ? Op::parameter
                 : symbol.kind == SymbolKind::function ? Op::function
                 : symbol.kind == SymbolKind::input    ? Op::input
                                                       : Op::definition;
-  Typed result = make(op, known.vector, {}, span);
+  TypedNode result = make(op, known.vector, {}, span);
   model_.arena.nodes[result.node].index = symbol.index;
   model_.arena.nodes[result.node].order = order;
   result.dimension = known.dimension;
-  result.loose = known.loose;
-  result.facts = known.facts;
+  result.has_uncertain_dimension = known.has_uncertain_dimension;
+  result.dependencies = known.dependencies;
   result.depth = known.depth + 1;
   result.exponents = known.exponents;
   if (op == Op::parameter) result.constant = known.constant;
-  if (op == Op::function) result.facts |= on_time;
-  if (op == Op::input) result.facts = on_input;
+  if (op == Op::function) result.dependencies |= on_time;
+  if (op == Op::input) result.dependencies = on_input;
   if (order > 0 && result.dimension) result.dimension = quotient(*result.dimension, raised(dimension_of("s"), order));
-  allow(result.facts, span, fmt::format("'{}'", symbol.name));
+  require_allowed(result.dependencies, span, fmt::format("'{}'", symbol.name));
   return result;
 }
 

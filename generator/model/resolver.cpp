@@ -23,38 +23,38 @@ class Hold {
   T before_;
 };
 
-std::string facts_text(Facts facts) {
+std::string facts_text(Dependencies dependencies) {
   std::vector<std::string> words;
-  if (facts & on_time) words.emplace_back("time");
-  if (facts & on_input) words.emplace_back("inputs");
-  if (facts & on_coordinate) words.emplace_back("coordinates");
-  if (facts & on_velocity) words.emplace_back("velocities");
-  if (facts & on_acceleration) words.emplace_back("accelerations");
-  if (facts & on_reaction) words.emplace_back("constraint forces");
+  if (dependencies & on_time) words.emplace_back("time");
+  if (dependencies & on_input) words.emplace_back("inputs");
+  if (dependencies & on_coordinate) words.emplace_back("coordinates");
+  if (dependencies & on_velocity) words.emplace_back("velocities");
+  if (dependencies & on_acceleration) words.emplace_back("accelerations");
+  if (dependencies & on_reaction) words.emplace_back("constraint forces");
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
 }  // namespace
 
-Typed Resolver::value(const Value& value, const Context& context) {
-  static const std::map<std::string, Typed> nothing;
-  return value_with(value, nothing, context);
+TypedNode Resolver::value(const Value& value, const Context& context) {
+  static const std::map<std::string, TypedNode> nothing;
+  return value_with_names(value, nothing, context);
 }
 
-Typed Resolver::value_with(const Value& value, const std::map<std::string, Typed>& local, const Context& context) {
+TypedNode Resolver::value_with_names(const Value& value, const std::map<std::string, TypedNode>& local, const Context& context) {
   const Hold<const Context*> hold_context(context_, &context);
-  const Hold<const std::map<std::string, Typed>*> hold_local(local_, &local);
+  const Hold<const std::map<std::string, TypedNode>*> hold_local(local_, &local);
   switch (value.kind) {
     case Value::Kind::integer:
     case Value::Kind::real: {
-      const ExactNumber exact = exact_number(value.text);
+      const ExactNumber exact = parse_exact_number(value.text);
       if (!exact.problem.empty()) {
         source_.fail(value.span, fmt::format("{} cannot be {}: {}", quote(value.text), context.what, exact.problem),
                      "write a finite number");
       }
-      return meet(number(exact.value, value.span), value.span, context);
+      return check_context(number(exact.value, value.span), value.span, context);
     }
-    case Value::Kind::text: return syntax(parse_quantity(text_in(source_, value)), context);
+    case Value::Kind::text: return syntax(parse_quantity(source_text(source_, value)), context);
     case Value::Kind::array: {
       if (context.shape == Shape::scalar || value.items.size() != 3) {
         source_.fail(value.span,
@@ -66,9 +66,9 @@ Typed Resolver::value_with(const Value& value, const std::map<std::string, Typed
       Context component = context;
       component.shape = Shape::scalar;
       component.what = "a component of " + context.what;
-      std::array<Typed, 3> parts;
-      for (std::size_t k = 0; k < 3; ++k) parts[k] = this->value_with(value.items[k], local, component);
-      return meet(array_of(parts, value.span), value.span, context);
+      std::array<TypedNode, 3> parts;
+      for (std::size_t k = 0; k < 3; ++k) parts[k] = this->value_with_names(value.items[k], local, component);
+      return check_context(array_of(parts, value.span), value.span, context);
     }
     default:
       source_.fail(value.span, fmt::format("{} cannot be {}", context.what, kind_name(value.kind)),
@@ -76,24 +76,24 @@ Typed Resolver::value_with(const Value& value, const std::map<std::string, Typed
   }
 }
 
-Typed Resolver::text(std::string_view text, const std::map<std::string, Typed>& local, Span span,
+TypedNode Resolver::text(std::string_view text, const std::map<std::string, TypedNode>& local, Span span,
                      const Context& context) {
-  const Hold<const std::map<std::string, Typed>*> hold_local(local_, &local);
-  return syntax(parse_expression(Text{text, &source_, nullptr, 0, span}), context);
+  const Hold<const std::map<std::string, TypedNode>*> hold_local(local_, &local);
+  return syntax(parse_expression(SourceText{text, &source_, nullptr, 0, span}), context);
 }
 
-Typed Resolver::syntax(const Syntax& syntax, const Context& context) {
+TypedNode Resolver::syntax(const Syntax& syntax, const Context& context) {
   const Hold<const Context*> hold_context(context_, &context);
-  Typed result = node(syntax, syntax.root);
+  TypedNode result = node(syntax, syntax.root);
   if (syntax.unit) result = apply_unit(result, *syntax.unit, syntax.unit_span);
-  return meet(result, syntax.whole, context);
+  return check_context(result, syntax.whole, context);
 }
 
-Typed Resolver::meet(Typed typed, Span span, const Context& context) {
+TypedNode Resolver::check_context(TypedNode typed, Span span, const Context& context) {
   const bool zero = typed.literal && !typed.vector && typed.constant && cln::zerop(*typed.constant);
   if (zero && context.shape == Shape::vector) {
     typed = make(Op::zero_vector, true, {}, span);
-    typed.literal = typed.pure = true;
+    typed.literal = typed.is_pure_number = true;
     return typed;
   }
   if (context.shape == Shape::vector && !typed.vector) {
@@ -105,15 +105,15 @@ Typed Resolver::meet(Typed typed, Span span, const Context& context) {
                  "take dot(a, b), norm(a), or a component dot(a, E1)");
   }
   if (context.dimension && typed.dimension && !same(*context.dimension, *typed.dimension)) {
-    clash(span,
+    report_mismatch(span,
           fmt::format("{} must be in {}, and this is in {}", context.what, text_of(*context.dimension),
                       text_of(*typed.dimension)),
-          typed.loose);
+          typed.has_uncertain_dimension);
   }
   return typed;
 }
 
-void Resolver::clash(Span span, std::string what, bool loose) {
+void Resolver::report_mismatch(Span span, std::string what, bool loose) {
   if (!units_stated_) return;
   if (loose) {
     warn(span, std::move(what), "a bare number in it may carry the missing unit; state it, as in \"0.3[N/m]*x\"");
@@ -129,8 +129,8 @@ void Resolver::warn(Span span, std::string message, std::string remedy) {
   }
 }
 
-void Resolver::allow(Facts facts, Span span, std::string_view what) {
-  const auto excess = static_cast<Facts>(facts & static_cast<Facts>(~context_->allowed));
+void Resolver::require_allowed(Dependencies dependencies, Span span, std::string_view what) {
+  const auto excess = static_cast<Dependencies>(dependencies & static_cast<Dependencies>(~context_->allowed));
   if (excess == 0) return;
   std::string remedy = context_->remedy;
   if (remedy.empty()) {
@@ -141,9 +141,9 @@ void Resolver::allow(Facts facts, Span span, std::string_view what) {
                remedy);
 }
 
-const Typed& Resolver::symbol(Symbol& symbol, Span asked) {
-  if (symbol.state == Symbol::State::done) return symbol.typed;
-  if (symbol.state == Symbol::State::open) {
+const TypedNode& Resolver::symbol(Symbol& symbol, Span asked) {
+  if (symbol.state == Symbol::State::resolved) return symbol.typed;
+  if (symbol.state == Symbol::State::resolving) {
     const auto first = std::find(open_.begin(), open_.end(), symbol.name);
     std::vector<std::string> ring(first, open_.end());
     ring.push_back(symbol.name);
@@ -156,15 +156,15 @@ const Typed& Resolver::symbol(Symbol& symbol, Span asked) {
     source_.fail(asked, fmt::format("names refer to one another more than {} deep", deepest),
                  "state the names that are used first before the others, or use fewer steps");
   }
-  symbol.state = Symbol::State::open;
+  symbol.state = Symbol::State::resolving;
   open_.push_back(symbol.name);
   {
     const Hold<const Context*> hold_context(context_, nullptr);
-    const Hold<const std::map<std::string, Typed>*> hold_local(local_, nullptr);
+    const Hold<const std::map<std::string, TypedNode>*> hold_local(local_, nullptr);
     symbol.typed = definer_(symbol);
   }
   open_.pop_back();
-  symbol.state = Symbol::State::done;
+  symbol.state = Symbol::State::resolved;
   return symbol.typed;
 }
 
@@ -177,20 +177,20 @@ NodeId Resolver::push(Node node) {
   return static_cast<NodeId>(model_.arena.nodes.size() - 1);
 }
 
-Typed Resolver::make(Op op, bool vector, std::initializer_list<Typed> children, Span span) {
+TypedNode Resolver::make(Op op, bool vector, std::initializer_list<TypedNode> children, Span span) {
   Node node;
   node.op = op;
   node.vector = vector;
   node.span = span;
-  Typed result;
+  TypedNode result;
   result.vector = vector;
   std::size_t k = 0;
-  for (const Typed& child : children) {
+  for (const TypedNode& child : children) {
     node.args[k++] = child.node;
-    result.facts |= child.facts;
+    result.dependencies |= child.dependencies;
     result.depth = std::max(result.depth, child.depth + 1);
     result.exponents = std::max(result.exponents, child.exponents);
-    result.loose = result.loose || child.loose;
+    result.has_uncertain_dimension = result.has_uncertain_dimension || child.has_uncertain_dimension;
   }
   if (result.depth > max_depth) {
     source_.fail(span,
@@ -201,64 +201,64 @@ Typed Resolver::make(Op op, bool vector, std::initializer_list<Typed> children, 
   return result;
 }
 
-Typed Resolver::coordinate(std::uint32_t index, std::uint8_t order, Span span) {
-  Typed result = make(Op::coordinate, false, {}, span);
+TypedNode Resolver::coordinate(std::uint32_t index, std::uint8_t order, Span span) {
+  TypedNode result = make(Op::coordinate, false, {}, span);
   model_.arena.nodes[result.node].index = index;
   model_.arena.nodes[result.node].order = order;
-  result.facts = order == 0 ? on_coordinate : order == 1 ? on_velocity : on_acceleration;
+  result.dependencies = order == 0 ? on_coordinate : order == 1 ? on_velocity : on_acceleration;
   result.dimension = model_.coordinates[index].unit.dimension;
   if (result.dimension) result.dimension = quotient(*result.dimension, raised(dimension_of("s"), order));
   return result;
 }
 
-Typed Resolver::array_of(const std::array<Typed, 3>& components, Span span) {
-  Typed result = make(Op::array, true, {components[0], components[1], components[2]}, span);
-  Typed sum = components[0];
-  for (std::size_t k = 1; k < 3; ++k) agree(sum, sum, components[k], span, "components of one vector");
+TypedNode Resolver::array_of(const std::array<TypedNode, 3>& components, Span span) {
+  TypedNode result = make(Op::array, true, {components[0], components[1], components[2]}, span);
+  TypedNode sum = components[0];
+  for (std::size_t k = 1; k < 3; ++k) require_same_dimension(sum, sum, components[k], span, "components of one vector");
   result.dimension = sum.dimension;
-  result.loose = sum.loose;
+  result.has_uncertain_dimension = sum.has_uncertain_dimension;
   result.literal = sum.literal;
-  result.pure = sum.literal && sum.pure;
+  result.is_pure_number = sum.literal && sum.is_pure_number;
   return result;
 }
 
-Typed Resolver::extension(Span span) {
-  Typed result = make(Op::extension, false, {}, span);
+TypedNode Resolver::extension(Span span) {
+  TypedNode result = make(Op::extension, false, {}, span);
   result.dimension = dimension_of("m");
   return result;
 }
 
-Typed Resolver::inertia(std::uint32_t body, const Typed& vector, Span span) {
-  Typed result = make(Op::inertia, false, {vector}, span);
+TypedNode Resolver::inertia(std::uint32_t body, const TypedNode& vector, Span span) {
+  TypedNode result = make(Op::inertia, false, {vector}, span);
   model_.arena.nodes[result.node].index = body;
   return result;
 }
 
-Typed Resolver::slip(Span span) {
-  Typed result = make(Op::slip, false, {}, span);
-  result.facts = on_velocity;
+TypedNode Resolver::slip(Span span) {
+  TypedNode result = make(Op::slip, false, {}, span);
+  result.dependencies = on_velocity;
   return result;
 }
 
-Typed Resolver::sum_of(const Typed& a, const Typed& b, Span span) { return add(SyntaxKind::add, a, b, span); }
+TypedNode Resolver::sum_of(const TypedNode& a, const TypedNode& b, Span span) { return add(SyntaxKind::add, a, b, span); }
 
-Typed Resolver::component(const Typed& vector, std::uint32_t axis, Span span) {
-  Typed direction = make(Op::fixed_basis, true, {}, span);
+TypedNode Resolver::component(const TypedNode& vector, std::uint32_t axis, Span span) {
+  TypedNode direction = make(Op::fixed_basis, true, {}, span);
   model_.arena.nodes[direction.node].index = axis;
-  Typed result = make(Op::dot, false, {vector, direction}, span);
+  TypedNode result = make(Op::dot, false, {vector, direction}, span);
   result.dimension = vector.dimension;
   return result;
 }
 
-Typed Resolver::place(std::uint32_t index, Span span) {
-  Typed result = make(Op::place, true, {}, span);
+TypedNode Resolver::place(std::uint32_t index, Span span) {
+  TypedNode result = make(Op::place, true, {}, span);
   model_.arena.nodes[result.node].index = index;
   if (index == 0) return result;  // the origin: zero is compatible with every dimension
-  const Typed& position = symbol(*scope_.find(model_.places[index].name), span);
-  result.facts = position.facts;
+  const TypedNode& position = symbol(*scope_.find(model_.places[index].name), span);
+  result.dependencies = position.dependencies;
   result.depth = position.depth + 1;
   result.dimension = position.dimension;
-  result.loose = position.loose;
+  result.has_uncertain_dimension = position.has_uncertain_dimension;
   return result;
 }
 
@@ -299,7 +299,7 @@ CoordinateSet Resolver::coordinates_in(NodeId root) {
     switch (node.op) {
       case Op::coordinate: insert({node.index, node.order}, shift); break;
       case Op::total_derivative: inner = 1; break;
-      case Op::definition: reference = model_.definitions[node.index].is; break;
+      case Op::definition: reference = model_.definitions[node.index].expression; break;
       case Op::angular_velocity:
         for (const NodeId e : model_.frames[node.index].stages.back().e) {
           for (const auto& coordinate : coordinates_of(e)) insert(coordinate, static_cast<std::uint8_t>(shift + 1));

@@ -44,7 +44,7 @@ double Samples::value(NodeId id) {
   return result;
 }
 
-double Samples::moved(NodeId node, std::uint32_t coordinate, double by) {
+double Samples::value_at_offset(NodeId node, std::uint32_t coordinate, double by) {
   q_[coordinate] += by;
   known_.clear();
   const double result = value(node);
@@ -61,9 +61,9 @@ double Samples::fresh(const Node& node) {
     case Op::pi: return std::numbers::pi;
     case Op::time: return some_time;
     case Op::parameter: return value(model_.parameters[node.index].value);
-    case Op::function: return node.order == 0 ? value(model_.functions[node.index].is) : none;
+    case Op::function: return node.order == 0 ? value(model_.functions[node.index].expression) : none;
     case Op::coordinate: return node.order == 0 ? q_[node.index] : none;
-    case Op::definition: return value(model_.definitions[node.index].is);
+    case Op::definition: return value(model_.definitions[node.index].expression);
     case Op::add: return arg(0) + arg(1);
     case Op::subtract: return arg(0) - arg(1);
     case Op::negate: return -arg(0);
@@ -99,12 +99,12 @@ double value_of(Fn fn, double x, double y) {
   return none;
 }
 
-double Samples::independence(const std::array<NodeId, 3>& x, const std::vector<std::uint32_t>& coordinates) {
+double Samples::gram_determinant(const std::array<NodeId, 3>& x, const std::vector<std::uint32_t>& coordinates) {
   constexpr double step = 1e-5;  // of central differences: 1e-10 of rounding and of truncation
   std::vector<Vector> a;
   for (const std::uint32_t k : coordinates) {
     Vector tangent;
-    for (std::size_t c = 0; c < 3; ++c) tangent[c] = (moved(x[c], k, step) - moved(x[c], k, -step)) / (2 * step);
+    for (std::size_t c = 0; c < 3; ++c) tangent[c] = (value_at_offset(x[c], k, step) - value_at_offset(x[c], k, -step)) / (2 * step);
     const double length = std::sqrt(dot(tangent, tangent));
     if (length < 1e-8) return 0;
     for (double& component : tangent) component /= length;

@@ -23,10 +23,10 @@ class Samples {
   double value(NodeId node);
   double coordinate(std::uint32_t index) const { return q_[index]; }
   /// The value with one coordinate changed by `by`.
-  double moved(NodeId node, std::uint32_t coordinate, double by);
+  double value_at_offset(NodeId node, std::uint32_t coordinate, double by);
 
   /// The Gram determinant det(a_i . a_k) of the unit tangents along dx/dq_i at this point; 0 if they are dependent.
-  double independence(const std::array<NodeId, 3>& x, const std::vector<std::uint32_t>& coordinates);
+  double gram_determinant(const std::array<NodeId, 3>& x, const std::vector<std::uint32_t>& coordinates);
 
  private:
   double fresh(const Node& node);

@@ -42,7 +42,7 @@ void ScenesReader::read_scene_parameters(Scene& scene, const std::vector<const E
     }
     const Parameter& parameter = model_.parameters[symbol->index];
     const Context context{fmt::format("the value of '{}'", entry->key), 0, Shape::scalar, symbol->typed.dimension, ""};
-    const Typed typed = resolver_.value(entry->value, context);
+    const TypedNode typed = resolver_.value(entry->value, context);
     if (resolver_.uses_parameters(typed.node)) {
       source_.fail(entry->value.span, fmt::format("the value of '{}' uses parameters", entry->key),
                    "a scene sets parameters to numbers, with units if you like");
@@ -83,8 +83,8 @@ InputTable ScenesReader::read_input_table(const Value& table, const Symbol& inpu
   const std::string what = fmt::format("the table of the input '{}'", input.name);
   const std::string remedy = "write { t = [0, 1, 2], value = [0, 5, 0] }: value[k] holds from t[k] on";
   check_keys(table, {what, {"t", "value"}});
-  const Value& times = as(Value::Kind::array, needed(table, "t", what, remedy), "'t'", remedy);
-  const Value& values = as(Value::Kind::array, needed(table, "value", what, remedy), "'value'", remedy);
+  const Value& times = require_kind(Value::Kind::array, require_value(table, "t", what, remedy), "'t'", remedy);
+  const Value& values = require_kind(Value::Kind::array, require_value(table, "value", what, remedy), "'value'", remedy);
   if (times.items.empty() || times.items.size() != values.items.size()) {
     source_.fail(values.span,
                  fmt::format("{} has {} times and {} values", what, times.items.size(), values.items.size()), remedy);
@@ -94,7 +94,7 @@ InputTable ScenesReader::read_input_table(const Value& table, const Symbol& inpu
   const Context at{"a time of " + what, 0, Shape::scalar, dimension_of("s"), ""};
   const Context value{"a value of " + what, 0, Shape::scalar, input.typed.dimension, ""};
   for (std::size_t k = 0; k < times.items.size(); ++k) {
-    const Typed t = resolver_.value(times.items[k], at);
+    const TypedNode t = resolver_.value(times.items[k], at);
     if (last && t.constant && *t.constant <= *last)
       source_.fail(times.items[k].span, fmt::format("the times of {} do not grow", what), remedy);
     last = t.constant;
@@ -105,7 +105,7 @@ InputTable ScenesReader::read_input_table(const Value& table, const Symbol& inpu
 }
 
 void ScenesReader::read_solver(Scene& scene, const Value& value) {
-  as(Value::Kind::text, value, "'solver'", "write solver = \"dop853\"");
+  require_kind(Value::Kind::text, value, "'solver'", "write solver = \"dop853\"");
   if (eom::find_method(value.text) == nullptr) {
     std::vector<std::string> names{eom::Automatic::name};
     for (const eom::MethodInfo& method : eom::methods()) names.emplace_back(method.name);
@@ -117,17 +117,17 @@ void ScenesReader::read_solver(Scene& scene, const Value& value) {
 }
 
 void ScenesReader::read_outputs(Scene& scene, const Value& value) {
-  as(Value::Kind::array, value, "'outputs'", "write outputs = [\"energy\", \"reaction.NAME\"]");
+  require_kind(Value::Kind::array, value, "'outputs'", "write outputs = [\"energy\", \"reaction.NAME\"]");
   for (const Value& item : value.items) {
-    as(Value::Kind::text, item, "an output", "write outputs = [\"energy\", \"reaction.NAME\"]");
+    require_kind(Value::Kind::text, item, "an output", "write outputs = [\"energy\", \"reaction.NAME\"]");
     check_output(item);
     const bool again = std::any_of(scene.outputs.begin(), scene.outputs.end(),
-                                   [&](const Named& known) { return known.name == item.text; });
+                                   [&](const OutputReference& known) { return known.name == item.text; });
     if (again) {
       resolver_.warn(item.span, fmt::format("the output '{}' is requested twice", item.text), "name it once");
       continue;
     }
-    scene.outputs.push_back(Named{item.text, item.span});
+    scene.outputs.push_back(OutputReference{item.text, item.span});
   }
 }
 
@@ -158,7 +158,7 @@ void ScenesReader::check_output(const Value& value) {
   if (parts[0] == "reaction" && (parts.size() == 2 || parts.size() == 3)) {
     const Symbol* constraint = scope_.find(parts[1]);
     if (constraint != nullptr && constraint->kind == SymbolKind::constraint) {
-      const std::size_t count = model_.constraints[constraint->index].reactions();
+      const std::size_t count = model_.constraints[constraint->index].reaction_count();
       if (parts.size() == 2) return;
       if (count > 1 && parts[2].size() == 1 && parts[2][0] >= '1' &&
           static_cast<std::size_t>(parts[2][0] - '0') <= count)

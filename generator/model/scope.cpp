@@ -22,7 +22,7 @@ const char* kind_name(SymbolKind kind) {
 }
 
 Symbol& Scope::declare(SymbolKind kind, const std::string& name, Span span, const Entry* entry) {
-  if (const auto reason = illegal_name(name)) {
+  if (const auto reason = name_error(name)) {
     source_.fail(span, fmt::format("{} cannot be a name: {}", quote(name), *reason), "choose another name");
   }
   if (const Symbol* other = find(name)) {

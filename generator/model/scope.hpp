@@ -17,15 +17,15 @@ namespace eomgen::model {
 inline constexpr std::size_t max_names = 5000;
 
 /// An expression of the arena with its type, dimension and dependencies.
-struct Typed {
+struct TypedNode {
   NodeId node = no_node;
   bool vector = false;
   bool literal = false;                // made of number literals and unit vectors: compatible with every dimension
-  bool pure = false;                   // a literal that is a pure number: 2, 1/12, E1
-  bool bare_time = false;              // made of t and number literals: in sin(2*t) the 2 has the unit 1/s
-  bool loose = false;                  // dimension uncertain due to a bare number (0.3*x): mismatches are warnings
+  bool is_pure_number = false;                   // a literal that is a pure number: 2, 1/12, E1
+  bool is_bare_time = false;              // made of t and number literals: in sin(2*t) the 2 has the unit 1/s
+  bool has_uncertain_dimension = false;                  // dimension uncertain due to a bare number (0.3*x): mismatches are warnings
   std::optional<Dimension> dimension;  // nothing: unknown
-  std::uint8_t facts = 0;              // the variables on which it depends
+  std::uint8_t dependencies = 0;              // the variables on which it depends
   int depth = 1;                       // including everything to which it refers
   double exponents = 1;                // product of nested constant exponents
   std::optional<Rational> constant;    // of numbers and parameters that are numbers
@@ -35,15 +35,15 @@ enum class SymbolKind { parameter, function, input, coordinate, definition, plac
 const char* kind_name(SymbolKind kind);
 
 struct Symbol {
-  enum class State { fresh, open, done };
+  enum class State { unresolved, resolving, resolved };
   SymbolKind kind = SymbolKind::parameter;
   std::string name;
   Span span;
   std::uint32_t frame = 0;  // of a place that is a body: its axes
   std::uint32_t index = 0;  // in the list of the model; set when done for parameters, functions and definitions
-  State state = State::fresh;
+  State state = State::unresolved;
   bool used = false;
-  Typed typed;                   // when done: value of a parameter, position of a place, ...
+  TypedNode typed;                   // when done: value of a parameter, position of a place, ...
   const Entry* entry = nullptr;  // where it is declared
 };
 

@@ -21,11 +21,11 @@ SectionReader::SectionReader(ReaderContext& context)
       place_sources_(context.place_sources),
       frame_sources_(context.frame_sources),
       chains_(context.chains),
-      ranged_(context.ranged),
-      measured_(context.measured) {}
+      coordinates_with_range_(context.coordinates_with_range),
+      coordinates_with_unit_(context.coordinates_with_unit) {}
 
-std::uint32_t SectionReader::place_named(const Value& value, const std::string& what) {
-  as(Value::Kind::text, value, what, "write the name of a particle or point, or \"origin\"");
+std::uint32_t SectionReader::require_place(const Value& value, const std::string& what) {
+  require_kind(Value::Kind::text, value, what, "write the name of a particle or point, or \"origin\"");
   if (value.text == "origin") return 0;
   Symbol* symbol = scope_.find(value.text);
   if (symbol == nullptr || symbol->kind != SymbolKind::place) {
@@ -42,8 +42,8 @@ std::uint32_t SectionReader::place_named(const Value& value, const std::string& 
   return symbol->index;
 }
 
-std::uint32_t SectionReader::frame_named(const Value& value, const std::string& what) {
-  as(Value::Kind::text, value, what, "write the name of a body or frame");
+std::uint32_t SectionReader::require_frame(const Value& value, const std::string& what) {
+  require_kind(Value::Kind::text, value, what, "write the name of a body or frame");
   if (value.text == "ground") return 0;
   Symbol* symbol = scope_.find(value.text);
   if (symbol == nullptr || symbol->frame == 0) {
@@ -62,11 +62,11 @@ std::uint32_t SectionReader::frame_named(const Value& value, const std::string& 
   return symbol->frame;
 }
 
-Typed SectionReader::point(const Value& value, const std::string& what) {
+TypedNode SectionReader::point(const Value& value, const std::string& what) {
   // A misspelt name of a place has its own message.
   if (value.is(Value::Kind::text) && is_identifier(value.text) && scope_.find(value.text) == nullptr &&
       value.text != "origin" && !is_reserved(value.text)) {
-    place_named(value, what);
+    require_place(value, what);
   }
   return resolver_.value(value, Context{what, on_motion, Shape::vector, dimension_of("m"), ""});
 }

@@ -25,11 +25,11 @@ inline constexpr long max_chain = 64;
 struct Keys {
   std::string what;  // "[[particle]]"
   std::vector<std::string_view> known;
-  std::map<std::string, std::string, std::less<>> others{};  // synonym -> advice on the key to use
+  std::map<std::string, std::string, std::less<>> synonyms{};  // synonym -> advice on the key to use
 };
 
 /// The declaration of a place.
-struct PlaceSource {
+struct PlaceDeclaration {
   const Value* table = nullptr;
   bool particle = false;
   bool body = false;
@@ -48,17 +48,17 @@ struct Chain {
 /// A direction that is fixed in a frame and in space: the components of its unit vector along the axes of the frame,
 /// and, if it is numerical, numbers proportional to them.
 struct FixedDirection {
-  std::array<Typed, 3> unit;
+  std::array<TypedNode, 3> unit;
   std::optional<std::array<cln::cl_RA, 3>> numbers;
 };
 
 /// The declaration of axes.
-struct FrameSource {
+struct FrameDeclaration {
   const Value* table = nullptr;
   std::uint32_t place = 0;                  // of a body
-  bool still = false;                       // it does not rotate, like the ground
+  bool keeps_attitude = false;                       // it does not rotate, like the ground
   std::optional<FixedDirection> axis = {};  // its axis of rotation, if that is fixed
-  bool upright =
+  bool starts_aligned =
       false;  // it rotates about that axis only, starting from E1, E2, E3: the axis has the same components in space
 };
 
@@ -71,12 +71,12 @@ struct ReaderContext {
   const Value& root;
   Model model;
   Scope scope;
-  std::function<Typed(Symbol&)> define;  // reads the declaration of a symbol on demand
+  std::function<TypedNode(Symbol&)> define;  // reads the declaration of a symbol on demand
   Resolver resolver;
-  std::vector<PlaceSource> place_sources;  // per Model::places
-  std::vector<FrameSource> frame_sources;  // per Model::frames
+  std::vector<PlaceDeclaration> place_sources;  // per Model::places
+  std::vector<FrameDeclaration> frame_sources;  // per Model::frames
   std::vector<Chain> chains;
-  std::set<std::uint32_t> ranged, measured;  // coordinates whose range or unit [coordinates] states
+  std::set<std::uint32_t> coordinates_with_range, coordinates_with_unit;  // coordinates whose range or unit [coordinates] states
 };
 
 class SectionReader {
@@ -85,9 +85,9 @@ class SectionReader {
 
   // keys.cpp
   void check_keys(const Value& table, const Keys& keys) const;
-  const Value& needed(const Value& table, std::string_view key, const std::string& what,
+  const Value& require_value(const Value& table, std::string_view key, const std::string& what,
                       const std::string& remedy) const;
-  const Value& as(Value::Kind kind, const Value& value, const std::string& what, const std::string& remedy) const;
+  const Value& require_kind(Value::Kind kind, const Value& value, const std::string& what, const std::string& remedy) const;
   const Value* section(std::string_view name) const;                // [name], checked to be a table
   std::vector<const Value*> sections(std::string_view name) const;  // [[name]]
   std::string text_of_key(const Value& table, std::string_view key, const std::string& what) const;
@@ -99,11 +99,11 @@ class SectionReader {
 
   // section_reader.cpp
   /// The index into Model::places of a named place, 0 for "origin". Throws Error if there is no such place.
-  std::uint32_t place_named(const Value& value, const std::string& what);
+  std::uint32_t require_place(const Value& value, const std::string& what);
   /// The index into Model::frames of a named body or frame, 0 for "ground". Throws Error if there is none.
-  std::uint32_t frame_named(const Value& value, const std::string& what);
+  std::uint32_t require_frame(const Value& value, const std::string& what);
   /// A position given as the name of a place or as a vector.
-  Typed point(const Value& value, const std::string& what);
+  TypedNode point(const Value& value, const std::string& what);
 
   ReaderContext& context_;
   const Source& source_;
@@ -111,10 +111,10 @@ class SectionReader {
   Model& model_;
   Scope& scope_;
   Resolver& resolver_;
-  std::vector<PlaceSource>& place_sources_;
-  std::vector<FrameSource>& frame_sources_;
+  std::vector<PlaceDeclaration>& place_sources_;
+  std::vector<FrameDeclaration>& frame_sources_;
   std::vector<Chain>& chains_;
-  std::set<std::uint32_t>&ranged_, &measured_;
+  std::set<std::uint32_t>&coordinates_with_range_, &coordinates_with_unit_;
 };
 
 }  // namespace eomgen::model

@@ -39,7 +39,7 @@ std::size_t utf8_length(const std::string& text, std::size_t at) {
 
 Source::Source(std::string file, std::string text) : file_(std::move(file)), text_(std::move(text)) {
   if (text_.size() > max_file_bytes) {
-    throw Error("model", Where{file_, 0, 0, 1, ""},
+    throw Error("model", SourceLocation{file_, 0, 0, 1, ""},
                 fmt::format("the file has {} bytes; a model may have {}", text_.size(), max_file_bytes),
                 "check that this is a model file; split a model that is really this large");
   }
@@ -52,7 +52,7 @@ Source::Source(std::string file, std::string text) : file_(std::move(file)), tex
   for (std::size_t k = 0; k < starts_.size(); ++k) {
     const std::size_t end = k + 1 < starts_.size() ? starts_[k + 1] - 1 : text_.size();
     if (end - starts_[k] > max_line_bytes) {
-      throw Error("model", Where{file_, static_cast<std::uint32_t>(k + 1), 1, 1, ""},
+      throw Error("model", SourceLocation{file_, static_cast<std::uint32_t>(k + 1), 1, 1, ""},
                   fmt::format("the line has more than {} bytes", max_line_bytes),
                   "a TOML text may have several lines: \"\"\"...\"\"\"");
     }
@@ -79,10 +79,10 @@ std::size_t Source::offset(std::size_t line, std::size_t character_column) const
   return index < characters_.size() ? characters_[index] : text_.size();
 }
 
-Where Source::where(const Span& span) const { return where_in(file_, lines_, span); }
+SourceLocation Source::where(const Span& span) const { return locate(file_, lines_, span); }
 
-Where where_in(const std::string& file, const std::vector<std::string>& lines, const Span& span) {
-  Where where{file, span.line, span.column, span.length, ""};
+SourceLocation locate(const std::string& file, const std::vector<std::string>& lines, const Span& span) {
+  SourceLocation where{file, span.line, span.column, span.length, ""};
   if (span.line > 0 && span.line <= lines.size()) where.text = lines[span.line - 1];
   return where;
 }
@@ -101,7 +101,7 @@ void Source::check_bytes() {
     if (length == 0 || control || lone_return) {
       // The location has no line text, so that bytes of a binary file do not reach the terminal.
       const Span place = span(at, 1);
-      throw Error("model", Where{file_, place.line, place.column, 1, ""},
+      throw Error("model", SourceLocation{file_, place.line, place.column, 1, ""},
                   length == 0 ? fmt::format("byte 0x{:02x} is not UTF-8 text", c)
                               : fmt::format("control character 0x{:02x} in the file", c),
                   "a model is a TOML file in UTF-8; check that this is one, or save it as UTF-8");

@@ -32,7 +32,7 @@ class Source {
   Span span(std::size_t offset, std::size_t length) const;
   /// The byte offset of a line and a column in characters, not bytes (as in toml++); both count from 1.
   std::size_t offset(std::size_t line, std::size_t character_column) const;
-  Where where(const Span& span) const;
+  SourceLocation where(const Span& span) const;
   [[noreturn]] void fail(const Span& span, std::string what, std::string remedy) const;
 
  private:
@@ -48,6 +48,6 @@ class Source {
 };
 
 /// The location of a span in the lines of a file.
-Where where_in(const std::string& file, const std::vector<std::string>& lines, const Span& span);
+SourceLocation locate(const std::string& file, const std::vector<std::string>& lines, const Span& span);
 
 }  // namespace eomgen::model

@@ -24,8 +24,8 @@ std::string free_name(const Model& model, std::string name) {
 
 void name_start_values(Model& model) {
   for (Parameter& p : model.parameters) {
-    if (!p.start_of) continue;
-    const Coordinate& q = model.coordinates[*p.start_of];
+    if (!p.initial_value_of) continue;
+    const Coordinate& q = model.coordinates[*p.initial_value_of];
     std::string name;
     std::swap(name, p.name);  // its own name must not count as taken
     p.name = free_name(model, name);

@@ -19,7 +19,7 @@ inline constexpr std::size_t max_number_digits = 400;
 inline constexpr long max_number_exponent = 400;
 
 /// A text to parse, and the mapping of its bytes to the file.
-struct Text {
+struct SourceText {
   std::string_view text;
   const Source* source = nullptr;
   const Value* value = nullptr;  // the TOML string that contains it; null: `fixed` is the location of the whole text
@@ -28,7 +28,7 @@ struct Text {
 
   Span span(std::size_t at, std::size_t length) const;
 };
-Text text_in(const Source& source, const Value& value);
+SourceText source_text(const Source& source, const Value& value);
 
 enum class TokenKind { number, name, symbol, end };
 struct Token {
@@ -40,13 +40,13 @@ struct Token {
   std::optional<MeasuredUnit> unit;  // 1.7e-5[m]
 };
 /// The tokens of a text, with `end` as the last one. Throws Error.
-std::vector<Token> tokens_of(const Text& text);
+std::vector<Token> tokenize(const SourceText& text);
 /// An exact rational from digits [ "." digits ] [ e [sign] digits ], or the reason why the text is not a number.
 struct ExactNumber {
   Rational value = 0;
   std::string problem;
 };
-ExactNumber exact_number(std::string_view text);
+ExactNumber parse_exact_number(std::string_view text);
 
 enum class SyntaxKind {
   number,
@@ -81,10 +81,10 @@ struct Syntax {
 };
 
 /// Parses a whole expression. Throws Error.
-Syntax parse_expression(const Text& text);
+Syntax parse_expression(const SourceText& text);
 /// The unit after the last blank, as in "9.81 m/s^2", if there is one.
 std::optional<MeasuredUnit> trailing_unit(std::string_view text);
 /// Like parse_expression, with an optional unit after a blank.
-Syntax parse_quantity(const Text& text);
+Syntax parse_quantity(const SourceText& text);
 
 }  // namespace eomgen::model

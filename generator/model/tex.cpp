@@ -155,7 +155,7 @@ class TexReader {
 
 }  // namespace
 
-std::optional<std::string> illegal_tex(std::string_view tex) {
+std::optional<std::string> tex_error(std::string_view tex) {
   constexpr std::size_t longest = 100;
   if (tex.empty()) return "it is empty";
   if (tex.size() > longest) return fmt::format("it is longer than {} characters", longest);

@@ -176,7 +176,7 @@ std::optional<MeasuredUnit> parse_unit(std::string_view text) {
   return UnitParser(text).all();
 }
 
-std::optional<std::string> completed_unit(std::string_view text) {
+std::optional<std::string> suggest_unit(std::string_view text) {
   std::string result;
   for (std::size_t k = 0; k < text.size(); ++k) {
     const bool after_letter = k > 0 && std::isalpha(static_cast<unsigned char>(text[k - 1])) != 0;
@@ -200,7 +200,7 @@ std::optional<std::string> completed_unit(std::string_view text) {
 }
 
 std::string unit_hint(std::string_view text) {
-  if (const auto meant = completed_unit(text)) return "did you mean '" + *meant + "'?";
+  if (const auto meant = suggest_unit(text)) return "did you mean '" + *meant + "'?";
   std::vector<std::string> names;
   for (const NamedUnit& unit : units) names.emplace_back(unit.name);
   for (const char* common : {"kg", "mm", "cm", "km", "ms", "kN", "N*m", "m/s", "m/s^2", "rad/s", "N/m", "N*s/m"}) {

@@ -21,7 +21,7 @@ struct MeasuredUnit {
 /// Parses "m/s^2", "N*m", "1/s", "kg/(m*s)" or "deg"; nothing if it is not composed of known units.
 std::optional<MeasuredUnit> parse_unit(std::string_view text);
 /// A correction of "m/s2", "m/s**2" or "kg.m" with the missing operators; nothing if that is not a unit either.
-std::optional<std::string> completed_unit(std::string_view text);
+std::optional<std::string> suggest_unit(std::string_view text);
 /// Suggests units similar to a misspelt one.
 std::string unit_hint(std::string_view text);
 

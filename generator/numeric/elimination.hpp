@@ -14,7 +14,7 @@
 namespace eomgen::numeric {
 
 /// The pivot search: over all remaining entries, or on the diagonal (for positive semidefinite matrices).
-enum class Pivots { complete, diagonal };
+enum class Pivoting { complete, diagonal };
 
 /// A = L U of a matrix of any shape, up to its rank. Zero entries are skipped.
 template <class T>
@@ -23,12 +23,12 @@ class Elimination {
   /// With complete pivoting, after scaling first the rows and then the columns to a largest entry of 1. Values up to
   /// `cutoff` are not accepted as pivots. Rows up to `floor` times the largest row count as 0, and so do columns up to
   /// `floor` after the rows are scaled.
-  Elimination(Matrix<T> A, const T& cutoff, const T& floor = T(0)) : Elimination(std::move(A), Pivots::complete) {
+  Elimination(Matrix<T> A, const T& cutoff, const T& floor = T(0)) : Elimination(std::move(A), Pivoting::complete) {
     scale(floor);
     reduce(cutoff);
   }
   /// Without scaling. Diagonal pivoting requires a square matrix.
-  Elimination(Matrix<T> A, const T& cutoff, Pivots pivots) : Elimination(std::move(A), pivots) { reduce(cutoff); }
+  Elimination(Matrix<T> A, const T& cutoff, Pivoting pivots) : Elimination(std::move(A), pivots) { reduce(cutoff); }
 
   std::size_t rank() const { return rank_; }
   /// The last accepted pivot, relative to a first one of about 1; 1 if there is none.
@@ -68,7 +68,7 @@ class Elimination {
   }
 
  private:
-  Elimination(Matrix<T> A, Pivots pivots)
+  Elimination(Matrix<T> A, Pivoting pivots)
       : a_(std::move(A)),
         row_(a_.rows),
         col_(a_.cols),
@@ -106,13 +106,13 @@ class Elimination {
 
   void reduce(const T& cutoff) {
     largest_.assign(a_.rows, T(0));
-    for (std::size_t i = 0; pivots_ == Pivots::complete && i < a_.rows; ++i) largest_[row_[i]] = largest_in(i, 0);
+    for (std::size_t i = 0; pivots_ == Pivoting::complete && i < a_.rows; ++i) largest_[row_[i]] = largest_in(i, 0);
     while (rank_ < std::min(a_.rows, a_.cols) && eliminate(cutoff)) ++rank_;
   }
 
   bool eliminate(const T& cutoff) {
     const std::size_t k = rank_;
-    const bool complete = pivots_ == Pivots::complete;
+    const bool complete = pivots_ == Pivoting::complete;
     std::size_t pi = k;
     T largest(0);
     for (std::size_t i = k; i < a_.rows; ++i) {
@@ -165,7 +165,7 @@ class Elimination {
   std::vector<std::size_t> row_, col_;
   std::vector<T> row_scale_, column_scale_;
   std::vector<T> largest_;  // per row: largest remaining magnitude; only elimination in this row changes it
-  Pivots pivots_;
+  Pivoting pivots_;
   std::size_t rank_ = 0;
 };
 

@@ -13,10 +13,10 @@
 
 namespace eomgen::pipeline {
 
-std::vector<model::SwitchedChart> charts_of(const mechanics::Mechanics& m) {
-  std::vector<model::SwitchedChart> charts = model::charts(*m.model);
+std::vector<model::ChartPair> charts_of(const mechanics::Mechanics& m) {
+  std::vector<model::ChartPair> charts = model::charts(*m.model);
   std::size_t count = 0;
-  for (model::SwitchedChart& chart : charts) {
+  for (model::ChartPair& chart : charts) {
     if (!chart.refusal.empty()) continue;
     if (!m.integrals.empty()) {
       chart.refusal =
@@ -28,19 +28,19 @@ std::vector<model::SwitchedChart> charts_of(const mechanics::Mechanics& m) {
   return charts;
 }
 
-std::vector<model::SwitchedChart> exchangeable(const std::vector<model::SwitchedChart>& charts) {
-  std::vector<model::SwitchedChart> result;
+std::vector<model::ChartPair> exchangeable(const std::vector<model::ChartPair>& charts) {
+  std::vector<model::ChartPair> result;
   std::copy_if(charts.begin(), charts.end(), std::back_inserter(result),
                [](const auto& chart) { return chart.refusal.empty(); });
   return result;
 }
 
-void add_second_charts(Derived& own, program::Program& program, const std::vector<model::SwitchedChart>& charts,
+void add_second_charts(Derived& own, program::Program& program, const std::vector<model::ChartPair>& charts,
                        unsigned mask, const ChartRequest& request) {
   if (program.charts.empty()) {
     symbolic::Dag dag;
     std::vector<system::ChartChange> changes;
-    for (const model::SwitchedChart& chart : charts) changes.push_back(derive::chart_change(dag, own.model, chart));
+    for (const model::ChartPair& chart : charts) changes.push_back(derive::chart_change(dag, own.model, chart));
     program::add_charts(program, dag, changes);
   }
   const auto derived =

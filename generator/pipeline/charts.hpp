@@ -14,9 +14,9 @@
 namespace eomgen::pipeline {
 
 /// All second charts, also those that the mechanics exclude, with the reason.
-std::vector<model::SwitchedChart> charts_of(const mechanics::Mechanics& mechanics);
+std::vector<model::ChartPair> charts_of(const mechanics::Mechanics& mechanics);
 /// The exchangeable charts, at most as many as `mode` has bits for.
-std::vector<model::SwitchedChart> exchangeable(const std::vector<model::SwitchedChart>& charts);
+std::vector<model::ChartPair> exchangeable(const std::vector<model::ChartPair>& charts);
 
 /// Options of the programs of one model, in any charts.
 struct ChartRequest {
@@ -26,9 +26,9 @@ struct ChartRequest {
   std::uint64_t seed = 1;
 };
 
-/// Derives, verifies and optimises the second charts of `mask`, and adds them to `program`. Throws Error{Fault::check}
+/// Derives, verifies and optimises the second charts of `mask`, and adds them to `program`. Throws Error{ErrorKind::check}
 /// if the verification fails.
-void add_second_charts(Derived& own, program::Program& program, const std::vector<model::SwitchedChart>& charts,
+void add_second_charts(Derived& own, program::Program& program, const std::vector<model::ChartPair>& charts,
                        unsigned mask, const ChartRequest& request);
 
 /// Provides a run near a chart singularity with code for all charts that it has requested so far.
@@ -36,7 +36,7 @@ class ChartLibrary {
  public:
   ChartLibrary(Derived& own, program::Program program, emit::EmissionContext context, ChartRequest request);
 
-  const std::vector<model::SwitchedChart>& charts() const { return charts_; }
+  const std::vector<model::ChartPair>& charts() const { return charts_; }
   /// Code with the charts of `mask`. Throws Error if a second chart cannot be derived or compiled.
   const run::Code& in(unsigned mask);
   /// Seconds of derivation, verification and compilation.
@@ -52,7 +52,7 @@ class ChartLibrary {
   program::Program program_;
   emit::EmissionContext context_;
   ChartRequest request_;
-  std::vector<model::SwitchedChart> charts_;
+  std::vector<model::ChartPair> charts_;
   std::vector<unsigned> known_;
   std::vector<std::unique_ptr<Compiled>> compiled_;  // earlier ones may still be in use
   double seconds_ = 0;

@@ -65,8 +65,8 @@ std::optional<std::vector<std::vector<double>>> called(const emit::LoadedModel& 
   if (function == "taylor") y.emplace_back(x.size() * static_cast<std::size_t>(at.order + 1));
   y.resize(std::max<std::size_t>(3, y.size()));
   std::vector<double> w(prepared + 1);
-  if (abi::find(function)->takes(abi::Input::prepared) && m.prepare(p.data(), w.data()) != 0) return std::nullopt;
-  const abi::Given given{
+  if (abi::find(function)->has_input(abi::Input::prepared) && m.prepare(p.data(), w.data()) != 0) return std::nullopt;
+  const abi::CallArguments given{
       t, x.data(), p.data(), w.data(), u.data(), at.mode, at.order, 0, {y[0].data(), y[1].data(), y[2].data()}};
   if (m.call(function, given) != 0) return std::nullopt;
   return y;

@@ -19,7 +19,7 @@ namespace eomgen::pipeline {
 
 const std::vector<std::string>& emitted_functions() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all = abi::asked_for();
+    std::vector<std::string> all = abi::optional_functions();
     all.insert(all.end(), {"energy", "charts", "run"});
     return all;
   }();
@@ -49,7 +49,7 @@ program::Request request_of(const EmissionRequest& options, Derived& derived, co
       request.with.push_back(name);
     }
   }
-  std::vector<model::Named> wanted;
+  std::vector<model::OutputReference> wanted;
   for (const std::string& name : options.outputs) wanted.push_back({name, {}});
   for (const std::string& name : run::expand_outputs(derived.mechanics, derived.candidates.front(), wanted)) {
     request.outputs.push_back(name);
@@ -67,7 +67,7 @@ program::Request request_of(const EmissionRequest& options, Derived& derived, co
       std::vector<std::string> names;
       for (const model::Parameter& p : parameters) names.push_back(p.name);
       throw Error("emit", {}, fmt::format("there is no parameter {} to fix", model::quote(name)),
-                  model::choice_of(name, names));
+                  model::suggest_choice(name, names));
     }
     const auto index = static_cast<std::uint32_t>(found - parameters.begin());
     request.fix[index] = numeric::exact(scene.parameters[index]);
@@ -81,23 +81,23 @@ void require_with(const std::vector<std::string>& with) {
     const bool batch = name.ends_with("_batch");
     throw Error("emit", {}, fmt::format("there is no function {} to emit", model::quote(name)),
                 batch ? "--target batch writes batches of rhs and of all that --with and --output ask for"
-                      : model::choice_of(name, emitted_functions()));
+                      : model::suggest_choice(name, emitted_functions()));
   }
 }
 
 /// Adds all second charts and their combinations; warns of charts that cannot be exchanged.
 void add_all_charts(Derived& derived, program::Program& program, const ChartRequest& request) {
-  const std::vector<model::SwitchedChart> all = charts_of(derived.mechanics);
-  for (const model::SwitchedChart& chart : all) {
+  const std::vector<model::ChartPair> all = charts_of(derived.mechanics);
+  for (const model::ChartPair& chart : all) {
     if (chart.refusal.empty()) continue;
     work::warn(
         fmt::format("warning: '{}' keeps its chart {}: {}\n  remedy: where that fails use other coordinates, such as "
                     "euler_parameters or cartesian ones\n",
                     chart.of, chart.own, chart.refusal));
   }
-  const std::vector<model::SwitchedChart> charts = exchangeable(all);
+  const std::vector<model::ChartPair> charts = exchangeable(all);
   if (charts.empty()) {
-    throw Error("emit", Where{derived.model.file, 0, 0, 1, ""}, "this model has no chart that can be exchanged",
+    throw Error("emit", SourceLocation{derived.model.file, 0, 0, 1, ""}, "this model has no chart that can be exchanged",
                 "leave charts out of --with; eomgen check lists the charts");
   }
   for (unsigned mask = 1; mask < 1u << charts.size(); ++mask)
@@ -110,7 +110,7 @@ void require_target(const std::string& target, const std::vector<std::string>& b
   std::vector<std::string> known = emit::target_names();
   known.insert(known.end(), beside.begin(), beside.end());
   if (has(known, target)) return;
-  throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), model::choice_of(target, known));
+  throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), model::suggest_choice(target, known));
 }
 
 Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionRequest& request) {

@@ -33,7 +33,7 @@ struct Emission {
   Timings seconds;
 };
 
-/// Throws Error{stage "emit"} for an unknown target, function, output or parameter, and Error{Fault::check} if the
+/// Throws Error{stage "emit"} for an unknown target, function, output or parameter, and Error{ErrorKind::check} if the
 /// derivations disagree. Warns (work::warn) if a requested item is empty.
 Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionRequest& request);
 

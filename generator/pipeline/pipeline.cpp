@@ -74,7 +74,7 @@ void take_forms(Derived& derived, FormChoice choice) {
   if (choice && others.empty()) {
     const bool any = !derived.mechanics.active.empty();
     throw Error(
-        "derive", Where{derived.model.file, 0, 0, 1, ""},
+        "derive", SourceLocation{derived.model.file, 0, 0, 1, ""},
         any ? fmt::format("the constraints of this model are unilateral, are coupled in blocks that are too large "
                           "for form '{}', or have no independent columns in admissible configurations",
                           system::name(*choice))
@@ -174,7 +174,7 @@ Choice chosen(const Choices<Choice>& choices, const char* what, const std::strin
     if (word == text) return choice;
   }
   throw Error("cli", {}, fmt::format("there is no {} {}", what, model::quote(text)),
-              model::choice_of(text, words(choices)));
+              model::suggest_choice(text, words(choices)));
 }
 
 }  // namespace
@@ -306,12 +306,12 @@ void require_pass(const verify::Certificate& certificate, const model::Model& mo
           fmt::format("{}{} against {}: {:.3g}", failures.empty() ? "" : "; ", c.a, c.b, c.max_relative_difference);
   }
   for (const std::string& name : certificate.agreeing()) agreeing += (agreeing.empty() ? "" : ", ") + name;
-  throw Error("verify", Where{model.file, 0, 0, 1, ""},
+  throw Error("verify", SourceLocation{model.file, 0, 0, 1, ""},
               fmt::format("the derivations of this model disagree ({}), so nothing is emitted; {}", failures,
                           agreeing.empty() ? "none agrees with d'Alembert's principle"
                                            : "d'Alembert's principle agrees with " + agreeing),
               "this is a defect of eomgen: please report it with the model; eomgen verify shows all comparisons",
-              Fault::check);
+              ErrorKind::check);
 }
 
 emit::EmissionContext emission_context(Derived& derived, const program::Program& program, const run::Scene& scene,

@@ -72,7 +72,7 @@ struct Verification {
 };
 verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options);
 
-/// Throws Error{Fault::check} with the failures if the certificate is negative: such a model is not emitted.
+/// Throws Error{ErrorKind::check} with the failures if the certificate is negative: such a model is not emitted.
 void require_pass(const verify::Certificate& certificate, const model::Model& model);
 
 /// The description of the model in the sources, with start and parameters of the default scene.

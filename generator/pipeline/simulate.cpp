@@ -163,9 +163,9 @@ std::vector<symbolic::Ref> kink_values(const Derived& derived, const program::Pr
 /// Allows the run to change to the charts of the library.
 void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& library) {
   if (!library) return;
-  for (const model::SwitchedChart& chart : library->charts()) {
+  for (const model::ChartPair& chart : library->charts()) {
     run::ExchangedChart exchanged{chart.of, {}, chart.angles, chart.guarded, chart.at_sine, true};
-    exchanged.second_at_sine = chart.kind == model::SwitchedChart::Kind::position || !chart.at_sine;
+    exchanged.second_at_sine = chart.kind == model::ChartPair::Kind::position || !chart.at_sine;
     for (const std::uint32_t angle : chart.angles) {
       const auto place = std::find(run.code.free.begin(), run.code.free.end(), angle);
       exchanged.angles.push_back(static_cast<std::size_t>(place - run.code.free.begin()));

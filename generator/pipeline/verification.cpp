@@ -11,7 +11,7 @@ namespace {
 /// Every function that `emit` offers, except Taylor series if the program is too large for them.
 program::Program with_every_function(Derived& derived) {
   program::Request request;
-  request.with = abi::asked_for();
+  request.with = abi::optional_functions();
   std::erase(request.with, "outputs");  // outputs are requested by name
   for (const system::Output& output : derived.candidates.front().outputs) request.outputs.push_back(output.name);
   try {

@@ -76,7 +76,7 @@ std::optional<Formula> value_of(Article& a, const ConservedFinding& c) {
     if (why.empty()) return value;
     a.left_out.push_back({c.title, why});
     return std::nullopt;
-  } catch (const work::OverBudget& over) {
+  } catch (const work::BudgetExceeded& over) {
     a.left_out.push_back({c.title, over.what()});
     return std::nullopt;
   }

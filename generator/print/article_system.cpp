@@ -134,7 +134,7 @@ class System {
     try {
       reading::Sum sum = reading::read(m_, expression);
       if (sum.size() <= longest_position) return sum;
-    } catch (const work::OverBudget&) {  // a position that is too long is omitted
+    } catch (const work::BudgetExceeded&) {  // a position that is too long is omitted
     }
     return std::nullopt;
   }

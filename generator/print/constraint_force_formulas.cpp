@@ -40,7 +40,7 @@ class Multipliers {
 /// it act on those too.
 bool moves_others(const Mechanics& m, std::uint32_t coordinate, std::uint32_t place,
                   std::optional<std::uint32_t> body) {
-  symbolic::Derivation by = symbolic::partial(*m.dag, {SymbolKind::coordinate, coordinate, 1});
+  symbolic::Derivation by = symbolic::partial_derivative(*m.dag, {SymbolKind::coordinate, coordinate, 1});
   const auto moves = [&](Ref r) { return !m.dag->is_zero(by(r)); };
   for (const mechanics::PointMass& mass : m.masses) {
     if (mass.place != place && std::any_of(mass.velocity.begin(), mass.velocity.end(), moves)) return true;
@@ -95,7 +95,7 @@ class BodyForces {
   bool along_fixed_axes(const std::vector<std::uint32_t>& q) const {
     const symbolic::Vec3& position = *m_.place_position[m_.model->bodies[body_].place];
     for (std::size_t i = 0; i < q.size(); ++i) {
-      symbolic::Derivation by = symbolic::partial(*m_.dag, {SymbolKind::coordinate, q[i], 0});
+      symbolic::Derivation by = symbolic::partial_derivative(*m_.dag, {SymbolKind::coordinate, q[i], 0});
       for (std::size_t k = 0; k < 3; ++k) {
         const Ref slope = by(position[k]);
         if (i == k ? slope != m_.dag->one() : !m_.dag->is_zero(slope)) return false;
@@ -108,7 +108,7 @@ class BodyForces {
   void within_budget(const char* role, const char* letter, const std::vector<std::uint32_t>& along, Vector&& vector) {
     try {
       show(role, letter, along, vector);
-    } catch (const work::OverBudget& over) {
+    } catch (const work::BudgetExceeded& over) {
       out_.push_back(left_out("reactions", m_.spins[body_].name, role, over.what()));
     }
   }
@@ -217,7 +217,7 @@ void add_particle_forces(const Mechanics& m, const Multipliers& multipliers, std
     try {
       const work::Budget budget(reading::item_budget);
       add_particle_force(m, multipliers, g, static_cast<std::size_t>(mass - m.masses.begin()) + 1, out);
-    } catch (const work::OverBudget& over) {
+    } catch (const work::BudgetExceeded& over) {
       out.push_back(left_out("reactions", g.name, "constraint force", over.what()));
     }
   }

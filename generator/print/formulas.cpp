@@ -81,7 +81,7 @@ Sum sum_of_squares(const std::vector<const Sum*>& components) {
     Sum together;
     for (const Sum* w : components) together += *w * *w;
     return reading::simplify(together);
-  } catch (const work::OverBudget&) {
+  } catch (const work::BudgetExceeded&) {
     return {};
   }
 }
@@ -149,7 +149,7 @@ void add_rotations(const Mechanics& m, const DisplayForm& form, const Formula& T
 Formula read_or_dots(const Mechanics& m, symbolic::Ref expression) {
   try {
     return arrange(reading::read(m, expression));
-  } catch (const work::OverBudget&) {
+  } catch (const work::BudgetExceeded&) {
     return mark("...");  // too long to display
   }
 }
@@ -224,7 +224,7 @@ void add_constraints(const Mechanics& m, const DisplayForm& form, std::vector<St
   const Letters letters(*m.model, false);
   for (std::uint32_t f = 0; f < m.model->functions.size(); ++f) {
     const model::Function& function = m.model->functions[f];
-    const std::optional<Formula> written = reading::as_written(*m.model, function.is);
+    const std::optional<Formula> written = reading::as_written(*m.model, function.expression);
     if (!written) continue;
     out.push_back({"constraints", function.name, "", "function of time",
                    reading::relation({reading::symbol({SymbolKind::function, f, 0}), *written})});
@@ -328,7 +328,7 @@ void add_statements(const Mechanics& m, const DisplayForm& form, const std::vect
     if (!wanted(key)) return;
     try {
       statements();
-    } catch (const work::OverBudget& over) {
+    } catch (const work::BudgetExceeded& over) {
       out.push_back(left_out(key, "", "", over.what()));
     }
   };

@@ -61,7 +61,7 @@ void add_frenet(const mechanics::Mechanics& m, bool asked, std::vector<Statement
   reading::Frenet f;
   try {
     f = reading::frenet(m);
-  } catch (const work::OverBudget& over) {
+  } catch (const work::BudgetExceeded& over) {
     out.push_back(left_out("frenet", m.masses[0].name, "", over.what()));
     return;
   } catch (const Error&) {  // two constraints with the same gradients, which only

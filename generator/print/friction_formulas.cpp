@@ -83,7 +83,7 @@ class ContactFormulas {
   Formula read(Ref expression) {
     try {
       return reading::arrange(reading::read(m_, imposed_(expression)));
-    } catch (const work::OverBudget&) {
+    } catch (const work::BudgetExceeded&) {
       return mark("...");
     }
   }
@@ -104,7 +104,7 @@ class ContactFormulas {
         std::vector<Formula> index = number_of(a);
         index.insert(index.begin(), mark("t"));
         show("direction", {mark("e", std::move(index)), combination(t, fixed)});
-      } catch (const work::OverBudget& over) {
+      } catch (const work::BudgetExceeded& over) {
         out_.push_back(left_out("friction", contact_.name, "direction", over.what()));
       }
     }

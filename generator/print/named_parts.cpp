@@ -92,7 +92,7 @@ class NamedParts {
   /// Imposes the constraints of approach II.
   Ref value(Ref r) { return imposed_(r); }
   bool depends(Ref r, std::uint32_t i, std::uint8_t order) {
-    return !m_.dag->is_zero(symbolic::partial(*m_.dag, {SymbolKind::coordinate, i, order})(value(r)));
+    return !m_.dag->is_zero(symbolic::partial_derivative(*m_.dag, {SymbolKind::coordinate, i, order})(value(r)));
   }
   template <class Refs>
   bool any_depends(const Refs& refs, std::uint32_t i, std::uint8_t order) {
@@ -130,7 +130,7 @@ class NamedParts {
       if (sum.size() <= most) return arranged(sum);
       why_ = "it has " + std::to_string(sum.size()) + " terms";
       return std::nullopt;
-    } catch (const work::OverBudget& over) {
+    } catch (const work::BudgetExceeded& over) {
       why_ = over.what();
       return std::nullopt;
     }
@@ -164,7 +164,7 @@ class NamedParts {
     Ref sum = along(i);
     if (two_) {
       for (const mechanics::FixedCoordinate& fixed : m_.fixed) {
-        const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(value(fixed.value));
+        const Ref slope = symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0})(value(fixed.value));
         if (!dag.is_zero(slope)) sum = dag.add(sum, dag.mul(slope, along(fixed.coordinate)));
       }
     }

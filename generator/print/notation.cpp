@@ -163,9 +163,9 @@ Glyph Notation::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::multiplier: return multiplier(symbol.index);
     case SymbolKind::integral: return split_name("I_" + std::to_string(symbol.index + 1));
     case SymbolKind::friction: return split_name("F_f_" + std::to_string(symbol.index + 1));
-    case SymbolKind::side:
-    case SymbolKind::contact: break;
-    case SymbolKind::extra:
+    case SymbolKind::branch:
+    case SymbolKind::contact_mode: break;
+    case SymbolKind::auxiliary:
       if (symbol != reading::momentum_symbol(symbol.index)) break;
       return split_name(momentum_letter_ + "_" + model_->coordinates[symbol.index].name);
   }

@@ -60,7 +60,7 @@ Item render_expression(const mechanics::Mechanics& mechanics, std::string key, s
                        symbolic::Ref expression) {
   try {
     return render_expression(mechanics, key, name, reading::read(mechanics, expression));
-  } catch (const work::OverBudget& over) {
+  } catch (const work::BudgetExceeded& over) {
     Item item;
     item.left_out = over.what();
     item.key = std::move(key);

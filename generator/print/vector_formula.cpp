@@ -65,7 +65,7 @@ Terms VectorFormula::terms(model::NodeId id) {
       std::optional<Formula> e = axis(node);
       return e ? one(*std::move(e)) : std::nullopt;
     }
-    case Op::definition: return terms(m_.model->definitions[node.index].is);
+    case Op::definition: return terms(m_.model->definitions[node.index].expression);
     case Op::array: {
       std::vector<Formula> result;
       for (std::uint32_t k = 0; k < 3; ++k) {

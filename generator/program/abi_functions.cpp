@@ -30,7 +30,7 @@ void fix_parameters(system::EquationSystem& s, const std::map<std::uint32_t, sym
   std::map<Symbol, Ref> values;
   for (const auto& [index, value] : fix) values[{SymbolKind::parameter, index, 0}] = s.dag->constant(value);
   Substitution fixed(*s.dag, std::move(values));
-  system::for_each_expression(s, [&fixed](Ref& r, system::Part) { r = fixed(r); });
+  system::for_each_expression(s, [&fixed](Ref& r, system::ExpressionRole) { r = fixed(r); });
 }
 
 /// Sets rows of A and gamma to 0 for open contacts.
@@ -40,12 +40,12 @@ void leave_open_contacts(system::EquationSystem& s) {
   for (std::uint32_t j = 0; j < s.contacts.size(); ++j) {
     if (!s.contacts[j].unilateral) continue;
     const std::uint32_t k = *s.contacts[j].unilateral;
-    const Ref side = dag.symbol(system::presses_symbol(j)), zero = dag.zero();
+    const Ref side = dag.symbol(system::normal_sign_symbol(j)), zero = dag.zero();
     const auto touching = [&](Ref r) { return dag.is_zero(r) ? r : dag.select(side, zero, zero, r); };
     for (std::size_t i = 0; i < n; ++i) s.A[k * n + i] = touching(s.A[k * n + i]);
     s.gamma[k] = touching(s.gamma[k]);
-    s.apart.resize(s.active.size(), zero);
-    s.apart[k] = dag.select(side, zero, dag.one(), zero);
+    s.contact_open.resize(s.active.size(), zero);
+    s.contact_open[k] = dag.select(side, zero, dag.one(), zero);
   }
 }
 
@@ -171,7 +171,7 @@ WantedFunction AbiFunctions::rhs() {
 //   M dqddot = df + dA^T lambda - dM qddot + A^T dlambda,   A dqddot = -(dgamma + dA qddot).
 std::vector<Ref> AbiFunctions::column(Symbol along) {
   Dag& dag = *system_.dag;
-  symbolic::Derivation d = symbolic::partial(dag, along);
+  symbolic::Derivation d = symbolic::partial_derivative(dag, along);
   std::vector<Ref> r, c;
   // The solution is differentiated in two cases: the friction law is nonlinear, and a solution by the formulation
   // itself satisfies M, f, A and gamma only on the constraints (Euler parameters of unit length).
@@ -238,16 +238,16 @@ WantedFunction AbiFunctions::momenta() {
   Dag& dag = *system_.dag;
   WantedFunction function = nothing_of("momenta");
   const Ref lagrangian = dag.sub(system_.kinetic, system_.potential);
-  symbolic::Derivation by_time = symbolic::partial(dag, {SymbolKind::time, 0, 0});
+  symbolic::Derivation by_time = symbolic::partial_derivative(dag, {SymbolKind::time, 0, 0});
   std::map<Symbol, Ref> none;
   for (std::size_t b = 0; b < friction_.phi.size(); ++b)
     none[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = dag.zero();
   Substitution frictionless(dag, none);
   for (std::size_t i = 0; i < n_; ++i) {
-    const Ref p = symbolic::partial(dag, {SymbolKind::coordinate, system_.free[i], 1})(lagrangian);
+    const Ref p = symbolic::partial_derivative(dag, {SymbolKind::coordinate, system_.free[i], 1})(lagrangian);
     Ref rate = dag.add(frictionless(live_f_[i]), by_time(p));
     for (std::size_t j = 0; j < n_; ++j) {
-      rate = dag.add(rate, dag.mul(symbolic::partial(dag, {SymbolKind::coordinate, system_.free[j], 0})(p), qdot_[j]));
+      rate = dag.add(rate, dag.mul(symbolic::partial_derivative(dag, {SymbolKind::coordinate, system_.free[j], 0})(p), qdot_[j]));
     }
     function.results[0].entries.push_back(p);
     function.results[1].entries.push_back(rate);

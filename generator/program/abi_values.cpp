@@ -31,7 +31,7 @@ template <class Real>
 Arguments<Real> prepared_for(const Program& program, const std::string& function, Arguments<Real> at,
                              const std::vector<Real>& defaults) {
   at.side.assign(program.kinks.size(), Real(0));
-  if (!abi::find(function)->takes(abi::Input::mode)) {
+  if (!abi::find(function)->has_input(abi::Input::mode)) {
     at.u = defaults;
     at.mode = 0;
     return at;

@@ -141,8 +141,8 @@ std::vector<Tried> tried(const std::vector<Candidate>& candidates, const std::ve
 std::size_t parameter_count(const system::EquationSystem& system) {
   std::size_t count = 0;
   std::vector<symbolic::Ref> roots;
-  system::for_each_expression(system, [&roots](symbolic::Ref r, system::Part part) {
-    if (part != system::Part::shown) roots.push_back(r);
+  system::for_each_expression(system, [&roots](symbolic::Ref r, system::ExpressionRole part) {
+    if (part != system::ExpressionRole::output) roots.push_back(r);
   });
   for (const symbolic::Symbol& symbol : system.dag->symbols(roots)) {
     if (symbol.kind == symbolic::SymbolKind::parameter) count = std::max<std::size_t>(count, symbol.index + 1);
@@ -162,7 +162,7 @@ WantedFunction wanted_function(AbiFunctions& functions, const std::string& name,
   if (name == "jac_p")
     return functions.jac_p(request.parameters > 0 ? request.parameters : parameter_count(functions.system()));
   throw Error("program", {}, fmt::format("there is no function `{}`", name),
-              fmt::format("available functions: {}", fmt::join(abi::asked_for(), ", ")));
+              fmt::format("available functions: {}", fmt::join(abi::optional_functions(), ", ")));
 }
 
 }  // namespace

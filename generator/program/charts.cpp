@@ -60,15 +60,15 @@ void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<sy
                             most_kinks_with_charts));
   }
   for (const system::ChartChange& change : changes) {
-    ChartInfo info{change.of, change.own, change.second, change.regular, {}, 0, change.second_at_sine, {}, {}};
+    ChartInfo info{change.of, change.own, change.second, change.singularity, {}, 0, change.second_at_sine, {}, {}};
     for (const std::uint32_t angle : change.angles) {
       const auto found = std::find(program.free.begin(), program.free.end(), angle);
       if (found == program.free.end()) throw std::logic_error("an angle that can be exchanged is not free");
       info.angles.push_back(static_cast<std::uint32_t>(found - program.free.begin()));
     }
     info.guarded = info.angles.at(change.guarded);
-    info.to = exchange(dag, "to_second", program, change, change.to);
-    info.back = exchange(dag, "to_own", program, change, change.back);
+    info.to = exchange(dag, "to_second", program, change, change.to_second);
+    info.back = exchange(dag, "to_own", program, change, change.to_own);
     program.charts.push_back(std::move(info));
   }
 }

@@ -81,7 +81,7 @@ std::vector<Point> points_on_constraints(const system::EquationSystem& s, const 
   }
   if (psi.empty()) return {};
   // Redundant constraints that follow from these still distinguish between branches.
-  for (const system::Watched& watched : s.redundant) {
+  for (const system::RedundantConstraint& watched : s.redundant) {
     bool of_these = true;
     for (std::size_t i = 0; i < n && of_these; ++i) {
       const auto moves = [&](std::size_t k) { return !dag.is_zero(s.A[k * n + i]); };

@@ -250,7 +250,7 @@ void ConstrainedSolve::add_null_vectors(const DependentBlock& block, bool divide
   adjugate_.push_back(std::move(adjugate));
 }
 
-Ref ConstrainedSolve::simpler(Ref r) const { return symbolic::simpler(*dag_, r, term_budget); }
+Ref ConstrainedSolve::simpler(Ref r) const { return symbolic::expand_if_shorter(*dag_, r, term_budget); }
 
 /// p with A p = c: its independent part is 0, or p has minimum norm, which exists wherever the rows are independent.
 std::vector<Ref> ConstrainedSolve::particular(const std::vector<Ref>& c) const {

@@ -42,7 +42,7 @@ class Factoring {
       for (Term& term : terms) (has(term, best) ? with : without).push_back(std::move(term));
       const Term front = common(with, best);
       for (Term& term : with) {
-        term.coefficient = symbolic::over(term.coefficient, front.coefficient);
+        term.coefficient = symbolic::quotient(term.coefficient, front.coefficient);
         if (!front.factors.empty()) term.factors = multiply(term.factors, front.factors, -1);
       }
       // The normal form of the bracket may be an existing sum; a new sum is factored in turn.

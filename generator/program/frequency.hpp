@@ -39,7 +39,7 @@ class Frequency {
       }
       key = top.key;
       rows.assign(entry.rows.begin(), entry.rows.end());
-      entry.rows.shorten(0);
+      entry.rows.truncate(0);
       std::sort(rows.begin(), rows.end());
       rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
       return true;
@@ -52,7 +52,7 @@ class Frequency {
     std::uint64_t key = 0;
     int count = 0;
     bool taken = false;
-    symbolic::ShortList<std::uint32_t, 2> rows;
+    symbolic::SmallVector<std::uint32_t, 2> rows;
   };
   struct Candidate {
     int count;

@@ -64,7 +64,7 @@ class Closure {
     motion_.resize(s_.free.size() + s_.active.size());
     store(solve(f, c), [](Affine& a, Ref r) { a.value = r; });
     for (std::size_t b = 0; b < count_; ++b) {
-      Derivation by = symbolic::partial(dag_, phi_symbol(b));
+      Derivation by = symbolic::partial_derivative(dag_, phi_symbol(b));
       std::vector<Ref> column;
       for (const Ref r : s_.f) column.push_back(by(r));
       store(solve(column, still), [](Affine& a, Ref r) { a.slope.push_back(r); });
@@ -80,9 +80,9 @@ class Closure {
     for (std::size_t b = 0; b < count_; ++b) base[phi_symbol(b)] = dag_.zero();
     Affine result{Substitution(dag_, base)(expression), {}};
     for (std::size_t b = 0; b < count_; ++b) {
-      Ref slope = symbolic::partial(dag_, phi_symbol(b))(expression);
+      Ref slope = symbolic::partial_derivative(dag_, phi_symbol(b))(expression);
       for (std::size_t i = 0; i < unknown_.size(); ++i) {
-        slope = dag_.add(slope, dag_.mul(symbolic::partial(dag_, unknown_[i])(expression), motion_[i].slope[b]));
+        slope = dag_.add(slope, dag_.mul(symbolic::partial_derivative(dag_, unknown_[i])(expression), motion_[i].slope[b]));
       }
       result.slope.push_back(slope);
     }
@@ -94,15 +94,15 @@ class Closure {
     return sum;
   }
 
-  Ref slides(std::uint32_t j) const { return dag_.symbol(system::slides_symbol(j)); }
+  Ref slides(std::uint32_t j) const { return dag_.symbol(system::slip_direction_symbol(j)); }
   /// The sign of the normal force; a unilateral contact does not pull.
   Ref presses(std::uint32_t j) const {
-    return s_.contacts[j].unilateral ? dag_.one() : dag_.symbol(system::presses_symbol(j));
+    return s_.contacts[j].unilateral ? dag_.one() : dag_.symbol(system::normal_sign_symbol(j));
   }
   /// Selects `apart` if contact j is open, else `touching`.
   Ref by_touch(std::uint32_t j, Ref apart, Ref touching) const {
     if (!s_.contacts[j].unilateral || apart == touching) return touching;
-    return dag_.select(dag_.symbol(system::presses_symbol(j)), dag_.zero(), apart, touching);
+    return dag_.select(dag_.symbol(system::normal_sign_symbol(j)), dag_.zero(), apart, touching);
   }
   /// Selects `sliding` if contact j slides, else `sticking`.
   Ref by_mode(std::uint32_t j, Ref sticking, Ref sliding) const {
@@ -334,7 +334,7 @@ class Closure {
     if (c.unilateral) watch.hold = by_touch(j, s_.psi[*c.unilateral], watch.hold);
     if (!c.slip.empty()) watch.slip = c.slip[0];
     if (c.slip.size() == 2) watch.below = c.slip[1];
-    if (c.sticks()) {
+    if (c.can_stick()) {
       const Ref limit = dag_.mul(c.static_coefficient, normal), phi = result_.phi[c.first];
       watch.above = dag_.sub(limit, phi);
       if (c.slip.size() == 1) watch.below = dag_.add(limit, phi);

@@ -84,8 +84,8 @@ class Conversion {
       case SymbolKind::time: return {Slot::time, 0, false};
       case SymbolKind::parameter: return {Slot::parameter, symbol.index, false};
       case SymbolKind::input: return {Slot::input, symbol.index, false};
-      case SymbolKind::side: return {Slot::side, symbol.index, false};
-      case SymbolKind::contact: return {Slot::contact, 2 * symbol.index + symbol.order, false};
+      case SymbolKind::branch: return {Slot::side, symbol.index, false};
+      case SymbolKind::contact_mode: return {Slot::contact, 2 * symbol.index + symbol.order, false};
       case SymbolKind::coordinate: {
         const auto found = std::find(free_.begin(), free_.end(), symbol.index);
         if (found == free_.end() || symbol.order > 1) break;

@@ -17,7 +17,7 @@ using symbolic::Op;
 /// Functions are computed in binary64 and rounded, so that results do not depend on the machine.
 struct Binary32 {
   using Number = float;
-  using Twice = symbolic::Binary64;
+  using Twice = symbolic::Binary64Arithmetic;
   static float round(float x) { return x; }
   static float constant(const symbolic::Rational& value) { return static_cast<float>(Twice::constant(value)); }
   static float pi() { return static_cast<float>(Twice::pi()); }
@@ -35,7 +35,7 @@ struct Binary32 {
 
 template <class Real, class Arithmetic>
 Values<Real> run(const Function& function, const Arguments<Real>& arguments, const Arithmetic& number) {
-  work::check();
+  work::throw_if_stopped();
   const Real pi = number.pi();
   std::vector<Real> value;
   value.reserve(function.code.size());
@@ -115,7 +115,7 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, con
 }  // namespace
 
 Values<cln::cl_R> interpret(const Function& function, const Arguments<cln::cl_R>& arguments, int digits) {
-  const symbolic::Precise number{cln::float_format(static_cast<std::uintptr_t>(digits))};
+  const symbolic::ClnArithmetic number{cln::float_format(static_cast<std::uintptr_t>(digits))};
   Arguments<cln::cl_R> floats{number.round(arguments.t), {}, {}, {}, {}, arguments.side, arguments.mode};
   for (const auto& [from, to] : {std::pair{&arguments.x, &floats.x},
                                  {&arguments.p, &floats.p},
@@ -127,7 +127,7 @@ Values<cln::cl_R> interpret(const Function& function, const Arguments<cln::cl_R>
 }
 
 Values<double> interpret(const Function& function, const Arguments<double>& arguments) {
-  return run(function, arguments, symbolic::Binary64{});
+  return run(function, arguments, symbolic::Binary64Arithmetic{});
 }
 
 Values<float> interpret(const Function& function, const Arguments<float>& arguments) {

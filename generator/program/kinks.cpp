@@ -38,7 +38,7 @@ class Holding {
         a[i] = memo_.at(node.args[i].id);
         changed = changed || a[i] != node.args[i];
       }
-      Ref result = changed ? symbolic::rebuilt(dag_, node, a) : r;
+      Ref result = changed ? symbolic::with_operands(dag_, node, a) : r;
       if (is_kink(node.op)) result = held(node.op, a, result);
       memo_.emplace(r.id, result);
     }
@@ -55,7 +55,7 @@ class Holding {
       if (!collects || left || kinks.size() == most_kinks || !moves(value)) return live;
       kinks.push_back({op, value});
     }
-    const Ref zero = dag_.zero(), side = dag_.symbol({SymbolKind::side, index, 0});
+    const Ref zero = dag_.zero(), side = dag_.symbol({SymbolKind::branch, index, 0});
     const Ref chosen = dag_.select(side, zero, side, dag_.select(zero, side, side, value));
     switch (op) {
       case Op::abs: return dag_.select(chosen, zero, dag_.neg(a[0]), a[0]);
@@ -92,12 +92,12 @@ bool has_kinks(system::EquationSystem system) { return !hold_kinks(system).empty
 
 std::vector<Kink> hold_kinks(system::EquationSystem& s) {
   Holding hold(*s.dag);
-  using system::Part;
-  system::for_each_expression(s, [&hold](Ref& r, Part part) {
-    if (part == Part::constraints) return;  // start states and projections do not freeze branches
-    hold.collects = part != Part::shown;
+  using system::ExpressionRole;
+  system::for_each_expression(s, [&hold](Ref& r, ExpressionRole part) {
+    if (part == ExpressionRole::constraints) return;  // start states and projections do not freeze branches
+    hold.collects = part != ExpressionRole::output;
     r = hold(r);
-    if (part == Part::slip) hold.leave(r);
+    if (part == ExpressionRole::slip) hold.leave(r);
   });
   return std::move(hold.kinks);
 }

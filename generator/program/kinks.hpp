@@ -3,7 +3,7 @@
 // the same system with branches that can be frozen, and the surfaces.
 //
 // Surface k is the argument of abs and sign, and a - b for min(a, b), max(a, b) and select(a < b). The symbol
-// {SymbolKind::side, k} selects the branch if it is not 0: 1 for positive values of the surface function, -1 for
+// {SymbolKind::branch, k} selects the branch if it is not 0: 1 for positive values of the surface function, -1 for
 // negative ones. With side 0 the system is unchanged.
 #pragma once
 

@@ -44,7 +44,7 @@ void keep_common(Monomial& common, const Monomial& other) {
     if (g->node != f.node || (g->exponent > 0) != (f.exponent > 0)) continue;
     common[kept++] = std::abs(g->exponent) < std::abs(f.exponent) ? *g : f;
   }
-  common.shorten(kept);
+  common.truncate(kept);
 }
 
 /// The monomial and the number that divide every term (negative exponents: that every term divides by).
@@ -137,7 +137,7 @@ Term Polynomials::normal(std::vector<Term> terms) {
   if (terms.size() == 1) return std::move(terms[0]);
   Term front = content(terms);
   for (Term& term : terms) {
-    term.coefficient = symbolic::over(term.coefficient, front.coefficient);
+    term.coefficient = symbolic::quotient(term.coefficient, front.coefficient);
     if (!front.factors.empty()) term.factors = multiply(term.factors, front.factors, -1);
   }
   sort(terms);

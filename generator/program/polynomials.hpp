@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "program/program.hpp"
-#include "symbolic/short_list.hpp"
+#include "symbolic/small_vector.hpp"
 
 namespace eomgen::program {
 
@@ -23,7 +23,7 @@ struct Factor {
   std::int32_t exponent = 1;
   friend auto operator<=>(const Factor&, const Factor&) = default;
 };
-using Monomial = symbolic::ShortList<Factor, 6>;  // ascending by node, no zero exponents
+using Monomial = symbolic::SmallVector<Factor, 6>;  // ascending by node, no zero exponents
 
 struct Term {
   Rational coefficient = 1;

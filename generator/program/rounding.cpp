@@ -69,7 +69,7 @@ struct Numbers {
   static double one() { return 1; }
   static double two() { return 2; }
   static double square(double x) { return x * x; }
-  static double call(Op op, double x) { return symbolic::Binary64::call(op, x); }
+  static double call(Op op, double x) { return symbolic::Binary64Arithmetic::call(op, x); }
 };
 
 Bounded of_one(Op op, const Bounded& a) {

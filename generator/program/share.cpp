@@ -195,7 +195,7 @@ class SumSharing {
 
   static Rational ratio(const Rational& b, const Rational& a) {
     if (symbolic::same(a, b)) return 1;
-    return symbolic::is_minus_one(a) ? -b : symbolic::over(b, a);
+    return symbolic::is_minus_one(a) ? -b : symbolic::quotient(b, a);
   }
 
   /// Key of a + ratio b, up to a common factor.

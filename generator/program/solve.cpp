@@ -92,7 +92,7 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
   for (std::size_t i = 0; i < m_; ++i) {
     for (std::size_t j = 0; j <= i; ++j) S[i * m_ + j] = S[j * m_ + i] = mass_->inner(Y_[i], Y_[j]);
   }
-  for (std::size_t k = 0; k < system.apart.size(); ++k) S[k * m_ + k] = dag.add(S[k * m_ + k], system.apart[k]);
+  for (std::size_t k = 0; k < system.contact_open.size(); ++k) S[k * m_ + k] = dag.add(S[k * m_ + k], system.contact_open[k]);
   schur_ = std::make_unique<Factorisation>(dag, std::move(S), m_, ties);
 }
 
@@ -123,12 +123,12 @@ Ref Solve::size_of_row(const std::vector<Ref>& M, std::size_t c) const {
 }
 
 std::vector<Ref> Solve::forward(const std::vector<Ref>& r) const {
-  return mass_->forward(quasi_ ? symbolic::transposed_applied(*dag_, quasi_->S_inverse, r) : r);
+  return mass_->forward(quasi_ ? symbolic::multiply_transposed(*dag_, quasi_->S_inverse, r) : r);
 }
 
 std::vector<Ref> Solve::backward(const std::vector<Ref>& z) const {
   const std::vector<Ref> x = mass_->backward(z);
-  return quasi_ ? symbolic::applied(*dag_, quasi_->S_inverse, x) : x;
+  return quasi_ ? symbolic::multiply(*dag_, quasi_->S_inverse, x) : x;
 }
 
 std::pair<std::vector<Ref>, std::vector<Ref>> Solve::motion() const {
@@ -183,7 +183,7 @@ bool is_singular(std::vector<cln::cl_R> M, std::size_t n) {
   numeric::Matrix<cln::cl_R> matrix(n, n);
   matrix.a = std::move(M);
   const cln::cl_R smallest = largest * cln::expt(cln::cl_RA(10), -25);
-  return numeric::Elimination<cln::cl_R>(std::move(matrix), smallest, numeric::Pivots::diagonal).rank() < n;
+  return numeric::Elimination<cln::cl_R>(std::move(matrix), smallest, numeric::Pivoting::diagonal).rank() < n;
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 //   M qddot = f + A^T lambda,   A qddot = -gamma                              (docs/theory.md, index-1 form)
 // by M = L D L^T, unrolled in an order that preserves the zeros of M, then
 //   S lambda = -gamma - A M^-1 f,   S = A M^-1 A^T = Y^T D^-1 Y,   Y = L^-1 A^T.
-// Structural zeros cost no operations; a diagonal M gives plain divisions. If the system has QuasiEquations, their
+// Structural zeros cost no operations; a diagonal M gives plain divisions. If the system has QuasiVelocityEquations, their
 // matrix is factorised: M^-1 = S^-1 M_theta^-1 S^-T. If only M is singular (a massless coordinate, Euler parameters), M
 // + A^T S A replaces M and f - A^T S gamma replaces f, which changes nothing on the constraints. If sufficient, only
 // the rows of A that constrain a singular block of M alone are used, so that bodies with coordinates of their own stay
@@ -64,7 +64,7 @@ class Solve : public LinearSolve {
   std::shared_ptr<Dag> dag_;
   std::size_t n_, m_;
   std::vector<Ref> A_, f_, gamma_;
-  std::optional<system::QuasiEquations> quasi_;
+  std::optional<system::QuasiVelocityEquations> quasi_;
   bool augmented_ = false;
   std::vector<Ref> S_;  // per constraint, if augmented; 0 for unused constraints
   std::unique_ptr<Factorisation> mass_, schur_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The two approaches; neither calls the other. In: the rotations without constraints imposed. Both throw
-// work::OverBudget.
+// work::BudgetExceeded.
 #pragma once
 
 #include "reading/lagrangian.hpp"

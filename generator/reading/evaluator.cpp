@@ -72,9 +72,9 @@ double Evaluator::value(const Flat& sum) const {
 double Evaluator::function(const Item& item) const {
   const auto arg = [&](std::size_t i) { return value(item.args[i]); };
   switch (item.op) {
-    case Op::pi: return symbolic::Binary64::pi();
+    case Op::pi: return symbolic::Binary64Arithmetic::pi();
     case Op::add: return arg(0);  // a sum under a power
-    default: return symbolic::value_of(item.op, 0, arg, symbolic::Binary64{});
+    default: return symbolic::value_of(item.op, 0, arg, symbolic::Binary64Arithmetic{});
   }
 }
 

@@ -19,7 +19,7 @@ class Evaluator {
   /// The symbols, with their indices into `at`.
   const std::map<Symbol, std::size_t>& symbols() const { return symbols_; }
 
-  /// `at`: a value for each symbol, at its index. Counts its operations: throws OverBudget.
+  /// `at`: a value for each symbol, at its index. Counts its operations: throws BudgetExceeded.
   double operator()(const std::vector<double>& at);
 
  private:

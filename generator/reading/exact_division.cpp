@@ -7,7 +7,7 @@
 #include <array>
 #include <unordered_map>
 
-#include "symbolic/short_list.hpp"
+#include "symbolic/small_vector.hpp"
 #include "symbolic/small_numbers.hpp"
 
 namespace eomgen::reading {
@@ -15,7 +15,7 @@ namespace {
 
 // Packed exponents, those of the first atom leftmost; the highest bit of each lane is spare.
 using Word = std::uint64_t;
-using Powers = symbolic::ShortList<Word, 4>;
+using Powers = symbolic::SmallVector<Word, 4>;
 constexpr std::uint32_t per_word = 4, bits = 16;
 constexpr Word spare = 0x8000800080008000u, lane_mask = 0xffff;
 constexpr long largest = 0x3fff;

@@ -125,7 +125,7 @@ std::string why_no_curve(const Mechanics& m) {
 
 Frenet frenet(const Mechanics& mechanics) try {
   if (const std::string why = why_no_curve(mechanics); !why.empty()) {
-    throw Error("derive", Where{mechanics.model->file, 0, 0, 1, ""},
+    throw Error("derive", SourceLocation{mechanics.model->file, 0, 0, 1, ""},
                 "there is no curve whose Frenet triad could be shown: " + why,
                 "leave 'frenet' out of --show, or constrain one particle by two holonomic constraints");
   }
@@ -141,7 +141,7 @@ Frenet frenet(const Mechanics& mechanics) try {
   Along along(bridge, m.free, direction(m, bridge));
   const Components first = along(r), second = along(first), third = along(second);
   if (vanishes(first)) {
-    throw Error("derive", Where{mechanics.model->file, 0, 0, 1, ""},
+    throw Error("derive", SourceLocation{mechanics.model->file, 0, 0, 1, ""},
                 "there is no curve whose Frenet triad could be shown: the particle stays at one point",
                 "leave 'frenet' out of --show");
   }

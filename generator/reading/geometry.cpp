@@ -157,7 +157,7 @@ std::vector<Geometry> geometry(const Mechanics& mechanics, std::vector<LeftOut>*
       const work::Budget budget(item_budget);
       Geometry g = of_place(bridge, m, place, m.masses[k]);
       if (!g.coordinates.empty()) result.push_back(std::move(g));
-    } catch (const work::OverBudget& over) {
+    } catch (const work::BudgetExceeded& over) {
       if (left_out != nullptr) left_out->push_back({"geometry of " + m.model->places[place].name, over.what()});
     }
   }
@@ -187,7 +187,7 @@ std::optional<Geometry> configuration_space(const Mechanics& m, std::vector<Left
     add_christoffel(bridge, g);
     g.line_element = quadratic_form(bridge, g);
     g.kinetic = Rational(1) / 2 * g.line_element;
-  } catch (const work::OverBudget& over) {
+  } catch (const work::BudgetExceeded& over) {
     if (left_out != nullptr) left_out->push_back({"geometry of the configuration manifold", over.what()});
     return std::nullopt;
   }

@@ -18,7 +18,7 @@ class Bridge {
 
   GiNaC::ex from_dag(symbolic::Ref r);  // memoised over the Dag, iterative
   GiNaC::ex to_ginac(const Sum& sum);
-  Sum from_ginac(const GiNaC::ex& e);  // expanded and simplified (trig.hpp); throws work::OverBudget
+  Sum from_ginac(const GiNaC::ex& e);  // expanded and simplified (trig.hpp); throws work::BudgetExceeded
   const GiNaC::symbol& symbol(const Symbol& symbol);
   Alphabet& alphabet() { return alphabet_; }
 

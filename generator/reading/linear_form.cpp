@@ -80,7 +80,7 @@ LinearForm linear_form(const Mechanics& mechanics, const DisplayForm& read) {
   } catch (const std::domain_error&) {
     form = {};
     form.why_not = "the equations have no slope at rest";
-  } catch (const work::OverBudget& over) {
+  } catch (const work::BudgetExceeded& over) {
     form = {};
     form.why_not = over.what();
   }

@@ -23,7 +23,7 @@ struct LinearForm {
   std::vector<Sum> rest;                   // r at rest; 0 in an equilibrium
 };
 
-/// Never throws work::OverBudget, but sets `why_not`.
+/// Never throws work::BudgetExceeded, but sets `why_not`.
 LinearForm linear_form(const mechanics::Mechanics& mechanics);
 
 }  // namespace eomgen::reading

@@ -15,21 +15,21 @@ constexpr int rank_of(SymbolKind kind, int order) {
   switch (kind) {
     case SymbolKind::multiplier:
     case SymbolKind::friction:
-    case SymbolKind::contact: return 1;
+    case SymbolKind::contact_mode: return 1;
     case SymbolKind::parameter: return 2;
     case SymbolKind::input: return 3;
     case SymbolKind::function: return order == 0 ? 4 : order == 1 ? rates : accelerations;
     case SymbolKind::integral: return 4;
     case SymbolKind::time: return 5;
-    case SymbolKind::side:
-    case SymbolKind::extra: return 5;
+    case SymbolKind::branch:
+    case SymbolKind::auxiliary: return 5;
     case SymbolKind::coordinate: return order == 0 ? coordinates : order == 1 ? rates + 1 : accelerations + 1;
   }
   return calls;
 }
 
 // Orders from 2 on are accelerations.
-constexpr std::size_t kinds = static_cast<std::size_t>(SymbolKind::side) + 1, orders = 3;
+constexpr std::size_t kinds = static_cast<std::size_t>(SymbolKind::branch) + 1, orders = 3;
 constexpr auto symbol_ranks = [] {
   std::array<std::array<int, orders>, kinds> ranks{};
   for (std::size_t kind = 0; kind < kinds; ++kind) {

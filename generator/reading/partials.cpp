@@ -25,7 +25,7 @@ std::vector<Partials> partial_derivatives(const mechanics::Mechanics& m, const D
       p.potential = bridge.derivative(form.potential, q);
       p.force =
           form.approach == system::Approach::one ? generalized_force(m, bridge, equation.coordinate) : equation.force;
-    } catch (const work::OverBudget& over) {
+    } catch (const work::BudgetExceeded& over) {
       p = {};
       p.coordinate = equation.coordinate;
       p.left_out = over.what();

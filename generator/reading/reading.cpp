@@ -43,7 +43,7 @@ std::string within_budget(Read&& read) {
     const work::Budget budget(item_budget);
     read();
     return "";
-  } catch (const work::OverBudget& over) {
+  } catch (const work::BudgetExceeded& over) {
     return over.what();
   }
 }
@@ -94,7 +94,7 @@ void add_constraints(const Mechanics& m, Bridge& bridge, Extent extent, DisplayF
   }
 }
 
-/// The rotations; in Approach II with the constraints imposed. Throws work::OverBudget.
+/// The rotations; in Approach II with the constraints imposed. Throws work::BudgetExceeded.
 std::vector<ReadSpin> add_spins(const Mechanics& m, Bridge& bridge, DisplayForm& form) {
   std::vector<ReadSpin> spins;
   try {
@@ -105,7 +105,7 @@ std::vector<ReadSpin> add_spins(const Mechanics& m, Bridge& bridge, DisplayForm&
         for (Sum& w : spin.w) w = simplify(bridge.substitute(w, values));
       }
     }
-  } catch (const work::OverBudget& over) {  // e.g. a long chain of relative rotations
+  } catch (const work::BudgetExceeded& over) {  // e.g. a long chain of relative rotations
     form.spins.clear();
     form.no_spins = over.what();
     if (spins.empty()) throw;
@@ -149,7 +149,7 @@ DisplayForm derive_reading(const Mechanics& given, system::Approach approach, Ex
       approach_one(m, bridge, spins, form);
     else
       approach_two(m, bridge, spins, form);
-  } catch (const work::OverBudget& over) {
+  } catch (const work::BudgetExceeded& over) {
     leave_by_parts(m, form, over.what());
   }
   if (extent == Extent::whole || !form.by_parts) add_constraints(m, bridge, extent, form);

@@ -97,7 +97,7 @@ struct DisplayForm {
   std::vector<ReadReaction> reactions;
 };
 
-/// Derives the equations in display form. Never throws work::OverBudget, but sets by_parts.
+/// Derives the equations in display form. Never throws work::BudgetExceeded, but sets by_parts.
 DisplayForm derive_reading(const mechanics::Mechanics& mechanics, system::Approach approach);
 
 /// Curvilinear coordinates of one particle: bases, metric, Christoffel symbols; n = 1, 2 or 3 coordinates.
@@ -135,7 +135,7 @@ std::vector<symbolic::Ref> residuals_on_dag(const DisplayForm& form, mechanics::
 /// A scalar expression as the model's author wrote it, not expanded. Empty if it contains vectors.
 std::optional<Formula> as_written(const model::Model& model, model::NodeId expression);
 
-/// Any expression of the Dag, simplified for display. Throws work::OverBudget.
+/// Any expression of the Dag, simplified for display. Throws work::BudgetExceeded.
 Sum read(const mechanics::Mechanics& mechanics, symbolic::Ref expression);
 
 }  // namespace eomgen::reading

@@ -53,7 +53,7 @@ bool solve_rates(Bridge& bridge, RouthForm& form) {
 /// coordinates.
 Sum lagrangian(const Mechanics& m, Bridge& bridge, const DisplayForm& two) {
   if (two.equations.size() == m.free.size()) {
-    if (two.by_parts) throw work::OverBudget(two.why_by_parts);
+    if (two.by_parts) throw work::BudgetExceeded(two.why_by_parts);
     return two.lagrangian;
   }
   DisplayForm whole;
@@ -90,7 +90,7 @@ void reduce(const Mechanics& m, Bridge& bridge, const DisplayForm& two, RouthFor
 
 }  // namespace
 
-Symbol momentum_symbol(std::uint32_t coordinate) { return {SymbolKind::extra, coordinate, 3}; }
+Symbol momentum_symbol(std::uint32_t coordinate) { return {SymbolKind::auxiliary, coordinate, 3}; }
 
 RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cyclic, const DisplayForm& two) try {
   RouthForm form;
@@ -99,7 +99,7 @@ RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cycli
   try {
     const work::Budget budget(form_budget);
     reduce(m, bridge, two, form);
-  } catch (const work::OverBudget&) {
+  } catch (const work::BudgetExceeded&) {
     form.by_parts = true;
   }
   if (form.by_parts) form = RouthForm{true, cyclic, {}, {}, {}, {}, {}};
@@ -112,7 +112,7 @@ std::vector<symbolic::Ref> residuals_on_dag(const RouthForm& form, Mechanics& m)
   std::vector<symbolic::Ref> result;
   if (form.by_parts || form.cyclic.empty()) return result;
   symbolic::Dag& dag = *m.dag;
-  symbolic::Derivation ddt = symbolic::total_time(dag, m.q.size(), m.model->functions.size());
+  symbolic::Derivation ddt = symbolic::total_time_derivative(dag, m.q.size(), m.model->functions.size());
   std::map<Symbol, symbolic::Ref> momenta;
   for (std::size_t i = 0; i < form.cyclic.size(); ++i) {
     const symbolic::Ref p = to_dag(dag, form.momenta[i]);

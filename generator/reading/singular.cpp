@@ -175,13 +175,13 @@ void add_rotations(const Mechanics& mechanics, Bridge& bridge, const std::map<Sy
   Mechanics m = mechanics;  // shares the Dag; lowering may add nodes to it
   for (const model::Body& body : m.model->bodies) {
     const model::Frame& frame = m.model->frames[body.frame];
-    if (frame.regular == model::no_node) continue;
+    if (frame.singularity == model::no_node) continue;
     const auto gone = [&](std::size_t k) {
       const model::Node& entry = m.model->arena[frame.entries[k]];
       return entry.op != model::Op::coordinate || m.is_eliminated(entry.index);
     };
     const auto given = [&](std::size_t k) { return m.model->arena[frame.entries[k]].op != model::Op::coordinate; };
-    const Sum regular = bridge.sum(mechanics::lower_scalar(m, frame.regular));
+    const Sum regular = bridge.sum(mechanics::lower_scalar(m, frame.singularity));
     if (m.q.size() > largest_determinant && !given(0) && !given(2)) sets.add_factors("I", regular);
     if (m.free.size() > largest_determinant && !gone(0) && !gone(2))
       sets.add_factors("II", bridge.substitute(regular, values));
@@ -210,7 +210,7 @@ std::vector<SingularSet> singular_sets(const Mechanics& m, std::vector<LeftOut>*
     try {
       const work::Budget budget(item_budget);
       look();
-    } catch (const work::OverBudget& over) {  // a run detects these places by its pivots
+    } catch (const work::BudgetExceeded& over) {  // a run detects these places by its pivots
       if (left_out != nullptr) left_out->push_back({what, over.what()});
     }
   };

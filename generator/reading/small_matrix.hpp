@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Determinants and inverses of the small symbolic matrices of geometry; row-major, n x n. Throw work::OverBudget.
+// Determinants and inverses of the small symbolic matrices of geometry; row-major, n x n. Throw work::BudgetExceeded.
 #pragma once
 
 #include "reading/ginac_bridge.hpp"

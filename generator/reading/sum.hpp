@@ -27,8 +27,8 @@ struct Atom;
 using AtomPtr = std::shared_ptr<const Atom>;
 
 /// Thrown if an expression has too many terms to display. Callers then show it by parts.
-struct TermBudget : work::OverBudget {
-  TermBudget() : work::OverBudget("too many terms to be written out") {}
+struct TermBudget : work::BudgetExceeded {
+  TermBudget() : work::BudgetExceeded("too many terms to be written out") {}
 };
 inline constexpr std::size_t term_budget = 3000;
 
@@ -82,7 +82,7 @@ class Sum {
 Sum operator+(Sum a, const Sum& b);
 Sum operator-(Sum a, const Sum& b);
 Sum operator-(const Sum& a);
-/// Throws work::OverBudget by its number of terms, or by the operations of the whole calculation (reading.hpp).
+/// Throws work::BudgetExceeded by its number of terms, or by the operations of the whole calculation (reading.hpp).
 Sum operator*(const Sum& a, const Sum& b);
 Sum operator*(const Rational& factor, const Sum& a);
 inline bool operator==(const Sum& a, const Sum& b) { return compare(a, b) == 0; }

@@ -52,7 +52,7 @@ Zero zero_test(const Sum& sum) {
   if (numbers == Zero::no) return numbers;
   try {
     if (cancel(expand_angles(sum)).is_zero()) return Zero::proven;
-  } catch (const work::OverBudget&) {
+  } catch (const work::BudgetExceeded&) {
     return numbers;
   }
   return numbers;

@@ -84,10 +84,10 @@ class Start {
       }
     }
     // Positive definite if the constraints are independent.
-    const numeric::Elimination<cln::cl_R> factors(std::move(G), 0, numeric::Pivots::diagonal);
+    const numeric::Elimination<cln::cl_R> factors(std::move(G), 0, numeric::Pivoting::diagonal);
     if (factors.rank() < m) {
       throw Error("reference", {}, "the constraints depend on one another at the start", "start elsewhere",
-                  Fault::numerical);
+                  ErrorKind::numerical);
     }
     const numeric::Matrix<cln::cl_R> force = factors.solve(side);
     for (std::size_t j = 0; j < n_; ++j) {

@@ -24,7 +24,7 @@ constexpr std::size_t most_steps = 1000000;
 
 [[noreturn]] void fail(const Number& t, const std::string& why) {
   throw Error("reference", {}, fmt::format("the reference ends at t = {:.6g}: {}", cln::double_approx(t), why),
-              "shorten the run (--t-end), or start elsewhere", Fault::numerical);
+              "shorten the run (--t-end), or start elsewhere", ErrorKind::numerical);
 }
 
 /// log2 |x|, also beyond the range of double.

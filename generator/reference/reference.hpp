@@ -48,7 +48,7 @@ struct Solution {
   std::string method;
 };
 
-/// Computes the reference solution. Throws Error{Fault::numerical} if the motion cannot be computed to the end.
+/// Computes the reference solution. Throws Error{ErrorKind::numerical} if the motion cannot be computed to the end.
 Solution solve(const Problem& problem, Settings first = coarse, Settings second = fine);
 
 }  // namespace eomgen::reference

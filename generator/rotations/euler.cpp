@@ -75,7 +75,7 @@ Rotation euler(int i, int j, int k) {
   }
   const bool symmetric = i == k;
   result.singular = symmetric ? "n2 = 0, n2 = pi" : "n2 = pi/2, n2 = -pi/2";
-  result.regular = symmetric ? "sin(n2)" : "cos(n2)";
+  result.singularity = symmetric ? "sin(n2)" : "cos(n2)";
   return result;
 }
 

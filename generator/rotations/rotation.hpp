@@ -37,7 +37,7 @@ struct Rotation {
   std::vector<Components> basis, dual;
   std::string unit = {};      // constraint on the entries: this expression is 0; empty: no constraint
   std::string singular = {};  // where the basis has no dual, as text; empty: nowhere
-  std::string regular = {};   // an expression that is 0 exactly there
+  std::string singularity = {};   // an expression that is 0 exactly there
 };
 
 std::span<const Rotation> registry();

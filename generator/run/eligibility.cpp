@@ -48,7 +48,7 @@ std::vector<std::string> solvers_among(const std::string& stage, const std::vect
   std::vector<std::string> known = solver_names();
   for (const std::string& name : asked) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw Error(stage, {}, fmt::format("there is no solver {}", model::quote(name)), model::choice_of(name, known));
+    throw Error(stage, {}, fmt::format("there is no solver {}", model::quote(name)), model::suggest_choice(name, known));
   }
   if (asked.empty()) return known;
   std::erase_if(known,

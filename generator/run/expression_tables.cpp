@@ -36,7 +36,7 @@ class Writer {
       if (node.op == symbolic::Op::symbol)
         add_symbol(r);
       else if (node.op == symbolic::Op::pi)
-        put(r, Op::number, number(symbolic::Binary64::pi()));
+        put(r, Op::number, number(symbolic::Binary64Arithmetic::pi()));
       else if (node.op == symbolic::Op::constant)
         put(r, Op::number, number(cln::double_approx(dag_.value(r))));
       else
@@ -97,7 +97,7 @@ Lookup variables_of(const system::EquationSystem& s) {
       case SymbolKind::time: return Leaf::of_variable(0);
       case SymbolKind::parameter: return Leaf::of_parameter(symbol.index);
       case SymbolKind::input: return Leaf::of_variable(1 + 2 * n + s.integrals.size() + symbol.index);
-      case SymbolKind::side: return Leaf::of(0);
+      case SymbolKind::branch: return Leaf::of(0);
       case SymbolKind::coordinate: {
         const auto place = std::find(s.free.begin(), s.free.end(), symbol.index);
         if (symbol.order > 1 || place == s.free.end()) return Leaf{};

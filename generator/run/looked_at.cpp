@@ -65,7 +65,7 @@ JumpFunctions jump_functions(const system::EquationSystem& s) {
   if (!dag.has_kinks(energies)) return {};
   const Ref lagrangian = dag.sub(s.kinetic, s.potential);
   for (const std::uint32_t q : s.free)
-    add(symbolic::partial(dag, {SymbolKind::coordinate, q, 1})(lagrangian), What::momentum);
+    add(symbolic::partial_derivative(dag, {SymbolKind::coordinate, q, 1})(lagrangian), What::momentum);
   const Lookup variables = variables_of(s);
   std::optional<Table> values = table_of(dag, roots, variables), mass = table_of(dag, s.M, variables);
   if (!values || !mass) return {};

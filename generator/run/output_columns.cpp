@@ -13,14 +13,14 @@ using mechanics::Mechanics;
 using system::OutputKind;
 
 // Rejects a component of a joint's reaction, all of them, or a constraint force that the motion does not determine.
-void refuse_undetermined(const Mechanics& m, const model::Named& want) {
+void refuse_undetermined(const Mechanics& m, const model::OutputReference& want) {
   for (const mechanics::Constraint& c : m.constraints) {
     const std::string label = "reaction." + c.label;
     const bool joint = std::any_of(m.model->joints.begin(), m.model->joints.end(),
                                    [&](const model::Joint& j) { return j.name == c.name; });
     if (c.determined || joint || (want.name != label && want.name != "reaction." + c.name)) continue;
     throw Error(
-        "scene", want.span.line > 0 ? m.model->where(want.span) : Where{},
+        "scene", want.span.line > 0 ? m.model->where(want.span) : SourceLocation{},
         fmt::format("the motion does not determine '{}'", label),
         "other constraints impose the same condition, or it holds identically (`check` lists such constraints): "
         "request the force of another one, or give the bodies coordinates that it constrains");
@@ -33,7 +33,7 @@ void refuse_undetermined(const Mechanics& m, const model::Named& want) {
       if (m.joints[i].determined[j]) known += fmt::format("{}{}.{}", known.empty() ? "" : ", ", name, j + 1);
     }
     if (want.name.size() != name.size() + 2 || want.name.back() < '1' || want.name.back() > '6') return;
-    throw Error("scene", want.span.line > 0 ? m.model->where(want.span) : Where{},
+    throw Error("scene", want.span.line > 0 ? m.model->where(want.span) : SourceLocation{},
                 fmt::format("the motion does not determine '{}'", want.name),
                 fmt::format("it is left open by equations of the joint that hold identically or repeat others (`check` "
                             "lists them): give the bodies coordinates "
@@ -45,7 +45,7 @@ void refuse_undetermined(const Mechanics& m, const model::Named& want) {
 }  // namespace
 
 std::vector<std::string> expand_outputs(const Mechanics& m, const system::EquationSystem& system,
-                                        const std::vector<model::Named>& wanted) {
+                                        const std::vector<model::OutputReference>& wanted) {
   // These are part of every table.
   const auto of_state = [](const system::Output& output) {
     return output.kind == OutputKind::coordinate || output.kind == OutputKind::rate;
@@ -55,7 +55,7 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
   };
   std::vector<std::string> result;
   std::set<std::string> seen;
-  for (const model::Named& want : wanted) {
+  for (const model::OutputReference& want : wanted) {
     bool found = false;
     for (const system::Output& output : system.outputs) {
       const bool of_all = want.name == "all" && for_reader(output);
@@ -70,7 +70,7 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
       for (const system::Output& output : system.outputs) {
         if (!of_state(output) && for_reader(output)) names += (names.empty() ? "" : ", ") + output.name;
       }
-      const Where where = want.span.line > 0 ? m.model->where(want.span) : Where{};
+      const SourceLocation where = want.span.line > 0 ? m.model->where(want.span) : SourceLocation{};
       throw Error("scene", where, fmt::format("there is no output '{}'", want.name), "choose from: " + names + ", all");
     }
   }

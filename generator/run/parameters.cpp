@@ -34,7 +34,7 @@ void require_sign(const model::Parameter& p, const cln::cl_R& value, const model
 }
 
 // Runs use binary64: a subnormal number would silently count as 0 there.
-void require_normal(const std::string& what, const cln::cl_R& value, const Where& where) {
+void require_normal(const std::string& what, const cln::cl_R& value, const SourceLocation& where) {
   if (cln::zerop(value)) return;
   const cln::cl_F written = cln::cl_float(value, cln::float_format(digits));
   const auto size = cln::float_exponent(written);  // |value| < 2^size
@@ -75,7 +75,7 @@ std::vector<Ref> parameter_formulas(Mechanics& m, const model::Scene& scene, con
                   fmt::format("'{}' is the start of the run, from which integrals count: it cannot be set", name),
                   "state it in the scene: t = [t0, t1]");
     }
-    if (found->start_of) {
+    if (found->initial_value_of) {
       throw Error("scene", {}, fmt::format("'{}' is the start value of a coordinate: it cannot be set", name),
                   "state the start in the scene: initial = { .. }");
     }

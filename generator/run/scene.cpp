@@ -104,7 +104,7 @@ std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene&
       continue;
     }
     const model::NodeId id =
-        given == scene.inputs.end() ? m.model->inputs[i].fallback : std::get<model::NodeId>(given->signal);
+        given == scene.inputs.end() ? m.model->inputs[i].default_value : std::get<model::NodeId>(given->signal);
     const Ref signal = written(mechanics::lower_scalar(m, id));
     for (const Symbol& symbol : m.dag->symbols({signal})) {
       if (symbol.kind != SymbolKind::integral) continue;
@@ -256,7 +256,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
     const StartProblem::Key key{initial.coordinate, initial.order};
     if (!problem.given.contains(key)) give(key, value.number(initial.value, "an initial value"), initial.span);
   }
-  for (const model::InitialRotation& given : scene.rotations) {
+  for (const model::InitialAngularVelocity& given : scene.rotations) {
     StartProblem::Turn turn{given.frame, {}, given.span};
     for (std::size_t k = 0; k < 3; ++k) turn.value[k] = value.number(given.value[k], "an initial angular velocity");
     problem.turns.push_back(turn);
@@ -266,7 +266,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   }
   for (std::size_t i = 0; i < result.parameters.size();
        ++i) {  // initial(q): the value of q before the constraints are solved
-    const auto& start_of = m.model->parameters[i].start_of;
+    const auto& start_of = m.model->parameters[i].initial_value_of;
     if (!start_of) continue;
     const auto given = problem.given.find({*start_of, 0});
     const auto guess = problem.guess.find({*start_of, 0});
@@ -276,7 +276,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   }
   solve_start(problem);
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
-    if (const auto& start_of = m.model->parameters[i].start_of) result.parameters[i] = problem.q[*start_of];
+    if (const auto& start_of = m.model->parameters[i].initial_value_of) result.parameters[i] = problem.q[*start_of];
   }
   resolve_clock(m, system, inputs, result);  // parameters may depend on the start
   result.q = problem.q;
@@ -294,7 +294,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   for (const std::uint32_t i : scene.stop) result.stops[i] = true;
   if (!overrides.exchanges_charts) require_regular(m, system, scene, result);
 
-  std::vector<model::Named> wanted = scene.outputs;
+  std::vector<model::OutputReference> wanted = scene.outputs;
   if (!overrides.outputs.empty()) {
     wanted.clear();
     for (const std::string& name : overrides.outputs) wanted.push_back({name, {}});

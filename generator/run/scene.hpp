@@ -75,6 +75,6 @@ std::vector<cln::cl_R> exact_parameters(mechanics::Mechanics& mechanics, const m
 
 /// Names of the requested outputs, with vectors and reactions expanded into components.
 std::vector<std::string> expand_outputs(const mechanics::Mechanics& mechanics, const system::EquationSystem& system,
-                                        const std::vector<model::Named>& wanted);
+                                        const std::vector<model::OutputReference>& wanted);
 
 }  // namespace eomgen::run

@@ -25,7 +25,7 @@ StartRows::StartRows(StartProblem& problem)
   A_ = s_.A;
   psi_ = s_.psi;
   b_ = s_.b;
-  for (const system::Watched& watched : s_.redundant) {
+  for (const system::RedundantConstraint& watched : s_.redundant) {
     if (p_.mechanics.constraints[watched.constraint].holonomic()) rows_[0].push_back(b_.size());
     rows_[1].push_back(b_.size());
     A_.insert(A_.end(), watched.A.begin(), watched.A.end());
@@ -41,7 +41,7 @@ bool StartRows::add_rolling() {
   const std::size_t before = rows_[1].size();
   for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
     const std::optional<std::uint32_t> body_contact = p_.mechanics.contacts[j].body_contact;
-    if (!body_contact || !p_.mechanics.model->constraints[*body_contact].rolls_by_friction() || p_.apart[j]) continue;
+    if (!body_contact || !p_.mechanics.model->constraints[*body_contact].is_rolling_with_friction() || p_.apart[j]) continue;
     if (s_.contacts[j].unilateral &&
         std::find(rows_[1].begin(), rows_[1].end(), *s_.contacts[j].unilateral) == rows_[1].end())
       continue;
@@ -67,7 +67,7 @@ void StartRows::add_rate(Ref w, double wanted) {
   for (const std::uint32_t i : s_.free) zero[{SymbolKind::coordinate, i, 1}] = dag.zero();
   symbolic::Substitution at_rest(dag, zero);
   rows_[1].push_back(b_.size());
-  for (const std::uint32_t i : s_.free) A_.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 1})(w));
+  for (const std::uint32_t i : s_.free) A_.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 1})(w));
   b_.push_back(at_rest(w));
   target_.push_back(wanted);
 }

@@ -43,7 +43,7 @@ class Cases {
   }
 
   bool is_independent(std::uint32_t p) const {
-    return m_.dag->is_constant(m_.parameter_value[p]) && !m_.model->parameters[p].start_of;
+    return m_.dag->is_constant(m_.parameter_value[p]) && !m_.model->parameters[p].initial_value_of;
   }
 
   void parameters() {
@@ -127,7 +127,7 @@ class Cases {
       }
     }
     for (const model::Frame& frame : m_.model->frames) {  // the second angle, at 0 or a quarter turn
-      if (frame.regular == model::no_node || frame.entries.size() != 3) continue;
+      if (frame.singularity == model::no_node || frame.entries.size() != 3) continue;
       const model::Node& node = m_.model->arena[frame.entries[1]];
       if (node.op != model::Op::coordinate || m_.is_eliminated(node.index)) continue;
       const double bound = frame.rotation.front() == frame.rotation.back() ? 0 : std::acos(0.0);

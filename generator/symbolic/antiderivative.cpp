@@ -18,13 +18,13 @@ constexpr int deepest = 8;  // of integrations by parts and of halved angles
 
 class Integrator {
  public:
-  Integrator(Dag& dag, Symbol x, Logarithms logarithms)
-      : dag_(dag), x_(x), d_(partial(dag, x)), logarithms_(logarithms) {}
+  Integrator(Dag& dag, Symbol x, LogarithmDomain logarithms)
+      : dag_(dag), x_(x), d_(partial_derivative(dag, x)), logarithms_(logarithms) {}
 
   std::optional<Ref> sum(Ref e, int depth) {
     if (depth > deepest) return std::nullopt;
     Ref result = dag_.zero();
-    for (const Ref part : terms_of(dag_, tidy(dag_, e, term_budget))) {
+    for (const Ref part : terms_of(dag_, expand_or_keep(dag_, e, term_budget))) {
       const std::optional<Ref> integral = term(part, depth);
       if (!integral) return by_substitution(e);  // for example u'/u with several terms in u'
       result = dag_.add(result, *integral);
@@ -89,7 +89,7 @@ class Integrator {
       const auto halves = static_cast<long>(doubled);
       const Ref c = dag_.div(h, half_power(u, halves));
       if (!is_proven_zero(dag_, d_(c))) continue;
-      const std::optional<Ref> factor = without(dag_, c, x_);
+      const std::optional<Ref> factor = eliminate_symbol(dag_, c, x_);
       if (!factor) continue;
       if (halves == -2) return dag_.mul(*factor, logarithm(u));
       const Ref n_plus_1 = dag_.constant(Rational(halves + 2) / 2);
@@ -99,7 +99,7 @@ class Integrator {
   }
 
   Ref logarithm(Ref u) {
-    if (logarithms_ == Logarithms::positive || dag_.is_positive(u)) return dag_.call(Op::log, u);
+    if (logarithms_ == LogarithmDomain::positive || dag_.is_positive(u)) return dag_.call(Op::log, u);
     return dag_.div(dag_.call(Op::log, dag_.power(u, 2)), dag_.integer(2));
   }
 
@@ -180,7 +180,7 @@ class Integrator {
   Dag& dag_;
   Symbol x_;
   Derivation d_;
-  Logarithms logarithms_;
+  LogarithmDomain logarithms_;
 };
 
 }  // namespace
@@ -204,9 +204,9 @@ std::optional<Ref> plain_number(Dag& dag, Ref expression) {
 
 }  // namespace
 
-std::optional<Ref> without(Dag& dag, Ref expression, Symbol x) {
+std::optional<Ref> eliminate_symbol(Dag& dag, Ref expression, Symbol x) {
   if (!depends_on(dag, expression, x)) return expression;
-  const Ref shorter = tidy(dag, expression, term_budget);
+  const Ref shorter = expand_or_keep(dag, expression, term_budget);
   if (!depends_on(dag, shorter, x)) return shorter;
   if (const std::optional<Ref> number = plain_number(dag, expression)) return number;
   for (const long at : {0, 1, 2}) {
@@ -214,7 +214,7 @@ std::optional<Ref> without(Dag& dag, Ref expression, Symbol x) {
     try {
       evaluate(
           dag, {value}, [](const Symbol& s) -> cln::cl_R { return sample(s, 0); }, 30);
-      return tidy(dag, value, term_budget);
+      return expand_or_keep(dag, value, term_budget);
     } catch (const std::exception&) {
       continue;  // for example a removable singularity
     }
@@ -284,9 +284,9 @@ std::vector<Ref> terms_of(Dag& dag, Ref sum) {
   return result;
 }
 
-std::optional<Ref> antiderivative(Dag& dag, Ref e, Symbol x, Logarithms logarithms) {
+std::optional<Ref> antiderivative(Dag& dag, Ref e, Symbol x, LogarithmDomain logarithms) {
   const std::optional<Ref> found = Integrator(dag, x, logarithms).sum(e, 0);
-  if (!found || !is_proven_zero(dag, dag.sub(partial(dag, x)(*found), e))) return std::nullopt;
+  if (!found || !is_proven_zero(dag, dag.sub(partial_derivative(dag, x)(*found), e))) return std::nullopt;
   return found;
 }
 

@@ -10,14 +10,14 @@
 namespace eomgen::symbolic {
 
 /// The integral of c u'/u: c log u, or c log(u^2)/2, which is also defined for negative u.
-enum class Logarithms { positive, any_sign };
+enum class LogarithmDomain { positive, any_sign };
 
 /// F with dF/dx = e, proven; nothing if none was found.
-std::optional<Ref> antiderivative(Dag& dag, Ref e, Symbol x, Logarithms logarithms = Logarithms::positive);
+std::optional<Ref> antiderivative(Dag& dag, Ref e, Symbol x, LogarithmDomain logarithms = LogarithmDomain::positive);
 
 /// Rewrites an expression that is proven to be independent of `x` without it: simplified, or evaluated at some x.
 /// Nothing if neither works.
-std::optional<Ref> without(Dag& dag, Ref expression, Symbol x);
+std::optional<Ref> eliminate_symbol(Dag& dag, Ref expression, Symbol x);
 
 bool depends_on(const Dag& dag, Ref expression, Symbol x);
 

@@ -17,7 +17,7 @@ namespace eomgen::symbolic {
 
 /// Arithmetic with CLN floats of one format. Exact rationals are rounded once. Throws std::domain_error outside the
 /// real domain of a function and for a division by zero.
-struct Precise {
+struct ClnArithmetic {
   using Number = cln::cl_R;
   cln::float_format_t format;
 
@@ -76,7 +76,7 @@ struct Precise {
 };
 
 /// Arithmetic in binary64. The result is NaN or infinite if there is no value.
-struct Binary64 {
+struct Binary64Arithmetic {
   using Number = double;
   static double round(double x) { return x; }
   static double constant(const Rational& value) { return cln::double_approx(value); }

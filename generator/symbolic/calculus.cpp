@@ -107,7 +107,7 @@ Ref Derivation::of_node(Ref r) {
   }
 }
 
-Derivation partial(Dag& dag, Symbol symbol) { return Derivation(dag, {{symbol, dag.one()}}); }
+Derivation partial_derivative(Dag& dag, Symbol symbol) { return Derivation(dag, {{symbol, dag.one()}}); }
 
 namespace {
 
@@ -128,9 +128,9 @@ std::map<Symbol, Ref> explicit_seeds(Dag& dag, std::size_t functions) {
 
 }  // namespace
 
-Derivation explicit_time(Dag& dag, std::size_t functions) { return {dag, explicit_seeds(dag, functions)}; }
+Derivation explicit_time_derivative(Dag& dag, std::size_t functions) { return {dag, explicit_seeds(dag, functions)}; }
 
-Derivation total_time(Dag& dag, std::size_t coordinates, std::size_t functions, bool freeze_acceleration) {
+Derivation total_time_derivative(Dag& dag, std::size_t coordinates, std::size_t functions, bool freeze_acceleration) {
   std::map<Symbol, Ref> seeds = explicit_seeds(dag, functions);
   for (std::uint32_t i = 0; i < coordinates; ++i) {
     seeds[{SymbolKind::coordinate, i, 0}] = dag.symbol({SymbolKind::coordinate, i, 1});
@@ -140,7 +140,7 @@ Derivation total_time(Dag& dag, std::size_t coordinates, std::size_t functions, 
   return Derivation(dag, std::move(seeds));
 }
 
-Ref rebuilt(Dag& dag, const Node& node, const std::array<Ref, 4>& a) {
+Ref with_operands(Dag& dag, const Node& node, const std::array<Ref, 4>& a) {
   switch (node.op) {
     case Op::add: return dag.add(a[0], a[1]);
     case Op::sub: return dag.sub(a[0], a[1]);
@@ -185,7 +185,7 @@ Ref Substitution::operator()(Ref expression) {
     if (node.op == Op::symbol) {
       if (const auto found = values_.find(dag_.symbol_of(r)); found != values_.end()) result = found->second;
     } else if (changed) {
-      result = rebuilt(dag_, node, a);
+      result = with_operands(dag_, node, a);
     }
     memo_.emplace(r.id, result);
   }

@@ -35,7 +35,7 @@ enum class Op : std::uint8_t {
 /// The same operation of the runtime. Not for leaves: constants, pi and symbols are numbers, variables or parameters
 /// there.
 constexpr eom::expressions::Op runtime_op(Op op) { return static_cast<eom::expressions::Op>(op); }
-constexpr Op function_at(eom::expressions::Op op) { return static_cast<Op>(op); }
+constexpr Op graph_op(eom::expressions::Op op) { return static_cast<Op>(op); }
 static_assert(runtime_op(Op::add) == eom::expressions::Op::add, "as many leaves here as there");
 
 /// Whether the value or the derivative is discontinuous on a surface given by the operands, with a different expression
@@ -50,10 +50,10 @@ enum class SymbolKind : std::uint8_t {
   input,
   multiplier,  // lambda of Mechanics::constraints[index]
   friction,    // phi of a tangent of Mechanics::contacts: a component of a friction force
-  contact,     // mode of a contact: order 0: slip direction (0: it sticks), order 1: sign of the normal force
-  extra,       // an auxiliary variable of the caller (cut points of the solve, the extension of a spring)
+  contact_mode,   // mode of a contact: order 0: slip direction (0: it sticks), order 1: sign of the normal force
+  auxiliary,     // an auxiliary variable of the caller (cut points of the solve, the extension of a spring)
   integral,    // of a function of time, from the start of the run; set_rate defines its derivative
-  side,        // branch at which a kink is held: -1 or 1, or 0 for none (program/kinks.hpp)
+  branch,      // branch at which a kink is held: -1 or 1, or 0 for none (program/kinks.hpp)
 };
 
 struct Symbol {

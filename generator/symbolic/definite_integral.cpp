@@ -113,7 +113,7 @@ std::optional<Ref> by_antiderivative(Dag& dag, Ref integrand, Symbol time, Ref f
   const std::vector<Ref> given = dag.reachable({integrand});
   const auto may_jump = [&](Ref r) { return is_kink(dag[r].op) || dag[r].op == Op::atan2; };
   if (std::any_of(given.begin(), given.end(), may_jump)) return std::nullopt;
-  const std::optional<Ref> F = antiderivative(dag, integrand, time, Logarithms::any_sign);
+  const std::optional<Ref> F = antiderivative(dag, integrand, time, LogarithmDomain::any_sign);
   if (!F) return std::nullopt;
   for (const Ref r : dag.reachable({*F})) {
     if (std::binary_search(given.begin(), given.end(), r)) continue;

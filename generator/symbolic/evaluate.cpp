@@ -89,15 +89,15 @@ std::vector<Real> run(const Dag& dag, const std::vector<Ref>& roots, const Looku
 
 std::vector<cl_R> evaluate(const Dag& dag, const std::vector<Ref>& roots,
                            const std::function<cl_R(const Symbol&)>& lookup, int digits) {
-  work::check();
-  const Precise arithmetic{cln::float_format(static_cast<std::uintptr_t>(digits))};
+  work::throw_if_stopped();
+  const ClnArithmetic arithmetic{cln::float_format(static_cast<std::uintptr_t>(digits))};
   const auto rounded = [&](const Symbol& symbol) -> cl_R { return arithmetic.round(lookup(symbol)); };
   return run<cl_R>(dag, roots, rounded, arithmetic);
 }
 
 std::vector<double> evaluate(const Dag& dag, const std::vector<Ref>& roots,
                              const std::function<double(const Symbol&)>& lookup) {
-  return run<double>(dag, roots, lookup, Binary64{});
+  return run<double>(dag, roots, lookup, Binary64Arithmetic{});
 }
 
 }  // namespace eomgen::symbolic

@@ -30,7 +30,7 @@ struct Function {
   constexpr eom::expressions::Derivative derivative() const { return derivative_of(runtime_op(op)); }
   constexpr Slope slope() const { return derivative().form; }
   constexpr bool falls() const { return derivative().falls; }             // the derivative is minus `slope`
-  constexpr Op other() const { return function_at(derivative().other); }  // of Slope::other
+  constexpr Op other() const { return graph_op(derivative().other); }  // of Slope::other
 };
 
 /// The functions in the order of Op, from Op::pow on.
@@ -80,7 +80,7 @@ eom::expressions::SlopeOf<Number> slope_of(const Function& f, const Number& x, c
                                            const Numbers& numbers) {
   return eom::expressions::slope_of(
       f.derivative(), x, v, numbers,
-      [&](eom::expressions::Op op, const Number& a) -> Number { return numbers.call(function_at(op), a); });
+      [&](eom::expressions::Op op, const Number& a) -> Number { return numbers.call(graph_op(op), a); });
 }
 
 /// The `numbers` argument of slope_of for expressions.

@@ -44,7 +44,7 @@ const Expander::Maybe& Expander::expand(Ref expression) {
 Polynomial Expander::atom(Ref r) const { return {{Monomial{{r, 1}}, Rational(1)}}; }
 
 Expander::Maybe Expander::expand_node(Ref r) {
-  work::check();
+  work::throw_if_stopped();
   const Node node = dag_[r];
   const auto arg = [&](std::size_t i) -> const Maybe& { return memo_.at(node.args[i].id); };
   switch (node.op) {
@@ -59,7 +59,7 @@ Expander::Maybe Expander::expand_node(Ref r) {
     case Op::add:
     case Op::sub: {
       if (!arg(0) || !arg(1)) return std::nullopt;
-      if (effort_ != nullptr && !effort_->take(arg(0)->size() + arg(1)->size())) return std::nullopt;
+      if (effort_ != nullptr && !effort_->consume(arg(0)->size() + arg(1)->size())) return std::nullopt;
       Polynomial sum = *arg(0);
       for (const auto& [m, c] : *arg(1)) add_term(sum, m, node.op == Op::add ? c : -c);
       if (sum.size() > budget_) return std::nullopt;
@@ -95,7 +95,7 @@ Expander::Maybe Expander::expand_node(Ref r) {
 
 Expander::Maybe Expander::product(const Polynomial& a, const Polynomial& b) const {
   if (a.size() * b.size() > 16 * budget_) return std::nullopt;
-  if (effort_ != nullptr && !effort_->take(a.size() * b.size())) return std::nullopt;
+  if (effort_ != nullptr && !effort_->consume(a.size() * b.size())) return std::nullopt;
   Polynomial result;
   for (const auto& [m, c] : a) {
     for (const auto& [n, d] : b) add_term(result, product_of(m, n), times(c, d));
@@ -183,7 +183,7 @@ Polynomial Expander::reduce(Polynomial p) const {
   Dag& dag = dag_;
   for (bool shorter = true; shorter;) {
     shorter = false;
-    if (effort_ != nullptr && !effort_->take(2 * angles.size() * p.size())) break;
+    if (effort_ != nullptr && !effort_->consume(2 * angles.size() * p.size())) break;
     for (const Ref angle : angles) {
       const Ref sine = dag.call(Op::sin, angle), cosine = dag.call(Op::cos, angle);
       for (const auto& [square, other] : {std::pair{sine, cosine}, std::pair{cosine, sine}}) {
@@ -234,9 +234,9 @@ Ref Expander::rebuild(const Polynomial& p) {
   return dag_.mul(result, sum);
 }
 
-Ref tidy(Dag& dag, Ref expression, std::size_t term_budget) { return Expander(dag, term_budget).tidy(expression); }
+Ref expand_or_keep(Dag& dag, Ref expression, std::size_t term_budget) { return Expander(dag, term_budget).expand_or_keep(expression); }
 
-Ref simpler(Dag& dag, Ref expression, std::size_t term_budget, Effort* effort) {
+Ref expand_if_shorter(Dag& dag, Ref expression, std::size_t term_budget, ProductBudget* effort) {
   const std::optional<Ref> expanded = Expander(dag, term_budget, effort)(expression);
   if (!expanded) return expression;
   return dag.reachable({*expanded}).size() <= dag.reachable({expression}).size() ? *expanded : expression;

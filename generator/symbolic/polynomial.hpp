@@ -9,7 +9,7 @@
 #include <unordered_map>
 
 #include "symbolic/dag.hpp"
-#include "symbolic/short_list.hpp"
+#include "symbolic/small_vector.hpp"
 
 namespace eomgen::symbolic {
 
@@ -19,15 +19,15 @@ struct Power {
   std::int64_t exponent = 1;
   friend auto operator<=>(const Power&, const Power&) = default;
 };
-using Monomial = ShortList<Power, 4>;  // ascending by atom; no exponent is 0
+using Monomial = SmallVector<Power, 4>;  // ascending by atom; no exponent is 0
 /// Monomials with nonzero coefficients.
 using Polynomial = std::map<Monomial, Rational>;
 
 /// A budget of products of two terms. The count is the same on every machine.
-struct Effort {
+struct ProductBudget {
   std::size_t left = 0;
 
-  bool take(std::size_t products) {
+  bool consume(std::size_t products) {
     const bool enough = products <= left;
     left = enough ? left - products : 0;
     return enough;
@@ -37,13 +37,13 @@ struct Effort {
 class Expander {
  public:
   /// No result has more than `term_budget` terms. Expansion stops once `effort` is exhausted.
-  explicit Expander(Dag& dag, std::size_t term_budget = 400, Effort* effort = nullptr)
+  explicit Expander(Dag& dag, std::size_t term_budget = 400, ProductBudget* effort = nullptr)
       : dag_(dag), budget_(term_budget), effort_(effort) {}
 
   /// The expanded and reduced form; nothing if it exceeds the budget.
   std::optional<Ref> operator()(Ref expression);
   /// The expanded form, or the unchanged expression if it exceeds the budget.
-  Ref tidy(Ref expression) { return (*this)(expression).value_or(expression); }
+  Ref expand_or_keep(Ref expression) { return (*this)(expression).value_or(expression); }
 
  private:
   using Maybe = std::optional<Polynomial>;
@@ -60,13 +60,13 @@ class Expander {
 
   Dag& dag_;
   std::size_t budget_;
-  Effort* effort_;
+  ProductBudget* effort_;
   std::unordered_map<std::uint32_t, Maybe> memo_;
 };
 
-/// Expander::tidy for one expression.
-Ref tidy(Dag& dag, Ref expression, std::size_t term_budget = 400);
+/// Expander::expand_or_keep for one expression.
+Ref expand_or_keep(Dag& dag, Ref expression, std::size_t term_budget = 400);
 /// The expanded form if it has no more nodes, else the unchanged expression.
-Ref simpler(Dag& dag, Ref expression, std::size_t term_budget, Effort* effort = nullptr);
+Ref expand_if_shorter(Dag& dag, Ref expression, std::size_t term_budget, ProductBudget* effort = nullptr);
 
 }  // namespace eomgen::symbolic

@@ -34,7 +34,7 @@ inline Rational times(const Rational& a, const Rational& b) {
   if (is_one(b)) return a;
   return a * b;
 }
-inline Rational over(const Rational& a, const Rational& b) { return is_one(b) ? a : a / b; }
+inline Rational quotient(const Rational& a, const Rational& b) { return is_one(b) ? a : a / b; }
 
 /// A hash that is the same for equal numbers.
 inline std::uint64_t hash_of(const Rational& a) { return a.pointer_p() ? cln::equal_hashcode(a) : a.word; }

@@ -13,13 +13,13 @@ constexpr long highest_power = 12;  // of a sum that is multiplied out
 
 }  // namespace
 
-bool TimeTerms::is_free(Ref expression) const {
+bool TimeTerms::is_time_independent(Ref expression) const {
   const std::vector<Symbol> symbols = dag_.symbols({expression});
   return std::find(symbols.begin(), symbols.end(), time_) == symbols.end();
 }
 
 // It also detects 2 w - (w + w): a frequency in a denominator must not be such a zero.
-bool TimeTerms::vanishes(Ref constant) { return dag_.is_zero(tidy(dag_, constant)); }
+bool TimeTerms::vanishes(Ref constant) { return dag_.is_zero(expand_or_keep(dag_, constant)); }
 
 TimeTerm TimeTerms::constant(Ref factor) const {
   TimeTerm term;
@@ -28,7 +28,7 @@ TimeTerm TimeTerms::constant(Ref factor) const {
 }
 
 std::optional<std::vector<TimeTerm>> TimeTerms::operator()(Ref r) {
-  if (is_free(r)) return std::vector<TimeTerm>{constant(r)};
+  if (is_time_independent(r)) return std::vector<TimeTerm>{constant(r)};
   Terms terms = of_node(r);
   if (terms && terms->size() > most_terms) return std::nullopt;
   return terms;
@@ -58,7 +58,7 @@ TimeTerms::Terms TimeTerms::of_node(Ref r) {
     case Op::sqrt: return root(x, Rational(1) / 2);
     case Op::pow:
       if (dag_.is_constant(y)) return root(x, dag_.value(y));
-      if (is_free(x)) return exponential(dag_.mul(y, dag_.call(Op::log, x)), dag_.one());
+      if (is_time_independent(x)) return exponential(dag_.mul(y, dag_.call(Op::log, x)), dag_.one());
       return std::nullopt;
     case Op::exp: return exponential(x, dag_.one());
     case Op::sin: return wave(x, TimeTerm::Wave::sin);
@@ -178,7 +178,7 @@ TimeTerms::Terms TimeTerms::root(Ref base, const Rational& exponent) {
 
 // 1/x of a constant, of (a t + b)^k, or of an exponential.
 TimeTerms::Terms TimeTerms::reciprocal(Ref r) {
-  if (is_free(r)) return std::vector<TimeTerm>{constant(dag_.div(dag_.one(), r))};
+  if (is_time_independent(r)) return std::vector<TimeTerm>{constant(dag_.div(dag_.one(), r))};
   const Node node = dag_[r];
   if (node.op == Op::power) return root(node.args[0], Rational(-node.payload));
   if (node.op == Op::mul) return product(reciprocal(node.args[0]), reciprocal(node.args[1]));

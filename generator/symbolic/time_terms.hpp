@@ -35,7 +35,7 @@ class TimeTerms {
 
   /// The terms of an expression; nothing if it is not such a sum or has too many terms.
   std::optional<std::vector<TimeTerm>> operator()(Ref expression);
-  bool is_free(Ref expression) const;  // of time
+  bool is_time_independent(Ref expression) const;  // of time
 
  private:
   using Terms = std::optional<std::vector<TimeTerm>>;

@@ -53,11 +53,11 @@ Vec3 cross(Dag& dag, const Vec3& a, const Vec3& b) {
   return result;
 }
 
-std::vector<Ref> applied(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x) {
+std::vector<Ref> multiply(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x) {
   return product(dag, C, x, x.size(), 1);
 }
 
-std::vector<Ref> transposed_applied(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x) {
+std::vector<Ref> multiply_transposed(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x) {
   return product(dag, C, x, 1, x.size());
 }
 

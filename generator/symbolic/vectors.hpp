@@ -21,7 +21,7 @@ Vec3 cross(Dag& dag, const Vec3& a, const Vec3& b);
 
 /// C x and C^T x for a square row-major matrix. Sums run from the last entry to the first, so that the running sums of
 /// a triangular C of ones share their terms.
-std::vector<Ref> applied(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x);
-std::vector<Ref> transposed_applied(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x);
+std::vector<Ref> multiply(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x);
+std::vector<Ref> multiply_transposed(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x);
 
 }  // namespace eomgen::symbolic

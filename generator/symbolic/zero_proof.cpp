@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t term_budget = 4000;
 constexpr long most_multiples = 6;  // of an angle: sin(6 x) is taken apart, sin(7 x) is a thing of its own
-constexpr std::uint32_t first_symbol = 0x40000000u;  // of SymbolKind::extra; nobody else goes that high
+constexpr std::uint32_t first_symbol = 0x40000000u;  // of SymbolKind::auxiliary; nobody else goes that high
 
 /// num / product of den, each to its power.
 struct Fraction {
@@ -71,7 +71,7 @@ class RationalForm {
   Ref fresh(Ref argument, std::map<Ref, Ref>& known) {
     const auto found = known.find(argument);
     if (found != known.end()) return found->second;
-    return known[argument] = dag_.symbol({SymbolKind::extra, first_symbol + next_++, 0});
+    return known[argument] = dag_.symbol({SymbolKind::auxiliary, first_symbol + next_++, 0});
   }
 
   /// Sine and cosine of an angle, by the formulas for sums and multiples.
@@ -147,7 +147,7 @@ Ref roots_split(Dag& dag, Ref expression) {
       args[i] = memo.at(node.args[i].id);
       changed = changed || args[i] != node.args[i];
     }
-    Ref result = changed ? rebuilt(dag, node, args) : r;
+    Ref result = changed ? with_operands(dag, node, args) : r;
     const Node power = dag[result];
     if (power.op == Op::power && dag[power.args[0]].op == Op::sqrt) {
       const Ref root = power.args[0], whole = dag.power(dag[root].args[0], power.payload / 2);
@@ -160,7 +160,7 @@ Ref roots_split(Dag& dag, Ref expression) {
 
 }  // namespace
 
-bool is_proven_zero(Dag& dag, Ref expression, Effort* effort) {
+bool is_proven_zero(Dag& dag, Ref expression, ProductBudget* effort) {
   constexpr int most_rounds = 4;  // of roots inside of roots
   RationalForm form(dag);
   Expander expander(dag, term_budget, effort);

@@ -11,6 +11,6 @@ namespace eomgen::symbolic {
 
 /// True: zero wherever it is defined. False: not zero, or not proven. Roots, logarithms and inverse functions count as
 /// independent of one another. The proof is abandoned beyond the budget of terms or of `effort`.
-bool is_proven_zero(Dag& dag, Ref expression, Effort* effort = nullptr);
+bool is_proven_zero(Dag& dag, Ref expression, ProductBudget* effort = nullptr);
 
 }  // namespace eomgen::symbolic

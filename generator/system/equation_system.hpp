@@ -39,7 +39,7 @@ struct Reaction {
 
 /// Equations in quasi-velocities theta_dot = S qdot with constant S: M = S^T M_theta S, f = S^T f_theta. They are
 /// cheaper to solve if M_theta is the simpler matrix (relative angles).
-struct QuasiEquations {
+struct QuasiVelocityEquations {
   std::vector<symbolic::Rational> S_inverse;  // n x n row-major
   std::vector<Ref> M, f;                      // n x n, n
 };
@@ -88,20 +88,20 @@ struct Contact {
   Ref restitution;                          // of impacts of a unilateral contact
   bool rolls = false;                       // sticking is rolling
 
-  bool sticks() const { return !slip.empty() && !width; }
+  bool can_stick() const { return !slip.empty() && !width; }
   eom::ContactShape shape() const {
-    return {slip.size(), reactions.size() == 1 && !unilateral && !slip.empty(), unilateral.has_value(), sticks(),
+    return {slip.size(), reactions.size() == 1 && !unilateral && !slip.empty(), unilateral.has_value(), can_stick(),
             rolls};
   }
 };
 
-/// Symbols of the mode of a contact. slides_symbol: 1 slides along its tangent, -1 against it, 0 sticks.
-/// presses_symbol: the sign of the normal force; for a unilateral contact 1 closed, -1 open.
-inline symbolic::Symbol slides_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact, contact, 0}; }
-inline symbolic::Symbol presses_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact, contact, 1}; }
+/// Symbols of the mode of a contact. slip_direction_symbol: 1 slides along its tangent, -1 against it, 0 sticks.
+/// normal_sign_symbol: the sign of the normal force; for a unilateral contact 1 closed, -1 open.
+inline symbolic::Symbol slip_direction_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact_mode, contact, 0}; }
+inline symbolic::Symbol normal_sign_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact_mode, contact, 1}; }
 
 /// A constraint that follows from the active ones. Runs monitor psi, and initial states satisfy it.
-struct Watched {
+struct RedundantConstraint {
   std::uint32_t constraint;  // index into Mechanics::constraints
   Ref psi;
   std::vector<Ref> A;  // n
@@ -133,10 +133,10 @@ struct EquationSystem {
   std::vector<Ref> A;           // m x n, row-major
   std::vector<Ref> b;           // m: A qdot + b = 0
   std::vector<Ref> gamma;       // m: A qddot + gamma = 0
-  std::vector<Watched> redundant;
-  std::vector<Ref> apart;  // m, or empty: 1 if the contact of a constraint is open; its row of A and gamma is then 0
+  std::vector<RedundantConstraint> redundant;
+  std::vector<Ref> contact_open;  // m, or empty: 1 if the contact of a constraint is open; its row of A and gamma is then 0
 
-  std::optional<QuasiEquations> quasi;  // equivalent equations in quasi-velocities
+  std::optional<QuasiVelocityEquations> quasi;  // equivalent equations in quasi-velocities
   std::optional<Solution> solution;     // equal to the solution from M, f, A, gamma
 
   std::vector<Contact> contacts;

@@ -128,7 +128,7 @@ std::vector<system::EquationSystem> all_formulations(mechanics::Mechanics& mecha
 
 Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Options& options) {
   if (options.digits < least_digits || options.digits > most_digits)
-    throw Error("verify", Where{}, fmt::format("{} digits cannot be compared", options.digits),
+    throw Error("verify", SourceLocation{}, fmt::format("{} digits cannot be compared", options.digits),
                 fmt::format("ask for {} to {}", least_digits, most_digits));
   const int range = options.range ? *options.range : digits_of_range(mechanics);
   Oracle oracle(*mechanics.model, options.digits + guard_digits + range);

@@ -124,7 +124,7 @@ std::vector<system::EquationSystem> all_formulations(mechanics::Mechanics& mecha
 /// lost. 0 for usual values.
 int digits_of_range(const mechanics::Mechanics& mechanics);
 
-/// Compares the subjects at random states. Throws Error{Fault::check} if no states can be found. After an interruption
+/// Compares the subjects at random states. Throws Error{ErrorKind::check} if no states can be found. After an interruption
 /// the certificate covers the points that were compared.
 Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Options& options = {});
 

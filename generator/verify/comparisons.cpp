@@ -149,7 +149,7 @@ void compare_outputs(const EquationSystem& s, const SystemValues& v, const Oracl
   }
   for (const model::Definition& definition : m.definitions)
     if (!definition.vector) {
-      const Real value = now.scalar(definition.is).real();
+      const Real value = now.scalar(definition.expression).real();
       expect(definition.name, value, cln::abs(value) + 1);
     }
   double largest = 0;

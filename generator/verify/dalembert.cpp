@@ -47,7 +47,7 @@ double Residual::relative() const { return verify::relative(value, scale); }
 Oracle::Oracle(const model::Model& model, int digits) : model_(model), digits_(digits), precision_(digits) {
   for (const model::Constraint& constraint : model.constraints) {
     psi_.insert(psi_.end(), constraint.psi.begin(), constraint.psi.end());
-    for (std::size_t k = 0; k < constraint.psi.size(); ++k) holonomic_.push_back(!constraint.binds_velocities(k));
+    for (std::size_t k = 0; k < constraint.psi.size(); ++k) holonomic_.push_back(!constraint.is_velocity_equation(k));
   }
   constexpr int rounding = 5;  // digits that large sums may lose
   if (!model.integrals.empty()) quadrature_.emplace(digits - rounding, precision_);
@@ -111,7 +111,7 @@ void Oracle::add_functions(Environment& environment, const std::vector<Real>& in
   };
   while (progress) {
     progress = false;
-    for (std::size_t i = 0; i < model_.functions.size(); ++i) add(model_.functions[i].is, environment.functions[i]);
+    for (std::size_t i = 0; i < model_.functions.size(); ++i) add(model_.functions[i].expression, environment.functions[i]);
     for (std::size_t i = 0; i < integrals.size(); ++i) {
       if (!environment.integrals[i].empty()) continue;
       add(model_.integrals[i].integrand, environment.integrals[i]);  // its rate and further derivatives
@@ -145,7 +145,7 @@ bool Oracle::needs_derivatives(model::NodeId expression) const {
     open.pop_back();
     if (!seen.insert(id).second) continue;
     found = uses(model_, id, [&](const model::Node& node) {
-      if (node.op == model::Op::function) open.push_back(model_.functions[node.index].is);
+      if (node.op == model::Op::function) open.push_back(model_.functions[node.index].expression);
       if (node.op == model::Op::integral) open.push_back(model_.integrals[node.index].integrand);
       return node.order > 0 || node.op == model::Op::total_derivative || node.op == model::Op::partial_derivative;
     });

@@ -68,8 +68,8 @@ struct EnergyValues {
 
 /// An undefined number of the model, such as log(0), with its position in the file.
 struct NoValue : Singular {
-  NoValue(const char* what, Where place) : Singular(what), where(std::move(place)) {}
-  Where where;
+  NoValue(const char* what, SourceLocation place) : Singular(what), where(std::move(place)) {}
+  SourceLocation where;
 };
 
 class AffineResidualCache;

@@ -150,7 +150,7 @@ Jet Interpreter::leaf(const Node& node) {
     case Op::input: return environment_.inputs[node.index];
     case Op::coordinate: return of_order(environment_.coordinates[node.index]);
     case Op::function: return of_order(environment_.functions[node.index]);
-    case Op::definition: return scalar(model_.definitions[node.index].is);
+    case Op::definition: return scalar(model_.definitions[node.index].expression);
     case Op::integral: return of_order(environment_.integrals[node.index]);
     case Op::extension:
       if (spring_ != nullptr) return extension(*spring_);
@@ -215,8 +215,8 @@ void Interpreter::refuse(const Node& node, const char* what) const {
   throw Error("verify", place_of(model_, node), what, "use values, velocities and accelerations only");
 }
 
-Where place_of(const model::Model& model, const model::Node& node) {
-  Where where{model.file, node.span.line, node.span.column, node.span.length, ""};
+SourceLocation place_of(const model::Model& model, const model::Node& node) {
+  SourceLocation where{model.file, node.span.line, node.span.column, node.span.length, ""};
   if (node.span.line >= 1 && node.span.line <= model.lines.size()) where.text = model.lines[node.span.line - 1];
   return where;
 }

@@ -102,6 +102,6 @@ class Interpreter {
 };
 
 /// The position of a node in the file. The oracle shares no code with the reader.
-Where place_of(const model::Model& model, const model::Node& node);
+SourceLocation place_of(const model::Model& model, const model::Node& node);
 
 }  // namespace eomgen::verify

@@ -62,7 +62,7 @@ Vector Interpreter::read_vector(const Node& node) {
       return e;
     }
     case Op::array: return {scalar(node.args[0]), scalar(node.args[1]), scalar(node.args[2])};
-    case Op::definition: return vector(model_.definitions[node.index].is);
+    case Op::definition: return vector(model_.definitions[node.index].expression);
     case Op::add: return arg(0) + arg(1);
     case Op::subtract: return arg(0) - arg(1);
     case Op::negate: return Vector{} - arg(0);

@@ -64,7 +64,7 @@ void Points::read_scene() {
   t1_ = std::min(t1_, t0_ + longest_span);
   start.t = exact(t0_);  // before functions of time are evaluated: they may be undefined at other times
   for (const model::Input& input : m.inputs) {
-    start.inputs.push_back(oracle_.constant(input.fallback, start.parameters));
+    start.inputs.push_back(oracle_.constant(input.default_value, start.parameters));
     input_defaults_.push_back(cln::double_approx(start.inputs.back()));
   }
   start.q.assign(m.coordinates.size(), exact(0));
@@ -307,10 +307,10 @@ void Points::reject(const std::string& why) {
   std::string reasons;
   for (const auto& [reason, count] : rejected_)
     reasons += (reasons.empty() ? "" : ", ") + reason + " (" + std::to_string(count) + ")";
-  throw Error("verify", Where{oracle_.model().file, 0, 0, 1, ""},
+  throw Error("verify", SourceLocation{oracle_.model().file, 0, 0, 1, ""},
               "no states were found at which the equations can be checked: " + reasons,
               "look at the ranges of the coordinates, the constraints and the start of the default scene",
-              Fault::check);
+              ErrorKind::check);
 }
 
 }  // namespace eomgen::verify

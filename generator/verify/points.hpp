@@ -44,7 +44,7 @@ class Points {
   Points(const Oracle& oracle, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed = {},
          std::vector<std::size_t> leavable = {});
 
-  /// The next state, with qddot = 0. Throws Error (Fault::check) after too many rejections.
+  /// The next state, with qddot = 0. Throws Error (ErrorKind::check) after too many rejections.
   State next();
   /// Rejects the last state of next(), which cannot be compared.
   void reject(const std::string& why);

@@ -232,10 +232,10 @@ Real Lookup::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::input: return state.inputs.at(symbol.index);
     case SymbolKind::multiplier: return lambda.at(symbol.index);
     case SymbolKind::integral: return state.integrals.at(symbol.index);
-    case SymbolKind::side: return 0;  // branches depend on the state
+    case SymbolKind::branch: return 0;  // branches depend on the state
     case SymbolKind::friction: return state.phi.at(symbol.index);
-    case SymbolKind::contact: return eom::contact_leaf(state.mode, 2 * std::size_t{symbol.index} + symbol.order);
-    case SymbolKind::extra: break;
+    case SymbolKind::contact_mode: return eom::contact_leaf(state.mode, 2 * std::size_t{symbol.index} + symbol.order);
+    case SymbolKind::auxiliary: break;
   }
   throw std::logic_error("verify: a symbol without a value");
 }

@@ -17,7 +17,7 @@ bool uses(const model::Model& model, model::NodeId expression, const std::functi
     if (is_it(node)) return true;
     open.insert(open.end(), node.args.begin(), node.args.end());
     switch (node.op) {
-      case Op::definition: open.push_back(model.definitions[node.index].is); break;
+      case Op::definition: open.push_back(model.definitions[node.index].expression); break;
       case Op::place:
       case Op::place_velocity:
       case Op::place_acceleration:

@@ -77,7 +77,7 @@ struct Emitted {
 /// Two emissions that together have every function, because charts and a Taylor series exclude one another.
 const std::vector<Emitted>& emissions() {
   static const std::vector<Emitted> all = [] {
-    std::vector<std::string> with = abi::asked_for(), in_charts = with;
+    std::vector<std::string> with = abi::optional_functions(), in_charts = with;
     std::erase(with, "outputs");
     std::erase(in_charts, "outputs");
     std::erase(in_charts, "taylor");
@@ -134,7 +134,7 @@ TEST_CASE("abi: exactly the requested functions are emitted") {
     const bool charts = emitted.info.contains("charts");
     for (const abi::Function& function : abi::functions()) {
       CAPTURE(function.name);
-      if (function.availability == abi::Availability::where_it_saves) continue;
+      if (function.availability == abi::Availability::when_beneficial) continue;
       const bool expected = function.name == "taylor" ? !charts : function.availability != abi::Availability::with_charts || charts;
       CHECK(emitted.loaded.contains(function.name) == expected);
     }
@@ -147,17 +147,17 @@ TEST_CASE("abi: names are unique, and a call passes the arguments of the functio
     CHECK(names.insert(function.name).second);
     CHECK(abi::find(function.name) == &function);
     CHECK_FALSE(function.results.empty());
-    CHECK(function.results.size() <= abi::Given{}.results.size());
+    CHECK(function.results.size() <= abi::CallArguments{}.results.size());
   }
   CHECK(abi::find("nothing") == nullptr);
-  abi::Compiled code;
+  abi::CompiledFunctions code;
   code.jac = [](double t, const double* x, const double* p, const double* u, int mode, double* dfdx, double* dfdt) {
     *dfdx = t + 10 * *x + 100 * *p;
     return mode + (u == nullptr ? 10 : 0) + (dfdt == nullptr ? 100 : 0);
   };
   const double x = 2, p = 3;
   double dfdx = 0;
-  abi::Given given;
+  abi::CallArguments given;
   given.t = 1, given.x = &x, given.p = &p, given.mode = 4, given.results[0] = &dfdx;
   CHECK(code.call("jac", given) == 114);
   CHECK(dfdx == 321);

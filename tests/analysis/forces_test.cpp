@@ -50,7 +50,7 @@ double sense(const AtStart& start, const analysis::DrawnForce& force, const mode
 /// magnitude.
 std::pair<double, double> off(AtStart& start, std::size_t b) {
   symbolic::Dag& dag = *start.m.dag;
-  symbolic::Derivation ddt = symbolic::total_time(dag, start.m.q.size(), start.model.functions.size());
+  symbolic::Derivation ddt = symbolic::total_time_derivative(dag, start.m.q.size(), start.model.functions.size());
   symbolic::Substitution imposed = mechanics::impose(start.m), written = mechanics::write_out(start.m);
   const mechanics::Spin& spin = start.m.spins[b];
   symbolic::Vec3 H = symbolic::zero_vector(dag);
@@ -124,7 +124,7 @@ TEST_CASE("drawing: the drawn forces satisfy Newton's law for the masses") {
     AtStart start = shipped(name);
     start.solve();
     symbolic::Dag& dag = *start.m.dag;
-    symbolic::Derivation ddt = symbolic::total_time(dag, start.m.q.size(), start.model.functions.size());
+    symbolic::Derivation ddt = symbolic::total_time_derivative(dag, start.m.q.size(), start.model.functions.size());
     symbolic::Substitution imposed = mechanics::impose(start.m), written = mechanics::write_out(start.m);
     Vector wanted = Vector::Zero(), sum = wanted;
     double size = 0;

@@ -100,7 +100,7 @@ title = "A pendulum by its position"
 m = "1 kg"
 g = "9.81 m/s^2"
 L = "1 m"
-)" + heavy_in_plane +
+)" + particle_in_plane +
          R"([[constraint]]
 name = "rod"
 holonomic = "x^2 + y^2 - L^2"

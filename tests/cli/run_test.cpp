@@ -144,7 +144,7 @@ TEST_CASE("run: the constraint force on a particle is mass times acceleration mi
   const double m = 2, g = 9.81;
   for (const char* constraint : {"holonomic = \"y - x^2\"", "velocity = \"y_dot - x*x_dot\""}) {
     CAPTURE(constraint);
-    folder.write("wire.toml", "format = 1\n[parameters]\nm = 2\ng = 9.81\n" + heavy_in_plane +
+    folder.write("wire.toml", "format = 1\n[parameters]\nm = 2\ng = 9.81\n" + particle_in_plane +
                                   "[[constraint]]\nname = \"wire\"\n" + constraint +
                                   "\n[scene.default]\ninitial = { x = 1, x_dot = 2 }\noutputs = [\"all\"]\n");
     const Json found = document(folder, {"run", "wire.toml", "--t-end", "0"})["final"];

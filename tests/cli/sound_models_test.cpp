@@ -108,7 +108,7 @@ TEST_CASE("run: a body that falls into a corner of two walls comes to rest there
 [parameters]
 m = 1
 g = 9.81
-)toml" + heavy_in_plane + R"toml([[constraint]]
+)toml" + particle_in_plane + R"toml([[constraint]]
 name = "right"
 holonomic = "y - 0.3*x"
 holds = "unilateral"
@@ -140,7 +140,7 @@ TEST_CASE("run: a body that bounces between the walls of a corner comes to rest 
 [parameters]
 m = 1
 g = 9.81
-)toml" + heavy_in_plane +
+)toml" + particle_in_plane +
            R"toml([[constraint]]
 name = "right"
 holonomic = "(y - )toml" +

@@ -28,7 +28,7 @@ g = 9.81
 L0 = 1
 [functions]
 L = "L0 LENGTH"
-)toml" + test::heavy_in_space + R"toml([[constraint]]
+)toml" + test::particle_in_space + R"toml([[constraint]]
 name = "rod"
 holonomic = "R - L"
 )toml";
@@ -54,7 +54,7 @@ m = 1
 g = 9.81
 L = 1
 W = 3
-)toml" + test::heavy_in_space + R"toml([[constraint]]
+)toml" + test::particle_in_space + R"toml([[constraint]]
 name = "hoop"
 holonomic = "R - L"
 [[constraint]]

@@ -14,7 +14,7 @@ using namespace eomgen::test;
 
 namespace {
 
-Finished run_tight(const std::string& name, const std::string& sections) {
+FinishedRun run_tight(const std::string& name, const std::string& sections) {
   return run_text(name, sections, [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = request.overrides.atol = 1e-12;
   });
@@ -58,7 +58,7 @@ TEST_CASE("every coupling has a unique name and equations for bodies and for ang
     CAPTURE(coupling.name);
     CHECK(names.insert(coupling.name).second);
     CHECK(couplings::find(coupling.name) == &coupling);
-    for (const std::string& text : {coupling.title, coupling.of_bodies, coupling.of_angles}) CHECK_FALSE(text.empty());
+    for (const std::string& text : {coupling.title, coupling.body_equation, coupling.angle_equation}) CHECK_FALSE(text.empty());
   }
 }
 
@@ -69,7 +69,7 @@ TEST_CASE("gear: speeds follow the ratio, the second inertia counts divided by i
           "angles = [\"a\", \"b\"]"}) {
       CAPTURE(ratio);
       CAPTURE(which);
-      const Finished run = run_tight("gear_pair", shafts(which + ", ratio = " + std::to_string(ratio)));
+      const FinishedRun run = run_tight("gear_pair", shafts(which + ", ratio = " + std::to_string(ratio)));
       const double acceleration = 3 / (2 + 0.5 / (ratio * ratio)), t = 2;
       const double turned = 0.5 * t + acceleration * t * t / 2;
       CHECK(std::abs(run.final("a") - (0.1 + turned)) < same);
@@ -82,7 +82,7 @@ TEST_CASE("gear: speeds follow the ratio, the second inertia counts divided by i
 }
 
 TEST_CASE("gear: on a carrier with a fixed ring, Willis' equation holds and the input power is that of the motion") {
-  const Finished run = run_tight("gear_planetary", R"toml(
+  const FinishedRun run = run_tight("gear_planetary", R"toml(
 [parameters]
 zs = 20
 zp = 15

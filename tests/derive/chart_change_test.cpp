@@ -80,22 +80,22 @@ TEST_CASE(
     CAPTURE(r.name);
     ++sets;
     const model::Model model = body(r.name);
-    const std::vector<model::SwitchedChart> charts = model::charts(model);
+    const std::vector<model::ChartPair> charts = model::charts(model);
     REQUIRE(charts.size() == 1);
     CHECK(charts[0].refusal.empty());
     CHECK(rotations::find(charts[0].second) != nullptr);
-    CHECK(charts[0].regular(model) == (r.name[0] == r.name[2] ? "sin(b)" : "cos(b)"));
+    CHECK(charts[0].singularity(model) == (r.name[0] == r.name[2] ? "sin(b)" : "cos(b)"));
     symbolic::Dag dag;
     const system::ChartChange change = derive::chart_change(dag, model, charts[0]);
     const double near = change.at_sine ? 0.2 : M_PI / 2 - 0.2;  // near the singularity of the own set
     for (const Values& x : {Values{0.4, near, -1.1, 0.3, -0.8, 1.7}, Values{2.9, near, 4.0, -2, 0.1, 0.6},
                             Values{-1.3, near + 0.5, 0.2, 1, 2, -3}}) {
-      const Values second = applied(dag, change.to, change.angles, x);
+      const Values second = applied(dag, change.to_second, change.angles, x);
       CHECK((attitude(r.name, x) - attitude(charts[0].second, second)).norm() < rounding);
-      check_rates(dag, change.to, change.angles, x);
-      const Values again = applied(dag, change.back, change.angles, second);
+      check_rates(dag, change.to_second, change.angles, x);
+      const Values again = applied(dag, change.to_own, change.angles, second);
       CHECK((attitude(r.name, again) - attitude(r.name, x)).norm() < rounding);
-      check_rates(dag, change.back, change.angles, second);
+      check_rates(dag, change.to_own, change.angles, second);
       const double guard = change.second_at_sine ? std::sin(second[1]) : std::cos(second[1]);
       if (x[1] == near) CHECK(std::abs(guard) > 0.97);  // the second set is far from singular there
     }
@@ -105,20 +105,20 @@ TEST_CASE(
 
 TEST_CASE("chart change: spherical coordinates about E3 and about E1") {
   const model::Model model = particle();
-  const std::vector<model::SwitchedChart> charts = model::charts(model);
+  const std::vector<model::ChartPair> charts = model::charts(model);
   REQUIRE(charts.size() == 1);
   symbolic::Dag dag;
   const system::ChartChange change = derive::chart_change(dag, model, charts[0]);
-  CHECK(change.regular == "sin(phi)");
+  CHECK(change.singularity == "sin(phi)");
   for (const Values& x : {Values{0.2, 0.9, -1.1, 0.3}, Values{M_PI - 0.2, -2.5, 0.4, 1.6}}) {
-    const Values second = applied(dag, change.to, change.angles, x);
+    const Values second = applied(dag, change.to_second, change.angles, x);
     CHECK(std::cos(second[0]) == doctest::Approx(std::sin(x[0]) * std::cos(x[1])).epsilon(rounding));
     CHECK(std::sin(second[0]) * std::cos(second[1]) ==
           doctest::Approx(std::sin(x[0]) * std::sin(x[1])).epsilon(rounding));
     CHECK(std::sin(second[0]) * std::sin(second[1]) == doctest::Approx(std::cos(x[0])).epsilon(rounding));
-    check_rates(dag, change.to, change.angles, x);
-    const Values again = applied(dag, change.back, change.angles, second);
+    check_rates(dag, change.to_second, change.angles, x);
+    const Values again = applied(dag, change.to_own, change.angles, second);
     for (std::size_t k = 0; k < 4; ++k) CHECK(again[k] == doctest::Approx(x[k]).epsilon(rounding));
-    check_rates(dag, change.back, change.angles, second);
+    check_rates(dag, change.to_own, change.angles, second);
   }
 }

@@ -48,7 +48,7 @@ a = 0.1
 w = 2
 [functions]
 d = "d0 + a*sin(w*t)"
-)toml" + test::heavy_in_space + R"toml([[force]]
+)toml" + test::particle_in_space + R"toml([[force]]
 on = "P"
 force = "D*R*P.e_theta"
 [[constraint]]
@@ -154,7 +154,7 @@ TEST_CASE("formulations: a rod between a particle and the origin as a quadratic 
 m = 1.5
 g = 9.81
 L = 2
-)toml" + test::heavy_in_plane + R"toml([[constraint]]
+)toml" + test::particle_in_plane + R"toml([[constraint]]
 name = "rod"
 holonomic = "x^2 + y^2 - L^2"
 )toml",
@@ -201,7 +201,7 @@ x = {}
   for_each_formulation(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
     test::Point point(mechanics, {{"t", 0.4}, {"m0", 1}, {"k", 3}, {"x", 0.8}, {"x_dot", -0.5}});
     point.solve(system);
-    symbolic::Derivation ddt = symbolic::total_time(*mechanics.dag, mechanics.q.size(), 2);
+    symbolic::Derivation ddt = symbolic::total_time_derivative(*mechanics.dag, mechanics.q.size(), 2);
     CHECK(point.evaluate(ddt(system.energy)) == doctest::Approx(point.evaluate(system.power)).epsilon(rounding));
   });
 }

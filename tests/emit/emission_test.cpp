@@ -80,7 +80,7 @@ TEST_CASE("write_files: writes complete files or none, and errors contain the pa
     emit::write_files(paths[0], {{"c.txt", "three"}});  // a file blocks the folder
     FAIL("written");
   } catch (const Error& error) {
-    CHECK(error.fault() == Fault::input);
+    CHECK(error.fault() == ErrorKind::input);
     CHECK(error.message().find("a.txt") != std::string::npos);
   }
 }

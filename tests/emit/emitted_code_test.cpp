@@ -318,7 +318,7 @@ TEST_CASE("emitted code: compiled functions agree with the interpreter in 50 dig
       std::vector<std::vector<double>> got;
       for (const auto& list : expected) got.emplace_back(list.size() + 1);
       std::vector<double> w(e.program.prepared_count() + 1);
-      abi::Given given;
+      abi::CallArguments given;
       given.t = test.t, given.x = test.x.data(), given.p = test.p.data(), given.u = u, given.w = w.data();
       for (std::size_t r = 0; r < got.size(); ++r) given.results[r] = got[r].data();
       if (function.name == "rhs_prepared") CHECK(m.prepare(given.p, w.data()) == 0);

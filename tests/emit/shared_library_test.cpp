@@ -35,7 +35,7 @@ std::string failure(const std::string& c) {
   try {
     emit::compile_and_load(c, sources().h, "pendulum");
   } catch (const Error& error) {
-    CHECK(error.fault() == Fault::tool);
+    CHECK(error.fault() == ErrorKind::tool);
     return error.message() + " / " + error.remedy();
   }
   return "";

@@ -11,7 +11,7 @@ using namespace eomgen::test;
 
 namespace {
 
-Finished run_tight(const std::string& name, const std::string& sections) {
+FinishedRun run_tight(const std::string& name, const std::string& sections) {
   return run_text(name, sections, [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = request.overrides.atol = 1e-12;
   });
@@ -35,7 +35,7 @@ position = { cartesian = ["x", 0, 0] }
 }  // namespace
 
 TEST_CASE("spring_damper: a mass on a line oscillates with exp(-c t/(2 m)), about the free length") {
-  const Finished run = run_tight("spring_damper_line", particle_on_a_line + R"toml([[force]]
+  const FinishedRun run = run_tight("spring_damper_line", particle_on_a_line + R"toml([[force]]
 spring_damper = { between = ["origin", "P"], stiffness = "k", length = "L", coefficient = "c" }
 [scene.default]
 t = [0, 2]
@@ -60,9 +60,9 @@ initial = { x = 0.7, y = 0.1, y_dot = 1 }
   for (const std::string length : {", length = \"0.5 m\"", ""}) {
     CAPTURE(length);
     const std::string ends = "between = [\"origin\", \"P\"]";
-    const Finished one = run_tight("spring_damper_one", plane + "[[force]]\nspring_damper = { " + ends + length +
+    const FinishedRun one = run_tight("spring_damper_one", plane + "[[force]]\nspring_damper = { " + ends + length +
                                                             ", stiffness = \"50 N/m\", coefficient = \"3 N*s/m\" }\n");
-    const Finished two = run_tight("spring_damper_two", plane + "[[force]]\nspring = { " + ends + length +
+    const FinishedRun two = run_tight("spring_damper_two", plane + "[[force]]\nspring = { " + ends + length +
                                                             ", stiffness = \"50 N/m\" }\n[[force]]\ndamper = { " +
                                                             ends + ", coefficient = \"3 N*s/m\" }\n");
     CHECK(one.simulation.certificate.pass);
@@ -73,7 +73,7 @@ initial = { x = 0.7, y = 0.1, y_dot = 1 }
 }
 
 TEST_CASE("linear_actuator: a positive force pushes two masses apart, and their centre of mass stays at rest") {
-  const Finished run = run_tight("linear_actuator", R"toml(
+  const FinishedRun run = run_tight("linear_actuator", R"toml(
 [inputs]
 u = { unit = "N", default = 3 }
 [[particle]]
@@ -119,7 +119,7 @@ initial = { a = 0.1, b = 0.2, a_dot = 0.5 }
   for (const std::string motor :
        {"bodies = [\"A\", \"B\"], axis = \"-2*A.e3\", moment = \"-u\"", "angle = \"b - a\", moment = \"u\""}) {
     CAPTURE(motor);
-    const Finished run = run_tight("rotary_actuator", disks + "[[force]]\nrotary_actuator = { " + motor + " }\n");
+    const FinishedRun run = run_tight("rotary_actuator", disks + "[[force]]\nrotary_actuator = { " + motor + " }\n");
     CHECK(std::abs(run.final("a") - (0.1 + 0.5 * 2 - 3.0 / 2 * 2)) < same);  // t^2/2 is 2
     CHECK(std::abs(run.final("b") - (0.2 + 3.0 / 0.5 * 2)) < same);
     CHECK(run.simulation.certificate.pass);
@@ -127,7 +127,7 @@ initial = { a = 0.1, b = 0.2, a_dot = 0.5 }
 }
 
 TEST_CASE("bushing: on the ground, three damped oscillators along E1, E2, E3 and a pendulum in twice the angle") {
-  const Finished run = run_tight("bushing_ground", R"toml(
+  const FinishedRun run = run_tight("bushing_ground", R"toml(
 [parameters]
 J = "0.5 kg*m^2"
 K = "4 N*m"
@@ -158,7 +158,7 @@ outputs = ["first_integral", "psi_ddot"]
 }
 
 TEST_CASE("bushing: two free bodies follow Newton's and Euler's equations; momentum is conserved") {
-  const Finished run = run_tight("bushing_free",
+  const FinishedRun run = run_tight("bushing_free",
                                  R"toml(
 [parameters]
 m = "2 kg"

@@ -49,7 +49,7 @@ TEST_CASE("keys, rules and terms of a kind refer to existing keys") {
       CAPTURE(key.name);
       CHECK(keys.insert(key.name).second);
       CHECK(model::is_identifier(key.name));
-      for (const std::string& other : {key.with, key.unless}) CHECK((other.empty() || has_key(kind, other)));
+      for (const std::string& other : {key.default_requires, key.required_unless}) CHECK((other.empty() || has_key(kind, other)));
       CHECK(key.choices.empty() == (key.type != forces::ValueType::choice));
     }
     for (const forces::Rule& rule : kind.rules) {
@@ -61,11 +61,11 @@ TEST_CASE("keys, rules and terms of a kind refer to existing keys") {
     for (const forces::Term& term : kind.terms) {
       CHECK_FALSE(term.formula.empty());
       CHECK((term.domain == forces::Domain::bodies) == !term.arm.empty());
-      for (const forces::When& when : term.when) CHECK(has_key(kind, when.key));
+      for (const forces::Condition& when : term.conditions) CHECK(has_key(kind, when.key));
     }
     for (const forces::Line& line : {kind.spring, kind.damper}) CHECK(line.from.empty() == line.to.empty());
-    const bool data = kind.form == forces::Form::table || kind.form == forces::Form::value;
+    const bool data = kind.form == forces::InputFormat::table || kind.form == forces::InputFormat::value;
     CHECK(data == !kind.terms.empty());
-    if (kind.form == forces::Form::value) CHECK(kind.keys.at(0).name == kind.name);
+    if (kind.form == forces::InputFormat::value) CHECK(kind.keys.at(0).name == kind.name);
   }
 }

@@ -95,7 +95,7 @@ g = 9.81
 w = 2
 [functions]
 d = "R0 + R0/10*sin(w*t)"
-)toml" + heavy_in_space + R"toml([[constraint]]
+)toml" + particle_in_space + R"toml([[constraint]]
 name = "sphere"
 holonomic = "R - d"
 friction = { static = "mu_s", dynamic = "mu_d" }
@@ -153,7 +153,7 @@ title = "Bouncing ball"
 m = "1 kg"
 g = "9.81 m/s^2"
 e = 0.5
-)toml" + heavy_in_plane + R"toml([[constraint]]
+)toml" + particle_in_plane + R"toml([[constraint]]
 name = "floor"
 holonomic = "y"
 holds = "unilateral"

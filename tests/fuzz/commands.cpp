@@ -103,7 +103,7 @@ void check_document(const Result& result, const Words& words) {
 
 /// Whether the error is a defect of this program for any model: derivations disagree, or code cannot be compiled.
 bool is_ours(const Error& error) {
-  return error.fault() == Fault::tool || error.remedy().find("defect of eomgen") != std::string::npos ||
+  return error.fault() == ErrorKind::tool || error.remedy().find("defect of eomgen") != std::string::npos ||
          error.message().find("internal") != std::string::npos;
 }
 

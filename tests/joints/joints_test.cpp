@@ -16,7 +16,7 @@ using namespace eomgen::test;
 
 namespace {
 
-Finished run_text(const std::string& name, const std::string& text) {
+FinishedRun run_text(const std::string& name, const std::string& text) {
   const std::string path = test::build_folder() + "/" + name + ".toml";
   write_text(path, text);
   return run_model(path);
@@ -29,8 +29,8 @@ bool slides(const joints::Joint& kind) { return kind.name == "slider" || kind.na
 std::string of_kind(const joints::Joint& kind) {
   std::string lines =
       "type = \"" + kind.name + "\"\nbodies = [\"base\", \"rod\"]\n" + (slides(kind) ? "at = \"tip\"\n" : at_tip);
-  if (kind.axes == joints::Axes::line) lines += "axis = \"E1 + 2*E2 - 2*E3\"\n";
-  if (kind.axes == joints::Axes::cross) lines += "axis = [\"base.e3\", \"rod.e2\"]\n";
+  if (kind.axes == joints::AxisLayout::shared) lines += "axis = \"E1 + 2*E2 - 2*E3\"\n";
+  if (kind.axes == joints::AxisLayout::crossed) lines += "axis = [\"base.e3\", \"rod.e2\"]\n";
   return lines;
 }
 
@@ -46,7 +46,7 @@ TEST_CASE("every joint leaves the degrees of freedom of its kind, and its reacti
   REQUIRE(joints::registry().size() == freedom.size());
   for (const joints::Joint& kind : joints::registry()) {
     CAPTURE(kind.name);
-    const Finished run =
+    const FinishedRun run =
         run_text("joint_" + kind.name, rod_on_base(of_kind(kind), start + (slides(kind) ? ", x_dot = 0.5" : "")));
     CHECK(run.simulation.derived->mechanics.freedom() == 2 + freedom.at(kind.name));
     CHECK(run.simulation.certificate.pass);
@@ -70,7 +70,7 @@ TEST_CASE("points and axes given at the start are equal to those given by two en
   const std::string placed =
       "u = 0.1, a = 0.2, u_dot = 0.3, psi = 0.3, theta = 0.4, phi = 0, x = 0.5, y = 0.4, z = -0.1";
   const std::string pin = "type = \"pin\"\nbodies = [\"base\", \"rod\"]\n";
-  const Finished one = run_text("joint_placed", rod_on_base(pin + "at = [0.2, 0.3, 0.4]\naxis = \"E3\"\n", placed));
+  const FinishedRun one = run_text("joint_placed", rod_on_base(pin + "at = [0.2, 0.3, 0.4]\naxis = \"E3\"\n", placed));
   // The same point and axis, written out along the axes of the rod: Q^T (p - r), Q^T E3 at psi = 0.3, theta = 0.4.
   const double c = std::cos(0.3), s = std::sin(0.3), C = std::cos(0.4), S = std::sin(0.4), d[3] = {-0.3, -0.1, 0.5};
   char rod[200], base[200], axis[100];
@@ -79,7 +79,7 @@ TEST_CASE("points and axes given at the start are equal to those given by two en
   std::snprintf(base, sizeof base, "base + (%.17g)*base.e1 + (%.17g)*base.e2 + 0.4*base.e3",
                 std::cos(0.2) * 0.1 + std::sin(0.2) * 0.3, -std::sin(0.2) * 0.1 + std::cos(0.2) * 0.3);
   std::snprintf(axis, sizeof axis, "(%.17g)*rod.e1 + (%.17g)*rod.e3", -S, C);
-  const Finished two = run_text(
+  const FinishedRun two = run_text(
       "joint_written",
       rod_on_base(pin + "at = [\"" + base + "\", \"" + rod + "\"]\naxis = [\"base.e3\", \"" + axis + "\"]\n", placed));
   for (const char* name : {"u", "a", "x", "y", "z", "psi_dot", "theta_dot", "phi_dot", "reaction.j.1", "reaction.j.2",
@@ -91,7 +91,7 @@ TEST_CASE("points and axes given at the start are equal to those given by two en
 
 TEST_CASE("reactions may be given along the axes of a body") {
   const joints::Joint& pin = *joints::find("pin");
-  const Finished run = run_text("joint_axes", rod_on_base(of_kind(pin) + "axes = \"rod\"\n"));
+  const FinishedRun run = run_text("joint_axes", rod_on_base(of_kind(pin) + "axes = \"rod\"\n"));
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     CHECK(std::abs(run.rows.at(i, "reaction.j.1") - run.rows.at(i, "B1")) < agreed);
     CHECK(std::abs(run.rows.at(i, "reaction.j.6") - run.rows.at(i, "B6")) < agreed);
@@ -103,7 +103,7 @@ TEST_CASE("equations that hold identically have no multiplier; undetermined reac
       "position = { cartesian = [\"x\", \"y\"] }\nrotation = { axis = \"E3\", angle = \"psi\" }\n";
   const std::string joint = "type = \"pin\"\nbodies = [\"base\", \"rod\"]\n" + at_tip + "axis = \"E3\"\n",
                     at_rest = "u = 0, a = 0.2, psi = 0.3";
-  const Finished run = run_text("joint_planar", rod_on_base(joint, at_rest, planar));
+  const FinishedRun run = run_text("joint_planar", rod_on_base(joint, at_rest, planar));
   const mechanics::Mechanics& m = run.simulation.derived->mechanics;
   CHECK(m.freedom() == 3);
   CHECK(m.active.size() == 2);

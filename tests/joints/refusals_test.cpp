@@ -12,7 +12,7 @@ namespace {
 
 struct Refusal {
   std::string what, remedy;
-  Where where;
+  SourceLocation where;
 };
 
 Refusal refusal(const std::string& text) {

@@ -183,7 +183,7 @@ TEST_CASE("a state on no steady motion is linearised along its motion and report
 
 TEST_CASE("the state at a given time is that of the run") {
   const Linearised x = linearised("S5_double_pendulum", "default", "", {}, 1.5);
-  const Finished run =
+  const FinishedRun run =
       run_model("S5_double_pendulum", [](pipeline::SimulationRequest& request) { request.overrides.t_end = 1.5; });
   CHECK(x.at("theta1") == run.final("theta1"));
   CHECK(x.at("theta2_dot") == run.final("theta2_dot"));

@@ -17,10 +17,10 @@ TEST_CASE("functions: each named row of the table is a function of the language 
   for (const symbolic::Function& row : symbolic::function_table) {
     if (row.op == symbolic::Op::pow || row.op == symbolic::Op::select) continue;  // ^ and if are no calls
     CAPTURE(row.name);
-    const model::FunctionName* found = model::find_function(row.name);
+    const model::FunctionSignature* found = model::find_function(row.name);
     REQUIRE(found != nullptr);
     CHECK(mechanics::op_of(found->fn) == row.op);
-    CHECK(found->least == row.arity);
+    CHECK(found->min_arguments == row.arity);
     ++functions;
   }
   CHECK(functions == static_cast<std::size_t>(model::Fn::max) + 1);  // and there are no others

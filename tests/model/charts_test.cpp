@@ -71,7 +71,7 @@ TEST_CASE("charts: angles that are not coordinates, contacts and rotating axes p
 TEST_CASE("charts: a body has independent charts of its rotation and its position") {
   const model::Model model = model::read_model_text(
       head(spherical) + "[[constraint]]\nname = \"arm\"\nholonomic = \"R - k\"\n" + end, "m.toml");
-  const std::vector<model::SwitchedChart> charts = model::charts(model);
+  const std::vector<model::ChartPair> charts = model::charts(model);
   REQUIRE(charts.size() == 2);
   CHECK(charts[0].of == "B");
   CHECK(charts[1].of == "B.position");

@@ -95,7 +95,7 @@ TEST_CASE("a comparison in if() is stored in one of two forms") {
       read(particle("[definitions]\na = \"if(R < L, 1, 2)\"\nb = \"if(R <= L, 1, 2)\"\n"
                     "c = \"if(R > L, 1, 2)\"\nd = \"if(R >= L, 1, 2)\"\n"));
   const auto shape = [&](std::size_t k) {
-    const Node& node = model.arena[model.definitions[k].is];
+    const Node& node = model.arena[model.definitions[k].expression];
     REQUIRE(node.op == Op::conditional);
     const bool swapped_sides = model.arena[node.args[0]].op == Op::parameter;
     const bool swapped_values = model.arena[node.args[2]].value == 2;
@@ -109,7 +109,7 @@ TEST_CASE("a comparison in if() is stored in one of two forms") {
 
 TEST_CASE("min and max of several arguments become nested pairs") {
   const Model model = read(particle("[definitions]\na = \"max(1, 2, 3)\"\n"));
-  const Node& outer = model.arena[model.definitions[0].is];
+  const Node& outer = model.arena[model.definitions[0].expression];
   CHECK(outer.fn == Fn::max);
   CHECK(model.arena[outer.args[0]].fn == Fn::max);
   CHECK(model.arena[outer.args[1]].value == 3);
@@ -132,7 +132,7 @@ TEST_CASE("velocities and accelerations have names, and derivatives have two for
   const Model model =
       read(particle("[functions]\nd = \"L + t*L/2[s]\"\n[definitions]\na = \"theta_dot\"\nb = \"theta_ddot\"\n"
                     "c = \"d_dot*2[s] + d\"\ne = \"ddt(R*phi)\"\nf = \"diff(R^2*phi_dot, phi_dot)\"\n"));
-  const auto node = [&](std::size_t k) { return model.arena[model.definitions[k].is]; };
+  const auto node = [&](std::size_t k) { return model.arena[model.definitions[k].expression]; };
   CHECK(node(0).order == 1);
   CHECK(node(1).order == 2);
   CHECK(model.definitions[1].unit.text == "1/s^2");

@@ -30,7 +30,7 @@ m = "1 kg"
 g = "9.81 m/s^2"
 L = "1 m"
 k = "30 N/m"
-)" + test::heavy_in_space +
+)" + test::particle_in_space +
          more;
 }
 

@@ -94,12 +94,12 @@ TEST_CASE("names with different numbers are different, also with their digits ex
 TEST_CASE("a particle has basis vectors for the coordinates of its position") {
   const Model model = read(placed("{ cylindrical = [\"r\", \"theta\", \"z\"], from = \"A\" }") +
                            "[definitions]\na = \"B.e_theta\"\nb = \"B.a_xA\"\nc = \"B.g_theta\"\n");
-  const Node& e = model.arena[model.definitions[0].is];
+  const Node& e = model.arena[model.definitions[0].expression];
   CHECK(e.op == Op::unit_basis);
   CHECK(e.index == 2);
   CHECK(model.coordinates[model.arena[e.args[0]].index].name == "theta");
-  CHECK(model.arena[model.definitions[1].is].op == Op::covariant_basis);
-  CHECK(model.arena[model.definitions[2].is].op == Op::contravariant_basis);
+  CHECK(model.arena[model.definitions[1].expression].op == Op::covariant_basis);
+  CHECK(model.arena[model.definitions[2].expression].op == Op::contravariant_basis);
   CHECK(model.definitions[2].unit.text == "1/m");
 }
 

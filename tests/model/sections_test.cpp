@@ -59,8 +59,8 @@ TEST_CASE("inputs have a unit and a default") {
   const Model model =
       read(particle("[inputs]\nF = { unit = \"N\", default = \"2 kN\" }\nG = {}\n[[force]]\non = \"P\"\nforce = \"(F + "
                     "G)*P.e_R\"\n"));
-  CHECK(exact(model, model.inputs[0].fallback) == 2000);
-  CHECK(exact(model, model.inputs[1].fallback) == 0);
+  CHECK(exact(model, model.inputs[0].default_value) == 2000);
+  CHECK(exact(model, model.inputs[1].default_value) == 0);
   CHECK(model.inputs[0].unit.text == "N");
 }
 

@@ -77,7 +77,7 @@ std::vector<WrongModel> wrong_hostile() {
       {"a chain of four hundred definitions", pendulum({}, definitions_in_a_row(400)), "212:9",
        "names refer to one another more than 200 deep",
        "state the names that are used first before the others, or use fewer steps"},
-      {"six thousand names", pendulum({}, "[definitions]\n" + numbered(6000)), "5010:1",
+      {"six thousand names", pendulum({}, "[definitions]\n" + numbered_parameters(6000)), "5010:1",
        "the model has more than 5000 names", "a model of this size cannot be handled"},
       {"a binary file",
        std::string("\x7f"

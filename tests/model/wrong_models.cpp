@@ -13,7 +13,7 @@ std::string pendulum(const std::vector<std::pair<std::string, std::string>>& edi
 m = "1 kg"
 g = "9.81 m/s^2"
 L = "1 m"
-)" + test::heavy_in_space;
+)" + test::particle_in_space;
   for (const auto& [from, to] : edits) {
     const std::size_t at = text.find(from);
     REQUIRE(at != std::string::npos);
@@ -34,7 +34,7 @@ std::string definitions_in_a_row(int count) {
   return result + "d" + std::to_string(count) + " = \"R\"\n";
 }
 
-std::string numbered(int count) {
+std::string numbered_parameters(int count) {
   std::string result;
   for (int k = 0; k < count; ++k) result += "n" + std::to_string(k) + " = 1\n";
   return result;

@@ -22,7 +22,7 @@ std::string repeated(const std::string& text, std::size_t times);
 /// d0 = "d1 + 1", d1 = "d2 + 1", ... under [definitions]
 std::string definitions_in_a_row(int count);
 /// n0 = 1, n1 = 1, ...
-std::string numbered(int count);
+std::string numbered_parameters(int count);
 
 std::vector<WrongModel> wrong_names();
 std::vector<WrongModel> wrong_structure();

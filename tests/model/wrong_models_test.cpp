@@ -19,7 +19,7 @@ void refuse_all(const std::vector<WrongModel>& table) {
       read(wrong.text);
       FAIL_CHECK("accepted");
     } catch (const eomgen::Error& error) {
-      const eomgen::Where& where = error.where();
+      const eomgen::SourceLocation& where = error.where();
       CHECK(error.stage() == "model");
       CHECK(error.exit_code() == 2);
       CHECK(where.file == "model.toml");

@@ -14,7 +14,7 @@ TEST_CASE("G1: the same throw in Cartesian, cylindrical and spherical coordinate
   constexpr double tolerance = 1e-9;  // for runs at rtol 1e-11
   for (const char* name : {"G1_cartesian", "G1_cylindrical", "G1_spherical"}) {
     INFO(name);
-    const test::Finished run = test::run_model(name, [](pipeline::SimulationRequest& request) {
+    const test::FinishedRun run = test::run_model(name, [](pipeline::SimulationRequest& request) {
       request.overrides.rtol = 1e-11;
       request.overrides.atol = 1e-12;
       request.overrides.outputs = {"P.position1", "P.position2", "P.position3", "energy"};

@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "models/reading_of.hpp"
-#include "support/throw.hpp"
+#include "support/projectile.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -44,6 +44,6 @@ TEST_CASE("G2: the equations are (2.169)") {
 }
 
 TEST_CASE("G2: the throw ends at the end of the parabola") {
-  const Finished run = check_throw("G2_parabolic");
+  const FinishedRun run = check_projectile("G2_parabolic");
   CHECK(run.drift("momentum.theta") < 1e-9);
 }

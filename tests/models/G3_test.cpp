@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "models/reading_of.hpp"
-#include "support/throw.hpp"
+#include "support/projectile.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -34,4 +34,4 @@ TEST_CASE("G3: the kinetic energy is (1.72)") {
   CHECK(same(g3.form(system::Approach::two).kinetic, kinetic));
 }
 
-TEST_CASE("G3: the throw ends at the end of the parabola") { check_throw("G3_helical"); }
+TEST_CASE("G3: the throw ends at the end of the parabola") { check_projectile("G3_helical"); }

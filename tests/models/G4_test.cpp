@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "models/reading_of.hpp"
-#include "support/throw.hpp"
+#include "support/projectile.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -23,8 +23,8 @@ TEST_CASE("G4: the bases are (1.74) and (1.75)") {
 }
 
 TEST_CASE("G4: components of a given vector in both bases, and the throw") {
-  const Finished run =
-      check_throw("G4_oblique", {"along_a1", "along_a2", "along_a3", "along_g1", "along_g2", "along_g3"});
+  const FinishedRun run =
+      check_projectile("G4_oblique", {"along_a1", "along_a2", "along_a3", "along_g1", "along_g2", "along_g3"});
   const double alpha = run.parameter("alpha"), c = std::cos(alpha), s = std::sin(alpha);
   constexpr double tolerance = 1e-14;
   const double up[] = {10 / c, 5 - 10 * s / c, 6}, down[] = {10 * c + 5 * s, 5, 6};

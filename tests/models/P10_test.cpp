@@ -62,7 +62,7 @@ TEST_CASE("P10: the thrust is radial and equals d(m Rdot)/dt + alpha m/R^2 at al
 }
 
 TEST_CASE("P10: free to rotate, angular momentum follows from the side force, the radial thrust from the motion") {
-  const test::Finished run = test::run_model("P10_rocket_pitching", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("P10_rocket_pitching", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-15;
     request.overrides.outputs = {"h", "mT_rate", "reaction.radial"};

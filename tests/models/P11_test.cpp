@@ -11,7 +11,7 @@ using namespace eomgen::test;
 namespace {
 
 struct Wall {
-  explicit Wall(const Finished& run)
+  explicit Wall(const FinishedRun& run)
       : m(run.parameter("m")),
         g(run.parameter("g")),
         b(run.parameter("b")),
@@ -32,7 +32,7 @@ struct Wall {
 }  // namespace
 
 TEST_CASE("P11: the particle sticks until the tangential force reaches mu_s m f'', then slides by the closed form") {
-  const Finished run = run_rough("P11_rough_wall");
+  const FinishedRun run = run_rough("P11_rough_wall");
   const Wall wall(run);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "slip");
@@ -55,7 +55,7 @@ TEST_CASE("P11: the particle sticks until the tangential force reaches mu_s m f'
 }
 
 TEST_CASE("P11: thrown against the tangential force it slides, sticks, and slides again") {
-  const Finished run = run_rough("P11_rough_wall", "moving");
+  const FinishedRun run = run_rough("P11_rough_wall", "moving");
   const Wall wall(run);
   // -2 + mu_d b t + F0 t^2/(2 m) = 0
   const double p = wall.mu_d * wall.b, q = wall.F0 / (2 * wall.m), stops = (-p + std::sqrt(p * p + 8 * q)) / (2 * q);
@@ -75,7 +75,7 @@ TEST_CASE("P11: with the smooth law it creeps before it slides, as in the hand-w
   text.erase(text.find(static_value), static_value.size());
   const std::string path = test::build_folder() + "/smooth_wall.toml";
   write_text(path, text);
-  const Finished run = run_rough(path);
+  const FinishedRun run = run_rough(path);
   const double m = run.parameter("m"), b = run.parameter("b"), F0 = run.parameter("F0"), mu = run.parameter("mu_d");
   Hand hand(
       [=](double t, const double* x, double* dx) {

@@ -23,7 +23,7 @@ TEST_CASE("P12: of the set (1.79) the first constraint is integrable, the others
 }
 
 TEST_CASE("P12: the integral keeps its initial value, and all three constraints hold") {
-  const test::Finished run = test::run_model("P12_pfaffian_set", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("P12_pfaffian_set", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-6;  // a tolerance at which the distance would drift
     request.overrides.atol = 1e-6;
   });
@@ -53,7 +53,7 @@ g = 9.81
 D = 0.3
 [functions]
 d = "1 + sin(2*t)/10"
-)toml" + test::heavy_in_space +
+)toml" + test::particle_in_space +
         R"toml([[force]]
 on = "P"
 force = "D*R*P.e_theta"
@@ -69,7 +69,7 @@ name = "circle"
     return test::run_model(
         path, [](pipeline::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; });
   };
-  const test::Finished bound = circle("velocity = \"phi_dot\""), fixed = circle("holonomic = \"phi - 1\"");
+  const test::FinishedRun bound = circle("velocity = \"phi_dot\""), fixed = circle("holonomic = \"phi - 1\"");
   CHECK(bound.drift("integral.circle") == 0);
   for (const char* name : {"theta", "theta_dot", "phi", "reaction.sphere", "reaction.circle"}) {
     INFO(name);

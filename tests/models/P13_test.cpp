@@ -104,7 +104,7 @@ TEST_CASE("P13: e_theta/r does work 2 pi c per turn although its curl vanishes, 
 }
 
 TEST_CASE("P13: the energy with the potentials of forces is conserved, T + U is not") {
-  const test::Finished run = test::run_model("P13_saddle_field", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("P13_saddle_field", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });

@@ -24,7 +24,7 @@ void tighten(pipeline::SimulationRequest& request) {
 TEST_CASE("P14: in Cartesian, spherical and parabolic coordinates, Kepler's equation holds and E and h are conserved") {
   for (const char* name : {"P14_kepler_cartesian", "P14_kepler_spherical", "P14_kepler_parabolic"}) {
     INFO(name);
-    const test::Finished run = test::run_model(name, tighten);
+    const test::FinishedRun run = test::run_model(name, tighten);
     const double GM = run.parameter("GM"), a = run.parameter("a"), e = run.parameter("e"), m = run.parameter("m");
     double worst = 0;
     for (std::size_t i = 0; i < run.rows.size(); ++i) {
@@ -49,7 +49,7 @@ TEST_CASE("P14: in Cartesian, spherical and parabolic coordinates, Kepler's equa
 
 TEST_CASE("P14: after one period it is back where it started") {
   const double period = 2 * std::acos(-1.0);  // GM = a = 1
-  const test::Finished run = test::run_model("P14_kepler_cartesian", [&](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("P14_kepler_cartesian", [&](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.t_end = period;
   });

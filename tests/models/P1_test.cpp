@@ -8,7 +8,7 @@
 using namespace eomgen;
 
 TEST_CASE("P1: with constant length, E and h_z are conserved to 1e-10 over 100 s") {
-  const test::Finished run = test::run_model("P1_spherical_pendulum", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("P1_spherical_pendulum", [](pipeline::SimulationRequest& request) {
     request.scene = "long";  // DOP853, rtol = atol = 1e-12, 100 s
   });
   CHECK(run.simulation.result.solver == "dop853");
@@ -18,7 +18,7 @@ TEST_CASE("P1: with constant length, E and h_z are conserved to 1e-10 over 100 s
 }
 
 TEST_CASE("P1: a conical pendulum has constant height and the tension of circular motion") {
-  const test::Finished run =
+  const test::FinishedRun run =
       test::run_model("P1_spherical_pendulum", [](pipeline::SimulationRequest& request) { request.scene = "conical"; });
   const double m = run.parameter("m"), g = run.parameter("g"), L = run.parameter("L");
   const double rate = std::sqrt(2 * g / L);  // phi = 2 pi/3: rate^2 = -g/(L cos phi)
@@ -31,7 +31,7 @@ TEST_CASE("P1: a conical pendulum has constant height and the tension of circula
 }
 
 TEST_CASE("P1: with L(t), dE/dt = lambda Ldot along the run") {
-  const test::Finished run = test::run_model("P1_spherical_pendulum_varying", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("P1_spherical_pendulum_varying", [](pipeline::SimulationRequest& request) {
     // Rows come from the dense output; the differences below divide its error by 0.01.
     request.overrides.rtol = 1e-14;
     request.overrides.atol = 1e-14;
@@ -65,7 +65,7 @@ TEST_CASE("P1: approach I and approach II give the same motion") {
       request.overrides.atol = 1e-12;
     });
   };
-  const test::Finished one = run(pipeline::ApproachChoice::one), two = run(pipeline::ApproachChoice::two);
+  const test::FinishedRun one = run(pipeline::ApproachChoice::one), two = run(pipeline::ApproachChoice::two);
   CHECK(one.simulation.program.approach == system::Approach::one);
   CHECK(two.simulation.program.approach == system::Approach::two);
   for (const char* name : {"phi", "theta", "phi_dot", "theta_dot", "reaction.rod"}) {

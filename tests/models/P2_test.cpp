@@ -9,7 +9,7 @@
 using namespace eomgen;
 
 TEST_CASE("P2: with constant length it follows the elliptic functions, and both reactions are correct") {
-  const test::Finished run = test::run_model("P2_planar_pendulum", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("P2_planar_pendulum", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });
@@ -29,7 +29,7 @@ TEST_CASE("P2: with constant length it follows the elliptic functions, and both 
 }
 
 TEST_CASE("P2: with variable length it satisfies the power balance and the reaction of (2.43)") {
-  const test::Finished run = test::run_model("P2_planar_pendulum_varying", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("P2_planar_pendulum_varying", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
   });

@@ -18,7 +18,7 @@ void tight(pipeline::SimulationRequest& request) {
 }
 
 // Motion by the spring in the plane, independent of the plane: x and y oscillate with sqrt(k/m).
-void check_swing(const test::Finished& run, std::size_t i) {
+void check_swing(const test::FinishedRun& run, std::size_t i) {
   const double w = std::sqrt(run.parameter("k") / run.parameter("m")), phase = w * (run.rows.t[i] - run.rows.t[0]);
   CHECK(run.rows.at(i, "x") == doctest::Approx(std::cos(phase)).epsilon(1e-10));
   CHECK(run.rows.at(i, "y") == doctest::Approx(1.5 / w * std::sin(phase)).epsilon(1e-10));
@@ -29,7 +29,7 @@ void check_swing(const test::Finished& run, std::size_t i) {
 TEST_CASE("P3: height and reaction have their closed forms, for any start time") {
   for (const char* scene : {"default", "later"}) {
     CAPTURE(scene);
-    const test::Finished run = test::run_model("P3_moving_plane", [&](pipeline::SimulationRequest& request) {
+    const test::FinishedRun run = test::run_model("P3_moving_plane", [&](pipeline::SimulationRequest& request) {
       tight(request);
       request.scene = scene;
     });
@@ -61,7 +61,7 @@ TEST_CASE("P3: in the display form the integral remains an integral, and its rat
 }
 
 TEST_CASE("P3: an integral that is not elementary is a state with the value of the error function") {
-  const test::Finished run = test::run_model("P3_moving_plane_gust", tight);
+  const test::FinishedRun run = test::run_model("P3_moving_plane_gust", tight);
   CHECK(run.simulation.certificate.pass);
   CHECK(run.simulation.program.integrals.size() == 1);
   const double m = run.parameter("m"), g = run.parameter("g"), v0 = run.parameter("v0"), tau = run.parameter("tau");

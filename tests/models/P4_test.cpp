@@ -12,7 +12,7 @@ namespace {
 struct Cone {
   double m, g, K, L0, mu_d, mu_s, alpha0, A = 0, w = 0;
 
-  explicit Cone(const Finished& run, bool moves)
+  explicit Cone(const FinishedRun& run, bool moves)
       : m(run.parameter("m")),
         g(run.parameter("g")),
         K(run.parameter("K")),
@@ -46,7 +46,7 @@ struct Cone {
 };
 
 void follows_newton(const std::string& model, bool moves) {
-  const Finished run = run_rough(model);
+  const FinishedRun run = run_rough(model);
   const Cone cone(run, moves);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "stick");
@@ -76,7 +76,7 @@ TEST_CASE("P4: on the fixed and on the moving cone the particle slides by Newton
 }
 
 TEST_CASE("P4: at random states the derived accelerations are those of Newton's law") {
-  const Finished run = run_rough("P4_moving_cone");
+  const FinishedRun run = run_rough("P4_moving_cone");
   const Cone cone(run, true);
   AtState derived(run, "P4_moving_cone");
   Draw draw;
@@ -94,7 +94,7 @@ TEST_CASE("P4: at random states the derived accelerations are those of Newton's 
 }
 
 TEST_CASE("P4: at rest it sticks if the friction cone contains the required force, and slides otherwise") {
-  const Finished held = run_rough("P4_rough_cone", "held");
+  const FinishedRun held = run_rough("P4_rough_cone", "held");
   CHECK(events_of(held).empty());
   const Cone cone(held, false);
   for (std::size_t i = 0; i < held.rows.size(); ++i) {
@@ -105,7 +105,7 @@ TEST_CASE("P4: at rest it sticks if the friction cone contains the required forc
   // mu_s N = |pull| with N = m g sin(phi)
   const double critical = std::abs(cone.pull(0, 0.5)) / (cone.m * cone.g * std::sin(cone.phi(0)));
   CHECK(events_of(run_rough("P4_rough_cone", "held", with({{"mu_s", critical * (1 + 1e-9)}, {"mu_d", 0.1}}))).empty());
-  const Finished slides = run_rough("P4_rough_cone", "held", with({{"mu_s", critical * (1 - 1e-9)}, {"mu_d", 0.1}}));
+  const FinishedRun slides = run_rough("P4_rough_cone", "held", with({{"mu_s", critical * (1 - 1e-9)}, {"mu_d", 0.1}}));
   REQUIRE(!events_of(slides).empty());
   CHECK(events_of(slides)[0].kind == "slip");
   CHECK(events_of(slides)[0].t == 0);
@@ -113,7 +113,7 @@ TEST_CASE("P4: at rest it sticks if the friction cone contains the required forc
 
 TEST_CASE("P4: released along its meridian it stops at the point of the closed form") {
   // m R'' = -m g sin(alpha) - K (R - L0) - mu_d N: half an oscillation about the point where these vanish.
-  const Finished run = run_rough("P4_rough_cone", "released");
+  const FinishedRun run = run_rough("P4_rough_cone", "released");
   const Cone cone(run, false);
   const double N = cone.m * cone.g * std::sin(cone.phi(0));
   const double centre = cone.L0 - (cone.m * cone.g * std::cos(cone.phi(0)) + cone.mu_d * N) / cone.K;
@@ -125,7 +125,7 @@ TEST_CASE("P4: released along its meridian it stops at the point of the closed f
 }
 
 TEST_CASE("P4: carried by the cone it slips when the required force first exceeds the static friction") {
-  const Finished run = run_rough("P4_moving_cone", "shaken");
+  const FinishedRun run = run_rough("P4_moving_cone", "shaken");
   const Cone cone(run, true);
   const double R = 0.45;
   const double still[4] = {R, 0, 0, 0};

@@ -12,7 +12,7 @@ using namespace eomgen::test;
 namespace {
 
 struct Sphere {
-  explicit Sphere(const Finished& run)
+  explicit Sphere(const FinishedRun& run)
       : m(run.parameter("m")),
         g(run.parameter("g")),
         R0(run.parameter("R0")),
@@ -49,7 +49,7 @@ struct Sphere {
 };
 
 void sliding_is_2_157(const std::string& model, bool leaves) {
-  const Finished run = run_rough(model);
+  const FinishedRun run = run_rough(model);
   const Sphere sphere(run);
   AtState derived(run, model);
   Draw draw;
@@ -102,7 +102,7 @@ TEST_CASE(
 }
 
 TEST_CASE("P5: inside it slides by (2.157) until it sticks, with the friction of (2.159)") {
-  const Finished run = run_rough("P5_inside_rough_sphere");
+  const FinishedRun run = run_rough("P5_inside_rough_sphere");
   const Sphere sphere(run);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "stick");
@@ -132,7 +132,7 @@ TEST_CASE("P5: inside it slides by (2.157) until it sticks, with the friction of
 }
 
 TEST_CASE("P5: at rest it sticks while mu_s N exceeds the tangential force, and slides otherwise") {
-  const Finished held = run_rough("P5_rough_sphere", "held");
+  const FinishedRun held = run_rough("P5_rough_sphere", "held");
   const Sphere sphere(held);
   CHECK(events_of(held).empty());
   for (std::size_t i = 0; i < held.rows.size(); ++i) {
@@ -143,7 +143,7 @@ TEST_CASE("P5: at rest it sticks while mu_s N exceeds the tangential force, and 
   const double tangential = std::hypot(sphere.m * sphere.g * std::sin(0.1) - f[1], f[2]);
   const double critical = tangential / sphere.normal(0.1, 0.3, 0, 0);
   CHECK(events_of(run_rough("P5_rough_sphere", "held", with({{"mu_s", critical * (1 + 1e-9)}}))).empty());
-  const Finished slides = run_rough("P5_rough_sphere", "held", with({{"mu_s", critical * (1 - 1e-9)}}));
+  const FinishedRun slides = run_rough("P5_rough_sphere", "held", with({{"mu_s", critical * (1 - 1e-9)}}));
   REQUIRE(!events_of(slides).empty());
   CHECK(events_of(slides)[0].kind == "slip");
   CHECK(events_of(slides)[0].t == 0);
@@ -151,7 +151,7 @@ TEST_CASE("P5: at rest it sticks while mu_s N exceeds the tangential force, and 
 
 TEST_CASE(
     "P5: it leaves the sphere where (2.158) vanishes along the hand-written motion, then flies without friction") {
-  const Finished run = run_rough("P5_rough_sphere");
+  const FinishedRun run = run_rough("P5_rough_sphere");
   const Sphere sphere(run);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "lose_contact");
@@ -176,14 +176,14 @@ TEST_CASE(
 }
 
 TEST_CASE("P5: smooth and without spring it leaves at cos(phi) = 2/3, and inside it conserves h and (2.160)") {
-  const Finished outside = run_rough("P5_rough_sphere", "smooth");
+  const FinishedRun outside = run_rough("P5_rough_sphere", "smooth");
   REQUIRE(events_of(outside).size() == 1);
   const double g = outside.parameter("g"), R0 = outside.parameter("R0"), leaves = std::acos(2.0 / 3);
   // phi_dot = 2 sqrt(g/R0) sin(phi/2): t = sqrt(R0/g) log tan(phi/4)
   const double time = std::sqrt(R0 / g) * std::log(std::tan(leaves / 4) / std::tan(0.1 / 4));
   CHECK(std::abs(events_of(outside)[0].t - time) < by_hand);
 
-  const Finished inside = run_rough("P5_inside_rough_sphere", "smooth");
+  const FinishedRun inside = run_rough("P5_inside_rough_sphere", "smooth");
   const double h = std::pow(std::sin(2.2), 2) * 4;  // of unit m R0^2
   Hand hand(
       [=](double, const double* x, double* dx) {

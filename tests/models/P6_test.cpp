@@ -10,7 +10,7 @@ using namespace eomgen::test;
 namespace {
 
 struct Circle {
-  explicit Circle(const Finished& run)
+  explicit Circle(const FinishedRun& run)
       : m(run.parameter("m")),
         g(run.parameter("g")),
         beta(run.parameter("beta")),
@@ -37,7 +37,7 @@ struct Circle {
 
 TEST_CASE(
     "P6: at random states both multipliers, the friction of (2.44) and the acceleration are those of Newton's law") {
-  const Finished run = run_rough("P6_rough_circle");
+  const FinishedRun run = run_rough("P6_rough_circle");
   const Circle c(run);
   AtState derived(run, "P6_rough_circle");
   Draw draw;
@@ -55,7 +55,7 @@ TEST_CASE(
 }
 
 TEST_CASE("P6: between events the particle follows the hand-written equation, until it sticks") {
-  const Finished run = run_rough("P6_rough_circle");
+  const FinishedRun run = run_rough("P6_rough_circle");
   const Circle c(run);
   const std::vector<run::RunEvent> events = events_of(run);
   REQUIRE(events.size() == 4);
@@ -78,7 +78,7 @@ TEST_CASE("P6: between events the particle follows the hand-written equation, un
 }
 
 TEST_CASE("P6: on a level circle of constant radius it stops after asinh(L w^2/g)/(2 mu)") {
-  const Finished run = run_rough("P6_rough_circle", "flat");
+  const FinishedRun run = run_rough("P6_rough_circle", "flat");
   const Circle c(run);
   REQUIRE(events_of(run).size() == 1);
   CHECK(std::abs(run.final("theta") - std::asinh(c.l0 * 25 / c.g) / (2 * c.mu_d)) < by_hand);
@@ -87,7 +87,7 @@ TEST_CASE("P6: on a level circle of constant radius it stops after asinh(L w^2/g
 }
 
 TEST_CASE("P6: an oscillating circle carries a sticking particle, and its power is the rate of the energy") {
-  const Finished run = run_rough("P6_rough_circle", "held");
+  const FinishedRun run = run_rough("P6_rough_circle", "held");
   CHECK(events_of(run).empty());
   const Circle c(run);
   for (std::size_t i = 0; i < run.rows.size(); ++i) {

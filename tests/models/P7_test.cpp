@@ -27,7 +27,7 @@ TEST_CASE("P7: both approaches and the display form agree with the oracle to 45 
 }
 
 TEST_CASE("P7: the reaction along the run is (2.111), and the power balance holds") {
-  const test::Finished run = test::run_model("P7_moving_sphere", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("P7_moving_sphere", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
     request.overrides.t_end = 2;  // before it comes near the pole
@@ -44,7 +44,7 @@ TEST_CASE("P7: the reaction along the run is (2.111), and the power balance hold
 }
 
 TEST_CASE("P7: with a velocity constraint both reactions are those of (2.114)") {
-  const test::Finished run = test::run_model("P7_moving_sphere_pfaffian", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("P7_moving_sphere_pfaffian", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
   });

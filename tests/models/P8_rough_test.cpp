@@ -10,7 +10,7 @@ using namespace eomgen::test;
 namespace {
 
 struct Helix {
-  explicit Helix(const Finished& run)
+  explicit Helix(const FinishedRun& run)
       : m(run.parameter("m")),
         g(run.parameter("g")),
         R(run.parameter("R")),
@@ -29,7 +29,7 @@ struct Helix {
 }  // namespace
 
 TEST_CASE("P8: at random states the derived equations are (2.143), the normal force that of both constraints") {
-  const Finished run = run_rough("P8_rough_helix");
+  const FinishedRun run = run_rough("P8_rough_helix");
   const Helix h(run);
   AtState derived(run, "P8_rough_helix");
   Draw draw;
@@ -54,7 +54,7 @@ TEST_CASE("P8: at random states the derived equations are (2.143), the normal fo
 }
 
 TEST_CASE("P8: thrown up it stops at the place and time of the quadrature of (2.143), and sticks with (2.145)") {
-  const Finished run = run_rough("P8_rough_helix");
+  const FinishedRun run = run_rough("P8_rough_helix");
   const Helix h(run);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "stick");
@@ -76,7 +76,7 @@ TEST_CASE("P8: thrown up it stops at the place and time of the quadrature of (2.
 }
 
 TEST_CASE("P8: on a wire with too little friction it reverses and slides down by the quadrature") {
-  const Finished run = run_rough("P8_rough_helix", "slips");
+  const FinishedRun run = run_rough("P8_rough_helix", "slips");
   const Helix h(run);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "reverse");
@@ -93,7 +93,7 @@ TEST_CASE("P8: from rest it sticks if mu_s is at least alpha, and slides otherwi
   CHECK(events_of(run_rough("P8_rough_helix", "rest")).empty());
   CHECK(events_of(run_rough("P8_rough_helix", "rest", with({{"mu_s", alpha * (1 + 1e-9)}}))).empty());
   for (const double mu : {alpha * (1 - 1e-9), 0.25}) {
-    const Finished run = run_rough("P8_rough_helix", "starts", with({{"mu_s", mu}}));
+    const FinishedRun run = run_rough("P8_rough_helix", "starts", with({{"mu_s", mu}}));
     REQUIRE(events_of(run).size() == 1);
     CHECK(events_of(run)[0].kind == "slip");
     CHECK(events_of(run)[0].t == 0);

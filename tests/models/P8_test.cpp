@@ -27,7 +27,7 @@ TEST_CASE("P8: theta remains, with (2.150); both constraint forces are those of 
 }
 
 TEST_CASE("P8: the bead follows (2.151) to 1e-11, and its constraint force is (2.152)") {
-  const Finished run = run_model("P8_smooth_helix", [](pipeline::SimulationRequest& request) {
+  const FinishedRun run = run_model("P8_smooth_helix", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-13;
     request.overrides.atol = 1e-13;
   });

@@ -13,7 +13,7 @@ using namespace eomgen::test;
 
 namespace {
 
-Finished top(const std::string& scene) {
+FinishedRun top(const std::string& scene) {
   return run_model("R10_lagrange_top", [&](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.rtol = 1e-12;
@@ -23,7 +23,7 @@ Finished top(const std::string& scene) {
 }
 
 // Every scene has the moment G, which is 0 in most: no invariant is reported.
-double spread(const Finished& run, const std::string& name) {
+double spread(const FinishedRun& run, const std::string& name) {
   double least = run.rows.at(0, name), greatest = least;
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     least = std::min(least, run.rows.at(i, name));
@@ -32,7 +32,7 @@ double spread(const Finished& run, const std::string& name) {
   return (greatest - least) / std::abs(greatest);
 }
 
-double momentum(const Finished& run, std::size_t i) {
+double momentum(const FinishedRun& run, std::size_t i) {
   const double c = std::cos(run.rows.at(i, "theta")), s = std::sin(run.rows.at(i, "theta"));
   const double across = run.parameter("Jt") + run.parameter("m") * std::pow(run.parameter("L"), 2);
   return across * s * s * run.rows.at(i, "psi_dot") + run.parameter("Ja") * c * run.rows.at(i, "top.omega3");
@@ -63,7 +63,7 @@ TEST_CASE("R10: the moment along E3 is not conservative, spring and weight are")
 }
 
 TEST_CASE("R10: released without precession it nutates between two roots of the cubic of its energy, with cusps") {
-  const Finished run = top("default");
+  const FinishedRun run = top("default");
   const double m = run.parameter("m"), g = run.parameter("g"), L = run.parameter("L"),
                u0 = std::cos(run.parameter("tilt"));
   const double across = run.parameter("Jt") + m * L * L, p = run.parameter("Ja") * run.parameter("spin");
@@ -85,16 +85,16 @@ TEST_CASE("R10: released without precession it nutates between two roots of the 
 }
 
 TEST_CASE("R10: started with the slow rate of steady precession, its tilt is constant") {
-  const Finished run = top("steady");
+  const FinishedRun run = top("steady");
   for (std::size_t i = 0; i < run.rows.size(); ++i) CHECK(std::abs(run.rows.at(i, "theta") - 0.6) < 1e-9);
   CHECK(run.final("psi") == doctest::Approx(5 * run.parameter("slow")).epsilon(1e-9));
 }
 
 TEST_CASE("R10: a torsional spring conserves energy but not the momentum of psi; a moment G E3 adds G t to it") {
-  const Finished spring = top("spring");
+  const FinishedRun spring = top("spring");
   CHECK(spread(spring, "energy") < 1e-10);
   CHECK(std::abs(momentum(spring, spring.rows.size() - 1) - momentum(spring, 0)) > 0.01);
-  const Finished moment = top("moment");
+  const FinishedRun moment = top("moment");
   for (std::size_t i = 0; i < moment.rows.size(); ++i) {
     CHECK(momentum(moment, i) == doctest::Approx(momentum(moment, 0) + 0.02 * moment.rows.t[i]).epsilon(1e-10));
   }

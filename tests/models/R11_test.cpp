@@ -47,11 +47,11 @@ TEST_CASE("R11: two paths to the same attitude with different work") {
 TEST_CASE(
     "R11: the energy increases by the work of the moment; about a fixed axis T + U is conserved and the rotation "
     "is that of M0/J") {
-  const Finished run = run_model("R11_constant_moment");
+  const FinishedRun run = run_model("R11_constant_moment");
   CHECK(run.simulation.result.power_balance < 1e-8);
   for (std::size_t i = 0; i < run.rows.size(); ++i)
     CHECK(run.rows.at(i, "work") == doctest::Approx(run.rows.at(i, "power")).epsilon(1e-12));
-  const Finished axis = run_model("R11_constant_moment_fixed_axis");
+  const FinishedRun axis = run_model("R11_constant_moment_fixed_axis");
   CHECK(axis.drift("energy.applied") < 1e-12);
   CHECK(axis.final("n") == doctest::Approx(0.1 + 5 + 0.3 / 2.5 * 25 / 2).epsilon(1e-12));
 }

@@ -12,7 +12,7 @@ using namespace eomgen;
 TEST_CASE("R12: the five reactions of the pin satisfy Euler's laws for an unbalanced and a balanced body") {
   for (const char* scene : {"default", "balanced"}) {
     INFO(scene);
-    const test::Finished run = test::run_model("R12_pinned_body", [&](pipeline::SimulationRequest& request) {
+    const test::FinishedRun run = test::run_model("R12_pinned_body", [&](pipeline::SimulationRequest& request) {
       request.scene = scene;
       request.overrides.rtol = request.overrides.atol = 1e-12;
     });

@@ -28,7 +28,7 @@ TEST_CASE("R13: the constraint and the equations are (9.102), and it is not inte
 // With v the speed of the centre along e1: vdot = L1 w^2, (J + m L1^2) wdot = -m L1 v w, so that v = c tanh(L1 c t/k^2
 // + ..), k^2 = L1^2 + J/m, c^2 = v^2 + k^2 w^2.
 TEST_CASE("R13: it turns around and approaches straight motion as tanh, and conserves energy") {
-  const Finished run = run_model("R13_sleigh", [](pipeline::SimulationRequest& request) {
+  const FinishedRun run = run_model("R13_sleigh", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = request.overrides.atol = 1e-12;
   });
   const double L1 = run.parameter("L1"), k2 = L1 * L1 + run.parameter("J") / run.parameter("m");
@@ -43,7 +43,7 @@ TEST_CASE("R13: it turns around and approaches straight motion as tanh, and cons
   CHECK(greatest > 2);
   CHECK(run.final("forward") == doctest::Approx(c).epsilon(1e-6));
   CHECK(run.drift("energy") < 1e-11);
-  const Finished straight =
+  const FinishedRun straight =
       run_model("R13_sleigh", [](pipeline::SimulationRequest& request) { request.scene = "straight"; });
   CHECK(straight.final("x1") == doctest::Approx(50).epsilon(1e-12));
   CHECK(std::abs(straight.final("phi")) < 1e-14);

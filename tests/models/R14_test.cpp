@@ -32,7 +32,7 @@ TEST_CASE("R14: theta = 0, pi is singular in approach I and regular in approach 
   REQUIRE(sets.size() == 1);
   CHECK(sets[0].approach == "I");
   CHECK(same(square(sets[0].factor), square(sin(r14("theta")))));
-  const Finished run = run_model("R14_sliding_cylinder");
+  const FinishedRun run = run_model("R14_sliding_cylinder");
   CHECK(run.final("theta") == doctest::Approx(5).epsilon(1e-12));
   CHECK(run.final("phi") == doctest::Approx(3.5).epsilon(1e-12));
   for (std::size_t i = 0; i < run.rows.size(); ++i) {

@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-test::Finished flight(const std::string& scene) {
+test::FinishedRun flight(const std::string& scene) {
   return test::run_model("R17_follower_force", [&](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.rtol = 1e-12;
@@ -22,7 +22,7 @@ test::Finished flight(const std::string& scene) {
 }  // namespace
 
 TEST_CASE("R17: for a sphere w is constant, e3 rotates about it, and x is the double integral of F/m e3") {
-  const test::Finished run = flight("sphere");
+  const test::FinishedRun run = flight("sphere");
   const Vector3d w(0.5, 0.3, 2), n = w.normalized(), along = n.z() * n, p = Vector3d::UnitZ() - along, q = n.cross(p);
   const double W = w.norm(), push = run.parameter("F") / run.parameter("m");
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
@@ -35,7 +35,7 @@ TEST_CASE("R17: for a sphere w is constant, e3 rotates about it, and x is the do
 
 // H = J w is fixed in space; e3 turns about it with H/J1, and w . e3 is constant.
 TEST_CASE("R17: for an axisymmetric body e3 rotates about H with the rate |H|/J1") {
-  const test::Finished run = flight("default");
+  const test::FinishedRun run = flight("default");
   const Vector3d H(0.5, 0.3, 0.8), n = H.normalized(), along = n.z() * n, p = Vector3d::UnitZ() - along, q = n.cross(p);
   const double W = H.norm(), push = run.parameter("F") / run.parameter("m");
   for (std::size_t i = 0; i < run.rows.size(); ++i) {

@@ -23,7 +23,7 @@ TEST_CASE("R18: every representation of rotations gives the same motion of a hea
   const std::string shipped = test::read_text(test::model_path("R18_rodrigues"));
   std::vector<std::array<double, 6>> found;
   for (const rotations::Rotation& r : rotations::registry()) {
-    const std::optional<test::Attitude> written = test::attitude_in(r, test::some_attitude());
+    const std::optional<test::Attitude> written = test::attitude_in(r, test::sample_attitude());
     if (!written) continue;
     INFO(r.name);
     std::string text = shipped;
@@ -31,7 +31,7 @@ TEST_CASE("R18: every representation of rotations gives the same motion of a hea
     replace(text, "l1 = 0.3, l2 = 0.2", written->start);
     const std::string path = test::build_folder() + "/R18_" + r.name + ".toml";
     test::write_text(path, text);
-    const test::Finished run = test::run_model(path, [](pipeline::SimulationRequest& request) {
+    const test::FinishedRun run = test::run_model(path, [](pipeline::SimulationRequest& request) {
       request.overrides.rtol = 1e-13;
       request.overrides.atol = 1e-14;
       request.overrides.t_end = 0.3;

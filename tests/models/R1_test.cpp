@@ -20,7 +20,7 @@ void tighten(pipeline::SimulationRequest& request) {
   request.overrides.atol = 1e-13;
 }
 
-double worst_against_jacobi(const test::Finished& run) {
+double worst_against_jacobi(const test::FinishedRun& run) {
   double worst = 0;
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const std::array<double, 3> w = test::free_body(J, 0.2, 1, run.rows.t[i]);
@@ -52,7 +52,7 @@ std::string model_text(const std::string& rotation, const std::string& start) {
 TEST_CASE("R1: the angular velocity is Jacobi's solution, in angles and Euler parameters, and E and H are conserved") {
   for (const char* name : {"R1_free_body", "R1_free_body_euler_parameters"}) {
     INFO(name);
-    const test::Finished run = test::run_model(name, tighten);
+    const test::FinishedRun run = test::run_model(name, tighten);
     CHECK(worst_against_jacobi(run) < tolerance);
     CHECK(run.drift("energy") < 1e-11);
     for (const char* h : {"angular_momentum.E1", "angular_momentum.E2"}) CHECK(run.drift(h) < 1e-10);
@@ -73,7 +73,7 @@ TEST_CASE("R1: the angular velocity is Jacobi's solution, in angles and Euler pa
 TEST_CASE("R1: with two equal moments w rotates at a constant rate, with three it is constant") {
   for (const char* scene : {"axisymmetric", "symmetric"}) {
     INFO(scene);
-    const test::Finished run = test::run_model("R1_free_body", [&](pipeline::SimulationRequest& request) {
+    const test::FinishedRun run = test::run_model("R1_free_body", [&](pipeline::SimulationRequest& request) {
       tighten(request);
       request.scene = scene;
     });
@@ -88,7 +88,7 @@ TEST_CASE("R1: with two equal moments w rotates at a constant rate, with three i
 }
 
 TEST_CASE("R1: near the intermediate axis it tumbles: e2 reverses, and E and H are conserved") {
-  const test::Finished run = test::run_model("R1_free_body_euler_parameters", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("R1_free_body_euler_parameters", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.rtol = request.overrides.atol = 1e-13;
     request.scene = "tumbling";
@@ -110,14 +110,14 @@ TEST_CASE("R1: near the intermediate axis it tumbles: e2 reverses, and E and H a
 
 TEST_CASE("R1: all twelve sets of Euler angles, Euler parameters and a Rodrigues vector give the same attitude") {
   std::vector<std::array<double, 9>> found;
-  const Eigen::Matrix3d start = test::some_attitude();
+  const Eigen::Matrix3d start = test::sample_attitude();
   for (const rotations::Rotation& r : rotations::registry()) {
     const std::optional<test::Attitude> written = test::attitude_in(r, start);
     if (!written) continue;
     INFO(r.name);
     const std::string path = test::build_folder() + "/R1_" + r.name + ".toml";
     test::write_text(path, model_text(written->rotation, written->start));
-    const test::Finished run = test::run_model(path);
+    const test::FinishedRun run = test::run_model(path);
     found.emplace_back();
     for (std::size_t i = 0; i < 9; ++i)
       found.back()[i] = run.final("c" + std::to_string(i / 3 + 1) + std::to_string(i % 3 + 1));

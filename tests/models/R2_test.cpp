@@ -21,7 +21,7 @@ struct Flight {
   double m, R, g, B, rho, Cd;
   Vector3d w{10, 30, 180};  // the start has the body's axes along E1, E2, E3
 
-  explicit Flight(const test::Finished& run)
+  explicit Flight(const test::FinishedRun& run)
       : m(run.parameter("m")),
         R(run.parameter("R")),
         g(run.parameter("g")),
@@ -39,7 +39,7 @@ struct Flight {
 // vdot = -g E3 + B w x v with constant w, eq. (8.59) with its signs put right: along w a free fall, across it v - v_s
 // turns about w with the rate B|w|, where v_s is the velocity for which lift and weight balance.
 TEST_CASE("R2: without drag the ball follows the closed form of (8.63)") {
-  const test::Finished run = test::run_model("R2_ball_in_flight", tighten);
+  const test::FinishedRun run = test::run_model("R2_ball_in_flight", tighten);
   const Flight f(run);
   const Vector3d n = f.w.normalized(), gravity(0, 0, -f.g), across = gravity - gravity.dot(n) * n;
   const double turn = f.B * f.w.norm();
@@ -61,7 +61,7 @@ TEST_CASE("R2: without drag the ball follows the closed form of (8.63)") {
 }
 
 TEST_CASE("R2: with drag it agrees with a separate integration of vdot") {
-  const test::Finished run = test::run_model("R2_ball_in_flight", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("R2_ball_in_flight", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.scene = "drag";
   });

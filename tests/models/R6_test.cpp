@@ -92,7 +92,7 @@ TEST_CASE(
 // follow from Euler's equations about the centre and hold whatever theta does in time: carried back to theta = pi/2 the
 // pair is constant.
 TEST_CASE("R6: the integrals of Appell, Chaplygin and Korteweg are constant along the run") {
-  const Finished run = run_model("R6_rolling_disk", [](pipeline::SimulationRequest& request) {
+  const FinishedRun run = run_model("R6_rolling_disk", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });

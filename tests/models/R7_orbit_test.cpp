@@ -74,7 +74,7 @@ TEST_CASE(
 }
 
 TEST_CASE("R7_orbit: energy and the angular momentum about the axis of the frame are conserved") {
-  const test::Finished run = test::run_model("R7_satellite_in_orbit", [](pipeline::SimulationRequest& r) {
+  const test::FinishedRun run = test::run_model("R7_satellite_in_orbit", [](pipeline::SimulationRequest& r) {
     r.overrides.rtol = 1e-11;
     r.overrides.atol = 1e-12;
   });

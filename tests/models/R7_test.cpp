@@ -9,7 +9,7 @@
 using namespace eomgen;
 
 TEST_CASE("R7: energy and H_O are conserved with the full attraction of second order") {
-  const test::Finished run = test::run_model("R7_satellite", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("R7_satellite", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });

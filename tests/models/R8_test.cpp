@@ -23,13 +23,13 @@ TEST_CASE(
   const auto tighten = [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = request.overrides.atol = 1e-12;
   };
-  const Finished free = run_model("R8_pendulum_body", tighten), joint = run_model("R8_pendulum_body_joint", tighten);
+  const FinishedRun free = run_model("R8_pendulum_body", tighten), joint = run_model("R8_pendulum_body_joint", tighten);
   for (const char* name : {"phi", "theta", "phi_dot", "theta_dot"})
     CHECK(std::abs(free.final(name) - joint.final(name)) < 1e-9);
   CHECK(free.drift("energy") < 1e-11);
   CHECK(free.drift("momentum.phi") < 1e-11);
   double greatest = 0;
-  for (const Finished* run : {&free, &joint}) {
+  for (const FinishedRun* run : {&free, &joint}) {
     for (std::size_t i = 0; i < run->rows.size(); ++i) {
       CHECK(std::abs(run->rows.at(i, "reaction.no_spin") - run->rows.at(i, "spin_moment")) < 1e-11);
       greatest = std::max(greatest, std::abs(run->rows.at(i, "spin_moment")));

@@ -9,7 +9,7 @@
 using namespace eomgen;
 
 TEST_CASE("S1: the motion of the two masses is the sum of their modes") {
-  const test::Finished run = test::run_model("S1_two_masses", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("S1_two_masses", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });
@@ -29,7 +29,7 @@ TEST_CASE("S1: the motion of the two masses is the sum of their modes") {
 }
 
 TEST_CASE("S1: the emitted right-hand side is linear: no sine, no root") {
-  const test::Finished run = test::run_model("S1_two_masses");
+  const test::FinishedRun run = test::run_model("S1_two_masses");
   const program::Operations& operations = run.simulation.program.functions.front().operations;
   CHECK(operations.trig == 0);
   CHECK(operations.sqrt == 0);

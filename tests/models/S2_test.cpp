@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "support/by_hand.hpp"
+#include "support/reference_integration.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -34,7 +34,7 @@ struct Masses {
 }  // namespace
 
 TEST_CASE("S2: the multiplier form agrees with y' = f(y) with a hand-eliminated velocity") {
-  const test::Finished run = test::run_model("S2_two_masses_pfaffian", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("S2_two_masses_pfaffian", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });
@@ -42,7 +42,7 @@ TEST_CASE("S2: the multiplier form agrees with y' = f(y) with a hand-eliminated 
                       run.parameter("l0"), run.parameter("f0"), run.parameter("w")};
   std::vector<double> x{0.5, 0.8, 0.1};
   for (std::size_t i = 1; i < run.rows.size(); ++i) {
-    x = test::integrate_by_hand(masses, run.rows.t[i - 1], x, run.rows.t[i], 1e-13, 1e-14);
+    x = test::integrate_reference(masses, run.rows.t[i - 1], x, run.rows.t[i], 1e-13, 1e-14);
     CHECK(std::abs(run.rows.at(i, "x1") - x[0]) < 1e-10);
     CHECK(std::abs(run.rows.at(i, "x2") - x[1]) < 1e-10);
     CHECK(std::abs(run.rows.at(i, "x1_dot") - masses.v1(run.rows.t[i], x[0], x[1], x[2])) < 1e-9);
@@ -57,7 +57,7 @@ TEST_CASE("S2: the multiplier form agrees with y' = f(y) with a hand-eliminated 
 }
 
 TEST_CASE("S2: the start determines the dependent velocity") {
-  const test::Finished run = test::run_model(
+  const test::FinishedRun run = test::run_model(
       "S2_two_masses_pfaffian", [](pipeline::SimulationRequest& request) { request.overrides.t_end = 0.1; });
   CHECK(run.rows.at(0, "x1_dot") == doctest::Approx((0.3 - 0.5 * 0.1) / 0.64).epsilon(1e-15));
   REQUIRE(run.simulation.scene.solved.size() == 1);
@@ -86,9 +86,9 @@ TEST_CASE(
       request.overrides.rtol = request.overrides.atol = 1e-12;
     });
   };
-  const test::Finished reference = run(system::Form::multipliers);
+  const test::FinishedRun reference = run(system::Form::multipliers);
   for (const system::Form form : {system::Form::nullspace, system::Form::chaplygin}) {
-    const test::Finished other = run(form);
+    const test::FinishedRun other = run(form);
     CHECK(other.simulation.program.form == form);
     REQUIRE(other.rows.size() == reference.rows.size());
     for (std::size_t i = 0; i < reference.rows.size(); ++i) {

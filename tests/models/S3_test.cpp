@@ -10,7 +10,7 @@ using namespace eomgen::test;
 namespace {
 
 struct Line {
-  explicit Line(const Finished& run) {
+  explicit Line(const FinishedRun& run) {
     const auto p = [&](const char* name) { return run.parameter(name); };
     m1 = p("m1"), m2 = p("m2"), k1 = p("k1"), k2 = p("k2"), c1 = p("c1"), c2 = p("c2"), P0 = p("P0"), w = p("w"),
     g = p("g");
@@ -30,9 +30,9 @@ double sign(double v) { return v > 0 ? 1 : -1; }
 
 TEST_CASE(
     "S3: at random states the equations are (3.68) with applied force and dashpots, and normal forces are weights") {
-  const Finished run = run_rough("S3_rough_line", "free");
-  const Finished pulled = run_rough("S3_rough_line");
-  for (const Finished* of : {&run, &pulled}) {
+  const FinishedRun run = run_rough("S3_rough_line", "free");
+  const FinishedRun pulled = run_rough("S3_rough_line");
+  for (const FinishedRun* of : {&run, &pulled}) {
     const Line line(*of);
     AtState derived(*of, "S3_rough_line");
     Draw draw;
@@ -52,7 +52,7 @@ TEST_CASE(
 }
 
 TEST_CASE("S3: released, the second mass makes one half oscillation while the first sticks, then both stick") {
-  const Finished run = run_rough("S3_rough_line", "free");
+  const FinishedRun run = run_rough("S3_rough_line", "free");
   const Line line(run);
   REQUIRE(events_of(run).size() == 2);
   CHECK(events_of(run)[0].t == 0);
@@ -66,7 +66,7 @@ TEST_CASE("S3: released, the second mass makes one half oscillation while the fi
 }
 
 TEST_CASE("S3: under the applied force each mass sticks and slides by hand-written equations and the static law") {
-  const Finished run = run_rough("S3_rough_line");
+  const FinishedRun run = run_rough("S3_rough_line");
   const Line line(run);
   const std::vector<run::RunEvent> events = events_of(run);
   REQUIRE(events.size() > 20);
@@ -109,7 +109,7 @@ TEST_CASE("S3: under the applied force each mass sticks and slides by hand-writt
 TEST_CASE("S3: a run at any tolerance continues when a mass starts from rest with rounding errors") {
   // Velocities of 1e-17 with a small atol used to give first steps below the rounding of t.
   for (const char* solver : {"dopri5", "tsit5", "dop853"}) {
-    const Finished run = run_rough("S3_rough_line", "default", [=](pipeline::SimulationRequest& request) {
+    const FinishedRun run = run_rough("S3_rough_line", "default", [=](pipeline::SimulationRequest& request) {
       request.overrides.solver = solver;
       request.overrides.rtol = 1e-9;
       request.overrides.atol = 1e-14;

@@ -75,7 +75,7 @@ TEST_CASE("S4: the kinetic energy is (3.73), and there are six equations") {
 }
 
 TEST_CASE("S4: momentum, angular momentum and energy are conserved") {
-  const Finished run = run_model("S4_two_particles", [](pipeline::SimulationRequest& request) {
+  const FinishedRun run = run_model("S4_two_particles", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });

@@ -20,8 +20,8 @@ void tighten(pipeline::SimulationRequest& request) {
 }  // namespace
 
 TEST_CASE("S5: polar coordinates without rods and Cartesian ones with multipliers give the same motion and tension") {
-  const test::Finished polar = test::run_model("S5_double_pendulum", tighten);
-  const test::Finished cartesian = test::run_model("S5_double_pendulum_cartesian", tighten);
+  const test::FinishedRun polar = test::run_model("S5_double_pendulum", tighten);
+  const test::FinishedRun cartesian = test::run_model("S5_double_pendulum_cartesian", tighten);
   REQUIRE(polar.rows.size() == cartesian.rows.size());
   CHECK(cartesian.simulation.derived->mechanics.active.size() == 2);
   CHECK(polar.simulation.derived->mechanics.active.empty());
@@ -53,7 +53,7 @@ TEST_CASE("S5: approach I and approach II give the same motion, planar and spher
         request.overrides.t_end = 3;
       });
     };
-    const test::Finished one = run(pipeline::ApproachChoice::one), two = run(pipeline::ApproachChoice::two);
+    const test::FinishedRun one = run(pipeline::ApproachChoice::one), two = run(pipeline::ApproachChoice::two);
     for (const auto& [key, value] : one.simulation.result.final) {
       const auto& shown = key;
       INFO(name, " ", shown);
@@ -63,7 +63,7 @@ TEST_CASE("S5: approach I and approach II give the same motion, planar and spher
 }
 
 TEST_CASE("S5: the spherical double pendulum conserves E and the vertical angular momentum") {
-  const test::Finished run = test::run_model("S5_spherical_double_pendulum", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("S5_spherical_double_pendulum", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.outputs = {"P1.position1", "P1.position2", "P1.velocity1", "P1.velocity2",
                                  "P2.position1", "P2.position2", "P2.velocity1", "P2.velocity2"};
@@ -81,7 +81,7 @@ TEST_CASE("S5: the spherical double pendulum conserves E and the vertical angula
 }
 
 TEST_CASE("S5: a spherical double pendulum that starts in a plane moves as the planar one") {
-  const test::Finished planar = test::run_model("S5_double_pendulum", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun planar = test::run_model("S5_double_pendulum", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.t_end = 3;
     request.overrides.values = {{"m2", symbolic::Rational(1) / 2}, {"L2", symbolic::Rational(4) / 5}};
@@ -116,7 +116,7 @@ initial = { phi1 = "pi/2", phi2 = "pi/2", theta1 = 0.8, theta2 = 0.4 }
   // Gravity along E1 and both angles phi at pi/2: theta are the angles of the planar model.
   const std::string path = test::build_folder() + "/S5_turned.toml";
   test::write_text(path, text);
-  const test::Finished spherical = test::run_model(path, tighten);
+  const test::FinishedRun spherical = test::run_model(path, tighten);
   for (const char* name : {"theta1", "theta2", "theta1_dot", "theta2_dot", "reaction.rod1", "reaction.rod2"}) {
     INFO(name);
     CHECK(spherical.final(name) == doctest::Approx(planar.final(name)).epsilon(tolerance));
@@ -134,7 +134,7 @@ TEST_CASE(
                                    "P2.velocity1", "P2.velocity2", "power"};
     });
   };
-  const test::Finished one = run(pipeline::ApproachChoice::one), two = run(pipeline::ApproachChoice::two);
+  const test::FinishedRun one = run(pipeline::ApproachChoice::one), two = run(pipeline::ApproachChoice::two);
   const double c = one.parameter("c"), w = one.parameter("w"), L1 = one.parameter("L1");
   for (std::size_t i = 0; i < one.rows.size(); ++i) {
     const auto y = [&](const char* name) { return one.rows.at(i, name); };

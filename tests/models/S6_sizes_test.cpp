@@ -38,7 +38,7 @@ std::string chain_text(int n, bool relative) {
       n, mass, length, relative ? "relative" : "absolute", n, n, start);
 }
 
-test::Finished run_chain(int n, bool relative) {
+test::FinishedRun run_chain(int n, bool relative) {
   const std::string folder = test::build_folder() + "/chains";
   std::filesystem::create_directories(folder);
   const std::string path = fmt::format("{}/chain_{}_{}.toml", folder, n, relative ? "relative" : "absolute");
@@ -85,7 +85,7 @@ TEST_CASE("S6: chains of different links conserve energy") {
 }
 
 TEST_CASE("S6: absolute and relative angles give the same motion") {
-  const test::Finished absolute = run_chain(5, false), relative = run_chain(5, true);
+  const test::FinishedRun absolute = run_chain(5, false), relative = run_chain(5, true);
   double sum = 0;
   for (int k = 1; k <= 5; ++k) {
     const std::string name = "theta" + std::to_string(k);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "handwritten_chain.hpp"
-#include "support/by_hand.hpp"
+#include "support/reference_integration.hpp"
 #include "support/elliptic.hpp"
 #include "support/simulation.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 // The models S6_chain_1, S6_chain_2 and S6_chain_6.
 constexpr double span = 3;  // seconds: before the chains become chaotic
 
-test::Finished chain(int n) {
+test::FinishedRun chain(int n) {
   return test::run_model("S6_chain_" + std::to_string(n), [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
@@ -25,7 +25,7 @@ test::Finished chain(int n) {
 
 // The same start integrated with equations written by hand, by the same solver at the same tolerance.
 template <int N>
-std::vector<double> by_hand(const test::Finished& run) {
+std::vector<double> by_hand(const test::FinishedRun& run) {
   std::vector<double> x = run.simulation.scene.q;
   x.insert(x.end(), run.simulation.scene.qdot.begin(), run.simulation.scene.qdot.end());
   const double L = run.parameter("L"), g = run.parameter("g");
@@ -33,12 +33,12 @@ std::vector<double> by_hand(const test::Finished& run) {
     bench::handwritten_chain<N>(state, L, g, dx);
     return 0;
   };
-  return test::integrate_by_hand(rhs, 0, x, span, 1e-12, 1e-12);
+  return test::integrate_reference(rhs, 0, x, span, 1e-12, 1e-12);
 }
 
 template <int N>
 void compare() {
-  const test::Finished run = chain(N);
+  const test::FinishedRun run = chain(N);
   const std::vector<double> x = by_hand<N>(run);
   for (int i = 0; i < N; ++i) {
     const std::string name = "theta" + std::to_string(i + 1);
@@ -52,7 +52,7 @@ void compare() {
 }  // namespace
 
 TEST_CASE("S6: one link is a pendulum") {
-  const test::Finished run = chain(1);
+  const test::FinishedRun run = chain(1);
   const double start = run.simulation.scene.q[0];
   const test::Swing swing = test::pendulum_from_rest(start, std::sqrt(run.parameter("g") / run.parameter("L")), span);
   CHECK(run.final("theta1") == doctest::Approx(swing.angle).epsilon(1e-10));

@@ -39,7 +39,7 @@ std::string variant(const std::string& name, const std::string& forces, const st
 
 TEST_CASE("bilinear_oscillator: after ten periods it is where it started, and the kink was crossed twice in each") {
   for (const char* solver : {"dopri5", "tsit5", "dop853"}) {
-    const test::Finished run = test::run_model("bilinear_oscillator", [solver](pipeline::SimulationRequest& request) {
+    const test::FinishedRun run = test::run_model("bilinear_oscillator", [solver](pipeline::SimulationRequest& request) {
       tight(request).overrides.solver = solver;
     });
     const run::RunResult& result = run.simulation.result;
@@ -57,14 +57,14 @@ TEST_CASE("bilinear_oscillator: after ten periods it is where it started, and th
 
 TEST_CASE(
     "bilinear_oscillator: with the branch held, no step is refused for the kink; abs and if do as max and min do") {
-  const test::Finished smooth = test::run_model(variant("linear", "-k1*x"), [](auto& request) { tight(request); });
-  const test::Finished two = test::run_model("bilinear_oscillator", [](auto& request) { tight(request); });
+  const test::FinishedRun smooth = test::run_model(variant("linear", "-k1*x"), [](auto& request) { tight(request); });
+  const test::FinishedRun two = test::run_model("bilinear_oscillator", [](auto& request) { tight(request); });
   for (const auto& [name, forces] :
        {std::pair{"with_abs", "-(k1 + k2)/2*x - (k1 - k2)/2*abs(x)"}, std::pair{"with_if", "if(x > 0, -k1*x, -k2*x)"},
         std::pair{"with_sign", "-x*((k1 + k2)/2 + (k1 - k2)/2*sign(x))"}}) {
     const auto& shown = name;
     CAPTURE(shown);
-    const test::Finished run = test::run_model(variant(name, forces), [](auto& request) { tight(request); });
+    const test::FinishedRun run = test::run_model(variant(name, forces), [](auto& request) { tight(request); });
     REQUIRE(run.simulation.result.kinks.size() == 1);
     CHECK(run.simulation.result.kinks[0].count == 20);
     CHECK(std::abs(run.final("x") - two.final("x")) < tolerance);
@@ -75,7 +75,7 @@ TEST_CASE(
 }
 
 TEST_CASE("bilinear_oscillator: a start on the kink itself is no crossing") {
-  const test::Finished run = test::run_model(variant("from_kink", "-k1*max(0, x) - k2*min(0, x)", "x_dot = 0.7"),
+  const test::FinishedRun run = test::run_model(variant("from_kink", "-k1*max(0, x) - k2*min(0, x)", "x_dot = 0.7"),
                                              [](auto& request) { tight(request); });
   CHECK(std::abs(run.final("x")) < tolerance);
   CHECK(std::abs(run.final("x_dot") - 0.7) < 10 * tolerance);
@@ -88,7 +88,7 @@ TEST_CASE("bilinear_oscillator: a branch without a value beyond its surface is l
   // A ball on an elastic ground after Hertz: k x^(3/2) while it presses. Held at x < 0 it has no value
   // above the ground, where the last trial step of each contact goes.
   const std::string path = variant("hertz", "-m*9.81[m/s^2] + 1e5[N/m]*max(0, -x)*sqrt(max(0, -x)/1[m])", "x = 0.2");
-  const test::Finished run = test::run_model(path, [](auto& request) {
+  const test::FinishedRun run = test::run_model(path, [](auto& request) {
     tight(request);
     request.overrides.t_end = 2;
     request.overrides.every = 0.001;
@@ -108,7 +108,7 @@ TEST_CASE("bilinear_oscillator: discontinuous friction slips by its closed form,
   // x'' = -(k/m) x - (F/m) sign(x_dot) with F/k = 0.03: each half period swings about +-0.03, from 0.1 to -0.04 and on
   // to -0.02, where the spring is weaker than the friction.
   const std::string path = variant("dry", "-k1*x - 0.03[m]*k1*sign(x_dot)");
-  const test::Finished run = test::run_model(path, [](auto& request) { tight(request); });
+  const test::FinishedRun run = test::run_model(path, [](auto& request) { tight(request); });
   const run::RunResult& result = run.simulation.result;
   CHECK(result.outcome == eom::Outcome::step_too_small);
   CHECK(std::abs(result.t - 2 * pi * std::sqrt(2.0 / 50)) < tolerance);

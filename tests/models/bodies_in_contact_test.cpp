@@ -13,7 +13,7 @@ namespace {
 
 // z_ddot of the lower end is 0 with forces (F, N) at it, which turn the rod by L/2 (F s - N c).
 struct Rod {
-  explicit Rod(const Finished& run)
+  explicit Rod(const FinishedRun& run)
       : m(run.parameter("m")), L(run.parameter("L")), g(run.parameter("g")), mu(run.parameter("mu")) {}
   double factor(double theta, double way) const {
     return 1 + 3 * std::cos(theta) * (std::cos(theta) + mu * way * std::sin(theta));
@@ -33,7 +33,7 @@ struct Rod {
 }  // namespace
 
 TEST_CASE("bodies_in_contact: the rod at the critical slope: below mu = 4/3 it slides as the balances by hand say") {
-  const Finished run = run_rough("painleve_rod", "default",
+  const FinishedRun run = run_rough("painleve_rod", "default",
                                  [](pipeline::SimulationRequest& request) { request.overrides.every = 0.002; });
   const Rod rod(run);
   CHECK(run.simulation.result.outcome == eom::Outcome::done);
@@ -61,7 +61,7 @@ TEST_CASE(
   };
   CHECK(run_rough("painleve_rod", "above").simulation.result.outcome == eom::Outcome::friction_no_solution);
   CHECK(at("default", 4.0 / 3 * (1 + 1e-9)).simulation.result.outcome == eom::Outcome::friction_no_solution);
-  const Finished below = at("default", 4.0 / 3 * (1 - 1e-6));
+  const FinishedRun below = at("default", 4.0 / 3 * (1 - 1e-6));
   CHECK(below.rows.at(0, "reaction.end") ==
         doctest::Approx(below.parameter("m") * below.parameter("g") / 1.6e-6).epsilon(1e-6));
 }
@@ -69,7 +69,7 @@ TEST_CASE(
 TEST_CASE(
     "bodies_in_contact: the rod that turns fast: above 4/3 pressing and leaving both obey the law, below it leaves") {
   CHECK(run_rough("painleve_rod", "several").simulation.result.outcome == eom::Outcome::friction_many_solutions);
-  const Finished leaves =
+  const FinishedRun leaves =
       run_rough("painleve_rod", "leaves", [](pipeline::SimulationRequest& request) { request.overrides.t_end = 0.05; });
   const Rod rod(leaves);
   CHECK(rod.normal(std::atan(2.0), 10, -1) < 0);
@@ -86,7 +86,7 @@ TEST_CASE(
 TEST_CASE(
     "bodies_in_contact: the sphere keeps its spin in every bounce, slides when they have accumulated, and rolls when "
     "slip has ended") {
-  const Finished run = run_rough("bouncing_sphere");
+  const FinishedRun run = run_rough("bouncing_sphere");
   const double g = run.parameter("g"), e = run.parameter("e"), mu = run.parameter("mu_d"), R = run.parameter("R"),
                first = std::sqrt(2 / g);
   const std::vector<run::RunEvent> events = events_of(run);
@@ -107,7 +107,7 @@ TEST_CASE(
 TEST_CASE(
     "bodies_in_contact: R16: the disk rolls on the disk that turns until friction gives way at the angle of the closed "
     "form") {
-  const Finished run = run_rough("R16_disk_on_disk");
+  const FinishedRun run = run_rough("R16_disk_on_disk");
   const double m = run.parameter("m"), M = run.parameter("M"), R = run.parameter("R"), S = run.parameter("S"),
                g = run.parameter("g"), k = 3 + 2 * m / M, q = 1 - 1 / k;
   REQUIRE(events_of(run).size() >= 2);
@@ -171,7 +171,7 @@ struct Spheres {
 }  // namespace
 
 TEST_CASE("bodies_in_contact: R16: two spheres roll on one another as Newton's and Euler's equations by hand say") {
-  const Finished run = run_rough("R16_sphere_on_sphere");
+  const FinishedRun run = run_rough("R16_sphere_on_sphere");
   const mechanics::Mechanics& mech = run.simulation.derived->mechanics;
   REQUIRE(mech.constraints.size() == 3);
   CHECK(mech.classification[0].integrable == mechanics::Integrable::no);

@@ -8,7 +8,7 @@ using namespace eomgen::test;
 
 TEST_CASE(
     "bouncing_ball: flight times decrease with e^k, the bounces accumulate, and end in sliding that friction stops") {
-  const Finished run = run_rough("bouncing_ball");
+  const FinishedRun run = run_rough("bouncing_ball");
   const double g = run.parameter("g"), e = run.parameter("e"), mu = run.parameter("mu_d"), first = std::sqrt(2 / g);
   const std::vector<run::RunEvent> events = events_of(run);
   REQUIRE(events.size() > 15);
@@ -36,14 +36,14 @@ TEST_CASE(
 }
 
 TEST_CASE("bouncing_ball: a plastic impact ends in contact, an elastic one conserves energy") {
-  const Finished plastic = run_rough("bouncing_ball", "plastic");
+  const FinishedRun plastic = run_rough("bouncing_ball", "plastic");
   const double g = plastic.parameter("g"), mu = plastic.parameter("mu_d"), fall = std::sqrt(2 / g);
   REQUIRE(events_of(plastic).size() == 2);
   CHECK(std::abs(events_of(plastic)[0].t - fall) < by_hand);
   CHECK(std::abs(events_of(plastic)[1].t - fall - 3 / (mu * g)) < by_hand);
   CHECK(plastic.simulation.result.power_balance < 1e-9);
 
-  const Finished elastic = run_rough("bouncing_ball", "elastic");
+  const FinishedRun elastic = run_rough("bouncing_ball", "elastic");
   REQUIRE(events_of(elastic).size() == 6);
   for (std::size_t i = 0; i < 6; ++i)
     CHECK(std::abs(events_of(elastic)[i].t - (2 * static_cast<double>(i) + 1) * fall) < by_hand);

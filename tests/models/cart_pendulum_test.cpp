@@ -9,7 +9,7 @@
 using namespace eomgen;
 
 TEST_CASE("cart_pendulum: p_x + c x is constant, since friction is the only force along the track") {
-  const test::Finished run = test::run_model("cart_pendulum", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("cart_pendulum", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
   });
@@ -35,7 +35,7 @@ TEST_CASE("cart_pendulum: a jump of a force restarts the integration, and its wo
       request.overrides.atol = rtol;
     });
   };
-  const test::Finished run = run_at(1e-10), tight = run_at(1e-13);
+  const test::FinishedRun run = run_at(1e-10), tight = run_at(1e-13);
   CHECK(run.simulation.result.power_balance < 1e-8);
   CHECK(run.final("x") > 0.5);
   // Without restarts at the jumps the error would be far above the tolerance.

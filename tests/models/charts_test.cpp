@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<double, 3> J{1, 1.3, 2.2}, H{0.949, 0, 1.1616};  // and the start: w2 = 0
 
-std::size_t exchanges(const test::Finished& run, const std::string& whose = "B") {
+std::size_t exchanges(const test::FinishedRun& run, const std::string& whose = "B") {
   std::size_t count = 0;
   for (const run::RunEvent& event : run.simulation.result.events)
     count += event.kind == "chart" && event.name == whose ? 1 : 0;
@@ -36,7 +36,7 @@ std::string cosines(std::string& names) {
 
 const std::string omegas = "\"B.omega1\", \"B.omega2\", \"B.omega3\"";
 
-test::Finished thousand_turns(const rotations::Rotation& r, const std::string& solver) {
+test::FinishedRun thousand_turns(const rotations::Rotation& r, const std::string& solver) {
   // All axes of this body come near directions at the angle of (1, 1, 1) from E1, E2, E3 to H.
   const Eigen::Vector3d of_body = Eigen::Vector3d(H[0], H[1], H[2]).normalized(),
                         of_space = Eigen::Vector3d(1, 1, 1).normalized();
@@ -88,7 +88,7 @@ Kept kept(const test::Rows& rows) {
 
 TEST_CASE(
     "charts: a thousand turns of a free body, in twelve sets of Euler angles with exchanges and in Euler parameters") {
-  const test::Finished reference = thousand_turns(*rotations::find("euler_parameters"),
+  const test::FinishedRun reference = thousand_turns(*rotations::find("euler_parameters"),
                                                   "tsit5");  // dop853 takes 13 times longer steps here, and is 4e-7 off
   CHECK(exchanges(reference) == 0);
   std::size_t sets = 0;
@@ -96,7 +96,7 @@ TEST_CASE(
     if (r.family != "euler") continue;
     INFO(r.name);
     ++sets;
-    const test::Finished run = thousand_turns(r, "dop853");
+    const test::FinishedRun run = thousand_turns(r, "dop853");
     REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
     CHECK(exchanges(run) > 100);  // it came near where the set fails again and again
     const Kept found = kept(run.rows);
@@ -126,7 +126,7 @@ TEST_CASE("charts: a rotation exactly through the singularity of the angles is c
     const double rate = symmetric ? -1 : 1;
     char numbers[100];
     std::snprintf(numbers, sizeof numbers, "a = 0.3, b = %.17g, c = -0.4, b_dot = %g", start, rate);
-    const test::Finished run = test::run_text(
+    const test::FinishedRun run = test::run_text(
         std::string("charts_through_") + set,
         std::string("[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [2, 2, 2] }\nrotation = { euler = \"") +
             set +
@@ -155,7 +155,7 @@ TEST_CASE("charts: a start at a singularity continues in the second chart; witho
       "[scene.default]\nt = [0, 3]\nrtol = 1e-12\natol = 1e-13\ninitial = { a = 0.2, b_dot = 0.7, a_dot = 0.4, c_dot = "
       "0.3 }\noutputs = [" +
       omegas + "]\n";
-  const test::Finished run = test::run_text("charts_start", text);
+  const test::FinishedRun run = test::run_text("charts_start", text);
   REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
   REQUIRE(exchanges(run) >= 2);
   CHECK(run.simulation.result.events.front().t == 0);
@@ -176,7 +176,7 @@ TEST_CASE("charts: a particle in spherical coordinates moves straight past the p
     std::snprintf(numbers, sizeof numbers,
                   "R = %.17g, phi = %.17g, theta = %.17g, R_dot = %.17g, phi_dot = %.17g, theta_dot = %.17g", R,
                   std::atan2(s, 1), std::atan2(miss, 1), -1 / R, -1 / (R * R * s), miss / (s * s));
-    const test::Finished run = test::run_text(
+    const test::FinishedRun run = test::run_text(
         "charts_line",
         std::string("[[particle]]\nname = \"P\"\nmass = 2\nposition = { spherical = [\"R\", \"phi\", \"theta\"] }\n"
                     "[scene.default]\nt = [0, 2.5]\nrtol = 1e-12\natol = 1e-13\ninitial = { ") +
@@ -196,7 +196,7 @@ TEST_CASE("charts: a particle in spherical coordinates moves straight past the p
 }
 
 TEST_CASE("charts: a pendulum on a sphere swings exactly through its lowest point, a pole of its coordinates") {
-  const test::Finished run =
+  const test::FinishedRun run =
       test::run_text("charts_pendulum",
                      "[parameters]\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { spherical = [\"R\", "
                      "\"phi\", \"theta\"] }\n"
@@ -230,8 +230,8 @@ TEST_CASE("charts: the multipliers of a joint are the same in both charts, and t
   char start[300];
   std::snprintf(start, sizeof start, "e0 = %.17g, e1 = %.17g, \"B.omega\" = [0.4, 0.1, 3], %s", std::cos(1.1),
                 std::sin(1.1), placed.c_str());
-  const test::Finished euler = test::run_text("charts_joint", model(angles.rotation, angles.start));
-  const test::Finished parameters = test::run_text(
+  const test::FinishedRun euler = test::run_text("charts_joint", model(angles.rotation, angles.start));
+  const test::FinishedRun parameters = test::run_text(
       "charts_joint_parameters", model("{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }", start));
   REQUIRE(euler.simulation.result.outcome == eom::Outcome::done);
   CHECK(exchanges(euler) >= 2);
@@ -251,7 +251,7 @@ TEST_CASE(
   std::string text = test::read_text(test::model_path("R7_satellite"));
   text = text.substr(0, text.find("[scene.default]"));
   text = text.substr(text.find("format = 1\n") + 11);
-  const test::Finished run = test::run_text(
+  const test::FinishedRun run = test::run_text(
       "charts_satellite",
       text +
           "[scene.default]\nt = [0, 20]\nrtol = 1e-12\natol = 1e-13\noutputs = [\"HO1\", \"HO2\", \"HO3\"]\n"
@@ -268,7 +268,7 @@ TEST_CASE(
 }
 
 TEST_CASE("charts: if a constraint contains an angle, the run keeps its coordinates") {
-  const test::Finished run = test::run_model("R14_sliding_cylinder");
+  const test::FinishedRun run = test::run_model("R14_sliding_cylinder");
   CHECK(exchanges(run, "rod") == 0);
   CHECK_FALSE(run.simulation.charts);
 }

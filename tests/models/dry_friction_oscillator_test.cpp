@@ -7,7 +7,7 @@ using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE("dry_friction_oscillator: it stops at -0.1 after three half oscillations, as in the closed form") {
-  const Finished run = run_rough("dry_friction_oscillator");
+  const FinishedRun run = run_rough("dry_friction_oscillator");
   const std::vector<run::RunEvent> events = events_of(run);
   REQUIRE(events.size() == 4);
   CHECK(events[0].kind == "slip");

@@ -11,7 +11,7 @@ using namespace eomgen;
 
 namespace {
 
-test::Finished motion(const std::string& scene, const std::string& solver, double rtol, double step = 0) {
+test::FinishedRun motion(const std::string& scene, const std::string& solver, double rtol, double step = 0) {
   return test::run_model("elastic_pendulum", [&](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.solver = solver;
@@ -21,7 +21,7 @@ test::Finished motion(const std::string& scene, const std::string& solver, doubl
   });
 }
 
-double difference(const test::Finished& a, const test::Finished& b, bool with_r_dot = true) {
+double difference(const test::FinishedRun& a, const test::FinishedRun& b, bool with_r_dot = true) {
   double largest = with_r_dot ? std::abs(a.final("r_dot") - b.final("r_dot")) : 0;
   for (const char* name : {"r", "theta", "theta_dot"})
     largest = std::max(largest, std::abs(a.final(name) - b.final(name)));
@@ -35,11 +35,11 @@ TEST_CASE(
     "20000") {
   // dop853 follows the oscillation of 1e5 rad/s whether there is any or not; what its tolerance lets into it shows in
   // r_dot
-  const test::Finished resolved = motion("stiff", "dop853", 1e-9);
+  const test::FinishedRun resolved = motion("stiff", "dop853", 1e-9);
   CHECK(resolved.simulation.result.statistics.steps > 20'000);
   for (const char* solver : {"radau5", "rodas"}) {
     CAPTURE(std::string(solver));
-    const test::Finished stiff = motion("stiff", solver, 1e-10);
+    const test::FinishedRun stiff = motion("stiff", solver, 1e-10);
     const run::RunResult& result = stiff.simulation.result;
     CHECK(result.outcome == eom::Outcome::done);
     CHECK(result.solver == solver);
@@ -56,7 +56,7 @@ TEST_CASE(
 }
 
 TEST_CASE("elastic_pendulum: the scene 'stiff' names its solver") {
-  const test::Finished stiff =
+  const test::FinishedRun stiff =
       test::run_model("elastic_pendulum", [](pipeline::SimulationRequest& request) { request.scene = "stiff"; });
   CHECK(stiff.simulation.result.solver == "radau5");
   CHECK(stiff.simulation.result.statistics.steps < 2000);
@@ -65,10 +65,10 @@ TEST_CASE("elastic_pendulum: the scene 'stiff' names its solver") {
 TEST_CASE("elastic_pendulum: where the oscillation is part of the motion, all solvers resolve it alike") {
   for (const char* scene : {"default", "stretched"}) {
     CAPTURE(std::string(scene));
-    const test::Finished reference = motion(scene, "dop853", 1e-13);
+    const test::FinishedRun reference = motion(scene, "dop853", 1e-13);
     for (const char* solver : {"radau5", "rodas"}) {
       CAPTURE(std::string(solver));
-      const test::Finished other = motion(scene, solver, 1e-10);
+      const test::FinishedRun other = motion(scene, solver, 1e-10);
       CHECK(difference(other, reference) < 1e-6);  // 2 s are 32 periods of the spring
       CHECK(difference(other, reference) < 10 * other.error("max"));
       CHECK(other.drift("energy") < 1e-6);
@@ -77,12 +77,12 @@ TEST_CASE("elastic_pendulum: where the oscillation is part of the motion, all so
 }
 
 TEST_CASE("elastic_pendulum: midpoint keeps the energy within bounds that do not grow; its error is of order 2") {
-  const test::Finished reference = motion("stretched", "dop853", 1e-13);
-  const test::Finished coarse = motion("stretched", "midpoint", 1e-9, 1e-3),
+  const test::FinishedRun reference = motion("stretched", "dop853", 1e-13);
+  const test::FinishedRun coarse = motion("stretched", "midpoint", 1e-9, 1e-3),
                        fine = motion("stretched", "midpoint", 1e-9, 2.5e-4);
   const double order = std::log2(difference(coarse, reference) / difference(fine, reference)) / 2;
   CHECK(std::abs(order - 2) < 0.3);
-  const test::Finished longer = test::run_model("elastic_pendulum", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun longer = test::run_model("elastic_pendulum", [](pipeline::SimulationRequest& request) {
     request.scene = "stretched";
     request.overrides.solver = "midpoint";
     request.overrides.step = 1e-3;

@@ -11,7 +11,7 @@ using namespace eomgen;
 // Newton's and Euler's equations. The foot is at l = h (sin(b), -cos(b)) from the centre of mass and moves with
 // v + b' E3 x l; the mount's force on it is -k_i x_i - c_i v_i, its moment -kr sin(b) cos(b) - cr b'.
 TEST_CASE("engine_mount: the accelerations are those of the force and the moment of the mount by hand") {
-  const test::Finished run = test::run_model("engine_mount", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("engine_mount", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = request.overrides.atol = 1e-10;
   });
   const auto p = [&run](const char* name) { return run.parameter(name); };
@@ -37,7 +37,7 @@ TEST_CASE("engine_mount: the accelerations are those of the force and the moment
 }
 
 TEST_CASE("engine_mount: with the engine off it sags by m g/k2, and nothing moves") {
-  const test::Finished run =
+  const test::FinishedRun run =
       test::run_model("engine_mount", [](pipeline::SimulationRequest& request) { request.scene = "still"; });
   const double sag = run.parameter("m") * run.parameter("g") / run.parameter("k2");
   CHECK(std::abs(run.final("y") - (run.parameter("h") - sag)) < 1e-9);

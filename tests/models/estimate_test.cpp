@@ -20,8 +20,8 @@ constexpr double factor = 10;  // the promise of docs/commands.md
 // Below this neither the closed form in binary64 nor the run itself says anything about a factor.
 constexpr double rounding_floor = 2e-13;
 
-void check_estimates(const std::string& model, const std::function<Values(const test::Finished&)>& exact) {
-  const test::Finished base = test::run_model(model);
+void check_estimates(const std::string& model, const std::function<Values(const test::FinishedRun&)>& exact) {
+  const test::FinishedRun base = test::run_model(model);
   const Values truth = exact(base);
   for (const char* solver : {"dopri5", "dop853", "auto"}) {
     for (int exponent = 4; exponent <= 11; ++exponent) {
@@ -40,7 +40,7 @@ void check_estimates(const std::string& model, const std::function<Values(const 
   }
 }
 
-Values of_states(const test::Finished& run, const run::RunResult& result) {
+Values of_states(const test::FinishedRun& run, const run::RunResult& result) {
   Values values;
   for (const auto& [name, error] : run.simulation.result.error_estimate) {
     if (name != "max") values[name] = test::value_of(result.final, name);
@@ -51,7 +51,7 @@ Values of_states(const test::Finished& run, const run::RunResult& result) {
 }  // namespace
 
 TEST_CASE("estimate: P2 against elliptic functions") {
-  check_estimates("P2_planar_pendulum", [](const test::Finished& run) {
+  check_estimates("P2_planar_pendulum", [](const test::FinishedRun& run) {
     const test::Swing swing =
         test::pendulum_from_rest(1.0, std::sqrt(run.parameter("g") / run.parameter("L")), run.simulation.scene.t1);
     return Values{{"theta", swing.angle}, {"theta_dot", swing.rate}};
@@ -59,7 +59,7 @@ TEST_CASE("estimate: P2 against elliptic functions") {
 }
 
 TEST_CASE("estimate: P14 against Kepler's equation") {
-  check_estimates("P14_kepler_cartesian", [](const test::Finished& run) {
+  check_estimates("P14_kepler_cartesian", [](const test::FinishedRun& run) {
     const double inclination = 30 * std::acos(-1.0) / 180;
     const test::Orbit o =
         test::kepler(run.parameter("GM"), run.parameter("a"), run.parameter("e"), inclination, run.simulation.scene.t1);
@@ -68,7 +68,7 @@ TEST_CASE("estimate: P14 against Kepler's equation") {
 }
 
 TEST_CASE("estimate: S1 against its modes") {
-  check_estimates("S1_two_masses", [](const test::Finished& run) {
+  check_estimates("S1_two_masses", [](const test::FinishedRun& run) {
     const double k1 = run.parameter("k1"), k2 = run.parameter("k2"), t = run.simulation.scene.t1;
     const Eigen::Matrix2d M = Eigen::Vector2d(run.parameter("m1"), run.parameter("m2")).asDiagonal();
     const Eigen::Matrix2d K = (Eigen::Matrix2d() << k1 + k2, -k2, -k2, k2).finished();
@@ -84,7 +84,7 @@ TEST_CASE("estimate: S1 against its modes") {
 
 TEST_CASE("estimate: S5 against a run at 1e-14") {
   for (const char* name : {"S5_double_pendulum", "S5_spherical_double_pendulum"}) {
-    check_estimates(name, [](const test::Finished& run) {
+    check_estimates(name, [](const test::FinishedRun& run) {
       run::Overrides overrides;
       overrides.solver = "dop853";
       overrides.rtol = overrides.atol = 1e-14;

@@ -50,7 +50,7 @@ TEST_CASE(
   const auto tighten = [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = request.overrides.atol = 1e-12;
   };
-  const Finished flat = run_model(path, tighten), spatial = run_model("four_bar_spatial_pins", tighten);
+  const FinishedRun flat = run_model(path, tighten), spatial = run_model("four_bar_spatial_pins", tighten);
   const mechanics::Mechanics& m = spatial.simulation.derived->mechanics;
   CHECK(m.freedom() == 1);
   CHECK(m.active.size() == 7);
@@ -68,7 +68,7 @@ TEST_CASE(
 }
 
 TEST_CASE("four_bar: undetermined reactions out of the plane are not reported") {
-  const Finished run = run_model("four_bar_spatial_pins");
+  const FinishedRun run = run_model("four_bar_spatial_pins");
   const auto& joints = run.simulation.derived->mechanics.joints;
   REQUIRE(joints.size() == 2);
   const std::array<bool, 6> in_the_plane{true, true, false, false, false, true};

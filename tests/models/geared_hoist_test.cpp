@@ -10,7 +10,7 @@ using namespace eomgen;
 // One turn of the drum is n turns of the motor. Seen from the motor the inertia is J = J1 + J2/n1^2 + (J3 + m r^2)/n^2
 // with n1 = r2/r1 and n = n1 R3/R2, and the load m g r/n, so that J w' = M0 (1 - w/w0) - m g r/n.
 TEST_CASE("geared_hoist: the speed is that of a motor under load; the reactions satisfy the laws of Euler and Newton") {
-  const test::Finished run = test::run_model("geared_hoist", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("geared_hoist", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = request.overrides.atol = 1e-12;
   });
   const auto p = [&run](const char* name) { return run.parameter(name); };

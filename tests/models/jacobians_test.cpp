@@ -18,7 +18,7 @@ constexpr double as_good_as_exact = 1e-18;
 program::Arguments<cln::cl_R> anywhere(const pipeline::Derived& derived, const program::Program& program) {
   const cln::float_format_t precision = cln::float_format(digits);
   const auto value = [&](std::uint32_t k) {
-    return cln::cl_float(symbolic::sample({symbolic::SymbolKind::extra, k, 0}, 1), precision);
+    return cln::cl_float(symbolic::sample({symbolic::SymbolKind::auxiliary, k, 0}, 1), precision);
   };
   program::Arguments<cln::cl_R> at;
   at.t = value(0);

@@ -11,7 +11,7 @@ using namespace eomgen;
 
 namespace {
 
-test::Finished skate() {
+test::FinishedRun skate() {
   return test::run_model("knife_edge", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
@@ -22,7 +22,7 @@ test::Finished skate() {
 
 // theta = theta0 + w t; along the blade v = v0 + k (sin(theta) - sin(theta0)) with k = g sin(beta)/w.
 TEST_CASE("knife_edge: the skate follows the closed form") {
-  const test::Finished run = skate();
+  const test::FinishedRun run = skate();
   const double w = 1.5, theta0 = 0.2, v0 = 0.5 / std::cos(theta0),
                k = run.parameter("g") * std::sin(run.parameter("beta")) / w;
   const double c = v0 - k * std::sin(theta0);
@@ -43,7 +43,7 @@ TEST_CASE("knife_edge: the skate follows the closed form") {
 // The force on the skate is lambda f with f = (sin(theta), -cos(theta)). Across the blade, along -f, the acceleration
 // is v w to the left, so that lambda f . n = m v w - (gravity along n) with n = -f.
 TEST_CASE("knife_edge: lambda has the sign of the normality prescription") {
-  const test::Finished run = skate();
+  const test::FinishedRun run = skate();
   const double m = run.parameter("m"), slope = run.parameter("g") * std::sin(run.parameter("beta"));
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const double theta = run.rows.at(i, "theta");

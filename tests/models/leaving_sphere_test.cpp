@@ -17,7 +17,7 @@ double time_between(double phi0, double phi1, double a, double g) {
 // Steps at rtol 1e-12.
 constexpr double tolerance = 1e-11;
 
-test::Finished run_scene(const char* scene, const char* solver = "dop853") {
+test::FinishedRun run_scene(const char* scene, const char* solver = "dop853") {
   return test::run_model("leaving_sphere", [=](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.solver = solver;
@@ -30,7 +30,7 @@ test::Finished run_scene(const char* scene, const char* solver = "dop853") {
 
 TEST_CASE("leaving_sphere: it leaves at cos(phi) = 2/3, at the time of the closed form") {
   for (const char* solver : {"dopri5", "tsit5", "dop853"}) {
-    const test::Finished run = run_scene("default", solver);
+    const test::FinishedRun run = run_scene("default", solver);
     const run::RunResult& result = run.simulation.result;
     const double a = run.parameter("a"), g = run.parameter("g");
     CHECK(result.outcome == eom::Outcome::stopped_by_event);
@@ -49,7 +49,7 @@ TEST_CASE("leaving_sphere: it leaves at cos(phi) = 2/3, at the time of the close
 }
 
 TEST_CASE("leaving_sphere: rows are in order of time, with those of the events among them") {
-  const test::Finished run = run_scene("default");
+  const test::FinishedRun run = run_scene("default");
   const run::RunResult& result = run.simulation.result;
   REQUIRE(run.rows.size() == 7);  // 0, 0.1, .. 0.4, halfway (0.4006), the end
   for (std::size_t i = 1; i < run.rows.size(); ++i) CHECK(run.rows.t[i] > run.rows.t[i - 1]);
@@ -60,7 +60,7 @@ TEST_CASE("leaving_sphere: rows are in order of time, with those of the events a
 }
 
 TEST_CASE("leaving_sphere: `stop` of a scene ends it at an event that is only recorded elsewhere") {
-  const test::Finished run = run_scene("half");
+  const test::FinishedRun run = run_scene("half");
   CHECK(run.simulation.result.outcome == eom::Outcome::stopped_by_event);
   CHECK(std::abs(std::cos(run.final("phi")) - 5.0 / 6) < tolerance);
   REQUIRE(run.simulation.result.events.size() == 1);
@@ -70,7 +70,7 @@ TEST_CASE("leaving_sphere: `stop` of a scene ends it at an event that is only re
 TEST_CASE(
     "leaving_sphere: the estimate of a run that an event ends has the time of the stop, within ten times of the "
     "truth") {
-  const test::Finished run = test::run_model("leaving_sphere", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("leaving_sphere", [](pipeline::SimulationRequest& request) {
     request.overrides.solver = "dopri5";
     request.overrides.rtol = request.overrides.atol = 1e-7;
   });

@@ -11,7 +11,7 @@ using namespace eomgen::test;
 namespace {
 
 struct Dumbbell {
-  explicit Dumbbell(const Finished& run)
+  explicit Dumbbell(const FinishedRun& run)
       : m(run.parameter("m")), L(run.parameter("L")), mu(run.parameter("mu")), g(run.parameter("g")) {}
   double normal(double theta, double spin, double way) const {
     const double s = std::sin(theta), c = std::cos(theta);
@@ -33,7 +33,7 @@ struct Dumbbell {
 TEST_CASE(
     "painleve_dumbbell: above mu = 2 sqrt 2 it ends where a second solution appears, at tan(theta) = (mu + sqrt(mu^2 - "
     "8))/2") {
-  const Finished run = run_rough("painleve_dumbbell");
+  const FinishedRun run = run_rough("painleve_dumbbell");
   const Dumbbell d(run);
   CHECK(run.simulation.result.outcome == eom::Outcome::friction_many_solutions);
   const double tangent = (d.mu + std::sqrt(d.mu * d.mu - 8)) / 2;
@@ -47,7 +47,7 @@ TEST_CASE(
 }
 
 TEST_CASE("painleve_dumbbell: below it, the run follows the hand-written balances until it sticks") {
-  const Finished run = run_rough("painleve_dumbbell", "below");
+  const FinishedRun run = run_rough("painleve_dumbbell", "below");
   const Dumbbell d(run);
   CHECK(d.mu < 2 * std::sqrt(2.0));
   CHECK(run.simulation.result.outcome == eom::Outcome::done);
@@ -65,12 +65,12 @@ TEST_CASE("painleve_dumbbell: below it, the run follows the hand-written balance
 TEST_CASE(
     "painleve_dumbbell: dragged backwards at such an angle no force obeys the law, and below the critical mu one "
     "does") {
-  const Finished none = run_rough("painleve_dumbbell", "none");
+  const FinishedRun none = run_rough("painleve_dumbbell", "none");
   CHECK(none.simulation.result.outcome == eom::Outcome::friction_no_solution);
   CHECK(none.simulation.result.t == 0);
   const double critical = 2 * std::sqrt(2.0);
   for (const double off : {1e-6, -1e-6}) {
-    const Finished run = run_rough("painleve_dumbbell", "none", [&](pipeline::SimulationRequest& request) {
+    const FinishedRun run = run_rough("painleve_dumbbell", "none", [&](pipeline::SimulationRequest& request) {
       with({{"mu", critical + off}})(request);
       request.overrides.t_end = 1e-6;
     });

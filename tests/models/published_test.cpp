@@ -25,7 +25,7 @@ namespace {
 
 using Values = std::vector<std::pair<std::string, double>>;
 
-test::Finished motion(const std::string& model, const std::string& scene, const std::string& solver, double rtol) {
+test::FinishedRun motion(const std::string& model, const std::string& scene, const std::string& solver, double rtol) {
   return test::run_model(model, [&](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.solver = solver;
@@ -36,7 +36,7 @@ test::Finished motion(const std::string& model, const std::string& scene, const 
 }
 
 /// Largest difference from the values, relative to the largest of all coordinates, of all rates.
-double error(const test::Finished& run, const Values& values) {
+double error(const test::FinishedRun& run, const Values& values) {
   double worst[2] = {0, 0}, size[2] = {0, 0};
   for (const auto& [name, value] : values) {
     const int rate = name.ends_with("_dot") ? 1 : 0;
@@ -46,12 +46,12 @@ double error(const test::Finished& run, const Values& values) {
   return std::max(worst[0] / size[0], worst[1] / size[1]);
 }
 
-test::Finished check(const std::string& model, const std::string& scene, const std::string& solver,
+test::FinishedRun check(const std::string& model, const std::string& scene, const std::string& solver,
                      const Values& values, double tolerance) {
   CAPTURE(model);
   CAPTURE(scene);
   CAPTURE(solver);
-  test::Finished run = motion(model, scene, solver, 1e-13);
+  test::FinishedRun run = motion(model, scene, solver, 1e-13);
   CHECK(run.simulation.result.outcome == eom::Outcome::done);
   CHECK(error(run, values) < tolerance);
   return run;
@@ -135,14 +135,14 @@ TEST_CASE("published: the heavy top of the Lie-group literature, in Euler parame
   check("heavy_top", "default", "taylor", e, 5e-10);  // 48 turns
   const std::string path = test::build_folder() + "/heavy_top_pinned.toml";
   test::write_text(path, pinned);
-  const test::Finished run = check(path, "default", "dop853", e, 5e-10);
+  const test::FinishedRun run = check(path, "default", "dop853", e, 5e-10);
   CHECK(run.simulation.derived->mechanics.active.size() == 4);
   CHECK(run.drift("energy") < 1e-11);
   CHECK(run.final("top.omega2") == doctest::Approx(150).epsilon(1e-11));
 }
 
 TEST_CASE("published: Andrews' squeezing mechanism, where the test set's digits end after ten of the angles") {
-  const test::Finished run = check("andrews_squeezer", "default", "dop853", andrews, 1e-11);
+  const test::FinishedRun run = check("andrews_squeezer", "default", "dop853", andrews, 1e-11);
   CHECK(run.simulation.derived->mechanics.freedom() == 1);
   CHECK(run.simulation.derived->mechanics.active.size() == 6);
   CHECK(error(run, andrews_literature) < 5e-10);
@@ -155,7 +155,7 @@ TEST_CASE("published: Andrews' squeezing mechanism, where the test set's digits 
 }
 
 TEST_CASE("published: the car axis") {
-  const test::Finished run = check("car_axis", "default", "dop853", car, 2e-10);
+  const test::FinishedRun run = check("car_axis", "default", "dop853", car, 2e-10);
   CHECK(run.simulation.derived->mechanics.active.size() == 2);
   CHECK(error(run, car_literature) < 1e-10);
   // The test set's multipliers are eps^2 times these.
@@ -176,7 +176,7 @@ TEST_CASE(
                    {"theta_dot", 1.128301874649872064922251}};
   for (const char* solver : {"radau5", "rodas"}) {
     CAPTURE(std::string(solver));
-    const test::Finished run = motion("elastic_pendulum_smooth", "default", solver, 1e-11);
+    const test::FinishedRun run = motion("elastic_pendulum_smooth", "default", solver, 1e-11);
     const std::size_t steps = run.simulation.result.statistics.steps;
     CHECK(steps < 2000);
     for (const auto& [name, value] : k10) CHECK(std::abs(run.final(name) - value) < 1e-8);
@@ -184,7 +184,7 @@ TEST_CASE(
     CHECK(run.final("s") == doctest::Approx(k10[0].second).epsilon(1e-8).scale(0));
     CHECK(run.final("s_dot") == doctest::Approx(k10[2].second).epsilon(1e-3).scale(0));
     // The values for k = 1e6, 1e8, 1e10 extrapolated in 1/k.
-    const test::Finished stiffer = motion("elastic_pendulum_smooth", "k12", solver, 1e-11);
+    const test::FinishedRun stiffer = motion("elastic_pendulum_smooth", "k12", solver, 1e-11);
     CHECK(stiffer.simulation.result.statistics.steps < 2000);
     CHECK(std::abs(stiffer.final("theta") - 0.92079382713038) < 1e-9);
     CHECK(std::abs(stiffer.final("theta_dot") - 1.12830185767316) < 1e-9);
@@ -213,7 +213,7 @@ TEST_CASE("published: the IFToMM pendulum follows its closed form") {
                    {"y", -0.96141920509912506426513507},
                    {"x_dot", 4.1755981009517288364605195},
                    {"y_dot", -1.194749054560475271647513}};
-  const test::Finished run = check("iftomm_pendulum", "default", "dop853", end, 1e-11);
+  const test::FinishedRun run = check("iftomm_pendulum", "default", "dop853", end, 1e-11);
   const test::Swing swing = test::pendulum_from_rest(std::acos(-1.0) / 2, std::sqrt(9.81), 10);  // from the other side
   CHECK(run.final("x") == doctest::Approx(-std::sin(swing.angle)).epsilon(1e-10));
   CHECK(run.final("y") == doctest::Approx(-std::cos(swing.angle)).epsilon(1e-10));
@@ -224,7 +224,7 @@ TEST_CASE("published: the IFToMM pendulum follows its closed form") {
 TEST_CASE(
     "published: the N-four-bar mechanism of two windows passes the flat place, where its loops lose their rank, ten "
     "times") {
-  const test::Finished run = test::run_model("n_four_bar_2");  // rk4, as the scene says
+  const test::FinishedRun run = test::run_model("n_four_bar_2");  // rk4, as the scene says
   CHECK(run.simulation.result.outcome == eom::Outcome::done);
   CHECK(run.simulation.derived->mechanics.freedom() == 1);
   for (const char* name : {"a0", "a1", "a2"})
@@ -236,7 +236,7 @@ TEST_CASE(
 
 TEST_CASE(
     "published: adaptive solvers pass the singular configurations of the N-four-bar mechanism too, and report them") {
-  const test::Finished run = test::run_model("n_four_bar_2", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("n_four_bar_2", [](pipeline::SimulationRequest& request) {
     request.scene = "chosen";
     request.estimate = false;
     request.with = {"jac", "taylor"};

@@ -16,7 +16,7 @@ constexpr double rounding = 1e-10;
 // 4 s at rtol 1e-10.
 constexpr double followed = 1e-8;
 
-test::Finished run_scene(const char* scene) {
+test::FinishedRun run_scene(const char* scene) {
   return test::run_model("quarter_car", [scene](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.rtol = request.overrides.atol = 1e-10;
@@ -30,7 +30,7 @@ test::Finished run_scene(const char* scene) {
 //   (M + m) z'' - m L cos(a) a'' = -(M + m) g - m L sin(a) a'^2 - kt w
 //   -m L cos(a) z'' + m L^2 a'' = (m g + kt w) L cos(a) + S dd/da,  S = -k (d - l0) - c d' - cs z'.
 TEST_CASE("quarter_car: the accelerations are those of Lagrange's equations by hand, and the energy closes") {
-  const test::Finished run = run_scene("default");
+  const test::FinishedRun run = run_scene("default");
   const auto p = [&run](const char* name) { return run.parameter(name); };
   const double M = p("M"), m = p("m"), g = p("g"), L = p("L"), q = p("p"), b = p("b"), h = p("h");
   REQUIRE(run.rows.size() > 100);
@@ -55,7 +55,7 @@ TEST_CASE("quarter_car: the accelerations are those of Lagrange's equations by h
 }
 
 TEST_CASE("quarter_car: on a flat road the strut carries M g L cos(a)/(dd/da), the tyre (M + m) g, and nothing moves") {
-  const test::Finished run = run_scene("flat");
+  const test::FinishedRun run = run_scene("flat");
   CHECK(std::abs(run.final("a") - run.parameter("a0")) < followed);
   CHECK(std::abs(run.final("z") - run.parameter("z0")) < followed);
   CHECK(std::abs(run.final("z_dot")) < followed);

@@ -10,7 +10,7 @@ using namespace eomgen;
 TEST_CASE(
     "rotating_hoop: beta_ddot = (w^2 cos(beta) - g/R) sin(beta), and m R^2 beta_dot^2/2 - m R^2 w^2 sin^2(beta)/2 + U "
     "stays") {
-  const test::Finished run = test::run_model("rotating_hoop", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("rotating_hoop", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
   });

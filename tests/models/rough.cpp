@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "numeric/numbers.hpp"
-#include "support/by_hand.hpp"
+#include "support/reference_integration.hpp"
 
 namespace eomgen::test {
 
-Finished run_rough(const std::string& model, const std::string& scene,
+FinishedRun run_rough(const std::string& model, const std::string& scene,
                    const std::function<void(pipeline::SimulationRequest&)>& adjust) {
   return run_model(model, [&](pipeline::SimulationRequest& request) {
     request.scene = scene;
@@ -27,15 +27,15 @@ std::function<void(pipeline::SimulationRequest&)> with(std::map<std::string, dou
   };
 }
 
-std::vector<run::RunEvent> events_of(const Finished& run) { return run.simulation.result.events; }
+std::vector<run::RunEvent> events_of(const FinishedRun& run) { return run.simulation.result.events; }
 
 void Hand::to(double t) {
   const auto f = [this](double at, const double* state, double* dx) { return rates_(at, state, dx), 0; };
-  x = integrate_by_hand(f, t_, x, t, 1e-12, 1e-14);
+  x = integrate_reference(f, t_, x, t, 1e-12, 1e-14);
   t_ = t;
 }
 
-AtState::AtState(const Finished& run, const std::string& model)
+AtState::AtState(const FinishedRun& run, const std::string& model)
     : rough_(read_text(model_path(model)), run.simulation.scene.parameters) {}
 
 bool AtState::slide(double t, std::vector<double> x) {

@@ -20,34 +20,34 @@ constexpr double by_hand = 1e-10;
 /// Tolerance for about a hundred operations in binary64.
 constexpr double rounding = 1e-12;
 
-Finished run_rough(const std::string& model, const std::string& scene = "default",
+FinishedRun run_rough(const std::string& model, const std::string& scene = "default",
                    const std::function<void(pipeline::SimulationRequest&)>& adjust = {});
 
 /// Sets parameters to exact values.
 std::function<void(pipeline::SimulationRequest&)> with(std::map<std::string, double> parameters);
 
 /// Events "slip", "stick", ... in order of time.
-std::vector<run::RunEvent> events_of(const Finished& run);
+std::vector<run::RunEvent> events_of(const FinishedRun& run);
 
 /// Integrates hand-written equations.
 class Hand {
  public:
-  using Rates = std::function<void(double t, const double* x, double* dx)>;
-  Hand(Rates rates, double t, std::vector<double> start) : x(std::move(start)), t_(t), rates_(std::move(rates)) {}
+  using RightHandSide = std::function<void(double t, const double* x, double* dx)>;
+  Hand(RightHandSide rates, double t, std::vector<double> start) : x(std::move(start)), t_(t), rates_(std::move(rates)) {}
 
   void to(double t);
   std::vector<double> x;
 
  private:
   double t_;
-  Rates rates_;
+  RightHandSide rates_;
 };
 
 /// Evaluates the derived equations of a shipped model at chosen states. Contacts slide in the direction of the
 /// velocity.
 class AtState {
  public:
-  explicit AtState(const Finished& run, const std::string& model);
+  explicit AtState(const FinishedRun& run, const std::string& model);
 
   /// Returns false unless the friction law has exactly one solution with the normal force of a mode.
   bool slide(double t, std::vector<double> x);

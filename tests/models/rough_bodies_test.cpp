@@ -12,7 +12,7 @@ using namespace eomgen::test;
 namespace {
 
 struct Incline {
-  explicit Incline(const Finished& run)
+  explicit Incline(const FinishedRun& run)
       : R(run.parameter("R")),
         mg(run.parameter("m") * run.parameter("g") * std::cos(run.parameter("b"))),
         down(run.parameter("g") * std::sin(run.parameter("b"))),
@@ -26,7 +26,7 @@ struct Incline {
 }  // namespace
 
 TEST_CASE("rough_bodies: R3: thrown down without spin the sphere slides until friction has made it roll") {
-  const Finished run = run_rough("R3_rough_incline", "thrown");
+  const FinishedRun run = run_rough("R3_rough_incline", "thrown");
   const Incline k(run);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "roll");
@@ -46,7 +46,7 @@ TEST_CASE("rough_bodies: R3: thrown down without spin the sphere slides until fr
 }
 
 TEST_CASE("rough_bodies: R3: with forward spin up the incline friction drives the sphere down until it rolls") {
-  const Finished run = run_rough("R3_rough_incline", "backspin");
+  const FinishedRun run = run_rough("R3_rough_incline", "backspin");
   const Incline k(run);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "roll");
@@ -57,7 +57,7 @@ TEST_CASE("rough_bodies: R3: with forward spin up the incline friction drives th
 }
 
 TEST_CASE("rough_bodies: R3: rolling persists if and only if mu_s >= (2/7) tan(b)") {
-  const Finished rolling = run_rough("R3_rough_incline");
+  const FinishedRun rolling = run_rough("R3_rough_incline");
   const Incline k(rolling);
   CHECK(rolling.rows.at(0, "x_dot") == doctest::Approx(5 * k.R).epsilon(rounding));  // follows from rolling
   CHECK(events_of(rolling).empty());
@@ -65,7 +65,7 @@ TEST_CASE("rough_bodies: R3: rolling persists if and only if mu_s >= (2/7) tan(b
   const double limit = 2 * std::tan(k.b) / 7;
   CHECK(events_of(run_rough("R3_rough_incline", "default", with({{"mu_s", limit * (1 + 1e-12)}, {"mu_d", 0.05}})))
             .empty());
-  const Finished over = run_rough("R3_rough_incline", "default", with({{"mu_s", limit * (1 - 1e-12)}, {"mu_d", 0.05}}));
+  const FinishedRun over = run_rough("R3_rough_incline", "default", with({{"mu_s", limit * (1 - 1e-12)}, {"mu_d", 0.05}}));
   REQUIRE(events_of(over).size() == 1);
   CHECK(events_of(over)[0].kind == "slip");
   CHECK(events_of(over)[0].t == 0);
@@ -73,7 +73,7 @@ TEST_CASE("rough_bodies: R3: rolling persists if and only if mu_s >= (2/7) tan(b
 }
 
 TEST_CASE("rough_bodies: R3: rolling at the start of an incline that is too steep it slips at once, by (8.74)") {
-  const Finished run = run_rough("R3_rough_incline", "steep");
+  const FinishedRun run = run_rough("R3_rough_incline", "steep");
   const Incline k(run);
   CHECK(k.mu_s < 2 * std::tan(k.b) / 7);
   REQUIRE(events_of(run).size() == 1);
@@ -87,7 +87,7 @@ TEST_CASE("rough_bodies: R3: rolling at the start of an incline that is too stee
 // The slip velocity obeys that of a puck with mu = (7/2) mu_d: its stop is the closed form of rough_incline_puck.
 // Elsewhere v - (2/7) w has the acceleration (5/7) g sin b alone.
 TEST_CASE("rough_bodies: R3: thrown across the incline the sphere starts to roll as in the closed form") {
-  const Finished run = run_rough("R3_rough_sphere");
+  const FinishedRun run = run_rough("R3_rough_sphere");
   const Incline k(run);
   const double w1 = -0.5 - 3 * k.R, w2 = 1.5 + 4 * k.R, w0 = std::hypot(w1, w2), ratio = 3.5 * k.mu_d / std::tan(k.b),
                psi = std::atan2(w2, w1);
@@ -107,11 +107,11 @@ TEST_CASE("rough_bodies: R3: thrown across the incline the sphere starts to roll
 TEST_CASE(
     "rough_bodies: R3: a sphere that rolls aslant goes on rolling, and one at rest on a steep incline slides straight "
     "down") {
-  const Finished rolling = run_rough("R3_rough_sphere", "rolling");
+  const FinishedRun rolling = run_rough("R3_rough_sphere", "rolling");
   CHECK(events_of(rolling).empty());
   CHECK(std::abs(rolling.final("x2_dot") + 0.1) < by_hand);
   CHECK(std::abs(rolling.final("x1_dot") - (0.3 + 10 * Incline(rolling).down / 7)) < by_hand);
-  const Finished steep = run_rough("R3_rough_sphere", "steep");
+  const FinishedRun steep = run_rough("R3_rough_sphere", "steep");
   const Incline k(steep);
   REQUIRE(!events_of(steep).empty());
   CHECK(events_of(steep)[0].kind == "slip");
@@ -123,7 +123,7 @@ TEST_CASE(
 TEST_CASE(
     "rough_bodies: R4: on a rough turntable the sphere slides as the balances by hand say, then circles at 2/7 of the "
     "rate") {
-  const Finished run = run_rough("R4_rough_turntable");
+  const FinishedRun run = run_rough("R4_rough_turntable");
   const double W = run.parameter("W"), drag = run.parameter("mu_d") * run.parameter("g");
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "roll");
@@ -159,7 +159,7 @@ TEST_CASE(
 
 // With too little friction for the circle it goes on sliding, and never rolls faster than mu_s g = (2/7) W |v| allows.
 TEST_CASE("rough_bodies: R4: on a slippery turntable the sphere never rolls") {
-  const Finished run = run_rough("R4_rough_turntable", "default", with({{"mu_s", 0.005}, {"mu_d", 0.005}}));
+  const FinishedRun run = run_rough("R4_rough_turntable", "default", with({{"mu_s", 0.005}, {"mu_d", 0.005}}));
   CHECK(events_of(run).empty());
   CHECK(run.final("mode.contact") == 1);
 }
@@ -168,7 +168,7 @@ namespace {
 
 /// Newton's and Euler's equations of the disk that slides, along e1', e2'', e3: x1, x2, v1, v2, phi, theta, w1, w2, w3.
 struct Disk {
-  explicit Disk(const Finished& run)
+  explicit Disk(const FinishedRun& run)
       : m(run.parameter("m")), R(run.parameter("R")), g(run.parameter("g")), mu(run.parameter("mu_d")) {}
   std::array<double, 2> slip(const double* x) const {
     const double cp = std::cos(x[4]), sp = std::sin(x[4]), along = R * x[8], across = R * x[6] * std::sin(x[5]);
@@ -195,7 +195,7 @@ struct Disk {
 TEST_CASE(
     "rough_bodies: R6: the disk that is pushed along slides as Newton's and Euler's equations by hand say, until it "
     "rolls") {
-  const Finished run = run_rough("R6_rough_disk", "thrown");
+  const FinishedRun run = run_rough("R6_rough_disk", "thrown");
   const Disk disk(run);
   REQUIRE(!events_of(run).empty());
   CHECK(events_of(run)[0].kind == "roll");
@@ -217,8 +217,8 @@ TEST_CASE(
 }
 
 TEST_CASE("rough_bodies: R6: the disk rolls as without friction until the plane cannot hold it, and slips there") {
-  const Finished run = run_rough("R6_rough_disk");
-  const Finished held = run_rough("R6_rolling_disk", "default",
+  const FinishedRun run = run_rough("R6_rough_disk");
+  const FinishedRun held = run_rough("R6_rolling_disk", "default",
                                   [](pipeline::SimulationRequest& request) { request.overrides.t_end = 2; });
   REQUIRE(events_of(run).size() == 2);
   CHECK(events_of(run)[0].kind == "slip");
@@ -226,7 +226,7 @@ TEST_CASE("rough_bodies: R6: the disk rolls as without friction until the plane 
   const double slips = events_of(run)[0].t, mu = run.parameter("mu_s");
   bool passed = false;
   for (std::size_t i = 0; i < held.rows.size(); ++i) {
-    const auto force = [&](const Finished& f, std::size_t row, const char* k) {
+    const auto force = [&](const FinishedRun& f, std::size_t row, const char* k) {
       return f.rows.at(row, std::string("reaction.contact.") + k);
     };
     const bool holds = std::hypot(force(held, i, "1"), force(held, i, "2")) <= mu * force(held, i, "3");

@@ -9,7 +9,7 @@ using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE("rough_incline_puck: thrown across the slope it stops at the place and time of the closed form") {
-  const Finished run = run_rough("rough_incline_puck");
+  const FinishedRun run = run_rough("rough_incline_puck");
   const double g = run.parameter("g"), beta = run.parameter("beta"), k = run.parameter("mu_d") / std::tan(beta),
                down = g * std::sin(beta);
   const double v0 = std::hypot(0.5, 1.5), psi0 = std::atan2(1.5, -0.5), u0 = std::tan(psi0 / 2);
@@ -36,7 +36,7 @@ TEST_CASE("rough_incline_puck: thrown across the slope it stops at the place and
 }
 
 TEST_CASE("rough_incline_puck: on the level it goes straight, for v0^2/(2 mu g)") {
-  const Finished run = run_rough("rough_incline_puck", "level");
+  const FinishedRun run = run_rough("rough_incline_puck", "level");
   const double deceleration = run.parameter("mu_d") * run.parameter("g"), way = 1.5 * 1.5 / (2 * deceleration);
   REQUIRE(events_of(run).size() == 1);
   CHECK(std::abs(events_of(run)[0].t - 1.5 / deceleration) < by_hand);
@@ -46,7 +46,7 @@ TEST_CASE("rough_incline_puck: on the level it goes straight, for v0^2/(2 mu g)"
 }
 
 TEST_CASE("rough_incline_puck: from rest it slides straight down if tan(beta) exceeds mu_s, and stays otherwise") {
-  const Finished run = run_rough("rough_incline_puck", "steep");
+  const FinishedRun run = run_rough("rough_incline_puck", "steep");
   const double g = run.parameter("g"), beta = run.parameter("beta");
   const double a = g * (std::sin(beta) - run.parameter("mu_d") * std::cos(beta));
   REQUIRE(!events_of(run).empty());
@@ -60,7 +60,7 @@ TEST_CASE("rough_incline_puck: from rest it slides straight down if tan(beta) ex
 TEST_CASE("rough_incline_puck: fixed steps that are longer than the slip lasts stop it all the same") {
   for (const double step : {0.7, 2.0}) {
     CAPTURE(step);
-    const Finished run = run_rough("rough_incline_puck", "level", [&](pipeline::SimulationRequest& request) {
+    const FinishedRun run = run_rough("rough_incline_puck", "level", [&](pipeline::SimulationRequest& request) {
       request.overrides.solver = "rk4";
       request.overrides.step = step;
       request.overrides.t_end = 4;

@@ -9,7 +9,7 @@
 #include "conservation/conserved.hpp"
 #include "derive/formulations/lagrange.hpp"
 #include "models/reading_of.hpp"
-#include "support/by_hand.hpp"
+#include "support/reference_integration.hpp"
 #include "support/simulation.hpp"
 #include "support/sum_values.hpp"
 #include "verify/certificate.hpp"
@@ -84,7 +84,7 @@ TEST_CASE("routh: a wrong sign in a reduced equation is noticed") {
 
 TEST_CASE("routh: integrated by itself P9's single equation moves as the full system does") {
   constexpr double tolerance = 1e-9;  // both at rtol 1e-12 over 10 s
-  const Finished run = run_model("P9_paraboloid", [](pipeline::SimulationRequest& request) {
+  const FinishedRun run = run_model("P9_paraboloid", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });
@@ -109,7 +109,7 @@ TEST_CASE("routh: integrated by itself P9's single equation moves as the full sy
     dx[1] = -at_rest / (residual(1) - at_rest);
     return 0;
   };
-  const std::vector<double> end = test::integrate_by_hand(f, 0, {1, 0.4}, 10, 1e-12, 1e-13);
+  const std::vector<double> end = test::integrate_reference(f, 0, {1, 0.4}, 10, 1e-12, 1e-13);
   CHECK(end[0] == doctest::Approx(run.final("u")).epsilon(tolerance));
   CHECK(end[1] == doctest::Approx(run.final("u_dot")).epsilon(tolerance).scale(1));
 }

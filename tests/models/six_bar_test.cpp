@@ -39,7 +39,7 @@ TEST_CASE("six_bar: Sarrus' linkage is overconstrained by one, and moves along i
   const auto tighten = [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = request.overrides.atol = 1e-12;
   };
-  const Finished one = run_model(path, tighten), all = run_model("six_bar_spatial", tighten);
+  const FinishedRun one = run_model(path, tighten), all = run_model("six_bar_spatial", tighten);
   const mechanics::Mechanics& m = all.simulation.derived->mechanics;
   CHECK(m.freedom() == 1);
   CHECK(m.active.size() == 9);

@@ -14,7 +14,7 @@ using namespace eomgen;
 
 namespace {
 
-test::Finished motion(const std::string& model, const std::string& solver, double t_end) {
+test::FinishedRun motion(const std::string& model, const std::string& solver, double t_end) {
   return test::run_model(model, [&](pipeline::SimulationRequest& request) {
     request.overrides.solver = solver;
     request.overrides.rtol = 1e-10;
@@ -24,7 +24,7 @@ test::Finished motion(const std::string& model, const std::string& solver, doubl
 }
 
 /// Largest difference of the states at the end.
-double difference(const test::Finished& a, const test::Finished& b) {
+double difference(const test::FinishedRun& a, const test::FinishedRun& b) {
   double largest = 0;
   for (const model::Coordinate& c : a.simulation.derived->model.coordinates)
     for (const std::string& name : {c.name, c.name + "_dot"})
@@ -39,10 +39,10 @@ TEST_CASE("solvers: the implicit ones end where dop853 does, with df/dx from the
                             "bilinear_oscillator", "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian"}) {
     const std::string of_model = model;
     CAPTURE(of_model);
-    const test::Finished reference = motion(model, "dop853", 1.5);
+    const test::FinishedRun reference = motion(model, "dop853", 1.5);
     for (const char* solver : {"radau5", "rodas"}) {
       CAPTURE(std::string(solver));
-      const test::Finished other = motion(model, solver, 1.5);
+      const test::FinishedRun other = motion(model, solver, 1.5);
       const run::RunResult& result = other.simulation.result;
       CHECK(result.outcome == eom::Outcome::done);
       CHECK(difference(other, reference) < 1e-6);
@@ -53,7 +53,7 @@ TEST_CASE("solvers: the implicit ones end where dop853 does, with df/dx from the
 }
 
 TEST_CASE("solvers: an implicit one on code that was compiled without df/dx takes differences, and says so") {
-  const test::Finished first = motion("cart_pendulum", "dop853", 1.5);
+  const test::FinishedRun first = motion("cart_pendulum", "dop853", 1.5);
   run::Overrides overrides;
   overrides.solver = "radau5";
   overrides.rtol = 1e-10;
@@ -75,7 +75,7 @@ TEST_CASE("solvers: auto hands a stiff spring to radau5 and says when, why, and 
     });
   };
   for (const double rtol : {1e-5, 1e-8}) {
-    const test::Finished found = stiff(rtol);
+    const test::FinishedRun found = stiff(rtol);
     const run::RunResult& result = found.simulation.result;
     CHECK(result.outcome == eom::Outcome::done);
     CHECK(result.solver == "radau5");
@@ -95,7 +95,7 @@ TEST_CASE(
     "solvers: variational ones converge to dop853 with their order: free, with multipliers, moving constraints, "
     "damping, inputs") {
   for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane", "cart_pendulum"}) {
-    const test::Finished reference = test::run_model(model, [&](pipeline::SimulationRequest& request) {
+    const test::FinishedRun reference = test::run_model(model, [&](pipeline::SimulationRequest& request) {
       request.overrides.solver = "dop853";
       request.overrides.rtol = request.overrides.atol = 1e-13;
       request.overrides.t_end = 1;
@@ -106,7 +106,7 @@ TEST_CASE(
       CAPTURE(std::string(solver));
       const int order = run::method_named(solver).order;
       const auto error = [&](double step) {
-        const test::Finished found = test::run_model(model, [&](pipeline::SimulationRequest& request) {
+        const test::FinishedRun found = test::run_model(model, [&](pipeline::SimulationRequest& request) {
           request.overrides.solver = solver;
           request.overrides.step = step;
           request.overrides.t_end = 1;
@@ -167,12 +167,12 @@ TEST_CASE(
       request.estimate = false;
     });
   };
-  const test::Finished far = run("P1_spherical_pendulum", "variational2", 0.021838206, 1600);  // theta = 5800 rad
+  const test::FinishedRun far = run("P1_spherical_pendulum", "variational2", 0.021838206, 1600);  // theta = 5800 rad
   CHECK(far.simulation.result.outcome == eom::Outcome::done);
   CHECK(far.drift("energy") < 1e-3);
   CHECK(far.drift("momentum.theta") < 1e-13);
   for (const char* solver : {"midpoint", "variational2"}) {
-    const test::Finished orbits = run("kepler_eccentric", solver, 0.0314159265, 6283);
+    const test::FinishedRun orbits = run("kepler_eccentric", solver, 0.0314159265, 6283);
     CHECK(orbits.simulation.result.outcome == eom::Outcome::done);
     CHECK(orbits.drift("angular_momentum.E3") <
           1e-13);  // 1e-14; corrections of Newton's iteration left out at a quarter of an ulp: 1e-12
@@ -185,7 +185,7 @@ TEST_CASE("solvers: taylor ends where dop853 does, through constraints, tables, 
                             "R6_rolling_disk", "stick_slip_belt", "bouncing_ball", "P5_rough_sphere"}) {
     const std::string of_model = model;
     CAPTURE(of_model);
-    const test::Finished reference = motion(model, "dop853", 1.5), other = motion(model, "taylor", 1.5);
+    const test::FinishedRun reference = motion(model, "dop853", 1.5), other = motion(model, "taylor", 1.5);
     const run::RunResult& result = other.simulation.result;
     CHECK(result.outcome == reference.simulation.result.outcome);
     CHECK(run::to_text(result.reason) == "as asked for, series from the equations");
@@ -203,7 +203,7 @@ TEST_CASE(
   const std::string table = folder + "/cart_table.toml", pushed = folder + "/cart_pushed.toml";
   CHECK(difference(motion(table, "taylor", 1.5), motion(table, "dop853", 1.5)) < 1e-8);
   CHECK_THROWS_WITH_AS(motion(pushed, "taylor", 1.5), doctest::Contains("an expression of t"), Error);
-  const test::Finished first = motion("cart_pendulum", "dop853", 0.5);
+  const test::FinishedRun first = motion("cart_pendulum", "dop853", 0.5);
   run::Overrides overrides;
   overrides.solver = "taylor";
   CHECK_THROWS_WITH_AS(pipeline::run_again(first.simulation, overrides, false),
@@ -218,7 +218,7 @@ TEST_CASE(
                             "P7_moving_sphere_pfaffian", "car_axis"}) {
     const std::string of_model = model;
     CAPTURE(of_model);
-    const test::Finished reference = motion(model, "dop853", 1);
+    const test::FinishedRun reference = motion(model, "dop853", 1);
     run::Overrides overrides;
     overrides.solver = "ggl";
     overrides.rtol = 1e-10;
@@ -253,7 +253,7 @@ TEST_CASE(
 
 TEST_CASE("solvers: fixed implicit steps where components stay at rounding level, or start at 0") {
   for (const auto& [model, t_end] : {std::pair{"n_four_bar_2", 0.5}, std::pair{"iftomm_pendulum", 2.0}}) {
-    const test::Finished reference = motion(model, "dop853", t_end);
+    const test::FinishedRun reference = motion(model, "dop853", t_end);
     for (const char* solver : {"midpoint", "radau5", "radau", "ggl"}) {
       const std::string of_model = model;
       CAPTURE(of_model);

@@ -45,7 +45,7 @@ std::size_t operations(const std::string& text, int n) {
 }  // namespace
 
 TEST_CASE("spatial_chain: energy and the angular momentum about the vertical are kept") {
-  const test::Finished run = test::run_model("spatial_chain_3", [](pipeline::SimulationRequest& request) {
+  const test::FinishedRun run = test::run_model("spatial_chain_3", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
     request.estimate = false;

@@ -14,7 +14,7 @@ constexpr double cycle_time = 1e-10;  // rtol 1e-12; the closed form is exact
 }  // namespace
 
 TEST_CASE("stick_slip_belt: it sticks for 5 and slips for 2(pi - atan 2.5), again and again") {
-  const Finished run = run_rough("stick_slip_belt");
+  const FinishedRun run = run_rough("stick_slip_belt");
   const std::vector<run::RunEvent> events = events_of(run);
   REQUIRE(events.size() >= 12);
   double t = 5;
@@ -32,7 +32,7 @@ TEST_CASE("stick_slip_belt: it sticks for 5 and slips for 2(pi - atan 2.5), agai
 }
 
 TEST_CASE("stick_slip_belt: thrown faster than the belt it is braked, then dragged, and falls into the same cycle") {
-  const Finished run = run_rough("stick_slip_belt", "thrown");
+  const FinishedRun run = run_rough("stick_slip_belt", "thrown");
   const std::vector<run::RunEvent> events = events_of(run);
   REQUIRE(events.size() >= 8);
   CHECK(events[0].kind == "reverse");

@@ -43,7 +43,7 @@ Matrix<cl_R> hilbert(std::size_t n) {
 
 TEST_CASE_TEMPLATE("a system with zeros on its diagonal is solved", T, double, cl_R, cl_RA) {
   const Matrix<T> A = matrix<T>(3, 3, {0, 2, 1, 1, 0, 0, 3, 0, 4}), x = matrix<T>(3, 2, {1, 4, 2, 5, 3, 6});
-  const Elimination<T> factors(A, T(0), Pivots::complete);
+  const Elimination<T> factors(A, T(0), Pivoting::complete);
   CHECK(factors.rank() == 3);
   const T off = distance(factors.solve(A * x), x);
   CHECK(bool(off < T(1) / T(1000000000)));
@@ -55,7 +55,7 @@ TEST_CASE("rationals are exact") {
     unit(i, i) = 1;
     for (std::size_t j = 0; j < 6; ++j) A(i, j) = cl_RA(1) / cl_RA(static_cast<long>(i + j + 1));
   }
-  const Matrix<cl_RA> inverse = Elimination<cl_RA>(A, 0, Pivots::complete).solve(unit);
+  const Matrix<cl_RA> inverse = Elimination<cl_RA>(A, 0, Pivoting::complete).solve(unit);
   CHECK(is_zero(distance(A * inverse, unit)));
   CHECK(inverse(5, 5) == cl_RA(698544));  // of Hilbert's matrix
 }
@@ -63,7 +63,7 @@ TEST_CASE("rationals are exact") {
 TEST_CASE("the rank, pivot columns and null space of a matrix with dependent columns") {
   const Matrix<double> A =
       matrix<double>(3, 4, {1, 2, 3, 4, 2, 4, 6, 9, 1, 2, 3, 5});  // the last row: the second less the first
-  const Elimination<double> factors(A, 1e-12, Pivots::complete);
+  const Elimination<double> factors(A, 1e-12, Pivoting::complete);
   CHECK(factors.rank() == 2);
   CHECK(factors.pivot_columns().front() == 3);
   const Matrix<double> N = factors.null_space();
@@ -78,23 +78,23 @@ TEST_CASE("scaled rows and columns: a system in very different units has full ra
     return B;
   }();
   CHECK(Elimination<double>(A, 1e-9).rank() == 2);
-  CHECK(Elimination<double>(A, 1e-9, Pivots::complete).rank() == 1);
+  CHECK(Elimination<double>(A, 1e-9, Pivoting::complete).rank() == 1);
 }
 
 TEST_CASE("diagonal pivoting distinguishes a positive definite matrix from a semidefinite one") {
   const Matrix<cl_R> definite = hilbert(8);
   const cl_R nothing = cln::expt(cl_RA(1) / 10, 30);
-  CHECK(Elimination<cl_R>(definite, nothing, Pivots::diagonal).rank() == 8);
+  CHECK(Elimination<cl_R>(definite, nothing, Pivoting::diagonal).rank() == 8);
   // v v^T + w w^T with v = (1, 2, 0), w = (0, 1, 1)
   const Matrix<cl_R> semidefinite = matrix<cl_R>(3, 3, {1, 2, 0, 2, 5, 1, 0, 1, 1});
-  CHECK(Elimination<cl_R>(semidefinite, nothing, Pivots::diagonal).rank() == 2);
+  CHECK(Elimination<cl_R>(semidefinite, nothing, Pivoting::diagonal).rank() == 2);
 }
 
 TEST_CASE("the error in sixty digits is bounded by the condition number of the matrix") {
   const Matrix<cl_R> A = hilbert(8);
   Matrix<cl_R> x(8, 1);
   for (std::size_t i = 0; i < 8; ++i) x(i, 0) = cl_R(static_cast<long>(i) - 3);
-  for (const Pivots pivots : {Pivots::complete, Pivots::diagonal}) {
+  for (const Pivoting pivots : {Pivoting::complete, Pivoting::diagonal}) {
     const cl_R off = distance(Elimination<cl_R>(A, 0, pivots).solve(A * x), x);
     CHECK(bool(off < cln::expt(cl_RA(1) / 10, 45)));
   }

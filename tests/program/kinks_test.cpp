@@ -128,7 +128,7 @@ TEST_CASE("kinks: those of a contact law are frozen, except the speed whose sign
   CHECK(dag.call(Op::abs, kinks[0].value) == rough);
   const auto uses_side = [&](Ref r) {
     const auto symbols = dag.symbols({r});
-    return std::find(symbols.begin(), symbols.end(), symbolic::Symbol{SymbolKind::side, 0, 0}) != symbols.end();
+    return std::find(symbols.begin(), symbols.end(), symbolic::Symbol{SymbolKind::branch, 0, 0}) != symbols.end();
   };
   CHECK(uses_side(s.contacts[0].static_coefficient));
   CHECK(uses_side(s.contacts[0].dynamic_coefficient));
@@ -144,7 +144,7 @@ TEST_CASE("system: for_each_expression visits every expression once") {
   const auto some = [&] { return std::vector<Ref>{next(), next()}; };
   s.M = some(), s.f = some(), s.psi = some(), s.A = some(), s.b = some(), s.gamma = some();
   s.integrals = {{0, next()}};
-  s.quasi = system::QuasiEquations{{}, some(), some()};
+  s.quasi = system::QuasiVelocityEquations{{}, some(), some()};
   s.solution = system::Solution{some(), some(), {{next(), next()}}};
   system::Contact contact;
   contact.gram = some(), contact.slip = some(), contact.slip_rate = some();
@@ -157,6 +157,6 @@ TEST_CASE("system: for_each_expression visits every expression once") {
   s.energy = next(), s.kinetic = next(), s.potential = next(), s.power = next();
   std::set<Ref> seen;
   const system::EquationSystem& constant = s;
-  system::for_each_expression(constant, [&](Ref r, system::Part) { CHECK(seen.insert(r).second); });
+  system::for_each_expression(constant, [&](Ref r, system::ExpressionRole) { CHECK(seen.insert(r).second); });
   CHECK(seen.size() == count);
 }

@@ -31,8 +31,8 @@ struct Maker {
   Scalar number(long a, long b = 1) const { return s(dag->constant(symbolic::Rational(a) / b)); }
   Scalar sin(Scalar x) const { return s(dag->call(Op::sin, x.ref)); }
   Scalar cos(Scalar x) const { return s(dag->call(Op::cos, x.ref)); }
-  Scalar d(Scalar x, Symbol along) const { return s(symbolic::partial(*dag, along)(x.ref)); }
-  Scalar ddt(Scalar x, std::size_t n) const { return s(symbolic::total_time(*dag, n, 0, true)(x.ref)); }
+  Scalar d(Scalar x, Symbol along) const { return s(symbolic::partial_derivative(*dag, along)(x.ref)); }
+  Scalar ddt(Scalar x, std::size_t n) const { return s(symbolic::total_time_derivative(*dag, n, 0, true)(x.ref)); }
 };
 
 /// M and f of d/dt dT/dqdot - dT/dq + dV/dq = Q.

@@ -81,7 +81,7 @@ TEST_CASE("a budget ends a calculation that exceeds it, also when nested; the ou
     try {
       const work::Budget budget(inner);
       work::consume_budget(operations);
-    } catch (const work::OverBudget&) {
+    } catch (const work::BudgetExceeded&) {
       over = true;
     }
     return over;
@@ -95,5 +95,5 @@ TEST_CASE("a budget ends a calculation that exceeds it, also when nested; the ou
     work::consume_budget(50);
   }
   CHECK_NOTHROW(work::consume_budget(50));
-  CHECK_THROWS_AS(work::consume_budget(1), work::OverBudget);
+  CHECK_THROWS_AS(work::consume_budget(1), work::BudgetExceeded);
 }

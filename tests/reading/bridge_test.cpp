@@ -68,7 +68,7 @@ TEST_CASE("bridge: GiNaC's derivatives agree with the Dag's") {
   Nodes n;
   reading::Bridge bridge(n.system.mechanics);
   const Symbol x = n.dag.symbol_of(n.x);
-  symbolic::Derivation by_x = symbolic::partial(n.dag, x);
+  symbolic::Derivation by_x = symbolic::partial_derivative(n.dag, x);
   for (const Ref r : every_operation(n)) {
     const Ref slope = reading::to_dag(n.dag, bridge.derivative(bridge.sum(r), x));
     CAPTURE(static_cast<int>(n.dag[r].op));

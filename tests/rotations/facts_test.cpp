@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Results of the exercises on rotations: compositions, conversions, an axis found from angles.
-#include "rotations/turning.hpp"
+#include "rotations/rotation_model.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -14,7 +14,7 @@ std::string three(const std::string& body_name, const std::string& prefix) {
          body_name + ".e3\"\n";
 }
 
-void same_axes(Turning& model) {
+void same_axes(RotationModel& model) {
   for (const char* k : {"1", "2", "3"})
     CHECK(distance(model.vector(std::string("a") + k), model.vector(std::string("b") + k)) < exact);
 }
@@ -24,7 +24,7 @@ void same_axes(Turning& model) {
 // Ex 5.8: a quarter turn about E1 followed by a quarter turn about E3 is a third of a turn about (1, 1, 1). In body
 // axes the two steps have the opposite order.
 TEST_CASE("F(pi/2, E3) F(pi/2, E1) = F(2 pi/3, (E1 + E2 + E3)/sqrt 3), and not the other way round") {
-  Turning model(body("A", "{ axis = \"E3\", angle = \"n1\" }") +
+  RotationModel model(body("A", "{ axis = \"E3\", angle = \"n1\" }") +
                 body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
                 body("C", "{ axis = \"E1 + E2 + E3\", angle = \"p\" }") + "[definitions]\n" + three("B", "a") +
                 three("C", "b"));
@@ -38,7 +38,7 @@ TEST_CASE("F(pi/2, E3) F(pi/2, E1) = F(2 pi/3, (E1 + E2 + E3)/sqrt 3), and not t
 // (5.100): the Euler parameters of C = B A are g0 = e0 f0 - e.f, g = e0 f + f0 e + f x e, with e of A and f of B. In
 // body axes A is the second step.
 TEST_CASE("Euler parameters of a composition are the product of the parameters") {
-  Turning model(body("F", "{ euler_parameters = [\"f0\", \"f1\", \"f2\", \"f3\"] }") +
+  RotationModel model(body("F", "{ euler_parameters = [\"f0\", \"f1\", \"f2\", \"f3\"] }") +
                 body("E", "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }", "relative_to = \"F\"\n") +
                 body("G", "{ euler_parameters = [\"g0\", \"g1\", \"g2\", \"g3\"] }") + "[definitions]\n" +
                 three("E", "a") + three("G", "b"));
@@ -63,7 +63,7 @@ TEST_CASE("axis and angle, Euler parameters and the Rodrigues vector are the sam
                  cln::sin(p * Real(cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits)))) / 2) /
                  cln::cos(p * Real(cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits)))) / 2);
   for (const bool parameters : {true, false}) {
-    Turning model(body("A", "{ axis = \"E1 + 2*E2 - 2*E3\", angle = \"p\" }") +
+    RotationModel model(body("A", "{ axis = \"E1 + 2*E2 - 2*E3\", angle = \"p\" }") +
                   body("B", parameters ? "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }"
                                        : "{ rodrigues = [\"e1\", \"e2\", \"e3\"] }") +
                   "[definitions]\n" + three("A", "a") + three("B", "b"));
@@ -80,7 +80,7 @@ TEST_CASE("axis and angle, Euler parameters and the Rodrigues vector are the sam
 // the dual basis with its first row -cosec(theta) cos(psi), cosec(theta) sin(psi), 0.
 TEST_CASE("3-2-3 angles have the bases of (5.86) and (5.87)") {
   const rotations::Rotation& r = *rotations::find("323");
-  std::string text = body("B", written(r)) + "[definitions]\n";
+  std::string text = body("B", rotation_toml(r)) + "[definitions]\n";
   const std::array<rotations::Components, 3> g{
       {{"-sin(n2)*cos(n3)", "sin(n2)*sin(n3)", "cos(n2)"}, {"sin(n3)", "cos(n3)", "0"}, {"0", "0", "1"}}};
   const std::array<rotations::Components, 3> dual{{{"-cos(n3)/sin(n2)", "sin(n3)/sin(n2)", "0"},
@@ -93,7 +93,7 @@ TEST_CASE("3-2-3 angles have the bases of (5.86) and (5.87)") {
               r.dual[i][k] + ")\"\n";
     }
   }
-  Turning model(text);
+  RotationModel model(text);
   model.at[{"n1", 0}] = ratio(1, 3);
   model.at[{"n2", 0}] = ratio(5, 4);
   model.at[{"n3", 0}] = ratio(-7, 8);
@@ -107,7 +107,7 @@ TEST_CASE("3-2-3 angles have the bases of (5.86) and (5.87)") {
 }
 
 TEST_CASE("intermediate axes of Euler angles: e' after the first, e'' after the second") {
-  Turning model(body("B", "{ euler = \"313\", angles = [\"n1\", \"n2\", \"n3\"] }") +
+  RotationModel model(body("B", "{ euler = \"313\", angles = [\"n1\", \"n2\", \"n3\"] }") +
                 "[definitions]\na1 = \"B.e1'\"\na2 = \"B.e2''\"\na3 = \"B.e3'\"\nw = \"n1_dot*E3 + n2_dot*B.e1' + "
                 "n3_dot*B.e3'' - B.omega\"\n");
   for (const char* name : {"n1", "n2", "n3"}) {
@@ -121,7 +121,7 @@ TEST_CASE("intermediate axes of Euler angles: e' after the first, e'' after the 
 
 // Ex 5.2: R = Q2 Q1^T for a body that rotates about e1 of the previous one; w_R = w_2 - w_1, eq. (5.95), (5.96).
 TEST_CASE("the relative angular velocity of two bodies, along the axes between them and not its rate alone") {
-  Turning model(body("A", "{ axis = \"E3\", angle = \"n1\" }") +
+  RotationModel model(body("A", "{ axis = \"E3\", angle = \"n1\" }") +
                 body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
                 "[definitions]\nr = \"n2_dot*A.e1\"\nw = \"omega(B) - omega(A)\"\n" + three("A", "a") +
                 three("B", "b"));
@@ -170,7 +170,7 @@ TEST_CASE("the relative angular velocity of two bodies, along the axes between t
 
 // Ex 5.3 (g): a quarter about E3, then a quarter about E2: E1 -> E2 -> E2, E2 -> -E1 -> E3, E3 -> E3 -> E1.
 TEST_CASE("a quarter about E3 and a quarter about E2 permute the axes") {
-  Turning model(body("F", "{ axis = \"E2\", angle = \"n2\" }") +
+  RotationModel model(body("F", "{ axis = \"E2\", angle = \"n2\" }") +
                 body("E", "{ axis = \"F.e3\", angle = \"n1\" }", "relative_to = \"F\"\n") + "[definitions]\n" +
                 three("E", "a"));
   model.at[{"n1", 0}] = model.at[{"n2", 0}] = half_pi();
@@ -181,7 +181,7 @@ TEST_CASE("a quarter about E3 and a quarter about E2 permute the axes") {
 
 // Ex 5.5: north, east, down at longitude l and latitude b: about E3 by l, then about the new e2 by -(pi/2 + b).
 TEST_CASE("north, east and down are two rotations from the fixed axes") {
-  Turning model(body("A", "{ axis = \"E3\", angle = \"l\" }") +
+  RotationModel model(body("A", "{ axis = \"E3\", angle = \"l\" }") +
                 body("B", "{ axis = \"A.e2\", angle = \"-pi/2 - b\" }", "relative_to = \"A\"\n") +
                 "[coordinates]\nb = \"rad\"\n[definitions]\n" + three("B", "a") +
                 "b1 = \"-cos(l)*sin(b)*E1 - sin(l)*sin(b)*E2 + cos(b)*E3\"\nb2 = \"-sin(l)*E1 + cos(l)*E2\"\nb3 = "
@@ -193,7 +193,7 @@ TEST_CASE("north, east and down are two rotations from the fixed axes") {
 
 // Ex 5.6: (5.122), the angular velocity of a rotation about a rotating axis, from the Rodrigues formula (5.46).
 TEST_CASE("about a rotating axis: the corotational part and the part due to the rotation of the axis") {
-  Turning model(body("A", "{ axis = \"E3\", angle = \"p\" }") +
+  RotationModel model(body("A", "{ axis = \"E3\", angle = \"p\" }") +
                 body("C", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
                 "[definitions]\nw = \"omega(C)\"\na = \"n_dot*A.e1 - p_dot*(cos(n)*E3 - sin(n)*A.e2) + p_dot*E3\"\n"
                 "b = \"p_dot*(cos(n)*E3 - sin(n)*A.e2)\"\n");
@@ -208,7 +208,7 @@ TEST_CASE("about a rotating axis: the corotational part and the part due to the 
 
 // Ex 5.7: (5.124), (5.125): polar axes.
 TEST_CASE("about E3 the axes are e_r, e_theta, E3, and w is theta_dot E3") {
-  Turning model(
+  RotationModel model(
       body("B", "{ axis = \"E3\", angle = \"n\" }") + "[definitions]\n" + three("B", "a") +
       "b1 = \"cos(n)*E1 + sin(n)*E2\"\nb2 = \"-sin(n)*E1 + cos(n)*E2\"\nb3 = \"E3\"\nw = \"B.omega - n_dot*E3\"\n");
   model.at[{"n", 0}] = ratio(11, 4);
@@ -219,7 +219,7 @@ TEST_CASE("about E3 the axes are e_r, e_theta, E3, and w is theta_dot E3") {
 
 // Ex 5.9, last part: a half turn about E1 followed by a half turn about E2 is a half turn about E3.
 TEST_CASE("two half turns about axes at right angles are one about the third") {
-  Turning model(body("A", "{ axis = \"E2\", angle = \"n\" }") +
+  RotationModel model(body("A", "{ axis = \"E2\", angle = \"n\" }") +
                 body("B", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
                 body("C", "{ axis = \"E3\", angle = \"n\" }") + "[definitions]\n" + three("B", "a") + three("C", "b"));
   model.at[{"n", 0}] = 2 * half_pi();

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "rotations/turning.hpp"
+#include "rotations/rotation_model.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -158,7 +158,7 @@ TEST_CASE("inertia: the cylinder of Ex 6.8 about a point off its axis") {
 // (6.91), (6.97): Jdot = W J - J W and Edot = W E - E W, with W v = w x v; from J = sum lambda_i e_i (x) e_i by
 // differences.
 TEST_CASE("inertia: the tensors rotate with the body") {
-  Turning model(body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") +
+  RotationModel model(body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") +
                 "[definitions]\na1 = \"B.e1\"\na2 = \"B.e2\"\na3 = \"B.e3\"\nw = \"B.omega\"\n");
   for (const char* name : {"n1", "n2", "n3"}) {
     model.at[{name, 0}] = ratio(name[1] - '0', 5);
@@ -194,7 +194,7 @@ TEST_CASE("inertia: the tensors rotate with the body") {
 
 // (6.100), and (6.101): with w . g3 = w . g2 = 0 only a rotation about E3 remains.
 TEST_CASE("inertia: angular velocity, momentum and energy in 3-2-3 angles") {
-  Turning model(body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") +
+  RotationModel model(body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") +
                 "[definitions]\nw1 = \"dot(B.omega, B.e1) - (n2_dot*sin(n3) - n1_dot*sin(n2)*cos(n3))\"\n"
                 "w2 = \"dot(B.omega, B.e2) - (n2_dot*cos(n3) + n1_dot*sin(n3)*sin(n2))\"\nw3 = \"dot(B.omega, B.e3) - "
                 "(n1_dot*cos(n2) + n3_dot)\"\nw = \"B.omega\"\n");

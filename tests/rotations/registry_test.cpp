@@ -3,7 +3,7 @@
 // singular sets of its file are correct.
 #include <set>
 
-#include "rotations/turning.hpp"
+#include "rotations/rotation_model.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -13,7 +13,7 @@ namespace {
 const std::string axes_of_B = "[definitions]\na1 = \"B.e1\"\na2 = \"B.e2\"\na3 = \"B.e3\"\nw = \"omega(B)\"\n";
 
 /// Sets a regular state with nonzero rates. Euler parameters have unit norm, and rates that preserve it.
-void set(Turning& model, const rotations::Rotation& r, const std::string& suffix = "", long shift = 0) {
+void set(RotationModel& model, const rotations::Rotation& r, const std::string& suffix = "", long shift = 0) {
   constexpr std::array<long, 4> unit{1, 2, 4, 10}, kept{2, -1, 10, -4};
   for (std::size_t k = 0; k < r.entries.size(); ++k) {
     const std::string name = r.entries[k].name + suffix;
@@ -32,12 +32,12 @@ std::string formulas(const rotations::Rotation& r) {
       text += "basis_" + ik + " = \"" + r.basis[i][k] + "\"\ndual_" + ik + " = \"" + r.dual[i][k] + "\"\n";
     }
   }
-  if (!r.regular.empty()) text += "regular = \"" + r.regular + "\"\n";
+  if (!r.singularity.empty()) text += "regular = \"" + r.singularity + "\"\n";
   if (r.family == "axis") text += "r1 = \"1/3\"\nr2 = \"2/3\"\nr3 = \"-2/3\"\n";
   return text;
 }
 
-Numbers components(Turning& model, const std::string& kind, std::size_t i) {
+Numbers components(RotationModel& model, const std::string& kind, std::size_t i) {
   Numbers v;
   for (std::size_t k = 0; k < 3; ++k) v[k] = model.scalar(kind + "_" + std::to_string(i) + std::to_string(k));
   return v;
@@ -60,7 +60,7 @@ TEST_CASE("rotations: there are the twelve sets of Euler angles, each once, and 
 TEST_CASE("rotations: Q Q^T = I and det Q = 1") {
   for (const rotations::Rotation& r : rotations::registry()) {
     CAPTURE(r.name);
-    Turning model(body("B", written(r)) + axes_of_B);
+    RotationModel model(body("B", rotation_toml(r)) + axes_of_B);
     set(model, r);
     if (!r.unit.empty()) model.at[{"e0", 0}] = 3;  // a rotation for parameters of any length
     const Numbers e1 = model.vector("a1"), e2 = model.vector("a2"), e3 = model.vector("a3");
@@ -72,10 +72,10 @@ TEST_CASE("rotations: Q Q^T = I and det Q = 1") {
 TEST_CASE("rotations: the angular velocity is the axial vector of Qdot Q^T, along space and along the body's axes") {
   for (const rotations::Rotation& r : rotations::registry()) {
     CAPTURE(r.name);
-    Turning model(body("B", written(r)) + axes_of_B);
+    RotationModel model(body("B", rotation_toml(r)) + axes_of_B);
     set(model, r);
     if (!r.unit.empty()) model.at[{"e0", 0}] = 3;
-    const Numbers turning = model.turning("a"), w = model.vector("w"), own = model.own_rates(1);
+    const Numbers turning = model.axial_vector("a"), w = model.vector("w"), own = model.angular_velocity(1);
     CHECK(distance(turning, w) < difference);
     CHECK(distance({dot(w, model.vector("a1")), dot(w, model.vector("a2")), dot(w, model.vector("a3"))}, own) < exact);
     CHECK(((size(dot(w, w)) > 0.1) == (r.family != "fixed")));
@@ -85,9 +85,9 @@ TEST_CASE("rotations: the angular velocity is the axial vector of Qdot Q^T, alon
 TEST_CASE("rotations: w is the sum of the basis times the rates, and the dual basis recovers the rates") {
   for (const rotations::Rotation& r : rotations::registry()) {
     CAPTURE(r.name);
-    Turning model(body("B", written(r)) + axes_of_B + formulas(r));
+    RotationModel model(body("B", rotation_toml(r)) + axes_of_B + formulas(r));
     set(model, r);
-    const Numbers own = model.own_rates(1);
+    const Numbers own = model.angular_velocity(1);
     Numbers sum{0, 0, 0};
     for (std::size_t i = 0; i < r.basis.size(); ++i) {
       const Real rate = model.at[{r.entries[i].name, 1}];
@@ -107,9 +107,9 @@ TEST_CASE("rotations: w is the sum of the basis times the rates, and the dual ba
 TEST_CASE("rotations: the basis of Euler angles is dependent exactly at the documented angles") {
   for (const rotations::Rotation& r : rotations::registry()) {
     CAPTURE(r.name);
-    CHECK((r.family == "euler") == !r.regular.empty());
-    if (r.regular.empty()) continue;
-    Turning model(body("B", written(r)) + axes_of_B + formulas(r));
+    CHECK((r.family == "euler") == !r.singularity.empty());
+    if (r.singularity.empty()) continue;
+    RotationModel model(body("B", rotation_toml(r)) + axes_of_B + formulas(r));
     const auto volume = [&](const Real& n2) {
       set(model, r);
       model.at[{"n2", 0}] = n2;
@@ -135,20 +135,20 @@ TEST_CASE("rotations: relative to another body angular velocities add up, in eve
       if (b.family == "axis") continue;  // its axis is given along E1, E2, E3; tested below
       CAPTURE(a.name);
       CAPTURE(b.name);
-      Turning model(body("B", written(a, "a")) + body("C", written(b, "b"), "relative_to = \"B\"\n") +
+      RotationModel model(body("B", rotation_toml(a, "a")) + body("C", rotation_toml(b, "b"), "relative_to = \"B\"\n") +
                     "[definitions]\na1 = \"C.e1\"\na2 = \"C.e2\"\na3 = \"C.e3\"\nw = \"omega(C)\"\n");
       set(model, a, "a");
       set(model, b, "b", 1);
       const Numbers w = model.vector("w");
-      CHECK(distance(model.turning("a"), w) < difference);
+      CHECK(distance(model.axial_vector("a"), w) < difference);
       CHECK(distance({dot(w, model.vector("a1")), dot(w, model.vector("a2")), dot(w, model.vector("a3"))},
-                     model.own_rates(2)) < exact);
+                     model.angular_velocity(2)) < exact);
     }
   }
 }
 
 TEST_CASE("rotations: an axis may be any vector that is fixed in the parent") {
-  Turning model(body("B", "{ euler = \"321\", angles = [\"a\", \"b\", \"c\"] }") +
+  RotationModel model(body("B", "{ euler = \"321\", angles = [\"a\", \"b\", \"c\"] }") +
                 body("C", "{ axis = \"B.e1 - 3*B.e3\", angle = \"d\" }", "relative_to = \"B\"\n") +
                 "[definitions]\na1 = \"C.e1\"\na2 = \"C.e2\"\na3 = \"C.e3\"\nw = \"omega(C)\"\nof_B = \"dot(C.e1 - "
                 "3*C.e3, B.e1 - 3*B.e3)\"\n");
@@ -156,6 +156,6 @@ TEST_CASE("rotations: an axis may be any vector that is fixed in the parent") {
     model.at[{name, 0}] = ratio(name[0] - 'a' + 1, 3);
     model.at[{name, 1}] = ratio(7 - 2 * (name[0] - 'a'), 5);
   }
-  CHECK(distance(model.turning("a"), model.vector("w")) < difference);
+  CHECK(distance(model.axial_vector("a"), model.vector("w")) < difference);
   CHECK(size(model.scalar("of_B") - 10) < exact);
 }

@@ -18,7 +18,7 @@ std::string radial(double r, double r_dot) {
          std::to_string(r) + ", r_dot = " + std::to_string(r_dot) + " }\n";
 }
 
-test::Finished run_text(const std::string& text) {
+test::FinishedRun run_text(const std::string& text) {
   const std::string path = test::build_folder() + "/radial.toml";
   test::write_text(path, text);
   return test::run_model(path);
@@ -27,7 +27,7 @@ test::Finished run_text(const std::string& text) {
 }  // namespace
 
 TEST_CASE("run: a radius that would pass zero ends the run with chart_left, the last row inside the chart") {
-  const test::Finished finished = run_text(radial(1, -5));
+  const test::FinishedRun finished = run_text(radial(1, -5));
   CHECK(finished.simulation.result.outcome == eom::Outcome::chart_left);
   CHECK(finished.simulation.result.detail.find("r leaves its range") != std::string::npos);
   CHECK(finished.final("r") > 0);
@@ -45,7 +45,7 @@ TEST_CASE("run: a start outside the range is rejected") {
 }
 
 TEST_CASE("run: a bead on a rotating wire passes through the centre, where its equation is regular") {
-  const test::Finished finished = run_text(
+  const test::FinishedRun finished = run_text(
       "format = 1\n[parameters]\nm = 1\nw = 1\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = "
       "[\"r\", \"theta\"] }\n"
       "[[constraint]]\nname = \"turn\"\nholonomic = \"theta - w*t\"\n[scene.default]\nt = [0, 2]\ninitial = { r = 0.5, "
@@ -53,7 +53,7 @@ TEST_CASE("run: a bead on a rotating wire passes through the centre, where its e
   CHECK(finished.simulation.result.outcome == eom::Outcome::done);
   CHECK(std::abs(finished.final("r") - (0.5 * std::cosh(2.0) - std::sinh(2.0))) < 1e-7);
   // With a spring to the centre the distance is r on one side and -r on the other.
-  const test::Finished spring = run_text(
+  const test::FinishedRun spring = run_text(
       "format = 1\n[parameters]\nm = 1\nw = 1\nk = 9\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { "
       "cylindrical = [\"r\", \"theta\"] }\n"
       "[[force]]\nspring = { between = [\"P\", \"origin\"], stiffness = \"k\", length = 0.1 }\n"

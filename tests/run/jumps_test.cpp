@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "support/by_hand.hpp"
+#include "support/reference_integration.hpp"
 #include "support/run_text.hpp"
 
 using namespace eomgen;
@@ -27,13 +27,13 @@ std::array<double, 2> expected(double change) {
     dx[1] = -g * std::sin(x[0]);
     return 0;
   };
-  std::vector<double> x = test::integrate_by_hand(f, 0, {0.1, 0}, 1, 1e-13, 1e-14);
+  std::vector<double> x = test::integrate_reference(f, 0, {0.1, 0}, 1, 1e-13, 1e-14);
   x[1] -= change * std::cos(x[0]);
-  x = test::integrate_by_hand(f, 1, x, 3, 1e-13, 1e-14);
+  x = test::integrate_reference(f, 1, x, 3, 1e-13, 1e-14);
   return {x[0], x[1]};
 }
 
-const run::RunEvent* impulse(const test::Finished& finished) {
+const run::RunEvent* impulse(const test::FinishedRun& finished) {
   for (const run::RunEvent& event : finished.simulation.result.events) {
     if (event.kind == "impulse") return &event;
   }
@@ -56,7 +56,7 @@ TEST_CASE("jumps: a jump in the velocity of a support gives the pendulum an impu
   for (const Case& c : {Case{"a*abs(t - 1)", 2}, Case{"a*max(0, t - 1)", 1}, Case{"if(t < 1, 0, a*(t - 1))", 1},
                         Case{"3 - a*min(1, t)", 1}}) {
     CAPTURE(std::string(c.support));
-    const test::Finished finished = test::run_text("support", pendulum(c.support));
+    const test::FinishedRun finished = test::run_text("support", pendulum(c.support));
     const auto [th, th_dot] = expected(c.change);
     CHECK(finished.simulation.result.outcome == eom::Outcome::done);
     CHECK(std::abs(finished.final("th") - th) < 1e-7);
@@ -70,7 +70,7 @@ TEST_CASE("jumps: a jump in the velocity of a support gives the pendulum an impu
 }
 
 TEST_CASE("jumps: the same with a constraint that keeps its multiplier") {
-  const test::Finished finished = test::run_text(
+  const test::FinishedRun finished = test::run_text(
       "rod",
       "[parameters]\nm = 1\nl = 1\na = 1\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = "
       "[\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n"
@@ -86,19 +86,19 @@ TEST_CASE("jumps: the same with a constraint that keeps its multiplier") {
 }
 
 TEST_CASE("jumps: a support whose velocity has a kink but no jump gives no impulse") {
-  const test::Finished finished = test::run_text("bends", pendulum("a*max(0, t - 1)^2"));
+  const test::FinishedRun finished = test::run_text("bends", pendulum("a*max(0, t - 1)^2"));
   CHECK(finished.simulation.result.outcome == eom::Outcome::done);
   CHECK(impulse(finished) == nullptr);
 }
 
 TEST_CASE("jumps: a support whose position jumps ends the run, and is named") {
-  const test::Finished finished = test::run_text("place", pendulum("if(t < 1, 0, a)"));
+  const test::FinishedRun finished = test::run_text("place", pendulum("if(t < 1, 0, a)"));
   CHECK(finished.simulation.result.outcome == eom::Outcome::jump_undetermined);
   CHECK(finished.simulation.result.detail.find("P.position1 jumps at t = 1") == 0);
 }
 
 TEST_CASE("jumps: a step of a potential ends the run if it is crossed, and has no effect otherwise") {
-  const test::Finished crossed = test::run_text("step", step_at_one("if(x < 1, 0, 5)", 4));
+  const test::FinishedRun crossed = test::run_text("step", step_at_one("if(x < 1, 0, 5)", 4));
   CHECK(crossed.simulation.result.outcome == eom::Outcome::jump_undetermined);
   CHECK(crossed.simulation.result.detail.find("the potential energy jumps by 5") == 0);
   CHECK(std::abs(crossed.final("x") - 1) < 1e-9);
@@ -108,7 +108,7 @@ TEST_CASE("jumps: a step of a potential ends the run if it is crossed, and has n
 }
 
 TEST_CASE("jumps: a wire with a corner ends the run there") {
-  const test::Finished corner = test::run_text("corner",
+  const test::FinishedRun corner = test::run_text("corner",
                                                "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = "
                                                "\"P\"\nmass = \"m\"\nposition = [\"x\", \"max(0, x - 1)\", 0]\n"
                                                "[scene.default]\nt = [0, 3]\ninitial = { x_dot = 1 }\n");

@@ -39,7 +39,7 @@ TEST_CASE(
         Case{"if(abs(t - 5.123) < 0.0005, F, 0)", F * w, 1e-9, false},
         Case{"F*max(0, 1 - abs(t - 5.123)/0.001)", F * w, 1e-9, false}}) {
     CAPTURE(std::string(c.force));
-    const test::Finished finished = test::run_text("pulse", particle(c.force, "") + "[scene.default]\nt = [0, 10]\n",
+    const test::FinishedRun finished = test::run_text("pulse", particle(c.force, "") + "[scene.default]\nt = [0, 10]\n",
                                                    [](auto& request) { request.every_solver = true; });
     CHECK(std::abs(finished.final("x_dot") - c.impulse) < c.allowed);
     for (const eom::MethodInfo& method : eom::methods()) {
@@ -67,7 +67,7 @@ TEST_CASE("passed over: conditions in inputs are detected, also narrow ones") {
       "[scene.pulses]\nfrom = \"default\"\ninputs = { u = \"if(cos(2*pi*t) > 0.9999, 1, 0)\" }\n"
       "[scene.table]\nfrom = \"default\"\ninputs = { u = { t = [0, 5, 5.001], value = [0, 1000, 0] } }\n";
   const auto end = [&](const std::string& scene) {
-    const test::Finished finished = test::run_text("input", text, [&](auto& request) { request.scene = scene; });
+    const test::FinishedRun finished = test::run_text("input", text, [&](auto& request) { request.scene = scene; });
     CHECK(finished.simulation.result.outcome == eom::Outcome::done);
     return finished.final("x_dot");
   };
@@ -85,7 +85,7 @@ TEST_CASE("passed over: every event of a free particle, whose steps are long, is
       "[[event]]\nname = \"time\"\nwhen = \"sin(5*t + 1)\"\n[[event]]\nname = \"place\"\nwhen = \"sin(50*x + 1)\"\n"
       "[[event]]\nname = \"narrow\"\nwhen = \"abs(x - 3.3333) - 1e-5\"\n[scene.default]\nt = [0, 10]\ninitial = { "
       "x_dot = 1.1 }\n";
-  const test::Finished finished = test::run_text("events", text);
+  const test::FinishedRun finished = test::run_text("events", text);
   const run::RunResult& result = finished.simulation.result;
   CHECK(result.outcome == eom::Outcome::done);
   CHECK(count(result, "custom", "time") == 16);    // 51 rad
@@ -94,7 +94,7 @@ TEST_CASE("passed over: every event of a free particle, whose steps are long, is
 }
 
 TEST_CASE("passed over: a particle that crosses a narrow region of force within a step is affected by it") {
-  const test::Finished finished =
+  const test::FinishedRun finished =
       test::run_text("barrier", particle("if(abs(x - 3.3) < 0.01, -20, 0)", "") +
                                     "[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n");
   CHECK(finished.simulation.result.outcome == eom::Outcome::done);
@@ -102,7 +102,7 @@ TEST_CASE("passed over: a particle that crosses a narrow region of force within 
 }
 
 TEST_CASE("passed over: a bump that is narrower than a step is detected") {
-  const test::Finished finished = test::run_text(
+  const test::FinishedRun finished = test::run_text(
       "bump",
       "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\ny = \"m\"\n[[particle]]\nname = \"P\"\nmass = "
       "\"m\"\nposition = [\"x\", \"y\", 0]\n[[constraint]]\nname = \"floor\"\n"
@@ -126,7 +126,7 @@ TEST_CASE(
                         Case{"0.3*tanh((x - 3)/1e-5) + 0.3", -4, -1},
                         Case{"0.2*tanh((x - 3)/1e-5) + 0.2", 3 + 7 * std::sqrt(0.2), std::sqrt(0.2)}}) {
     CAPTURE(std::string(c.potential));
-    const test::Finished finished =
+    const test::FinishedRun finished =
         test::run_text("narrow",
                        "[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"" +
                            std::string(c.potential) + "\"\n[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n",

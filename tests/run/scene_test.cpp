@@ -18,7 +18,7 @@ const std::string rod = R"toml(format = 1
 m = 1
 g = 9.81
 L = 2
-)toml" + test::heavy_in_plane +
+)toml" + test::particle_in_plane +
                         R"toml([[constraint]]
 name = "rod"
 holonomic = "x^2 + y^2 - L^2"

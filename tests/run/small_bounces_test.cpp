@@ -24,8 +24,8 @@ const char* const ball =
     "static = \"mu\", dynamic = \"mu\" }\n"
     "[scene.default]\nt = [0, 3]\ninitial = { y = \"h\", x_dot = \"v\" }\n";
 
-const test::Finished& made() {
-  static const test::Finished finished = [] {
+const test::FinishedRun& made() {
+  static const test::FinishedRun finished = [] {
     const std::string path = test::build_folder() + "/small_bounces.toml";
     test::write_text(path, ball);
     return test::run_model(path);

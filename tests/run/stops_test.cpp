@@ -14,7 +14,7 @@ namespace {
 
 constexpr double closed_form = 1e-9;  // rtol is 1e-9, over a few steps
 
-test::Finished run_text(const std::string& name, const std::string& text) {
+test::FinishedRun run_text(const std::string& name, const std::string& text) {
   const std::string path = test::build_folder() + "/" + name + ".toml";
   test::write_text(path, text);
   return test::run_model(path, [](pipeline::SimulationRequest& request) { request.overrides.outputs = {"all"}; });
@@ -75,7 +75,7 @@ holds = "unilateral"
 }  // namespace
 
 TEST_CASE("stops: a slider on a rough guide bounces off its stop and comes to rest by friction") {
-  const test::Finished end = run_text(
+  const test::FinishedRun end = run_text(
       "slider", slider_with_a_stop("", "restitution = 0.3\n", "t = [0, 5]\ninitial = { x = 0.5, x_dot = 2 }\n"));
   // The deceleration is F/m = 2: 4 - 2*2/2 = 2 is the square of its speed at the stop, e^2*2 that after it.
   CHECK(std::abs(end.final("x") - (1 - 0.09 * 2 / (2 * 2))) <= closed_form);
@@ -84,7 +84,7 @@ TEST_CASE("stops: a slider on a rough guide bounces off its stop and comes to re
 }
 
 TEST_CASE("stops: the stop bears the force that presses a slider onto it; then friction determines the motion") {
-  const test::Finished end = run_text(
+  const test::FinishedRun end = run_text(
       "pressed_slider",
       slider_with_a_stop("[[force]]\ngeneralized = { x = \"10 - 6*t\" }\n", "", "t = [0, 4]\ninitial = { x = 1 }\n"));
   const std::size_t last = end.rows.size() - 1;
@@ -112,7 +112,7 @@ TEST_CASE("stops: the stop bears the force that presses a slider onto it; then f
 TEST_CASE("stops: a block on a rough floor at a wall or a rail slides along it, and sticks only across it") {
   for (const bool rail : {false, true}) {
     CAPTURE(rail);
-    const test::Finished end = run_text(rail ? "block_on_rail" : "block_at_walls",
+    const test::FinishedRun end = run_text(rail ? "block_on_rail" : "block_at_walls",
                                         block_beside_a_wall("z", "50*E1 + 30*E2 + 4*t*(E1 - E2)", 2, rail));
     // Along the wall, (E1 - E2)/sqrt(2), it is pulled by (20 + 8 t)/sqrt(2) > mu m g = 6: it slides from the start.
     const double root = std::sqrt(2.0), along = (10 * 4 + 4.0 * 8 / 3) / root / 2 - 6.0 * 4 / 2 / 2;
@@ -125,7 +125,7 @@ TEST_CASE("stops: a block on a rough floor at a wall or a rail slides along it, 
 TEST_CASE("stops: a block that sticks beside a wall or on a rail has no friction towards it") {
   for (const bool rail : {false, true}) {
     CAPTURE(rail);
-    const test::Finished end = run_text(rail ? "block_at_rest_on_rail" : "block_at_rest",
+    const test::FinishedRun end = run_text(rail ? "block_at_rest_on_rail" : "block_at_rest",
                                         block_beside_a_wall("z - x/10", "50*E1 + 46*E2", 1, rail));
     CHECK(std::abs(end.final("x") - 1) <= closed_form);
     CHECK(std::abs(end.final("y") - 2) <= closed_form);
@@ -141,7 +141,7 @@ TEST_CASE("stops: a block that sticks beside a wall or on a rail has no friction
 
 TEST_CASE("stops: a floor and a ceiling each reflect a ball with their own coefficient of restitution") {
   // The forces are not determined if both contacts are closed: a run must not evaluate them there.
-  const test::Finished end = run_text("ball_between", R"toml(format = 1
+  const test::FinishedRun end = run_text("ball_between", R"toml(format = 1
 [parameters]
 m = 2
 [[particle]]
@@ -177,7 +177,7 @@ initial = { x = 0, h = 0.5, x_dot = 1 }
 TEST_CASE("stops: touching balls in a row are hit simultaneously, balls with gaps one after the other") {
   for (const bool gap : {false, true}) {
     CAPTURE(gap);
-    const test::Finished end = run_text(gap ? "row_with_gap" : "row", R"toml(format = 1
+    const test::FinishedRun end = run_text(gap ? "row_with_gap" : "row", R"toml(format = 1
 [coordinates]
 x1 = {}
 x2 = {}
@@ -229,7 +229,7 @@ holds = "unilateral"
 [scene.default]
 t = [0, 1]
 )toml";
-  const test::Finished end = run_text("backlash", wheels);
+  const test::FinishedRun end = run_text("backlash", wheels);
   const auto told = [&](const std::string& text) {
     const std::vector<std::string>& all = end.simulation.scene.solved;
     return std::any_of(all.begin(), all.end(), [&](const std::string& note) { return note.find(text) != note.npos; });
@@ -245,7 +245,7 @@ TEST_CASE("stops: a contact is closed at the start by default, and one that cann
   const std::string ball =
       "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\"] }\n"
       "[[constraint]]\nname = \"floor\"\nholonomic = \"y - x^2 - 1\"\nholds = \"unilateral\"\n";
-  const test::Finished end = run_text("touching_ball", ball + "[scene.default]\nt = [0, 0.1]\ninitial = { x = 1 }\n");
+  const test::FinishedRun end = run_text("touching_ball", ball + "[scene.default]\nt = [0, 0.1]\ninitial = { x = 1 }\n");
   CHECK(std::abs(end.rows.at(0, "y") - 2) <= closed_form);
   CHECK_THROWS_WITH_AS(run_text("sunk_ball", ball + "[scene.default]\nt = [0, 0.1]\ninitial = { y = 0.5 }\n"),
                        doctest::Contains("the start breaks constraint 'floor'"), Error);
@@ -253,7 +253,7 @@ TEST_CASE("stops: a contact is closed at the start by default, and one that cann
 
 TEST_CASE("stops: a body that slides on a floor slides on where a coordinate becomes stationary along the floor") {
   // Below the origin the floor's gradient has no component along theta.
-  const test::Finished end = run_text("polar_floor", R"toml(format = 1
+  const test::FinishedRun end = run_text("polar_floor", R"toml(format = 1
 [parameters]
 m = 2
 g = 10

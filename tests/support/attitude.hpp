@@ -15,7 +15,7 @@
 namespace eomgen::test {
 
 /// Rows e_k . E_j of an attitude far from the singularities of all sets of Euler angles.
-inline Eigen::Matrix3d some_attitude() {
+inline Eigen::Matrix3d sample_attitude() {
   return (Eigen::AngleAxisd(0.9, Eigen::Vector3d(1, 0.4, -0.7).normalized()).toRotationMatrix() *
           Eigen::AngleAxisd(0.5, Eigen::Vector3d(0.2, 1, 0.3).normalized()).toRotationMatrix())
       .transpose();

@@ -7,7 +7,7 @@
 namespace eomgen::test {
 
 /// P of mass m with the coordinates R, phi, theta, in a uniform field g along -E3.
-inline const std::string heavy_in_space = R"toml([[particle]]
+inline const std::string particle_in_space = R"toml([[particle]]
 name = "P"
 mass = "m"
 position = { spherical = ["R", "phi", "theta"] }
@@ -16,7 +16,7 @@ gravity = "-g*E3"
 )toml";
 
 /// P of mass m with the coordinates x, y, in a uniform field g along -E2.
-inline const std::string heavy_in_plane = R"toml([[particle]]
+inline const std::string particle_in_plane = R"toml([[particle]]
 name = "P"
 mass = "m"
 position = { cartesian = ["x", "y"] }

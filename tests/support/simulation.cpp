@@ -23,17 +23,17 @@ double value_of(const std::vector<std::pair<std::string, double>>& values, const
   throw std::logic_error("no value " + name);
 }
 
-double Finished::final(const std::string& name) const { return value_of(simulation.result.final, name); }
-double Finished::error(const std::string& name) const { return value_of(simulation.result.error_estimate, name); }
+double FinishedRun::final(const std::string& name) const { return value_of(simulation.result.final, name); }
+double FinishedRun::error(const std::string& name) const { return value_of(simulation.result.error_estimate, name); }
 
-double Finished::drift(const std::string& name) const {
+double FinishedRun::drift(const std::string& name) const {
   for (const run::Invariant& i : simulation.result.invariants) {
     if (i.name == name) return i.max_relative_drift;
   }
   throw std::logic_error("no invariant " + name);
 }
 
-double Finished::parameter(const std::string& name) const {
+double FinishedRun::parameter(const std::string& name) const {
   const auto& parameters = simulation.derived->model.parameters;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i].name == name) return simulation.scene.parameters[i];
@@ -59,7 +59,7 @@ std::shared_ptr<const model::Model> model_at(const std::string& path) {
   return std::make_shared<const model::Model>(model::read_model(path));
 }
 
-Finished run_model(const std::string& name, const std::function<void(pipeline::SimulationRequest&)>& adjust) {
+FinishedRun run_model(const std::string& name, const std::function<void(pipeline::SimulationRequest&)>& adjust) {
   pipeline::SimulationRequest request;
   request.model = model_at(name.ends_with(".toml") ? name : model_path(name));
   Rows rows;

@@ -22,7 +22,7 @@ struct Rows {
 
 double value_of(const std::vector<std::pair<std::string, double>>& values, const std::string& name);
 
-struct Finished {
+struct FinishedRun {
   pipeline::Simulation simulation;
   Rows rows;
 
@@ -39,6 +39,6 @@ std::shared_ptr<const model::Model> model_at(const std::string& path);
 
 /// Runs models/NAME.toml (or a path that ends in .toml) and stores the rows. `adjust` may set scene, overrides and so
 /// on.
-Finished run_model(const std::string& name, const std::function<void(pipeline::SimulationRequest&)>& adjust = {});
+FinishedRun run_model(const std::string& name, const std::function<void(pipeline::SimulationRequest&)>& adjust = {});
 
 }  // namespace eomgen::test

@@ -74,7 +74,7 @@ TEST_CASE("antiderivatives: u'/u is integrated for negative u too, where log u i
   Letters l;
   const Scalar x = l.x, integrand = x / (x * x - l.number(5));
   const std::optional<Ref> plain = antiderivative(l.dag, integrand.ref, l.x_symbol);
-  const std::optional<Ref> any = antiderivative(l.dag, integrand.ref, l.x_symbol, Logarithms::any_sign);
+  const std::optional<Ref> any = antiderivative(l.dag, integrand.ref, l.x_symbol, LogarithmDomain::any_sign);
   REQUIRE(plain);
   REQUIRE(any);
   CHECK(std::isnan(l.value(*plain, 1)) != std::isnan(l.value(*plain, 3)));

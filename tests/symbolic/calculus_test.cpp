@@ -42,7 +42,7 @@ TEST_CASE("calculus: every function's derivative agrees with differences at 120 
   const cln::cl_R step = cln::cl_float(cln::cl_R(cln::expt(Rational(1) / 10, 30)), cln::float_format(120));
   // Central differences: the error is h^2 f'''/6 = 1e-60 times a number below 1e5.
   const cln::cl_R tolerance = cln::cl_R(cln::expt(Rational(1) / 10, 50));
-  Derivation derivative = partial(dag, x_symbol);
+  Derivation derivative = partial_derivative(dag, x_symbol);
   for (const Ref f : functions) {
     const cln::cl_R difference = (value(dag, f, at + step) - value(dag, f, at - step)) / (2 * step);
     CHECK(cln::abs(value(dag, derivative(f), at) - difference) < tolerance);
@@ -55,11 +55,11 @@ TEST_CASE("calculus: the total time derivative follows coordinates, functions of
   const Ref a = dag.symbol({SymbolKind::coordinate, 0, 2});
   const Ref d = dag.symbol({SymbolKind::function, 0, 0}), d1 = dag.symbol({SymbolKind::function, 0, 1});
   const Ref t = dag.symbol({SymbolKind::time, 0, 0});
-  Derivation ddt = total_time(dag, 1, 1);
+  Derivation ddt = total_time_derivative(dag, 1, 1);
   CHECK(ddt(dag.mul(q, d)) == dag.add(dag.mul(v, d), dag.mul(q, d1)));
   CHECK(ddt(v) == a);
   CHECK(ddt(dag.power(t, 2)) == dag.mul(dag.integer(2), t));
-  Derivation frozen = total_time(dag, 1, 1, true);
+  Derivation frozen = total_time_derivative(dag, 1, 1, true);
   CHECK(dag.is_zero(frozen(v)));
   CHECK(frozen(q) == v);
 }
@@ -68,7 +68,7 @@ TEST_CASE("calculus: a nest of 60 shared levels is differentiated on the graph, 
   Dag dag;
   Ref f = dag.symbol(x_symbol);
   for (int i = 0; i < 60; ++i) f = dag.mul(dag.call(Op::sin, f), dag.add(f, dag.one()));
-  const Ref derivative = partial(dag, x_symbol)(f);
+  const Ref derivative = partial_derivative(dag, x_symbol)(f);
   CHECK(dag.reachable({derivative}).size() < 2000);
 }
 

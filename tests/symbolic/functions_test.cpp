@@ -19,7 +19,7 @@ constexpr int digits = 60;
 
 cl_R ten_to_minus(int exponent) { return cl_R(cln::expt(Rational(1) / 10, exponent)); }
 
-const Precise precise{cln::float_format(digits)};
+const ClnArithmetic precise{cln::float_format(digits)};
 
 /// f(x) for a row with one argument.
 cl_R value(const Function& f, const cl_R& x) { return precise.call(f.op, precise.round(x)); }
@@ -63,7 +63,7 @@ TEST_CASE("derivatives on the graph are those of the table") {
   for (const Function& f : function_table) {
     if (f.arity != 1 || f.op == Op::sign) continue;
     CAPTURE(f.name);
-    const Ref r = partial(dag, x)(dag.call(f.op, dag.symbol(x)));
+    const Ref r = partial_derivative(dag, x)(dag.call(f.op, dag.symbol(x)));
     const cl_R at = Rational(3) / 7;
     const cl_R found = evaluate(
         dag, {r}, [&](const Symbol&) { return at; }, digits)[0];
@@ -91,7 +91,7 @@ TEST_CASE("functions in binary64 and in many digits agree") {
     const cl_R exact[] = {precise.round(Rational(3) / 8), precise.round(Rational(1) / 2),
                           precise.round(Rational(5) / 4), precise.round(-2)};
     const double rough = value_of(
-        f.op, 0, [&](std::size_t i) -> const double& { return x[i]; }, Binary64{});
+        f.op, 0, [&](std::size_t i) -> const double& { return x[i]; }, Binary64Arithmetic{});
     const cl_R fine = value_of(
         f.op, 0, [&](std::size_t i) -> const cl_R& { return exact[i]; }, precise);
     CHECK(rough == doctest::Approx(cln::double_approx(fine)).epsilon(1e-15));

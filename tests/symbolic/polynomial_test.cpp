@@ -39,7 +39,7 @@ TEST_CASE("expansion: the velocity square in spherical coordinates has three ter
   Symbols x;
   Dag& dag = x.dag;
   const Scalar R = x.s(x.q(0)), sp = x.sine(1), cp = x.cosine(1), st = x.sine(2), ct = x.cosine(2);
-  Derivation ddt = total_time(dag, 3, 0);
+  Derivation ddt = total_time_derivative(dag, 3, 0);
   Ref square = dag.zero();
   for (const Scalar component : {R * sp * ct, R * sp * st, R * cp})
     square = dag.add(square, dag.power(ddt(component.ref), 2));

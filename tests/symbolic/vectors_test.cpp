@@ -19,11 +19,11 @@ TEST_CASE("vectors: a cross product is normal to both factors, and its square is
   const Vec3 a{coordinate(dag, 0), coordinate(dag, 1), coordinate(dag, 2)},
       b{coordinate(dag, 3), coordinate(dag, 4), coordinate(dag, 5)};
   const Vec3 c = cross(dag, a, b);
-  CHECK(dag.is_zero(tidy(dag, dot(dag, a, c))));
-  CHECK(dag.is_zero(tidy(dag, dot(dag, b, c))));
+  CHECK(dag.is_zero(expand_or_keep(dag, dot(dag, a, c))));
+  CHECK(dag.is_zero(expand_or_keep(dag, dot(dag, b, c))));
   const Ref squares = dag.sub(dag.mul(dot(dag, a, a), dot(dag, b, b)), dag.power(dot(dag, a, b), 2));
-  CHECK_FALSE(dag.is_zero(tidy(dag, squares)));
-  CHECK(dag.is_zero(tidy(dag, dag.sub(dot(dag, c, c), squares))));
+  CHECK_FALSE(dag.is_zero(expand_or_keep(dag, squares)));
+  CHECK(dag.is_zero(expand_or_keep(dag, dag.sub(dot(dag, c, c), squares))));
   CHECK(is_zero(dag, subtract(dag, add(dag, a, b), add(dag, b, a))));
   CHECK(is_zero(dag, cross(dag, a, scale(dag, dag.integer(3), a))));
   CHECK_FALSE(is_zero(dag, c));
@@ -33,9 +33,9 @@ TEST_CASE("vectors: products with a matrix and its transpose") {
   Dag dag;
   const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
   const std::vector<Rational> C{1, 2, 0, Rational(-1) / 3};  // rows (1, 2) and (0, -1/3)
-  CHECK(applied(dag, C, {x, y}) ==
+  CHECK(multiply(dag, C, {x, y}) ==
         std::vector<Ref>{dag.add(x, dag.mul(dag.integer(2), y)), dag.mul(dag.constant(C[3]), y)});
-  CHECK(transposed_applied(dag, C, {x, y}) ==
+  CHECK(multiply_transposed(dag, C, {x, y}) ==
         std::vector<Ref>{x, dag.add(dag.mul(dag.integer(2), x), dag.mul(dag.constant(C[3]), y))});
 }
 
@@ -62,10 +62,10 @@ TEST_CASE("expansion: beyond the budget an expression is unchanged, and the shor
   Dag dag;
   const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
   const Ref power = dag.power(dag.add(x, y), 6);  // 7 terms
-  CHECK(tidy(dag, power, 3) == power);
-  CHECK_FALSE(tidy(dag, power, 10) == power);
-  CHECK(simpler(dag, power, 10) == power);
-  CHECK(simpler(dag, dag.sub(dag.mul(x, dag.add(y, dag.one())), dag.mul(x, y)), 40) == x);
+  CHECK(expand_or_keep(dag, power, 3) == power);
+  CHECK_FALSE(expand_or_keep(dag, power, 10) == power);
+  CHECK(expand_if_shorter(dag, power, 10) == power);
+  CHECK(expand_if_shorter(dag, dag.sub(dag.mul(x, dag.add(y, dag.one())), dag.mul(x, y)), 40) == x);
 }
 
 TEST_CASE("dag: kinks are found anywhere in an expression") {

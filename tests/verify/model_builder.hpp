@@ -94,14 +94,14 @@ inline Formula rate(Formula q) { return leaf(*q.model, Op::coordinate, q.model->
 inline Formula function(model::Model& m, std::string name, Formula is) {
   model::Function f;
   f.name = std::move(name);
-  f.is = is.id;
+  f.expression = is.id;
   m.functions.push_back(std::move(f));
   return leaf(m, Op::function, static_cast<std::uint32_t>(m.functions.size() - 1));
 }
 inline Formula input(model::Model& m, std::string name) {
   model::Input u;
   u.name = std::move(name);
-  u.fallback = number(m, 0).id;
+  u.default_value = number(m, 0).id;
   m.inputs.push_back(std::move(u));
   return leaf(m, Op::input, static_cast<std::uint32_t>(m.inputs.size() - 1));
 }

@@ -75,7 +75,7 @@ TEST_CASE("points: undefined states are rejected and counted; too many rejection
     none.next();
     FAIL("a state was found");
   } catch (const Error& error) {
-    CHECK(error.fault() == Fault::check);
+    CHECK(error.fault() == ErrorKind::check);
     CHECK(error.message().find("log of a number that is not positive (101)") != std::string::npos);
   }
 }
@@ -87,7 +87,7 @@ TEST_CASE("points: undefined numbers of a scene, an input or a parameter are rep
     try {
       Points(Oracle(m, 60), 5, many);
     } catch (const Error& error) {
-      CHECK(error.fault() == Fault::input);
+      CHECK(error.fault() == ErrorKind::input);
       return error.message();
     }
     return std::string();
@@ -99,7 +99,7 @@ TEST_CASE("points: undefined numbers of a scene, an input or a parameter are rep
           m.scenes.front().t1 = bad;
         }) == expected);
   CHECK(told([](model::Model& m, model::NodeId bad) { m.scenes.front().parameters = {{0, bad}}; }) == expected);
-  CHECK(told([](model::Model& m, model::NodeId bad) { m.inputs.front().fallback = bad; }) == expected);
+  CHECK(told([](model::Model& m, model::NodeId bad) { m.inputs.front().default_value = bad; }) == expected);
   CHECK(told([](model::Model& m, model::NodeId bad) { m.parameters.front().value = bad; }) == expected);
   CHECK(told([](model::Model& m, model::NodeId bad) { m.coordinates.front().lower = bad; }) == expected);
 }

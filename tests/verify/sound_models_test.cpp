@@ -32,7 +32,7 @@ std::string particle_above(const std::vector<std::string>& curves) {
 [parameters]
 m = 1
 g = 9.81
-)toml" + test::heavy_in_plane;
+)toml" + test::particle_in_plane;
   for (std::size_t k = 0; k < curves.size(); ++k) {
     text += fmt::format("[[constraint]]\nname = \"c{}\"\nholonomic = \"{}\"\nholds = \"unilateral\"\n", k, curves[k]);
   }

@@ -155,7 +155,7 @@ bool Drawing::is_radial(const Bound& one, std::uint32_t constraint) {
   std::vector<Ref> slopes;
   for (const std::uint32_t i : one.own) {
     slopes.push_back(mechanics_.constraints[constraint].gradient[i]);
-    slopes.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(square));
+    slopes.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0})(square));
   }
   return are_parallel(dag, slopes);
 }
@@ -231,7 +231,7 @@ bool Drawing::is_rod(std::uint32_t constraint, std::uint32_t a, std::uint32_t b)
   std::vector<Ref> slopes;
   for (const std::uint32_t i : of_square) {
     slopes.push_back(c.gradient[i]);
-    slopes.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(square));
+    slopes.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0})(square));
   }
   return are_parallel(dag, slopes);
 }
@@ -244,7 +244,7 @@ bool Drawing::is_rigid(std::uint32_t a, std::uint32_t b) {
   const std::set<std::uint32_t> of = coordinates_of(dag, {d[0], d[1], d[2]});
   if (of.empty() || is_moving(dag, {square})) return false;
   std::vector<Ref> slopes;
-  for (const std::uint32_t i : of) slopes.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(square));
+  for (const std::uint32_t i : of) slopes.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0})(square));
   return mechanics::vanishes(dag, slopes);
 }
 
@@ -257,8 +257,8 @@ void Drawing::pivots() {
     const Ref angle = mechanics::lower_scalar(mechanics_, frame.entries[0]);
     const std::set<std::uint32_t> of = coordinates_of(dag, {angle});
     if (of.size() != 1) continue;
-    symbolic::Derivation slope = symbolic::partial(dag, {SymbolKind::coordinate, *of.begin(), 0}),
-                         rate = symbolic::partial(dag, {SymbolKind::coordinate, *of.begin(), 1});
+    symbolic::Derivation slope = symbolic::partial_derivative(dag, {SymbolKind::coordinate, *of.begin(), 0}),
+                         rate = symbolic::partial_derivative(dag, {SymbolKind::coordinate, *of.begin(), 1});
     const Ref turn = slope(angle);  // n is the axis times this
     if (!is_of_parameters(dag, turn)) continue;
     std::array<Vec3, 3> e;
@@ -275,7 +275,7 @@ void Drawing::pivots() {
     std::vector<Ref> changes;
     for (const std::uint32_t i : coordinates_of(dag, {arm[0], arm[1], arm[2]})) {
       for (const Vec3& axis : e)
-        changes.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(symbolic::dot(dag, arm, axis)));
+        changes.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0})(symbolic::dot(dag, arm, axis)));
     }
     if (!mechanics::vanishes(dag, changes)) continue;
     parts_.joints.push_back({"", vector(symbolic::add(dag, r, arm)), {body.place - 1, std::nullopt}});

@@ -12,12 +12,12 @@ using symbolic::Vec3;
 
 void Components::add_potential(Ref U) {
   for (std::uint32_t c = 0; c < Q_.size(); ++c)
-    Q_[c] = m_.dag->sub(Q_[c], symbolic::partial(*m_.dag, {SymbolKind::coordinate, c, 0})(U));
+    Q_[c] = m_.dag->sub(Q_[c], symbolic::partial_derivative(*m_.dag, {SymbolKind::coordinate, c, 0})(U));
 }
 
 void Components::take(const Vec3& force, const Vec3& at) {
   for (std::uint32_t c = 0; c < Q_.size(); ++c) {
-    symbolic::Derivation by = symbolic::partial(*m_.dag, {SymbolKind::coordinate, c, 0});
+    symbolic::Derivation by = symbolic::partial_derivative(*m_.dag, {SymbolKind::coordinate, c, 0});
     Q_[c] = m_.dag->sub(Q_[c], symbolic::dot(*m_.dag, force, {by(at[0]), by(at[1]), by(at[2])}));
   }
 }

@@ -215,7 +215,7 @@ class Collection {
     if (!is_particle(mass)) return;
     Vec3 force = along(OutputKind::constraint_force, mass.place, fixed_axes());
     if (symbolic::is_zero(dag_, force) && all_are_vectors_ && m_.contacts.empty() && is_held(mass)) {
-      symbolic::Derivation ddt = symbolic::total_time(dag_, m_.q.size(), model_.functions.size());
+      symbolic::Derivation ddt = symbolic::total_time_derivative(dag_, m_.q.size(), model_.functions.size());
       for (std::size_t k = 0; k < 3; ++k)
         force[k] = dag_.sub(dag_.mul(mass.mass, ddt(mass.velocity[k])), on_mass_[p][k]);
     }
@@ -299,7 +299,7 @@ class Collection {
     }
   }
   bool moves_bodies(std::uint32_t c) {
-    symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, c, 0});
+    symbolic::Derivation by = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, c, 0});
     for (std::size_t b = 0; b < m_.spins.size(); ++b) {
       const Vec3& r = *m_.place_position[model_.bodies[b].place];
       if (moments().turns(b, c) || !symbolic::is_zero(dag_, {by(r[0]), by(r[1]), by(r[2])})) return true;
@@ -307,7 +307,7 @@ class Collection {
     return false;
   }
   /// The multiplier of a coupling is the moment on the first body about its axis.
-  void coupling(const std::string& name, const model::Coupled& coupled, Ref lambda, Components& Q) {
+  void coupling(const std::string& name, const model::RotationCoupling& coupled, Ref lambda, Components& Q) {
     const Vec3 a = symbolic::scale(dag_, lambda, mechanics::lower_vector(m_, coupled.axes[0])),
                b = symbolic::scale(dag_, dag_.neg(dag_.mul(lambda, mechanics::lower_scalar(m_, coupled.ratio))),
                                    mechanics::lower_vector(m_, coupled.axes[1])),

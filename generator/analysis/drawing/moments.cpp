@@ -39,8 +39,8 @@ BodyMoments::BodyMoments(Mechanics& mechanics) : m_(mechanics), moves_(mechanics
   std::vector<std::pair<std::size_t, std::uint32_t>> some;
   std::vector<Ref> all;
   for (std::uint32_t c = 0; c < m_.q.size(); ++c) {
-    symbolic::Derivation rate = symbolic::partial(dag, {SymbolKind::coordinate, c, 1}),
-                         slope = symbolic::partial(dag, {SymbolKind::coordinate, c, 0});
+    symbolic::Derivation rate = symbolic::partial_derivative(dag, {SymbolKind::coordinate, c, 1}),
+                         slope = symbolic::partial_derivative(dag, {SymbolKind::coordinate, c, 0});
     for (const mechanics::PointMass& mass : m_.masses)
       moves_[c] = moves_[c] ||
                   !symbolic::is_zero(dag, {slope(mass.position[0]), slope(mass.position[1]), slope(mass.position[2])});
@@ -154,7 +154,7 @@ std::vector<BodyMoment> BodyMoments::along_angle(const std::vector<Ref>& Q, Ref 
   symbolic::Dag& dag = *m_.dag;
   std::vector<Ref> slopes;
   for (std::uint32_t c = 0; c < m_.q.size(); ++c)
-    slopes.push_back(symbolic::partial(dag, {SymbolKind::coordinate, c, 0})(angle));
+    slopes.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, c, 0})(angle));
   std::vector<std::array<double, 2>> at(m_.q.size());
   for (int state = 0; state < 2; ++state) {
     const std::vector<double> v =

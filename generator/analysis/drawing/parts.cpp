@@ -163,7 +163,7 @@ void Drawing::contacts() {
 void Drawing::couplings() {
   for (const model::Constraint& constraint : model_.constraints) {
     if (!constraint.coupled) continue;
-    const model::Coupled& coupled = *constraint.coupled;
+    const model::RotationCoupling& coupled = *constraint.coupled;
     const auto a = place_of(model_, coupled.frames[0]), b = place_of(model_, coupled.frames[1]);
     const Ref ratio = mechanics::lower_scalar(mechanics_, coupled.ratio);
     if (!a || !b || !is_of_parameters(*mechanics_.dag, ratio)) continue;
@@ -173,7 +173,7 @@ void Drawing::couplings() {
 }
 
 void Drawing::shapes() {
-  for (const model::Drawn& drawn : model_.drawn) {
+  for (const model::ShapeSpec& drawn : model_.drawn) {
     DrawnShape shape{drawn.place - 1, drawn.kind, {}, drawn.axis, {}, drawn.faces};
     for (const model::NodeId length : drawn.lengths) shape.lengths.push_back(size(length));
     for (const model::NodeId x : drawn.at) shape.at.push_back(size(x));

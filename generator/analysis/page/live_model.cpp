@@ -157,7 +157,7 @@ class Live {
     std::vector<Ref> u;
     symbolic::Substitution written = mechanics::write_out(m_);
     for (std::uint32_t i = 0; i < derived_.model.inputs.size(); ++i) {
-      model::NodeId id = derived_.model.inputs[i].fallback;
+      model::NodeId id = derived_.model.inputs[i].default_value;
       for (const model::SceneInput& input : model_scene().inputs) {
         if (input.input == i) id = std::get<model::NodeId>(input.signal);
       }
@@ -186,8 +186,8 @@ class Live {
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
       const model::Parameter& p = model.parameters[i];
       start.parameters.push_back({p.name, p.unit.text, p.note, s_.scene.parameters[i], p.positive,
-                                  !is_dependent(i) && !p.start_of && model.start_time != i});
-      const auto place = p.start_of ? std::find(m_.free.begin(), m_.free.end(), *p.start_of) : m_.free.end();
+                                  !is_dependent(i) && !p.initial_value_of && model.start_time != i});
+      const auto place = p.initial_value_of ? std::find(m_.free.begin(), m_.free.end(), *p.initial_value_of) : m_.free.end();
       if (place != m_.free.end()) start.starts.emplace_back(i, static_cast<std::size_t>(place - m_.free.begin()));
     }
     for (std::size_t i = 0; i < model.events.size(); ++i)

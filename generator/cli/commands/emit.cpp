@@ -160,7 +160,7 @@ Execute declare_emit(Arguments& app) {
          "--with", options->with,
          fmt::format("functions beside rhs: {} (outputs: the scene's), energy; charts: second ones; run: all that a "
                      "run calls",
-                     fmt::join(abi::asked_for(), ", ")))
+                     fmt::join(abi::optional_functions(), ", ")))
       .one_of(pipeline::emitted_functions());
   app.add_list("--output", options->outputs, "names for the function outputs");
   app.add_option("--real", options->real, "double, or float: single precision")

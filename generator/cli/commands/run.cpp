@@ -110,13 +110,13 @@ pipeline::Simulation simulate_until_interrupted(const pipeline::SimulationReques
   } catch (const Error&) {
     if (!Interrupt::flag()) throw;
     throw Error("run", {}, "interrupted before the run began", "nothing was computed that could be kept",
-                Fault::numerical);
+                ErrorKind::numerical);
   }
 }
 
 /// Names of the plotted outputs other than coordinates, which are in every row.
 std::vector<std::string> plotted_outputs(const Options& options, pipeline::Derived& derived) {
-  std::vector<model::Named> wanted;
+  std::vector<model::OutputReference> wanted;
   for (const std::string& item : options.plot_of) {
     const std::size_t comma = item.find(',');
     wanted.push_back({item.substr(0, comma), {}});

@@ -92,7 +92,7 @@ void Sweep::write_by_team() {
     if (table) table->discard();
     throw Error("sweep", {}, why,
                 "see to space on that disk and to your rights there; the same command goes on from what is there",
-                Fault::tool);
+                ErrorKind::tool);
   };
   try {
     if (team_->leads()) {

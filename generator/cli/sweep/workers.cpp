@@ -96,7 +96,7 @@ Child start(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t
   int ends[2];
   const auto lost = [] {
     throw Error("sweep", {}, fmt::format("no process could be started: {}", std::strerror(errno)),
-                "close other programs, or ask for fewer with --jobs", Fault::tool);
+                "close other programs, or ask for fewer with --jobs", ErrorKind::tool);
   };
   if (::pipe(ends) != 0) lost();
   std::fflush(stdout);
@@ -146,7 +146,7 @@ void by_processes(const std::vector<std::size_t>& jobs, std::size_t processes,
       throw Error("sweep", {}, "a process of the sweep ended before its runs were done",
                   "the rows that are there are kept, and the same command goes on from them; with --jobs 1 the run "
                   "that fails is the next one",
-                  Fault::tool);
+                  ErrorKind::tool);
     }
   }
 }

@@ -35,7 +35,7 @@ std::optional<system::EquationSystem> by_articulated(Mechanics& m, system::Appro
   for (Ref& r : solution.qddot) r = back(r);
   for (symbolic::Pivot& pivot : solution.pivots) pivot = {back(pivot.pivot), back(pivot.scale)};
   const QuasiCoordinates& theta = motion->tree.coordinates;  // q = S^-1 theta, also for the second derivatives
-  if (!theta.identity()) solution.qddot = symbolic::applied(dag, theta.S_inverse, solution.qddot);
+  if (!theta.identity()) solution.qddot = symbolic::multiply(dag, theta.S_inverse, solution.qddot);
   s->solution = std::move(solution);
   return s;
 }

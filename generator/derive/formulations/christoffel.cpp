@@ -30,8 +30,8 @@ class QuadraticEnergy {
       : m_(m), dag_(*m.dag), expand_(dag_, term_budget), n_(which.size()) {
     std::map<Symbol, Ref> zero;
     for (const std::uint32_t i : which) {
-      by_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0}));
-      by_rate_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 1}));
+      by_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0}));
+      by_rate_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1}));
       zero[{SymbolKind::coordinate, i, 1}] = dag_.zero();
       rate_.push_back(dag_.symbol({SymbolKind::coordinate, i, 1}));
     }
@@ -51,7 +51,7 @@ class QuadraticEnergy {
 
   /// dT/dq_k - d/dt(dT/dqdot_k) without accelerations.
   Ref inertia(std::size_t k) {
-    symbolic::Derivation explicitly = symbolic::explicit_time(dag_, m_.model->functions.size());
+    symbolic::Derivation explicitly = symbolic::explicit_time_derivative(dag_, m_.model->functions.size());
     Ref sum = dag_.sub(by_[k](T0_), explicitly(N_[k]));
     for (std::size_t j = 0; j < n_; ++j) {
       const Ref gyroscopic = dag_.sub(by_[k](N_[j]), by_[j](N_[k]));
@@ -68,7 +68,7 @@ class QuadraticEnergy {
   }
 
  private:
-  Ref tidy(Ref r) { return expand_.tidy(r); }
+  Ref tidy(Ref r) { return expand_.expand_or_keep(r); }
   /// [ij,k], eq. (2.184)
   Ref first_kind(std::size_t i, std::size_t j, std::size_t k) {
     const Ref twice = dag_.sub(dag_.add(by_[i](M_[k * n_ + j]), by_[j](M_[k * n_ + i])), by_[k](M_[i * n_ + j]));
@@ -89,7 +89,7 @@ FullEquations equations(Mechanics& m, QuadraticEnergy& energy, Ref U, const std:
   Dag& dag = *m.dag;
   FullEquations result{energy.M(), {}};
   for (std::size_t k = 0; k < which.size(); ++k) {
-    const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, which[k], 0})(U);
+    const Ref slope = symbolic::partial_derivative(dag, {SymbolKind::coordinate, which[k], 0})(U);
     result.f.push_back(dag.add(energy.inertia(k), dag.sub(Q[which[k]], slope)));
   }
   return result;

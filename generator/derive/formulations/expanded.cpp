@@ -13,8 +13,8 @@ constexpr std::size_t term_budget = 300;
 constexpr std::size_t coordinate_budget = 8;
 
 FullEquations reduced(symbolic::Expander& expander, FullEquations equations) {
-  for (Ref& r : equations.M) r = expander.tidy(r);
-  for (Ref& r : equations.f) r = expander.tidy(r);
+  for (Ref& r : equations.M) r = expander.expand_or_keep(r);
+  for (Ref& r : equations.f) r = expander.expand_or_keep(r);
   return equations;
 }
 
@@ -25,14 +25,14 @@ std::optional<system::EquationSystem> by_expanded(Mechanics& m, system::Approach
   const std::optional<Ref> kinetic = expander(m.kinetic);
   if (!kinetic) return std::nullopt;
   std::vector<Ref> Q = generalized_forces(m);
-  for (Ref& q : Q) q = expander.tidy(q);
-  const Ref T = *kinetic, U = expander.tidy(m.potential);
+  for (Ref& q : Q) q = expander.expand_or_keep(q);
+  const Ref T = *kinetic, U = expander.expand_or_keep(m.potential);
   const FullEquations full = reduced(expander, euler_lagrange(m, T, U, Q, all_coordinates(m)));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "expanded", approach);
   symbolic::Substitution imposed = impose(m);
   // An expansion has a common denominator. A second expansion would multiply it into unrelated terms.
   const auto constrained = [&](Ref whole, Ref reduced_whole) {
-    return imposed(whole) == whole ? reduced_whole : expander.tidy(imposed(reduced_whole));
+    return imposed(whole) == whole ? reduced_whole : expander.expand_or_keep(imposed(reduced_whole));
   };
   const Ref T_constrained = constrained(m.kinetic, T), U_constrained = constrained(m.potential, U);
   const FullEquations motion = reduced(expander, euler_lagrange(m, T_constrained, U_constrained, Q, m.free));

@@ -24,7 +24,7 @@ void add_spin(Mechanics& m, const mechanics::Spin& given, symbolic::Substitution
   const std::size_t n = which.size();
   std::vector<Vec3> W, JW;  // dw/dqdot_i and J times it
   for (const std::uint32_t i : which) {
-    symbolic::Derivation by = symbolic::partial(dag, {SymbolKind::coordinate, i, 1});
+    symbolic::Derivation by = symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 1});
     W.push_back({by(spin.w[0]), by(spin.w[1]), by(spin.w[2])});
     JW.push_back(times(dag, spin, W.back()));
   }
@@ -45,12 +45,12 @@ FullEquations equations(Mechanics& m, symbolic::Substitution* imposed, const std
   Dag& dag = *m.dag;
   const auto apply = [&](Ref r) { return imposed == nullptr ? r : (*imposed)(r); };
   const std::size_t n = which.size();
-  symbolic::Derivation bias = symbolic::total_time(dag, m.q.size(), m.model->functions.size(), true);
+  symbolic::Derivation bias = symbolic::total_time_derivative(dag, m.q.size(), m.model->functions.size(), true);
   FullEquations result{std::vector<Ref>(n * n, dag.zero()), {}};
   const Ref U = apply(m.potential);
   std::vector<symbolic::Derivation> by;
   for (const std::uint32_t i : which) {
-    by.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 0}));
+    by.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0}));
     result.f.push_back(dag.sub(Q[i], by.back()(U)));
   }
   for (const mechanics::PointMass& mass : m.masses) {

@@ -22,7 +22,7 @@ class Reading {
         return read(node.args[vector], dag_.mul(factor, lower_.scalar(node.args[1 - vector])));
       }
       case Op::divide: return read(node.args[0], dag_.div(factor, lower_.scalar(node.args[1])));
-      case Op::definition: return read(m_.model->definitions[node.index].is, factor);
+      case Op::definition: return read(m_.model->definitions[node.index].expression, factor);
       case Op::fixed_basis: add(0, node.index, factor); return true;
       case Op::array:
         for (std::size_t k = 0; k < 3; ++k) add(0, k, dag_.mul(factor, lower_.scalar(node.args[k])));

@@ -28,7 +28,7 @@ class Builder {
         of_(of),
         lower_(m),
         expanded_(m, imposed),
-        bias_(symbolic::total_time(dag_, m.q.size(), 0, true)) {}
+        bias_(symbolic::total_time_derivative(dag_, m.q.size(), 0, true)) {}
 
   std::optional<BodyTree> build() {
     for (const mechanics::PointMass& mass : m_.masses) {
@@ -166,7 +166,7 @@ class Builder {
     for (std::size_t k = 0; k < 3; ++k) link.offset_rate[k] = bias_(at.offset[k]);
     for (std::size_t k = 0; k < 3; ++k) link.offset_bias[k] = bias_(link.offset_rate[k]);
     for (std::size_t i = 0; i < of_.size(); ++i) {
-      symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, of_[i], 0});
+      symbolic::Derivation by = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, of_[i], 0});
       const Vec3 J{by(at.offset[0]), by(at.offset[1]), by(at.offset[2])};
       if (!is_zero(dag_, J)) link.freedoms.push_back({i, symbolic::zero_vector(dag_), J});
     }
@@ -191,7 +191,7 @@ class Builder {
 
   Turn turn_of(std::uint32_t frame) {
     Turn turn;
-    for (const model::Stage& stage : m_.model->frames[frame].stages) {
+    for (const model::RotationStage& stage : m_.model->frames[frame].stages) {
       Step step;
       for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t j = 0; j < 3; ++j) step.R[k][j] = expanded_(lower_.scalar(stage.R[k][j]));
@@ -205,7 +205,7 @@ class Builder {
 
   void add_turning(BodyLink& link) {
     for (std::size_t i = 0; i < of_.size(); ++i) {
-      symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, of_[i], 1});
+      symbolic::Derivation by = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, of_[i], 1});
       Vec3 s = symbolic::zero_vector(dag_);
       for (const Step& step : link.turn.steps) {
         s = symbolic::add(dag_, times(dag_, step.R, s), {by(step.w[0]), by(step.w[1]), by(step.w[2])});

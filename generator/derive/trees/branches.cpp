@@ -17,7 +17,7 @@ using symbolic::Symbol;
 /// J of each theta and the particles that it moves. False if it moves two of them differently, or none.
 bool find_joints(Dag& dag, Branches& b, std::vector<std::set<std::size_t>>& moved) {
   for (const Symbol& theta : b.coordinates.theta) {
-    symbolic::Derivation by = symbolic::partial(dag, theta);
+    symbolic::Derivation by = symbolic::partial_derivative(dag, theta);
     Vec3 common{};
     moved.emplace_back();
     for (std::size_t k = 0; k < b.particles.size(); ++k) {
@@ -109,7 +109,7 @@ std::optional<Branches> branches(Mechanics& m, const std::vector<std::uint32_t>&
   Ref potential;
   b.gravity = take_gravity(m, expanded, potential);
   b.f = other_forces(m, of, expanded, potential);
-  if (!b.coordinates.identity()) b.f = symbolic::transposed_applied(dag, b.coordinates.S_inverse, b.f);
+  if (!b.coordinates.identity()) b.f = symbolic::multiply_transposed(dag, b.coordinates.S_inverse, b.f);
   return b;
 }
 

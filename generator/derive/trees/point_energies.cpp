@@ -37,7 +37,7 @@ class Recognition {
  public:
   explicit Recognition(Mechanics& m) : m_(m), dag_(*m.dag) {
     for (std::uint32_t j = 0; j < m.q.size(); ++j)
-      by_rate_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, j, 1}));
+      by_rate_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, j, 1}));
   }
 
   std::optional<std::vector<PointMass>> run() {

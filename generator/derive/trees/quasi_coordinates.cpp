@@ -152,7 +152,7 @@ class Rewriter {
     const Node node = dag_[r];
     std::array<Ref, 4> args{};
     for (std::uint8_t i = 0; i < node.arity; ++i) args[i] = use(node.args[i], theta);
-    return symbolic::rebuilt(dag_, node, args);
+    return symbolic::with_operands(dag_, node, args);
   }
 
   Dag& dag_;
@@ -170,7 +170,7 @@ std::optional<std::vector<Rational>> inverse(const std::vector<Rational>& a, std
   numeric::Matrix<Rational> matrix(n, n), unit(n, n);
   matrix.a = a;
   for (std::size_t i = 0; i < n; ++i) unit(i, i) = 1;
-  const numeric::Elimination<Rational> factors(std::move(matrix), 0, numeric::Pivots::complete);
+  const numeric::Elimination<Rational> factors(std::move(matrix), 0, numeric::Pivoting::complete);
   if (factors.rank() < n) return std::nullopt;
   return factors.solve(unit).a;
 }
@@ -229,8 +229,8 @@ QuasiCoordinates quasi_coordinates(Dag& dag, const std::vector<std::uint32_t>& o
     result.S.insert(result.S.end(), row.begin(), row.end());
     for (std::size_t i = 0; i < n; ++i) identity = identity && row[i] == (i == a ? 1 : 0);
     const auto index = first_index + static_cast<std::uint32_t>(a);
-    result.theta.push_back({SymbolKind::extra, index, 0});
-    result.rate.push_back({SymbolKind::extra, index, 1});
+    result.theta.push_back({SymbolKind::auxiliary, index, 0});
+    result.rate.push_back({SymbolKind::auxiliary, index, 1});
     result.value.push_back(rewriter.users()[order[a]]);
     result.value_rate.push_back(ddt(result.value.back()));
     by_form[order[a]] = result.theta.back();

@@ -16,7 +16,7 @@ constexpr std::size_t small = 40;  // terms: expressions within one link have fe
 class Tidy {
  public:
   explicit Tidy(Dag& dag) : dag_(dag), expand_(dag, small) {}
-  Ref operator()(Ref r) { return expand_.tidy(r); }
+  Ref operator()(Ref r) { return expand_.expand_or_keep(r); }
   Ref dot(const Vec3& a, const Vec3& b) { return (*this)(symbolic::dot(dag_, a, b)); }
 
  private:

@@ -25,9 +25,9 @@ std::vector<Vec3> inertia_beyond(Dag& dag, const Branches& b) {
   return force;
 }
 
-system::QuasiEquations in_theta(Dag& dag, const Branches& b) {
+system::QuasiVelocityEquations in_theta(Dag& dag, const Branches& b) {
   const std::size_t n = b.J.size();
-  system::QuasiEquations result{b.coordinates.S_inverse, std::vector<Ref>(n * n, dag.zero()), {}};
+  system::QuasiVelocityEquations result{b.coordinates.S_inverse, std::vector<Ref>(n * n, dag.zero()), {}};
   const std::vector<Vec3> force = inertia_beyond(dag, b);
   for (std::size_t a = 0; a < n; ++a) {
     for (std::size_t c = 0; c <= a; ++c) {
@@ -44,21 +44,21 @@ system::QuasiEquations in_theta(Dag& dag, const Branches& b) {
   return result;
 }
 
-FullEquations in_model(Dag& dag, const QuasiCoordinates& coordinates, const system::QuasiEquations& e) {
+FullEquations in_model(Dag& dag, const QuasiCoordinates& coordinates, const system::QuasiVelocityEquations& e) {
   if (coordinates.identity()) return {e.M, e.f};
   const std::size_t n = e.f.size();
   const std::vector<Rational>& S = coordinates.S;
   std::vector<Ref> half(n * n);  // M_theta S
   for (std::size_t a = 0; a < n; ++a) {
     const auto row = e.M.begin() + static_cast<std::ptrdiff_t>(a * n);
-    const std::vector<Ref> product = symbolic::transposed_applied(dag, S, {row, row + static_cast<std::ptrdiff_t>(n)});
+    const std::vector<Ref> product = symbolic::multiply_transposed(dag, S, {row, row + static_cast<std::ptrdiff_t>(n)});
     std::copy(product.begin(), product.end(), half.begin() + static_cast<std::ptrdiff_t>(a * n));
   }
-  FullEquations result{std::vector<Ref>(n * n), symbolic::transposed_applied(dag, S, e.f)};
+  FullEquations result{std::vector<Ref>(n * n), symbolic::multiply_transposed(dag, S, e.f)};
   for (std::size_t j = 0; j < n; ++j) {
     std::vector<Ref> column(n);
     for (std::size_t a = 0; a < n; ++a) column[a] = half[a * n + j];
-    const std::vector<Ref> product = symbolic::transposed_applied(dag, S, column);
+    const std::vector<Ref> product = symbolic::multiply_transposed(dag, S, column);
     for (std::size_t i = 0; i <= j; ++i) result.M[i * n + j] = result.M[j * n + i] = product[i];
   }
   return result;

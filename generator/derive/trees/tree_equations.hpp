@@ -10,7 +10,7 @@ namespace eomgen::derive {
 struct TreeEquations {
   Branches tree;
   FullEquations of_model;        // M = S^T M_theta S, f = S^T f_theta, of the requested coordinates
-  system::QuasiEquations quasi;  // the same before the transformation
+  system::QuasiVelocityEquations quasi;  // the same before the transformation
 };
 
 /// The equations of the free coordinates, with the constraints imposed. Empty if they form no tree, and in Approach I

@@ -33,7 +33,7 @@ std::vector<Ref> other_forces(Mechanics& m, const std::vector<std::uint32_t>& of
   const std::vector<Ref> Q = generalized_forces(m);
   std::vector<Ref> by_coordinate;
   for (const std::uint32_t i : of) {
-    const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(potential);
+    const Ref slope = symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0})(potential);
     by_coordinate.push_back(dag.sub(expanded(Q[i]), slope));
   }
   return by_coordinate;

@@ -138,7 +138,7 @@ void require_known(const program::Program& program) {
 std::string without_inputs() {
   std::string condition;
   for (const abi::Function& function : abi::functions()) {
-    if (function.availability != abi::Availability::with || function.takes(abi::Input::inputs)) continue;
+    if (function.availability != abi::Availability::on_request || function.has_input(abi::Input::inputs)) continue;
     condition += fmt::format("{}name === \"{}\"", condition.empty() ? "" : " || ", function.name);
   }
   return condition;

@@ -28,7 +28,7 @@ std::string environment(const char* name) {
 }
 
 [[noreturn]] void fail(const std::string& what, const std::string& remedy) {
-  throw Error("compile", {}, what, remedy, Fault::tool);
+  throw Error("compile", {}, what, remedy, ErrorKind::tool);
 }
 
 struct Compiler {
@@ -112,7 +112,7 @@ void compile_into(const fs::path& folder, const Compiler& compiler, const Recipe
   const Finished finished = run_process(command, recipe.interrupt);
   if (finished.interrupted)
     throw Error("compile", {}, "interrupted during compilation", "nothing was computed that could be kept",
-                Fault::numerical);
+                ErrorKind::numerical);
   if (!finished.started || finished.status != 0) {
     constexpr std::size_t shown = 4000;
     fail("`" + compiler.name + "` failed on " + recipe.what + ":\n" + finished.output.substr(0, shown), recipe.remedy);

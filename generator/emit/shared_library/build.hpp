@@ -34,7 +34,7 @@ struct Built {
 };
 
 /// Builds a library or finds it in the cache. `examine` is called on a new library before it enters the cache and
-/// throws to reject it. Throws Error{Fault::tool}: no compiler (with the install command), or a compiler failure (with
+/// throws to reject it. Throws Error{ErrorKind::tool}: no compiler (with the install command), or a compiler failure (with
 /// its output).
 Built build_library(const Recipe& recipe, const std::function<void(const std::string& path)>& examine = {});
 

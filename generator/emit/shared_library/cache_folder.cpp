@@ -62,7 +62,7 @@ std::string distrust(const fs::path& folder) {
 
 [[noreturn]] void fail(const fs::path& folder) {
   throw Error("compile", {}, "cannot use the cache folder " + folder.string(),
-              "set EOMGEN_CACHE_DIR to a folder that you may write to", Fault::tool);
+              "set EOMGEN_CACHE_DIR to a folder that you may write to", ErrorKind::tool);
 }
 
 }  // namespace

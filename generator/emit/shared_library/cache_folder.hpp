@@ -31,7 +31,7 @@ struct CacheFolder {
 
 /// The cache folder: $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen, ~/.cache/eomgen, or eomgen-UID in the temporary folder.
 /// It is created if missing. A folder that is a link, belongs to another user, or is accessible to others is replaced
-/// by a private one. Throws Error{Fault::tool}.
+/// by a private one. Throws Error{ErrorKind::tool}.
 CacheFolder cache_folder();
 
 /// Whether the path belongs to this user, is not a link, and is a file or folder respectively.

@@ -66,7 +66,7 @@ LoadedBatch::LoadedBatch(const std::string& path, const std::string& name) : mod
       whole ? "a compiled batch differs from its single states: " + path : "compiled code lacks batches: " + path,
       "remove the cache folder (EOMGEN_CACHE_DIR, or ~/.cache/eomgen) and try again; without --ensemble no "
       "batch is needed",
-      Fault::tool);
+      ErrorKind::tool);
 }
 
 void LoadedBatch::Close::operator()(void* handle) const { ::dlclose(handle); }

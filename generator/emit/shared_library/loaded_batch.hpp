@@ -30,7 +30,7 @@ inline constexpr int own_time = 1, own_parameters = 2, own_inputs = 4, own_prepa
 
 class LoadedBatch {
  public:
-  /// Throws Error{Fault::tool} as LoadedModel does, and if a batch of the default state differs in any bit from that
+  /// Throws Error{ErrorKind::tool} as LoadedModel does, and if a batch of the default state differs in any bit from that
   /// state alone.
   LoadedBatch(const std::string& path, const std::string& name);
 

@@ -14,7 +14,7 @@ constexpr int abi_version = 1;
 
 [[noreturn]] void fail(const std::string& what) {
   throw Error("compile", {}, what, "remove the cache folder (EOMGEN_CACHE_DIR, or ~/.cache/eomgen) and try again",
-              Fault::tool);
+              ErrorKind::tool);
 }
 
 template <class Pointer>
@@ -60,7 +60,7 @@ LoadedModel::~LoadedModel() {
 LoadedModel::LoadedModel(LoadedModel&& other) noexcept { *this = std::move(other); }
 
 LoadedModel& LoadedModel::operator=(LoadedModel&& other) noexcept {
-  abi::Compiled::operator=(other);
+  abi::CompiledFunctions::operator=(other);
   defaults = other.defaults;
   info = std::move(other.info);
   std::swap(handle_, other.handle_);

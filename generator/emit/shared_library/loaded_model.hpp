@@ -12,9 +12,9 @@
 namespace eomgen::emit {
 
 /// The functions of the C ABI (docs/abi.md); null if a function was not requested. The destructor unloads the library.
-class LoadedModel : public abi::Compiled {
+class LoadedModel : public abi::CompiledFunctions {
  public:
-  /// `name`: NAME of the symbols. `path`: a shared library. Throws Error{Fault::tool} if it cannot be loaded, has
+  /// `name`: NAME of the symbols. `path`: a shared library. Throws Error{ErrorKind::tool} if it cannot be loaded, has
   /// another ABI, or fails its self-test.
   LoadedModel(const std::string& path, const std::string& name);
   ~LoadedModel();
@@ -43,7 +43,7 @@ struct Compiled {
 
 /// Compiles `c_source` (NAME.c; `header` is NAME.h) into the cache, unless an intact entry exists, and loads it. The
 /// cache: $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen or ~/.cache/eomgen. The compiler: $EOMGEN_CC, $CC, cc or gcc.
-/// Throws Error{Fault::tool}: no compiler (with the install command), or a compiler failure (with its output).
+/// Throws Error{ErrorKind::tool}: no compiler (with the install command), or a compiler failure (with its output).
 /// `interrupt` terminates the compiler.
 Compiled compile_and_load(const std::string& c_source, const std::string& header, const std::string& name,
                           const std::atomic<bool>* interrupt = nullptr);

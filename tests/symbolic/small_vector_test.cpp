@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "symbolic/short_list.hpp"
+#include "symbolic/small_vector.hpp"
 
 #include <doctest/doctest.h>
 
@@ -17,7 +17,7 @@ struct Power {
   std::int32_t exponent = 1;
   friend auto operator<=>(const Power&, const Power&) = default;
 };
-using Powers = ShortList<Power, 2>;
+using Powers = SmallVector<Power, 2>;
 
 Powers ascending(std::uint32_t first, std::uint32_t count) {
   Powers result;
@@ -50,7 +50,7 @@ TEST_CASE("a small vector keeps its elements when it outgrows its inline storage
       taken.push_back({99, 2});
       CHECK(taken.size() == count + 1);
       CHECK(taken.back() == Power{99, 2});
-      taken.shorten(count);
+      taken.truncate(count);
       CHECK(taken == list);
     }
   }

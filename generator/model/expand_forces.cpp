@@ -25,8 +25,8 @@ const std::map<LoadType, Effect::LoadType>& effects() {
 
 bool is_vector(LoadType acts) { return acts == LoadType::acceleration || acts == LoadType::force || acts == LoadType::moment; }
 
-Typed known(NodeId node) {
-  Typed result;
+TypedNode known(NodeId node) {
+  TypedNode result;
   result.node = node;
   return result;
 }
@@ -35,25 +35,25 @@ Context formula(Shape shape) { return {"a force", on_anything, shape, std::nullo
 
 }  // namespace
 
-bool ForcesReader::is_written_zero(NodeId id) const {
+bool ForcesReader::is_literal_zero(NodeId id) const {
   const Node& node = model_.arena[id];
   switch (node.op) {
     case Op::number: return cln::zerop(node.value);
     case Op::negate:
-    case Op::divide: return is_written_zero(node.args[0]);
-    case Op::multiply: return is_written_zero(node.args[0]) || is_written_zero(node.args[1]);
+    case Op::divide: return is_literal_zero(node.args[0]);
+    case Op::multiply: return is_literal_zero(node.args[0]) || is_literal_zero(node.args[1]);
     default: return false;
   }
 }
 
-bool ForcesReader::applies(const Open& open, const forces::Term& term) const {
-  return std::all_of(term.when.begin(), term.when.end(), [&](const forces::When& when) {
+bool ForcesReader::applies(const ForceDraft& open, const forces::Term& term) const {
+  return std::all_of(term.conditions.begin(), term.conditions.end(), [&](const forces::Condition& when) {
     const Argument* argument = open.force.argument(when.key);
     switch (when.predicate) {
       case Predicate::given: return argument != nullptr;
       case Predicate::left_out: return argument == nullptr;
-      case Predicate::zero: return argument != nullptr && is_written_zero(argument->value);
-      case Predicate::not_zero: return argument != nullptr && !is_written_zero(argument->value);
+      case Predicate::zero: return argument != nullptr && is_literal_zero(argument->value);
+      case Predicate::nonzero: return argument != nullptr && !is_literal_zero(argument->value);
       case Predicate::chosen: break;
     }
     const auto& keys = open.kind.keys;
@@ -63,7 +63,7 @@ bool ForcesReader::applies(const Open& open, const forces::Term& term) const {
   });
 }
 
-void ForcesReader::add_effect(const Open& open, const forces::Term& term, const std::map<std::string, Typed>& local) {
+void ForcesReader::add_effect(const ForceDraft& open, const forces::Term& term, const std::map<std::string, TypedNode>& local) {
   const Span span = open.force.span;
   const auto text = [&](const std::string& written, Shape shape) {
     return resolver_.text(written, local, span, formula(shape)).node;
@@ -85,22 +85,22 @@ void ForcesReader::add_effect(const Open& open, const forces::Term& term, const 
   open.force.effects.push_back(effect);
 }
 
-std::map<std::string, Typed> ForcesReader::mass_names(std::uint32_t place, NodeId mass, const std::string& number,
+std::map<std::string, TypedNode> ForcesReader::mass_names(std::uint32_t place, NodeId mass, const std::string& number,
                                                       Span span) {
-  Typed r = resolver_.place(place, span);
+  TypedNode r = resolver_.place(place, span);
   r.dimension = std::nullopt;
   return {{"m" + number, known(mass)}, {"r" + number, r}};
 }
 
-void ForcesReader::add_over_bodies(const Open& open, const forces::Term& term) {
+void ForcesReader::add_over_bodies(const ForceDraft& open, const forces::Term& term) {
   const Span span = open.force.span;
   for (std::uint32_t k = 0; k < model_.bodies.size(); ++k) {
     const Body& body = model_.bodies[k];
-    std::map<std::string, Typed> local = open.local;
+    std::map<std::string, TypedNode> local = open.local;
     local.merge(mass_names(body.place, body.mass, "", span));
     local["d"] = resolver_.text(term.arm, local, span, formula(Shape::vector));
     local["dJd"] = resolver_.inertia(k, local["d"], span);
-    std::map<std::string, Typed> J;
+    std::map<std::string, TypedNode> J;
     for (std::size_t i = 0; i < 3; ++i) {
       const NodeId moment = body.inertia[i][i];
       J[fmt::format("J{}", i + 1)] = moment == no_node ? resolver_.number(0, span) : known(moment);
@@ -110,7 +110,7 @@ void ForcesReader::add_over_bodies(const Open& open, const forces::Term& term) {
   }
 }
 
-void ForcesReader::spell(Open& open) {
+void ForcesReader::expand_formulas(ForceDraft& open) {
   struct Mass {
     std::uint32_t place;
     NodeId mass;
@@ -124,11 +124,11 @@ void ForcesReader::spell(Open& open) {
     if (term.domain == Domain::bodies) add_over_bodies(open, term);
     for (std::size_t i = 0; i < masses.size() && (term.domain == Domain::masses || term.domain == Domain::pairs); ++i) {
       const bool pairs = term.domain == Domain::pairs;
-      std::map<std::string, Typed> local = open.local;
+      std::map<std::string, TypedNode> local = open.local;
       local.merge(mass_names(masses[i].place, masses[i].mass, pairs ? "1" : "", open.force.span));
       if (!pairs) add_effect(open, term, local);
       for (std::size_t k = i + 1; k < masses.size() && pairs; ++k) {
-        std::map<std::string, Typed> both = local;
+        std::map<std::string, TypedNode> both = local;
         both.merge(mass_names(masses[k].place, masses[k].mass, "2", open.force.span));
         add_effect(open, term, both);
       }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "support/by_hand.hpp"
+#include "support/reference_integration.hpp"
 
 #include <eom/ode.hpp>
 #include <stdexcept>
 
 namespace eomgen::test {
 
-std::vector<double> integrate_by_hand(const Rates& f, double t0, const std::vector<double>& x0, double t1, double rtol,
+std::vector<double> integrate_reference(const RightHandSide& f, double t0, const std::vector<double>& x0, double t1, double rtol,
                                       double atol) {
   eom::Options options;
   options.rtol = rtol;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/at_start.hpp"
+#include "model/start_substitution.hpp"
 
 #include <cln/rational.h>
 
@@ -17,7 +17,7 @@ struct Unknown {
 
 }  // namespace
 
-NodeId AtStart::operator()(NodeId node) {
+NodeId StartSubstitution::operator()(NodeId node) {
   try {
     return replaced(node);
   } catch (const Unknown& unknown) {
@@ -26,12 +26,12 @@ NodeId AtStart::operator()(NodeId node) {
   }
 }
 
-NodeId AtStart::push(Node node) {
+NodeId StartSubstitution::push(Node node) {
   model_.arena.nodes.push_back(node);
   return static_cast<NodeId>(model_.arena.nodes.size() - 1);
 }
 
-NodeId AtStart::coordinate(const Node& node) {
+NodeId StartSubstitution::coordinate(const Node& node) {
   const Coordinate& c = model_.coordinates[node.index];
   if (node.order > 0) throw Unknown{"it depends on velocities"};
   for (const InitialValue& given : model_.scenes.front().initial) {
@@ -44,20 +44,20 @@ NodeId AtStart::coordinate(const Node& node) {
 }
 
 /// The expression for which a name stands; no_node if the node is not a name.
-NodeId AtStart::reference(const Node& node) {
+NodeId StartSubstitution::reference(const Node& node) {
   switch (node.op) {
     case Op::time: return model_.scenes.front().t0;
     case Op::function:
       if (node.order > 0) throw Unknown{"it depends on the rate of a function of time"};
-      return model_.functions[node.index].is;
-    case Op::definition: return model_.definitions[node.index].is;
+      return model_.functions[node.index].expression;
+    case Op::definition: return model_.definitions[node.index].expression;
     case Op::place: return model_.places[node.index].position;
     case Op::axis: return model_.frames[node.index].stages[node.order / 3u].e[node.order % 3u];
     default: return no_node;
   }
 }
 
-NodeId AtStart::replaced(NodeId id) {
+NodeId StartSubstitution::replaced(NodeId id) {
   if (id == no_node) return id;
   if (const auto found = known_.find(id); found != known_.end()) return found->second;
   Node node = model_.arena[id];
@@ -96,7 +96,7 @@ NodeId AtStart::replaced(NodeId id) {
   return result;
 }
 
-double AtStart::scalar_value(NodeId id) {
+double StartSubstitution::scalar_value(NodeId id) {
   const Node& node = model_.arena[id];
   const auto arg = [&](std::size_t k) { return scalar_value(node.args[k]); };
   switch (node.op) {
@@ -118,7 +118,7 @@ double AtStart::scalar_value(NodeId id) {
   }
 }
 
-std::array<double, 3> AtStart::vector_value(NodeId id) {
+std::array<double, 3> StartSubstitution::vector_value(NodeId id) {
   const Node& node = model_.arena[id];
   using V = std::array<double, 3>;
   const auto part = [&](std::size_t k) { return vector_value(node.args[k]); };

@@ -12,11 +12,11 @@
 namespace eomgen::test {
 
 /// Runs the model and compares its final state with the parabola.
-inline Finished check_throw(const std::string& model, std::vector<std::string> outputs = {}) {
+inline FinishedRun check_projectile(const std::string& model, std::vector<std::string> outputs = {}) {
   INFO(model);
   constexpr double tolerance = 1e-9;  // of runs at rtol 1e-11
   outputs.insert(outputs.end(), {"P.position1", "P.position2", "P.position3"});
-  Finished run = run_model(model, [&](pipeline::SimulationRequest& request) {
+  FinishedRun run = run_model(model, [&](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-11;
     request.overrides.atol = 1e-12;
     request.overrides.outputs = outputs;

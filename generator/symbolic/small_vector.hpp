@@ -13,7 +13,7 @@
 namespace eomgen::symbolic {
 
 template <class T, std::uint32_t inside>
-class ShortList {
+class SmallVector {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
  public:
@@ -22,12 +22,12 @@ class ShortList {
   using const_iterator = const T*;
   using const_reverse_iterator = std::reverse_iterator<const T*>;
 
-  ShortList() noexcept : inside_{} {}
-  ShortList(std::initializer_list<T> items) : inside_{} {
+  SmallVector() noexcept : inside_{} {}
+  SmallVector(std::initializer_list<T> items) : inside_{} {
     reserve(items.size());
     for (const T& item : items) new (data() + size_++) T(item);
   }
-  ShortList(const ShortList& other) : size_(other.size_) {
+  SmallVector(const SmallVector& other) : size_(other.size_) {
     if (size_ <= inside && other.capacity_ == inside) {
       copy_inside(other);
       return;
@@ -38,18 +38,18 @@ class ShortList {
     }
     std::copy_n(other.data(), size_, data());
   }
-  ShortList(ShortList&& other) noexcept : inside_{} { take(other); }
-  ShortList& operator=(const ShortList& other) {
-    if (this != &other) *this = ShortList(other);
+  SmallVector(SmallVector&& other) noexcept : inside_{} { take(other); }
+  SmallVector& operator=(const SmallVector& other) {
+    if (this != &other) *this = SmallVector(other);
     return *this;
   }
-  ShortList& operator=(ShortList&& other) noexcept {
+  SmallVector& operator=(SmallVector&& other) noexcept {
     if (this == &other) return *this;
     release();
     take(other);
     return *this;
   }
-  ~ShortList() { release(); }
+  ~SmallVector() { release(); }
 
   iterator begin() noexcept { return data(); }
   iterator end() noexcept { return data() + size_; }
@@ -71,14 +71,14 @@ class ShortList {
     data()[size_++] = item;
   }
   /// Appends without a check; `reserve` must have made room.
-  void push_back_reserved(T item) noexcept { data()[size_++] = item; }
+  void push_back_unchecked(T item) noexcept { data()[size_++] = item; }
   /// Keeps the first `count` elements.
-  void shorten(std::size_t count) noexcept { size_ = static_cast<std::uint32_t>(count); }
+  void truncate(std::size_t count) noexcept { size_ = static_cast<std::uint32_t>(count); }
 
-  friend bool operator==(const ShortList& a, const ShortList& b) {
+  friend bool operator==(const SmallVector& a, const SmallVector& b) {
     return a.size_ == b.size_ && std::equal(a.begin(), a.end(), b.begin());
   }
-  friend bool operator<(const ShortList& a, const ShortList& b) {
+  friend bool operator<(const SmallVector& a, const SmallVector& b) {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
   }
 
@@ -93,13 +93,13 @@ class ShortList {
     capacity_ = capacity;
   }
   /// Copies the whole inline storage: its size is known to the compiler.
-  void copy_inside(const ShortList& other) noexcept {
+  void copy_inside(const SmallVector& other) noexcept {
     std::memcpy(static_cast<void*>(inside_), static_cast<const void*>(other.inside_), sizeof(inside_));
   }
   void release() noexcept {
     if (capacity_ != inside) delete[] outside_;
   }
-  void take(ShortList& other) noexcept {
+  void take(SmallVector& other) noexcept {
     size_ = other.size_;
     capacity_ = other.capacity_;
     if (capacity_ == inside)
@@ -136,13 +136,13 @@ Powers product_of_powers(const Powers& a, const Powers& b, std::int32_t power_of
       ++i, ++j;
       if (factor.exponent == 0) continue;
     }
-    result.push_back_reserved(factor);
+    result.push_back_unchecked(factor);
   }
-  for (; i != end_i; ++i) result.push_back_reserved(*i);
+  for (; i != end_i; ++i) result.push_back_unchecked(*i);
   for (; j != end_j; ++j) {
     auto factor = *j;
     factor.exponent *= power_of_b;
-    result.push_back_reserved(factor);
+    result.push_back_unchecked(factor);
   }
   return result;
 }

@@ -32,7 +32,7 @@ void BodiesReader::complete_parameters(Scene& scene) {
 }
 
 // "B.omega" = [..]; false for any other key.
-bool BodiesReader::read_initial_rotation(Scene& scene, const Entry& entry, bool guess) {
+bool BodiesReader::read_initial_angular_velocity(Scene& scene, const Entry& entry, bool guess) {
   const bool nested = entry.value.is(Value::Kind::table) && entry.value.find("omega") != nullptr;
   if (nested)
     source_.fail(entry.span, "the key of an angular velocity has a dot in it",
@@ -45,9 +45,9 @@ bool BodiesReader::read_initial_rotation(Scene& scene, const Entry& entry, bool 
   name.span = entry.span;
   const std::string remedy = fmt::format("write \"{}\" = [w1, w2, w3], along the axes of the body", entry.key);
   if (guess) source_.fail(entry.span, "an angular velocity cannot be guessed", "give it in 'initial'");
-  InitialRotation rotation{frame_named(name, "a key of 'initial'"), {}, entry.span};
+  InitialAngularVelocity rotation{require_frame(name, "a key of 'initial'"), {}, entry.span};
   if (rotation.frame == 0) source_.fail(entry.span, "the ground does not turn", "name a body or frame");
-  as(Value::Kind::array, entry.value, fmt::format("'{}'", entry.key), remedy);
+  require_kind(Value::Kind::array, entry.value, fmt::format("'{}'", entry.key), remedy);
   if (entry.value.items.size() != 3)
     source_.fail(entry.value.span, fmt::format("'{}' has {} entries", entry.key, entry.value.items.size()), remedy);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -63,8 +63,8 @@ bool BodiesReader::read_initial_rotation(Scene& scene, const Entry& entry, bool 
 }
 
 // An angular velocity replaces the rates of the body's own angles.
-void BodiesReader::check_initial_rotations(const Scene& scene) const {
-  for (const InitialRotation& rotation : scene.rotations) {
+void BodiesReader::check_initial_angular_velocities(const Scene& scene) const {
+  for (const InitialAngularVelocity& rotation : scene.rotations) {
     const Frame& frame = model_.frames[rotation.frame];
     for (const NodeId entry : frame.entries) {
       const Node& node = model_.arena[entry];

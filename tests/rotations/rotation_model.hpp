@@ -35,7 +35,7 @@ constexpr double difference = 1e-35;  // of central differences with steps of 1e
 
 /// The rotation of a registry entry in the syntax of a model file, with coordinates named like the entries plus a
 /// suffix.
-inline std::string written(const rotations::Rotation& r, const std::string& suffix = "") {
+inline std::string rotation_toml(const rotations::Rotation& r, const std::string& suffix = "") {
   std::string names;
   for (const rotations::Entry& entry : r.entries) names += (names.empty() ? "\"" : ", \"") + entry.name + suffix + "\"";
   if (r.family == "euler") return "{ euler = \"" + r.name + "\", angles = [" + names + "] }";
@@ -50,9 +50,9 @@ inline std::string body(const std::string& name, const std::string& rotation, co
          "\", \"z" + name + "\"] }\nrotation = " + rotation + "\n" + more;
 }
 
-class Turning {
+class RotationModel {
  public:
-  explicit Turning(const std::string& text)
+  explicit RotationModel(const std::string& text)
       : model_(model::read_model_text("format = 1\n" + text, "turning.toml")), m_(mechanics::build_mechanics(model_)) {}
 
   /// Values of coordinates (order 0) and rates (order 1) by name; everything else is 0.
@@ -60,9 +60,9 @@ class Turning {
 
   Real scalar(const std::string& definition) { return value({m_.scalar_definition[index(definition)]})[0]; }
   Numbers vector(const std::string& definition) {
-    return numbers(mechanics::lower_vector(m_, model_.definitions[index(definition)].is));
+    return numbers(mechanics::lower_vector(m_, model_.definitions[index(definition)].expression));
   }
-  Numbers own_rates(std::size_t frame) { return numbers(m_.angular_velocity[frame]); }
+  Numbers angular_velocity(std::size_t frame) { return numbers(m_.angular_velocity[frame]); }
   /// The vector at q + h qdot.
   Numbers later(const std::string& definition, const Real& h) {
     const auto here = at;
@@ -80,7 +80,7 @@ class Turning {
     return {(b[0] - a[0]) / (2 * h), (b[1] - a[1]) / (2 * h), (b[2] - a[2]) / (2 * h)};
   }
   /// The axial vector of Qdot Q^T from axes NAME1, NAME2, NAME3.
-  Numbers turning(const std::string& name) {
+  Numbers axial_vector(const std::string& name) {
     Numbers sum{0, 0, 0};
     for (const char* k : {"1", "2", "3"}) {
       const Numbers part = cross(vector(name + k), rate(name + k));

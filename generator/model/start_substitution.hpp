@@ -13,11 +13,11 @@
 
 namespace eomgen::model {
 
-class AtStart {
+class StartSubstitution {
  public:
   /// Adds nodes to the arena of the model, whose scenes must have been read. `open` coordinates have no default of 0:
   /// other conditions determine them.
-  AtStart(Model& model, std::set<std::uint32_t> open) : model_(model), open_(std::move(open)) {}
+  StartSubstitution(Model& model, std::set<std::uint32_t> open) : model_(model), open_(std::move(open)) {}
 
   /// The vector or scalar at the start; no_node if it cannot be determined. obstacle() then contains the reason.
   NodeId operator()(NodeId node);
