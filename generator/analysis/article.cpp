@@ -10,7 +10,7 @@
 #include "analysis/steady_search.hpp"
 #include "conservation/conservative.hpp"
 #include "derive/formulations/lagrange.hpp"
-#include "mechanics/dependent.hpp"
+#include "mechanics/dependent_coordinates.hpp"
 #include "pipeline/pipeline.hpp"
 #include "print/article.hpp"
 #include "reading/forms.hpp"
@@ -26,16 +26,16 @@ constexpr std::size_t most_coordinates = 3, starts = 40;
 
 std::vector<print::ForceFinding> forces_of(Mechanics& m) {
   std::vector<print::ForceFinding> result;
-  for (const conservation::ForceClass& f : conservation::classify_forces(m)) {
+  for (const conservation::ForceClassification& f : conservation::classify_forces(m)) {
     result.push_back({conservation::name(f.conservative), f.potential, f.many_valued, f.reason});
   }
   return result;
 }
 
 std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const DisplayForm& two,
-                                                  const std::vector<conservation::Conserved>& conserved) {
+                                                  const std::vector<conservation::ConservedQuantity>& conserved) {
   std::vector<print::ConservedFinding> result;
-  for (const conservation::Conserved& c : conserved) {
+  for (const conservation::ConservedQuantity& c : conserved) {
     result.push_back({c.kind, c.index, c.part, c.title, c.expression, in_named_functions(m, two, c),
                       c.certainty == conservation::Certainty::proven});
   }
@@ -48,7 +48,7 @@ void check_against_oracle(Mechanics& m, const DisplayForm& one, const DisplayFor
   verify::Subjects subjects;
   subjects.systems = verify::all_formulations(m, &subjects.left_out);
   for (const DisplayForm* form : {&one, &two}) {
-    if (!form->by_parts)
+    if (!form->is_unexpanded)
       subjects.reading.push_back(
           {fmt::format("display form {}", system::name(form->approach)), reading::residuals_on_dag(*form, m)});
   }
@@ -98,11 +98,11 @@ print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion)
 
 void look_for_steady_motions(const Mechanics& m, const DisplayForm& two, std::uint64_t seed,
                              print::Findings& findings) {
-  if (m.freedom() <= 0) {
+  if (m.degrees_of_freedom() <= 0) {
     findings.no_steady = "the constraints prescribe the motion";
     return;
   }
-  if (two.by_parts || two.equations.size() > most_coordinates) {
+  if (two.is_unexpanded || two.equations.size() > most_coordinates) {
     findings.no_steady = "the search takes long for a system of this size; eomgen equilibria makes it";
     return;
   }
@@ -126,12 +126,12 @@ void look_for_steady_motions(const Mechanics& m, const DisplayForm& two, std::ui
 std::string article(std::shared_ptr<const model::Model> model, std::uint64_t seed) {
   const work::Stage stage("deriving the equations");
   Mechanics m = mechanics::build_mechanics(std::move(model));
-  reading::Forms forms(m);
+  reading::DisplayForms forms(m);
   const DisplayForm &one = forms(system::Approach::one), &two = forms(system::Approach::two);
   print::Findings findings;
   findings.forces = forces_of(m);
   system::EquationSystem system = derive::lagrange(m, system::Approach::two);
-  const std::vector<conservation::Conserved> conserved = conservation::conserved_quantities(m, system);
+  const std::vector<conservation::ConservedQuantity> conserved = conservation::conserved_quantities(m, system);
   findings.conserved = conserved_of(m, two, conserved);
   const std::vector<std::uint32_t> cyclic = conservation::cyclic_coordinates(conserved);
   if (!cyclic.empty()) findings.routh = forms.routh(cyclic);

@@ -8,7 +8,7 @@
 #include "analysis/named_functions.hpp"
 #include "derive/formulations/lagrange.hpp"
 #include "error.hpp"
-#include "mechanics/dependent.hpp"
+#include "mechanics/dependent_coordinates.hpp"
 #include "model/names.hpp"
 #include "print/notation.hpp"
 #include "reading/forms.hpp"
@@ -44,8 +44,8 @@ std::string name_of(const print::Item& item) {
 /// Items that exceeded their budget, and equations that are shown in parts.
 std::vector<work::LeftOut> left_out_of(const std::vector<print::Item>& items, const reading::DisplayForm& form) {
   std::vector<work::LeftOut> result;
-  if (form.by_parts) result.push_back({"equations written out", form.why_by_parts});
-  if (!form.no_spins.empty()) result.push_back({"angular velocities", form.no_spins});
+  if (form.is_unexpanded) result.push_back({"equations written out", form.unexpanded_reason});
+  if (!form.rotations_skip_reason.empty()) result.push_back({"angular velocities", form.rotations_skip_reason});
   for (const print::Item& item : items) {
     if (!item.left_out.empty()) result.push_back({name_of(item), item.left_out});
   }
@@ -61,7 +61,7 @@ std::vector<Multiplier> legend(const mechanics::Mechanics& m, const reading::Dis
       return std::any_of(e.multipliers.begin(), e.multipliers.end(),
                          [k](const auto& term) { return term.constraint == k; });
     };
-    return form.by_parts || std::any_of(form.equations.begin(), form.equations.end(), has);
+    return form.is_unexpanded || std::any_of(form.equations.begin(), form.equations.end(), has);
   };
   for (const print::MultiplierMeaning& meaning : print::multiplier_meanings(m)) {
     if (!stands(meaning.constraint)) continue;
@@ -71,14 +71,14 @@ std::vector<Multiplier> legend(const mechanics::Mechanics& m, const reading::Dis
   return result;
 }
 
-void add_conserved(mechanics::Mechanics& mechanics, reading::Forms& forms, const std::vector<std::string>& show,
+void add_conserved(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, const std::vector<std::string>& show,
                    std::vector<print::Item>& items) {
   const bool wanted =
       std::any_of(show.begin(), show.end(), [](const auto& key) { return key == "conserved" || key == "all"; });
   if (!wanted) return;
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const reading::DisplayForm& form = forms(system::Approach::two, reading::Extent::equations);
-  for (const conservation::Conserved& c : conservation::conserved_quantities(mechanics, system)) {
+  for (const conservation::ConservedQuantity& c : conservation::conserved_quantities(mechanics, system)) {
     const auto named = in_named_functions(mechanics, form, c);
     print::Item item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
                              : print::render_expression(mechanics, "conserved", c.name, c.expression);
@@ -88,7 +88,7 @@ void add_conserved(mechanics::Mechanics& mechanics, reading::Forms& forms, const
 }
 
 // Only on explicit request: another form of equations that `all` shows already.
-void add_routh(mechanics::Mechanics& mechanics, reading::Forms& forms, const std::vector<std::string>& show,
+void add_routh(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, const std::vector<std::string>& show,
                std::vector<print::Item>& items, std::vector<std::string>& notes) {
   if (std::find(show.begin(), show.end(), "routh") == show.end()) return;
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
@@ -96,27 +96,27 @@ void add_routh(mechanics::Mechanics& mechanics, reading::Forms& forms, const std
       conservation::cyclic_coordinates(conservation::conserved_quantities(mechanics, system));
   const reading::RouthForm form = forms.routh(cyclic);
   if (cyclic.empty()) notes.emplace_back("no coordinate is cyclic: there is nothing to reduce");
-  if (form.by_parts)
+  if (form.is_unexpanded)
     notes.emplace_back("the reduction is too long to be written out, or the momenta do not give the rates");
   for (print::Item& item : print::render_routh(mechanics, form)) items.push_back(std::move(item));
 }
 
 // Only on explicit request: n^2 entries of four matrices, twice.
-void add_linear(const mechanics::Mechanics& mechanics, reading::Forms& forms, const std::vector<std::string>& show,
+void add_linear(const mechanics::Mechanics& mechanics, reading::DisplayForms& forms, const std::vector<std::string>& show,
                 std::vector<print::Item>& items) {
   if (std::find(show.begin(), show.end(), "linear") == show.end()) return;
   for (print::Item& item : print::render_linear(mechanics, forms.linear())) items.push_back(std::move(item));
 }
 
 system::Approach approach_to_show(const mechanics::Mechanics& m) {
-  const bool one = !mechanics::impose_dependent(m).fixed.empty() || !m.contacts.empty();
+  const bool one = !mechanics::eliminate_dependent_coordinates(m).fixed.empty() || !m.contacts.empty();
   return one ? system::Approach::one : system::Approach::two;
 }
 
 }  // namespace
 
 reading::DisplayForm form_to_show(const mechanics::Mechanics& m) {
-  return reading::derive_reading(m, approach_to_show(m));
+  return reading::derive_display_form(m, approach_to_show(m));
 }
 
 Equations equations(std::shared_ptr<const model::Model> model, const EquationsRequest& request) {
@@ -124,7 +124,7 @@ Equations equations(std::shared_ptr<const model::Model> model, const EquationsRe
   require_keys(request.show);
   const work::Stage stage("deriving the equations");
   mechanics::Mechanics mechanics = mechanics::build_mechanics(std::move(model));
-  reading::Forms forms(mechanics);
+  reading::DisplayForms forms(mechanics);
   const reading::DisplayForm& form = forms(request.approach == ApproachChoice::automatic ? approach_to_show(mechanics)
                                            : request.approach == ApproachChoice::one     ? system::Approach::one
                                                                                          : system::Approach::two);

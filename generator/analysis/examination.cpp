@@ -27,8 +27,8 @@ std::string use_of(const mechanics::Mechanics& m, const mechanics::Constraint& c
   for (const mechanics::FixedCoordinate& fixed : m.fixed) {
     if (m.constraints[fixed.constraint].label == c.label) use = "fixes " + m.model->coordinates[fixed.coordinate].name;
   }
-  if (c.need == mechanics::Need::identity) use = "holds identically, without a multiplier";
-  if (c.need == mechanics::Need::redundant) use = "follows from the others, without a multiplier; watched";
+  if (c.redundancy == mechanics::Redundancy::identity) use = "holds identically, without a multiplier";
+  if (c.redundancy == mechanics::Redundancy::redundant) use = "follows from the others, without a multiplier; watched";
   if (!c.determined && !joint) use += "; the motion does not determine its force";
   return use;
 }
@@ -43,12 +43,12 @@ void add_constraints(const mechanics::Mechanics& m, Examination& found) {
     one.kind = c.holonomic() ? "holonomic" : "velocity";
     one.integrable = mechanics::name(m.classification[k].integrable);
     if (c.holonomic()) one.integral = shown(m, c.psi) + " = 0";  // a holonomic constraint is its own integral
-    for (const mechanics::Integral& i : m.integrals) {
+    for (const mechanics::ConstraintIntegral& i : m.integrals) {
       if (i.label != c.label) continue;
       one.integral = shown(m, i.psi) + " = constant";
-      for (const std::uint32_t part : i.of) one.integral_of.push_back(m.constraints[part].label);
+      for (const std::uint32_t part : i.constraints) one.integral_of.push_back(m.constraints[part].label);
     }
-    one.redundant = !m.holds(static_cast<std::uint32_t>(k));
+    one.redundant = !m.is_independent(static_cast<std::uint32_t>(k));
     if (!joint) one.determined = c.determined;
     one.use = use_of(m, c, joint);
     one.reason = m.classification[k].reason;
@@ -74,7 +74,7 @@ void add_joints(const mechanics::Mechanics& m, Examination& found) {
 }
 
 void add_forces(mechanics::Mechanics& m, Examination& found) {
-  for (const conservation::ForceClass& force : conservation::classify_forces(m)) {
+  for (const conservation::ForceClassification& force : conservation::classify_forces(m)) {
     ExaminedForce one;
     one.name = force.name;
     one.conservative = conservation::name(force.conservative);
@@ -144,7 +144,7 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
   };
   for (std::uint32_t i = 0; i < model.coordinates.size(); ++i)
     found.coordinates.push_back({model.coordinates[i].name, unit_of(model.coordinates[i]), m.is_eliminated(i)});
-  found.degrees_of_freedom = m.freedom();
+  found.degrees_of_freedom = m.degrees_of_freedom();
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     const model::Parameter& p = model.parameters[i];
     found.parameters.push_back({p.name, unit_of(p),
@@ -166,7 +166,7 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
   add_charts(m, found);
   add_forces(m, found);
   system::EquationSystem system = derive::lagrange(m, system::Approach::two);
-  for (const conservation::Conserved& c : conservation::conserved_quantities(m, system))
+  for (const conservation::ConservedQuantity& c : conservation::conserved_quantities(m, system))
     found.conserved.push_back({c.name, c.title, item_of(m, c.expression), conservation::name(c.certainty)});
   add_singular(m, found);
 }

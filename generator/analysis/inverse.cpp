@@ -90,7 +90,7 @@ class Prescribed {
     for (const std::string& name : result.columns) {
       const system::Output* output = system::find(system_.outputs, name);
       // Show exact zeros as 0 rather than as rounding errors.
-      const bool nothing = conservation::vanishing(*m_.dag, {output->value}) != conservation::Certainty::no;
+      const bool nothing = conservation::zero_certainty(*m_.dag, {output->value}) != conservation::Certainty::no;
       values_.push_back(nothing ? m_.dag->zero() : output->value);
     }
     integrals_.assign(system_.integrals.size(), 0.0);

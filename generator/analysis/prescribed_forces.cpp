@@ -13,9 +13,9 @@ using mechanics::Mechanics;
 
 namespace {
 
-using mechanics::impose;
+using mechanics::constraint_substitution;
 using mechanics::Vec3;
-using mechanics::write_out;
+using mechanics::time_function_substitution;
 using symbolic::Dag;
 using symbolic::Ref;
 using symbolic::SymbolKind;
@@ -26,8 +26,8 @@ class Forces {
   Forces(Mechanics& m, const system::EquationSystem& s, const std::vector<std::string>& labels)
       : m_(m),
         dag_(*m.dag),
-        imposed_(impose(m)),
-        written_(write_out(m)),
+        imposed_(constraint_substitution(m)),
+        written_(time_function_substitution(m)),
         Q_(m.q.size(), dag_.zero()),
         power_(dag_.zero()) {
     for (const system::Reaction& reaction : s.reactions) {

@@ -101,7 +101,7 @@ Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, c
   Derived& d = *p.derived;
   Setting<Precise> setting;
   setting.parameters =
-      run::exact_parameters(d.mechanics, d.model.scene(p.scene.name), overrides, linear::digits + 20, moved);
+      run::exact_parameters(d.mechanics, d.model.scene(p.scene.name), overrides, linear::working_digits + 20, moved);
   for (std::size_t i = 0; i < setting.parameters.size(); ++i) {
     if (d.model.parameters[i].initial_value_of || i == d.model.start_time)
       setting.parameters[i] = numeric::exact(p.scene.parameters[i]);
@@ -163,14 +163,14 @@ Source without_slope(const SteadyProblem& p, const linear::State<Precise>& z) {
   Derived& d = *p.derived;
   const model::Model& model = d.model;
   symbolic::Dag& dag = *d.mechanics.dag;
-  symbolic::Substitution imposed = derive::impose(d.mechanics), written = derive::write_out(d.mechanics);
+  symbolic::Substitution imposed = derive::constraint_substitution(d.mechanics), written = derive::time_function_substitution(d.mechanics);
   const auto fails = [&](std::vector<symbolic::Ref> list, symbolic::Ref energy) {
     for (const symbolic::Symbol& s : p.flow->symbols()) {
       if (s.order == 0) list.push_back(symbolic::partial_derivative(dag, s)(written(imposed(energy))));
     }
     for (symbolic::Ref& r : list) r = written(imposed(r));
     try {
-      p.flow->sloped(p.flow->tape(list), z, p.setting);
+      p.flow->value_and_jacobian(p.flow->tape(list), z, p.setting);
       return false;
     } catch (const std::domain_error&) {
       return true;

@@ -22,11 +22,11 @@ using symbolic::SymbolKind;
 
 const char* const command = "equilibria";
 
-bool is_energy(const conservation::Conserved& c) {
+bool is_energy(const conservation::ConservedQuantity& c) {
   using system::OutputKind;
   return c.kind == OutputKind::energy || c.kind == OutputKind::jacobi || c.kind == OutputKind::applied_energy;
 }
-bool is_leaf(const conservation::Conserved& c) { return c.kind == system::OutputKind::integral; }
+bool is_leaf(const conservation::ConservedQuantity& c) { return c.kind == system::OutputKind::integral; }
 
 struct Neighbour {
   linear::State<Precise> z;
@@ -39,7 +39,7 @@ std::vector<Neighbour> neighbours(const SteadyProblem& p, std::initializer_list<
   std::vector<Neighbour> result;
   for (const std::uint64_t seed : seeds) {
     linear::Setting<Precise> setting = p.setting;
-    const auto z = linear::beside(*p.flow, p.z, setting, seed);
+    const auto z = linear::nearby_state(*p.flow, p.z, setting, seed);
     if (!z) return {};
     linear::Field<Precise> field = p.flow->at(*z, setting);
     result.push_back({*z, std::move(setting), std::move(field)});
@@ -51,17 +51,17 @@ std::vector<Neighbour> neighbours(const SteadyProblem& p, std::initializer_list<
 bool is_kept(const SteadyProblem& p, const std::vector<Neighbour>& neighbours, const Quantity& quantity) {
   const linear::Tape tape = p.flow->tape({quantity.expression});
   for (const auto& [z, setting, field] : neighbours) {
-    linear::Sloped<Precise> s;
+    linear::ValueAndJacobian<Precise> s;
     try {
-      s = p.flow->sloped(tape, z, setting);
+      s = p.flow->value_and_jacobian(tape, z, setting);
     } catch (const std::domain_error&) {
       return false;  // undefined somewhere, so not an invariant
     }
-    Precise rate = s.slope(0, z.size() - 1), size(0);
+    Precise rate = s.jacobian(0, z.size() - 1), size(0);
     for (std::size_t i = 0; i < field.X.rows; ++i) {
-      if (linear::is_zero(s.slope(0, i))) continue;
-      rate = rate + s.slope(0, i) * field.X(i, 0);
-      size = size + linear::magnitude(s.slope(0, i) * field.X(i, 0));
+      if (linear::is_zero(s.jacobian(0, i))) continue;
+      rate = rate + s.jacobian(0, i) * field.X(i, 0);
+      size = size + linear::magnitude(s.jacobian(0, i) * field.X(i, 0));
     }
     if (linear::magnitude(rate) > linear::tiny<Precise>(50) * (Precise(1) + size)) return false;
   }
@@ -85,7 +85,7 @@ std::vector<Quantity> candidates(const SteadyProblem& p, bool energies) {
     result = {{"energy", s.energy}, {"jacobi", jacobi}};
   else
     result = momenta;
-  for (const conservation::Conserved& c : p.derived->conserved) {
+  for (const conservation::ConservedQuantity& c : p.derived->conserved) {
     if (is_leaf(c) || is_energy(c) != energies) continue;
     const auto named = [&c](const Quantity& q) { return q.name == c.name; };
     if (std::none_of(result.begin(), result.end(), named)) result.push_back({c.name, c.expression});
@@ -129,15 +129,15 @@ std::optional<std::array<std::size_t, size>> places_of(const SteadyProblem& p, c
 
 void name_attitudes(SteadyProblem& p, linear::SearchRequest& search) {
   const model::Model& model = p.derived->model;
-  symbolic::Substitution imposed = derive::impose(p.derived->mechanics),
-                         written = derive::write_out(p.derived->mechanics);
+  symbolic::Substitution imposed = derive::constraint_substitution(p.derived->mechanics),
+                         written = derive::time_function_substitution(p.derived->mechanics);
   for (std::size_t f = 1; f < model.frames.size(); ++f) {
     const model::Frame& frame = model.frames[f];
     if (frame.rotation == "euler_parameters") {
-      if (const auto places = places_of<4>(p, frame)) search.parameters.push_back(*places);
+      if (const auto places = places_of<4>(p, frame)) search.euler_parameters.push_back(*places);
     } else if (frame.singularity != model::no_node) {
       const symbolic::Ref regular = written(imposed(mechanics::lower_scalar(p.derived->mechanics, frame.singularity)));
-      if (const auto places = places_of<3>(p, frame)) search.euler.push_back({*places, regular});
+      if (const auto places = places_of<3>(p, frame)) search.euler_angles.push_back({*places, regular});
     }
   }
 }
@@ -148,8 +148,8 @@ bool can_be_held(const SteadyProblem& p, const std::vector<Neighbour>& neighbour
                  const Quantity& quantity) {
   const linear::Tape tape = p.flow->tape({quantity.expression});
   for (const auto& [z, setting, field] : neighbours) {
-    const linear::Matrix<Precise> slope = p.flow->sloped(tape, z, setting).slope;
-    const linear::Matrix<Precise> along = slope * linear::tangent(field, symmetry.chart);
+    const linear::Matrix<Precise> jacobian = p.flow->value_and_jacobian(tape, z, setting).jacobian;
+    const linear::Matrix<Precise> along = jacobian * linear::tangent(field, symmetry.chart);
     for (std::size_t k = 0; k < along.cols; ++k) {
       const bool kept = k < symmetry.retained.size() && symmetry.retained[k];
       if (!kept && linear::magnitude(along(0, k)) > linear::tiny<Precise>(50)) return false;
@@ -166,7 +166,7 @@ linear::State<Precise> place_with_field(const SteadyProblem& p) {
   } catch (const std::domain_error&) {
     linear::Setting<Precise> setting = p.setting;
     for (std::uint64_t seed = 500; seed < 510; ++seed) {
-      if (auto z = linear::beside(*p.flow, p.z, setting, seed)) return *z;
+      if (auto z = linear::nearby_state(*p.flow, p.z, setting, seed)) return *z;
     }
     throw;
   }
@@ -229,15 +229,15 @@ void require_not_ignored(const SteadyMotions& result, const SteadyRequest& reque
 /// For a search without result: throws Error if the equations are undefined where its starts ended.
 void require_ends(const SteadyMotions& result) {
   const linear::SearchResult& search = result.search;
-  if (search.refused == 0) return;
+  if (search.failed_starts == 0) return;
   const SteadyProblem& p = result.problem;
   linear::State<Precise> z;
-  for (const double x : search.refused_at) z.push_back(linear::number<Precise>(numeric::exact(x)));
+  for (const double x : search.failure_point) z.push_back(linear::number<Precise>(numeric::exact(x)));
   const Source source = without_slope(p, z);
   throw Error(
       command, source.where,
       fmt::format("no equilibrium and no steady motion found: {} of the starts end where {} no slope ({})",
-                  search.refused, source.what, search.reason),
+                  search.failed_starts, source.what, search.reason),
       "put a smooth law in place of the one that has a kink or a root there, or begin the search at another start");
 }
 
@@ -247,11 +247,11 @@ void classify_stability(SteadyMotions& result, const SteadyRequest& request, con
   for (const linear::FoundPoint& point : result.search.points) {
     try {
       SteadyMotion motion{linear::linearise(*p.flow, point.z, p.setting, p.neighbours, request.seed), point.family, {}};
-      if (motion.l.kind == linear::Kind::motion) continue;  // not steady in the coordinates of that point
+      if (motion.l.kind == linear::MotionKind::motion) continue;  // not steady in the coordinates of that point
       motion.verdict = test(motion.l);
       result.points.push_back(std::move(motion));
     } catch (const std::domain_error& error) {  // the coordinates are singular there
-      result.search.refuse(error.what(), point.z);
+      result.search.record_failure(error.what(), point.z);
     }
   }
 }
@@ -288,7 +288,7 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
                   "eomgen linearize gives A(t) along a motion");
     }
     for (const std::size_t i : result.search.held) {
-      const std::string why = result.search.released
+      const std::string why = result.search.held_in_vain
                                   ? "a family leaves it open; with its value at the start there is none"
                                   : "a family leaves it open: its value at the start";
       result.held.push_back({p.flow->names()[i], linear::to_double(p.z[i]), why});

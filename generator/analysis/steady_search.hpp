@@ -28,7 +28,7 @@ struct HeldValue {
 struct SteadyMotion {
   linear::Linearisation l;
   std::size_t family = 0;
-  linear::Verdict verdict;
+  linear::StabilityVerdict verdict;
 };
 
 struct SteadyMotions {

@@ -17,34 +17,34 @@ class Classifier {
   Classifier(mechanics::Mechanics& m, std::size_t force)
       : m_(m), dag_(*m.dag), force_(force), Q_(m.force_components[force]) {}
 
-  ForceClass classify() {
+  ForceClassification classify() {
     result_.name = m_.model->forces[force_].name;
     const Ref known = m_.potential_by_force[force_];
     if (!dag_.is_zero(known)) result_.potential = known;
     if (m_.model->forces[force_].dry) {
-      result_.conservative = Verdict::no;
-      say("it is friction");
+      result_.conservative = ConservativeVerdict::no;
+      append_reason("it is friction");
     } else if (std::all_of(Q_.begin(), Q_.end(), [&](Ref q) { return dag_.is_zero(q); })) {
-      result_.conservative = Verdict::yes;
+      result_.conservative = ConservativeVerdict::yes;
       result_.in_energy = true;
       result_.domain = domain_of(m_, {known});
     } else if (depends_on_place_only() && curl_vanishes()) {
       find();
     }
-    if (result_.conservative == Verdict::yes && depends_on_time(known))
-      say("it depends on time, so that it changes the energy all the same");
+    if (result_.conservative == ConservativeVerdict::yes && depends_on_time(known))
+      append_reason("it depends on time, so that it changes the energy all the same");
     return result_;
   }
 
  private:
-  void say(const std::string& sentence) { result_.reason += (result_.reason.empty() ? "" : "; ") + sentence; }
+  void append_reason(const std::string& sentence) { result_.reason += (result_.reason.empty() ? "" : "; ") + sentence; }
 
   bool depends_on_place_only() {
     for (const Symbol& symbol : dag_.symbols(Q_)) {
       const bool velocity = symbol.kind == SymbolKind::coordinate && symbol.order > 0;
       if (!velocity && symbol.kind != SymbolKind::input) continue;
-      result_.conservative = Verdict::no;
-      say(velocity ? "it depends on velocities" : "it depends on an input");
+      result_.conservative = ConservativeVerdict::no;
+      append_reason(velocity ? "it depends on velocities" : "it depends on an input");
       return false;
     }
     return true;
@@ -61,8 +61,8 @@ class Classifier {
     }
     if (mechanics::vanishes(dag_, curl)) return true;
     const bool kinks = dag_.has_kinks(curl);
-    result_.conservative = kinks ? Verdict::unknown : Verdict::no;
-    say(kinks ? "its components have kinks (abs, sign, min, max, if)" : "its curl does not vanish");
+    result_.conservative = kinks ? ConservativeVerdict::unknown : ConservativeVerdict::no;
+    append_reason(kinks ? "its components have kinks (abs, sign, min, max, if)" : "its curl does not vanish");
     return false;
   }
 
@@ -78,16 +78,16 @@ class Classifier {
     result_.many_valued = around.answer == Answer::some;
     result_.work = around.work;
     if (around.answer == Answer::some) {
-      result_.conservative = Verdict::no;
-      say("its curl vanishes, but it does work along " + around.around + ": its potential is many-valued");
+      result_.conservative = ConservativeVerdict::no;
+      append_reason("its curl vanishes, but it does work along " + around.path + ": its potential is many-valued");
     } else if (potential && around.answer == Answer::none) {
-      result_.conservative = Verdict::yes;
+      result_.conservative = ConservativeVerdict::yes;
     } else if (around.answer == Answer::none) {  // no singular point: every closed field on R^n has a potential
-      result_.conservative = Verdict::yes;
-      say("its potential was not found in closed form");
+      result_.conservative = ConservativeVerdict::yes;
+      append_reason("its potential was not found in closed form");
     } else {
-      result_.conservative = Verdict::unknown;
-      say(potential ? "its curl vanishes, but the work around its singular points was not found"
+      result_.conservative = ConservativeVerdict::unknown;
+      append_reason(potential ? "its curl vanishes, but the work around its singular points was not found"
                     : "its curl vanishes, but no potential was found, and it has singular points");
     }
   }
@@ -114,22 +114,22 @@ class Classifier {
   symbolic::Dag& dag_;
   std::size_t force_;
   const std::vector<Ref>& Q_;
-  ForceClass result_;
+  ForceClassification result_;
 };
 
 }  // namespace
 
-const char* name(Verdict verdict) {
+const char* name(ConservativeVerdict verdict) {
   switch (verdict) {
-    case Verdict::yes: return "yes";
-    case Verdict::no: return "no";
-    case Verdict::unknown: break;
+    case ConservativeVerdict::yes: return "yes";
+    case ConservativeVerdict::no: return "no";
+    case ConservativeVerdict::unknown: break;
   }
   return "unknown";
 }
 
-std::vector<ForceClass> classify_forces(mechanics::Mechanics& m) {
-  std::vector<ForceClass> result;
+std::vector<ForceClassification> classify_forces(mechanics::Mechanics& m) {
+  std::vector<ForceClassification> result;
   for (std::size_t k = 0; k < m.model->forces.size(); ++k) result.push_back(Classifier(m, k).classify());
   return result;
 }

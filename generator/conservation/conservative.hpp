@@ -11,12 +11,12 @@
 
 namespace eomgen::conservation {
 
-enum class Verdict { yes, no, unknown };
-const char* name(Verdict verdict);
+enum class ConservativeVerdict { yes, no, unknown };
+const char* name(ConservativeVerdict verdict);
 
-struct ForceClass {
+struct ForceClassification {
   std::string name;
-  Verdict conservative = Verdict::unknown;
+  ConservativeVerdict conservative = ConservativeVerdict::unknown;
   /// The part in U and the potential found for the rest. If `many_valued`, it holds in a region that does not enclose
   /// the singular points.
   std::optional<symbolic::Ref> potential;
@@ -28,6 +28,6 @@ struct ForceClass {
 };
 
 /// One entry per Model::forces entry.
-std::vector<ForceClass> classify_forces(mechanics::Mechanics& mechanics);
+std::vector<ForceClassification> classify_forces(mechanics::Mechanics& mechanics);
 
 }  // namespace eomgen::conservation

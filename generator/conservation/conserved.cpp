@@ -13,9 +13,9 @@
 namespace eomgen::conservation {
 
 using derive::generalized_forces;
-using mechanics::impose;
+using mechanics::constraint_substitution;
 using mechanics::Mechanics;
-using mechanics::write_out;
+using mechanics::time_function_substitution;
 using symbolic::Dag;
 using symbolic::Ref;
 using symbolic::Symbol;
@@ -39,7 +39,7 @@ const char* name(Certainty certainty) {
   return "proven";
 }
 
-Certainty vanishing(Dag& dag, const std::vector<Ref>& expressions) {
+Certainty zero_certainty(Dag& dag, const std::vector<Ref>& expressions) {
   if (!mechanics::vanishes(dag, expressions)) return Certainty::no;
   symbolic::ProductBudget effort{proof_effort};
   symbolic::Expander expander(dag, proof_terms, &effort);
@@ -57,9 +57,9 @@ struct Applied {
 
 Applied applied_potentials(Mechanics& m) {
   Applied result{m.dag->zero(), generalized_forces(m)};
-  const std::vector<ForceClass> forces = classify_forces(m);
+  const std::vector<ForceClassification> forces = classify_forces(m);
   for (std::size_t k = 0; k < forces.size(); ++k) {
-    if (forces[k].in_energy || forces[k].conservative != Verdict::yes || !forces[k].potential) continue;
+    if (forces[k].in_energy || forces[k].conservative != ConservativeVerdict::yes || !forces[k].potential) continue;
     result.potential = m.dag->add(result.potential, m.dag->sub(*forces[k].potential, m.potential_by_force[k]));
     for (std::size_t i = 0; i < result.Q.size(); ++i) result.Q[i] = m.dag->sub(result.Q[i], m.force_components[k][i]);
   }
@@ -68,20 +68,20 @@ Applied applied_potentials(Mechanics& m) {
 
 }  // namespace
 
-std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem& s) {
+std::vector<ConservedQuantity> conserved_quantities(Mechanics& m, system::EquationSystem& s) {
   Dag& dag = *m.dag;
-  std::vector<Conserved> result;
-  const auto offer = [&s](const Conserved& c) { s.outputs.push_back({c.name, c.expression, c.kind, c.index, c.part}); };
+  std::vector<ConservedQuantity> result;
+  const auto offer = [&s](const ConservedQuantity& c) { s.outputs.push_back({c.name, c.expression, c.kind, c.index, c.part}); };
   const bool hit =
       std::any_of(m.contacts.begin(), m.contacts.end(), [](const mechanics::Contact& c) { return c.unilateral; });
   symbolic::Derivation by_time = symbolic::explicit_time_derivative(dag, m.model->functions.size());
   std::vector<Ref> power{s.power};
   for (const Ref surface : jump_surfaces(dag, {s.energy})) power.push_back(by_time(surface));
-  if (const Certainty c = hit ? Certainty::no : vanishing(dag, power); c != Certainty::no)
+  if (const Certainty c = hit ? Certainty::no : zero_certainty(dag, power); c != Certainty::no)
     result.push_back({"energy", "total energy T + U", s.energy, OutputKind::energy, 0, 0, c});
   // The constrained Lagrangian, which Approach II differentiates: its cyclic coordinates are those of the motion.
   const Ref L = dag.sub(s.kinetic, s.potential);
-  symbolic::Substitution imposed = impose(m), written = write_out(m);
+  symbolic::Substitution imposed = constraint_substitution(m), written = time_function_substitution(m);
   const bool energy_conserved = !result.empty();
   const std::vector<Ref> Q = generalized_forces(m);
   const Applied applied = energy_conserved ? Applied{dag.zero(), Q} : applied_potentials(m);
@@ -100,7 +100,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
     std::vector<Ref> must_vanish{by(L), force};
     for (const Ref surface : surfaces) must_vanish.push_back(by(surface));
     for (std::size_t k = 0; k < s.active.size(); ++k) must_vanish.push_back(s.A[k * s.free.size() + row]);
-    const Certainty certainty = vanishing(dag, must_vanish);
+    const Certainty certainty = zero_certainty(dag, must_vanish);
     if (certainty == Certainty::no) continue;
     const std::string& name = m.model->coordinates[i].name;
     result.push_back({"momentum." + name, "generalised momentum of " + name, p, OutputKind::momentum, i, 0, certainty});
@@ -110,7 +110,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   must_vanish.push_back(by_time(dag.sub(L, V)));
   for (const Ref surface : surfaces) must_vanish.push_back(by_time(surface));
   must_vanish.push_back(input_power);
-  if (const Certainty c = energy_conserved || hit ? Certainty::no : vanishing(dag, must_vanish); c != Certainty::no) {
+  if (const Certainty c = energy_conserved || hit ? Certainty::no : zero_certainty(dag, must_vanish); c != Certainty::no) {
     const bool plain = dag.is_zero(V);
     result.push_back({plain ? "jacobi" : "energy.applied",
                       plain ? "Jacobi integral T2 - T0 + U" : "T2 - T0 + U with the potentials of applied forces",
@@ -118,7 +118,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
     offer(result.back());
   }
   for (std::uint32_t j = 0; j < m.integrals.size(); ++j) {
-    const mechanics::Integral& integral = m.integrals[j];
+    const mechanics::ConstraintIntegral& integral = m.integrals[j];
     result.push_back({"integral." + integral.label, "what the constraint keeps, as it is at the start", integral.psi,
                       OutputKind::integral, j});
     offer(result.back());
@@ -132,7 +132,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
     }
     differential("t", written(by_time(integral.psi)));
   }
-  for (Conserved& momentum : conserved_momenta(m, s, result)) {
+  for (ConservedQuantity& momentum : conserved_momenta(m, s, result)) {
     offer(momentum);
     s.outputs.push_back({"magnitude." + momentum.name, *momentum.magnitude, OutputKind::magnitude,
                          static_cast<std::uint32_t>(result.size())});
@@ -141,20 +141,20 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   return result;
 }
 
-std::vector<Conserved> conserved_quantities(Mechanics& m, std::vector<system::EquationSystem>& systems) {
+std::vector<ConservedQuantity> conserved_quantities(Mechanics& m, std::vector<system::EquationSystem>& systems) {
   if (systems.empty()) return {};
   const std::vector<system::Output>& outputs = systems.front().outputs;
   const auto own = static_cast<std::ptrdiff_t>(outputs.size());
-  std::vector<Conserved> result = conserved_quantities(m, systems.front());
+  std::vector<ConservedQuantity> result = conserved_quantities(m, systems.front());
   for (std::size_t i = 1; i < systems.size(); ++i) {
     systems[i].outputs.insert(systems[i].outputs.end(), outputs.begin() + own, outputs.end());
   }
   return result;
 }
 
-std::vector<std::uint32_t> cyclic_coordinates(const std::vector<Conserved>& conserved) {
+std::vector<std::uint32_t> cyclic_coordinates(const std::vector<ConservedQuantity>& conserved) {
   std::vector<std::uint32_t> result;
-  for (const Conserved& c : conserved) {
+  for (const ConservedQuantity& c : conserved) {
     if (c.kind == OutputKind::momentum) result.push_back(c.index);
   }
   return result;

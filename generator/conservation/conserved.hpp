@@ -18,9 +18,9 @@ enum class Certainty { no, numerical, proven };
 const char* name(Certainty certainty);  // "no", "numerical", "proven"
 
 /// `proven`: the expanded expression is empty; `numerical`: zero in 40 digits at random points.
-Certainty vanishing(symbolic::Dag& dag, const std::vector<symbolic::Ref>& expressions);
+Certainty zero_certainty(symbolic::Dag& dag, const std::vector<symbolic::Ref>& expressions);
 
-struct Conserved {
+struct ConservedQuantity {
   std::string name;          // "energy", "momentum.theta", "jacobi", "linear_momentum.E1"; also the name of the output
   std::string title;         // for display
   symbolic::Ref expression;  // in the symbols of the EquationSystem
@@ -32,12 +32,12 @@ struct Conserved {
 
 /// Appends an output for each quantity that is not an output already (momenta, Jacobi integral, integrals of
 /// constraints). Also appends what runs need: the differentials of these integrals, and magnitudes.
-std::vector<Conserved> conserved_quantities(mechanics::Mechanics& mechanics, system::EquationSystem& system);
+std::vector<ConservedQuantity> conserved_quantities(mechanics::Mechanics& mechanics, system::EquationSystem& system);
 
 /// The same for several systems of one Mechanics, which share energies and constraints: found once, appended to all.
-std::vector<Conserved> conserved_quantities(mechanics::Mechanics& mechanics,
+std::vector<ConservedQuantity> conserved_quantities(mechanics::Mechanics& mechanics,
                                             std::vector<system::EquationSystem>& systems);
 
-std::vector<std::uint32_t> cyclic_coordinates(const std::vector<Conserved>& conserved);
+std::vector<std::uint32_t> cyclic_coordinates(const std::vector<ConservedQuantity>& conserved);
 
 }  // namespace eomgen::conservation

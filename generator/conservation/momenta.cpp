@@ -19,10 +19,10 @@ namespace eomgen::conservation {
 namespace {
 
 using derive::generalized_forces;
-using mechanics::impose;
+using mechanics::constraint_substitution;
 using mechanics::Mechanics;
 using mechanics::Vec3;
-using mechanics::write_out;
+using mechanics::time_function_substitution;
 using symbolic::Dag;
 using symbolic::Ref;
 using symbolic::Symbol;
@@ -71,7 +71,7 @@ bool does_no_work(const double* force, const std::vector<double>& y) {
 class Search {
  public:
   Search(Mechanics& m, const system::EquationSystem& s) : s_(s), dag_(*m.dag), n_(s.free.size()) {
-    symbolic::Substitution imposed = impose(m), written = write_out(m);
+    symbolic::Substitution imposed = constraint_substitution(m), written = time_function_substitution(m);
     const auto all = [&](const Vec3& v) {
       return Vec3{written(imposed(v[0])), written(imposed(v[1])), written(imposed(v[2]))};
     };
@@ -85,12 +85,12 @@ class Search {
         for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0})(x));
       }
     }
-    for (const mechanics::Spin& spin : m.spins) {
+    for (const mechanics::BodyRotation& spin : m.body_rotations) {
       w_.push_back(all(spin.w));
       for (const Ref w : w_.back()) {
         for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1})(w));
       }
-      H_.push_back(times(dag_, spin, w_.back()));
+      H_.push_back(inertia_times(dag_, spin, w_.back()));
       axes_.push_back({all(spin.axes[0]), all(spin.axes[1]), all(spin.axes[2])});
     }
     // Admissible displacements: for dependent coordinates (Euler parameters) the constraints select among those with
@@ -103,16 +103,16 @@ class Search {
     }
     for (const Ref surface : jump_surfaces(dag_, {s.kinetic, s.potential})) {
       for (const std::uint32_t i : s.free)
-        across_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0})(surface));
+        jump_gradients_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0})(surface));
     }
   }
 
   /// `repeats`: whether this expression is redundant, which is far cheaper to test than conservation.
   template <class Repeats>
-  std::optional<Conserved> component(bool angular, std::size_t k, const Repeats& repeats) {
+  std::optional<ConservedQuantity> component(bool angular, std::size_t k, const Repeats& is_redundant) {
     const std::vector<Ref> d = displacement(angular, k);
     if (mechanics::vanishes(dag_, d) || !may_be_conserved(d)) return std::nullopt;
-    Conserved result;
+    ConservedQuantity result;
     const std::string along = "E" + std::to_string(k + 1);
     result.name = (angular ? "angular_momentum." : "linear_momentum.") + along;
     result.kind = angular ? system::OutputKind::angular_momentum : system::OutputKind::linear_momentum;
@@ -127,8 +127,8 @@ class Search {
       const std::size_t row = 3 * (r_.size() + b);
       expression = dag_.add(expression, dot(dag_, Vec3{d[row], d[row + 1], d[row + 2]}, H_[b]));
     }
-    if (repeats(expression)) return std::nullopt;
-    const Certainty certainty = vanishing(dag_, conditions(d));
+    if (is_redundant(expression)) return std::nullopt;
+    const Certainty certainty = zero_certainty(dag_, conditions(d));
     if (certainty == Certainty::no) return std::nullopt;
     result.certainty = certainty;
     Ref magnitude = dag_.zero();
@@ -198,7 +198,7 @@ class Search {
     std::vector<Ref> result;
     for (std::size_t r = 0; r < d.size(); ++r) result.push_back(dag_.sub(along(xi, J_, r), d[r]));
     result.push_back(along(xi, force_, 0));
-    for (std::size_t k = 0; k * n_ < across_.size(); ++k) result.push_back(along(xi, across_, k));
+    for (std::size_t k = 0; k * n_ < jump_gradients_.size(); ++k) result.push_back(along(xi, jump_gradients_, k));
     return result;
   }
 
@@ -228,14 +228,14 @@ class Search {
   Dag& dag_;
   std::size_t n_;
   std::vector<Ref> mass_, J_, force_;
-  std::vector<Ref> across_;  // gradients of the surfaces where energies jump, row by row
+  std::vector<Ref> jump_gradients_;  // gradients of the surfaces where energies jump, row by row
   std::vector<Vec3> r_, v_, w_, H_;
   std::vector<std::array<Vec3, 3>> axes_;  // of the rotating bodies
   std::optional<symbolic::Factorisation> factors_;
 };
 
-bool repeats(const Dag& dag, const std::vector<Conserved>& known, Ref expression, Dag& work) {
-  return std::any_of(known.begin(), known.end(), [&](const Conserved& c) {
+bool is_redundant(const Dag& dag, const std::vector<ConservedQuantity>& known, Ref expression, Dag& work) {
+  return std::any_of(known.begin(), known.end(), [&](const ConservedQuantity& c) {
     return mechanics::vanishes(dag, {work.sub(c.expression, expression)}) ||
            mechanics::vanishes(dag, {work.add(c.expression, expression)});
   });
@@ -243,16 +243,16 @@ bool repeats(const Dag& dag, const std::vector<Conserved>& known, Ref expression
 
 }  // namespace
 
-std::vector<Conserved> conserved_momenta(Mechanics& m, const system::EquationSystem& s,
-                                         const std::vector<Conserved>& known) {
-  std::vector<Conserved> all = known, found;
-  if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given) || s.free.empty() || s.free.size() > most_coordinates)
+std::vector<ConservedQuantity> conserved_momenta(Mechanics& m, const system::EquationSystem& s,
+                                         const std::vector<ConservedQuantity>& known) {
+  std::vector<ConservedQuantity> all = known, found;
+  if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given) || s.free.empty() || s.free.size() > max_momentum_coordinates)
     return found;
   Search search(m, s);
   for (const bool angular : {false, true}) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::optional<Conserved> c = search.component(angular, k, [&](Ref expression) {
-        return mechanics::vanishes(*m.dag, {expression}) || repeats(*m.dag, all, expression, *m.dag);
+      const std::optional<ConservedQuantity> c = search.component(angular, k, [&](Ref expression) {
+        return mechanics::vanishes(*m.dag, {expression}) || is_redundant(*m.dag, all, expression, *m.dag);
       });
       if (!c) continue;
       found.push_back(*c);

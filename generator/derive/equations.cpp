@@ -17,7 +17,7 @@ using system::OutputKind;
 Symbol coordinate(std::uint32_t i, std::uint8_t order) { return {SymbolKind::coordinate, i, order}; }
 
 /// Imposes the constraints, then expands functions of time.
-struct Finish {
+struct FinalSubstitution {
   symbolic::Substitution imposed, written;
   Ref operator()(Ref r) { return written(imposed(r)); }
 };
@@ -28,7 +28,7 @@ symbolic::Substitution at_rest(const Mechanics& m, const EquationSystem& s) {
   return {*m.dag, std::move(zero)};
 }
 
-void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
+void add_constraints(Mechanics& m, EquationSystem& s, FinalSubstitution& finish) {
   Dag& dag = *m.dag;
   symbolic::Derivation bias = symbolic::total_time_derivative(dag, m.q.size(), m.model->functions.size(), true);
   for (const std::uint32_t k : s.active) {
@@ -48,9 +48,9 @@ void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
 }
 
 // Equations that are not imposed, but hold if the active constraints do.
-void add_redundant(Mechanics& m, EquationSystem& s, Finish& finish) {
+void add_redundant(Mechanics& m, EquationSystem& s, FinalSubstitution& finish) {
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (m.constraints[k].need != mechanics::Need::redundant) continue;
+    if (m.constraints[k].redundancy != mechanics::Redundancy::redundant) continue;
     const mechanics::Constraint& c = m.constraints[k];
     const std::uint8_t order = c.holonomic() ? 0 : 1;
     const Ref psi = finish.imposed(c.holonomic() ? c.psi : m.velocity_form(c));
@@ -145,7 +145,7 @@ void add_reaction_outputs(Mechanics& m, EquationSystem& s) {
   add_constraint_forces(m, s);
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     const mechanics::Constraint& c = m.constraints[k];
-    if (c.need == mechanics::Need::redundant)
+    if (c.redundancy == mechanics::Redundancy::redundant)
       s.outputs.push_back(
           {"redundant." + c.label, c.holonomic() ? c.psi : m.velocity_form(c), OutputKind::redundant, k});
   }
@@ -199,7 +199,7 @@ void add_events(Mechanics& m, EquationSystem& s) {
   for (std::size_t i = 0; i < m.event.size(); ++i) s.events.push_back({m.model->events[i].name, reacting(m.event[i])});
 }
 
-void add_contacts(Mechanics& m, EquationSystem& s, Finish& finish) {
+void add_contacts(Mechanics& m, EquationSystem& s, FinalSubstitution& finish) {
   symbolic::Derivation ddt = symbolic::total_time_derivative(*m.dag, m.q.size(), m.model->functions.size());
   for (const mechanics::Contact& contact : m.contacts) {
     system::Contact result;
@@ -213,9 +213,9 @@ void add_contacts(Mechanics& m, EquationSystem& s, Finish& finish) {
       result.slip.push_back(finish(w));
       result.slip_rate.push_back(finish(ddt(w)));
     }
-    for (const mechanics::HeldDirection& held : contact.held) {
-      result.held.push_back({held.by, {}});
-      for (const Ref along : held.along) result.held.back().along.push_back(finish(along));
+    for (const mechanics::BlockedDirection& held : contact.blocked) {
+      result.blocked.push_back({held.by, {}});
+      for (const Ref along : held.along) result.blocked.back().along.push_back(finish(along));
     }
     for (const Vec3& t : contact.directions) result.directions.push_back({finish(t[0]), finish(t[1]), finish(t[2])});
     if (contact.width)
@@ -338,7 +338,7 @@ EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquat
   add_outputs(m, s);
   add_events(m, s);
   add_contact_outputs(m, s);
-  Finish finish{impose(m), write_out(m)};
+  FinalSubstitution finish{constraint_substitution(m), time_function_substitution(m)};
   for (Ref* r : {&s.kinetic, &s.potential, &s.energy, &s.power}) *r = finish(*r);
   for (Ref& r : s.M) r = finish(r);
   for (Ref& r : s.f) r = finish(r);

@@ -19,7 +19,7 @@ const std::vector<FormulationEntry>& all() {
 }
 
 /// Whether most entries of the mass matrix are nonzero, as for a chain; branches near the root leave zeros.
-bool is_full(const mechanics::Mechanics& m, const system::EquationSystem& s) {
+bool is_nearly_full(const mechanics::Mechanics& m, const system::EquationSystem& s) {
   constexpr std::size_t share = 4;
   const auto filled = std::count_if(s.M.begin(), s.M.end(), [&](symbolic::Ref r) { return !m.dag->is_zero(r); });
   return static_cast<std::size_t>(filled) * share > s.M.size();
@@ -29,7 +29,7 @@ bool is_full(const mechanics::Mechanics& m, const system::EquationSystem& s) {
 std::vector<FormulationEntry> cheaper_on_trees(const FormulationEntry& formulation) {
   std::vector<FormulationEntry> cheaper;
   for (const FormulationEntry& other : formulations()) {
-    if (other.over_trees && other.max_tree_size > formulation.max_tree_size) cheaper.push_back(other);
+    if (other.is_for_trees && other.max_tree_size > formulation.max_tree_size) cheaper.push_back(other);
   }
   std::stable_sort(cheaper.begin(), cheaper.end(),
                    [](const FormulationEntry& a, const FormulationEntry& b) { return a.max_tree_size > b.max_tree_size; });
@@ -37,10 +37,10 @@ std::vector<FormulationEntry> cheaper_on_trees(const FormulationEntry& formulati
 }
 
 /// A tree with a nearly full mass matrix is left to a cheaper formulation, if one applies.
-bool is_left_to_another(const FormulationEntry& formulation, mechanics::Mechanics& m, system::Approach approach) {
+bool has_cheaper_formulation(const FormulationEntry& formulation, mechanics::Mechanics& m, system::Approach approach) {
   if (m.q.size() <= formulation.max_tree_size) return false;
   for (const FormulationEntry& other : cheaper_on_trees(formulation)) {
-    if (const auto s = other.derive(m, approach)) return is_full(m, *s);
+    if (const auto s = other.derive(m, approach)) return is_nearly_full(m, *s);
   }
   return false;
 }
@@ -49,13 +49,13 @@ bool is_left_to_another(const FormulationEntry& formulation, mechanics::Mechanic
 
 std::span<const FormulationEntry> formulations() { return all(); }
 
-Outcome derive_where_worth(const FormulationEntry& formulation, mechanics::Mechanics& m, system::Approach approach) {
+DerivationResult derive_if_worthwhile(const FormulationEntry& formulation, mechanics::Mechanics& m, system::Approach approach) {
   constexpr std::size_t operations = 20'000'000;
-  if (is_left_to_another(formulation, m, approach)) return {std::nullopt, "a large tree has cheaper formulations"};
+  if (has_cheaper_formulation(formulation, m, approach)) return {std::nullopt, "a large tree has cheaper formulations"};
   try {
     const work::Budget budget(operations);
-    Outcome outcome{formulation.derive(m, approach), ""};
-    if (!outcome.system) outcome.why = formulation.applies;
+    DerivationResult outcome{formulation.derive(m, approach), ""};
+    if (!outcome.system) outcome.skip_reason = formulation.applicability;
     return outcome;
   } catch (const work::BudgetExceeded& over) {
     return {std::nullopt, over.what(), true};

@@ -15,17 +15,17 @@
 
 namespace eomgen::derive {
 
-inline constexpr std::size_t any_size = static_cast<std::size_t>(-1);
+inline constexpr std::size_t unlimited_size = static_cast<std::size_t>(-1);
 
 struct FormulationEntry {
   const char* name;
   const char* title;
-  const char* applies;  // to which models; reported if the formulation is skipped
+  const char* applicability;  // to which models; reported if the formulation is skipped
   /// Empty if the formulation does not apply to the model in this approach.
   std::optional<system::EquationSystem> (*derive)(mechanics::Mechanics&, system::Approach);
   /// The number of coordinates of a tree beyond which a tree formulation with a larger limit is far cheaper.
-  std::size_t max_tree_size = any_size;
-  bool over_trees = false;  // for trees of particles or bodies
+  std::size_t max_tree_size = unlimited_size;
+  bool is_for_trees = false;  // for trees of particles or bodies
 };
 
 /// In the order of derive/formulations/registry.inc, NAME() of derive/formulations/NAME.cpp.
@@ -38,14 +38,14 @@ namespace formulation {
 }  // namespace formulation
 
 /// The equations of a formulation, or why it was skipped.
-struct Outcome {
+struct DerivationResult {
   std::optional<system::EquationSystem> system;
-  std::string why;           // empty where there are equations
+  std::string skip_reason;           // empty where there are equations
   bool over_budget = false;  // false: it does not apply, or another one is far cheaper
 };
 
 /// Derives the equations within a budget of operations. A formulation is skipped if another is far cheaper on a tree of
 /// that size: full matrices serve small systems only (docs/theory.md, "Formulations").
-Outcome derive_where_worth(const FormulationEntry& formulation, mechanics::Mechanics& mechanics, system::Approach approach);
+DerivationResult derive_if_worthwhile(const FormulationEntry& formulation, mechanics::Mechanics& mechanics, system::Approach approach);
 
 }  // namespace eomgen::derive

@@ -7,17 +7,17 @@
 
 namespace eomgen::derive {
 
-using mechanics::impose;
+using mechanics::constraint_substitution;
 using mechanics::Mechanics;
 using mechanics::Vec3;
-using mechanics::write_out;
+using mechanics::time_function_substitution;
 using symbolic::Dag;
 using symbolic::Ref;
 
-/// The integrals of functions of time without a closed form (write_out): states of the system.
+/// The integrals of functions of time without a closed form (time_function_substitution): states of the system.
 inline std::vector<system::IntegralState> integral_states(const Mechanics& mechanics) {
   std::vector<system::IntegralState> states;
-  for (const mechanics::OpenIntegral& open : mechanics::open_integrals(mechanics))
+  for (const mechanics::NonelementaryIntegral& open : mechanics::nonelementary_integrals(mechanics))
     states.push_back({open.integral, open.rate});
   return states;
 }

@@ -35,8 +35,8 @@ Prescribed of_masses(Mechanics& m, symbolic::Derivation& at_fixed_motion) {
     sum.inertia = dag.add(sum.inertia, dag.mul(mass.mass, dot(dag, mass.velocity, acceleration)));
     sum.moving = dag.add(sum.moving, dag.mul(mass.mass, dot(dag, mass.velocity, drift)));
   }
-  for (const mechanics::Spin& spin : m.spins) {
-    const Vec3 H = momentum(dag, spin);
+  for (const mechanics::BodyRotation& spin : m.body_rotations) {
+    const Vec3 H = angular_momentum(dag, spin);
     Vec3 drift, acceleration;
     for (std::size_t k = 0; k < 3; ++k) {
       drift[k] = at_rest(spin.w[k]);

@@ -11,7 +11,7 @@
 
 namespace eomgen {
 
-/// Classification of one constraint.
+/// ConstraintClassification of one constraint.
 struct ConstraintClass {
   std::string name, kind;               // "holonomic" or "velocity"
   std::string integrable;               // "yes", "no", "unknown"
@@ -20,7 +20,7 @@ struct ConstraintClass {
   std::string use, reason;              // treatment in the equations; reason for `integrable`
 };
 
-/// Classification of one force.
+/// ConstraintClassification of one force.
 struct ForceClass {
   std::string name, conservative;  // "yes", "no", "unknown"
   std::optional<Formula> potential;

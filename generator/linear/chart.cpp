@@ -133,15 +133,15 @@ std::vector<bool> retained_of(const Pattern<T>& feels, std::size_t positions) {
 template <class T>
 std::vector<bool> retained_in(const std::vector<Field<T>>& fields, const Chart& chart, const T& small) {
   Pattern<T> feels;
-  for (const Field<T>& field : fields) join(feels, reduced(field, chart, tangent(field, chart)), small);
+  for (const Field<T>& field : fields) join(feels, reduced_jacobian(field, chart, tangent(field, chart)), small);
   return retained_of<T>(feels, chart.positions);
 }
 
 Field<double> rounded(const Field<Precise>& f) {
-  return {rounded(f.X), rounded(f.slope), rounded(f.by_inputs), rounded(f.phi), rounded(f.phi_slope)};
+  return {rounded(f.X), rounded(f.jacobian), rounded(f.input_jacobian), rounded(f.phi), rounded(f.phi_jacobian)};
 }
 
-std::uint64_t mixed(std::uint64_t x) {  // splitmix64
+std::uint64_t hash_mix(std::uint64_t x) {  // splitmix64
   x += 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
@@ -162,10 +162,10 @@ Places constants(const std::vector<Field<Precise>>& fields, const Chart& chart, 
 }
 
 Chart best_chart(const Flow& flow, const Field<Precise>& here, const std::vector<Field<Precise>>& fields) {
-  const std::size_t n = flow.coordinates(), p = flow.on_positions();
-  const std::vector<Candidate> positions = candidates(columns_of(rows_of(here.phi_slope, all_of(0, p)), all_of(0, n)));
+  const std::size_t n = flow.coordinates(), p = flow.position_constraint_count();
+  const std::vector<Candidate> positions = candidates(columns_of(rows_of(here.phi_jacobian, all_of(0, p)), all_of(0, n)));
   const std::vector<Candidate> speeds =
-      candidates(columns_of(rows_of(here.phi_slope, all_of(p, here.phi_slope.rows)), all_of(n, 2 * n)));
+      candidates(columns_of(rows_of(here.phi_jacobian, all_of(p, here.phi_jacobian.rows)), all_of(n, 2 * n)));
   std::vector<Field<double>> rough;
   for (const Field<Precise>& f : fields) rough.push_back(rounded(f));
   std::optional<std::tuple<std::size_t, std::size_t, double>> best;
@@ -197,10 +197,10 @@ Chart best_chart(const Flow& flow, const Field<Precise>& here, const std::vector
 }  // namespace
 
 double random_number(std::uint64_t seed, std::uint64_t index) {
-  return 2 * (static_cast<double>(mixed(mixed(seed) + index) >> 11) / 9007199254740992.0) - 1;
+  return 2 * (static_cast<double>(hash_mix(hash_mix(seed) + index) >> 11) / 9007199254740992.0) - 1;
 }
 
-std::vector<std::size_t> ignored_positions(const Symmetry& s) {
+std::vector<std::size_t> ignorable_positions(const Symmetry& s) {
   Places result;
   for (std::size_t k = 0; k < s.chart.positions; ++k) {
     if (!s.retained[k]) result.push_back(s.chart.independent[k]);
@@ -211,40 +211,40 @@ std::vector<std::size_t> ignored_positions(const Symmetry& s) {
 template <class T>
 Matrix<T> tangent(const Field<T>& field, const Chart& chart) {
   Places columns = chart.independent;
-  columns.push_back(field.slope.cols - 1);  // t
-  Matrix<T> result(field.slope.cols, columns.size());
+  columns.push_back(field.jacobian.cols - 1);  // t
+  Matrix<T> result(field.jacobian.cols, columns.size());
   for (std::size_t k = 0; k < columns.size(); ++k) result(columns[k], k) = T(1);
   if (chart.dependent.empty()) return result;
-  const Elimination<T> solver(columns_of(field.phi_slope, chart.dependent), tiny<T>(10));
+  const Elimination<T> solver(columns_of(field.phi_jacobian, chart.dependent), tiny<T>(10));
   require_domain(solver.rank() == chart.dependent.size(), "the constraints do not determine the dependent coordinates");
-  const Matrix<T> slope = solver.solve(columns_of(field.phi_slope, columns));
+  const Matrix<T> jacobian = solver.solve(columns_of(field.phi_jacobian, columns));
   for (std::size_t i = 0; i < chart.dependent.size(); ++i) {
-    for (std::size_t k = 0; k < columns.size(); ++k) result(chart.dependent[i], k) = -slope(i, k);
+    for (std::size_t k = 0; k < columns.size(); ++k) result(chart.dependent[i], k) = -jacobian(i, k);
   }
   return result;
 }
 
 template <class T>
-Matrix<T> reduced(const Field<T>& field, const Chart& chart, const Matrix<T>& tangent) {
-  return rows_of(field.slope, chart.independent) * tangent;
+Matrix<T> reduced_jacobian(const Field<T>& field, const Chart& chart, const Matrix<T>& tangent) {
+  return rows_of(field.jacobian, chart.independent) * tangent;
 }
 
 template Matrix<double> tangent(const Field<double>&, const Chart&);
 template Matrix<Precise> tangent(const Field<Precise>&, const Chart&);
-template Matrix<double> reduced(const Field<double>&, const Chart&, const Matrix<double>&);
-template Matrix<Precise> reduced(const Field<Precise>&, const Chart&, const Matrix<Precise>&);
+template Matrix<double> reduced_jacobian(const Field<double>&, const Chart&, const Matrix<double>&);
+template Matrix<Precise> reduced_jacobian(const Field<Precise>&, const Chart&, const Matrix<Precise>&);
 
-std::optional<State<Precise>> projected(const Flow& flow, const State<Precise>& z, const Setting<Precise>& setting) {
-  return projected(flow, z, setting, all_of(0, 2 * flow.coordinates()));
+std::optional<State<Precise>> project_onto_constraints(const Flow& flow, const State<Precise>& z, const Setting<Precise>& setting) {
+  return project_onto_constraints(flow, z, setting, all_of(0, 2 * flow.coordinates()));
 }
 
-std::optional<State<Precise>> projected(const Flow& flow, State<Precise> z, const Setting<Precise>& setting,
+std::optional<State<Precise>> project_onto_constraints(const Flow& flow, State<Precise> z, const Setting<Precise>& setting,
                                         const Places& columns) {
   constexpr int most_steps = 60, exact = 120;
   for (int step = 0; step < most_steps; ++step) {
     const Field<Precise> field = flow.constraints_at(z, setting);
     const Matrix<Precise> move =
-        Elimination<Precise>(columns_of(field.phi_slope, columns), tiny<Precise>(8), tiny<Precise>(14))
+        Elimination<Precise>(columns_of(field.phi_jacobian, columns), tiny<Precise>(8), tiny<Precise>(14))
             .solve(field.phi);
     bool done = true;
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -258,7 +258,7 @@ std::optional<State<Precise>> projected(const Flow& flow, State<Precise> z, cons
   return std::nullopt;
 }
 
-std::optional<State<Precise>> beside(const Flow& flow, const State<Precise>& z, Setting<Precise>& setting,
+std::optional<State<Precise>> nearby_state(const Flow& flow, const State<Precise>& z, Setting<Precise>& setting,
                                      std::uint64_t seed) {
   double size = reach;
   for (int attempt = 0; attempt < 8; ++attempt, size /= 2) {
@@ -269,7 +269,7 @@ std::optional<State<Precise>> beside(const Flow& flow, const State<Precise>& z, 
     }
     try {
       setting.leaf = flow.leaf(moved, setting);
-      if (auto found = projected(flow, moved, setting)) return found;
+      if (auto found = project_onto_constraints(flow, moved, setting)) return found;
     } catch (const std::domain_error&) {
       continue;  // outside of a domain: try a nearer point
     }
@@ -281,7 +281,7 @@ Symmetry find_symmetry(const Flow& flow, const State<Precise>& z, const Setting<
   std::vector<Field<Precise>> fields;
   for (int k = 0; k < sample_points; ++k) {
     Setting<Precise> other = setting;
-    const auto point = beside(flow, z, other, 1000 * seed + static_cast<std::uint64_t>(k));
+    const auto point = nearby_state(flow, z, other, 1000 * seed + static_cast<std::uint64_t>(k));
     require_domain(point.has_value(), "no points beside it satisfy the constraints");
     fields.push_back(flow.at(*point, other));
   }

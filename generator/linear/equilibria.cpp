@@ -30,8 +30,8 @@ class Search {
         held_(std::in_place, flow_, request.held) {
     held_->targets = request.targets;
     find_turns();
-    result_.turns = turns_;
-    for (const EulerSet& set : r_.euler) regular_.push_back(flow_.tape({set.regular}));
+    result_.is_angle = turns_;
+    for (const EulerAngles& set : r_.euler_angles) regular_.push_back(flow_.tape({set.regular}));
     rough_ = {rounded(r_.setting.parameters), rounded(r_.setting.inputs), rounded(r_.setting.integrals),
               rounded(r_.setting.leaf)};
   }
@@ -49,10 +49,10 @@ class Search {
       hold_families(members.front().z);
       const std::size_t before = result_.points.size();
       members_ = 0;
-      result_.converged = result_.refused = result_.further_members = 0;
+      result_.converged = result_.failed_starts = result_.further_members = 0;
       all_starts();
-      result_.released = result_.points.size() == before && !result_.interrupted;
-      if (result_.released) result_.points.push_back(members.front());
+      result_.held_in_vain = result_.points.size() == before && !result_.interrupted;
+      if (result_.held_in_vain) result_.points.push_back(members.front());
     }
     std::sort(result_.points.begin(), result_.points.end(),
               [this](const FoundPoint& a, const FoundPoint& b) { return this->before(a.z, b.z); });
@@ -76,12 +76,12 @@ class Search {
         return;
       }
       if (r_.progress) r_.progress(static_cast<double>(k) / static_cast<double>(r_.starts));
-      const RoughEnd rough =
+      const RoughSolution rough =
           rough_steady_state(flow_, symmetry_, spread_start(r_, symmetry_, turns_, k), rough_, *held_, targets);
-      if (!rough.reason.empty()) result_.refuse(rough.reason, rough.z);
+      if (!rough.reason.empty()) result_.record_failure(rough.reason, rough.z);
       if (!rough.found) continue;
       State<double> named = rough.z;
-      name_plainly(named, rough_, 1e-8, [&](State<double>& at, const State<double>& other) {
+      select_representative(named, rough_, 1e-8, [&](State<double>& at, const State<double>& other) {
         if (is_rough_steady_state(flow_, symmetry_, other, rough_, *held_, targets)) at = other;
       });
       State<Precise> z;
@@ -92,7 +92,7 @@ class Search {
         result_.converged += known->leads ? 1 : 0;
         continue;
       }
-      const bool enough = rough.open && members_ >= (result_.held.empty() ? first_members : most_members);
+      const bool enough = rough.is_slope_missing && members_ >= (result_.held.empty() ? first_members : most_members);
       result_.further_members += enough ? 1 : 0;
       const bool leads = enough || is_steady(z);
       result_.converged += leads ? 1 : 0;
@@ -100,28 +100,28 @@ class Search {
     }
   }
 
-  std::optional<Steady> steady(const State<Precise>& z) const {
-    return find_steady(flow_, symmetry_, z, r_.setting,
-                       [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) {
+  std::optional<SteadyState> steady(const State<Precise>& z) const {
+    return find_steady_state(flow_, symmetry_, z, r_.setting,
+                       [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& jacobian) {
                          value = Matrix<Precise>(held_->targets.size(), 1);
-                         slope = Matrix<Precise>(held_->targets.size(), at.size());
+                         jacobian = Matrix<Precise>(held_->targets.size(), at.size());
                          if (held_->targets.empty()) return;
-                         const Sloped<Precise> s = held_->at(at, r_.setting);
+                         const ValueAndJacobian<Precise> s = held_->at(at, r_.setting);
                          for (std::size_t k = 0; k < held_->targets.size(); ++k)
                            value(k, 0) = s.value[k] - held_->targets[k];
-                         slope = s.slope;
+                         jacobian = s.jacobian;
                        });
   }
 
   /// The quantities held by the request.
-  void hold_own(const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) const {
+  void evaluate_held(const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& jacobian) const {
     value = Matrix<Precise>(r_.targets.size(), 1);
-    slope = Matrix<Precise>(r_.targets.size(), at.size());
+    jacobian = Matrix<Precise>(r_.targets.size(), at.size());
     if (r_.targets.empty()) return;
-    const Sloped<Precise> s = held_->at(at, r_.setting);  // requested ones first, then those for families
+    const ValueAndJacobian<Precise> s = held_->at(at, r_.setting);  // requested ones first, then those for families
     for (std::size_t k = 0; k < r_.targets.size(); ++k) {
       value(k, 0) = s.value[k] - r_.targets[k];
-      for (std::size_t d = 0; d < s.slope.cols; ++d) slope(k, d) = s.slope(k, d);
+      for (std::size_t d = 0; d < s.jacobian.cols; ++d) jacobian(k, d) = s.jacobian(k, d);
     }
   }
 
@@ -129,15 +129,15 @@ class Search {
     try {
       return polish(rough);
     } catch (const std::domain_error& error) {  // the coordinates are singular there, as angles at a pole
-      result_.refuse(error.what(), rough);
+      result_.record_failure(error.what(), rough);
       return false;
     }
   }
 
   /// Whether a steady motion exists within the ranges of the coordinates.
   bool polish(State<Precise> rough) {
-    for (const std::size_t i : ignored_positions(symmetry_)) rough[i] = r_.start[i];
-    std::optional<Steady> found = steady(rough);
+    for (const std::size_t i : ignorable_positions(symmetry_)) rough[i] = r_.start[i];
+    std::optional<SteadyState> found = steady(rough);
     if (!found) return false;
     State<Precise>& z = found->z;
     normalise(z);
@@ -147,7 +147,7 @@ class Search {
     }
     const auto known = [&](const FoundPoint& p) { return is_same(rounded(p.z), z); };
     if (std::any_of(result_.points.begin(), result_.points.end(), known)) return true;
-    result_.points.push_back({z, found->off, family_directions(z).cols});
+    result_.points.push_back({z, found->parameter_change, family_directions(z).cols});
     if (result_.points.back().family > 0) ++members_;
     return true;
   }
@@ -169,17 +169,17 @@ class Search {
     for (std::size_t i = 0; i < n_; ++i) {
       try {
         Setting<Precise> setting = r_.setting;
-        const auto point = beside(flow_, r_.start, setting, 900 + r_.seed);
+        const auto point = nearby_state(flow_, r_.start, setting, 900 + r_.seed);
         if (!point) return;
         State<Precise> moved = *point;
         moved[i] = moved[i] + turn;
         const Field<Precise> a = flow_.at(*point, setting), b = flow_.at(moved, setting);
-        turns_[i] = equal(a.X, b.X) && equal(a.phi, b.phi) && equal(a.slope, b.slope);
+        turns_[i] = equal(a.X, b.X) && equal(a.phi, b.phi) && equal(a.jacobian, b.jacobian);
       } catch (const std::domain_error&) {
         continue;
       }
     }
-    for (const std::size_t i : ignored_positions(symmetry_)) turns_[i] = false;  // they keep their start values
+    for (const std::size_t i : ignorable_positions(symmetry_)) turns_[i] = false;  // they keep their start values
   }
 
   static bool equal(const Matrix<Precise>& A, const Matrix<Precise>& B) {
@@ -198,15 +198,15 @@ class Search {
   }
 
   void normalise(State<Precise>& z) const {
-    name_plainly(z, r_.setting, tiny<Precise>(30),
+    select_representative(z, r_.setting, tiny<Precise>(30),
                  [this](State<Precise>& at, const State<Precise>& other) { take_if_steady(at, other); });
     wrap(z);
   }
 
   /// Selects one of the two coordinate triples of each attitude. `take` replaces the point if the other is steady too.
   template <class T, class Take>
-  void name_plainly(State<T>& z, const Setting<T>& setting, const T& nothing, const Take& take) const {
-    for (const auto& e : r_.parameters) {
+  void select_representative(State<T>& z, const Setting<T>& setting, const T& nothing, const Take& take) const {
+    for (const auto& e : r_.euler_parameters) {
       const auto first = std::find_if(e.begin(), e.end(), [&](std::size_t i) { return magnitude(z[i]) > nothing; });
       if (first == e.end() || z[*first] > T(0)) continue;
       State<T> other = z;
@@ -217,12 +217,12 @@ class Search {
       take(z, other);
     }
     const T pi = number<T>(cln::pi(precise_format()));
-    for (std::size_t k = 0; k < r_.euler.size(); ++k) {
+    for (std::size_t k = 0; k < r_.euler_angles.size(); ++k) {
       const auto sign = [&](const State<T>& at) {
         return regular_[k].template values<T>(flow_.lookup(at, setting))[0];
       };
       if (!(sign(z) < T(0))) continue;
-      const auto& [a, b, c] = r_.euler[k].places;
+      const auto& [a, b, c] = r_.euler_angles[k].places;
       for (const T& middle : {T(0), pi}) {
         State<T> other = z;
         other[a] = z[a] + pi;
@@ -230,7 +230,7 @@ class Search {
         other[c] = z[c] + pi;
         other[n_ + b] = -z[n_ + b];
         if (!(sign(other) > T(0))) continue;
-        for (const std::size_t i : ignored_positions(symmetry_)) other[i] = number<T>(r_.start[i]);
+        for (const std::size_t i : ignorable_positions(symmetry_)) other[i] = number<T>(r_.start[i]);
         take(z, other);
         break;
       }
@@ -246,15 +246,15 @@ class Search {
   /// Directions along which steady motions with the held quantities continue, as columns.
   Matrix<Precise> open_directions(const State<Precise>& z) const {
     const Field<Precise> field = flow_.at(z, r_.setting);
-    Matrix<Precise> J = stacked(field.phi_slope, rows_of(field.slope, symmetry_.constant));
+    Matrix<Precise> J = stacked(field.phi_jacobian, rows_of(field.jacobian, symmetry_.constant));
     J.cols = z.size();
-    for (const std::size_t i : ignored_positions(symmetry_)) {
+    for (const std::size_t i : ignorable_positions(symmetry_)) {
       Matrix<Precise> row(1, z.size());
       row(0, i) = Precise(1);
       J = stacked(J, row);
     }
     if (!r_.held.empty()) {
-      Matrix<Precise> held = held_->at(z, r_.setting).slope;
+      Matrix<Precise> held = held_->at(z, r_.setting).jacobian;
       std::vector<std::size_t> own;
       for (std::size_t k = 0; k < r_.targets.size(); ++k) own.push_back(k);
       J = stacked(J, rows_of(held, own));
@@ -274,22 +274,22 @@ class Search {
       for (std::size_t k = 0; k < N.cols; ++k)
         together(i, 0) = together(i, 0) + number<Precise>(Precise(1 + 0.3 * random_number(77, k))) * N(i, k);
     }
-    if (goes_on(z, together, 0)) return N;
+    if (family_continues(z, together, 0)) return N;
     std::vector<std::size_t> kept;
     for (std::size_t k = 0; k < N.cols; ++k) {
-      if (goes_on(z, N, k)) kept.push_back(k);
+      if (family_continues(z, N, k)) kept.push_back(k);
     }
     return columns_of(N, kept);
   }
 
-  bool goes_on(const State<Precise>& z, const Matrix<Precise>& N, std::size_t k) const {
+  bool family_continues(const State<Precise>& z, const Matrix<Precise>& N, std::size_t k) const {
     Precise size(0);
     for (std::size_t i = 0; i < N.rows; ++i) size = std::max(size, magnitude(N(i, k)) / (Precise(1) + magnitude(z[i])));
     if (is_zero(size)) return false;
     State<Precise> beside = z;
     const Precise step = tiny<Precise>(3) / size;
     for (std::size_t i = 0; i < N.rows; ++i) beside[i] = beside[i] + step * N(i, k);
-    const std::optional<Steady> found = find_steady(flow_, symmetry_, beside, r_.setting, own_);
+    const std::optional<SteadyState> found = find_steady_state(flow_, symmetry_, beside, r_.setting, held_equations_);
     if (!found) return false;
     for (std::size_t i = 0; i < N.rows;
          ++i) {  // no falling back: along a family the correction is of second order in the step
@@ -332,9 +332,9 @@ class Search {
   std::size_t n_;
   SearchResult& result_;
   const Symmetry& symmetry_;
-  std::optional<Held> held_;
-  Extra own_ = [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) {
-    hold_own(at, value, slope);
+  std::optional<HeldQuantities> held_;
+  ExtraEquations held_equations_ = [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& jacobian) {
+    evaluate_held(at, value, jacobian);
   };
   Setting<double> rough_;
   std::size_t members_ = 0;
@@ -344,23 +344,23 @@ class Search {
 
 }  // namespace
 
-void SearchResult::refuse(const std::string& why, State<double> at) {
-  if (refused++ > 0) return;
+void SearchResult::record_failure(const std::string& why, State<double> at) {
+  if (++failed_starts > 0) return;
   reason = why;
-  refused_at = std::move(at);
+  failure_point = std::move(at);
 }
 
-void SearchResult::refuse(const std::string& why, const State<Precise>& at) { refuse(why, rounded(at)); }
+void SearchResult::record_failure(const std::string& why, const State<Precise>& at) { record_failure(why, rounded(at)); }
 
 SearchResult find_steady_motions(const SearchRequest& request) {
   SearchResult result;
   std::optional<State<Precise>> start;
   try {
-    start = projected(request.flow, request.start, request.setting);
+    start = project_onto_constraints(request.flow, request.start, request.setting);
   } catch (const std::domain_error&) {  // no field there; the search needs a point that has one
     Setting<Precise> setting = request.setting;
     for (std::uint64_t seed = 500; !start && seed < 510; ++seed)
-      start = beside(request.flow, request.start, setting, seed);
+      start = nearby_state(request.flow, request.start, setting, seed);
     if (!start) throw;
   }
   require_domain(start.has_value(), "the start does not satisfy the constraints");

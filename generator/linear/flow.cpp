@@ -23,8 +23,8 @@ Precise singular<Precise>() {
 
 /// Most derivatives are 0.
 template <class T>
-void subtract(T& sum, const T& slope, const T& by) {
-  if (!is_zero(slope)) sum = sum - slope * by;
+void subtract(T& sum, const T& jacobian, const T& by) {
+  if (!is_zero(jacobian)) sum = sum - jacobian * by;
 }
 
 std::vector<Symbol> state_symbols(const system::EquationSystem& s) {
@@ -56,7 +56,7 @@ Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s)
     if (s.holonomic[k]) holonomic_.push_back(k);
   }
   for (const std::size_t k : holonomic_) roots.push_back(s.psi[k]);
-  for (const mechanics::Integral& integral : m.integrals) leaf_.push_back(integral.psi);
+  for (const mechanics::ConstraintIntegral& integral : m.integrals) leaf_.push_back(integral.psi);
   for (const std::size_t k : holonomic_) phi_expressions_.push_back(s.psi[k]);
   phi_expressions_.insert(phi_expressions_.end(), leaf_.begin(), leaf_.end());
   for (std::size_t k = 0; k < m_; ++k) {
@@ -103,7 +103,7 @@ std::vector<T> Flow::leaf(const State<T>& z, const Setting<T>& setting) const {
 
 template <class T>
 Field<T> Flow::at(const State<T>& z, const Setting<T>& setting) const {
-  const Sloped<T> s = sloped(*tape_, z, setting);
+  const ValueAndJacobian<T> s = value_and_jacobian(*tape_, z, setting);
   Field<T> field;
   differentiate(s, z, field);
   const std::size_t A0 = n_ * n_ + n_, b0 = A0 + m_ * n_ + m_;
@@ -114,14 +114,14 @@ Field<T> Flow::at(const State<T>& z, const Setting<T>& setting) const {
 template <class T>
 Field<T> Flow::constraints_at(const State<T>& z, const Setting<T>& setting) const {
   Field<T> field;
-  constrain(sloped(*constraint_tape_, z, setting), {0, m_ * n_, m_ * n_ + m_}, z, setting, field);
+  constrain(value_and_jacobian(*constraint_tape_, z, setting), {0, m_ * n_, m_ * n_ + m_}, z, setting, field);
   return field;
 }
 
 // With K = [M, -A^T; A, 0]: K (a, lambda) = (f, -gamma), and along every direction d K (a', lambda') = (f' - M' a +
 // A'^T lambda, -gamma' - A' a). The elimination drops redundant rows of A.
 template <class T>
-void Flow::differentiate(const Sloped<T>& s, const State<T>& z, Field<T>& field) const {
+void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<T>& field) const {
   const std::size_t size = n_ + m_, f0 = n_ * n_, A0 = f0 + n_, gamma0 = A0 + m_ * n_;
   Matrix<T> K(size, size), right(size, 1), A(m_, n_);
   for (std::size_t i = 0; i < n_; ++i) {
@@ -144,59 +144,59 @@ void Flow::differentiate(const Sloped<T>& s, const State<T>& z, Field<T>& field)
   Matrix<T> rates(size, count);
   for (std::size_t d = 0; d < count; ++d) {
     for (std::size_t i = 0; i < n_; ++i) {
-      T sum = s.slope(f0 + i, d);
-      for (std::size_t j = 0; j < n_; ++j) subtract(sum, s.slope(i * n_ + j, d), y(j, 0));
-      for (std::size_t k = 0; k < m_; ++k) subtract(sum, s.slope(A0 + k * n_ + i, d), force[k]);
+      T sum = s.jacobian(f0 + i, d);
+      for (std::size_t j = 0; j < n_; ++j) subtract(sum, s.jacobian(i * n_ + j, d), y(j, 0));
+      for (std::size_t k = 0; k < m_; ++k) subtract(sum, s.jacobian(A0 + k * n_ + i, d), force[k]);
       rates(i, d) = sum;
     }
     for (std::size_t k = 0; k < m_; ++k) {
-      T sum = -s.slope(gamma0 + k, d);
-      for (std::size_t j = 0; j < n_; ++j) subtract(sum, s.slope(A0 + k * n_ + j, d), y(j, 0));
+      T sum = -s.jacobian(gamma0 + k, d);
+      for (std::size_t j = 0; j < n_; ++j) subtract(sum, s.jacobian(A0 + k * n_ + j, d), y(j, 0));
       rates(n_ + k, d) = sum;
     }
   }
-  const Matrix<T> slope = solver.solve(rates);
+  const Matrix<T> jacobian = solver.solve(rates);
   field.X = Matrix<T>(2 * n_, 1);
-  field.slope = Matrix<T>(2 * n_, 2 * n_ + 1);
-  field.by_inputs = Matrix<T>(2 * n_, inputs_);
+  field.jacobian = Matrix<T>(2 * n_, 2 * n_ + 1);
+  field.input_jacobian = Matrix<T>(2 * n_, inputs_);
   for (std::size_t i = 0; i < n_; ++i) {
     field.X(i, 0) = z[n_ + i];
     field.X(n_ + i, 0) = y(i, 0);
-    field.slope(i, n_ + i) = T(1);
-    for (std::size_t d = 0; d < 2 * n_ + 1; ++d) field.slope(n_ + i, d) = slope(i, d);
-    for (std::size_t u = 0; u < inputs_; ++u) field.by_inputs(n_ + i, u) = slope(i, 2 * n_ + 1 + u);
+    field.jacobian(i, n_ + i) = T(1);
+    for (std::size_t d = 0; d < 2 * n_ + 1; ++d) field.jacobian(n_ + i, d) = jacobian(i, d);
+    for (std::size_t u = 0; u < inputs_; ++u) field.input_jacobian(n_ + i, u) = jacobian(i, 2 * n_ + 1 + u);
   }
 }
 
 template <class T>
-void Flow::constrain(const Sloped<T>& s, const Places& places, const State<T>& z, const Setting<T>& setting,
+void Flow::constrain(const ValueAndJacobian<T>& s, const Places& places, const State<T>& z, const Setting<T>& setting,
                      Field<T>& field) const {
   const auto [A0, b0, psi0] = places;
   const std::size_t width = 2 * n_ + 1;
-  const std::size_t h = holonomic_.size(), rows = on_positions() + m_;
+  const std::size_t h = holonomic_.size(), rows = position_constraint_count() + m_;
   field.phi = Matrix<T>(rows, 1);
-  field.phi_slope = Matrix<T>(rows, width);
+  field.phi_jacobian = Matrix<T>(rows, width);
   for (std::size_t k = 0; k < h; ++k) {
     field.phi(k, 0) = s.value[psi0 + k];
-    for (std::size_t d = 0; d < width; ++d) field.phi_slope(k, d) = s.slope(psi0 + k, d);
+    for (std::size_t d = 0; d < width; ++d) field.phi_jacobian(k, d) = s.jacobian(psi0 + k, d);
   }
   if (!leaf_.empty()) {
-    const Sloped<T> leaf = sloped(*leaf_tape_, z, setting);
+    const ValueAndJacobian<T> leaf = value_and_jacobian(*leaf_tape_, z, setting);
     for (std::size_t k = 0; k < leaf_.size(); ++k) {
       field.phi(h + k, 0) = leaf.value[k] - setting.leaf.at(k);
-      for (std::size_t d = 0; d < width; ++d) field.phi_slope(h + k, d) = leaf.slope(k, d);
+      for (std::size_t d = 0; d < width; ++d) field.phi_jacobian(h + k, d) = leaf.jacobian(k, d);
     }
   }
   for (std::size_t k = 0; k < m_; ++k) {
-    const std::size_t row = on_positions() + k;
+    const std::size_t row = position_constraint_count() + k;
     field.phi(row, 0) = s.value[b0 + k];
-    for (std::size_t d = 0; d < width; ++d) field.phi_slope(row, d) = s.slope(b0 + k, d);
+    for (std::size_t d = 0; d < width; ++d) field.phi_jacobian(row, d) = s.jacobian(b0 + k, d);
     for (std::size_t i = 0; i < n_; ++i) {
       field.phi(row, 0) = field.phi(row, 0) + s.value[A0 + k * n_ + i] * z[n_ + i];
       for (std::size_t d = 0; d < width; ++d)
-        if (!is_zero(s.slope(A0 + k * n_ + i, d)))
-          field.phi_slope(row, d) = field.phi_slope(row, d) + s.slope(A0 + k * n_ + i, d) * z[n_ + i];
-      field.phi_slope(row, n_ + i) = field.phi_slope(row, n_ + i) + s.value[A0 + k * n_ + i];
+        if (!is_zero(s.jacobian(A0 + k * n_ + i, d)))
+          field.phi_jacobian(row, d) = field.phi_jacobian(row, d) + s.jacobian(A0 + k * n_ + i, d) * z[n_ + i];
+      field.phi_jacobian(row, n_ + i) = field.phi_jacobian(row, n_ + i) + s.value[A0 + k * n_ + i];
     }
   }
 }

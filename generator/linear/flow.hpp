@@ -28,10 +28,10 @@ struct Setting {
 template <class T>
 struct Field {
   Matrix<T> X;          // 2n x 1: v, a
-  Matrix<T> slope;      // 2n x (2n + 1), with respect to z
-  Matrix<T> by_inputs;  // 2n x inputs
+  Matrix<T> jacobian;      // 2n x (2n + 1), with respect to z
+  Matrix<T> input_jacobian;  // 2n x inputs
   Matrix<T> phi;        // constraints on positions (holonomic, then leaves), then on velocities
-  Matrix<T> phi_slope;  // by z
+  Matrix<T> phi_jacobian;  // by z
 };
 
 class Flow {
@@ -40,7 +40,7 @@ class Flow {
 
   std::size_t coordinates() const { return n_; }
   std::size_t inputs() const { return inputs_; }
-  std::size_t on_positions() const { return holonomic_.size() + leaf_.size(); }
+  std::size_t position_constraint_count() const { return holonomic_.size() + leaf_.size(); }
   const std::vector<std::string>& names() const { return names_; }  // of z without t
   Ref entry(std::size_t place) const { return entries_[place]; }    // of z, as an expression
   const std::vector<Symbol>& symbols() const { return symbols_; }   // of z without t
@@ -61,7 +61,7 @@ class Flow {
   /// Values and Jacobian of a tape. If a formula has none but its limits from all sides agree, the limits are returned:
   /// the root in |v| v at rest, a distance that goes through 0. Throws std::domain_error if they do not agree.
   template <class T>
-  Sloped<T> sloped(const Tape& tape, const State<T>& z, const Setting<T>& setting) const;
+  ValueAndJacobian<T> value_and_jacobian(const Tape& tape, const State<T>& z, const Setting<T>& setting) const;
 
   /// A tape of other expressions of the system, with derivatives with respect to z.
   Tape tape(std::vector<Ref> expressions) const;
@@ -72,12 +72,12 @@ class Flow {
 
  private:
   template <class T>
-  void differentiate(const Sloped<T>& s, const State<T>& z, Field<T>& field) const;
+  void differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<T>& field) const;
   struct Places {
     std::size_t A, b, psi;
   };
   template <class T>
-  void constrain(const Sloped<T>& s, const Places& places, const State<T>& z, const Setting<T>& setting,
+  void constrain(const ValueAndJacobian<T>& s, const Places& places, const State<T>& z, const Setting<T>& setting,
                  Field<T>& field) const;
 
   const system::EquationSystem& system_;

@@ -24,37 +24,37 @@ State<T> moved(const State<T>& z, const T& step, std::uint64_t ray) {
 /// The largest difference of values and derivatives, relative to 1 and their magnitude: a step has equal derivatives on
 /// both sides.
 template <class T>
-T difference(const Sloped<T>& a, const Sloped<T>& b) {
+T difference(const ValueAndJacobian<T>& a, const ValueAndJacobian<T>& b) {
   T largest(0);
   const auto compare = [&largest](const std::vector<T>& x, const std::vector<T>& y) {
     for (std::size_t i = 0; i < x.size(); ++i)
       largest = std::max(largest, magnitude(x[i] - y[i]) / (T(1) + magnitude(x[i]) + magnitude(y[i])));
   };
   compare(a.value, b.value);
-  compare(a.slope.a, b.slope.a);
+  compare(a.jacobian.a, b.jacobian.a);
   return largest;
 }
 
 template <class T>
-void accumulate(Sloped<T>& sum, const Sloped<T>& x, const T& factor) {
-  if (sum.value.empty()) sum = {std::vector<T>(x.value.size(), T(0)), Matrix<T>(x.slope.rows, x.slope.cols)};
+void accumulate(ValueAndJacobian<T>& sum, const ValueAndJacobian<T>& x, const T& factor) {
+  if (sum.value.empty()) sum = {std::vector<T>(x.value.size(), T(0)), Matrix<T>(x.jacobian.rows, x.jacobian.cols)};
   for (std::size_t i = 0; i < x.value.size(); ++i) sum.value[i] = sum.value[i] + factor * x.value[i];
-  for (std::size_t i = 0; i < x.slope.a.size(); ++i) sum.slope.a[i] = sum.slope.a[i] + factor * x.slope.a[i];
+  for (std::size_t i = 0; i < x.jacobian.a.size(); ++i) sum.jacobian.a[i] = sum.jacobian.a[i] + factor * x.jacobian.a[i];
 }
 
 using Steps = std::vector<std::pair<double, double>>;  // multiples of a step and their weights
 
 template <class T>
-using At = std::function<Sloped<T>(const State<T>&)>;
+using At = std::function<ValueAndJacobian<T>(const State<T>&)>;
 
 /// The mean over all rays, and their deviation. `step` must be small enough not to cross a kink that does not contain
 /// z.
 template <class T>
-std::pair<Sloped<T>, T> over_rays(const At<T>& at, const State<T>& z, const T& step, const Steps& steps) {
-  std::vector<Sloped<T>> ends;
+std::pair<ValueAndJacobian<T>, T> over_rays(const At<T>& at, const State<T>& z, const T& step, const Steps& steps) {
+  std::vector<ValueAndJacobian<T>> ends;
   for (std::uint64_t ray = 0; ray < rays; ++ray) {
     for (const int sign : {1, -1}) {
-      Sloped<T> end;
+      ValueAndJacobian<T> end;
       for (const auto& [multiple, weight] : steps) {
         accumulate(end, at(moved<T>(z, step * number<T>(Precise(sign * multiple)), ray)), number<T>(Precise(weight)));
       }
@@ -62,21 +62,21 @@ std::pair<Sloped<T>, T> over_rays(const At<T>& at, const State<T>& z, const T& s
     }
   }
   T largest(0);
-  Sloped<T> mean;
-  for (const Sloped<T>& end : ends) {
+  ValueAndJacobian<T> mean;
+  for (const ValueAndJacobian<T>& end : ends) {
     largest = std::max(largest, difference(end, ends.front()));
     accumulate(mean, end, T(1) / T(2 * rays));
   }
   return {std::move(mean), largest};
 }
 
-Sloped<double> limit(const At<double>& at, const State<double>& z) {
+ValueAndJacobian<double> limit(const At<double>& at, const State<double>& z) {
   auto [mean, largest] = over_rays<double>(at, z, 1e-9, {{1, 1}});
   require_domain(largest < apart, "");
   return mean;
 }
 
-Sloped<Precise> limit(const At<Precise>& at, const State<Precise>& z) {
+ValueAndJacobian<Precise> limit(const At<Precise>& at, const State<Precise>& z) {
   constexpr int exact = 20;
   require_domain(to_double(over_rays<Precise>(at, z, tiny<Precise>(12), {{1, 1}}).second) < apart, "");
   // Extrapolates along each ray from three points: linear and quadratic terms in the step cancel.
@@ -84,7 +84,7 @@ Sloped<Precise> limit(const At<Precise>& at, const State<Precise>& z) {
   auto [sum, largest] = over_rays<Precise>(at, z, tiny<Precise>(50), {{1, 8}, {2, -6}, {4, 1}});
   require_domain(largest < tiny<Precise>(exact), "");
   for (Precise& x : sum.value) x = x * third;
-  for (Precise& x : sum.slope.a) {
+  for (Precise& x : sum.jacobian.a) {
     x = x * third;
     if (magnitude(x) <= Precise(10) * largest + tiny<Precise>(80)) x = Precise(0);
   }
@@ -94,7 +94,7 @@ Sloped<Precise> limit(const At<Precise>& at, const State<Precise>& z) {
 }  // namespace
 
 template <class T>
-Sloped<T> Flow::sloped(const Tape& tape, const State<T>& z, const Setting<T>& setting) const {
+ValueAndJacobian<T> Flow::value_and_jacobian(const Tape& tape, const State<T>& z, const Setting<T>& setting) const {
   constexpr int sharp = std::is_same_v<T, double> ? 15 : 130;
   std::string why;
   try {
@@ -103,7 +103,7 @@ Sloped<T> Flow::sloped(const Tape& tape, const State<T>& z, const Setting<T>& se
     why = error.what();
   }
   try {
-    Sloped<T> found = limit([&](const State<T>& beside) { return tape.at<T>(lookup(beside, setting), sharp); }, z);
+    ValueAndJacobian<T> found = limit([&](const State<T>& beside) { return tape.at<T>(lookup(beside, setting), sharp); }, z);
     try {
       found.value = tape.values<T>(lookup(z, setting));
     } catch (const std::domain_error&) {  // 0/0: the limit
@@ -115,7 +115,7 @@ Sloped<T> Flow::sloped(const Tape& tape, const State<T>& z, const Setting<T>& se
   }
 }
 
-template Sloped<double> Flow::sloped(const Tape&, const State<double>&, const Setting<double>&) const;
-template Sloped<Precise> Flow::sloped(const Tape&, const State<Precise>&, const Setting<Precise>&) const;
+template ValueAndJacobian<double> Flow::value_and_jacobian(const Tape&, const State<double>&, const Setting<double>&) const;
+template ValueAndJacobian<Precise> Flow::value_and_jacobian(const Tape&, const State<Precise>&, const Setting<Precise>&) const;
 
 }  // namespace eomgen::linear

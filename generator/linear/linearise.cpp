@@ -18,7 +18,7 @@ bool is_near(const State<Precise>& a, const State<Precise>& b) {
 }
 
 Matrix<Precise> reduced_matrix(const Field<Precise>& field, const Chart& chart, const Matrix<Precise>& T, int known) {
-  const Matrix<Precise> with_time = reduced(field, chart, T);
+  const Matrix<Precise> with_time = reduced_jacobian(field, chart, T);
   std::vector<std::size_t> columns;
   for (std::size_t k = 0; k < chart.independent.size(); ++k) columns.push_back(k);
   Matrix<Precise> A = columns_of(with_time, columns);
@@ -35,8 +35,8 @@ std::optional<std::size_t> zeros_beside(const Flow& flow, const Linearisation& h
                                         std::uint64_t seed) {
   try {
     setting.leaf = flow.leaf(here.z, setting);
-    const auto z = here.kind == Kind::motion ? beside(flow, here.z, setting, seed)
-                                             : steady_state(flow, here.symmetry, here.z, setting);
+    const auto z = here.kind == MotionKind::motion ? nearby_state(flow, here.z, setting, seed)
+                                             : solve_steady_state(flow, here.symmetry, here.z, setting);
     if (!z) return std::nullopt;
     const Field<Precise> field = flow.at(*z, setting);
     return zero_eigenvalues(reduced_matrix(field, here.symmetry.chart, tangent(field, here.symmetry.chart), here.known),
@@ -48,11 +48,11 @@ std::optional<std::size_t> zeros_beside(const Flow& flow, const Linearisation& h
 
 }  // namespace
 
-const char* name(Kind kind) {
+const char* name(MotionKind kind) {
   switch (kind) {
-    case Kind::equilibrium: return "equilibrium";
-    case Kind::steady: return "steady motion";
-    case Kind::motion: break;
+    case MotionKind::equilibrium: return "equilibrium";
+    case MotionKind::steady: return "steady motion";
+    case MotionKind::motion: break;
   }
   return "motion";
 }
@@ -61,22 +61,22 @@ Linearisation linearise(const Flow& flow, const State<Precise>& start, const Set
                         const std::vector<Setting<Precise>>& neighbours, std::uint64_t seed) {
   Linearisation result;
   result.setting = setting;
-  const auto on_constraints = projected(flow, start, setting);
+  const auto on_constraints = project_onto_constraints(flow, start, setting);
   require_domain(on_constraints.has_value(), "the state does not satisfy the constraints");
   result.z = *on_constraints;
   result.symmetry = find_symmetry(flow, result.z, setting, seed);
   // Keeps the independent entries as given.
-  if (const auto same = projected(flow, start, setting, result.symmetry.chart.dependent)) result.z = *same;
+  if (const auto same = project_onto_constraints(flow, start, setting, result.symmetry.chart.dependent)) result.z = *same;
   if (result.symmetry.autonomous) {
-    const auto steady = find_steady(flow, result.symmetry, result.z, setting);
+    const auto steady = find_steady_state(flow, result.symmetry, result.z, setting);
     if (steady && is_near(steady->z, result.z)) {
       result.z = steady->z;
-      result.off = steady->off;
+      result.parameter_change = steady->parameter_change;
       result.known = steady->known;
-      result.kind = Kind::equilibrium;
+      result.kind = MotionKind::equilibrium;
       for (std::size_t i = 0; i < flow.coordinates(); ++i) {
         if (magnitude(result.z[flow.coordinates() + i]) > tiny<Precise>(std::min(60, result.known - 5)))
-          result.kind = Kind::steady;
+          result.kind = MotionKind::steady;
       }
     }
   }
@@ -87,7 +87,7 @@ Linearisation linearise(const Flow& flow, const State<Precise>& start, const Set
   result.field = flow.at(result.z, setting);
   result.tangent = tangent(result.field, chart);
   result.A = reduced_matrix(result.field, chart, result.tangent, result.known);
-  result.B = rows_of(result.field.by_inputs, chart.independent);
+  result.B = rows_of(result.field.input_jacobian, chart.independent);
   result.spectrum = spectrum(result.A, result.known);
   result.structural_zeros = result.spectrum.zeros;
   for (std::size_t k = 0; k < neighbours.size(); ++k) {

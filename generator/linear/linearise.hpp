@@ -9,11 +9,11 @@
 
 namespace eomgen::linear {
 
-enum class Kind { equilibrium, steady, motion };
-const char* name(Kind kind);  // "equilibrium", "steady motion", "motion"
+enum class MotionKind { equilibrium, steady, motion };
+const char* name(MotionKind kind);  // "equilibrium", "steady motion", "motion"
 
 struct Linearisation {
-  Kind kind = Kind::motion;
+  MotionKind kind = MotionKind::motion;
   State<Precise> z;
   Setting<Precise> setting;
   Symmetry symmetry;
@@ -21,7 +21,7 @@ struct Linearisation {
   Matrix<Precise> tangent, A, B;  // in y, entries of z
   Spectrum spectrum;
   std::size_t structural_zeros = 0;
-  double off = 0;            // Steady::off
+  double parameter_change = 0;            // SteadyState::parameter_change
   int known = known_digits;  // of A
 };
 

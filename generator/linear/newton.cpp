@@ -18,32 +18,32 @@ constexpr std::size_t plain_attitudes = 81;  // Euler parameters of -1, 0, 1
 
 struct Equations {
   std::vector<double> value;
-  std::vector<std::vector<double>> slope;  // rows
+  std::vector<std::vector<double>> jacobian;  // rows
 };
 
-void add(Equations& e, const Matrix<double>& value, const Matrix<double>& slope, std::size_t row) {
+void add(Equations& e, const Matrix<double>& value, const Matrix<double>& jacobian, std::size_t row) {
   e.value.push_back(value(row, 0));
-  const auto begin = slope.a.begin() + static_cast<std::ptrdiff_t>(row * slope.cols);
-  e.slope.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(slope.cols) - 1);
+  const auto begin = jacobian.a.begin() + static_cast<std::ptrdiff_t>(row * jacobian.cols);
+  e.jacobian.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(jacobian.cols) - 1);
 }
 
 Equations equations(const Flow& flow, const Symmetry& symmetry, const State<double>& z, const State<double>& start,
-                    const Setting<double>& setting, const Held& held, const std::vector<double>& targets) {
+                    const Setting<double>& setting, const HeldQuantities& held, const std::vector<double>& targets) {
   const Field<double> field = flow.at(z, setting);
   Equations e;
-  for (std::size_t i = 0; i < field.phi.rows; ++i) add(e, field.phi, field.phi_slope, i);
-  for (const std::size_t i : symmetry.constant) add(e, field.X, field.slope, i);
-  for (const std::size_t i : ignored_positions(symmetry)) {
+  for (std::size_t i = 0; i < field.phi.rows; ++i) add(e, field.phi, field.phi_jacobian, i);
+  for (const std::size_t i : symmetry.constant) add(e, field.X, field.jacobian, i);
+  for (const std::size_t i : ignorable_positions(symmetry)) {
     e.value.push_back(z[i] - start[i]);
-    e.slope.emplace_back(z.size() - 1, 0.0);
-    e.slope.back()[i] = 1;
+    e.jacobian.emplace_back(z.size() - 1, 0.0);
+    e.jacobian.back()[i] = 1;
   }
   if (targets.empty()) return e;
-  const Sloped<double> quantities = held.at(z, setting);
+  const ValueAndJacobian<double> quantities = held.at(z, setting);
   for (std::size_t k = 0; k < targets.size(); ++k) {
     e.value.push_back(quantities.value[k] - targets[k]);
-    const auto begin = quantities.slope.a.begin() + static_cast<std::ptrdiff_t>(k * quantities.slope.cols);
-    e.slope.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(quantities.slope.cols) - 1);
+    const auto begin = quantities.jacobian.a.begin() + static_cast<std::ptrdiff_t>(k * quantities.jacobian.cols);
+    e.jacobian.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(quantities.jacobian.cols) - 1);
   }
   return e;
 }
@@ -58,7 +58,7 @@ std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z, 
   for (Eigen::Index i = 0; i < rows; ++i) {
     r(i) = e.value[static_cast<std::size_t>(i)];
     for (Eigen::Index j = 0; j < columns; ++j)
-      J(i, j) = e.slope[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] * scale(j);
+      J(i, j) = e.jacobian[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] * scale(j);
   }
   const double least = least_row * (rows > 0 ? J.cwiseAbs().maxCoeff() : 0);
   for (Eigen::Index i = 0; i < rows; ++i) {
@@ -88,9 +88,9 @@ void set_attitude(const SearchRequest& request, const std::array<std::size_t, 4>
 
 }  // namespace
 
-RoughEnd rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& start,
-                            const Setting<double>& setting, const Held& held, const std::vector<double>& targets) {
-  RoughEnd end{start, false, false, {}};
+RoughSolution rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& start,
+                            const Setting<double>& setting, const HeldQuantities& held, const std::vector<double>& targets) {
+  RoughSolution end{start, false, false, {}};
   State<double>& z = end.z;
   try {
     for (int k = 0; k < most_steps; ++k) {
@@ -109,7 +109,7 @@ RoughEnd rough_steady_state(const Flow& flow, const Symmetry& symmetry, const St
 }
 
 bool is_rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& z,
-                           const Setting<double>& setting, const Held& held, const std::vector<double>& targets) {
+                           const Setting<double>& setting, const HeldQuantities& held, const std::vector<double>& targets) {
   constexpr double nearness = 1e-8;
   try {
     bool open = false;
@@ -130,9 +130,9 @@ State<double> spread_start(const SearchRequest& request, const Symmetry& symmetr
   for (std::size_t i = n; i < 2 * n; ++i) fastest = std::max(fastest, std::abs(z[i]));
   std::vector<bool> kept(2 * n, false), ignored(2 * n, false);
   for (const std::size_t i : symmetry.constant) kept[i] = true;
-  for (const std::size_t i : ignored_positions(symmetry)) ignored[i] = true;
+  for (const std::size_t i : ignorable_positions(symmetry)) ignored[i] = true;
   constexpr double pi = 3.14159265358979323846;
-  const bool attitudes_only = !request.parameters.empty() && k < plain_attitudes;
+  const bool attitudes_only = !request.euler_parameters.empty() && k < plain_attitudes;
   for (std::size_t i = 0; i < 2 * n; ++i) {
     const double r = random_number(request.seed + 50000, 64 * k + i);
     if (i >= n) {
@@ -152,7 +152,7 @@ State<double> spread_start(const SearchRequest& request, const Symmetry& symmetr
     else
       z[i] += (1 + std::abs(z[i])) * 2 * r;
   }
-  for (const auto& e : request.parameters) set_attitude(request, e, k, z);
+  for (const auto& e : request.euler_parameters) set_attitude(request, e, k, z);
   return z;
 }
 

@@ -16,9 +16,9 @@ namespace eomgen::linear {
 using Precise = cln::cl_R;
 
 /// Digits of all decisions: a zero of multiplicity m leaves roots of 1e-160^(1/m).
-inline constexpr int digits = 160;
+inline constexpr int working_digits = 160;
 inline cln::float_format_t precise_format() {
-  static const cln::float_format_t format = cln::float_format(digits);
+  static const cln::float_format_t format = cln::float_format(working_digits);
   return format;
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 using cln::cl_N;
 
-constexpr int deflation_digits = digits - 4;
+constexpr int deflation_digits = working_digits - 4;
 // For a Jordan block of size m, the error decreases by (m - 1)/m per iteration only.
 constexpr int most_rounds_each = 1500;
 
@@ -98,7 +98,7 @@ void add_pair(const Precise& a, const Precise& b, const Precise& c, const Precis
 
 class Francis {
  public:
-  explicit Francis(Matrix<Precise> H) : H_(std::move(H)), nothing_(tiny<Precise>(deflation_digits) * largest_row(H_)) {}
+  explicit Francis(Matrix<Precise> H) : H_(std::move(H)), negligible_(tiny<Precise>(deflation_digits) * infinity_norm(H_)) {}
 
   /// False if the iteration does not converge.
   bool run(std::vector<cl_N>& found) {
@@ -127,7 +127,7 @@ class Francis {
   /// 0; the digits suffice for roots that are many orders smaller.
   std::size_t block(std::size_t end) {
     for (std::size_t k = end - 1; k > 0; --k) {
-      if (magnitude(H_(k, k - 1)) > nothing_) continue;
+      if (magnitude(H_(k, k - 1)) > negligible_) continue;
       H_(k, k - 1) = Precise(0);
       return k;
     }
@@ -159,7 +159,7 @@ class Francis {
   }
 
   Matrix<Precise> H_;
-  Precise nothing_;
+  Precise negligible_;
 };
 
 Precise norm_squared(const cl_N& x) {
@@ -179,15 +179,15 @@ void normalise(std::vector<cl_N>& x) {
 }
 
 /// H - value = P L U of a Hessenberg matrix; zero pivots are replaced by negligible ones.
-class Shifted {
+class ShiftedFactorisation {
  public:
-  Shifted(const Matrix<Precise>& H, const cl_N& value, const Precise& norm)
+  ShiftedFactorisation(const Matrix<Precise>& H, const cl_N& value, const Precise& norm)
       : n_(H.rows), U_(n_ * n_, cl_N(0)), factor_(n_, cl_N(0)), swapped_(n_, false) {
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = i == 0 ? 0 : i - 1; j < n_; ++j) at(i, j) = H(i, j);
       at(i, i) = at(i, i) - value;
     }
-    const Precise least = tiny<Precise>(digits) * norm;
+    const Precise least = tiny<Precise>(working_digits) * norm;
     for (std::size_t k = 0; k < n_; ++k) {
       if (k + 1 < n_ && norm_squared(at(k + 1, k)) > norm_squared(at(k, k))) {
         swapped_[k] = true;
@@ -230,9 +230,9 @@ class Shifted {
 };
 
 /// The residual is taken on A itself, which also checks the Hessenberg form.
-Root examined(const Matrix<Precise>& A, const Hessenberg& form, const cl_N& value, const Precise& norm) {
+Root assess_root(const Matrix<Precise>& A, const Hessenberg& form, const cl_N& value, const Precise& norm) {
   const std::size_t n = A.rows;
-  const Shifted shifted(form.H, value, norm);
+  const ShiftedFactorisation shifted(form.H, value, norm);
   std::vector<cl_N> right(n), left(n);
   for (std::size_t i = 0; i < n; ++i) {  // generic: almost surely not perpendicular to an eigenvector
     right[i] = number<Precise>(Precise(1) + Precise(static_cast<unsigned long>(7 * i % 11)) / 13);
@@ -260,7 +260,7 @@ Root examined(const Matrix<Precise>& A, const Hessenberg& form, const cl_N& valu
 
 }  // namespace
 
-Precise largest_row(const Matrix<Precise>& A) {
+Precise infinity_norm(const Matrix<Precise>& A) {
   Precise largest(0);
   for (std::size_t i = 0; i < A.rows; ++i) {
     Precise sum(0);
@@ -270,7 +270,7 @@ Precise largest_row(const Matrix<Precise>& A) {
   return largest;
 }
 
-Matrix<Precise> balanced(Matrix<Precise> A) {
+Matrix<Precise> balance(Matrix<Precise> A) {
   constexpr int most_rounds = 40;
   const std::size_t n = A.rows;
   bool changed = true;
@@ -306,14 +306,14 @@ Roots roots(const Matrix<Precise>& A) {
   const Hessenberg form(A);
   std::vector<cl_N> found;
   result.complete = Francis(form.H).run(found);
-  const Precise norm = largest_row(A);
+  const Precise norm = infinity_norm(A);
   for (const cl_N& value : found) {
     const Precise im = cln::imagpart(value);
     if (cln::minusp(im)) {  // the conjugate of the previous one
       result.list.push_back({value, result.list.back().residual, result.list.back().condition});
       continue;
     }
-    result.list.push_back(examined(A, form, value, norm));
+    result.list.push_back(assess_root(A, form, value, norm));
   }
   return result;
 }

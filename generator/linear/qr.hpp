@@ -11,7 +11,7 @@
 namespace eomgen::linear {
 
 /// D^-1 A D with powers of 2 on the diagonal of D, so that rows and columns have similar norms.
-Matrix<Precise> balanced(Matrix<Precise> A);
+Matrix<Precise> balance(Matrix<Precise> A);
 
 /// A root of the characteristic polynomial, and its conditioning.
 struct Root {
@@ -30,6 +30,6 @@ struct Roots {
 Roots roots(const Matrix<Precise>& A);
 
 /// The largest absolute row sum.
-Precise largest_row(const Matrix<Precise>& A);
+Precise infinity_norm(const Matrix<Precise>& A);
 
 }  // namespace eomgen::linear

@@ -12,17 +12,17 @@ struct Quantity {
 };
 
 /// Quantities with their prescribed values.
-class Held {
+class HeldQuantities {
  public:
-  Held(const Flow& flow, std::vector<Quantity> quantities)
+  HeldQuantities(const Flow& flow, std::vector<Quantity> quantities)
       : flow_(flow), quantities_(std::move(quantities)), tape_(flow.tape(expressions())) {}
 
   const std::vector<Quantity>& quantities() const { return quantities_; }
   std::vector<Precise> targets;
 
   template <class T>
-  Sloped<T> at(const State<T>& z, const Setting<T>& setting) const {
-    return flow_.sloped(tape_, z, setting);
+  ValueAndJacobian<T> at(const State<T>& z, const Setting<T>& setting) const {
+    return flow_.value_and_jacobian(tape_, z, setting);
   }
 
  private:

@@ -15,10 +15,10 @@ namespace {
 constexpr int most_rank_digits = 60, rank_margin = 5;
 constexpr int root_digits = 18;          // smaller parts of a root are 0
 constexpr double printed = 1e-12;        // accuracy of a printed eigenvalue
-constexpr double well_told = 1e-6;       // condition above which binary64 separates eigenvalues
+constexpr double separable_condition = 1e-6;       // condition above which binary64 separates eigenvalues
 constexpr double rounding_factor = 100;  // of binary64's QR, on n eps |A|
 
-Precise least(const Precise& x, const Precise& y) { return x < y ? x : y; }
+Precise smaller(const Precise& x, const Precise& y) { return x < y ? x : y; }
 double re(const Root& r) { return to_double(cln::realpart(r.value)); }
 double im(const Root& r) { return to_double(cln::imagpart(r.value)); }
 Precise size_of(const cln::cl_N& x) { return cln::abs(x); }
@@ -52,7 +52,7 @@ std::size_t split_zeros(Matrix<Precise>& A, int known) {
             floor_digits = std::min(100, known - rank_margin);
   std::size_t zeros = 0;
   while (A.rows > 0) {
-    const Precise nothing = tiny<Precise>(known) * largest_row(A);
+    const Precise nothing = tiny<Precise>(known) * infinity_norm(A);
     for (Precise& x : A.a) {
       if (magnitude(x) <= nothing) x = Precise(0);
     }
@@ -73,7 +73,7 @@ void merge(std::vector<Root>& list, std::vector<Precise>& error, const Precise& 
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       const Precise reach = Precise(1000) * std::max(error[i], error[j]);
-      if (size_of(list[i].value - list[j].value) > least(reach, Precise(1) / 1000 * size_of(list[i].value))) continue;
+      if (size_of(list[i].value - list[j].value) > smaller(reach, Precise(1) / 1000 * size_of(list[i].value))) continue;
       const std::size_t from = leader[j], to = leader[i];
       for (std::size_t& l : leader) {
         if (l == from) l = to;
@@ -124,10 +124,10 @@ class Binary64 {
 
   /// Assigns one of its eigenvalues that no other root has, if it is as close as rounding allows. If rounding allows
   /// any distance, the matrix is singular there to rounding.
-  bool has(const Root& r) {
+  bool confirms(const Root& r) {
     const Complex at = {to_double(cln::realpart(r.value) / norm_), to_double(cln::imagpart(r.value) / norm_)};
     const double condition = to_double(r.condition);
-    if (condition < well_told) {
+    if (condition < separable_condition) {
       const Eigen::Index n = M_.rows();
       Eigen::MatrixXd shifted(2 * n, 2 * n);  // M - at, as real numbers
       shifted << M_, Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n), M_;
@@ -165,9 +165,9 @@ Eigenvalue rounded(const Root& r, const Precise& error) {
 
 }  // namespace
 
-bool Eigenvalue::holds() const { return in_binary64 && error <= printed * std::hypot(re, im); }
-bool Spectrum::holds() const {
-  return std::all_of(values.begin(), values.end(), [](const Eigenvalue& e) { return e.holds(); });
+bool Eigenvalue::is_reliable() const { return in_binary64 && error <= printed * std::hypot(re, im); }
+bool Spectrum::is_reliable() const {
+  return std::all_of(values.begin(), values.end(), [](const Eigenvalue& e) { return e.is_reliable(); });
 }
 
 std::size_t zero_eigenvalues(const Matrix<Precise>& A, int known) {
@@ -179,21 +179,21 @@ Spectrum spectrum(const Matrix<Precise>& A, int known) {
   Spectrum result;
   Matrix<Precise> rest = as_floats(A);
   result.zeros = split_zeros(rest, known);
-  rest = balanced(std::move(rest));
-  const Precise norm = largest_row(rest);
+  rest = balance(std::move(rest));
+  const Precise norm = infinity_norm(rest);
   Roots found = roots(rest);
   require_domain(found.complete, "the iteration for its eigenvalues does not end");
   std::vector<Precise> error;
   for (const Root& r : found.list) {
     const Precise backward = r.residual + tiny<Precise>(known) * norm;
-    error.push_back(is_zero(r.condition) ? norm : least(norm, backward / r.condition));
+    error.push_back(is_zero(r.condition) ? norm : smaller(norm, backward / r.condition));
   }
   if (!found.list.empty()) {
     Binary64 other(rest, norm);
     merge(found.list, error, norm);
     for (std::size_t i = 0; i < found.list.size(); ++i) {
       result.values.push_back(rounded(found.list[i], error[i]));
-      result.values.back().in_binary64 = other.has(found.list[i]);
+      result.values.back().is_in_binary64 = other.confirms(found.list[i]);
     }
   }
   result.values.resize(result.values.size() + result.zeros);

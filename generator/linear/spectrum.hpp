@@ -10,15 +10,15 @@ namespace eomgen::linear {
 struct Eigenvalue {
   double re = 0, im = 0;
   double error = 0;         // estimated in many digits: far below rounding except for large Jordan blocks
-  bool in_binary64 = true;  // binary64's QR confirms it, within the condition of the matrix
+  bool is_in_binary64 = true;  // binary64's QR confirms it, within the condition of the matrix
   /// Whether every printed digit is correct and binary64 does not contradict.
-  bool holds() const;
+  bool is_reliable() const;
 };
 
 struct Spectrum {
   std::vector<Eigenvalue> values;  // zeros with multiplicity; by falling real part, then imaginary part
   std::size_t zeros = 0;           // multiplicity of the eigenvalue 0
-  bool holds() const;
+  bool is_reliable() const;
 };
 
 /// Known digits of a matrix's entries, relative to the largest one.

@@ -22,7 +22,7 @@ std::string in_words(Stability stability) {
 
 namespace {
 
-constexpr int nothing = 60;  // zero of numbers with more than 100 known digits
+constexpr int zero_digits = 60;  // zero of numbers with more than 100 known digits
 
 std::vector<std::size_t> retained_entries(const Linearisation& l) {
   std::vector<std::size_t> result;
@@ -50,7 +50,7 @@ bool is_definite(Matrix<Precise> H) {
       return magnitude(H(a, a)) < magnitude(H(b, b));
     });
     const std::size_t k = *pivot;
-    if (!(magnitude(H(k, k)) > tiny<Precise>(nothing) * scale)) return false;
+    if (!(magnitude(H(k, k)) > tiny<Precise>(zero_digits) * scale)) return false;
     if (step > 0 && positive != cln::plusp(H(k, k))) return false;
     positive = cln::plusp(H(k, k));
     left.erase(pivot);
@@ -79,11 +79,11 @@ StabilityTest::StabilityTest(const Flow& flow, symbolic::Dag& dag, const std::ve
 
 StabilityTest::Slopes StabilityTest::slopes(const Function& function, const Linearisation& l) const {
   const std::size_t size = 2 * flow_.coordinates();
-  const Sloped<Precise> s = flow_.sloped(function.gradient, l.z, l.setting);
+  const ValueAndJacobian<Precise> s = flow_.value_and_jacobian(function.gradient, l.z, l.setting);
   Slopes result{Matrix<Precise>(1, size), Matrix<Precise>(size, size)};
   for (std::size_t i = 0; i < size; ++i) {
     result.first(0, i) = s.value[i + 1];
-    for (std::size_t j = 0; j < size; ++j) result.second(i, j) = s.slope(i + 1, j);
+    for (std::size_t j = 0; j < size; ++j) result.second(i, j) = s.jacobian(i + 1, j);
   }
   return result;
 }
@@ -108,18 +108,18 @@ bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size
       // It may be conserved but depend on a coordinate that the motion does not depend on. Then it is no quantity of
       // the reduced motion.
       if (std::find(columns.begin(), columns.end(), k) == columns.end() &&
-          magnitude(all(0, k)) > tiny<Precise>(nothing) * (Precise(1) + largest(all)))
+          magnitude(all(0, k)) > tiny<Precise>(zero_digits) * (Precise(1) + largest(all)))
         goto next;
     }
     if (const Matrix<Precise> more = stacked(along, kept);
-        Elimination<Precise>(more, tiny<Precise>(nothing), tiny<Precise>(nothing)).rank() == more.rows) {
+        Elimination<Precise>(more, tiny<Precise>(zero_digits), tiny<Precise>(zero_digits)).rank() == more.rows) {
       along = more;
       taken.push_back(I);
     }
   next:;
   }
   if (!taken.empty()) {
-    const Matrix<Precise> mu = Elimination<Precise>(transposed(along), tiny<Precise>(nothing), tiny<Precise>(nothing))
+    const Matrix<Precise> mu = Elimination<Precise>(transposed(along), tiny<Precise>(zero_digits), tiny<Precise>(zero_digits))
                                    .solve(transposed(F.first * T));
     for (std::size_t a = 0; a < taken.size(); ++a) {
       for (std::size_t i = 0; i < F.first.a.size(); ++i) F.first.a[i] = F.first.a[i] - mu(a, 0) * taken[a].first.a[i];
@@ -127,7 +127,7 @@ bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size
         F.second.a[i] = F.second.a[i] - mu(a, 0) * taken[a].second.a[i];
     }
   }
-  if (largest(F.first * whole) > tiny<Precise>(nothing) * (Precise(1) + largest(F.first)))
+  if (largest(F.first * whole) > tiny<Precise>(zero_digits) * (Precise(1) + largest(F.first)))
     return false;  // not critical
   if (!constraints_.empty()) {
     std::vector<Slopes> phi;
@@ -137,7 +137,7 @@ bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size
       normals = stacked(normals, phi.back().first);
     }
     const Matrix<Precise> kappa =
-        Elimination<Precise>(transposed(normals), tiny<Precise>(nothing), tiny<Precise>(nothing))
+        Elimination<Precise>(transposed(normals), tiny<Precise>(zero_digits), tiny<Precise>(zero_digits))
             .solve(transposed(F.first));
     for (std::size_t a = 0; a < phi.size(); ++a) {
       for (std::size_t i = 0; i < F.second.a.size(); ++i)
@@ -145,13 +145,13 @@ bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size
     }
   }
   Matrix<Precise> W = T;
-  if (!taken.empty()) W = T * Elimination<Precise>(along, tiny<Precise>(nothing), tiny<Precise>(nothing)).null_space();
+  if (!taken.empty()) W = T * Elimination<Precise>(along, tiny<Precise>(zero_digits), tiny<Precise>(zero_digits)).null_space();
   return is_definite(transposed(W) * F.second * W);
 }
 
-std::optional<std::size_t> family(const Flow& flow, const Linearisation& steady, const Matrix<Precise>& retained) {
+std::optional<std::size_t> steady_family_dimension(const Flow& flow, const Linearisation& steady, const Matrix<Precise>& retained) {
   const Matrix<Precise> directions =
-      Elimination<Precise>(retained, tiny<Precise>(nothing), tiny<Precise>(nothing)).null_space();
+      Elimination<Precise>(retained, tiny<Precise>(zero_digits), tiny<Precise>(zero_digits)).null_space();
   const std::vector<std::size_t> entries = retained_entries(steady);
   const Matrix<Precise> T = columns_of(steady.tangent, entries) * directions;
   for (std::size_t d = 0; d < directions.cols; ++d) {
@@ -161,7 +161,7 @@ std::optional<std::size_t> family(const Flow& flow, const Linearisation& steady,
     State<Precise> start = steady.z;
     const Precise step = tiny<Precise>(3) / size;
     for (std::size_t i = 0; i + 1 < T.rows; ++i) start[i] = start[i] + step * T(i, d);
-    const auto found = steady_state(flow, steady.symmetry, start, steady.setting);
+    const auto found = solve_steady_state(flow, steady.symmetry, start, steady.setting);
     if (!found) return std::nullopt;
     for (std::size_t i = 0; i + 1 < T.rows; ++i) {  // no falling back: the correction is of second order in the step
       if (magnitude((*found)[i] - start[i]) > step * size / Precise(4) * (Precise(1) + magnitude(steady.z[i])))
@@ -171,18 +171,18 @@ std::optional<std::size_t> family(const Flow& flow, const Linearisation& steady,
   return directions.cols;
 }
 
-Verdict StabilityTest::operator()(const Linearisation& l) const {
+StabilityVerdict StabilityTest::operator()(const Linearisation& l) const {
   const std::vector<std::size_t> entries = retained_entries(l);
   const Matrix<Precise> A = columns_of(rows_of(l.A, entries), entries);
   const Spectrum s = spectrum(A, l.known);
-  const auto rises = [](const Eigenvalue& e) { return e.in_binary64 && e.re > e.error; };
-  const auto falls = [](const Eigenvalue& e) { return e.in_binary64 && e.re < -e.error; };
+  const auto rises = [](const Eigenvalue& e) { return e.is_in_binary64 && e.re > e.error; };
+  const auto falls = [](const Eigenvalue& e) { return e.is_in_binary64 && e.re < -e.error; };
   if (std::any_of(s.values.begin(), s.values.end(), rises))
     return {Stability::unstable, "an eigenvalue has a positive real part"};
   const auto falling = static_cast<std::size_t>(std::count_if(s.values.begin(), s.values.end(), falls));
   if (falling + s.zeros == s.values.size()) {
     if (s.zeros == 0) return {Stability::stable, "all eigenvalues have negative real parts"};
-    const auto along = falling > 0 ? family(flow_, l, A) : std::nullopt;
+    const auto along = falling > 0 ? steady_family_dimension(flow_, l, A) : std::nullopt;
     if (along && *along == s.zeros)
       return {Stability::stable,
               "a family of steady motions that attracts: all other eigenvalues have negative real parts"};

@@ -17,7 +17,7 @@ const char* name(Stability stability);
 /// "stable", "unstable", "stability unknown"
 std::string in_words(Stability stability);
 
-struct Verdict {
+struct StabilityVerdict {
   Stability stability = Stability::unknown;
   std::string reason;
 };
@@ -29,7 +29,7 @@ class StabilityTest {
                 const std::vector<Quantity>& momenta);
 
   /// Judges the retained entries; ignorable coordinates may drift.
-  Verdict operator()(const Linearisation& steady) const;
+  StabilityVerdict operator()(const Linearisation& steady) const;
 
  private:
   struct Function {
@@ -48,6 +48,6 @@ class StabilityTest {
 
 /// The dimension of the family of steady motions, if every direction in the null space of A leads along one; otherwise
 /// empty.
-std::optional<std::size_t> family(const Flow& flow, const Linearisation& steady, const Matrix<Precise>& retained);
+std::optional<std::size_t> steady_family_dimension(const Flow& flow, const Linearisation& steady, const Matrix<Precise>& retained);
 
 }  // namespace eomgen::linear

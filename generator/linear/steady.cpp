@@ -7,30 +7,30 @@ namespace eomgen::linear {
 namespace {
 
 struct Equations {
-  Matrix<Precise> value, slope;
+  Matrix<Precise> value, jacobian;
 };
 
-void add(Equations& e, const Matrix<Precise>& value, const Matrix<Precise>& slope) {
+void add(Equations& e, const Matrix<Precise>& value, const Matrix<Precise>& jacobian) {
   e.value = stacked(std::move(e.value), value);
-  e.slope = stacked(std::move(e.slope), slope);
+  e.jacobian = stacked(std::move(e.jacobian), jacobian);
 }
 
 Equations steady_equations(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
-                           const State<Precise>& start, const Setting<Precise>& setting, const Extra& extra) {
+                           const State<Precise>& start, const Setting<Precise>& setting, const ExtraEquations& extra) {
   const Field<Precise> field = flow.at(z, setting);
-  Equations e{field.phi, field.phi_slope};
-  e.slope.cols = field.phi_slope.cols;
-  add(e, rows_of(field.X, symmetry.constant), rows_of(field.slope, symmetry.constant));
-  for (const std::size_t i : ignored_positions(symmetry)) {
-    Matrix<Precise> value(1, 1), slope(1, field.slope.cols);
+  Equations e{field.phi, field.phi_jacobian};
+  e.jacobian.cols = field.phi_jacobian.cols;
+  add(e, rows_of(field.X, symmetry.constant), rows_of(field.jacobian, symmetry.constant));
+  for (const std::size_t i : ignorable_positions(symmetry)) {
+    Matrix<Precise> value(1, 1), jacobian(1, field.jacobian.cols);
     value(0, 0) = z[i] - start[i];
-    slope(0, i) = Precise(1);
-    add(e, value, slope);
+    jacobian(0, i) = Precise(1);
+    add(e, value, jacobian);
   }
   if (extra) {
-    Matrix<Precise> value, slope;
-    extra(z, value, slope);
-    if (value.rows > 0) add(e, value, slope);
+    Matrix<Precise> value, jacobian;
+    extra(z, value, jacobian);
+    if (value.rows > 0) add(e, value, jacobian);
   }
   return e;
 }
@@ -38,13 +38,13 @@ Equations steady_equations(const Flow& flow, const Symmetry& symmetry, const Sta
 /// The magnitude of the terms of an equation, estimated from its derivatives.
 Precise size_of(const Equations& e, std::size_t i, const State<Precise>& z) {
   Precise size(1);
-  for (std::size_t j = 0; j < e.slope.cols; ++j)
-    size = size + magnitude(e.slope(i, j)) * (Precise(1) + magnitude(z[j]));
+  for (std::size_t j = 0; j < e.jacobian.cols; ++j)
+    size = size + magnitude(e.jacobian(i, j)) * (Precise(1) + magnitude(z[j]));
   return size;
 }
 
 /// Whether every equation holds to so many digits, relative to the magnitude of its terms.
-bool holds(const Equations& e, const State<Precise>& z, int digits_of_it = 90) {
+bool is_satisfied(const Equations& e, const State<Precise>& z, int digits_of_it = 90) {
   for (std::size_t i = 0; i < e.value.rows; ++i) {
     if (magnitude(e.value(i, 0)) > tiny<Precise>(digits_of_it) * size_of(e, i, z)) return false;
   }
@@ -57,21 +57,21 @@ struct Rank {
 };
 
 std::optional<State<Precise>> newton(const Flow& flow, const Symmetry& symmetry, const State<Precise>& start,
-                                     const Setting<Precise>& setting, const Extra& extra, const Rank& rank) {
+                                     const Setting<Precise>& setting, const ExtraEquations& extra, const Rank& rank) {
   constexpr int most_steps = 40, exact = 120;
   State<Precise> z = start;
   for (int step = 0; step < most_steps; ++step) {
     Equations e = steady_equations(flow, symmetry, z, start, setting, extra);
-    for (std::size_t i = 0; i < e.slope.rows; ++i) e.slope(i, e.slope.cols - 1) = Precise(0);  // t stays
+    for (std::size_t i = 0; i < e.jacobian.rows; ++i) e.jacobian(i, e.jacobian.cols - 1) = Precise(0);  // t stays
     const Matrix<Precise> move =
-        Elimination<Precise>(e.slope, tiny<Precise>(rank.cutoff), tiny<Precise>(rank.floor)).solve(e.value);
+        Elimination<Precise>(e.jacobian, tiny<Precise>(rank.cutoff), tiny<Precise>(rank.floor)).solve(e.value);
     bool done = true;
     for (std::size_t i = 0; i + 1 < z.size(); ++i) {
       z[i] = z[i] - move(i, 0);
       if (magnitude(move(i, 0)) > Precise(1000) * (Precise(1) + magnitude(start[i]))) return std::nullopt;
       done = done && magnitude(move(i, 0)) <= tiny<Precise>(exact) * (Precise(1) + magnitude(z[i]));
     }
-    if (done) return holds(e, z) ? std::optional(z) : std::nullopt;  // before the last step, far below tolerance
+    if (done) return is_satisfied(e, z) ? std::optional(z) : std::nullopt;  // before the last step, far below tolerance
   }
   return std::nullopt;
 }
@@ -82,11 +82,11 @@ struct Problem {
   const Symmetry& symmetry;
   const State<Precise>& start;
   const Setting<Precise>& setting;
-  const Extra& extra;
+  const ExtraEquations& extra;
 
   Equations at(const State<Precise>& z) const {
     Equations e = steady_equations(flow, symmetry, z, start, setting, extra);
-    for (std::size_t i = 0; i < e.slope.rows; ++i) e.slope(i, e.slope.cols - 1) = Precise(0);  // t stays
+    for (std::size_t i = 0; i < e.jacobian.rows; ++i) e.jacobian(i, e.jacobian.cols - 1) = Precise(0);  // t stays
     return e;
   }
 };
@@ -109,7 +109,7 @@ Precise largest_move(const Matrix<Precise>& move, const State<Precise>& z) {
 
 // At a root of multiplicity m, Newton steps shrink by 1 - 1/m each. Once the ratio is constant, the remaining distance
 // is their geometric sum.
-std::optional<Steady> multiple_root(const Problem& p) {
+std::optional<SteadyState> multiple_root(const Problem& p) {
   constexpr int most_steps = 400, exact = 130, cutoff = 130, floor = 150;
   State<Precise> z = p.start;
   std::optional<Matrix<Precise>> before;
@@ -117,11 +117,11 @@ std::optional<Steady> multiple_root(const Problem& p) {
   for (int step = 0; step < most_steps; ++step) {
     const Equations e = p.at(z);
     const Matrix<Precise> move =
-        Elimination<Precise>(e.slope, tiny<Precise>(cutoff), tiny<Precise>(floor)).solve(e.value);
+        Elimination<Precise>(e.jacobian, tiny<Precise>(cutoff), tiny<Precise>(floor)).solve(e.value);
     const Precise size = largest_move(move, z);
-    if (step > 0 && holds(e, z, exact)) {
+    if (step > 0 && is_satisfied(e, z, exact)) {
       const double digits_of_z = -to_double(cln::ln(size + tiny<Precise>(known_digits))) / std::log(10.0) - 2;
-      return Steady{z, 0, std::clamp(static_cast<int>(digits_of_z), 20, known_digits)};
+      return SteadyState{z, 0, std::clamp(static_cast<int>(digits_of_z), 20, known_digits)};
     }
     if (size > Precise(1) / 100) return std::nullopt;
     Precise factor(1);
@@ -169,7 +169,7 @@ Precise distance_in_numbers(const Problem& p, const State<Precise>& z) {
 }
 
 // Least squares of the equations: the minimum is 0 up to rounding of the given numbers.
-std::optional<Steady> rounded_root(const Problem& p) {
+std::optional<SteadyState> rounded_root(const Problem& p) {
   constexpr int most_steps = 60, exact = 100;
   constexpr double roundings = 1e-12;
   State<Precise> z = p.start;
@@ -178,23 +178,23 @@ std::optional<Steady> rounded_root(const Problem& p) {
     for (std::size_t i = 0; i < e.value.rows; ++i) {
       const Precise size = size_of(e, i, z);
       e.value(i, 0) = e.value(i, 0) / size;
-      for (std::size_t j = 0; j < e.slope.cols; ++j) e.slope(i, j) = e.slope(i, j) / size;
+      for (std::size_t j = 0; j < e.jacobian.cols; ++j) e.jacobian(i, j) = e.jacobian(i, j) / size;
     }
-    const Matrix<Precise> back = transposed(e.slope);
+    const Matrix<Precise> back = transposed(e.jacobian);
     const Matrix<Precise> move =
-        Elimination<Precise>(back * e.slope, tiny<Precise>(10), tiny<Precise>(14)).solve(back * e.value);
+        Elimination<Precise>(back * e.jacobian, tiny<Precise>(10), tiny<Precise>(14)).solve(back * e.value);
     for (std::size_t i = 0; i + 1 < z.size(); ++i) z[i] = z[i] - move(i, 0);
     const Precise size = largest_move(move, z);
     if (size > Precise(1) / 100) return std::nullopt;
     if (size > tiny<Precise>(exact)) continue;
     const double off = to_double(distance_in_numbers(p, z));
-    return off < roundings ? std::optional(Steady{z, off, known_digits}) : std::nullopt;
+    return off < roundings ? std::optional(SteadyState{z, off, known_digits}) : std::nullopt;
   }
   return std::nullopt;
 }
 
 // Sets entries to 0 that are 0 up to the error of the iteration.
-void snap(const Problem& p, Steady& found) {
+void snap_to_zero(const Problem& p, SteadyState& found) {
   State<Precise> z = found.z;
   bool changed = false;
   for (std::size_t i = 0; i + 1 < z.size(); ++i) {
@@ -202,9 +202,9 @@ void snap(const Problem& p, Steady& found) {
     z[i] = number<Precise>(Precise(0));
     changed = true;
   }
-  if (!changed || found.off > 0) return;
+  if (!changed || found.parameter_change > 0) return;
   try {
-    if (!holds(p.at(z), z, 120)) return;
+    if (!is_satisfied(p.at(z), z, 120)) return;
     found.z = z;
   } catch (const std::domain_error&) {
     return;
@@ -215,8 +215,8 @@ void snap(const Problem& p, Steady& found) {
 
 // In a family of steady motions the Jacobian is rank-deficient there, and nearly so nearby: such pivots count as 0. If
 // that drops a needed equation, the iteration does not converge, and smaller pivots count.
-std::optional<State<Precise>> steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
-                                           const Setting<Precise>& setting, const Extra& extra) {
+std::optional<State<Precise>> solve_steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
+                                           const Setting<Precise>& setting, const ExtraEquations& extra) {
   for (const Rank rank : {Rank{5, 11}, Rank{10, 14}, Rank{20, 30}}) {
     try {
       if (auto found = newton(flow, symmetry, z, setting, extra, rank)) return found;
@@ -227,26 +227,26 @@ std::optional<State<Precise>> steady_state(const Flow& flow, const Symmetry& sym
   return std::nullopt;
 }
 
-std::optional<Steady> find_steady(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
-                                  const Setting<Precise>& setting, const Extra& extra) {
+std::optional<SteadyState> find_steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
+                                  const Setting<Precise>& setting, const ExtraEquations& extra) {
   constexpr int near = 7;     // digits of the equations where such a root is sought
   constexpr int exact = 140;  // and after convergence to a simple root
-  std::optional<Steady> found;
+  std::optional<SteadyState> found;
   State<Precise> start = z;
-  if (const auto plain = steady_state(flow, symmetry, z, setting, extra)) {
-    found = Steady{*plain, 0, known_digits};
+  if (const auto plain = solve_steady_state(flow, symmetry, z, setting, extra)) {
+    found = SteadyState{*plain, 0, known_digits};
     start = *plain;
   }
   const Problem p{flow, symmetry, start, setting, extra};
   try {
     const Equations e = p.at(start);
-    if (found ? !holds(e, start, exact) : holds(e, start, near)) {
+    if (found ? !is_satisfied(e, start, exact) : is_satisfied(e, start, near)) {
       if (const auto root = multiple_root(p)) found = root;
     }
-    if (!found && holds(e, start, near)) found = rounded_root(p);
+    if (!found && is_satisfied(e, start, near)) found = rounded_root(p);
   } catch (const std::domain_error&) {  // at the new point; keep the plain root
   }
-  if (found) snap(p, *found);
+  if (found) snap_to_zero(p, *found);
   return found;
 }
 

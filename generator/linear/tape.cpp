@@ -39,7 +39,7 @@ struct Numbers {
 
 /// A value and its partial derivatives with respect to the operands, or why there are none.
 template <class T>
-struct Local {
+struct LocalDerivatives {
   T value{0};
   std::array<T, 4> slope{T(0), T(0), T(0), T(0)};
   const char* no_slope = nullptr;
@@ -49,7 +49,7 @@ constexpr const char* on_an_edge = "it lies on the edge of abs, sign, min, max o
 
 /// `moves`: whether the compared values depend on a direction.
 template <class T>
-Local<T> kinked(Op op, const std::array<T, 4>& x, bool moves, int edge) {
+LocalDerivatives<T> kinked(Op op, const std::array<T, 4>& x, bool moves, int edge) {
   const bool one = op == Op::abs || op == Op::sign;
   const T gap = one ? x[0] : x[0] - x[1];
   const bool below = gap < T(0);
@@ -59,16 +59,16 @@ Local<T> kinked(Op op, const std::array<T, 4>& x, bool moves, int edge) {
   switch (op) {
     case Op::abs: return {magnitude(x[0]), {below ? T(-1) : T(1)}, no_slope};
     case Op::sign: return {is_zero(gap) ? T(0) : below ? T(-1) : T(1), {}, no_slope};
-    case Op::min: return below ? Local<T>{x[0], {T(1), T(0)}, no_slope} : Local<T>{x[1], {T(0), T(1)}, no_slope};
-    case Op::max: return below ? Local<T>{x[1], {T(0), T(1)}, no_slope} : Local<T>{x[0], {T(1), T(0)}, no_slope};
+    case Op::min: return below ? LocalDerivatives<T>{x[0], {T(1), T(0)}, no_slope} : LocalDerivatives<T>{x[1], {T(0), T(1)}, no_slope};
+    case Op::max: return below ? LocalDerivatives<T>{x[1], {T(0), T(1)}, no_slope} : LocalDerivatives<T>{x[0], {T(1), T(0)}, no_slope};
     default:
-      return below ? Local<T>{x[2], {T(0), T(0), T(1), T(0)}, no_slope}
-                   : Local<T>{x[3], {T(0), T(0), T(0), T(1)}, no_slope};
+      return below ? LocalDerivatives<T>{x[2], {T(0), T(0), T(1), T(0)}, no_slope}
+                   : LocalDerivatives<T>{x[3], {T(0), T(0), T(0), T(1)}, no_slope};
   }
 }
 
 template <class T>
-Local<T> of_operator(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves) {
+LocalDerivatives<T> of_operator(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves) {
   switch (op) {
     case Op::add: return {x[0] + x[1], {T(1), T(1)}};
     case Op::sub: return {x[0] - x[1], {T(1), T(-1)}};
@@ -91,7 +91,7 @@ Local<T> of_operator(Op op, std::int32_t payload, const std::array<T, 4>& x, con
 }
 
 template <class T>
-Local<T> of_function(Op op, const T& x, bool moves) {
+LocalDerivatives<T> of_function(Op op, const T& x, bool moves) {
   if (op == Op::sqrt) require_domain(!(x < T(0)), "sqrt of a negative number");
   if (op == Op::log) require_domain(x > T(0), "log of a number that is not positive");
   if (op == Op::asin || op == Op::acos) require_domain(!(magnitude(x) > T(1)), "asin or acos beyond 1");
@@ -104,7 +104,7 @@ Local<T> of_function(Op op, const T& x, bool moves) {
 }
 
 template <class T>
-Local<T> local(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves, int edge) {
+LocalDerivatives<T> local(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves, int edge) {
   if (symbolic::is_kink(op)) return kinked(op, x, moves[0] || moves[1], edge);
   switch (op) {
     case Op::add:
@@ -154,11 +154,11 @@ Tape::Tape(const Dag& dag, std::vector<Ref> roots, std::vector<Symbol> direction
 template <class T>
 struct Tape::Run {
   std::vector<T> value;
-  Matrix<T> slope;  // of the steps that move
+  Matrix<T> jacobian;  // of the steps that move
   std::vector<std::string> reasons;
   std::vector<std::uint32_t> no_value, no_slope;  // per step: 0, or 1 + an index into `reasons`
 
-  std::uint32_t because(const std::string& reason) {
+  std::uint32_t reason_index(const std::string& reason) {
     reasons.push_back(reason);
     return static_cast<std::uint32_t>(reasons.size());
   }
@@ -177,7 +177,7 @@ Tape::Run<T> Tape::run(const std::function<T(const Symbol&)>& lookup, int edge, 
     if (step.op == Op::pi) r.value[k] = arithmetic<T>().pi();
     if (step.op == Op::symbol) {
       r.value[k] = lookup(dag_.symbol_of(nodes_[k]));
-      if (step.moves && slopes) r.slope(step.place, step.direction) = T(1);
+      if (step.moves && slopes) r.jacobian(step.place, step.direction) = T(1);
     }
     if (step.arity == 0) continue;
     std::array<T, 4> x{T(0), T(0), T(0), T(0)};
@@ -192,26 +192,26 @@ Tape::Run<T> Tape::run(const std::function<T(const Symbol&)>& lookup, int edge, 
       if (needed[i]) r.no_value[k] = r.no_value[step.args[i]];
     }
     if (r.no_value[k] != 0) continue;
-    Local<T> here;
+    LocalDerivatives<T> here;
     try {
       here = local(step.op, step.payload, x, moves, edge);
     } catch (const std::domain_error& error) {
-      r.no_value[k] = r.because(error.what());
+      r.no_value[k] = r.reason_index(error.what());
       continue;
     } catch (const cln::runtime_exception&) {
-      r.no_value[k] = r.because("a number that is too large");
+      r.no_value[k] = r.reason_index("a number that is too large");
       continue;
     }
     r.value[k] = here.value;
     if (!slopes) continue;
-    if (here.no_slope != nullptr && step.moves) r.no_slope[k] = r.because(here.no_slope);
+    if (here.no_slope != nullptr && step.moves) r.no_slope[k] = r.reason_index(here.no_slope);
     for (std::uint8_t i = 0; i < step.arity; ++i) {
       if (!moves[i] || !needed[i]) continue;
       if (r.no_slope[k] == 0) r.no_slope[k] = r.no_slope[step.args[i]];
       if (is_zero(here.slope[i])) continue;
       for (std::size_t d = 0; d < directions_; ++d) {
-        const T& inner = r.slope(steps_[step.args[i]].place, d);
-        if (!is_zero(inner)) r.slope(step.place, d) = r.slope(step.place, d) + here.slope[i] * inner;
+        const T& inner = r.jacobian(steps_[step.args[i]].place, d);
+        if (!is_zero(inner)) r.jacobian(step.place, d) = r.jacobian(step.place, d) + here.slope[i] * inner;
       }
     }
   }
@@ -219,16 +219,16 @@ Tape::Run<T> Tape::run(const std::function<T(const Symbol&)>& lookup, int edge, 
 }
 
 template <class T>
-Sloped<T> Tape::at(const std::function<T(const Symbol&)>& lookup, int edge) const {
+ValueAndJacobian<T> Tape::at(const std::function<T(const Symbol&)>& lookup, int edge) const {
   const Run<T> r = run(lookup, edge, true);
-  Sloped<T> result{{}, Matrix<T>(roots_.size(), directions_)};
+  ValueAndJacobian<T> result{{}, Matrix<T>(roots_.size(), directions_)};
   for (std::size_t i = 0; i < roots_.size(); ++i) {
     const Step& step = steps_[roots_[i]];
     for (const std::uint32_t reason : {r.no_value[roots_[i]], r.no_slope[roots_[i]]}) {
       if (reason != 0) throw std::domain_error(r.reasons[reason - 1]);
     }
     result.value.push_back(r.value[roots_[i]]);
-    for (std::size_t d = 0; step.moves && d < directions_; ++d) result.slope(i, d) = r.slope(step.place, d);
+    for (std::size_t d = 0; step.moves && d < directions_; ++d) result.jacobian(i, d) = r.jacobian(step.place, d);
   }
   return result;
 }
@@ -244,8 +244,8 @@ std::vector<T> Tape::values(const std::function<T(const Symbol&)>& lookup) const
   return result;
 }
 
-template Sloped<double> Tape::at(const std::function<double(const Symbol&)>&, int) const;
-template Sloped<Precise> Tape::at(const std::function<Precise(const Symbol&)>&, int) const;
+template ValueAndJacobian<double> Tape::at(const std::function<double(const Symbol&)>&, int) const;
+template ValueAndJacobian<Precise> Tape::at(const std::function<Precise(const Symbol&)>&, int) const;
 template std::vector<double> Tape::values(const std::function<double(const Symbol&)>&) const;
 template std::vector<Precise> Tape::values(const std::function<Precise(const Symbol&)>&) const;
 

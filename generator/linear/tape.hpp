@@ -17,9 +17,9 @@ using symbolic::Ref;
 using symbolic::Symbol;
 
 template <class T>
-struct Sloped {
+struct ValueAndJacobian {
   std::vector<T> value;  // per root
-  Matrix<T> slope;       // per root and direction
+  Matrix<T> jacobian;       // per root and direction
 };
 
 class Tape {
@@ -30,7 +30,7 @@ class Tape {
   /// Throws std::domain_error if a root has no value or no derivative: outside of a domain, at the root of 0, on a kink
   /// of abs. A branch of `if` that is not taken needs neither. `edge`: digits within which a point counts as on a kink.
   template <class T>
-  Sloped<T> at(const std::function<T(const Symbol&)>& lookup, int edge = 13) const;
+  ValueAndJacobian<T> at(const std::function<T(const Symbol&)>& lookup, int edge = 13) const;
   /// Values alone; these exist at the root of 0 and on the kink of abs.
   template <class T>
   std::vector<T> values(const std::function<T(const Symbol&)>& lookup) const;
@@ -58,8 +58,8 @@ class Tape {
   std::size_t directions_, moving_ = 0;
 };
 
-extern template Sloped<double> Tape::at(const std::function<double(const Symbol&)>&, int) const;
-extern template Sloped<Precise> Tape::at(const std::function<Precise(const Symbol&)>&, int) const;
+extern template ValueAndJacobian<double> Tape::at(const std::function<double(const Symbol&)>&, int) const;
+extern template ValueAndJacobian<Precise> Tape::at(const std::function<Precise(const Symbol&)>&, int) const;
 extern template std::vector<double> Tape::values(const std::function<double(const Symbol&)>&) const;
 extern template std::vector<Precise> Tape::values(const std::function<Precise(const Symbol&)>&) const;
 

@@ -76,20 +76,20 @@ std::vector<double> scales(const Mechanics& m, const std::vector<cl_R>& q) {
 /// `vanishing`: the length below which a row counts as 0 and is nonzero only because the constraints hold
 /// approximately.
 template <class T>
-Selection selected(const std::vector<std::vector<T>>& rows, const std::vector<Turn>& turns, const T& tolerance,
+RowSelection select_rows(const std::vector<std::vector<T>>& rows, const std::vector<RowPriority>& priorities, const T& tolerance,
                    const T& vanishing, const T& hair) {
   std::vector<std::vector<T>> left = rows;
   std::vector<T> length, outside;  // of each row, and of its part outside the span of the used rows
   for (const auto& row : rows) length.push_back(sqrt(dot(row, row)));
   outside = length;
   std::vector<bool> used(rows.size(), false);
-  Selection result;
-  for (const Turn turn : {Turn::always, Turn::first, Turn::last}) {
+  RowSelection result;
+  for (const RowPriority priority : {RowPriority::always, RowPriority::first, RowPriority::last}) {
     for (;;) {
       std::optional<std::size_t> best;
       T largest = tolerance;
       for (std::size_t k = 0; k < rows.size(); ++k) {
-        if (used[k] || turns[k] != turn || length[k] < vanishing) continue;
+        if (used[k] || priorities[k] != priority || length[k] < vanishing) continue;
         const T part = outside[k] / length[k];
         // Equal parts of different rows differ by rounding; a small margin favours the first.
         if (part > largest * hair) largest = part, best = k;
@@ -111,33 +111,33 @@ Selection selected(const std::vector<std::vector<T>>& rows, const std::vector<Tu
       }
     }
   }
-  for (std::size_t k = 0; k < rows.size(); ++k) (used[k] ? result.kept : result.rest).push_back(k);
+  for (std::size_t k = 0; k < rows.size(); ++k) (used[k] ? result.selected : result.rest).push_back(k);
   return result;
 }
 
 }  // namespace
 
-Selection select_independent(const std::vector<Row>& rows, const std::vector<Turn>& turns, const cl_R& tolerance) {
-  return selected<cl_R>(rows, turns, tolerance, small(25), cl_R(cln::cl_RA(1000001) / 1000000));
+RowSelection select_independent(const std::vector<Row>& rows, const std::vector<RowPriority>& priorities, const cl_R& tolerance) {
+  return select_rows<cl_R>(rows, priorities, tolerance, small(25), cl_R(cln::cl_RA(1000001) / 1000000));
 }
 
-Closure::Closure(Mechanics& m, Lowering& lower) : m_(m), lower_(lower) {
-  symbolic::Substitution written = write_out(m);
+ClosureSolver::ClosureSolver(Mechanics& m, Lowering& lower) : m_(m), lower_(lower) {
+  symbolic::Substitution written = time_function_substitution(m);
   for (const JointReaction& joint : m.joints) {
-    for (const auto& direction : joint.along) along_.insert(along_.end(), direction.begin(), direction.end());
+    for (const auto& direction : joint.along) reaction_directions_.insert(reaction_directions_.end(), direction.begin(), direction.end());
   }
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     const Constraint& c = m.constraints[k];
     for (const Ref slope : c.gradient) all_.push_back(written(slope));
     rates_.push_back(written(c.rate));
-    if (!c.holonomic() || c.unilateral || c.need == Need::identity) continue;
+    if (!c.holonomic() || c.unilateral || c.redundancy == Redundancy::identity) continue;
     bound_.push_back(k);
     psi_.push_back(written(c.psi));
     gradient_.insert(gradient_.end(), all_.end() - static_cast<std::ptrdiff_t>(m.q.size()), all_.end());
   }
 }
 
-std::vector<cl_R> Closure::values(const std::vector<Ref>& expressions, const Configuration& at) const {
+std::vector<cl_R> ClosureSolver::values(const std::vector<Ref>& expressions, const Configuration& at) const {
   const auto lookup = [&](const Symbol& s) -> cl_R {
     switch (s.kind) {
       case SymbolKind::parameter: return at.parameters.at(s.index);
@@ -152,7 +152,7 @@ std::vector<cl_R> Closure::values(const std::vector<Ref>& expressions, const Con
   return symbolic::evaluate(*m_.dag, expressions, lookup, digits);
 }
 
-std::vector<Row> Closure::rows(const Configuration& at) const {
+std::vector<Row> ClosureSolver::jacobian_rows(const Configuration& at) const {
   const std::vector<cl_R> entries = values(all_, at);
   std::vector<Row> result;
   for (std::size_t k = 0; k < m_.constraints.size(); ++k) {
@@ -162,13 +162,13 @@ std::vector<Row> Closure::rows(const Configuration& at) const {
   return result;
 }
 
-double Closure::uniform(std::uint64_t& state) const {  // in (-1, 1)
+double ClosureSolver::uniform(std::uint64_t& state) const {  // in (-1, 1)
   state = state * 6364136223846793005u + 1442695040888963407u;
   return static_cast<double>(state >> 11) / 4503599627370496.0 - 1;
 }
 
 // Parameters as given by the file and the default scene; with a seed, independent ones are varied.
-void Closure::set_parameters(Configuration& at, std::uint64_t seed) const {
+void ClosureSolver::set_parameters(Configuration& at, std::uint64_t seed) const {
   const model::Model& model = *m_.model;
   std::vector<Ref> value = m_.parameter_value;
   std::vector<bool> known(value.size(), false);
@@ -192,14 +192,14 @@ void Closure::set_parameters(Configuration& at, std::uint64_t seed) const {
 }
 
 /// The values that the default scene gives; their entries of `open` become false. The others are 0.
-Configuration Closure::given(std::vector<bool>& open) const {
+Configuration ClosureSolver::given(std::vector<bool>& open) const {
   const model::Scene& scene = m_.model->scenes.front();
   Configuration at;
   at.q.assign(m_.q.size(), exact(0));
   open.assign(m_.q.size(), true);
   set_parameters(at, 0);
   at.t = values({lower_.scalar(scene.t0)}, at)[0];
-  symbolic::Substitution written = write_out(m_);
+  symbolic::Substitution written = time_function_substitution(m_);
   for (const auto* list : {&scene.guess, &scene.initial}) {
     for (const model::InitialValue& given : *list) {
       if (given.order > 0) continue;
@@ -213,7 +213,7 @@ Configuration Closure::given(std::vector<bool>& open) const {
   return at;
 }
 
-bool Closure::is_regular() {
+bool ClosureSolver::is_regular() {
   const auto n = static_cast<Eigen::Index>(m_.q.size()), count = static_cast<Eigen::Index>(psi_.size());
   std::vector<Ref> roots = psi_;
   roots.insert(roots.end(), gradient_.begin(), gradient_.end());
@@ -258,7 +258,7 @@ bool Closure::is_regular() {
     for (Eigen::Index k = A.rows(); k-- > 0;) {
       const Constraint& c = m_.constraints[static_cast<std::size_t>(k)];
       const double length = A.row(k).norm();
-      if (c.unilateral || c.need != Need::independent) {
+      if (c.unilateral || c.redundancy != Redundancy::independent) {
         if (k + 1 < A.rows()) A.row(k) = A.row(A.rows() - 1).eval();
         A.conservativeResize(A.rows() - 1, Eigen::NoChange);
       } else if (length == 0) {
@@ -274,43 +274,43 @@ bool Closure::is_regular() {
   }
 }
 
-std::optional<Configuration> Closure::start() {
+std::optional<Configuration> ClosureSolver::start_configuration() {
   std::vector<bool> open;
   const std::vector<bool> all(m_.q.size(), true);
-  gap_ = 0;
+  inconsistency_ = 0;
   try {
     const Configuration at = given(open);
     // If the derivatives vanish at 0 in the coordinates that are not given, start from a nearby point.
     Configuration found = at;
-    if (settle(found, open)) return found;
-    const double gap = gap_;
-    const std::uint32_t gap_at = gap_at_;
+    if (solve_constraints(found, open)) return found;
+    const double gap = inconsistency_;
+    const std::uint32_t gap_at = inconsistent_constraint_;
     found = at;
-    if (settle(found, all)) return found;
-    if (gap > 0) gap_ = gap, gap_at_ = gap_at;
+    if (solve_constraints(found, all)) return found;
+    if (gap > 0) inconsistency_ = gap, inconsistent_constraint_ = gap_at;
   } catch (const std::exception&) {  // outside the domain of a function
   }
   return std::nullopt;
 }
 
-std::optional<Configuration> Closure::near(const Configuration& from, std::uint64_t seed, bool other_parameters) {
+std::optional<Configuration> ClosureSolver::nearby_configuration(const Configuration& from, std::uint64_t seed, bool other_parameters) {
   const std::vector<double> scale = scales(m_, from.q);
   const std::vector<bool> all(m_.q.size(), true);
-  gap_ = 0;
+  inconsistency_ = 0;
   for (double spread : {0.2, 0.1, 0.05, 0.02}) {
     Configuration at = from;
     std::uint64_t state = seed;
     try {
       if (other_parameters) set_parameters(at, seed);
       for (std::size_t i = 0; i < at.q.size(); ++i) at.q[i] = at.q[i] + exact(spread * scale[i] * uniform(state));
-      if (settle(at, all)) return at;
+      if (solve_constraints(at, all)) return at;
     } catch (const std::exception&) {  // outside the domain of a function
     }
   }
   return std::nullopt;
 }
 
-std::optional<Configuration> Closure::beyond(const Configuration& before, const Configuration& at) {
+std::optional<Configuration> ClosureSolver::extrapolated_configuration(const Configuration& before, const Configuration& at) {
   const std::vector<double> scale = scales(m_, at.q);
   double largest = 0;
   std::vector<double> way;
@@ -322,7 +322,7 @@ std::optional<Configuration> Closure::beyond(const Configuration& before, const 
   Configuration next = at;
   for (std::size_t i = 0; i < at.q.size(); ++i) next.q[i] = next.q[i] + exact(stride / largest * way[i]);
   try {
-    if (settle(next, std::vector<bool>(m_.q.size(), true))) return next;
+    if (solve_constraints(next, std::vector<bool>(m_.q.size(), true))) return next;
   } catch (const std::exception&) {  // outside the domain of a function
   }
   return std::nullopt;
@@ -330,10 +330,10 @@ std::optional<Configuration> Closure::beyond(const Configuration& before, const 
 
 // Newton's method with least-norm steps, on rows that are clearly independent here. Rows that look dependent must hold
 // at the end.
-bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
+bool ClosureSolver::solve_constraints(Configuration& at, const std::vector<bool>& moves) {
   const std::size_t n = m_.q.size(), count = psi_.size();
   const std::vector<double> scale = scales(m_, at.q);
-  const std::vector<Turn> none(count, Turn::last);
+  const std::vector<RowPriority> none(count, RowPriority::last);
   std::vector<Ref> roots = psi_;
   roots.insert(roots.end(), gradient_.begin(), gradient_.end());
   for (int step = 0; step < steps; ++step) {
@@ -344,32 +344,32 @@ bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
         if (moves[i]) rows[k][i] = v[count + k * n + i] * exact(scale[i]);
       }
     }
-    const Selection chosen = selected<double>(rounded(rows), none, dependent, 1e-25, 1.000001);
+    const RowSelection chosen = select_rows<double>(rounded(rows), none, dependent, 1e-25, 1.000001);
     cl_R size = 0, rest = 0;
-    for (const std::size_t k : chosen.kept) size = cln::max(size, cln::abs(v[k]));
+    for (const std::size_t k : chosen.selected) size = cln::max(size, cln::abs(v[k]));
     for (const std::size_t k : chosen.rest) {
-      if (cln::abs(v[k]) > rest) rest = cln::abs(v[k]), gap_at_ = bound_[k];
+      if (cln::abs(v[k]) > rest) rest = cln::abs(v[k]), inconsistent_constraint_ = bound_[k];
     }
     if (size < small(closed_digits)) {
-      gap_ = rest > small(closed_digits - 8) ? cln::double_approx(rest) : 0;
-      if (gap_ != 0) return false;
+      inconsistency_ = rest > small(closed_digits - 8) ? cln::double_approx(rest) : 0;
+      if (inconsistency_ != 0) return false;
       // Evaluates all other expressions used here: throws if one has no value.
-      for (const auto* others : {&all_, &rates_, &along_}) values(*others, at);
+      for (const auto* others : {&all_, &rates_, &reaction_directions_}) values(*others, at);
       return true;
     }
-    const std::size_t r = chosen.kept.size();
+    const std::size_t r = chosen.selected.size();
     std::vector<std::vector<cl_R>> gram(r, std::vector<cl_R>(r));
     std::vector<cl_R> right, y;
     for (std::size_t a = 0; a < r; ++a) {
-      for (std::size_t b = 0; b < r; ++b) gram[a][b] = dot(rows[chosen.kept[a]], rows[chosen.kept[b]]);
-      right.push_back(v[chosen.kept[a]]);
+      for (std::size_t b = 0; b < r; ++b) gram[a][b] = dot(rows[chosen.selected[a]], rows[chosen.selected[b]]);
+      right.push_back(v[chosen.selected[a]]);
     }
     if (!solve_small(gram, right, y)) return false;
     Row move(n, exact(0));
     cl_R longest = 0;
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t a = 0; a < r; ++a) {
-        const cl_R& slope = rows[chosen.kept[a]][i];
+        const cl_R& slope = rows[chosen.selected[a]][i];
         if (!cln::zerop(slope)) move[i] = move[i] - slope * y[a];
       }
       longest = cln::max(longest, cln::abs(move[i]));

@@ -20,44 +20,44 @@ struct Configuration {
 };
 
 /// The order in which rows are considered.
-enum class Turn { always, first, last };
+enum class RowPriority { always, first, last };
 
 /// Independent rows of a matrix, chosen one after another. Each step takes the row with the largest part outside the
 /// span of the rows chosen before, relative to its length. Rows of higher priority are considered first. Ties go to the
 /// first row.
-struct Selection {
-  std::vector<std::size_t> kept, rest;  // ascending
+struct RowSelection {
+  std::vector<std::size_t> selected, rest;  // ascending
 };
-Selection select_independent(const std::vector<Row>& rows, const std::vector<Turn>& turns, const cln::cl_R& tolerance);
+RowSelection select_independent(const std::vector<Row>& rows, const std::vector<RowPriority>& priorities, const cln::cl_R& tolerance);
 
-class Closure {
+class ClosureSolver {
  public:
-  Closure(Mechanics& mechanics, Lowering& lower);
+  ClosureSolver(Mechanics& mechanics, Lowering& lower);
 
   /// Whether the constraints hold and are independent at the start of the default scene, in binary64. False is
   /// inconclusive.
   bool is_regular();
   /// The configuration at the start of the default scene. Values that the scene does not give follow from the
   /// constraints.
-  std::optional<Configuration> start();
+  std::optional<Configuration> start_configuration();
   /// Another configuration nearby; with other parameter values if `other_parameters` is set.
-  std::optional<Configuration> near(const Configuration& from, std::uint64_t seed, bool other_parameters);
+  std::optional<Configuration> nearby_configuration(const Configuration& from, std::uint64_t seed, bool other_parameters);
   /// The next configuration beyond `at` in the direction from `before` to `at`.
-  std::optional<Configuration> beyond(const Configuration& before, const Configuration& at);
+  std::optional<Configuration> extrapolated_configuration(const Configuration& before, const Configuration& at);
   /// d psi/d q of all constraints (coefficients of velocities) by all coordinates.
-  std::vector<Row> rows(const Configuration& at) const;
+  std::vector<Row> jacobian_rows(const Configuration& at) const;
   /// b of all constraints: d psi/d t at fixed q, or the constant part of a velocity constraint.
   std::vector<cln::cl_R> rates(const Configuration& at) const { return values(rates_, at); }
   std::vector<cln::cl_R> values(const std::vector<Ref>& expressions, const Configuration& at) const;
 
   /// After a failed search: the residual of an equation that looks redundant but does not hold, and its constraint. The
   /// residual is 0 if the search failed for another reason.
-  double gap() const { return gap_; }
-  std::uint32_t gap_at() const { return gap_at_; }
+  double inconsistency() const { return inconsistency_; }
+  std::uint32_t inconsistent_constraint() const { return inconsistent_constraint_; }
 
  private:
   Configuration given(std::vector<bool>& open) const;
-  bool settle(Configuration& at, const std::vector<bool>& moves);
+  bool solve_constraints(Configuration& at, const std::vector<bool>& moves);
   void set_parameters(Configuration& at, std::uint64_t seed) const;
   double uniform(std::uint64_t& state) const;
 
@@ -68,9 +68,9 @@ class Closure {
   std::vector<Ref> gradient_;         // of these
   std::vector<Ref> all_;              // rows of all constraints
   std::vector<Ref> rates_;
-  std::vector<Ref> along_;  // directions of joint forces and moments
-  double gap_ = 0;
-  std::uint32_t gap_at_ = 0;
+  std::vector<Ref> reaction_directions_;  // directions of joint forces and moments
+  double inconsistency_ = 0;
+  std::uint32_t inconsistent_constraint_ = 0;
 };
 
 }  // namespace eomgen::mechanics

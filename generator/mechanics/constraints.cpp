@@ -57,7 +57,7 @@ void refuse_repeated(const Mechanics& m, const Constraint& constraint, Ref reduc
 }
 
 void add_position_form(const Mechanics& m, Lowering& lower, Constraint& result) {
-  result.psi = lower.scalar(result.written);
+  result.psi = lower.scalar(result.model_expression);
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {
     result.gradient.push_back(symbolic::partial_derivative(*m.dag, {SymbolKind::coordinate, i, 0})(result.psi));
   }
@@ -69,7 +69,7 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
   Dag& dag = *m.dag;
   result.kind = ConstraintKind::velocity;
   result.psi = dag.zero();
-  const Ref e = lower.scalar(result.written);
+  const Ref e = lower.scalar(result.model_expression);
   std::map<Symbol, Ref> zero;
   for (std::uint32_t i = 0; i < m.q.size(); ++i) zero[{SymbolKind::coordinate, i, 1}] = dag.zero();
   symbolic::Substitution at_rest(dag, zero);
@@ -82,7 +82,7 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
   }
   if (!vanishes(dag, curvature)) {
     throw Error(
-        "mechanics", m.model->where(m.model->arena[result.written].span),
+        "mechanics", m.model->where(m.model->arena[result.model_expression].span),
         "constraint '" + result.label + "' is not linear in the velocities",
         "write an expression that is linear in them: d'Alembert's principle gives the force of linear constraints "
         "only");
@@ -90,7 +90,7 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
   for (Ref& slope : result.gradient) slope = at_rest(slope);  // velocities that cancel may still occur in it
   result.rate = at_rest(e);
   if (!vanishes(dag, {dag.sub(e, m.velocity_form(result))})) {
-    throw Error("mechanics", m.model->where(m.model->arena[result.written].span),
+    throw Error("mechanics", m.model->where(m.model->arena[result.model_expression].span),
                 "constraint '" + result.label + "' divides by a velocity",
                 "expand it to the form f*x_dot + g*y_dot + h");
   }
@@ -130,7 +130,7 @@ void refuse_power(const Mechanics& m, const Constraint& c) {
     slopes.push_back(c.gradient[i]);
   }
   if (!is_degenerate(*m.dag, c.psi, of, slopes)) return;
-  throw Error("mechanics", m.model->where(m.model->arena[c.written].span),
+  throw Error("mechanics", m.model->where(m.model->arena[c.model_expression].span),
               "constraint '" + c.label +
                   "' is a square or a higher power: its gradient vanishes where it holds, so that it has no force",
               "write the base of the power (r - L in place of r^2 - 2*L*r + L^2), or one equation for each "
@@ -138,12 +138,12 @@ void refuse_power(const Mechanics& m, const Constraint& c) {
 }
 
 // One equation of a vector or of rolling may be trivial, such as a distance from the plane that no coordinate changes.
-bool may_hold(const model::Constraint& constraint) {
+bool may_be_identity(const model::Constraint& constraint) {
   const bool several = constraint.joint || constraint.rolling || constraint.psi.size() > (constraint.velocity ? 1 : 2);
   return several && !constraint.friction && !constraint.unilateral;
 }
 
-bool says_nothing(const Mechanics& m, const Constraint& c) {
+bool is_identity(const Mechanics& m, const Constraint& c) {
   if (c.holonomic()) return holds_identically(*m.dag, c.psi);
   std::vector<Ref> all = c.gradient;
   all.push_back(c.rate);
@@ -151,8 +151,8 @@ bool says_nothing(const Mechanics& m, const Constraint& c) {
 }
 
 /// A constraint is superfluous if all its equations are identities.
-void require_something(const Mechanics& m, const model::Constraint& constraint) {
-  const auto idle = [&](const Constraint& c) { return c.name != constraint.name || c.need == Need::identity; };
+void require_nontrivial(const Mechanics& m, const model::Constraint& constraint) {
+  const auto idle = [&](const Constraint& c) { return c.name != constraint.name || c.redundancy == Redundancy::identity; };
   if (constraint.joint || !std::all_of(m.constraints.begin(), m.constraints.end(), idle)) return;
   throw Error("mechanics", m.model->where(constraint.span),
               "constraint '" + constraint.name + "' holds for all values of the coordinates",
@@ -166,9 +166,9 @@ const model::Constraint& model_constraint(const Mechanics& m, const Constraint& 
   return *std::find_if(m.model->constraints.begin(), m.model->constraints.end(), same);
 }
 
-bool may_repeat(const Mechanics& m, const Constraint& constraint) {
+bool may_be_redundant(const Mechanics& m, const Constraint& constraint) {
   const model::Constraint& whole = model_constraint(m, constraint);
-  return whole.unit || may_hold(whole);
+  return whole.unit || may_be_identity(whole);
 }
 
 void add_constraints(Mechanics& m, Lowering& lower) {
@@ -180,7 +180,7 @@ void add_constraints(Mechanics& m, Lowering& lower) {
       const std::size_t part =
           constraint.is_rolling_with_friction() ? 3 : k + 1;  // the normal comes third, as without friction
       result.label = constraint.reaction_count() > 1 ? constraint.name + "." + std::to_string(part) : constraint.name;
-      result.written = constraint.psi[k];
+      result.model_expression = constraint.psi[k];
       result.unilateral = constraint.unilateral;
       const bool velocities = constraint.is_velocity_equation(k);
       if (velocities) {
@@ -188,8 +188,8 @@ void add_constraints(Mechanics& m, Lowering& lower) {
       } else {
         add_position_form(m, lower, result);
       }
-      if (may_hold(constraint) && says_nothing(m, result)) result.need = Need::identity;
-      if (result.need == Need::independent && vanishes(*m.dag, result.gradient)) {
+      if (may_be_identity(constraint) && is_identity(m, result)) result.redundancy = Redundancy::identity;
+      if (result.redundancy == Redundancy::independent && vanishes(*m.dag, result.gradient)) {
         throw Error(
             "mechanics", m.model->where(constraint.span),
             "constraint '" + result.label + "' does not depend on any " + (velocities ? "velocity" : "coordinate"),
@@ -198,12 +198,12 @@ void add_constraints(Mechanics& m, Lowering& lower) {
             : velocities ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
                          : "a constraint relates coordinates, such as holonomic = \"R - d\"");
       }
-      if (result.need == Need::independent && !velocities && !constraint.joint && !constraint.rolling && !constraint.unit)
+      if (result.redundancy == Redundancy::independent && !velocities && !constraint.joint && !constraint.rolling && !constraint.unit)
         refuse_power(m, result);
-      result.determined = result.need == Need::independent;
+      result.determined = result.redundancy == Redundancy::independent;
       m.constraints.push_back(std::move(result));
     }
-    require_something(m, constraint);
+    require_nontrivial(m, constraint);
   }
 }
 
@@ -213,11 +213,11 @@ void eliminate_coordinates(Mechanics& m) {
   for (bool changed = true; changed;) {
     changed = false;
     for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-      if (used[k] || !m.constraints[k].holonomic() || m.constraints[k].unilateral || !m.holds(k)) continue;
+      if (used[k] || !m.constraints[k].holonomic() || m.constraints[k].unilateral || !m.is_independent(k)) continue;
       const Ref reduced = with_fixed(m, m.constraints[k].psi);
       if (coordinates_in(*m.dag, reduced).empty()) {
-        if (may_repeat(m, m.constraints[k]) && holds_identically(*m.dag, reduced))
-          m.constraints[k].need = Need::redundant;
+        if (may_be_redundant(m, m.constraints[k]) && holds_identically(*m.dag, reduced))
+          m.constraints[k].redundancy = Redundancy::redundant;
         else
           refuse_repeated(m, m.constraints[k], reduced);
         continue;
@@ -234,7 +234,7 @@ void eliminate_coordinates(Mechanics& m) {
     if (!m.is_eliminated(i)) m.free.push_back(i);
   }
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (!used[k] && m.holds(k)) m.active.push_back(k);
+    if (!used[k] && m.is_independent(k)) m.active.push_back(k);
   }
 }
 

@@ -76,7 +76,7 @@ class ContactReader {
       for (std::uint32_t i = 0; i < m_.q.size(); ++i)
         slopes.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1})(w));
       contact_.directions.push_back(t);
-      contact_.numbers.push_back(a);
+      contact_.tangent_indices.push_back(a);
       contact_.slip.push_back(w);
       contact_.tangents.push_back(std::move(slopes));
     }
@@ -237,14 +237,14 @@ class ContactReader {
   Contact contact_;
 };
 
-[[noreturn]] void refuse_more(const Mechanics& m, const model::Span& span) {
+[[noreturn]] void throw_too_many_contacts(const Mechanics& m, const model::Span& span) {
   throw Error("mechanics", m.model->where(span), "this is the fourth contact with friction or that can open",
               "a model may have three: each one multiplies the number of modes");
 }
 
 }  // namespace
 
-const model::Friction& law_of(const Mechanics& m, const Contact& contact) {
+const model::Friction& friction_law_of(const Mechanics& m, const Contact& contact) {
   for (const model::Constraint& constraint : m.model->constraints) {
     if (constraint.name == contact.name && constraint.friction) return *constraint.friction;
   }
@@ -277,10 +277,10 @@ void check_law(const Mechanics& m, const Contact& contact) {
   const Ref mu_d = contact.dynamic_coefficient;
   const std::vector<cln::cl_R> mu =
       known_values(m, {contact.width ? mu_d : contact.static_coefficient, mu_d},
-                   "a coefficient of friction of '" + contact.name + "'", law_of(m, contact).span);
+                   "a coefficient of friction of '" + contact.name + "'", friction_law_of(m, contact).span);
   const bool negative = !mu.empty() && (cln::minusp(mu[0]) || cln::minusp(mu[1]));
   if (!mu.empty() && (negative || mu[0] < mu[1])) {
-    throw Error("mechanics", m.model->where(law_of(m, contact).span),
+    throw Error("mechanics", m.model->where(friction_law_of(m, contact).span),
                 negative ? "a coefficient of friction of '" + contact.name + "' is negative"
                          : "the static coefficient of friction of '" + contact.name + "' is less than the dynamic one",
                 negative ? "friction opposes slip: give coefficients of 0 or more"
@@ -288,9 +288,9 @@ void check_law(const Mechanics& m, const Contact& contact) {
   }
   if (!contact.width) return;
   const std::vector<cln::cl_R> width =
-      known_values(m, {*contact.width}, "the width of the friction of '" + contact.name + "'", law_of(m, contact).span);
+      known_values(m, {*contact.width}, "the width of the friction of '" + contact.name + "'", friction_law_of(m, contact).span);
   if (width.empty() || cln::plusp(width[0])) return;
-  throw Error("mechanics", m.model->where(law_of(m, contact).span),
+  throw Error("mechanics", m.model->where(friction_law_of(m, contact).span),
               "the width of the friction of '" + contact.name + "' is not positive",
               "give a slip speed above 0, small beside those of the motion; or Coulomb's law, which has no width");
 }
@@ -311,14 +311,14 @@ void check_restitution(const Mechanics& m, const Contact& contact) {
 }  // namespace
 
 Ref rolling_friction(const Mechanics& m, const Contact& contact, std::uint32_t tangent) {
-  const auto found = std::find(contact.numbers.begin(), contact.numbers.end(), tangent);
-  if (found == contact.numbers.end()) return m.dag->zero();
+  const auto found = std::find(contact.tangent_indices.begin(), contact.tangent_indices.end(), tangent);
+  if (found == contact.tangent_indices.end()) return m.dag->zero();
   return m.dag->symbol(
-      {SymbolKind::friction, contact.first + static_cast<std::uint32_t>(found - contact.numbers.begin()), 0});
+      {SymbolKind::friction, contact.first + static_cast<std::uint32_t>(found - contact.tangent_indices.begin()), 0});
 }
 
-void drop_held_directions(Mechanics& m) {
-  symbolic::Substitution imposed = impose(m);
+void drop_blocked_directions(Mechanics& m) {
+  symbolic::Substitution imposed = constraint_substitution(m);
   std::uint32_t first = 0;
   for (Contact& contact : m.contacts) {
     for (std::size_t a = contact.directions.size(); a-- > 0 && contact.directions.size() == 2;) {
@@ -327,14 +327,14 @@ void drop_held_directions(Mechanics& m) {
         continue;  // a plane body has no slip across its plane
       const auto drop = [a](auto& list) { list.erase(list.begin() + static_cast<std::ptrdiff_t>(a)); };
       drop(contact.directions), drop(contact.tangents), drop(contact.slip);
-      if (contact.body_contact) drop(contact.numbers);
+      if (contact.body_contact) drop(contact.tangent_indices);
     }
     contact.first = first;
     first += static_cast<std::uint32_t>(contact.dimensions());
   }
 }
 
-void check_coefficients(const Mechanics& m) {
+void check_friction_coefficients(const Mechanics& m) {
   for (const Contact& contact : m.contacts) {
     if (contact.dimensions() > 0) check_law(m, contact);
     if (contact.unilateral) check_restitution(m, contact);
@@ -346,12 +346,12 @@ void add_contacts(Mechanics& m, Lowering& lower) {
   for (const model::Constraint& constraint : m.model->constraints) {
     if (!constraint.friction && !constraint.unilateral) continue;
     if (m.contacts.size() == eom::max_contacts)
-      refuse_more(m, constraint.friction ? constraint.friction->span : constraint.span);
+      throw_too_many_contacts(m, constraint.friction ? constraint.friction->span : constraint.span);
     reader.read(constraint);
   }
   for (const model::Force& force : m.model->forces) {
     if (!force.dry) continue;
-    if (m.contacts.size() == eom::max_contacts) refuse_more(m, force.dry->law.span);
+    if (m.contacts.size() == eom::max_contacts) throw_too_many_contacts(m, force.dry->law.span);
     reader.read(force, *force.dry);
   }
 }

@@ -35,51 +35,51 @@ bool has_friction(const Mechanics& m, std::uint32_t k) {
 }
 
 SourceLocation where(const Mechanics& m, std::uint32_t k) {
-  return m.model->where(m.model->arena[m.constraints[k].written].span);
+  return m.model->where(m.model->arena[m.constraints[k].model_expression].span);
 }
 
 /// Rows of holonomic and velocity constraints that always hold, for all coordinates.
-struct Bound {
+struct ConstraintRows {
   std::vector<std::uint32_t> constraints;
-  std::vector<Turn> turns;  // joints are dropped first; constraints with friction or that fix a coordinate never
+  std::vector<RowPriority> priorities;  // joints are dropped first; constraints with friction or that fix a coordinate never
 };
 
-Bound bound(const Mechanics& m) {
-  Bound result;
+ConstraintRows constraint_rows(const Mechanics& m) {
+  ConstraintRows result;
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (m.constraints[k].unilateral || !m.holds(k)) continue;
+    if (m.constraints[k].unilateral || !m.is_independent(k)) continue;
     result.constraints.push_back(k);
-    result.turns.push_back(fixes(m, k) || has_friction(m, k) ? Turn::always
-                           : of_joint(m, k)                  ? Turn::last
-                                                             : Turn::first);
+    result.priorities.push_back(fixes(m, k) || has_friction(m, k) ? RowPriority::always
+                           : of_joint(m, k)                  ? RowPriority::last
+                                                             : RowPriority::first);
   }
   return result;
 }
 
-std::vector<Row> rows_of(const Closure& closure, const Bound& of, const Configuration& at) {
-  const std::vector<Row> all = closure.rows(at);
+std::vector<Row> rows_of(const ClosureSolver& closure, const ConstraintRows& of, const Configuration& at) {
+  const std::vector<Row> all = closure.jacobian_rows(at);
   std::vector<Row> rows;
   for (const std::uint32_t k : of.constraints) rows.push_back(all[k]);
   return rows;
 }
 
 /// Whether the other rows lie in the span of the selected rows, which are independent, at this configuration too.
-bool holds_at(const std::vector<Row>& rows, const Selection& chosen) {
-  std::vector<Turn> turns(rows.size(), Turn::last);
-  for (const std::size_t k : chosen.kept) turns[k] = Turn::always;
-  return select_independent(rows, turns, small(dependent_digits)).kept == chosen.kept;
+bool holds_at(const std::vector<Row>& rows, const RowSelection& chosen) {
+  std::vector<RowPriority> priorities(rows.size(), RowPriority::last);
+  for (const std::size_t k : chosen.selected) priorities[k] = RowPriority::always;
+  return select_independent(rows, priorities, small(dependent_digits)).selected == chosen.selected;
 }
 
-[[noreturn]] void refuse_inexact(const Mechanics& m, const Closure& closure) {
+[[noreturn]] void throw_inexact(const Mechanics& m, const ClosureSolver& closure) {
   throw Error(
-      "mechanics", where(m, closure.gap_at()),
+      "mechanics", where(m, closure.inconsistent_constraint()),
       fmt::format("equation '{}' seems to follow from the other constraints, but is off by {:.2g} where they hold",
-                  m.constraints[closure.gap_at()].label, closure.gap()),
+                  m.constraints[closure.inconsistent_constraint()].label, closure.inconsistency()),
       "a loop with redundant joints closes only if the dimensions are exact: write sqrt(3)/2 or cos(pi/6) instead of "
       "decimals");
 }
 
-[[noreturn]] void refuse_special(const Mechanics& m, std::uint32_t k) {
+[[noreturn]] void throw_special_parameters(const Mechanics& m, std::uint32_t k) {
   throw Error("mechanics", where(m, k),
               fmt::format("equation '{}' follows from the other constraints for these values of the parameters only",
                           m.constraints[k].label),
@@ -87,28 +87,28 @@ bool holds_at(const std::vector<Row>& rows, const Selection& chosen) {
               "parameter for both");
 }
 
-[[noreturn]] void refuse_open(const Mechanics& m, const Closure& closure) {
-  const bool known = closure.gap() > 0;
-  const std::uint32_t k = known ? closure.gap_at() : m.active.back();
+[[noreturn]] void throw_no_configuration(const Mechanics& m, const ClosureSolver& closure) {
+  const bool known = closure.inconsistency() > 0;
+  const std::uint32_t k = known ? closure.inconsistent_constraint() : m.active.back();
   throw Error(
       "mechanics", where(m, k),
       fmt::format(
           "there are more constraints than coordinates, and no configuration is found in which all hold{}",
-          known ? fmt::format(": '{}' is off by {:.2g} where the others do", m.constraints[k].label, closure.gap())
+          known ? fmt::format(": '{}' is off by {:.2g} where the others do", m.constraints[k].label, closure.inconsistency())
                 : ""),
       "give the default scene a start or a `guess` near one, if constraints repeat one another; else remove one");
 }
 
 /// Prescribed motion must be the same in all equations that repeat one another.
-void require_same_rates(const Mechanics& m, const Closure& closure, const Bound& of, const Selection& chosen,
+void require_same_rates(const Mechanics& m, const ClosureSolver& closure, const ConstraintRows& of, const RowSelection& chosen,
                         const Configuration& at) {
   std::vector<Row> rows = rows_of(closure, of, at);
   const std::vector<cl_R> rates = closure.rates(at);
-  std::vector<Turn> turns(rows.size(), Turn::last);
-  for (const std::size_t k : chosen.kept) turns[k] = Turn::always;
+  std::vector<RowPriority> priorities(rows.size(), RowPriority::last);
+  for (const std::size_t k : chosen.selected) priorities[k] = RowPriority::always;
   for (std::size_t k = 0; k < rows.size(); ++k) rows[k].push_back(rates[of.constraints[k]]);
-  for (const std::size_t k : select_independent(rows, turns, small(dependent_digits)).kept) {
-    if (std::find(chosen.kept.begin(), chosen.kept.end(), k) != chosen.kept.end()) continue;
+  for (const std::size_t k : select_independent(rows, priorities, small(dependent_digits)).selected) {
+    if (std::find(chosen.selected.begin(), chosen.selected.end(), k) != chosen.selected.end()) continue;
     const std::uint32_t constraint = of.constraints[k];
     throw Error(
         "mechanics", where(m, constraint),
@@ -121,14 +121,14 @@ void require_same_rates(const Mechanics& m, const Closure& closure, const Bound&
 
 /// Whether d . u is the same for all multipliers u with the same forces, so that d is a combination of the columns of
 /// A.
-class Determined {
+class DeterminacyTest {
  public:
-  Determined(const std::vector<Row>& rows, std::size_t coordinates) {
+  DeterminacyTest(const std::vector<Row>& rows, std::size_t coordinates) {
     for (std::size_t i = 0; i < coordinates; ++i) {
       Row column;
       for (const Row& row : rows) column.push_back(row[i]);
       const cl_R size = length(column);
-      Row left = beside(beside(column));  // twice, for accuracy
+      Row left = orthogonal_part(orthogonal_part(column));  // twice, for accuracy
       const cl_R rest = length(left);
       if (cln::zerop(size) || rest < size * small(dependent_digits)) continue;
       for (cl_R& x : left) x = x / rest;
@@ -139,7 +139,7 @@ class Determined {
     const cl_R size = length(component);
     // Entries are directions and lever arms. Entries this many digits smaller are zeros of a configuration that was
     // computed numerically.
-    return size < small(dependent_digits) || length(beside(component)) < size * small(dependent_digits);
+    return size < small(dependent_digits) || length(orthogonal_part(component)) < size * small(dependent_digits);
   }
 
  private:
@@ -148,7 +148,7 @@ class Determined {
     for (const cl_R& x : row) square = square + x * x;
     return cln::sqrt(square);
   }
-  Row beside(Row row) const {
+  Row orthogonal_part(Row row) const {
     for (const Row& e : basis_) {
       cl_R part = 0;
       for (std::size_t i = 0; i < row.size(); ++i) part = part + e[i] * row[i];
@@ -160,9 +160,9 @@ class Determined {
   std::vector<Row> basis_;  // orthonormal
 };
 
-void find_determined(Mechanics& m, const Closure& closure, const Configuration& at) {
-  const std::vector<Row> rows = closure.rows(at);
-  const Determined determined(rows, m.q.size());
+void find_determined(Mechanics& m, const ClosureSolver& closure, const Configuration& at) {
+  const std::vector<Row> rows = closure.jacobian_rows(at);
+  const DeterminacyTest determined(rows, m.q.size());
   for (JointReaction& joint : m.joints) {
     for (std::size_t j = 0; j < joint.along.size(); ++j) {
       const std::vector<cl_R> parts = closure.values(joint.along[j], at);
@@ -192,25 +192,25 @@ void require_normal_forces(const Mechanics& m) {
   }
 }
 
-bool is_repeated(const Constraint& c) { return c.need == Need::redundant; }
+bool is_repeated(const Constraint& c) { return c.redundancy == Redundancy::redundant; }
 
 /// Configurations near the start. The start itself may be singular; the rank elsewhere is that of the mechanism.
-std::vector<Configuration> around(Closure& closure, const Configuration& start) {
+std::vector<Configuration> nearby_configurations(ClosureSolver& closure, const Configuration& start) {
   std::vector<Configuration> points;
   for (std::uint64_t seed = 1; seed <= 8 && points.size() < 3; ++seed) {
-    if (auto found = closure.near(start, seed, false)) points.push_back(std::move(*found));
+    if (auto found = closure.nearby_configuration(start, seed, false)) points.push_back(std::move(*found));
   }
   return points;
 }
 
 /// Configurations along the motion from the start, in both directions: once around a loop.
-std::vector<Configuration> on_the_way(Closure& closure, const Configuration& start, const Configuration& beside) {
+std::vector<Configuration> along_motion(ClosureSolver& closure, const Configuration& start, const Configuration& beside) {
   constexpr int strides = 14;
   std::vector<Configuration> way;
   for (const auto& [from, to] : {std::pair{start, beside}, std::pair{beside, start}}) {
     Configuration before = from, at = to;
     for (int k = 0; k < strides; ++k) {
-      std::optional<Configuration> next = closure.beyond(before, at);
+      std::optional<Configuration> next = closure.extrapolated_configuration(before, at);
       if (!next) break;
       before = std::move(at);
       at = *next;
@@ -242,7 +242,7 @@ double volume(const std::vector<Row>& rows, const std::vector<double>& usual, co
 
 /// An equation chosen at the start may become trivial at a configuration on the way (a length between aligned bars)
 /// where one of the dropped equations is not. The two are exchanged.
-void keep_on_the_way(const Bound& of, const std::vector<std::vector<Row>>& way, Selection& chosen) {
+void exchange_along_motion(const ConstraintRows& of, const std::vector<std::vector<Row>>& way, RowSelection& chosen) {
   constexpr double nearly_nothing = 0.2, plainly_better = 3;
   std::vector<double> usual(of.constraints.size(), 0);
   for (const std::vector<Row>& rows : way) {
@@ -253,13 +253,13 @@ void keep_on_the_way(const Bound& of, const std::vector<std::vector<Row>>& way, 
     }
   }
   for (std::size_t turn = 0; turn < of.constraints.size(); ++turn) {
-    std::vector<Selection> candidates{chosen};
-    for (std::size_t i = 0; i < chosen.kept.size(); ++i) {
+    std::vector<RowSelection> candidates{chosen};
+    for (std::size_t i = 0; i < chosen.selected.size(); ++i) {
       for (std::size_t j = 0; j < chosen.rest.size(); ++j) {
-        const Turn own = of.turns[chosen.kept[i]];
-        if (own == Turn::always || own != of.turns[chosen.rest[j]] || usual[chosen.rest[j]] == 0) continue;
-        Selection other = chosen;
-        std::swap(other.kept[i], other.rest[j]);
+        const RowPriority own = of.priorities[chosen.selected[i]];
+        if (own == RowPriority::always || own != of.priorities[chosen.rest[j]] || usual[chosen.rest[j]] == 0) continue;
+        RowSelection other = chosen;
+        std::swap(other.selected[i], other.rest[j]);
         candidates.push_back(std::move(other));
       }
     }
@@ -267,57 +267,57 @@ void keep_on_the_way(const Bound& of, const std::vector<std::vector<Row>>& way, 
     std::vector<double> worst(candidates.size(), 1);
     for (const std::vector<Row>& rows : way) {
       std::vector<double> here;
-      for (const Selection& candidate : candidates) here.push_back(volume(rows, usual, candidate.kept));
+      for (const RowSelection& candidate : candidates) here.push_back(volume(rows, usual, candidate.selected));
       const double best = *std::max_element(here.begin(), here.end());
       for (std::size_t c = 0; c < candidates.size() && best > 0; ++c) worst[c] = std::min(worst[c], here[c] / best);
     }
     const std::size_t best = static_cast<std::size_t>(std::max_element(worst.begin(), worst.end()) - worst.begin());
     if (worst[0] > nearly_nothing || worst[best] < plainly_better * worst[0]) return;
     chosen = candidates[best];
-    std::sort(chosen.kept.begin(), chosen.kept.end());
+    std::sort(chosen.selected.begin(), chosen.selected.end());
     std::sort(chosen.rest.begin(), chosen.rest.end());
   }
 }
 
 // Drops the equations of a loop that are redundant at every configuration and for all parameters.
-void drop_at(Mechanics& m, Closure& closure, const Configuration& start, const std::vector<Configuration>& points) {
-  const Bound of = bound(m);
-  Selection chosen;
+void drop_redundant_at(Mechanics& m, ClosureSolver& closure, const Configuration& start, const std::vector<Configuration>& points) {
+  const ConstraintRows of = constraint_rows(m);
+  RowSelection chosen;
   for (const Configuration& at : points) {
-    Selection here = select_independent(rows_of(closure, of, at), of.turns, small(dependent_digits));
-    if (here.kept.size() > chosen.kept.size()) chosen = std::move(here);
+    RowSelection here = select_independent(rows_of(closure, of, at), of.priorities, small(dependent_digits));
+    if (here.selected.size() > chosen.selected.size()) chosen = std::move(here);
   }
   // Rows that are independent around the start may be dependent at it, while the same number of others is independent.
   const std::vector<Row> at_start = rows_of(closure, of, start);
-  const Selection there = select_independent(at_start, of.turns, small(dependent_digits));
-  if (there.kept.size() == chosen.kept.size() && !holds_at(at_start, chosen)) chosen = there;
+  const RowSelection there = select_independent(at_start, of.priorities, small(dependent_digits));
+  if (there.selected.size() == chosen.selected.size() && !holds_at(at_start, chosen)) chosen = there;
   std::erase_if(chosen.rest,
-                [&](std::size_t k) { return of.turns[k] == Turn::always; });  // the start of a run reports it
+                [&](std::size_t k) { return of.priorities[k] == RowPriority::always; });  // the start of a run reports it
   if (chosen.rest.empty()) return;
   std::vector<std::vector<Row>> way;
   for (const std::vector<Configuration>& some :
-       {std::vector{start}, points, on_the_way(closure, start, points.front())}) {
+       {std::vector{start}, points, along_motion(closure, start, points.front())}) {
     for (const Configuration& at : some) way.push_back(rows_of(closure, of, at));
   }
-  keep_on_the_way(of, way, chosen);
+  exchange_along_motion(of, way, chosen);
   std::size_t others = 0;
   for (std::uint64_t seed = 11; seed <= 16 && others < 2; ++seed) {
-    const std::optional<Configuration> found = closure.near(start, seed, true);
+    const std::optional<Configuration> found = closure.nearby_configuration(start, seed, true);
     if (!found) continue;
-    if (!holds_at(rows_of(closure, of, *found), chosen)) refuse_special(m, of.constraints[chosen.rest.front()]);
+    if (!holds_at(rows_of(closure, of, *found), chosen)) throw_special_parameters(m, of.constraints[chosen.rest.front()]);
     ++others;
   }
-  if (others == 0) refuse_special(m, closure.gap() > 0 ? closure.gap_at() : of.constraints[chosen.rest.front()]);
+  if (others == 0) throw_special_parameters(m, closure.inconsistency() > 0 ? closure.inconsistent_constraint() : of.constraints[chosen.rest.front()]);
   for (const Configuration& at : points) require_same_rates(m, closure, of, chosen, at);
   for (const std::size_t k : chosen.rest) {
-    m.constraints[of.constraints[k]].need = Need::redundant;
+    m.constraints[of.constraints[k]].redundancy = Redundancy::redundant;
     std::erase(m.active, of.constraints[k]);
   }
 }
 
-bool is_regular_at(const Mechanics& m, const Closure& closure, const Configuration& start) {
-  const Bound of = bound(m);
-  return select_independent(rows_of(closure, of, start), of.turns, small(dependent_digits)).rest.empty();
+bool is_regular_at(const Mechanics& m, const ClosureSolver& closure, const Configuration& start) {
+  const ConstraintRows of = constraint_rows(m);
+  return select_independent(rows_of(closure, of, start), of.priorities, small(dependent_digits)).rest.empty();
 }
 
 }  // namespace
@@ -326,20 +326,20 @@ void drop_dependent_equations(Mechanics& m, Lowering& lower) {
   const bool repeated = std::any_of(m.constraints.begin(), m.constraints.end(), is_repeated);
   const bool joints = std::any_of(m.active.begin(), m.active.end(), [&](std::uint32_t k) { return of_joint(m, k); });
   if (!repeated && !joints && m.active.size() < 2) return;
-  Closure closure(m, lower);
+  ClosureSolver closure(m, lower);
   if (!repeated && !joints && closure.is_regular()) return;
-  const std::optional<Configuration> start = closure.start();
+  const std::optional<Configuration> start = closure.start_configuration();
   if (!start) {
-    const bool exact = joints || m.freedom() <= 0;
-    if (exact && closure.gap() > 0 && closure.gap() < looks_redundant) refuse_inexact(m, closure);
-    if (m.freedom() < 0) refuse_open(m, closure);
+    const bool exact = joints || m.degrees_of_freedom() <= 0;
+    if (exact && closure.inconsistency() > 0 && closure.inconsistency() < looks_redundant) throw_inexact(m, closure);
+    if (m.degrees_of_freedom() < 0) throw_no_configuration(m, closure);
     return;  // no configuration: the start of a run reports it
   }
   const bool regular = is_regular_at(m, closure, *start);
   if (regular && !repeated) return;
-  const std::vector<Configuration> points = around(closure, *start);
+  const std::vector<Configuration> points = nearby_configurations(closure, *start);
   if (points.empty()) return;
-  if (!regular) drop_at(m, closure, *start, points);
+  if (!regular) drop_redundant_at(m, closure, *start, points);
   if (std::none_of(m.constraints.begin(), m.constraints.end(), is_repeated)) return;
   for (const Configuration& at : points) find_determined(m, closure, at);
   require_normal_forces(m);

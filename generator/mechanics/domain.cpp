@@ -53,13 +53,13 @@ std::string why_no_number(const Dag& dag, Ref expression) {
 
 }  // namespace
 
-void require_divisor(const Mechanics& m, Ref divisor, const model::Span& place) {
+void require_nonzero_divisor(const Mechanics& m, Ref divisor, const model::Span& place) {
   if (!is_zero_everywhere(*m.dag, divisor)) return;
   throw Error("mechanics", m.model->where(place), "this divides by 0, whatever the state and the time",
               "check the denominator; of a force between two points that these are not one and the same");
 }
 
-void require_direction(const Mechanics& m, Ref length, const model::Span& place) {
+void require_nonzero_length(const Mechanics& m, Ref length, const model::Span& place) {
   if (!is_zero_everywhere(*m.dag, length)) return;
   throw Error("mechanics", m.model->where(place),
               "this is the direction of a vector that is 0, whatever the state and the time",

@@ -8,10 +8,10 @@
 namespace eomgen::mechanics {
 
 /// Throws Error{stage "mechanics"} at `place` if `divisor` is identically 0.
-void require_divisor(const Mechanics& mechanics, Ref divisor, const model::Span& place);
+void require_nonzero_divisor(const Mechanics& mechanics, Ref divisor, const model::Span& place);
 
 /// The same for the length of a vector that is normalised.
-void require_direction(const Mechanics& mechanics, Ref length, const model::Span& place);
+void require_nonzero_length(const Mechanics& mechanics, Ref length, const model::Span& place);
 
 /// The same if `expression` is a function or a power without a value, or a root of 0 that has no derivative.
 void require_value(const Mechanics& mechanics, Ref expression, const model::Span& place);

@@ -15,7 +15,7 @@ constexpr std::uint8_t highest_order = 6;
 
 }  // namespace
 
-symbolic::Substitution impose(const Mechanics& m) {
+symbolic::Substitution constraint_substitution(const Mechanics& m) {
   std::map<Symbol, Ref> values;
   for (const FixedCoordinate& fixed : m.fixed) {
     values[{SymbolKind::coordinate, fixed.coordinate, 0}] = fixed.value;
@@ -97,7 +97,7 @@ Values closed_integrals(const Mechanics& m, std::vector<Ref>& integrands) {
 
 }  // namespace
 
-symbolic::Substitution write_out(const Mechanics& m) {
+symbolic::Substitution time_function_substitution(const Mechanics& m) {
   std::vector<Ref> integrands;
   Values values = written_functions(m, integrands);
   const Values closed = closed_integrals(m, integrands);
@@ -107,11 +107,11 @@ symbolic::Substitution write_out(const Mechanics& m) {
   return {*m.dag, std::move(values)};
 }
 
-std::vector<OpenIntegral> open_integrals(const Mechanics& m) {
+std::vector<NonelementaryIntegral> nonelementary_integrals(const Mechanics& m) {
   std::vector<Ref> integrands;
   written_functions(m, integrands);
   const Values closed = closed_integrals(m, integrands);
-  std::vector<OpenIntegral> states;
+  std::vector<NonelementaryIntegral> states;
   for (std::uint32_t i = 0; i < integrands.size(); ++i) {
     if (!closed.contains({SymbolKind::integral, i, 0})) states.push_back({i, integrands[i]});
   }

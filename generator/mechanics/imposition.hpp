@@ -8,17 +8,17 @@
 namespace eomgen::mechanics {
 
 /// The substitution q_c -> d(t), qdot_c -> d'(t), qddot_c -> d''(t). Functions of time stay named.
-symbolic::Substitution impose(const Mechanics& mechanics);
+symbolic::Substitution constraint_substitution(const Mechanics& mechanics);
 
 /// The substitution of functions of time (any derivative) by expressions in t, parameters and nonelementary integrals.
-symbolic::Substitution write_out(const Mechanics& mechanics);
+symbolic::Substitution time_function_substitution(const Mechanics& mechanics);
 
 /// An integral of a function of time that has no closed form. Its rate is an expression in t, parameters and such
 /// integrals.
-struct OpenIntegral {
+struct NonelementaryIntegral {
   std::uint32_t integral;  // index into Model::integrals
   Ref rate;
 };
-std::vector<OpenIntegral> open_integrals(const Mechanics& mechanics);
+std::vector<NonelementaryIntegral> nonelementary_integrals(const Mechanics& mechanics);
 
 }  // namespace eomgen::mechanics

@@ -33,89 +33,89 @@ class Classifier {
   explicit Classifier(Mechanics& m) : m_(m), dag_(*m.dag), space_(m) {
     for (const std::uint32_t k : m.active) {
       if (m.constraints[k].holonomic()) {
-        holonomic_.push_back(space_.of(m.constraints[k]));
-        eliminate(space_.written(m.constraints[k].psi), dag_.zero());
+        holonomic_.push_back(space_.one_form(m.constraints[k]));
+        eliminate(space_.impose_and_expand(m.constraints[k].psi), dag_.zero());
       } else {
         velocity_.push_back(k);
-        forms_.push_back(space_.of(m.constraints[k]));
+        forms_.push_back(space_.one_form(m.constraints[k]));
       }
     }
   }
 
   void run() {
-    std::vector<Vanishing> alone;
-    for (std::size_t k = 0; k < forms_.size(); ++k) alone.push_back(by_itself(k));
+    std::vector<ZeroTestResult> alone;
+    for (std::size_t k = 0; k < forms_.size(); ++k) alone.push_back(integrable_alone(k));
     for (std::size_t point = 0; point < space_.points() && !orbit_; ++point) {
       orbit_ = orbit(space_, system(forms_), point);
       if (orbit_) orbit_point_ = point;
     }
     for (std::size_t k = 0; k < forms_.size(); ++k) {
-      if (alone[k] == Vanishing::proven || alone[k] == Vanishing::at_points) seek(forms_[k], velocity_[k]);
+      if (alone[k] == ZeroTestResult::proven || alone[k] == ZeroTestResult::numerical) seek_integral(forms_[k], velocity_[k]);
     }
     // If the numerical test finds the integrals complete, no combinations are needed.
-    const bool more = !orbit_ || orbit_->integrable() > holonomic_.size() + m_.integrals.size();
+    const bool more = !orbit_ || orbit_->integrable_count() > holonomic_.size() + m_.integrals.size();
     const Echelon terminal = more ? last_derived(system(forms_)) : Echelon{};
     for (std::size_t k = 0; k < forms_.size(); ++k) {
       m_.classification[velocity_[k]] = verdict(k, alone[k], terminal);
     }
-    seek_together(terminal);
+    seek_joint_integrals(terminal);
     for (std::size_t k = 0; k < forms_.size(); ++k) note_integral(velocity_[k]);
   }
 
  private:
-  std::vector<Form> system(std::vector<Form> forms) const {
+  std::vector<OneForm> system(std::vector<OneForm> forms) const {
     forms.insert(forms.begin(), holonomic_.begin(), holonomic_.end());
     return forms;
   }
 
-  Vanishing all_vanish(const std::vector<Form>& forms) {
+  ZeroTestResult all_vanish(const std::vector<OneForm>& forms) {
     bool proven = true;
-    for (const Form& form : forms) {
+    for (const OneForm& form : forms) {
       for (const Ref entry : form) {
-        const Vanishing zero = space_.vanishing(entry);
-        if (zero == Vanishing::no || zero == Vanishing::unknown) return zero;
-        proven = proven && zero == Vanishing::proven;
+        const ZeroTestResult zero = space_.vanishing(entry);
+        if (zero == ZeroTestResult::no || zero == ZeroTestResult::unknown) return zero;
+        proven = proven && zero == ZeroTestResult::proven;
       }
     }
-    return proven ? Vanishing::proven : Vanishing::at_points;
+    return proven ? ZeroTestResult::proven : ZeroTestResult::numerical;
   }
 
   // Refuted numerically, or proven.
-  Vanishing by_itself(std::size_t k) {
-    const std::vector<Form> forms = system({forms_[k]});
+  ZeroTestResult integrable_alone(std::size_t k) {
+    const std::vector<OneForm> forms = system({forms_[k]});
     for (std::size_t point = 0; point < space_.points(); ++point) {
-      if (fails_frobenius(space_, forms, point).value_or(false)) return Vanishing::no;
+      if (fails_frobenius(space_, forms, point).value_or(false)) return ZeroTestResult::no;
     }
     return frobenius(forms);
   }
 
-  Vanishing frobenius(std::vector<Form> forms) {
+  ZeroTestResult frobenius(std::vector<OneForm> forms) {
     const Echelon rows = space_.echelon(std::move(forms));
-    const Vanishing result = all_vanish(space_.curvature(rows));
-    return result == Vanishing::proven && !rows.exact ? Vanishing::at_points : result;
+    const ZeroTestResult result = all_vanish(space_.curvature(rows));
+    return result == ZeroTestResult::proven && !rows.exact ? ZeroTestResult::numerical : result;
   }
 
   /// The largest integrable system among the combinations of the forms: the end of the derived flag, whose curvature
   /// vanishes. No rows if the effort is used up.
-  Echelon last_derived(std::vector<Form> forms) {
+  Echelon last_derived(std::vector<OneForm> forms) {
     while (true) {
       Echelon rows = space_.echelon(std::move(forms));
-      if (space_.spent()) return {};
-      const std::vector<Form> curvature = space_.curvature(rows);
+      if (space_.is_effort_spent()) return {};
+      const std::vector<OneForm> curvature = space_.curvature(rows);
       const std::size_t count = rows.rows.size();
-      std::vector<Form> conditions;  // on the coefficients of a combination
+      std::vector<OneForm> conditions;  // on the coefficients of a combination
       for (std::size_t pair = 0; !curvature.empty() && pair < curvature[0].size(); ++pair) {
         conditions.emplace_back();
         for (std::size_t k = 0; k < count; ++k) conditions.back().push_back(curvature[k][pair]);
       }
       const Echelon bound = space_.echelon(std::move(conditions));
-      if (space_.spent()) return {};
+      if (space_.is_effort_spent()) return {};
       rows.exact = rows.exact && bound.exact;
       if (bound.rows.empty()) return rows;
       forms.clear();
       for (std::size_t k = 0; k < count; ++k) {
         if (std::find(bound.pivots.begin(), bound.pivots.end(), k) != bound.pivots.end()) continue;
-        Form sum = rows.rows[k];
+        OneForm sum = rows.rows[k];
         for (std::size_t row = 0; row < bound.rows.size(); ++row) {
           for (std::size_t i = 0; i < sum.size(); ++i) {
             const Ref part = dag_.mul(bound.rows[row][k], rows.rows[bound.pivots[row]][i]);
@@ -128,10 +128,10 @@ class Classifier {
   }
 
   bool within(std::size_t k, const Echelon& rows) {
-    if (orbit_) return orbit_->keeps(space_.values(forms_[k], orbit_point_));
-    const Form& form = forms_[k];
-    const Vanishing rest = all_vanish({space_.reduced(form, rows)});
-    return rest == Vanishing::proven || rest == Vanishing::at_points;
+    if (orbit_) return orbit_->is_integrable(space_.values(forms_[k], orbit_point_));
+    const OneForm& form = forms_[k];
+    const ZeroTestResult rest = all_vanish({space_.reduce(form, rows)});
+    return rest == ZeroTestResult::proven || rest == ZeroTestResult::numerical;
   }
 
   std::string others_in(std::size_t k, const Echelon& terminal) {
@@ -143,29 +143,29 @@ class Classifier {
     return text;
   }
 
-  Classification verdict(std::size_t k, Vanishing alone, const Echelon& terminal) {
+  ConstraintClassification verdict(std::size_t k, ZeroTestResult alone, const Echelon& terminal) {
     switch (alone) {
-      case Vanishing::proven: return {Integrable::yes, "Frobenius' condition holds"};
-      case Vanishing::at_points:
-        return {Integrable::unknown,
+      case ZeroTestResult::proven: return {Integrability::yes, "Frobenius' condition holds"};
+      case ZeroTestResult::numerical:
+        return {Integrability::unknown,
                 "Frobenius' condition holds at random points to 30 digits, but no proof was found"};
-      case Vanishing::unknown:
-        return {Integrable::unknown, "its coefficients have no value at the points that were tried"};
-      case Vanishing::no: break;
+      case ZeroTestResult::unknown:
+        return {Integrability::unknown, "its coefficients have no value at the points that were tried"};
+      case ZeroTestResult::no: break;
     }
     const std::string why = "Frobenius' condition fails: omega ^ d omega is not zero, with t as a coordinate";
     if (forms_.size() > 1 && within(k, terminal)) {
       const std::string others = others_in(k, terminal);
       if (terminal.exact && !terminal.rows.empty())
-        return {Integrable::yes, "not by itself, but together with " + others};
-      return {Integrable::unknown,
+        return {Integrability::yes, "not by itself, but together with " + others};
+      return {Integrability::unknown,
               "not by itself; together with " + others + " at random points, but no proof was found"};
     }
-    const std::size_t integrable = orbit_ ? orbit_->integrable() : terminal.rows.size();
+    const std::size_t integrable = orbit_ ? orbit_->integrable_count() : terminal.rows.size();
     if (integrable > holonomic_.size() + within_count(terminal)) {
-      return {Integrable::no, why + "; a combination of constraints is integrable"};
+      return {Integrability::no, why + "; a combination of constraints is integrable"};
     }
-    return {Integrable::no, why};
+    return {Integrability::no, why};
   }
 
   std::size_t within_count(const Echelon& terminal) {
@@ -193,7 +193,7 @@ class Classifier {
     }
   }
 
-  Form on_leaves(Form form) {
+  OneForm on_leaves(OneForm form) {
     for (const Leaf& leaf : leaves_) {
       Substitution substitute(dag_, {{space_.variables()[leaf.variable], leaf.value}});
       const Ref along = substitute(form[leaf.variable]);
@@ -207,7 +207,7 @@ class Classifier {
       }
     }
     for (Ref& entry : form) {
-      if (space_.vanishing(entry) == Vanishing::proven) entry = dag_.zero();
+      if (space_.vanishing(entry) == ZeroTestResult::proven) entry = dag_.zero();
     }
     return form;
   }
@@ -222,31 +222,31 @@ class Classifier {
     return {SymbolKind::auxiliary, first_constant + static_cast<std::uint32_t>(j), 0};
   }
 
-  bool seek(const Form& form, std::uint32_t constraint) {
-    const Form restricted = on_leaves(form);
+  bool seek_integral(const OneForm& form, std::uint32_t constraint) {
+    const OneForm restricted = on_leaves(form);
     if (std::all_of(restricted.begin(), restricted.end(), [&](Ref r) { return dag_.is_zero(r); })) return false;
     const std::optional<Ref> on_leaf = find_integral(space_, restricted);
     if (!on_leaf) return false;
     const Ref psi = space_.simpler(with_constants_written(*on_leaf));
     const Echelon all = space_.echelon(system(forms_));
-    const Form slope = space_.differential(psi);
-    if (all_vanish({space_.reduced(slope, all)}) != Vanishing::proven || !says_more(slope)) return false;
+    const OneForm slope = space_.differential(psi);
+    if (all_vanish({space_.reduce(slope, all)}) != ZeroTestResult::proven || !is_new_integral(slope)) return false;
     eliminate(*on_leaf, dag_.symbol(constant(m_.integrals.size())));
     m_.integrals.push_back({m_.constraints[constraint].label, parts_of(psi), psi});
     return true;
   }
 
   /// Whether a differential is independent of those of holonomic constraints and of known integrals.
-  bool says_more(const Form& slope) {
-    std::vector<Form> forms = holonomic_;
-    for (const Integral& known : m_.integrals) forms.push_back(space_.differential(known.psi));
+  bool is_new_integral(const OneForm& slope) {
+    std::vector<OneForm> forms = holonomic_;
+    for (const ConstraintIntegral& known : m_.integrals) forms.push_back(space_.differential(known.psi));
     forms.push_back(slope);
     for (std::size_t point = 0; point < space_.points(); ++point) {
       try {
         std::vector<Row> rows;
-        for (const Form& form : forms) rows.push_back(space_.values(form, point));
-        const Selection independent =
-            select_independent(rows, std::vector<Turn>(rows.size(), Turn::last), independent_part());
+        for (const OneForm& form : forms) rows.push_back(space_.values(form, point));
+        const RowSelection independent =
+            select_independent(rows, std::vector<RowPriority>(rows.size(), RowPriority::last), independent_part());
         if (independent.rest.empty()) return true;
       } catch (const std::domain_error&) {  // no value at this point
       }
@@ -254,13 +254,13 @@ class Classifier {
     return false;
   }
 
-  void seek_together(const Echelon& terminal) {
+  void seek_joint_integrals(const Echelon& terminal) {
     for (bool found = true; found;) {
       found = false;
-      for (const Form& row : terminal.rows) {
+      for (const OneForm& row : terminal.rows) {
         if (m_.integrals.size() + holonomic_.size() >= terminal.rows.size()) return;
         const std::optional<std::uint32_t> label = unlabelled(terminal);
-        if (label && seek(row, *label)) found = true;
+        if (label && seek_integral(row, *label)) found = true;
       }
     }
   }
@@ -269,7 +269,7 @@ class Classifier {
   std::optional<std::uint32_t> unlabelled(const Echelon& terminal) {
     const auto has_integral = [&](std::uint32_t k) {
       return std::any_of(m_.integrals.begin(), m_.integrals.end(),
-                         [&](const Integral& i) { return i.label == m_.constraints[k].label; });
+                         [&](const ConstraintIntegral& i) { return i.label == m_.constraints[k].label; });
     };
     for (const bool inside : {true, false}) {
       for (std::size_t k = 0; k < forms_.size(); ++k) {
@@ -281,11 +281,11 @@ class Classifier {
 
   /// The constraints of which d psi is a combination, numerically.
   std::vector<std::uint32_t> parts_of(Ref psi) {
-    std::vector<Form> rows = system(forms_);
+    std::vector<OneForm> rows = system(forms_);
     rows.push_back(space_.differential(psi));
     const std::size_t width = rows[0].size(), count = rows.size() - 1;
     std::vector<Ref> entries;
-    for (const Form& row : rows) entries.insert(entries.end(), row.begin(), row.end());
+    for (const OneForm& row : rows) entries.insert(entries.end(), row.begin(), row.end());
     std::vector<std::uint32_t> result;
     try {
       const std::vector<cln::cl_R> v = space_.values(entries, 0);
@@ -311,24 +311,24 @@ class Classifier {
   }
 
   void note_integral(std::uint32_t constraint) {
-    Classification& found = m_.classification[constraint];
+    ConstraintClassification& found = m_.classification[constraint];
     const auto its = std::find_if(m_.integrals.begin(), m_.integrals.end(),
-                                  [&](const Integral& i) { return i.label == m_.constraints[constraint].label; });
+                                  [&](const ConstraintIntegral& i) { return i.label == m_.constraints[constraint].label; });
     if (its != m_.integrals.end()) {
       // An integral whose differential is proven to be the constraint's completes the missing proof.
-      if (found.integrable == Integrable::unknown && its->of == std::vector<std::uint32_t>{constraint}) {
-        found = {Integrable::yes, "an integral was found"};
+      if (found.integrable == Integrability::unknown && its->constraints == std::vector<std::uint32_t>{constraint}) {
+        found = {Integrability::yes, "an integral was found"};
       }
       return;
     }
-    if (found.integrable == Integrable::yes) found.reason += "; no integral was found";
+    if (found.integrable == Integrability::yes) found.reason += "; no integral was found";
   }
 
   Mechanics& m_;
   Dag& dag_;
-  FormSpace space_;
+  OneFormSpace space_;
   std::vector<std::uint32_t> velocity_;  // active constraints on velocities, ascending
-  std::vector<Form> forms_, holonomic_;
+  std::vector<OneForm> forms_, holonomic_;
   std::optional<Orbit> orbit_;
   std::size_t orbit_point_ = 0;
   std::vector<Leaf> leaves_;
@@ -336,11 +336,11 @@ class Classifier {
 
 }  // namespace
 
-const char* name(Integrable verdict) {
+const char* name(Integrability verdict) {
   switch (verdict) {
-    case Integrable::yes: return "yes";
-    case Integrable::no: return "no";
-    case Integrable::unknown: break;
+    case Integrability::yes: return "yes";
+    case Integrability::no: return "no";
+    case Integrability::unknown: break;
   }
   return "unknown";
 }

@@ -21,7 +21,7 @@ constexpr long finest_exponent = 2;  // exponents are multiples of 1/2
 
 class Search {
  public:
-  Search(FormSpace& space, Form form)
+  Search(OneFormSpace& space, OneForm form)
       : space_(space), dag_(space.dag()), form_(std::move(form)), x_(space.variables()) {}
 
   std::optional<Ref> run() {
@@ -30,13 +30,13 @@ class Search {
       const std::optional<Ref> factor = of_one_variable(k);
       if (factor) keep_better(with_factor(*factor));
     }
-    if (!best_ || roughness(*best_) > 0) keep_better(by_powers());
+    if (!best_ || complexity(*best_) > 0) keep_better(by_powers());
     return best_;
   }
 
  private:
   /// The number of functions that narrow the domain or hide a simpler form.
-  std::size_t roughness(Ref psi) const {
+  std::size_t complexity(Ref psi) const {
     std::size_t count = 0;
     for (const Ref r : dag_.reachable({psi})) {
       const Op op = dag_[r].op;
@@ -46,18 +46,18 @@ class Search {
   }
 
   void keep_better(std::optional<Ref> psi) {
-    if (psi && (!best_ || roughness(*psi) < roughness(*best_))) best_ = psi;
+    if (psi && (!best_ || complexity(*psi) < complexity(*best_))) best_ = psi;
   }
 
   Ref d(Ref f, std::size_t i) { return space_.derivative(f, i); }
 
   /// psi of a closed form, integrated one variable after another, in both orders.
   std::optional<Ref> with_factor(Ref factor) {
-    Form form;
+    OneForm form;
     for (const Ref c : form_) form.push_back(space_.simpler(dag_.mul(factor, c)));
     for (std::size_t i = 0; i < form.size(); ++i) {
       for (std::size_t j = i + 1; j < form.size(); ++j) {
-        if (space_.vanishing(dag_.sub(d(form[j], i), d(form[i], j))) != Vanishing::proven) return std::nullopt;
+        if (space_.vanishing(dag_.sub(d(form[j], i), d(form[i], j))) != ZeroTestResult::proven) return std::nullopt;
       }
     }
     std::vector<std::size_t> order;
@@ -69,12 +69,12 @@ class Search {
     return std::nullopt;
   }
 
-  std::optional<Ref> primitive(const Form& form, const std::vector<std::size_t>& order) {
+  std::optional<Ref> primitive(const OneForm& form, const std::vector<std::size_t>& order) {
     Ref psi = dag_.zero();
     for (std::size_t step = 0; step < order.size(); ++step) {
       const std::size_t i = order[step];
       std::optional<Ref> rest = space_.simpler(dag_.sub(form[i], d(psi, i)));
-      if (space_.vanishing(*rest) == Vanishing::proven) continue;
+      if (space_.vanishing(*rest) == ZeroTestResult::proven) continue;
       for (std::size_t before = 0; before < step && rest; ++before)
         rest = symbolic::eliminate_symbol(dag_, *rest, x_[order[before]]);
       if (rest) rest = symbolic::antiderivative(dag_, *rest, x_[i]);
@@ -82,7 +82,7 @@ class Search {
       psi = dag_.add(psi, *rest);
     }
     for (std::size_t i = 0; i < form.size(); ++i) {
-      if (space_.vanishing(dag_.sub(form[i], d(psi, i))) != Vanishing::proven) return std::nullopt;
+      if (space_.vanishing(dag_.sub(form[i], d(psi, i))) != ZeroTestResult::proven) return std::nullopt;
     }
     return psi;
   }
@@ -94,7 +94,7 @@ class Search {
       std::optional<Ref> h = space_.simpler(dag_.div(dag_.sub(d(form_[k], j), d(form_[j], k)), form_[j]));
       for (std::size_t i = 0; i < form_.size() && h; ++i) {
         if (i == k) continue;
-        if (space_.vanishing(d(*h, i)) != Vanishing::proven) return std::nullopt;
+        if (space_.vanishing(d(*h, i)) != ZeroTestResult::proven) return std::nullopt;
         h = symbolic::eliminate_symbol(dag_, *h, x_[i]);
       }
       if (h) h = symbolic::antiderivative(dag_, *h, x_[k]);
@@ -222,15 +222,15 @@ class Search {
     return with_factor(factor);
   }
 
-  FormSpace& space_;
+  OneFormSpace& space_;
   Dag& dag_;
-  Form form_;
+  OneForm form_;
   const std::vector<Symbol>& x_;
   std::optional<Ref> best_;
 };
 
 }  // namespace
 
-std::optional<Ref> find_integral(FormSpace& space, const Form& form) { return Search(space, form).run(); }
+std::optional<Ref> find_integral(OneFormSpace& space, const OneForm& form) { return Search(space, form).run(); }
 
 }  // namespace eomgen::mechanics

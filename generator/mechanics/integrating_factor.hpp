@@ -10,6 +10,6 @@
 namespace eomgen::mechanics {
 
 /// Empty if no factor or no integral is found. This is inconclusive: an integral may still exist.
-std::optional<Ref> find_integral(FormSpace& space, const Form& form);
+std::optional<Ref> find_integral(OneFormSpace& space, const OneForm& form);
 
 }  // namespace eomgen::mechanics

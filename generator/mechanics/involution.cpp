@@ -82,10 +82,10 @@ Matrix inverse(const Matrix& A) {
 /// The forms along an admissible curve, and the curve's variation, as power series.
 class Path {
  public:
-  Path(FormSpace& space, const std::vector<Form>& forms, std::size_t point)
+  Path(OneFormSpace& space, const std::vector<OneForm>& forms, std::size_t point)
       : space_(space), n_(space.variables().size()), rows_(forms.size()), point_(point) {
     std::vector<Ref> roots;
-    for (const Form& form : forms) roots.insert(roots.end(), form.begin(), form.end());
+    for (const OneForm& form : forms) roots.insert(roots.end(), form.begin(), form.end());
     for (std::size_t k = 0; k < rows_; ++k) {
       for (std::size_t i = 0; i < n_; ++i) {
         for (std::size_t l = 0; l < n_; ++l) {
@@ -251,7 +251,7 @@ class Path {
   struct Slope {
     std::size_t form, entry, by;
   };
-  FormSpace& space_;
+  OneFormSpace& space_;
   std::size_t n_, rows_, point_;
   std::vector<Slope> slopes_;
   std::optional<symbolic::PowerSeries> series_;
@@ -263,13 +263,13 @@ class Path {
 
 }  // namespace
 
-bool Orbit::keeps(const Vector& form) const {
+bool Orbit::is_integrable(const Vector& form) const {
   const cl_R length = cln::sqrt(dot(form, form));
   return std::all_of(directions_.begin(), directions_.end(),
                      [&](const Vector& v) { return cln::abs(dot(form, v)) <= length * small(zero_digits); });
 }
 
-std::optional<bool> fails_frobenius(FormSpace& space, const std::vector<Form>& forms, std::size_t point) {
+std::optional<bool> fails_frobenius(OneFormSpace& space, const std::vector<OneForm>& forms, std::size_t point) {
   try {
     Path path(space, forms, point);
     const std::vector<MatrixSeries> fields = path.fields(0);
@@ -292,7 +292,7 @@ std::optional<bool> fails_frobenius(FormSpace& space, const std::vector<Form>& f
 
 // Let M_0 be the fields and M_(k+1) = M_k' - F M_k along a curve of generic controls. The values of all M_k at the
 // start span the tangent space of the orbit; the rank grows with k until it is complete.
-std::optional<Orbit> orbit(FormSpace& space, const std::vector<Form>& forms, std::size_t point) {
+std::optional<Orbit> orbit(OneFormSpace& space, const std::vector<OneForm>& forms, std::size_t point) {
   const std::size_t n = space.variables().size();
   if (forms.empty() || forms.size() * n * n > most_entries) return std::nullopt;
   try {

@@ -19,9 +19,9 @@ class Orbit {
       : variables_(variables), directions_(std::move(directions)) {}
 
   /// The dimension of the largest integrable subsystem.
-  std::size_t integrable() const { return variables_ - directions_.size(); }
+  std::size_t integrable_count() const { return variables_ - directions_.size(); }
   /// Whether a form, given by its values at the point, belongs to the largest integrable subsystem.
-  bool keeps(const Vector& form) const;
+  bool is_integrable(const Vector& form) const;
 
  private:
   std::size_t variables_;
@@ -30,9 +30,9 @@ class Orbit {
 
 /// Evaluates d omega of the last form on the common kernel of all forms at a point. True if it is not 0, so that
 /// Frobenius' condition fails. Empty if there are no values.
-std::optional<bool> fails_frobenius(FormSpace& space, const std::vector<Form>& forms, std::size_t point);
+std::optional<bool> fails_frobenius(OneFormSpace& space, const std::vector<OneForm>& forms, std::size_t point);
 
 /// Empty if there are no values, if the forms are dependent, or if there are too many.
-std::optional<Orbit> orbit(FormSpace& space, const std::vector<Form>& forms, std::size_t point);
+std::optional<Orbit> orbit(OneFormSpace& space, const std::vector<OneForm>& forms, std::size_t point);
 
 }  // namespace eomgen::mechanics

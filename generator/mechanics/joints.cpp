@@ -7,10 +7,10 @@
 #include "symbolic/zero_proof.hpp"
 
 namespace eomgen::mechanics {
-const char* name(Need need) {
+const char* name(Redundancy need) {
   switch (need) {
-    case Need::independent: return "independent";
-    case Need::identity: return "identity";
+    case Redundancy::independent: return "independent";
+    case Redundancy::identity: return "identity";
     default: return "redundant";
   }
 }
@@ -37,7 +37,7 @@ void add_joints(Mechanics& m, Lowering& lower) {
       for (std::size_t k = 0; k < joint.force.size(); ++k) {
         const model::NodeId of = j < 3 ? joint.force[k] : joint.moment[k];
         reaction.along[j].push_back(of == model::no_node ? dag.zero() : lower.dot(lower.vector(of), e));
-        if (m.constraints[reaction.first + k].need == Need::identity && !vanishes(dag, {reaction.along[j].back()}))
+        if (m.constraints[reaction.first + k].redundancy == Redundancy::identity && !vanishes(dag, {reaction.along[j].back()}))
           reaction.determined[j] = false;
       }
     }

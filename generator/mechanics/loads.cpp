@@ -20,7 +20,7 @@ class ForceReader {
     potential_ = dag_.zero();
     generalized_.assign(m_.q.size(), dag_.zero());
     for (const model::Effect& effect : force_->effects) add(effect);
-    refuse_if_idle(first_load);
+    require_effect(first_load);
     m_.potential_by_force.push_back(potential_);
     m_.potential = dag_.add(m_.potential, potential_);
     m_.force_components.push_back(components(first_load));
@@ -30,17 +30,17 @@ class ForceReader {
   void add(const model::Effect& effect) {
     using LoadType = model::Effect::LoadType;
     switch (effect.load_type) {
-      case LoadType::acceleration: return accelerate(lower_.vector(effect.value));
+      case LoadType::acceleration: return add_gravity(lower_.vector(effect.value));
       case LoadType::potential: return add_potential(effect);
       case LoadType::force: return load(lower_.vector(effect.value), lower_.vector(effect.at));
-      case LoadType::moment: return turn(lower_.vector(effect.value), lower_.angular_velocity(effect.index));
-      case LoadType::work: return work(lower_.scalar(effect.value), lower_.scalar(effect.at));
-      case LoadType::damping: return damp(effect);
+      case LoadType::moment: return add_moment(lower_.vector(effect.value), lower_.angular_velocity(effect.index));
+      case LoadType::work: return add_work(lower_.scalar(effect.value), lower_.scalar(effect.at));
+      case LoadType::damping: return add_damper(effect);
       case LoadType::component:
         generalized_[effect.index] = dag_.add(generalized_[effect.index], lower_.scalar(effect.value));
     }
   }
-  void accelerate(const Vec3& g) {
+  void add_gravity(const Vec3& g) {
     require_masses();
     for (const PointMass& mass : m_.masses) {
       potential_ = dag_.sub(potential_, dag_.mul(mass.mass, lower_.dot(g, mass.position)));  // U = -m g.r
@@ -53,7 +53,7 @@ class ForceReader {
     potential_ = dag_.add(potential_, lower_.scalar(effect.value));
     require_potential();
   }
-  void damp(const model::Effect& effect) {
+  void add_damper(const model::Effect& effect) {
     const Vec3 a = lower_.vector(effect.at), b = lower_.vector(effect.other);
     const Vec3 along = lower_.subtract(a, b);
     if (const auto w = direction(lower_, dag_, m_.q.size(), along)) {
@@ -71,13 +71,13 @@ class ForceReader {
     load(lower_.scale(dag_.integer(-1), pull), a);
     load(pull, b);
   }
-  void turn(const Vec3& moment, const Vec3& w) {  // Q_i = M . dw/dqdot_i, eq. (9.2)
+  void add_moment(const Vec3& moment, const Vec3& w) {  // Q_i = M . dw/dqdot_i, eq. (9.2)
     for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
       symbolic::Derivation by = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1});
       generalized_[i] = dag_.add(generalized_[i], lower_.dot(moment, Vec3{by(w[0]), by(w[1]), by(w[2])}));
     }
   }
-  void work(Ref force, Ref through) {  // Q_i = S dx/dq_i
+  void add_work(Ref force, Ref through) {  // Q_i = S dx/dq_i
     for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
       symbolic::Derivation by = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0});
       generalized_[i] = dag_.add(generalized_[i], dag_.mul(force, by(through)));
@@ -112,7 +112,7 @@ class ForceReader {
     return Q;
   }
   // A force that enters no equation is a mistake in the model and must be reported.
-  void refuse_if_idle(std::size_t first_load) const {
+  void require_effect(std::size_t first_load) const {
     std::vector<Ref> effect = components(first_load);
     for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
       effect.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0})(potential_));

@@ -130,9 +130,9 @@ Lowering::Value Lowering::lower_leaf(const model::Node& node) {
 
 // v . J v, along the axes in which J is known.
 Ref Lowering::inertia(std::uint32_t body, const Vec3& v) {
-  const Spin& spin = m_.spins.at(body);
+  const BodyRotation& spin = m_.body_rotations.at(body);
   const std::array<Ref, 3> along{dot(v, spin.axes[0]), dot(v, spin.axes[1]), dot(v, spin.axes[2])};
-  const std::array<Ref, 3> J = times(dag_, spin, along);
+  const std::array<Ref, 3> J = inertia_times(dag_, spin, along);
   Ref sum = dag_.zero();
   for (std::size_t k = 0; k < 3; ++k) sum = dag_.add(sum, dag_.mul(along[k], J[k]));
   return sum;
@@ -209,12 +209,12 @@ Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {
       if (!node.vector) return of(dag_.mul(arg(0).scalar, arg(1).scalar));
       return arg(0).vector ? of(scale(arg(1).scalar, arg(0).components)) : of(scale(arg(0).scalar, arg(1).components));
     case Op::divide:
-      require_divisor(m_, arg(1).scalar, node.span);
+      require_nonzero_divisor(m_, arg(1).scalar, node.span);
       if (!node.vector) return of(dag_.div(arg(0).scalar, arg(1).scalar));
       return of(scale(dag_.div(dag_.one(), arg(1).scalar), arg(0).components));
     case Op::power:
       if (dag_.is_constant(arg(1).scalar) && cln::minusp(dag_.value(arg(1).scalar)))
-        require_divisor(m_, arg(0).scalar, node.span);
+        require_nonzero_divisor(m_, arg(0).scalar, node.span);
       return valued(dag_.pow(arg(0).scalar, arg(1).scalar));
     case Op::conditional:
       if (node.vector) {
@@ -253,7 +253,7 @@ Lowering::Value Lowering::lower_vector(const model::Node& node) {
     case Op::cross: result = cross(vector(node.args[0]), vector(node.args[1])); break;
     case Op::unit: {
       const Vec3 a = vector(node.args[0]);
-      require_direction(m_, norm(a), node.span);
+      require_nonzero_length(m_, norm(a), node.span);
       result = scale(dag_.div(dag_.one(), norm(a)), a);
       break;
     }
@@ -283,7 +283,7 @@ Lowering::Value Lowering::basis(const model::Node& node) {
   const Vec3 a = gradient(position(node.index), coordinate);
   if (node.op == model::Op::covariant_basis) return of(a);
   if (const model::NodeId e = chart_vector(node.index, coordinate); e != model::no_node) return of(vector(e));
-  require_direction(m_, norm(a), node.span);
+  require_nonzero_length(m_, norm(a), node.span);
   return of(scale(dag_.div(dag_.one(), norm(a)), a));
 }
 

@@ -74,8 +74,8 @@ void require_equations(const Mechanics& m) {
     for (const PointMass& mass : m.masses) {
       for (const Ref v : mass.velocity) presence.push_back(by_rate(v));
     }
-    for (const Spin& spin : m.spins) {
-      for (const Ref h : momentum(dag, spin)) presence.push_back(by_rate(h));
+    for (const BodyRotation& spin : m.body_rotations) {
+      for (const Ref h : angular_momentum(dag, spin)) presence.push_back(by_rate(h));
     }
     presence.push_back(by_rate(m.kinetic_given));
     for (const std::uint32_t k : m.active) presence.push_back(m.constraints[k].gradient[i]);
@@ -99,7 +99,7 @@ bool Mechanics::is_eliminated(std::uint32_t coordinate) const {
   return std::any_of(fixed.begin(), fixed.end(), [=](const FixedCoordinate& f) { return f.coordinate == coordinate; });
 }
 
-long Mechanics::freedom() const {
+long Mechanics::degrees_of_freedom() const {
   const auto holds = [this](std::uint32_t k) { return !constraints[k].unilateral; };
   return static_cast<long>(free.size()) - static_cast<long>(std::count_if(active.begin(), active.end(), holds));
 }
@@ -149,10 +149,10 @@ Mechanics build_mechanics(std::shared_ptr<const model::Model> model) {
     drop_repeated_equations(m);
     drop_dependent_equations(m, lower);
   }
-  drop_held_directions(m);
-  find_held_directions(m);
+  drop_blocked_directions(m);
+  find_blocked_directions(m);
   add_values(m, lower);
-  check_coefficients(m);
+  check_friction_coefficients(m);
   require_equations(m);
   classify_constraints(m);
   return m;

@@ -29,13 +29,13 @@ struct PointMass {
 /// The rotation of a body: T = w.Jw/2, eq. (6.65), with constant components J along `axes`. The axes are the body's
 /// own. If J does not change as the body turns about one of them, they are the axes before its last rotation, which
 /// have simpler components.
-struct Spin {
+struct BodyRotation {
   std::string name;
   std::uint32_t frame = 0;
   std::array<Vec3, 3> axes;
   std::array<std::array<Ref, 3>, 3> J;
   std::array<Ref, 3> w;        // along `axes`
-  std::array<Ref, 3> carrier;  // angular velocity of `axes`
+  std::array<Ref, 3> axes_angular_velocity;  // angular velocity of `axes`
 };
 
 /// A force without a potential, at a moving point.
@@ -50,8 +50,8 @@ enum class ConstraintKind { holonomic, velocity };
 
 /// Whether a constraint equation is independent. An identity holds for all coordinates. A redundant equation follows
 /// from the other constraints. Both are neither imposed nor active and have no multiplier.
-enum class Need { independent, identity, redundant };
-const char* name(Need need);  // "independent", "identity", "redundant"
+enum class Redundancy { independent, identity, redundant };
+const char* name(Redundancy need);  // "independent", "identity", "redundant"
 
 /// One scalar equation: psi(q, t) = 0, or f . qdot + b = 0 with f(q, t), b(q, t). In both cases the force on the system
 /// is lambda f, eqs. (2.31), (2.50), with f = d psi/d q for a holonomic constraint.
@@ -62,9 +62,9 @@ struct Constraint {
   Ref psi;                                 // 0 for a velocity constraint
   std::vector<Ref> gradient;               // f_i, all coordinates
   Ref rate;                                // b: d psi/d t at fixed q
-  model::NodeId written = model::no_node;  // psi or the velocity form, in the model
+  model::NodeId model_expression = model::no_node;  // psi or the velocity form, in the model
   bool unilateral = false;                 // psi >= 0: never eliminated
-  Need need = Need::independent;
+  Redundancy redundancy = Redundancy::independent;
   bool determined = true;  // whether the motion determines its force; for joints see JointReaction
 
   bool holonomic() const { return kind == ConstraintKind::holonomic; }
@@ -77,26 +77,26 @@ struct FixedCoordinate {
   Ref value, rate, acceleration;  // functions of t and parameters (and of `function` symbols)
 };
 
-enum class Integrable { yes, no, unknown };
-const char* name(Integrable verdict);
+enum class Integrability { yes, no, unknown };
+const char* name(Integrability verdict);
 
 /// The result of the integrability test of a constraint. Holonomic constraints are their own integral.
-struct Classification {
-  Integrable integrable = Integrable::yes;
+struct ConstraintClassification {
+  Integrability integrable = Integrability::yes;
   std::string reason;  // a sentence; empty for holonomic constraints
 };
 
 /// psi(q, t) of free coordinates, t and independent parameters. Velocity constraints keep it at its start value.
-struct Integral {
+struct ConstraintIntegral {
   std::string label;              // of the constraint that it replaces
-  std::vector<std::uint32_t> of;  // d psi is a combination of these constraints
+  std::vector<std::uint32_t> constraints;  // d psi is a combination of these constraints
   Ref psi;
 };
 
 /// A contact that blocks sliding along sum_a along_a t_a while it is closed, such as a stop at the end of a rough
 /// guide, or constraints that always hold. Along this direction the motion does not determine the friction, which is
 /// taken to be 0.
-struct HeldDirection {
+struct BlockedDirection {
   std::uint32_t by = 0;    // index into Mechanics::contacts; own index: always blocked
   std::vector<Ref> along;  // per tangent; not normalised
 };
@@ -113,11 +113,11 @@ struct Contact {
   std::vector<Ref> gram;                   // grad psi_k . grad psi_l at the particle, row-major
   Ref normal;                              // the given normal force
   std::vector<Vec3> directions;            // t_a, orthonormal; none for friction in a coordinate
-  std::vector<std::uint32_t> numbers;      // of a body: which of its two tangents each t_a is, 0 or 1
+  std::vector<std::uint32_t> tangent_indices;      // of a body: which of its two tangents each t_a is, 0 or 1
   std::vector<std::vector<Ref>>
       tangents;           // t_a . dr/dq_i per t_a, all coordinates; of a body t_a . dv/dqdot_i of its point there
   std::vector<Ref> slip;  // t_a . (v - v_s)
-  std::vector<HeldDirection> held;
+  std::vector<BlockedDirection> blocked;
   Ref static_coefficient, dynamic_coefficient;  // may depend on the slip speed; the first is empty with a width
   std::optional<Ref> width;                     // of the smooth law -mu |N| w / sqrt(w^2 + width^2)
   bool unilateral = false;                      // its one constraint can open
@@ -155,7 +155,7 @@ struct Mechanics {
   Ref t;
 
   std::vector<PointMass> masses;        // particles, then bodies with all their mass at the centre
-  std::vector<Spin> spins;              // per Model::bodies entry
+  std::vector<BodyRotation> body_rotations;              // per Model::bodies entry
   Ref kinetic_given;                    // of [energy], 0 if none
   Ref kinetic;                          // sum m/2 v.v + kinetic_given, with the unconstrained coordinates
   Ref potential;                        // of all conservative forces, and of [energy]
@@ -168,8 +168,8 @@ struct Mechanics {
   std::vector<std::uint32_t> free;     // coordinates that are not eliminated, ascending
   std::vector<std::uint32_t> active;   // constraints with multipliers, ascending
 
-  std::vector<Classification> classification;  // per constraint
-  std::vector<Integral> integrals;
+  std::vector<ConstraintClassification> classification;  // per constraint
+  std::vector<ConstraintIntegral> integrals;
   std::vector<JointReaction> joints;  // per Model::joints entry
   std::vector<Contact> contacts;  // constraints with friction or unilateral in the order of the model, then dry forces
 
@@ -182,9 +182,9 @@ struct Mechanics {
 
   bool is_eliminated(std::uint32_t coordinate) const;
   /// Degrees of freedom: free coordinates minus constraints that always hold.
-  long freedom() const;
+  long degrees_of_freedom() const;
   /// Whether a constraint is independent: imposed or active.
-  bool holds(std::uint32_t constraint) const { return constraints[constraint].need == Need::independent; }
+  bool is_independent(std::uint32_t constraint) const { return constraints[constraint].redundancy == Redundancy::independent; }
   /// f . qdot + b of a constraint.
   Ref velocity_form(const Constraint& constraint) const;
 };
@@ -202,8 +202,8 @@ inline Mechanics build_mechanics(model::Model model) {
 Ref rolling_friction(const Mechanics& mechanics, const Contact& contact, std::uint32_t tangent);
 
 /// J v, and the angular momentum H = J w, along the axes of the rotation.
-std::array<Ref, 3> times(Dag& dag, const Spin& spin, const std::array<Ref, 3>& v);
-std::array<Ref, 3> momentum(Dag& dag, const Spin& spin);
+std::array<Ref, 3> inertia_times(Dag& dag, const BodyRotation& spin, const std::array<Ref, 3>& v);
+std::array<Ref, 3> angular_momentum(Dag& dag, const BodyRotation& spin);
 
 /// Any expression of the model on the Dag of `mechanics` (scalars only).
 Ref lower_scalar(Mechanics& mechanics, model::NodeId expression);

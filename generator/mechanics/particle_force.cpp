@@ -28,7 +28,7 @@ bool has(const std::vector<std::uint32_t>& list, std::uint32_t i) {
 
 bool turns(const Mechanics& m, std::uint32_t i) {
   symbolic::Derivation by = symbolic::partial_derivative(*m.dag, {SymbolKind::coordinate, i, 1});
-  return std::any_of(m.spins.begin(), m.spins.end(), [&](const Spin& spin) {
+  return std::any_of(m.body_rotations.begin(), m.body_rotations.end(), [&](const BodyRotation& spin) {
     return !vanishes(*m.dag, {by(spin.w[0]), by(spin.w[1]), by(spin.w[2])});
   });
 }
@@ -57,7 +57,7 @@ std::optional<Vec3> force_on_particle(Mechanics& m, std::size_t p, const std::ve
   const std::vector<std::uint32_t> own = moving_it_alone(m, p);
   const std::size_t n = own.size();
   if (n == 0) return std::nullopt;
-  symbolic::Substitution imposed = impose(m), written = write_out(m);
+  symbolic::Substitution imposed = constraint_substitution(m), written = time_function_substitution(m);
   std::vector<Ref> J(3 * n), N(n * n, dag.zero()), components;
   for (std::size_t i = 0; i < n; ++i) {
     symbolic::Derivation by = symbolic::partial_derivative(dag, {SymbolKind::coordinate, own[i], 0});

@@ -60,18 +60,18 @@ bool solve_small(const std::vector<std::vector<cln::cl_R>>& A, const std::vector
   return true;
 }
 
-FormSpace::FormSpace(Mechanics& m, SourceLocation where)
+OneFormSpace::OneFormSpace(Mechanics& m, SampleSet samples)
     : m_(m),
       dag_(*m.dag),
-      imposed_(impose(m)),
-      written_(write_out(m)),
+      imposed_(constraint_substitution(m)),
+      written_(time_function_substitution(m)),
       parameters_(independent_parameters(m)),
       effort_{most_effort} {
   for (const std::uint32_t i : m.free) variables_.push_back({SymbolKind::coordinate, i, 0});
   variables_.push_back({SymbolKind::time, 0, 0});
   for (const std::uint32_t k : m.active) {
     if (!m.constraints[k].holonomic()) continue;
-    psi_.push_back(written(m.constraints[k].psi));
+    psi_.push_back(impose_and_expand(m.constraints[k].psi));
     gradient_.push_back(differential(psi_.back()));
   }
   for (std::uint64_t point = 0; point < tried_points && points_.size() < wanted_points; ++point) {
@@ -79,50 +79,50 @@ FormSpace::FormSpace(Mechanics& m, SourceLocation where)
     for (const Symbol& variable : variables_) values[variable] = value_at(variable, point);
     for (std::uint32_t i = 0; i < m.parameter_value.size(); ++i)
       values[{SymbolKind::parameter, i, 0}] = value_at({SymbolKind::parameter, i, 0}, point);
-    if (where == SourceLocation::anywhere || move_onto_constraints(values)) points_.push_back(std::move(values));
+    if (samples == SampleSet::unrestricted || move_onto_constraints(values)) points_.push_back(std::move(values));
   }
 }
 
-Ref FormSpace::written(Ref expression) { return parameters_(written_(imposed_(expression))); }
+Ref OneFormSpace::impose_and_expand(Ref expression) { return parameters_(written_(imposed_(expression))); }
 
-Form FormSpace::of(const Constraint& constraint) {
-  Form form;
+OneForm OneFormSpace::one_form(const Constraint& constraint) {
+  OneForm form;
   Ref rest = constraint.rate;
   for (const FixedCoordinate& fixed : m_.fixed) {
     rest = dag_.add(rest, dag_.mul(constraint.gradient[fixed.coordinate], fixed.rate));
   }
-  for (const std::uint32_t i : m_.free) form.push_back(simpler(written(constraint.gradient[i])));
-  form.push_back(simpler(written(rest)));
+  for (const std::uint32_t i : m_.free) form.push_back(simpler(impose_and_expand(constraint.gradient[i])));
+  form.push_back(simpler(impose_and_expand(rest)));
   return form;
 }
 
-Form FormSpace::differential(Ref psi) {
-  Form form;
+OneForm OneFormSpace::differential(Ref psi) {
+  OneForm form;
   for (std::size_t i = 0; i < variables_.size(); ++i) form.push_back(derivative(psi, i));
   return form;
 }
 
-Ref FormSpace::derivative(Ref f, std::size_t variable) {
+Ref OneFormSpace::derivative(Ref f, std::size_t variable) {
   if (variables_[variable].kind != SymbolKind::time) return symbolic::partial_derivative(dag_, variables_[variable])(f);
-  return written(symbolic::explicit_time_derivative(dag_, m_.model->functions.size())(f));
+  return impose_and_expand(symbolic::explicit_time_derivative(dag_, m_.model->functions.size())(f));
 }
 
-std::vector<cln::cl_R> FormSpace::values(const std::vector<Ref>& expressions, std::size_t point) const {
+std::vector<cln::cl_R> OneFormSpace::values(const std::vector<Ref>& expressions, std::size_t point) const {
   return symbolic::evaluate(
       dag_, expressions, [&](const Symbol& symbol) { return value(symbol, point); }, digits);
 }
 
-cln::cl_R FormSpace::value(const Symbol& symbol, std::size_t point) const {
+cln::cl_R OneFormSpace::value(const Symbol& symbol, std::size_t point) const {
   const auto found = points_[point].find(symbol);
   return found == points_[point].end() ? value_at(symbol, point) : found->second;
 }
 
 // Newton's method with least-norm steps in the coordinates; t and parameters are fixed.
-bool FormSpace::move_onto_constraints(std::map<Symbol, cln::cl_R>& point) const {
+bool OneFormSpace::move_onto_constraints(std::map<Symbol, cln::cl_R>& point) const {
   if (psi_.empty()) return true;
   const std::size_t n = variables_.size() - 1, count = psi_.size();
   std::vector<Ref> roots = psi_;
-  for (const Form& row : gradient_) roots.insert(roots.end(), row.begin(), row.end());
+  for (const OneForm& row : gradient_) roots.insert(roots.end(), row.begin(), row.end());
   try {
     for (int step = 0; step < 60; ++step) {
       const std::vector<cln::cl_R> v = symbolic::evaluate(
@@ -148,25 +148,25 @@ bool FormSpace::move_onto_constraints(std::map<Symbol, cln::cl_R>& point) const 
   return false;
 }
 
-Vanishing FormSpace::vanishing(Ref expression) {
-  if (dag_.is_zero(expression)) return Vanishing::proven;
-  if (!effort_.consume(dag_.reachable({expression}).size())) return Vanishing::unknown;
+ZeroTestResult OneFormSpace::vanishing(Ref expression) {
+  if (dag_.is_zero(expression)) return ZeroTestResult::proven;
+  if (!effort_.consume(dag_.reachable({expression}).size())) return ZeroTestResult::unknown;
   bool is_decided = false;
   for (std::size_t point = 0; point < points_.size(); ++point) {
     try {
-      if (cln::abs(values({expression}, point)[0]) > small(agreed_digits)) return Vanishing::no;
+      if (cln::abs(values({expression}, point)[0]) > small(agreed_digits)) return ZeroTestResult::no;
       is_decided = true;
     } catch (const std::domain_error&) {  // no value at this point
     }
   }
-  if (!is_decided) return Vanishing::unknown;
-  return symbolic::is_proven_zero(dag_, expression, &effort_) ? Vanishing::proven : Vanishing::at_points;
+  if (!is_decided) return ZeroTestResult::unknown;
+  return symbolic::is_proven_zero(dag_, expression, &effort_) ? ZeroTestResult::proven : ZeroTestResult::numerical;
 }
 
-Ref FormSpace::simpler(Ref expression) { return symbolic::expand_if_shorter(dag_, expression, term_budget, &effort_); }
+Ref OneFormSpace::simpler(Ref expression) { return symbolic::expand_if_shorter(dag_, expression, term_budget, &effort_); }
 
 // Chooses a constant pivot if there is one, otherwise the one with the smallest expression, to keep results short.
-bool FormSpace::choose_pivot(const std::vector<Form>& rows, const std::vector<bool>& used, std::size_t columns,
+bool OneFormSpace::choose_pivot(const std::vector<OneForm>& rows, const std::vector<bool>& used, std::size_t columns,
                              const std::vector<std::size_t>& pivots, std::pair<std::size_t, std::size_t>& at) const {
   std::size_t best = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -181,23 +181,23 @@ bool FormSpace::choose_pivot(const std::vector<Form>& rows, const std::vector<bo
   return best != 0;
 }
 
-Echelon FormSpace::echelon(std::vector<Form> rows, std::size_t columns) {
+Echelon OneFormSpace::echelon(std::vector<OneForm> rows, std::size_t columns) {
   Echelon result;
   std::vector<bool> used(rows.size(), false);
   if (columns == 0 && !rows.empty()) columns = rows[0].size();
   const auto clean = [&](Ref& entry) {
     if (dag_.is_zero(entry)) return;
-    const Vanishing zero = vanishing(entry);
-    if (zero == Vanishing::no || zero == Vanishing::unknown) return;
-    if (zero == Vanishing::at_points) result.exact = false;
+    const ZeroTestResult zero = vanishing(entry);
+    if (zero == ZeroTestResult::no || zero == ZeroTestResult::unknown) return;
+    if (zero == ZeroTestResult::numerical) result.exact = false;
     entry = dag_.zero();
   };
-  for (Form& row : rows) {
+  for (OneForm& row : rows) {
     for (Ref& entry : row) clean(entry);
   }
   std::vector<std::size_t> order;
   for (std::pair<std::size_t, std::size_t> at; choose_pivot(rows, used, columns, result.pivots, at);) {
-    if (spent()) break;
+    if (is_effort_spent()) break;
     const auto [row, column] = at;
     used[row] = true;
     order.push_back(row);
@@ -214,11 +214,11 @@ Echelon FormSpace::echelon(std::vector<Form> rows, std::size_t columns) {
     }
   }
   for (const std::size_t row : order) result.rows.push_back(rows[row]);
-  result.exact = result.exact && !spent();
+  result.exact = result.exact && !is_effort_spent();
   return result;
 }
 
-Form FormSpace::reduced(Form form, const Echelon& rows) {
+OneForm OneFormSpace::reduce(OneForm form, const Echelon& rows) {
   for (std::size_t k = 0; k < rows.rows.size(); ++k) {
     const Ref factor = form[rows.pivots[k]];
     if (dag_.is_zero(factor)) continue;
@@ -231,7 +231,7 @@ Form FormSpace::reduced(Form form, const Echelon& rows) {
 
 // With omega_k = dx_pk + sum_j B_kj dx_j over the columns j without pivot and X_i = d/dx_i - sum_l B_li d/dx_pl:
 // d omega_k = sum_(i<j) (X_i B_kj - X_j B_ki) dx_i ^ dx_j modulo the rows.
-std::vector<Form> FormSpace::curvature(const Echelon& rows) {
+std::vector<OneForm> OneFormSpace::curvature(const Echelon& rows) {
   std::vector<std::size_t> others;
   for (std::size_t j = 0; j < variables_.size(); ++j) {
     if (std::find(rows.pivots.begin(), rows.pivots.end(), j) == rows.pivots.end()) others.push_back(j);
@@ -245,8 +245,8 @@ std::vector<Form> FormSpace::curvature(const Echelon& rows) {
     }
     return result;
   };
-  std::vector<Form> result;
-  for (const Form& row : rows.rows) {
+  std::vector<OneForm> result;
+  for (const OneForm& row : rows.rows) {
     result.emplace_back();
     for (std::size_t a = 0; a < others.size(); ++a) {
       for (std::size_t b = a + 1; b < others.size(); ++b) {

@@ -36,7 +36,7 @@ struct Combination {
 class Span {
  public:
   /// Whether a row lies in the span of the added rows.
-  bool holds(const std::vector<cl_R>& row) const { return largest(rest(row)) <= small(25); }
+  bool contains(const std::vector<cl_R>& row) const { return largest(rest(row)) <= small(25); }
   void add(const std::vector<cl_R>& row) {
     std::vector<cl_R> left = rest(rest(row));
     cl_R square = 0;
@@ -146,15 +146,15 @@ std::string listed(const Mechanics& m, const std::vector<std::uint32_t>& constra
 
 /// Whether psi of constraint k is the same combination of the others: if they are closed, so is k. True if one of them
 /// cannot open, or if there are no values.
-bool close_together(const Mechanics& m, FormSpace& space, const std::vector<std::uint32_t>& constraints,
+bool are_closed_together(const Mechanics& m, OneFormSpace& space, const std::vector<std::uint32_t>& constraints,
                     const std::vector<std::size_t>& independent, std::size_t k, const Combination& at) {
-  std::vector<Ref> psi{space.written(m.constraints[constraints[k]].psi)};
+  std::vector<Ref> psi{space.impose_and_expand(m.constraints[constraints[k]].psi)};
   std::vector<cl_R> coefficients;
   for (std::size_t a = 0; a < independent.size(); ++a) {
     if (cln::abs(at.coefficients[a]) < small(25)) continue;
     const Constraint& other = m.constraints[constraints[independent[a]]];
     if (!other.unilateral) return true;
-    psi.push_back(space.written(other.psi));
+    psi.push_back(space.impose_and_expand(other.psi));
     coefficients.push_back(at.coefficients[a]);
   }
   for (std::size_t point = 0; point < space.points(); ++point) {
@@ -178,7 +178,7 @@ Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints,
   const Constraint& constraint = m.constraints[constraints[k]];
   const std::string others = listed(m, constraints, independent, here),
                     formula = named(m, constraints, independent, here, there);
-  const SourceLocation where = m.model->where(m.model->arena[constraint.written].span);
+  const SourceLocation where = m.model->where(m.model->arena[constraint.model_expression].span);
   std::string what = "constraint '" + constraint.label + "' ";
   if (here.same_rate) {
     what += others.empty() ? "follows from the constraints that fix its coordinates"
@@ -206,10 +206,10 @@ Refusals drop_repeated(Mechanics& m) {
     }
   }
   if (constraints.empty()) return {};
-  FormSpace space(m, FormSpace::SourceLocation::anywhere);
+  OneFormSpace space(m, OneFormSpace::SampleSet::unrestricted);
   std::vector<Ref> entries;
   for (const std::uint32_t k : constraints) {
-    const Form form = space.of(m.constraints[k]);
+    const OneForm form = space.one_form(m.constraints[k]);
     entries.insert(entries.end(), form.begin(), form.end());
   }
   const std::size_t width = space.variables().size();
@@ -233,15 +233,15 @@ Refusals drop_repeated(Mechanics& m) {
   const auto leavable = [&](std::size_t k) { return m.constraints[constraints[k]].unilateral; };
   for (std::size_t k = 0; k < constraints.size(); ++k) {
     if (leavable(k)) continue;
-    if (spans[0].holds(at[0][k]) && spans[1].holds(at[1][k])) {
+    if (spans[0].contains(at[0][k]) && spans[1].contains(at[1][k])) {
       const std::optional<Combination> here = combination(at[0], independent, k),
                                        there = combination(at[1], independent, k);
       if (here && there && !spans_all(at[0], independent, *here, k)) {
         Constraint& constraint = m.constraints[constraints[k]];
         Error why = refusal(m, constraints, k, independent, *here, *there);
-        if (!here->same_rate || !may_repeat(m, constraint)) throw why;
+        if (!here->same_rate || !may_be_redundant(m, constraint)) throw why;
         refusals.emplace(constraint.name, std::move(why));
-        constraint.need = Need::redundant;
+        constraint.redundancy = Redundancy::redundant;
         std::erase(m.active, constraints[k]);
         continue;
       }
@@ -255,7 +255,7 @@ Refusals drop_repeated(Mechanics& m) {
                                      there = combination(at[1], independent, k);
     // Opposite walls constrain the same velocities but are not closed together.
     const bool dependent = here && there;
-    if (dependent && close_together(m, space, constraints, independent, k, *here))
+    if (dependent && are_closed_together(m, space, constraints, independent, k, *here))
       throw refusal(m, constraints, k, independent, *here, *there);
     if (!dependent) independent.push_back(k);
   }
@@ -268,7 +268,7 @@ void drop_repeated_equations(Mechanics& m) {
   const Refusals refusals = drop_repeated(m);
   for (const model::Constraint& whole : m.model->constraints) {
     if (whole.joint || whole.unit) continue;
-    const auto needed = [&](const Constraint& c) { return c.name == whole.name && c.need == Need::independent; };
+    const auto needed = [&](const Constraint& c) { return c.name == whole.name && c.redundancy == Redundancy::independent; };
     if (std::any_of(m.constraints.begin(), m.constraints.end(), needed)) continue;
     const auto why = refusals.find(whole.name);
     if (why != refusals.end()) throw why->second;

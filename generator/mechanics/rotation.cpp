@@ -67,7 +67,7 @@ void add_bodies(Mechanics& m, Lowering& lower) {
   Dag& dag = *m.dag;
   for (std::uint32_t f = 0; f < m.model->frames.size(); ++f) m.angular_velocity.push_back(lower.own_rates(f));
   for (const model::Body& body : m.model->bodies) {
-    Spin spin;
+    BodyRotation spin;
     spin.frame = body.frame;
     spin.name = m.model->frames[body.frame].name;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -76,7 +76,7 @@ void add_bodies(Mechanics& m, Lowering& lower) {
     const model::Frame& frame = m.model->frames[body.frame];
     const std::size_t last = frame.stages.size() - 1;
     if (const auto axis = axis_of_symmetry(dag, frame.stages[last], spin.J)) {
-      spin.carrier = spin.w = lower.rates_before(body.frame, last);
+      spin.axes_angular_velocity = spin.w = lower.rates_before(body.frame, last);
       spin.w[*axis] = dag.add(spin.w[*axis], lower.scalar(frame.stages[last].w[*axis]));
       for (std::size_t k = 0; k < 3; ++k) {
         spin.axes[k] = last > 0 ? lower.axis(body.frame, last - 1, k)
@@ -84,18 +84,18 @@ void add_bodies(Mechanics& m, Lowering& lower) {
                                              frame.parent > 0 ? m.model->frames[frame.parent].stages.size() - 1 : 0, k);
       }
     } else {
-      spin.w = spin.carrier = m.angular_velocity[body.frame];
+      spin.w = spin.axes_angular_velocity = m.angular_velocity[body.frame];
       for (std::size_t k = 0; k < 3; ++k) spin.axes[k] = lower.axis(body.frame, last, k);
     }
     Ref twice = dag.zero();
-    const Vec3 H = momentum(dag, spin);
+    const Vec3 H = angular_momentum(dag, spin);
     for (std::size_t k = 0; k < 3; ++k) twice = dag.add(twice, dag.mul(spin.w[k], H[k]));
     m.kinetic = dag.add(m.kinetic, dag.div(twice, dag.integer(2)));
-    m.spins.push_back(std::move(spin));
+    m.body_rotations.push_back(std::move(spin));
   }
 }
 
-std::array<Ref, 3> times(Dag& dag, const Spin& spin, const std::array<Ref, 3>& v) {
+std::array<Ref, 3> inertia_times(Dag& dag, const BodyRotation& spin, const std::array<Ref, 3>& v) {
   std::array<Ref, 3> result{dag.zero(), dag.zero(), dag.zero()};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) result[i] = dag.add(result[i], dag.mul(spin.J[i][k], v[k]));
@@ -103,6 +103,6 @@ std::array<Ref, 3> times(Dag& dag, const Spin& spin, const std::array<Ref, 3>& v
   return result;
 }
 
-std::array<Ref, 3> momentum(Dag& dag, const Spin& spin) { return times(dag, spin, spin.w); }
+std::array<Ref, 3> angular_momentum(Dag& dag, const BodyRotation& spin) { return inertia_times(dag, spin, spin.w); }
 
 }  // namespace eomgen::mechanics

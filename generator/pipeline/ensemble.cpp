@@ -100,7 +100,7 @@ class Runs {
     kinetic_ = place("kinetic");
     potential_ = place("potential");
     const auto& conserved = first.derived->conserved;
-    watches_energy_ = std::any_of(conserved.begin(), conserved.end(), [](const conservation::Conserved& c) {
+    watches_energy_ = std::any_of(conserved.begin(), conserved.end(), [](const conservation::ConservedQuantity& c) {
       return c.kind == system::OutputKind::energy;
     });
   }

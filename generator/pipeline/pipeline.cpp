@@ -48,7 +48,7 @@ std::vector<system::Approach> approaches(const mechanics::Mechanics& m, Approach
 
 // Rejects a model without degrees of freedom: no integration and no right-hand side, only constraint forces.
 void require_freedom(const mechanics::Mechanics& m) {
-  if (m.freedom() > 0) return;
+  if (m.degrees_of_freedom() > 0) return;
   const model::Constraint& last = m.model->constraints.back();
   throw Error(
       "derive", m.model->where(last.span),
@@ -197,7 +197,7 @@ std::unique_ptr<Derived> derive_model(std::shared_ptr<const model::Model> model,
   require_freedom(derived->mechanics);
   for (const system::Approach a : approaches(derived->mechanics, approach)) {
     for (const derive::FormulationEntry& formulation : derive::formulations()) {
-      if (auto formulation_system = derive::derive_where_worth(formulation, derived->mechanics, a).system)
+      if (auto formulation_system = derive::derive_if_worthwhile(formulation, derived->mechanics, a).system)
         derived->candidates.push_back(std::move(*formulation_system));
     }
   }
@@ -219,7 +219,7 @@ program::Program make_program(Derived& derived, const program::Request& request)
 
 namespace {
 
-void add_forms(mechanics::Mechanics& mechanics, reading::Forms& forms, verify::Subjects& subjects) {
+void add_forms(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, verify::Subjects& subjects) {
   constexpr std::size_t large = 16;  // coordinates
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
     // Without eliminated coordinates both approaches coincide: a large system is displayed only once.
@@ -227,8 +227,8 @@ void add_forms(mechanics::Mechanics& mechanics, reading::Forms& forms, verify::S
     const reading::DisplayForm& form = forms(approach, reading::Extent::equations);
     std::string name = fmt::format("display form {}", system::name(approach));
     // Too large to be written out: it is displayed in parts, and not compared.
-    if (form.by_parts)
-      subjects.left_out.push_back({std::move(name), form.why_by_parts});
+    if (form.is_unexpanded)
+      subjects.left_out.push_back({std::move(name), form.unexpanded_reason});
     else
       subjects.reading.push_back({std::move(name), reading::residuals_on_dag(form, mechanics)});
   }
@@ -237,7 +237,7 @@ void add_forms(mechanics::Mechanics& mechanics, reading::Forms& forms, verify::S
 }  // namespace
 
 void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjects) {
-  reading::Forms forms(mechanics);
+  reading::DisplayForms forms(mechanics);
   add_forms(mechanics, forms, subjects);
 }
 
@@ -271,7 +271,7 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   }
   verify::Subjects subjects;
   subjects.systems = verify::all_formulations(derived.mechanics, &subjects.left_out);
-  reading::Forms written(derived.mechanics);
+  reading::DisplayForms written(derived.mechanics);
   add_forms(derived.mechanics, written, subjects);
   if (options.reductions) {
     const reading::RouthForm routh = written.routh(conservation::cyclic_coordinates(derived.conserved));

@@ -43,7 +43,7 @@ struct Derived {
   const model::Model& model;
   mechanics::Mechanics mechanics;
   std::vector<system::EquationSystem> candidates;  // applicable formulations, in the requested approaches
-  std::vector<conservation::Conserved> conserved;
+  std::vector<conservation::ConservedQuantity> conserved;
   Timings seconds;
   bool kept_certificate = false;  // the certificate comes from an earlier command for the same model and program
 };

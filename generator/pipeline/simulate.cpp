@@ -78,7 +78,7 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
 
 bool energy_is_conserved(const Derived& derived) {
   return std::any_of(derived.conserved.begin(), derived.conserved.end(),
-                     [](const conservation::Conserved& c) { return c.kind == OutputKind::energy; });
+                     [](const conservation::ConservedQuantity& c) { return c.kind == OutputKind::energy; });
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
                       {},   {}};
   const system::EquationSystem& system = derived.candidates.front();
   for (std::size_t i = 0; i < derived.conserved.size(); ++i) {
-    const conservation::Conserved& c = derived.conserved[i];
+    const conservation::ConservedQuantity& c = derived.conserved[i];
     run.conserved.push_back(
         {c.name, magnitude_of(system, i), c.kind == OutputKind::energy || c.kind == OutputKind::jacobi});
     if (c.kind == OutputKind::integral)

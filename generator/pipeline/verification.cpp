@@ -30,7 +30,7 @@ std::optional<verify::Certificate> certify_prescribed(const std::shared_ptr<cons
   for (const model::Constraint& constraint : model->constraints) equations += constraint.psi.size();
   if (equations < model->coordinates.size()) return std::nullopt;
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
-  if (mechanics.freedom() > 0) return std::nullopt;
+  if (mechanics.degrees_of_freedom() > 0) return std::nullopt;
   verify::Subjects subjects;
   subjects.systems = verify::all_formulations(mechanics, &subjects.left_out);
   add_reading_forms(mechanics, subjects);

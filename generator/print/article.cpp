@@ -13,7 +13,7 @@ using reading::Formula;
 using symbolic::SymbolKind;
 
 bool Article::builds_in() const {
-  const auto fixes = [](const reading::ReadConstraint& c) { return c.fixes.has_value(); };
+  const auto fixes = [](const reading::DisplayConstraint& c) { return c.fixes.has_value(); };
   return std::any_of(two.constraints.begin(), two.constraints.end(), fixes);
 }
 

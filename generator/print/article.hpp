@@ -24,7 +24,7 @@ struct ForceFinding {
 };
 
 struct ConservedFinding {
-  system::OutputKind kind;  // as in conservation::Conserved
+  system::OutputKind kind;  // as in conservation::ConservedQuantity
   std::uint32_t index, part;
   std::string title;
   symbolic::Ref expression;

@@ -27,10 +27,10 @@ class Coordinates {
     table();
     basis();
     functions();
-    for (const reading::ReadConstraint& c : a_.one.constraints) constraint(c);
+    for (const reading::DisplayConstraint& c : a_.one.constraints) constraint(c);
     for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
-      if (m_.holds(k)) continue;
-      const bool identity = m_.constraints[k].need == mechanics::Need::identity;
+      if (m_.is_independent(k)) continue;
+      const bool identity = m_.constraints[k].redundancy == mechanics::Redundancy::identity;
       out_.paragraph(bold(m_.constraints[k].label) +
                      (identity ? " holds identically" : " follows from the other constraints") +
                      ": it has no multiplier.");
@@ -54,7 +54,7 @@ class Coordinates {
   }
 
   std::string role(std::uint32_t i) const {
-    const auto of = [i](const reading::ReadConstraint& c) { return c.fixes && c.fixes->coordinate == i; };
+    const auto of = [i](const reading::DisplayConstraint& c) { return c.fixes && c.fixes->coordinate == i; };
     const auto first = std::find_if(a_.one.constraints.begin(), a_.one.constraints.end(), of);
     if (first != a_.one.constraints.end()) return "fixed by " + bold(first->label);
     const auto second = std::find_if(a_.two.constraints.begin(), a_.two.constraints.end(), of);
@@ -115,17 +115,17 @@ class Coordinates {
     return text;
   }
 
-  std::string kind(const reading::ReadConstraint& read) const {
+  std::string kind(const reading::DisplayConstraint& read) const {
     const mechanics::Constraint& c = m_.constraints[read.constraint];
-    const mechanics::Classification& found = m_.classification[read.constraint];
+    const mechanics::ConstraintClassification& found = m_.classification[read.constraint];
     const bool moves = !m_.dag->is_zero(c.rate);
     std::string text;
     if (c.holonomic()) {
       text = std::string("holonomic and ") +
              (moves ? "rheonomic (it depends on the time)" : "scleronomic (it does not depend on the time)");
     } else {
-      text = found.integrable == mechanics::Integrable::yes ? "on velocities, and integrable"
-             : found.integrable == mechanics::Integrable::no
+      text = found.integrable == mechanics::Integrability::yes ? "on velocities, and integrable"
+             : found.integrable == mechanics::Integrability::no
                  ? "nonholonomic: on velocities, and not integrable"
                  : "on velocities; it is not known whether it is integrable";
       if (!found.reason.empty()) text += " (" + reason(found.reason) + ")";
@@ -136,7 +136,7 @@ class Coordinates {
     return text;
   }
 
-  void constraint(const reading::ReadConstraint& c) {
+  void constraint(const reading::DisplayConstraint& c) {
     out_.paragraph("The constraint " + bold(c.label) + " is " + kind(c) + ":");
     std::vector<Statement> group;
     std::string role;
@@ -159,10 +159,10 @@ class Coordinates {
 
   /// For constraints that are integrable only together.
   void integrals() {
-    for (const mechanics::Integral& integral : m_.integrals) {
-      if (integral.of.size() < 2) continue;
+    for (const mechanics::ConstraintIntegral& integral : m_.integrals) {
+      if (integral.constraints.size() < 2) continue;
       std::vector<std::string> names;
-      for (const std::uint32_t k : integral.of) names.push_back(bold(m_.constraints[k].label));
+      for (const std::uint32_t k : integral.constraints) names.push_back(bold(m_.constraints[k].label));
       out_.paragraph("The integral of " + bold(integral.label) + " is one of " + enumeration(names) + " together.");
     }
   }

@@ -8,17 +8,17 @@
 namespace eomgen::print {
 
 using reading::arrange;
-using reading::Form;
+using reading::FormulaKind;
 using reading::Formula;
 using reading::Layout;
 using reading::mark;
-using reading::Partials;
+using reading::PartialDerivatives;
 using reading::DisplayForm;
 using symbolic::SymbolKind;
 
 namespace {
 
-bool equal(const Partials& a, const Partials& b) {
+bool equal(const PartialDerivatives& a, const PartialDerivatives& b) {
   return a.coordinate == b.coordinate && a.left_out.empty() && b.left_out.empty() && a.momentum == b.momentum &&
          a.rate == b.rate && a.kinetic == b.kinetic && a.potential == b.potential && a.force == b.force;
 }
@@ -29,13 +29,13 @@ void write_energies(Article& a) {
   a.out.section("Energies");
   const auto show = [&](const DisplayForm& form) {
     std::vector<Statement> all;
-    if (!form.by_parts) add_angular_velocities(form, all);
+    if (!form.is_unexpanded) add_angular_velocities(form, all);
     add_energies(a.m, form, all);
     a.out.display(a.formulas(all));
-    if (!form.no_spins.empty()) a.left_out.push_back({"angular velocities", form.no_spins});
+    if (!form.rotations_skip_reason.empty()) a.left_out.push_back({"angular velocities", form.rotations_skip_reason});
   };
-  const bool spins = !a.one.spins.empty();
-  if (spins)
+  const bool body_rotations = !a.one.body_rotations.empty();
+  if (body_rotations)
     a.out.paragraph(
         "The components $\\omega$ are those of the angular velocities, along the axes about which the moments of "
         "inertia are taken.");
@@ -48,9 +48,9 @@ void write_energies(Article& a) {
 void write_law(Article& a) {
   const Letters letters(a.model, false);
   const Formula q = mark("q"), rate = dotted(q);
-  std::vector<Formula> left{reading::wrap(Form::rate, {reading::wrap(Form::partial, {mark(letters.T), rate})}),
-                            reading::negative(reading::wrap(Form::partial, {mark(letters.T), q})),
-                            reading::wrap(Form::partial, {mark(letters.U), q})};
+  std::vector<Formula> left{reading::make_formula(FormulaKind::rate, {reading::make_formula(FormulaKind::partial, {mark(letters.T), rate})}),
+                            reading::negative(reading::make_formula(FormulaKind::partial, {mark(letters.T), q})),
+                            reading::make_formula(FormulaKind::partial, {mark(letters.U), q})};
   const std::string equation = a.out.math(reading::sum(std::move(left)));  // between $ and $
   const bool constrained = !a.one.constraints.empty();
   a.out.paragraph(std::string("Of every coordinate $q$, with its generalised force $Q_q$ beyond the potential") +
@@ -71,20 +71,20 @@ void write_law(Article& a) {
   a.out.paragraph(text + ".");
 }
 
-void write_partials(Article& a, const DisplayForm& form, std::vector<Partials>& first) {
-  if (form.by_parts) {
-    a.out.paragraph("The partial derivatives are too large to be written out (" + words(form.why_by_parts) + ").");
+void write_partials(Article& a, const DisplayForm& form, std::vector<PartialDerivatives>& first) {
+  if (form.is_unexpanded) {
+    a.out.paragraph("The partial derivatives are too large to be written out (" + words(form.unexpanded_reason) + ").");
     return;
   }
   const bool two = form.approach == system::Approach::two;
   const Letters letters(a.model, two);
   std::vector<std::string> unchanged;
-  std::vector<Partials> all = reading::partial_derivatives(a.m, form);
+  std::vector<PartialDerivatives> all = reading::partial_derivatives(a.m, form);
   if (two) {
-    const auto as_before = [&](const Partials& p) {
-      return std::any_of(first.begin(), first.end(), [&](const Partials& f) { return equal(f, p); });
+    const auto as_before = [&](const PartialDerivatives& p) {
+      return std::any_of(first.begin(), first.end(), [&](const PartialDerivatives& f) { return equal(f, p); });
     };
-    for (const Partials& p : all) {
+    for (const PartialDerivatives& p : all) {
       if (as_before(p)) unchanged.push_back(a.name_of(p.coordinate));
     }
     std::erase_if(all, as_before);
@@ -96,7 +96,7 @@ void write_partials(Article& a, const DisplayForm& form, std::vector<Partials>& 
                       : "Of the energies above:");
   if (!unchanged.empty() && !all.empty())
     a.out.paragraph("Those by " + enumeration(unchanged) + " are as before. The others are");
-  for (const Partials& p : all) {
+  for (const PartialDerivatives& p : all) {
     if (!p.left_out.empty()) {
       a.left_out.push_back(
           {std::string("partial derivatives by ") + a.model.coordinates[p.coordinate].name, p.left_out});
@@ -104,10 +104,10 @@ void write_partials(Article& a, const DisplayForm& form, std::vector<Partials>& 
     }
     std::vector<Formula> shown;
     const auto partial = [&](const std::string& letter, std::uint8_t order) {
-      return reading::wrap(Form::partial, {mark(letter), coordinate(p.coordinate, order)});
+      return reading::make_formula(FormulaKind::partial, {mark(letter), coordinate(p.coordinate, order)});
     };
     const auto add = [&](std::vector<Formula> formulas) {  // on one line if they fit
-      Formula together = reading::wrap(Form::list, formulas);
+      Formula together = reading::make_formula(FormulaKind::list, formulas);
       if (formulas.size() > 1 && a.out.fits_on_a_line(together))
         shown.push_back(std::move(together));
       else
@@ -116,7 +116,7 @@ void write_partials(Article& a, const DisplayForm& form, std::vector<Partials>& 
     std::vector<Formula> momentum{reading::relation({partial(letters.T, 1), arrange(p.momentum)})};
     if (!p.rate.is_zero())
       momentum.push_back(
-          reading::relation({reading::wrap(Form::rate, {partial(letters.T, 1)}), arrange(p.rate, Layout::terms)}));
+          reading::relation({reading::make_formula(FormulaKind::rate, {partial(letters.T, 1)}), arrange(p.rate, Layout::terms)}));
     add(std::move(momentum));
     add({reading::relation({partial(letters.T, 0), arrange(p.kinetic)}),
          reading::relation({partial(letters.U, 0), arrange(p.potential)}),

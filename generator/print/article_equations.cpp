@@ -39,7 +39,7 @@ class Equations {
   explicit Equations(Article& a) : a_(a), m_(a.m), out_(a.out) {}
 
   void write() {
-    std::vector<reading::Partials> first;
+    std::vector<reading::PartialDerivatives> first;
     write_law(a_);
     if (a_.builds_in()) {
       out_.subsection("Approach I: all coordinates, constraints imposed afterwards");
@@ -199,7 +199,7 @@ class Equations {
   }
 
   void decoupling() {
-    if (a_.one.by_parts || a_.one.constraints.empty()) return;
+    if (a_.one.is_unexpanded || a_.one.constraints.empty()) return;
     std::vector<const Equation*> pure, coupled, of_forces;
     bool friction = false;
     for (const Equation& e : a_.one.equations) {
@@ -237,7 +237,7 @@ class Equations {
     out_.paragraph("The multipliers of constraints that fix no coordinate stay in " + numbers(coupled) +
                    ": these do not decouple. Multipliers and accelerations are found together, from these equations "
                    "and the time derivatives of the constraints.");
-    for (const reading::ReadConstraint& c : a_.two.constraints) {
+    for (const reading::DisplayConstraint& c : a_.two.constraints) {
       if (!c.fixes || m_.is_eliminated(c.fixes->coordinate)) continue;
       out_.paragraph("By Approach II \\textbf{" + words(c.label) + "} takes " + a_.name_of(c.fixes->coordinate) +
                      " out, and its multiplier with it.");

@@ -70,7 +70,7 @@ std::string reason_of(const Article& a, const ConservedFinding& c) {
 /// Nothing if it is too long to write out.
 std::optional<Formula> value_of(Article& a, const ConservedFinding& c) {
   try {
-    const reading::Sum sum = c.named ? *c.named : reading::read(a.m, c.expression);
+    const reading::Sum sum = c.named ? *c.named : reading::display_sum(a.m, c.expression);
     Formula value = reading::arrange(sum);
     const std::string why = a.out.too_long(value);
     if (why.empty()) return value;
@@ -135,7 +135,7 @@ void write_routh(Article& a) {
   std::vector<std::string> names;
   for (const std::uint32_t c : form.cyclic) names.push_back(a.name_of(c));
   a.out.section("Routh's reduction");
-  if (form.by_parts) {
+  if (form.is_unexpanded) {
     a.out.paragraph("The reduction by " + enumeration(names) +
                     " is too long to be written out, or the momenta do not give the rates.");
     return;

@@ -44,8 +44,8 @@ class System {
     if (particles > 0) parts.push_back(number_word(particles, "particle", "particles"));
     if (bodies > 0) parts.push_back(number_word(bodies, "rigid body", "rigid bodies"));
     std::size_t constraints = 0;
-    for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) constraints += m_.holds(k) ? 1 : 0;
-    const long freedom = m_.freedom();
+    for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) constraints += m_.is_independent(k) ? 1 : 0;
+    const long freedom = m_.degrees_of_freedom();
     std::string text = parts.empty() ? "The system is described"
                                      : "The system consists of " + enumeration(parts) + ". It is described";
     text += " by " + number_word(model_.coordinates.size(), "coordinate", "coordinates") + " and subject to " +
@@ -132,7 +132,7 @@ class System {
 
   std::optional<reading::Sum> read_short(symbolic::Ref expression) const {
     try {
-      reading::Sum sum = reading::read(m_, expression);
+      reading::Sum sum = reading::display_sum(m_, expression);
       if (sum.size() <= longest_position) return sum;
     } catch (const work::BudgetExceeded&) {  // a position that is too long is omitted
     }

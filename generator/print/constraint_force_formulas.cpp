@@ -26,9 +26,9 @@ class Multipliers {
  public:
   Multipliers(const Mechanics& m, const DisplayForm& form) : m_(m), built_in_(m.constraints.size(), false) {
     if (form.approach != system::Approach::two) return;
-    for (const reading::ReadConstraint& c : form.constraints) built_in_[c.constraint] = c.fixes.has_value();
+    for (const reading::DisplayConstraint& c : form.constraints) built_in_[c.constraint] = c.fixes.has_value();
   }
-  bool holds(std::uint32_t k) const { return m_.holds(k); }
+  bool holds(std::uint32_t k) const { return m_.is_independent(k); }
   bool built_in(std::uint32_t k) const { return built_in_[k]; }
 
  private:
@@ -45,8 +45,8 @@ bool moves_others(const Mechanics& m, std::uint32_t coordinate, std::uint32_t pl
   for (const mechanics::PointMass& mass : m.masses) {
     if (mass.place != place && std::any_of(mass.velocity.begin(), mass.velocity.end(), moves)) return true;
   }
-  for (std::uint32_t b = 0; b < m.spins.size(); ++b) {
-    if (b != body && std::any_of(m.spins[b].w.begin(), m.spins[b].w.end(), moves)) return true;
+  for (std::uint32_t b = 0; b < m.body_rotations.size(); ++b) {
+    if (b != body && std::any_of(m.body_rotations[b].w.begin(), m.body_rotations[b].w.end(), moves)) return true;
   }
   return false;
 }
@@ -109,7 +109,7 @@ class BodyForces {
     try {
       show(role, letter, along, vector);
     } catch (const work::BudgetExceeded& over) {
-      out_.push_back(left_out("reactions", m_.spins[body_].name, role, over.what()));
+      out_.push_back(left_out("reactions", m_.body_rotations[body_].name, role, over.what()));
     }
   }
 
@@ -122,9 +122,9 @@ class BodyForces {
       std::vector<Formula> parts;
       bool sums = false;  // lines break between terms, not within nested brackets
       for (std::size_t i = 0; i < along.size(); ++i) {
-        const Sum slope = reading::read(m_, m_.constraints[k].gradient[along[i]]);
+        const Sum slope = reading::display_sum(m_, m_.constraints[k].gradient[along[i]]);
         if (slope.is_zero()) continue;
-        const bool minus = reading::leads_negative(slope);
+        const bool minus = reading::has_negative_leading_term(slope);
         Formula part = reading::product({reading::arrange(minus ? -slope : slope), vector(i)});
         parts.push_back(minus ? reading::negative(std::move(part)) : std::move(part));
         sums = sums || slope.size() > 1;
@@ -133,14 +133,14 @@ class BodyForces {
       if (multipliers_.built_in(k)) return;
       if (sums) {
         for (Formula& part : parts) {
-          const bool minus = part.form == reading::Form::negative;
+          const bool minus = part.kind == reading::FormulaKind::negative;
           Formula term = reading::product({lambda, minus ? reading::negative(std::move(part)) : std::move(part)});
           terms.push_back(minus ? reading::negative(std::move(term)) : std::move(term));
         }
         continue;
       }
       const bool all_minus =
-          std::all_of(parts.begin(), parts.end(), [](const Formula& f) { return f.form == reading::Form::negative; });
+          std::all_of(parts.begin(), parts.end(), [](const Formula& f) { return f.kind == reading::FormulaKind::negative; });
       if (all_minus) std::for_each(parts.begin(), parts.end(), [](Formula& f) { f = reading::negative(std::move(f)); });
       Formula term = reading::product({lambda, reading::sum(std::move(parts))});
       terms.push_back(all_minus ? reading::negative(std::move(term)) : std::move(term));
@@ -148,7 +148,7 @@ class BodyForces {
     if (terms.empty()) return;
     std::vector<Formula> sub;
     if (m_.model->bodies.size() > 1) sub.push_back(reading::number(static_cast<long>(body_ + 1)));
-    out_.push_back({"reactions", m_.spins[body_].name, "", role,
+    out_.push_back({"reactions", m_.body_rotations[body_].name, "", role,
                     reading::relation({mark(letter, std::move(sub)), reading::sum(std::move(terms))})});
   }
 
@@ -178,9 +178,9 @@ void add_particle_force(const Mechanics& m, const Multipliers& multipliers, cons
   reading::Components force{};
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     if (!multipliers.holds(k)) continue;
-    const Sum lambda = reading::read(m, m.dag->symbol({SymbolKind::multiplier, k, 0}));
+    const Sum lambda = reading::display_sum(m, m.dag->symbol({SymbolKind::multiplier, k, 0}));
     for (std::size_t i = 0; i < g.coordinates.size(); ++i) {
-      const Sum slope = reading::read(m, m.constraints[k].gradient[g.coordinates[i]]);
+      const Sum slope = reading::display_sum(m, m.constraints[k].gradient[g.coordinates[i]]);
       if (slope.is_zero()) continue;
       if (multipliers.built_in(k)) return;
       if (g.contravariant_unit.empty())
@@ -228,7 +228,7 @@ void add_particle_forces(const Mechanics& m, const Multipliers& multipliers, std
 void add_constraint_forces(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
   const Multipliers multipliers(m, form);
   add_particle_forces(m, multipliers, out);
-  for (std::uint32_t body = 0; body < m.spins.size(); ++body) BodyForces(m, multipliers, body, out).add();
+  for (std::uint32_t body = 0; body < m.body_rotations.size(); ++body) BodyForces(m, multipliers, body, out).add();
 }
 
 }  // namespace eomgen::print

@@ -11,7 +11,7 @@ namespace eomgen::print {
 using mechanics::Mechanics;
 using reading::arrange;
 using reading::Equation;
-using reading::Form;
+using reading::FormulaKind;
 using reading::Formula;
 using reading::Layout;
 using reading::mark;
@@ -22,13 +22,13 @@ using reading::SymbolKind;
 
 Formula coordinate(std::uint32_t i, std::uint8_t order) { return reading::symbol({SymbolKind::coordinate, i, order}); }
 Formula dotted(Formula letter, int order) {
-  Formula result = reading::wrap(Form::dot, {std::move(letter)});
+  Formula result = reading::make_formula(FormulaKind::dot, {std::move(letter)});
   result.order = order;
   return result;
 }
 Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
-Formula partial(Formula of, Formula by) { return reading::wrap(Form::partial, {std::move(of), std::move(by)}); }
-Formula dot_product(Formula a, Formula b) { return reading::wrap(Form::dot_product, {std::move(a), std::move(b)}); }
+Formula partial(Formula of, Formula by) { return reading::make_formula(FormulaKind::partial, {std::move(of), std::move(by)}); }
+Formula dot_product(Formula a, Formula b) { return reading::make_formula(FormulaKind::dot_product, {std::move(a), std::move(b)}); }
 
 namespace {
 
@@ -39,14 +39,14 @@ Formula multiplier(std::uint32_t k) { return reading::symbol({SymbolKind::multip
 
 // lambda times a derivative: numbers first, then lambda, then the rest.
 Formula times_multiplier(std::uint32_t k, const Sum& slope) {
-  const bool minus = reading::leads_negative(slope);
+  const bool minus = reading::has_negative_leading_term(slope);
   const Formula f = arrange(minus ? -slope : slope);
   Formula result;
-  if (f.form == Form::product && f.args[0].form == Form::number) {
+  if (f.kind == FormulaKind::product && f.args[0].kind == FormulaKind::number) {
     std::vector<Formula> factors(f.args);
     factors.insert(factors.begin() + 1, multiplier(k));
     result = reading::product(std::move(factors));
-  } else if (f.form == Form::number) {
+  } else if (f.kind == FormulaKind::number) {
     result = reading::product({f, multiplier(k)});
   } else {
     result = reading::product({multiplier(k), f});
@@ -57,7 +57,7 @@ Formula times_multiplier(std::uint32_t k, const Sum& slope) {
 // Squares: (a + b)^2, a^2 b^2.
 Formula squared(const Sum& w) {
   if (w.size() == 1) return arrange(w * w);
-  return reading::wrap(Form::power, {arrange(w), reading::number(2)});
+  return reading::make_formula(FormulaKind::power, {arrange(w), reading::number(2)});
 }
 
 Formula halved(std::vector<Formula> factors) {
@@ -71,7 +71,7 @@ Formula with_half(const Sum& J, Formula squares) {
   return reading::product({arrange(symbolic::Rational(1) / 2 * J), std::move(squares)});
 }
 
-Formula component(const reading::ReadSpin& spin, std::size_t k) {
+Formula component(const reading::DisplayRotation& spin, std::size_t k) {
   return mark("omega", {reading::number(static_cast<long>(k + 1)), reading::number(static_cast<long>(spin.frame))});
 }
 
@@ -87,11 +87,11 @@ Sum sum_of_squares(const std::vector<const Sum*>& components) {
 }
 
 /// w.Jw/2 with the fewest squares; `named`: with components that are defined separately.
-std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named) {
+std::vector<Formula> rotational_terms(const reading::DisplayRotation& spin, bool named) {
   std::vector<Formula> terms;
   std::array<bool, 3> done{};
   const auto square = [&](std::size_t k) {
-    return named ? reading::wrap(Form::power, {component(spin, k), reading::number(2)}) : squared(spin.w[k]);
+    return named ? reading::make_formula(FormulaKind::power, {component(spin, k), reading::number(2)}) : squared(spin.w[k]);
   };
   for (std::size_t i = 0; i < 3; ++i) {
     if (done[i] || spin.J[i][i].is_zero()) continue;
@@ -123,10 +123,10 @@ std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named)
 
 /// T as squares of velocities and of components of angular velocities; unchanged for a model without bodies.
 Formula kinetic_formula(const DisplayForm& form) {
-  if (form.spins.empty()) return arrange(form.kinetic);
+  if (form.body_rotations.empty()) return arrange(form.kinetic);
   std::vector<Formula> terms =
       form.translation.is_zero() ? std::vector<Formula>{} : reading::arranged_terms(form.translation, Layout::grouped);
-  for (const reading::ReadSpin& spin : form.spins) {
+  for (const reading::DisplayRotation& spin : form.body_rotations) {
     for (Formula& term : rotational_terms(spin, false)) terms.push_back(std::move(term));
   }
   return reading::sum(std::move(terms));
@@ -137,10 +137,10 @@ void add_rotations(const Mechanics& m, const DisplayForm& form, const Formula& T
   std::vector<Formula> terms;
   for (const mechanics::PointMass& mass : m.masses) {
     const Formula place = reading::number(static_cast<long>(mass.place)), v = dotted(mark("r", {place}));
-    terms.push_back(halved({mass_letter(m, mass), reading::wrap(Form::dot_product, {v, v})}));
+    terms.push_back(halved({mass_letter(m, mass), reading::make_formula(FormulaKind::dot_product, {v, v})}));
   }
   add_angular_velocities(form, out);
-  for (const reading::ReadSpin& spin : form.spins) {
+  for (const reading::DisplayRotation& spin : form.body_rotations) {
     for (Formula& term : rotational_terms(spin, true)) terms.push_back(std::move(term));
   }
   out.push_back({"energies", "kinetic energy", "", "", reading::relation({T, reading::sum(std::move(terms))})});
@@ -148,7 +148,7 @@ void add_rotations(const Mechanics& m, const DisplayForm& form, const Formula& T
 
 Formula read_or_dots(const Mechanics& m, symbolic::Ref expression) {
   try {
-    return arrange(reading::read(m, expression));
+    return arrange(reading::display_sum(m, expression));
   } catch (const work::BudgetExceeded&) {
     return mark("...");  // too long to display
   }
@@ -160,7 +160,7 @@ Formula right_side(const Equation& equation) {
   for (const reading::MultiplierTerm& term : equation.multipliers)
     terms.push_back(times_multiplier(term.constraint, term.slope));
   const auto positive =
-      std::find_if(terms.begin(), terms.end(), [](const Formula& f) { return f.form != Form::negative; });
+      std::find_if(terms.begin(), terms.end(), [](const Formula& f) { return f.kind != FormulaKind::negative; });
   if (positive != terms.end()) std::rotate(terms.begin(), positive, positive + 1);
   return reading::sum(std::move(terms));
 }
@@ -170,7 +170,7 @@ Formula right_side(const Equation& equation) {
 Formula momentum_form(const Equation& equation) {
   std::vector<Formula> terms;
   if (!equation.momentum.is_zero()) {
-    terms.push_back(reading::wrap(Form::rate, {arrange(equation.momentum, Layout::terms)}));
+    terms.push_back(reading::make_formula(FormulaKind::rate, {arrange(equation.momentum, Layout::terms)}));
   }
   for (Formula& term : reading::arranged_terms(-equation.slope, Layout::terms)) terms.push_back(std::move(term));
   return reading::relation({reading::sum(std::move(terms)), right_side(equation)});
@@ -181,7 +181,7 @@ Formula explicit_form(const Equation& equation) {
 }
 
 void add_angular_velocities(const DisplayForm& form, std::vector<Statement>& out) {
-  for (const reading::ReadSpin& spin : form.spins) {
+  for (const reading::DisplayRotation& spin : form.body_rotations) {
     for (std::size_t k = 0; k < 3; ++k) {
       out.push_back({"energies", "angular velocity of " + spin.name, "", "",
                      reading::relation({component(spin, k), arrange(spin.w[k])})});
@@ -192,8 +192,8 @@ void add_angular_velocities(const DisplayForm& form, std::vector<Statement>& out
 void add_energies(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
   const bool two = form.approach == system::Approach::two;
   const Letters letters(*m.model, two);
-  if (form.by_parts && !form.spins.empty()) add_rotations(m, form, mark(letters.T), out);
-  if (form.by_parts) return;
+  if (form.is_unexpanded && !form.body_rotations.empty()) add_rotations(m, form, mark(letters.T), out);
+  if (form.is_unexpanded) return;
   const auto add = [&](std::string name, Formula left, const Sum& right) {
     out.push_back({"energies", std::move(name), "", "", reading::relation({std::move(left), arrange(right)})});
   };
@@ -210,9 +210,9 @@ void add_energies(const Mechanics& m, const DisplayForm& form, std::vector<State
 }
 
 void add_lagrangian(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
-  if (form.by_parts) return;
+  if (form.is_unexpanded) return;
   const Formula L = mark(Letters(*m.model, form.approach == system::Approach::two).L);
-  std::vector<Formula> terms = form.spins.empty() ? reading::arranged_terms(form.kinetic, Layout::grouped)
+  std::vector<Formula> terms = form.body_rotations.empty() ? reading::arranged_terms(form.kinetic, Layout::grouped)
                                                   : std::vector<Formula>{kinetic_formula(form)};
   if (!form.potential.is_zero()) {
     for (Formula& term : reading::arranged_terms(-form.potential, Layout::grouped)) terms.push_back(std::move(term));
@@ -229,17 +229,17 @@ void add_constraints(const Mechanics& m, const DisplayForm& form, std::vector<St
     out.push_back({"constraints", function.name, "", "function of time",
                    reading::relation({reading::symbol({SymbolKind::function, f, 0}), *written})});
   }
-  for (const reading::ReadConstraint& c : form.constraints) {
+  for (const reading::DisplayConstraint& c : form.constraints) {
     const auto add = [&](std::string role, Formula formula) {
       out.push_back({"constraints", c.label, "", std::move(role), std::move(formula)});
     };
     const Formula zero = reading::number(0);
     const Formula psi = constraint_letter(letters, m, c.constraint);
     const auto as_read = [&] {
-      if (!(c.holonomic ? c.no_psi : c.no_rate).empty()) return mark("...");
+      if (!(c.holonomic ? c.psi_skip_reason : c.rate_skip_reason).empty()) return mark("...");
       return arrange(c.holonomic ? c.psi : c.rate, c.holonomic ? Layout::grouped : Layout::terms);
     };
-    const std::optional<Formula> as_given = reading::as_written(*m.model, m.constraints[c.constraint].written);
+    const std::optional<Formula> as_given = reading::as_written(*m.model, m.constraints[c.constraint].model_expression);
     const Formula written = as_given ? *as_given : as_read();
     const auto add_sum = [&](const char* role, const Sum& sum, const std::string& why) {
       if (why.empty())
@@ -256,24 +256,24 @@ void add_constraints(const Mechanics& m, const DisplayForm& form, std::vector<St
       if (c.value_acceleration.size() > longest_in_a_list) {
         for (Formula& f : motion) add("fixes a coordinate", std::move(f));
       } else {
-        add("fixes a coordinate", reading::wrap(Form::list, std::move(motion)));
+        add("fixes a coordinate", reading::make_formula(FormulaKind::list, std::move(motion)));
       }
     } else if (!c.holonomic) {
-      const mechanics::Integrable found = m.classification[c.constraint].integrable;
-      add(found == mechanics::Integrable::yes  ? "binds velocities, integrable"
-          : found == mechanics::Integrable::no ? "binds velocities, not integrable"
+      const mechanics::Integrability found = m.classification[c.constraint].integrable;
+      add(found == mechanics::Integrability::yes  ? "binds velocities, integrable"
+          : found == mechanics::Integrability::no ? "binds velocities, not integrable"
                                                : "binds velocities, integrability unknown",
           // Equations by parts define it.
-          form.by_parts ? reading::relation({dotted(psi), written, zero}) : reading::relation({written, zero}));
-      for (const mechanics::Integral& integral : m.integrals) {
+          form.is_unexpanded ? reading::relation({dotted(psi), written, zero}) : reading::relation({written, zero}));
+      for (const mechanics::ConstraintIntegral& integral : m.integrals) {
         if (integral.label == c.label)
-          add("its integral", reading::relation({reading::wrap(Form::rate, {read_or_dots(m, integral.psi)}), zero}));
+          add("its integral", reading::relation({reading::make_formula(FormulaKind::rate, {read_or_dots(m, integral.psi)}), zero}));
       }
-      add_sum("its time derivative", c.acceleration, c.no_acceleration);
+      add_sum("its time derivative", c.acceleration, c.acceleration_skip_reason);
     } else {
       add("keeps its multiplier", reading::relation({psi, written, zero}));
-      add_sum("its first time derivative", c.rate, c.no_rate);
-      add_sum("its second time derivative", c.acceleration, c.no_acceleration);
+      add_sum("its first time derivative", c.rate, c.rate_skip_reason);
+      add_sum("its second time derivative", c.acceleration, c.acceleration_skip_reason);
     }
   }
 }
@@ -298,7 +298,7 @@ void add_equations(const Mechanics& m, const DisplayForm& form, std::vector<Stat
                      formula(equation)});
     }
   };
-  if (form.by_parts) return add_equations_by_parts(m, form, out);
+  if (form.is_unexpanded) return add_equations_by_parts(m, form, out);
   if (const std::size_t terms = longest_equation(form); terms > most_terms) {
     add_equations_by_parts(m, form, out);
     out.push_back(left_out("equations written out", "", "", "the longest has " + std::to_string(terms) + " terms"));
@@ -309,7 +309,7 @@ void add_equations(const Mechanics& m, const DisplayForm& form, std::vector<Stat
 }
 
 void add_reactions(const DisplayForm& form, std::vector<Statement>& out) {
-  for (const reading::ReadReaction& reaction : form.reactions) {
+  for (const reading::DisplayReaction& reaction : form.reactions) {
     if (!reaction.value) continue;
     const bool long_sum = reaction.value->size() > 8;  // lines break between terms, not within brackets
     out.push_back({"reactions", reaction.label, "", "",

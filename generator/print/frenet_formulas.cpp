@@ -57,7 +57,7 @@ bool same(const Components& a, const Components& b) { return a[0] == b[0] && a[1
 }  // namespace
 
 void add_frenet(const mechanics::Mechanics& m, bool asked, std::vector<Statement>& out) {
-  if (!asked && !reading::why_no_curve(m).empty()) return;
+  if (!asked && !reading::curve_obstacle(m).empty()) return;
   reading::Frenet f;
   try {
     f = reading::frenet(m);
@@ -90,8 +90,8 @@ void add_frenet(const mechanics::Mechanics& m, bool asked, std::vector<Statement
   if (f.along) {
     const Formula q = reading::symbol({reading::SymbolKind::coordinate, *f.along, 0});
     add("arc length",
-        reading::relation({reading::wrap(reading::Form::differential, {mark("s")}),
-                           reading::product({arrange(f.speed), reading::wrap(reading::Form::differential, {q})})}));
+        reading::relation({reading::make_formula(reading::FormulaKind::differential, {mark("s")}),
+                           reading::product({arrange(f.speed), reading::make_formula(reading::FormulaKind::differential, {q})})}));
   }
 }
 

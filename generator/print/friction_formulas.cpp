@@ -11,23 +11,23 @@ namespace {
 
 using mechanics::Contact;
 using mechanics::Mechanics;
-using reading::Form;
+using reading::FormulaKind;
 using reading::Formula;
 using reading::mark;
 using symbolic::Ref;
 using symbolic::SymbolKind;
 
 Formula call(symbolic::Op op, Formula of) {
-  Formula result = reading::wrap(Form::call, {std::move(of)});
+  Formula result = reading::make_formula(FormulaKind::call, {std::move(of)});
   result.op = op;
   return result;
 }
-Formula square(Formula f) { return reading::wrap(Form::power, {std::move(f), reading::number(2)}); }
+Formula square(Formula f) { return reading::make_formula(FormulaKind::power, {std::move(f), reading::number(2)}); }
 
 class ContactFormulas {
  public:
   ContactFormulas(const Mechanics& m, const Contact& contact, std::size_t index, std::vector<Statement>& out)
-      : m_(m), dag_(*m.dag), contact_(contact), index_(index), imposed_(mechanics::impose(m)), out_(out) {
+      : m_(m), dag_(*m.dag), contact_(contact), index_(index), imposed_(mechanics::constraint_substitution(m)), out_(out) {
     slip_ = free_letter(*m_.model, "w", "varpi");
     normal_ = call(symbolic::Op::abs, mark(free_letter(*m_.model, "N", "cal N"), subscript({})));
   }
@@ -46,7 +46,7 @@ class ContactFormulas {
     show("is apart while", {read(m_.constraints[k].psi), reading::number(0)}, true);
     const auto rate = [&](const char* when) {
       Formula result =
-          reading::wrap(Form::dot, {mark(free_letter(*m_.model, "psi", "Psi"), subscript({}), {mark(when)})});
+          reading::make_formula(FormulaKind::dot, {mark(free_letter(*m_.model, "psi", "Psi"), subscript({}), {mark(when)})});
       result.order = 1;
       return result;
     };
@@ -82,7 +82,7 @@ class ContactFormulas {
 
   Formula read(Ref expression) {
     try {
-      return reading::arrange(reading::read(m_, imposed_(expression)));
+      return reading::arrange(reading::display_sum(m_, imposed_(expression)));
     } catch (const work::BudgetExceeded&) {
       return mark("...");
     }
@@ -100,7 +100,7 @@ class ContactFormulas {
     for (std::size_t a = 0; a < contact_.directions.size(); ++a) {
       try {
         reading::Components t;
-        for (std::size_t k = 0; k < 3; ++k) t[k] = reading::read(m_, imposed_(contact_.directions[a][k]));
+        for (std::size_t k = 0; k < 3; ++k) t[k] = reading::display_sum(m_, imposed_(contact_.directions[a][k]));
         std::vector<Formula> index = number_of(a);
         index.insert(index.begin(), mark("t"));
         show("direction", {mark("e", std::move(index)), combination(t, fixed)});

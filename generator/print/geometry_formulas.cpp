@@ -10,7 +10,7 @@ namespace {
 using mechanics::Mechanics;
 using reading::arrange;
 using reading::Components;
-using reading::Form;
+using reading::FormulaKind;
 using reading::Formula;
 using reading::Geometry;
 using reading::Layout;
@@ -22,8 +22,8 @@ Formula coordinate(std::uint32_t i) { return reading::symbol({SymbolKind::coordi
 
 // qdot_i -> dq_i
 Formula with_differentials(const Formula& f) {
-  if (f.form == Form::symbol && f.symbol.kind == SymbolKind::coordinate && f.symbol.order == 1) {
-    return reading::wrap(Form::differential, {coordinate(f.symbol.index)});
+  if (f.kind == FormulaKind::symbol && f.symbol.kind == SymbolKind::coordinate && f.symbol.order == 1) {
+    return reading::make_formula(FormulaKind::differential, {coordinate(f.symbol.index)});
   }
   Formula result = f;
   for (Formula& arg : result.args) arg = with_differentials(arg);
@@ -122,7 +122,7 @@ Formula combination(const Components& components, const std::vector<Formula>& ve
   std::vector<Formula> terms;
   for (std::size_t k = 0; k < 3; ++k) {
     if (components[k].is_zero()) continue;
-    const bool minus = reading::leads_negative(components[k]);
+    const bool minus = reading::has_negative_leading_term(components[k]);
     Formula term = reading::product({arrange(minus ? -components[k] : components[k]), vectors[k]});
     terms.push_back(minus ? reading::negative(std::move(term)) : std::move(term));
   }
@@ -151,7 +151,7 @@ void add_singular(const Mechanics& m, std::vector<Statement>& out) {
   std::vector<reading::LeftOut> unseen;
   for (const reading::SingularSet& set : reading::singular_sets(m, &unseen)) {
     Formula formula = reading::relation({arrange(set.factor), reading::number(0)});
-    if (!set.solutions.empty()) formula = reading::wrap(Form::list, set.solutions);
+    if (!set.solutions.empty()) formula = reading::make_formula(FormulaKind::list, set.solutions);
     out.push_back({"singular", "", "", set.approach, std::move(formula)});
   }
   for (reading::LeftOut& l : unseen) out.push_back(left_out("singular", std::move(l.what), "", std::move(l.why)));

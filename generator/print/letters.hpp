@@ -40,7 +40,7 @@ struct Letters {
 inline reading::Formula constraint_letter(const Letters& letters, const mechanics::Mechanics& m,
                                           std::uint32_t constraint) {
   std::size_t held = 0;
-  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) held += m.holds(k) ? 1 : 0;
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) held += m.is_independent(k) ? 1 : 0;
   return held == 1 ? reading::mark(letters.psi)
                    : reading::mark(letters.psi, {reading::number(static_cast<long>(constraint) + 1)});
 }

@@ -20,7 +20,7 @@ class Entries {
  public:
   Entries(const LinearForm& form, std::vector<Statement>& out) : f_(form), out_(out) {}
 
-  void show(const reading::Slopes& slopes, const std::string& where) {
+  void show(const reading::LinearCoefficients& slopes, const std::string& where) {
     matrix("M", slopes.mass, false, where);
     matrix("C", slopes.damping, false, where);
     matrix("K", slopes.stiffness, false, where);
@@ -53,20 +53,20 @@ class Entries {
 
 std::vector<Item> render_linear(const mechanics::Mechanics& m, const LinearForm& form) {
   std::vector<Statement> out;
-  if (!form.why_not.empty()) {
-    out.push_back(left_out("linear", "", "", form.why_not));
+  if (!form.skip_reason.empty()) {
+    out.push_back(left_out("linear", "", "", form.skip_reason));
     return render(m, out);
   }
   Entries entries(form, out);
-  entries.show(form.along, "along a motion");
-  for (std::size_t i = 0; i < form.rest.size(); ++i) {
-    if (form.rest[i].is_zero()) continue;  // every configuration is an equilibrium
-    const auto& terms = form.rest[i].terms();
+  entries.show(form.along_motion, "along a motion");
+  for (std::size_t i = 0; i < form.rest_residuals.size(); ++i) {
+    if (form.rest_residuals[i].is_zero()) continue;  // every configuration is an equilibrium
+    const auto& terms = form.rest_residuals[i].terms();
     const bool all_are_subtracted =
         std::all_of(terms.begin(), terms.end(), [](const auto& term) { return cln::minusp(term.second); });
     out.push_back(
         {"linear", "", m.model->coordinates[form.coordinates[i]].name, "at rest where",
-         reading::relation({arrange(all_are_subtracted ? -form.rest[i] : form.rest[i]), reading::number(0)})});
+         reading::relation({arrange(all_are_subtracted ? -form.rest_residuals[i] : form.rest_residuals[i]), reading::number(0)})});
   }
   entries.show(form.at_rest, "at rest");
   return render(m, out);

@@ -8,7 +8,7 @@
 
 namespace eomgen::print {
 
-using reading::Form;
+using reading::FormulaKind;
 using reading::Formula;
 using reading::mark;
 using symbolic::Ref;
@@ -35,8 +35,8 @@ bool NamedForces::work(std::uint32_t j, std::uint32_t k, std::uint32_t i, std::v
   const std::vector<Formula> of = lower_index(j, k);
   const bool moment = effect.load_type == LoadType::moment;
   const Formula F = mark(moment ? "bold M" : "bold F", of), s = mark("bold s", of);
-  if (moment && std::none_of(m_.spins.begin(), m_.spins.end(),
-                             [&](const mechanics::Spin& spin) { return spin.frame == effect.index; }))
+  if (moment && std::none_of(m_.body_rotations.begin(), m_.body_rotations.end(),
+                             [&](const mechanics::BodyRotation& spin) { return spin.frame == effect.index; }))
     return false;
   if (!std::count(effects_.begin(), effects_.end(), std::pair(j, k))) {
     const std::string& name = m_.model->forces[j].name;
@@ -84,13 +84,13 @@ std::optional<Formula> NamedForces::spring(std::uint32_t j) {
     if (!s || !c || !free) return std::nullopt;
     Formula square = dot_product(*s, *s);
     if (!reading::is_zero(*free)) {
-      Formula distance = reading::wrap(Form::call, {square});
+      Formula distance = reading::make_formula(FormulaKind::call, {square});
       distance.op = symbolic::Op::sqrt;
-      square = reading::wrap(Form::power,
+      square = reading::make_formula(FormulaKind::power,
                              {reading::sum({std::move(distance), reading::negative(*free)}), reading::number(2)});
     }
     // A single numeric factor in front.
-    if (c->form == Form::number)
+    if (c->kind == FormulaKind::number)
       terms.push_back(reading::product({reading::number(c->number / 2), std::move(square)}));
     else
       terms.push_back(

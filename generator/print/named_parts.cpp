@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "mechanics/dependent.hpp"
+#include "mechanics/dependent_coordinates.hpp"
 #include "mechanics/imposition.hpp"
 #include "print/formulas.hpp"
 #include "print/letters.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 using mechanics::Mechanics;
 using reading::Equation;
-using reading::Form;
+using reading::FormulaKind;
 using reading::Formula;
 using reading::mark;
 using reading::DisplayForm;
@@ -36,7 +36,7 @@ Formula linear_combination(const std::vector<Formula>& components, const std::ve
   std::vector<Formula> terms;
   for (std::size_t k = 0; k < components.size(); ++k) {
     if (reading::is_zero(components[k])) continue;
-    const bool minus = components[k].form == Form::negative;
+    const bool minus = components[k].kind == FormulaKind::negative;
     Formula term = reading::product({minus ? components[k].args[0] : components[k], vectors[k]});
     terms.push_back(minus ? reading::negative(std::move(term)) : std::move(term));
   }
@@ -47,10 +47,10 @@ class NamedParts {
  public:
   NamedParts(const Mechanics& given, const DisplayForm& form, std::vector<Statement>& out)
       : two_(form.approach == system::Approach::two),
-        m_(two_ ? mechanics::impose_dependent(given) : given),
+        m_(two_ ? mechanics::eliminate_dependent_coordinates(given) : given),
         form_(form),
         letters_(*m_.model, two_),
-        imposed_(two_ ? mechanics::impose(m_) : symbolic::Substitution(*m_.dag, {})),
+        imposed_(two_ ? mechanics::constraint_substitution(m_) : symbolic::Substitution(*m_.dag, {})),
         out_(out),
         forces_(m_, {[this](Ref r) { return read(r); },
                      [this, &given](model::NodeId node, Ref r) {
@@ -72,7 +72,7 @@ class NamedParts {
 
   void definitions() {
     for (const mechanics::PointMass& mass : m_.masses) position(mass);
-    for (std::size_t i = 0; i < m_.spins.size(); ++i) rotation(i);
+    for (std::size_t i = 0; i < m_.body_rotations.size(); ++i) rotation(i);
     if (has_given()) {
       const auto written = reading::as_written(*m_.model, m_.model->energy.kinetic);
       if (written && !two_)
@@ -126,7 +126,7 @@ class NamedParts {
 
   std::optional<Formula> read(Ref r, std::size_t most = most_terms) {
     try {
-      const Sum sum = reading::read(m_, value(r));
+      const Sum sum = reading::display_sum(m_, value(r));
       if (sum.size() <= most) return arranged(sum);
       why_ = "it has " + std::to_string(sum.size()) + " terms";
       return std::nullopt;
@@ -210,12 +210,12 @@ class NamedParts {
       const Formula r = mark("r", {index(mass.place)});
       left.push_back(reading::product({mass_letter(m_, mass), dot_product(dotted(r, 2), partial(r, q))}));
     }
-    for (const mechanics::Spin& spin : m_.spins) {
+    for (const mechanics::BodyRotation& spin : m_.body_rotations) {
       if (!any_depends(spin.w, i, 1)) continue;
       left.push_back(dot_product(dotted(mark("bold H", {index(spin.frame)})),
                                  partial(mark("bold omega", {index(spin.frame)}), rate)));
     }
-    if (depends(m_.kinetic_given, i, 1)) left.push_back(reading::wrap(Form::rate, {partial(mark(letters_.T), rate)}));
+    if (depends(m_.kinetic_given, i, 1)) left.push_back(reading::make_formula(FormulaKind::rate, {partial(mark(letters_.T), rate)}));
     if (depends(m_.kinetic_given, i, 0)) left.push_back(reading::negative(partial(mark(letters_.T), q)));
     if (depends(m_.potential, i, 0)) right.push_back(reading::negative(partial(mark(letters_.U), q)));
     if (!m_.dag->is_zero(generalized_force(i))) right.push_back(mark("Q", {q}));
@@ -226,7 +226,7 @@ class NamedParts {
   void constraint_force(std::uint32_t i, std::uint32_t k, std::vector<Formula>& terms) {
     const mechanics::Constraint& c = m_.constraints[k];
     const auto built_in = [k](const mechanics::FixedCoordinate& f) { return f.constraint == k; };
-    if (!m_.holds(k) || (two_ && std::any_of(m_.fixed.begin(), m_.fixed.end(), built_in))) return;
+    if (!m_.is_independent(k) || (two_ && std::any_of(m_.fixed.begin(), m_.fixed.end(), built_in))) return;
     const bool acts = c.holonomic() ? depends(c.psi, i, 0) : depends(m_.velocity_form(c), i, 1);
     if (!acts) return;
     const Formula psi = constraint_letter(letters_, m_, k);
@@ -265,7 +265,7 @@ class NamedParts {
   /// Relative to the reference particle or body, if there is one.
   void position(const mechanics::PointMass& mass) {
     const Formula letter = mass_letter(m_, mass);
-    if (letter.form != Form::symbol) define("mass", mass.name, letter, mass.mass);
+    if (letter.kind != FormulaKind::symbol) define("mass", mass.name, letter, mass.mass);
     const std::uint32_t from = m_.model->places[mass.place].chart ? m_.model->places[mass.place].from : 0;
     const auto base = std::find_if(m_.masses.begin(), m_.masses.end(),
                                    [from](const mechanics::PointMass& other) { return other.place == from; });
@@ -279,10 +279,10 @@ class NamedParts {
   }
 
   void rotation(std::size_t i) {
-    const mechanics::Spin& spin = m_.spins[i];
+    const mechanics::BodyRotation& spin = m_.body_rotations[i];
     const std::uint32_t b = spin.frame;
     std::vector<Formula> axes, w, W, H;
-    const bool carried = spin.carrier != spin.w;  // the axes rotate differently from the body
+    const bool carried = spin.axes_angular_velocity != spin.w;  // the axes rotate differently from the body
     for (std::uint32_t k = 0; k < 3; ++k) {
       axes.push_back(mark("e", {index(k + 1), index(b)}));
       w.push_back(mark("omega", {index(k + 1), index(b)}));
@@ -294,7 +294,7 @@ class NamedParts {
     define("angular velocity", spin.name,
            reading::relation({mark("bold omega", {index(b)}), linear_combination(w, axes)}));
     if (carried) {
-      for (std::size_t k = 0; k < 3; ++k) define("angular velocity of the axes", spin.name, W[k], spin.carrier[k]);
+      for (std::size_t k = 0; k < 3; ++k) define("angular velocity of the axes", spin.name, W[k], spin.axes_angular_velocity[k]);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       std::vector<Formula> J;

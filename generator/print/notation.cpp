@@ -80,7 +80,7 @@ std::vector<MultiplierMeaning> multiplier_meanings(const mechanics::Mechanics& m
   std::vector<MultiplierMeaning> result;
   const std::vector<JointDirection> of_joints = joint_directions(m);
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (!m.holds(k)) continue;
+    if (!m.is_independent(k)) continue;
     const auto found =
         std::find_if(of_joints.begin(), of_joints.end(), [k](const JointDirection& d) { return d.constraint == k; });
     if (found == of_joints.end()) {

@@ -13,7 +13,7 @@
 namespace eomgen::print {
 namespace {
 
-using reading::Form;
+using reading::FormulaKind;
 using reading::Formula;
 using reading::Op;
 
@@ -35,25 +35,25 @@ class Walk {
   Walk(const Style& style, const Notation& notation) : style_(style), notation_(notation) {}
 
   Piece operator()(const Formula& f) const {
-    switch (f.form) {
-      case Form::number: return number(f);
-      case Form::pi: return style_.pi();
-      case Form::symbol: return symbol(f.symbol);
-      case Form::mark: return style_.mark(f.word, texts(f.lower), texts(f.upper));
-      case Form::call: return style_.call(f.op, pieces(f.args));
-      case Form::power: return power(f);
-      case Form::negative: return {style_.leading_minus() + at_least(f.args[0], Piece::product), Piece::sum};
-      case Form::product: return product(f);
-      case Form::fraction: return style_.fraction((*this)(f.args[0]), (*this)(f.args[1]));
-      case Form::sum: return {joined(signed_terms(f)), Piece::sum};
-      case Form::rate: return style_.rate((*this)(f.args[0]));
-      case Form::partial: return style_.partial((*this)(f.args[0]), (*this)(f.args[1]));
-      case Form::dot: return style_.dotted((*this)(f.args[0]), f.order);
-      case Form::dot_product:
+    switch (f.kind) {
+      case FormulaKind::number: return number(f);
+      case FormulaKind::pi: return style_.pi();
+      case FormulaKind::symbol: return symbol(f.symbol);
+      case FormulaKind::mark: return style_.mark(f.word, texts(f.lower), texts(f.upper));
+      case FormulaKind::call: return style_.call(f.op, pieces(f.args));
+      case FormulaKind::power: return power(f);
+      case FormulaKind::negative: return {style_.leading_minus() + at_least(f.args[0], Piece::product), Piece::sum};
+      case FormulaKind::product: return product(f);
+      case FormulaKind::fraction: return style_.fraction((*this)(f.args[0]), (*this)(f.args[1]));
+      case FormulaKind::sum: return {joined(signed_terms(f)), Piece::sum};
+      case FormulaKind::rate: return style_.rate((*this)(f.args[0]));
+      case FormulaKind::partial: return style_.partial((*this)(f.args[0]), (*this)(f.args[1]));
+      case FormulaKind::dot: return style_.dotted((*this)(f.args[0]), f.order);
+      case FormulaKind::dot_product:
         return style_.dot_product({at_least(f.args[0], Piece::product)}, {at_least(f.args[1], Piece::product)});
-      case Form::differential: return style_.differential((*this)(f.args[0]));
-      case Form::relation: return {listed(f.args, between(f)), Piece::relation};
-      case Form::list: return {listed(f.args, style_.comma()), Piece::relation};
+      case FormulaKind::differential: return style_.differential((*this)(f.args[0]));
+      case FormulaKind::relation: return {listed(f.args, between(f)), Piece::relation};
+      case FormulaKind::list: return {listed(f.args, style_.comma()), Piece::relation};
     }
     return {};
   }
@@ -75,7 +75,7 @@ class Walk {
     };
     Shortener shorten([this](const Formula& term) { return at_least(term, Piece::product); },
                       [this](const std::string& text) { return style_.fits(text); });
-    const std::vector<Formula> sides = f.form == Form::relation ? f.args : std::vector<Formula>{f};
+    const std::vector<Formula> sides = f.kind == FormulaKind::relation ? f.args : std::vector<Formula>{f};
     for (std::size_t side = 0; side < sides.size(); ++side) {
       if (side > 0 && reading::is_zero(sides[side])) {  // "= 0" stays on the last line
         all.back() += between(f) + (*this)(sides[side]).text;
@@ -126,8 +126,8 @@ class Walk {
   Piece power(const Formula& f) const {
     const Formula& base = f.args[0];
     const std::string exponent = (*this)(f.args[1]).text;
-    const bool whole = f.args[1].form == Form::number && reading::is_integer(f.args[1].number);
-    if (base.form == Form::call && whole && symbolic::function_of(base.op).raised)
+    const bool whole = f.args[1].kind == FormulaKind::number && reading::is_integer(f.args[1].number);
+    if (base.kind == FormulaKind::call && whole && symbolic::function_of(base.op).raised)
       return style_.call_power(base.op, pieces(base.args), exponent);
     Piece piece = (*this)(base);
     if (piece.binding < Piece::atom) piece = {style_.bracket(piece.text), Piece::atom};
@@ -143,8 +143,8 @@ class Walk {
     return style_.product(factors);
   }
   static void add_signed(const Formula& sum, const std::function<void(const Formula&, bool)>& add) {
-    for (const Formula& term : sum.form == Form::sum ? sum.args : std::vector<Formula>{sum}) {
-      const bool minus = term.form == Form::negative;
+    for (const Formula& term : sum.kind == FormulaKind::sum ? sum.args : std::vector<Formula>{sum}) {
+      const bool minus = term.kind == FormulaKind::negative;
       add(minus ? term.args[0] : term, minus);
     }
   }
@@ -171,8 +171,8 @@ class Walk {
   }
   /// Pieces of a product with one sum as a factor, broken within the sum; empty for other terms.
   std::vector<std::string> bracket_pieces(const Formula& term, Shortener& shorten) const {
-    const auto is_sum = [](const Formula& f) { return f.form == Form::sum; };
-    if (term.form != Form::product || std::count_if(term.args.begin(), term.args.end(), is_sum) != 1) return {};
+    const auto is_sum = [](const Formula& f) { return f.kind == FormulaKind::sum; };
+    if (term.kind != FormulaKind::product || std::count_if(term.args.begin(), term.args.end(), is_sum) != 1) return {};
     const auto at =
         static_cast<std::size_t>(std::find_if(term.args.begin(), term.args.end(), is_sum) - term.args.begin());
     const std::string place = "\x1a";  // no printed text has this character
@@ -194,15 +194,15 @@ class Walk {
   }
   // d/dt of a long sum may break inside.
   std::vector<std::string> broken_terms(const Formula& side, Shortener& shorten) const {
-    if (side.form == Form::relation || side.form == Form::list) return {(*this)(side).text};
-    const Formula& first = side.form == Form::sum ? side.args[0] : side;
-    if (first.form != Form::rate || first.args[0].form != Form::sum || first.args[0].args.size() < 2) {
+    if (side.kind == FormulaKind::relation || side.kind == FormulaKind::list) return {(*this)(side).text};
+    const Formula& first = side.kind == FormulaKind::sum ? side.args[0] : side;
+    if (first.kind != FormulaKind::rate || first.args[0].kind != FormulaKind::sum || first.args[0].args.size() < 2) {
       return line_pieces(side, shorten);
     }
     std::vector<std::string> result = line_pieces(first.args[0], shorten);
     result.front() = style_.open_rate() + result.front();
     result.back() += style_.close_rate();
-    if (side.form != Form::sum) return result;
+    if (side.kind != FormulaKind::sum) return result;
     for (std::size_t i = 1; i < side.args.size(); ++i) {
       for (std::string& piece : line_pieces(side.args[i], shorten, false)) result.push_back(std::move(piece));
     }

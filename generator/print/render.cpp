@@ -59,7 +59,7 @@ Item render_expression(const mechanics::Mechanics& mechanics, std::string key, s
 Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
                        symbolic::Ref expression) {
   try {
-    return render_expression(mechanics, key, name, reading::read(mechanics, expression));
+    return render_expression(mechanics, key, name, reading::display_sum(mechanics, expression));
   } catch (const work::BudgetExceeded& over) {
     Item item;
     item.left_out = over.what();

@@ -16,7 +16,7 @@ std::vector<Item> render_routh(const mechanics::Mechanics& m, const RouthForm& f
   const auto add = [&](std::string name, std::string coordinate, std::string role, Formula formula) {
     out.push_back({"routh", std::move(name), std::move(coordinate), std::move(role), std::move(formula)});
   };
-  if (!form.by_parts && !form.cyclic.empty()) {
+  if (!form.is_unexpanded && !form.cyclic.empty()) {
     for (std::size_t i = 0; i < form.cyclic.size(); ++i) {
       const std::uint32_t c = form.cyclic[i];
       const std::string& name = m.model->coordinates[c].name;

@@ -5,7 +5,7 @@
 
 namespace eomgen::print {
 
-using reading::Form;
+using reading::FormulaKind;
 using reading::Formula;
 
 Formula Shortener::abbreviation(std::size_t index) {
@@ -17,7 +17,7 @@ Formula Shortener::operator()(Formula term) {
     Formula* longest = nullptr;
     std::size_t length = 0;
     const std::function<void(Formula&)> visit = [&](Formula& f) {
-      if (f.form == Form::sum) {
+      if (f.kind == FormulaKind::sum) {
         const std::size_t here = text_(f).size();
         if (here > length) longest = &f, length = here;
         return;

@@ -8,7 +8,7 @@
 namespace eomgen::print {
 
 using model::Op;
-using reading::Form;
+using reading::FormulaKind;
 using reading::Formula;
 using reading::mark;
 using Terms = std::optional<std::vector<Formula>>;
@@ -17,7 +17,7 @@ namespace {
 
 /// Appends factor * term with the sign in front; zero products are dropped.
 void add(std::vector<Formula>& terms, const Formula& factor, const Formula& term) {
-  const bool minus = factor.form == Form::negative, minus_too = term.form == Form::negative;
+  const bool minus = factor.kind == FormulaKind::negative, minus_too = term.kind == FormulaKind::negative;
   const Formula &a = minus ? factor.args[0] : factor, &b = minus_too ? term.args[0] : term;
   if (reading::is_zero(a) || reading::is_zero(b)) return;
   Formula both = reading::product({a, b});
@@ -41,7 +41,7 @@ std::optional<Formula> VectorFormula::operator()(model::NodeId vector) {
 /// An axis has a letter if the inertia of its body refers to it.
 std::optional<Formula> VectorFormula::axis(const model::Node& node) {
   const std::uint32_t k = node.order % 3;
-  for (const mechanics::Spin& spin : m_.spins) {
+  for (const mechanics::BodyRotation& spin : m_.body_rotations) {
     if (spin.frame != node.index) continue;
     const model::Frame& frame = m_.model->frames[spin.frame];
     if (node.order / 3 + 1u != frame.stages.size()) continue;

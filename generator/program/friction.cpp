@@ -155,11 +155,11 @@ class Closure {
   /// The rows as a case distinction over the contacts that constrain a direction. Contacts before `next` are decided:
   /// those in `touching` are closed, the others open.
   std::vector<Affine> sticking_rows(const Contact& c, const std::vector<Affine>& rates, std::size_t next,
-                                    const std::vector<const system::HeldDirection*>& touching) const {
-    if (next == c.held.size()) return held_rows(c, rates, touching);
-    const system::HeldDirection& held = c.held[next];
+                                    const std::vector<const system::BlockedDirection*>& touching) const {
+    if (next == c.blocked.size()) return held_rows(c, rates, touching);
+    const system::BlockedDirection& held = c.blocked[next];
     std::vector<Affine> rows = sticking_rows(c, rates, next + 1, touching);
-    std::vector<const system::HeldDirection*> more = touching;
+    std::vector<const system::BlockedDirection*> more = touching;
     more.push_back(&held);
     const std::vector<Affine> where_it_touches = sticking_rows(c, rates, next + 1, more);
     for (std::size_t a = 0; a < rows.size(); ++a) {
@@ -170,7 +170,7 @@ class Closure {
     return rows;
   }
   std::vector<Affine> held_rows(const Contact& c, const std::vector<Affine>& rates,
-                                const std::vector<const system::HeldDirection*>& touching) const {
+                                const std::vector<const system::BlockedDirection*>& touching) const {
     if (touching.empty()) return rates;
     std::vector<Affine> rows(rates.size(), Affine{dag_.zero(), std::vector<Ref>(count_, dag_.zero())});
     if (rates.size() == 1 || touching.size() > 1) {

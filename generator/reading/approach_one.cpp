@@ -9,7 +9,7 @@ namespace eomgen::reading {
 namespace {
 
 // The (b) equations from the last fixed coordinate to the first: each has one new multiplier.
-std::vector<ReadReaction> solve_reactions(const mechanics::Mechanics& m, Bridge& bridge, const DisplayForm& form) {
+std::vector<DisplayReaction> solve_reactions(const mechanics::Mechanics& m, GinacBridge& bridge, const DisplayForm& form) {
   std::vector<std::optional<Sum>> lambda(m.constraints.size());
   for (auto fixed = m.fixed.rbegin(); fixed != m.fixed.rend(); ++fixed) {
     const Equation& equation = form.equations[fixed->coordinate];
@@ -20,23 +20,23 @@ std::vector<ReadReaction> solve_reactions(const mechanics::Mechanics& m, Bridge&
       else if (lambda[term.constraint])
         rest -= term.slope * *lambda[term.constraint];
       else
-        rest -= term.slope * bridge.alphabet()({SymbolKind::multiplier, term.constraint, 0});
+        rest -= term.slope * bridge.atom_table()({SymbolKind::multiplier, term.constraint, 0});
     }
     lambda[fixed->constraint] = simplify(quotient(rest, own));
   }
-  std::vector<ReadReaction> result;
+  std::vector<DisplayReaction> result;
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) result.push_back({k, m.constraints[k].label, lambda[k]});
   return result;
 }
 
 }  // namespace
 
-void approach_one(const mechanics::Mechanics& m, Bridge& bridge, const std::vector<ReadSpin>& spins,
+void derive_approach_one(const mechanics::Mechanics& m, GinacBridge& bridge, const std::vector<DisplayRotation>& body_rotations,
                   DisplayForm& form) {
   const std::map<Symbol, Sum> values = imposed_values(m, bridge);
   const Sum translation = translational_energy(m, bridge);
-  if (!spins.empty()) form.translation = translation;
-  form.kinetic = kinetic_energy(translation, spins);
+  if (!body_rotations.empty()) form.translation = translation;
+  form.kinetic = kinetic_energy(translation, body_rotations);
   form.potential = bridge.sum(m.potential);
   form.lagrangian = form.kinetic - form.potential;
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {

@@ -6,12 +6,12 @@
 
 namespace eomgen::reading {
 
-void approach_two(const mechanics::Mechanics& m, Bridge& bridge, const std::vector<ReadSpin>& spins,
+void derive_approach_two(const mechanics::Mechanics& m, GinacBridge& bridge, const std::vector<DisplayRotation>& body_rotations,
                   DisplayForm& form) {
   const std::map<Symbol, Sum> values = imposed_values(m, bridge);
   const Sum translation = translational_energy(m, bridge);
-  if (!spins.empty()) form.translation = simplify(bridge.substitute(translation, values));
-  form.kinetic = simplify(bridge.substitute(kinetic_energy(translation, spins), values));
+  if (!body_rotations.empty()) form.translation = simplify(bridge.substitute(translation, values));
+  form.kinetic = simplify(bridge.substitute(kinetic_energy(translation, body_rotations), values));
   form.potential = bridge.substitute(bridge.sum(m.potential), values);
   form.lagrangian = form.kinetic - form.potential;
   form.by_degree = split_by_degree(form.kinetic);

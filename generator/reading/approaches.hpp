@@ -7,9 +7,9 @@
 
 namespace eomgen::reading {
 
-void approach_one(const mechanics::Mechanics& mechanics, Bridge& bridge, const std::vector<ReadSpin>& spins,
+void derive_approach_one(const mechanics::Mechanics& mechanics, GinacBridge& bridge, const std::vector<DisplayRotation>& body_rotations,
                   DisplayForm& form);
-void approach_two(const mechanics::Mechanics& mechanics, Bridge& bridge, const std::vector<ReadSpin>& spins,
+void derive_approach_two(const mechanics::Mechanics& mechanics, GinacBridge& bridge, const std::vector<DisplayRotation>& body_rotations,
                   DisplayForm& form);
 
 }  // namespace eomgen::reading

@@ -19,7 +19,7 @@ using Written = std::optional<Formula>;
 Formula decimal(const Rational& value) {
   constexpr int most_digits = 12;
   Formula f = number(value);
-  Formula& inside = f.form == Form::negative ? f.args[0] : f;
+  Formula& inside = f.kind == FormulaKind::negative ? f.args[0] : f;
   cln::cl_I scaled = 0;
   int digits = 0;
   for (Rational x = cln::abs(value); digits <= most_digits; x = x * 10, ++digits) {
@@ -55,7 +55,7 @@ class Writer {
     const auto of = [&](SymbolKind kind) { return symbol({kind, node.index, node.order}); };
     switch (node.op) {
       case Op::number: return decimal(node.value);
-      case Op::pi: return wrap(Form::pi, {});
+      case Op::pi: return make_formula(FormulaKind::pi, {});
       case Op::time: return symbol({SymbolKind::time, 0, 0});
       case Op::parameter: return of(SymbolKind::parameter);
       case Op::function: return of(SymbolKind::function);
@@ -86,14 +86,14 @@ class Writer {
       case Op::negate: return negative(args[0]);
       case Op::multiply: return product(std::move(args));
       case Op::divide: return fraction(args[0], args[1]);
-      case Op::power: return wrap(Form::power, std::move(args));
+      case Op::power: return make_formula(FormulaKind::power, std::move(args));
       case Op::call: {
-        Formula call = wrap(Form::call, std::move(args));
+        Formula call = make_formula(FormulaKind::call, std::move(args));
         call.op = mechanics::op_of(node.fn);
         return call;
       }
       case Op::conditional: {
-        Formula call = wrap(Form::call, std::move(args));
+        Formula call = make_formula(FormulaKind::call, std::move(args));
         call.op = reading::Op::select;
         return call;
       }

@@ -113,7 +113,7 @@ class Letters {
   }
 
   /// Whether a power of a sum gets an integer exponent without the common factor: then it is expanded.
-  bool opens(const Sum& sum, const std::vector<Rational>& common) const {
+  bool expands_power(const Sum& sum, const std::vector<Rational>& common) const {
     const auto opened = [&](const Factor& factor) {
       if (factor.atom->op != Op::add && factor.atom->op != Op::abs) return false;
       const Rational rest = factor.exponent - common[lane_of_.at(factor.atom.get())];
@@ -204,7 +204,7 @@ std::optional<Terms> divide(Terms rest, const Terms& divisor) {
 
 }  // namespace
 
-std::size_t operations_of_reading(const Sum& sum) {
+std::size_t display_operation_count(const Sum& sum) {
   constexpr std::size_t of_a_symbol = 1, of_a_power = 5, of_a_product = 2;
   std::size_t result = 0;
   for (const auto& [monomial, coefficient] : sum.terms()) {
@@ -228,11 +228,11 @@ std::optional<Sum> divide(const Letters& letters, const Sum& a, const std::vecto
   const std::optional<Terms> terms = divide(*std::move(dividend), *divisor);
   if (!terms) return std::nullopt;
   Sum whole = letters.sum(*terms);
-  work::consume_budget(operations_of_reading(whole) + 2 * whole.size());
+  work::consume_budget(display_operation_count(whole) + 2 * whole.size());
   return whole;
 }
 
-std::optional<Sum> divide_opened(const Sum& a, const Content& common_a, const Sum& b, const Content& common_b) {
+std::optional<Sum> divide_expanded(const Sum& a, const Content& common_a, const Sum& b, const Content& common_b) {
   const Sum dividend = divide(a, common_a), divisor = divide(b, common_b);
   const Letters letters(dividend, divisor);
   const std::vector<Rational> none = letters.common(Sum());
@@ -246,7 +246,7 @@ std::optional<Sum> divide_opened(const Sum& a, const Content& common_a, const Su
 std::optional<Sum> divide_exactly(const Sum& a, const Sum& b) {
   const Letters letters(a, b);
   const std::vector<Rational> common_a = letters.common(a), common_b = letters.common(b);
-  if (letters.opens(a, common_a) || letters.opens(b, common_b)) return divide_opened(a, content(a), b, content(b));
+  if (letters.expands_power(a, common_a) || letters.expands_power(b, common_b)) return divide_expanded(a, content(a), b, content(b));
   // The operations of extracting the common factors.
   work::consume_budget(2 * (a.size() + b.size()));
   const std::optional<Sum> whole = divide(letters, a, common_a, b, common_b);

@@ -13,6 +13,6 @@ namespace eomgen::reading {
 std::optional<Sum> divide_exactly(const Sum& a, const Sum& b);
 
 /// The number of operations that form a sum from products of powers.
-std::size_t operations_of_reading(const Sum& sum);
+std::size_t display_operation_count(const Sum& sum);
 
 }  // namespace eomgen::reading

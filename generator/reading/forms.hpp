@@ -16,17 +16,17 @@ namespace eomgen::reading {
 /// displayed.
 enum class Extent { equations, whole };
 
-/// Like derive_reading of reading.hpp, which derives the whole form.
-DisplayForm derive_reading(const mechanics::Mechanics& mechanics, system::Approach approach, Extent extent);
+/// Like derive_display_form of reading.hpp, which derives the whole form.
+DisplayForm derive_display_form(const mechanics::Mechanics& mechanics, system::Approach approach, Extent extent);
 /// `two`: the form by Approach II, which provides the Lagrangian. Parts that are too long there are too long here.
 RouthForm routh_form(const mechanics::Mechanics& mechanics, const std::vector<std::uint32_t>& cyclic,
                      const DisplayForm& two);
 LinearForm linear_form(const mechanics::Mechanics& mechanics, const DisplayForm& two);
 
-class Forms {
+class DisplayForms {
  public:
   /// `mechanics` must outlive the object and stay unchanged.
-  explicit Forms(const mechanics::Mechanics& mechanics);
+  explicit DisplayForms(const mechanics::Mechanics& mechanics);
 
   const DisplayForm& operator()(system::Approach approach, Extent extent = Extent::whole);
   RouthForm routh(const std::vector<std::uint32_t>& cyclic);

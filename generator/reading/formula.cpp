@@ -13,36 +13,36 @@ Formula number(const Rational& value) {
 
 Formula symbol(const Symbol& s) {
   Formula f;
-  f.form = Form::symbol;
+  f.kind = FormulaKind::symbol;
   f.symbol = s;
   return f;
 }
 
 Formula mark(std::string word, std::vector<Formula> lower, std::vector<Formula> upper) {
   Formula f;
-  f.form = Form::mark;
+  f.kind = FormulaKind::mark;
   f.word = std::move(word);
   f.lower = std::move(lower);
   f.upper = std::move(upper);
   return f;
 }
 
-Formula wrap(Form form, std::vector<Formula> args) {
+Formula make_formula(FormulaKind form, std::vector<Formula> args) {
   Formula f;
-  f.form = form;
+  f.kind = form;
   f.args = std::move(args);
   return f;
 }
 
-bool is_zero(const Formula& f) { return f.form == Form::number && cln::zerop(f.number); }
+bool is_zero(const Formula& f) { return f.kind == FormulaKind::number && cln::zerop(f.number); }
 
 Formula negative(Formula a) {
-  if (a.form == Form::negative) {
+  if (a.kind == FormulaKind::negative) {
     Formula inside = std::move(a.args[0]);
     return inside;
   }
   if (is_zero(a)) return a;
-  return wrap(Form::negative, {std::move(a)});
+  return make_formula(FormulaKind::negative, {std::move(a)});
 }
 
 Formula product(std::vector<Formula> factors) {
@@ -50,18 +50,18 @@ Formula product(std::vector<Formula> factors) {
   Rational number = 1;
   std::vector<Formula> flat;
   for (Formula& f : factors) {
-    if (f.form == Form::negative) {
+    if (f.kind == FormulaKind::negative) {
       minus = !minus;
       Formula inside = std::move(f.args[0]);
       f = std::move(inside);
     }
     std::vector<Formula> parts;
-    if (f.form == Form::product)
+    if (f.kind == FormulaKind::product)
       parts = std::move(f.args);
     else
       parts.push_back(std::move(f));
     for (Formula& part : parts) {
-      if (part.form == Form::number)
+      if (part.kind == FormulaKind::number)
         number = number * part.number;
       else
         flat.push_back(std::move(part));
@@ -69,30 +69,30 @@ Formula product(std::vector<Formula> factors) {
   }
   if (cln::zerop(number)) return reading::number(0);
   if (flat.empty() || !is_one(number)) flat.insert(flat.begin(), reading::number(number));
-  Formula result = flat.size() == 1 ? flat[0] : wrap(Form::product, std::move(flat));
+  Formula result = flat.size() == 1 ? flat[0] : make_formula(FormulaKind::product, std::move(flat));
   return minus ? negative(std::move(result)) : result;
 }
 
 Formula fraction(Formula above, Formula below) {
-  if (below.form == Form::number && is_one(below.number)) return above;
-  if (above.form == Form::negative) return negative(fraction(std::move(above.args[0]), std::move(below)));
-  return wrap(Form::fraction, {std::move(above), std::move(below)});
+  if (below.kind == FormulaKind::number && is_one(below.number)) return above;
+  if (above.kind == FormulaKind::negative) return negative(fraction(std::move(above.args[0]), std::move(below)));
+  return make_formula(FormulaKind::fraction, {std::move(above), std::move(below)});
 }
 
 Formula sum(std::vector<Formula> terms) {
   std::vector<Formula> flat;
   for (Formula& f : terms) {
     if (is_zero(f)) continue;
-    if (f.form == Form::sum)
+    if (f.kind == FormulaKind::sum)
       flat.insert(flat.end(), f.args.begin(), f.args.end());
     else
       flat.push_back(std::move(f));
   }
   if (flat.empty()) return number(0);
   if (flat.size() == 1) return flat[0];
-  return wrap(Form::sum, std::move(flat));
+  return make_formula(FormulaKind::sum, std::move(flat));
 }
 
-Formula relation(std::vector<Formula> sides) { return wrap(Form::relation, std::move(sides)); }
+Formula relation(std::vector<Formula> sides) { return make_formula(FormulaKind::relation, std::move(sides)); }
 
 }  // namespace eomgen::reading

@@ -10,7 +10,7 @@
 
 namespace eomgen::reading {
 
-enum class Form {
+enum class FormulaKind {
   number,  // exact, not negative
   pi,
   symbol,  // of the model
@@ -31,7 +31,7 @@ enum class Form {
 };
 
 struct Formula {
-  Form form = Form::number;
+  FormulaKind kind = FormulaKind::number;
   Rational number = 0;
   Symbol symbol{};
   Op op = Op::symbol;
@@ -51,7 +51,7 @@ Formula product(std::vector<Formula> factors);
 Formula fraction(Formula above, Formula below);
 Formula sum(std::vector<Formula> terms);  // of nested sums, flattened; 0 if empty
 Formula relation(std::vector<Formula> sides);
-Formula wrap(Form form, std::vector<Formula> args);
+Formula make_formula(FormulaKind form, std::vector<Formula> args);
 bool is_zero(const Formula& f);
 
 /// How sums are factored for display.

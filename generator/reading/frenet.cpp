@@ -41,7 +41,7 @@ bool vanishes(const Components& a) { return is_zero(a[0]) && is_zero(a[1]) && is
 /// d/dp along the curve, with dq_i = direction_i dp for any parameter p.
 class Along {
  public:
-  Along(Bridge& bridge, const std::vector<std::uint32_t>& coordinates, std::vector<Sum> direction)
+  Along(GinacBridge& bridge, const std::vector<std::uint32_t>& coordinates, std::vector<Sum> direction)
       : bridge_(bridge), coordinates_(coordinates), direction_(std::move(direction)) {}
 
   Components operator()(const Components& v) {
@@ -58,13 +58,13 @@ class Along {
   }
 
  private:
-  Bridge& bridge_;
+  GinacBridge& bridge_;
   const std::vector<std::uint32_t>& coordinates_;
   std::vector<Sum> direction_;
 };
 
 // The null vector of the active constraints' gradients, by cofactors: (-1)^i det(A without column i).
-std::vector<Sum> direction(const Mechanics& m, Bridge& bridge) {
+std::vector<Sum> direction(const Mechanics& m, GinacBridge& bridge) {
   const std::size_t n = m.free.size();
   std::vector<Sum> A;
   for (const std::uint32_t k : m.active) {
@@ -86,7 +86,7 @@ std::vector<Sum> direction(const Mechanics& m, Bridge& bridge) {
 }
 
 // The chart's e_q on the curve; empty if they are not three orthonormal ones.
-std::vector<Components> unit_vectors(Mechanics& m, Bridge& bridge, Frenet& f) {
+std::vector<Components> unit_vectors(Mechanics& m, GinacBridge& bridge, Frenet& f) {
   const auto& chart = m.model->places[m.masses[0].place].chart;
   std::vector<Components> result;
   if (!chart) return result;
@@ -111,8 +111,8 @@ std::vector<Components> unit_vectors(Mechanics& m, Bridge& bridge, Frenet& f) {
 
 }  // namespace
 
-std::string why_no_curve(const Mechanics& m) {
-  if (!m.spins.empty()) return "the model has bodies, and a curve is of one particle";
+std::string curve_obstacle(const Mechanics& m) {
+  if (!m.body_rotations.empty()) return "the model has bodies, and a curve is of one particle";
   if (m.masses.size() != 1) return fmt::format("the model has {} particles, and a curve is of one", m.masses.size());
   for (const std::uint32_t k : m.active) {
     if (!m.constraints[k].holonomic())
@@ -124,14 +124,14 @@ std::string why_no_curve(const Mechanics& m) {
 }
 
 Frenet frenet(const Mechanics& mechanics) try {
-  if (const std::string why = why_no_curve(mechanics); !why.empty()) {
+  if (const std::string why = curve_obstacle(mechanics); !why.empty()) {
     throw Error("derive", SourceLocation{mechanics.model->file, 0, 0, 1, ""},
                 "there is no curve whose Frenet triad could be shown: " + why,
                 "leave 'frenet' out of --show, or constrain one particle by two holonomic constraints");
   }
   const work::Budget budget(form_budget);
   Mechanics m = mechanics;  // shares the Dag; lowering unit vectors may add nodes to it
-  Bridge bridge(m);
+  GinacBridge bridge(m);
   Frenet f;
   f.name = m.masses[0].name;
   // Eliminated coordinates are functions of time, which is fixed. They stay symbols, whose signs are known, until the
@@ -173,7 +173,7 @@ Frenet frenet(const Mechanics& mechanics) try {
   }
   return f;
 } catch (const std::domain_error&) {
-  throw no_value(mechanics);
+  throw no_value_error(mechanics);
 }
 
 }  // namespace eomgen::reading

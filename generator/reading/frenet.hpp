@@ -27,7 +27,7 @@ struct Frenet {
 };
 
 /// The reason why a model has no such curve; empty if it has one.
-std::string why_no_curve(const mechanics::Mechanics& mechanics);
+std::string curve_obstacle(const mechanics::Mechanics& mechanics);
 
 /// Throws Error{stage "derive"} if there is no curve, work::BudgetExceeded if its formulas are too long.
 Frenet frenet(const mechanics::Mechanics& mechanics);

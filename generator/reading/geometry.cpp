@@ -22,7 +22,7 @@ constexpr std::size_t largest_manifold = 6;
 Sum dot(const Components& a, const Components& b) { return simplify(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]); }
 
 // [ij,k] = 1/2 (da_kj/dq_i + da_ik/dq_j - da_ij/dq_k), Gamma^k_ij = a^kr [ij,r]
-void add_christoffel(Bridge& bridge, Geometry& g) {
+void add_christoffel(GinacBridge& bridge, Geometry& g) {
   const std::size_t n = g.coordinates.size();
   std::vector<Sum> slope(n * n * n);  // da_ij/dq_k at (i n + j) n + k
   for (std::size_t i = 0; i < n * n; ++i) {
@@ -49,13 +49,13 @@ void add_christoffel(Bridge& bridge, Geometry& g) {
   }
 }
 
-Sum quadratic_form(Bridge& bridge, const Geometry& g) {
+Sum quadratic_form(GinacBridge& bridge, const Geometry& g) {
   const std::size_t n = g.coordinates.size();
   Sum result;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 0; k < n; ++k) {
-      result += g.metric[i * n + k] * bridge.alphabet()(coordinate_symbol(g.coordinates[i], 1)) *
-                bridge.alphabet()(coordinate_symbol(g.coordinates[k], 1));
+      result += g.metric[i * n + k] * bridge.atom_table()(coordinate_symbol(g.coordinates[i], 1)) *
+                bridge.atom_table()(coordinate_symbol(g.coordinates[k], 1));
     }
   }
   return result;
@@ -66,7 +66,7 @@ Components along(const Components& vector, const std::vector<Components>& unit) 
 }
 
 // The chart's unit vectors e_q, if it defines three orthonormal ones.
-void add_unit_vectors(Bridge& bridge, mechanics::Mechanics& m, const model::Chart& chart, Geometry& g) {
+void add_unit_vectors(GinacBridge& bridge, mechanics::Mechanics& m, const model::Chart& chart, Geometry& g) {
   std::vector<Components> unit;
   for (std::size_t k = 0; k < 3; ++k) {
     if (chart.unit_basis[k] == model::no_node) return;
@@ -100,7 +100,7 @@ void add_unit_vectors(Bridge& bridge, mechanics::Mechanics& m, const model::Char
   g.contravariant_unit = std::move(contravariant);
 }
 
-void add_bases(Bridge& bridge, const Components& position, Geometry& g) {
+void add_bases(GinacBridge& bridge, const Components& position, Geometry& g) {
   const std::size_t n = g.coordinates.size();
   for (const std::uint32_t i : g.coordinates) {
     Components a;
@@ -123,7 +123,7 @@ void add_bases(Bridge& bridge, const Components& position, Geometry& g) {
   }
 }
 
-Geometry of_place(Bridge& bridge, Mechanics& m, std::uint32_t index, const mechanics::PointMass& mass) {
+Geometry of_place(GinacBridge& bridge, Mechanics& m, std::uint32_t index, const mechanics::PointMass& mass) {
   const model::Place& place = m.model->places[index];
   Geometry g;
   g.name = place.name;
@@ -148,7 +148,7 @@ Geometry of_place(Bridge& bridge, Mechanics& m, std::uint32_t index, const mecha
 
 std::vector<Geometry> geometry(const Mechanics& mechanics, std::vector<LeftOut>* left_out) try {
   Mechanics m = mechanics;  // shares the Dag; lowering the unit vectors may add nodes to it
-  Bridge bridge(m);
+  GinacBridge bridge(m);
   std::vector<Geometry> result;
   for (std::size_t k = 0; k < m.masses.size(); ++k) {
     const std::uint32_t place = m.masses[k].place;
@@ -163,7 +163,7 @@ std::vector<Geometry> geometry(const Mechanics& mechanics, std::vector<LeftOut>*
   }
   return result;
 } catch (const std::domain_error&) {
-  throw no_value(mechanics);
+  throw no_value_error(mechanics);
 }
 
 std::optional<Geometry> configuration_space(const Mechanics& m, std::vector<LeftOut>* left_out) try {
@@ -174,7 +174,7 @@ std::optional<Geometry> configuration_space(const Mechanics& m, std::vector<Left
           {"geometry of the configuration manifold", "more than " + std::to_string(largest_manifold) + " coordinates"});
     return std::nullopt;
   }
-  Bridge bridge(m);
+  GinacBridge bridge(m);
   Geometry g;
   g.coordinates = m.free;
   try {
@@ -193,7 +193,7 @@ std::optional<Geometry> configuration_space(const Mechanics& m, std::vector<Left
   }
   return g;
 } catch (const std::domain_error&) {
-  throw no_value(m);
+  throw no_value_error(m);
 }
 
 }  // namespace eomgen::reading

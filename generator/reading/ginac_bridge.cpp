@@ -15,18 +15,18 @@ namespace {
 constexpr long most_steps = 2'000'000;
 }  // namespace
 
-const GiNaC::symbol& Bridge::symbol(const Symbol& meaning) {
+const GiNaC::symbol& GinacBridge::symbol(const Symbol& meaning) {
   auto found = symbols_.find(meaning);
   if (found == symbols_.end()) {
     // Names are never used: only the table maps a GiNaC symbol to its meaning.
-    const ex fresh = alphabet_.atom(meaning)->positive ? ex(GiNaC::possymbol()) : ex(GiNaC::realsymbol());
+    const ex fresh = atom_table_.atom(meaning)->positive ? ex(GiNaC::possymbol()) : ex(GiNaC::realsymbol());
     found = symbols_.emplace(meaning, fresh).first;
     meaning_.emplace(fresh, meaning);
   }
   return GiNaC::ex_to<GiNaC::symbol>(found->second);
 }
 
-ex Bridge::from_dag(Ref root) {
+ex GinacBridge::from_dag(Ref root) {
   if (const auto found = nodes_.find(root); found != nodes_.end()) return found->second;
   for (const Ref r : dag_.reachable({root})) {
     if (!nodes_.contains(r)) nodes_.emplace(r, node(r));
@@ -34,7 +34,7 @@ ex Bridge::from_dag(Ref root) {
   return nodes_.at(root);
 }
 
-ex Bridge::node(Ref r) {
+ex GinacBridge::node(Ref r) {
   const Node& n = dag_[r];
   const auto arg = [&](std::size_t i) -> const ex& { return nodes_.at(n.args[i]); };
   switch (n.op) {
@@ -55,7 +55,7 @@ ex Bridge::node(Ref r) {
   }
 }
 
-ex Bridge::term_to_ginac(const Monomial& monomial, const Rational& coefficient) {
+ex GinacBridge::term_to_ginac(const Monomial& monomial, const Rational& coefficient) {
   GiNaC::exvector factors{GiNaC::numeric(coefficient)};
   for (const Factor& factor : monomial) {
     const Atom& atom = *factor.atom;
@@ -76,25 +76,25 @@ ex Bridge::term_to_ginac(const Monomial& monomial, const Rational& coefficient) 
   return GiNaC::mul(factors);
 }
 
-ex Bridge::to_ginac(const Sum& sum) {
+ex GinacBridge::to_ginac(const Sum& sum) {
   GiNaC::exvector terms;
   for (const auto& [monomial, coefficient] : sum.terms()) terms.push_back(term_to_ginac(monomial, coefficient));
   return GiNaC::add(terms);
 }
 
-Sum Bridge::from_ginac(const ex& e) {
+Sum GinacBridge::from_ginac(const ex& e) {
   steps_ = 0;
   return simplify(convert(e));
 }
 
-Sum Bridge::convert(const ex& e) {
+Sum GinacBridge::convert(const ex& e) {
   if (++steps_ > most_steps) throw TermBudget();
   if (GiNaC::is_a<GiNaC::numeric>(e)) {
     const cln::cl_N value = GiNaC::ex_to<GiNaC::numeric>(e).to_cl_N();
     if (!GiNaC::ex_to<GiNaC::numeric>(e).is_rational()) throw std::domain_error("a number that is not real");
     return Sum(cln::the<cln::cl_RA>(value));
   }
-  if (GiNaC::is_a<GiNaC::symbol>(e)) return alphabet_(meaning_.at(e));
+  if (GiNaC::is_a<GiNaC::symbol>(e)) return atom_table_(meaning_.at(e));
   if (GiNaC::is_a<GiNaC::add>(e)) {
     Sum sum;
     for (std::size_t i = 0; i < e.nops(); ++i) sum += convert(e.op(i));
@@ -111,7 +111,7 @@ Sum Bridge::convert(const ex& e) {
   throw std::logic_error("an expression of an unknown kind");
 }
 
-Sum Bridge::convert_power(const ex& e) {
+Sum GinacBridge::convert_power(const ex& e) {
   const ex& exponent = e.op(1);
   if (GiNaC::is_a<GiNaC::numeric>(exponent) && GiNaC::ex_to<GiNaC::numeric>(exponent).is_rational()) {
     const Rational r = cln::the<cln::cl_RA>(GiNaC::ex_to<GiNaC::numeric>(exponent).to_cl_N());
@@ -122,7 +122,7 @@ Sum Bridge::convert_power(const ex& e) {
   return call(Op::pow, {simplify(convert(e.op(0))), simplify(convert(exponent))});
 }
 
-Sum Bridge::convert_function(const ex& e) {
+Sum GinacBridge::convert_function(const ex& e) {
   const auto& f = GiNaC::ex_to<GiNaC::function>(e);
   const Op op = function_of(f);
   std::vector<Sum> args;
@@ -132,9 +132,9 @@ Sum Bridge::convert_function(const ex& e) {
   return call(op, std::move(args));
 }
 
-Sum Bridge::derivative(const Sum& sum, const Symbol& by) { return from_ginac(to_ginac(sum).diff(symbol(by))); }
+Sum GinacBridge::derivative(const Sum& sum, const Symbol& by) { return from_ginac(to_ginac(sum).diff(symbol(by))); }
 
-Sum Bridge::total_derivative(const Sum& sum) {
+Sum GinacBridge::total_derivative(const Sum& sum) {
   std::map<Symbol, GiNaC::exvector> slopes;  // of the terms that contain the symbol
   std::set<Symbol> held;
   for (const auto& [monomial, coefficient] : sum.terms()) {
@@ -165,7 +165,7 @@ Sum Bridge::total_derivative(const Sum& sum) {
   return from_ginac(result);
 }
 
-Sum Bridge::explicit_derivative(const Sum& sum) {
+Sum GinacBridge::explicit_derivative(const Sum& sum) {
   std::map<Symbol, Sum> rates;
   const ex e = to_ginac(sum);
   ex result = 0;
@@ -181,7 +181,7 @@ Sum Bridge::explicit_derivative(const Sum& sum) {
   return from_ginac(result);
 }
 
-Sum Bridge::substitute(const Sum& sum, const std::map<Symbol, Sum>& values) {
+Sum GinacBridge::substitute(const Sum& sum, const std::map<Symbol, Sum>& values) {
   bool present = false;
   for_each_atom(
       sum, [&](const Atom& atom) { present = present || (atom.op == Op::symbol && values.contains(atom.symbol)); });

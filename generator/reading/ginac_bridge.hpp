@@ -8,19 +8,19 @@
 #include <map>
 #include <vector>
 
-#include "reading/alphabet.hpp"
+#include "reading/atom_table.hpp"
 
 namespace eomgen::reading {
 
-class Bridge {
+class GinacBridge {
  public:
-  explicit Bridge(const mechanics::Mechanics& mechanics) : dag_(*mechanics.dag), alphabet_(*mechanics.model) {}
+  explicit GinacBridge(const mechanics::Mechanics& mechanics) : dag_(*mechanics.dag), atom_table_(*mechanics.model) {}
 
   GiNaC::ex from_dag(symbolic::Ref r);  // memoised over the Dag, iterative
   GiNaC::ex to_ginac(const Sum& sum);
   Sum from_ginac(const GiNaC::ex& e);  // expanded and simplified (trig.hpp); throws work::BudgetExceeded
   const GiNaC::symbol& symbol(const Symbol& symbol);
-  Alphabet& alphabet() { return alphabet_; }
+  AtomTable& atom_table() { return atom_table_; }
 
   Sum sum(symbolic::Ref r) { return from_ginac(from_dag(r)); }
   /// d/ds of a sum.
@@ -39,7 +39,7 @@ class Bridge {
   GiNaC::ex term_to_ginac(const Monomial& monomial, const Rational& coefficient);
 
   const symbolic::Dag& dag_;
-  Alphabet alphabet_;
+  AtomTable atom_table_;
   std::map<Symbol, GiNaC::ex> symbols_;  // as ex: copying a possymbol to a plain symbol would lose its sign
   std::map<GiNaC::ex, Symbol, GiNaC::ex_is_less> meaning_;
   std::map<symbolic::Ref, GiNaC::ex> nodes_;

@@ -25,10 +25,10 @@ bool over_a_sum(const Sum& sum) {
 
 }  // namespace
 
-std::vector<ReadSpin> read_spins(const Mechanics& m, Bridge& bridge) {
-  std::vector<ReadSpin> result;
-  for (const mechanics::Spin& spin : m.spins) {
-    ReadSpin read;
+std::vector<DisplayRotation> display_rotations(const Mechanics& m, GinacBridge& bridge) {
+  std::vector<DisplayRotation> result;
+  for (const mechanics::BodyRotation& spin : m.body_rotations) {
+    DisplayRotation read;
     read.name = spin.name;
     read.frame = spin.frame;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -40,7 +40,7 @@ std::vector<ReadSpin> read_spins(const Mechanics& m, Bridge& bridge) {
   return result;
 }
 
-Sum translational_energy(const Mechanics& m, Bridge& bridge) {
+Sum translational_energy(const Mechanics& m, GinacBridge& bridge) {
   Sum result = bridge.sum(m.kinetic_given);
   for (const mechanics::PointMass& mass : m.masses) {
     Sum square;
@@ -54,9 +54,9 @@ Sum translational_energy(const Mechanics& m, Bridge& bridge) {
   return simplify(result);
 }
 
-Sum kinetic_energy(const Sum& translation, const std::vector<ReadSpin>& spins) {
+Sum kinetic_energy(const Sum& translation, const std::vector<DisplayRotation>& body_rotations) {
   Sum result = translation;
-  for (const ReadSpin& spin : spins) {
+  for (const DisplayRotation& spin : body_rotations) {
     Sum twice;
     for (std::size_t i = 0; i < 3; ++i) {
       // Over a sum, as with Euler parameters, products of components are too long to display.
@@ -71,23 +71,23 @@ Sum kinetic_energy(const Sum& translation, const std::vector<ReadSpin>& spins) {
   return simplify(result);
 }
 
-Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
+Sum kinetic_energy(const Mechanics& m, GinacBridge& bridge) {
   const Sum translation = translational_energy(m, bridge);
-  return kinetic_energy(translation, read_spins(m, bridge));
+  return kinetic_energy(translation, display_rotations(m, bridge));
 }
 
-Sum generalized_force(const Mechanics& m, Bridge& bridge, std::uint32_t i) {
+Sum generalized_force(const Mechanics& m, GinacBridge& bridge, std::uint32_t i) {
   Sum result;
   for (const std::vector<symbolic::Ref>& Q : m.force_components) result += bridge.sum(Q[i]);
   for (const mechanics::Contact& contact : m.contacts) {
     for (std::uint32_t a = 0; a < contact.dimensions(); ++a) {
-      result += bridge.sum(contact.tangents[a][i]) * bridge.alphabet()({SymbolKind::friction, contact.first + a, 0});
+      result += bridge.sum(contact.tangents[a][i]) * bridge.atom_table()({SymbolKind::friction, contact.first + a, 0});
     }
   }
   return simplify(result);
 }
 
-std::map<Symbol, Sum> imposed_values(const Mechanics& m, Bridge& bridge) {
+std::map<Symbol, Sum> imposed_values(const Mechanics& m, GinacBridge& bridge) {
   std::map<Symbol, Sum> values;
   for (const mechanics::FixedCoordinate& fixed : m.fixed) {
     values[coordinate_symbol(fixed.coordinate, 0)] = bridge.sum(fixed.value);
@@ -121,7 +121,7 @@ namespace {
 /// e_i + sum_c e_c dq_c/dq_i over the eliminated coordinates q_c that depend on q_i, for components e along the
 /// coordinates.
 template <class Component>
-Sum along_free(const Mechanics& m, Bridge& bridge, std::uint32_t i, const std::map<Symbol, Sum>& values,
+Sum along_free(const Mechanics& m, GinacBridge& bridge, std::uint32_t i, const std::map<Symbol, Sum>& values,
                Component&& component) {
   Sum result = component(i);
   for (const mechanics::FixedCoordinate& fixed : m.fixed) {
@@ -133,7 +133,7 @@ Sum along_free(const Mechanics& m, Bridge& bridge, std::uint32_t i, const std::m
 
 }  // namespace
 
-Equation lagrange_equation(const Mechanics& m, Bridge& bridge, const Sum& lagrangian, std::uint32_t i,
+Equation lagrange_equation(const Mechanics& m, GinacBridge& bridge, const Sum& lagrangian, std::uint32_t i,
                            const std::map<Symbol, Sum>& values) {
   Equation result;
   result.coordinate = i;
@@ -148,7 +148,7 @@ Equation lagrange_equation(const Mechanics& m, Bridge& bridge, const Sum& lagran
   result.force = simplify(bridge.substitute(along_free(m, bridge, i, values, force), values));
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     const mechanics::Constraint& c = m.constraints[k];
-    if (!m.holds(k)) continue;
+    if (!m.is_independent(k)) continue;
     const auto gradient = [&](std::uint32_t j) {
       return c.holonomic() ? bridge.derivative(bridge.sum(c.psi), coordinate_symbol(j, 0))
                            : simplify(bridge.sum(c.gradient[j]));

@@ -36,22 +36,22 @@ Formula factor_formula(const Factor& factor) {
   Formula base;
   switch (atom.op) {
     case Op::symbol: base = symbol(atom.symbol); break;
-    case Op::pi: base.form = Form::pi; break;
+    case Op::pi: base.kind = FormulaKind::pi; break;
     case Op::add: base = arrange(atom.args[0]); break;
-    case Op::pow: base = wrap(Form::power, {arrange(atom.args[0]), arrange(atom.args[1])}); break;
+    case Op::pow: base = make_formula(FormulaKind::power, {arrange(atom.args[0]), arrange(atom.args[1])}); break;
     default:
-      base.form = Form::call;
+      base.kind = FormulaKind::call;
       base.op = atom.op;
       for (const Sum& arg : atom.args) base.args.push_back(arrange(arg, Layout::terms));
   }
   if (is_one(exponent)) return base;
   if (exponent == Rational(1) / 2) {
-    Formula root = wrap(Form::call, {std::move(base)});
+    Formula root = make_formula(FormulaKind::call, {std::move(base)});
     root.op = Op::sqrt;
     return root;
   }
-  if (base.form == Form::power) return wrap(Form::power, {std::move(base), number(exponent)});
-  return wrap(Form::power, {std::move(base), number(exponent)});
+  if (base.kind == FormulaKind::power) return make_formula(FormulaKind::power, {std::move(base), number(exponent)});
+  return make_formula(FormulaKind::power, {std::move(base), number(exponent)});
 }
 
 std::vector<Formula> polynomial_terms(const Sum& sum);
@@ -64,7 +64,7 @@ bool has_negative_term(const Sum& sum) {
 Formula negated_bracket(const Sum& base) {
   std::vector<Formula> terms = polynomial_terms(-base);
   const auto positive =
-      std::find_if(terms.begin(), terms.end(), [](const Formula& f) { return f.form != Form::negative; });
+      std::find_if(terms.begin(), terms.end(), [](const Formula& f) { return f.kind != FormulaKind::negative; });
   if (positive != terms.end()) std::rotate(terms.begin(), positive, positive + 1);
   return sum(std::move(terms));
 }
@@ -75,30 +75,30 @@ Formula opposite(Formula f);
 Formula opposite_sum(Formula f) {
   for (Formula& term : f.args) term = opposite(std::move(term));
   const auto added =
-      std::find_if(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form != Form::negative; });
+      std::find_if(f.args.begin(), f.args.end(), [](const Formula& t) { return t.kind != FormulaKind::negative; });
   if (added != f.args.end()) std::rotate(f.args.begin(), added, added + 1);
   return f;
 }
 
 bool subtracts(const Formula& f) {
-  return f.form == Form::sum &&
-         std::any_of(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form == Form::negative; });
+  return f.kind == FormulaKind::sum &&
+         std::any_of(f.args.begin(), f.args.end(), [](const Formula& t) { return t.kind == FormulaKind::negative; });
 }
 
 // -f without a leading minus, if a bracket can absorb it: -(a - b) c is (b - a) c, also over a denominator.
 Formula opposite(Formula f) {
-  if (f.form == Form::negative) return negative(std::move(f));
+  if (f.kind == FormulaKind::negative) return negative(std::move(f));
   if (subtracts(f)) return opposite_sum(std::move(f));
-  if (f.form == Form::product) {
+  if (f.kind == FormulaKind::product) {
     const auto found = std::find_if(f.args.begin(), f.args.end(), subtracts);
     if (found != f.args.end()) {
       *found = opposite_sum(std::move(*found));
       return f;
     }
   }
-  if (f.form == Form::fraction) {
+  if (f.kind == FormulaKind::fraction) {
     Formula above = opposite(f.args[0]);
-    if (above.form != Form::negative) {
+    if (above.kind != FormulaKind::negative) {
       f.args[0] = std::move(above);
       return f;
     }
@@ -109,18 +109,18 @@ Formula opposite(Formula f) {
 // Whether a formula has a leading minus that another order or a bracket would avoid. Accelerations stay first in
 // equations.
 Formula led_by_plus(Formula f, bool reordered) {
-  if (f.form == Form::negative) return opposite(std::move(f.args[0]));
-  if (f.form != Form::sum || f.args[0].form != Form::negative) return f;
+  if (f.kind == FormulaKind::negative) return opposite(std::move(f.args[0]));
+  if (f.kind != FormulaKind::sum || f.args[0].kind != FormulaKind::negative) return f;
   f.args[0] = opposite(std::move(f.args[0].args[0]));
-  if (!reordered || f.args[0].form != Form::negative) return f;
+  if (!reordered || f.args[0].kind != FormulaKind::negative) return f;
   const auto added =
-      std::find_if(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form != Form::negative; });
+      std::find_if(f.args.begin(), f.args.end(), [](const Formula& t) { return t.kind != FormulaKind::negative; });
   if (added != f.args.end()) std::rotate(f.args.begin(), added, added + 1);
   return f;
 }
 
 // The factor 1/(a - b) of a negative term, displayed as 1/(b - a) of a positive one.
-const Factor* sign_taker(const Monomial& monomial) {
+const Factor* sign_absorbing_factor(const Monomial& monomial) {
   for (const Factor& factor : monomial) {
     if (factor.atom->op == Op::add && factor.exponent == -1 && has_negative_term(factor.atom->args[0])) return &factor;
   }
@@ -135,7 +135,7 @@ Formula term_formula(const Rational& coefficient, const Monomial& monomial, std:
   const auto add_brackets = [&] {
     for (Formula& f : brackets) above.push_back(std::move(f));
   };
-  const Factor* const taker = cln::minusp(coefficient) ? sign_taker(monomial) : nullptr;
+  const Factor* const taker = cln::minusp(coefficient) ? sign_absorbing_factor(monomial) : nullptr;
   const auto add_factors = [&](const Monomial& factors) {
     for (const Factor& factor : factors) {
       Formula f = &factor == taker ? negated_bracket(factor.atom->args[0]) : factor_formula(factor);
@@ -147,7 +147,7 @@ Formula term_formula(const Rational& coefficient, const Monomial& monomial, std:
   if (!brackets_first) add_brackets();
   add_factors(motion);
   Formula result;
-  const bool of_pi = above.size() == 1 && above[0].form == Form::pi;  // pi/2
+  const bool of_pi = above.size() == 1 && above[0].kind == FormulaKind::pi;  // pi/2
   if (below.empty() && !of_pi) {
     above.insert(above.begin(), number(Rational(top) / bottom));
     result = product(std::move(above));
@@ -195,7 +195,7 @@ struct Factored {
 Factored factor_out(const Sum& sum) {
   const Content common = content(sum);
   Factored result{common.number, common.monomial, divide(sum, common)};
-  if (leads_negative(result.rest)) {
+  if (has_negative_leading_term(result.rest)) {
     result.rest = -result.rest;
     result.number = -result.number;
   }
@@ -212,7 +212,7 @@ Formula factored_formula(const Factored& f, const Monomial& motion = {}) {
 }
 
 // m1 l^2 + m2 l^2 + m2 k^2 -> (m1 + m2) l^2 + m2 k^2: extracts the factor that saves most, if any.
-bool take_out_best(Sum& left, Factored& taken) {
+bool factor_out_best(Sum& left, Factored& taken) {
   if (left.size() < 2 || left.size() > 64) return false;
   long best = 0;
   Monomial factor;
@@ -263,7 +263,7 @@ std::vector<Formula> polynomial_terms(const Sum& sum) {
       continue;
     }
     Factored taken;
-    while (take_out_best(left, taken)) result.push_back(factored_formula(taken));
+    while (factor_out_best(left, taken)) result.push_back(factored_formula(taken));
     for (const auto& [monomial, coefficient] : display_order(left))
       result.push_back(term_formula(coefficient, monomial));
   }
@@ -323,7 +323,7 @@ std::optional<Formula> number_in_front(const Sum& whole) {
     }
   }
   if (3 * simple < 2 * whole.size()) return std::nullopt;
-  const bool minus = leads_negative(whole);
+  const bool minus = has_negative_leading_term(whole);
   const Content front{minus ? -number : number, {}};
   return term_formula(front.number, {}, {sum(polynomial_terms(divide(whole, front)))});
 }
@@ -377,7 +377,7 @@ Formula factored(const Sum& whole) {
     const bool takes = minus && times % 2 != 0 && has_negative_term(base);
     Formula f = takes ? negated_bracket(base) : sum(polynomial_terms(base));
     minus = minus && !takes;
-    brackets.push_back(times == 1 ? std::move(f) : wrap(Form::power, {std::move(f), number(times)}));
+    brackets.push_back(times == 1 ? std::move(f) : make_formula(FormulaKind::power, {std::move(f), number(times)}));
   }
   return term_formula(minus ? -parts.content.number : parts.content.number, parts.content.monomial,
                       std::move(brackets));

@@ -12,7 +12,7 @@ namespace {
 using mechanics::Mechanics;
 
 std::string obstacle(const Mechanics& m, const DisplayForm& form) {
-  if (form.by_parts) return form.why_by_parts;
+  if (form.is_unexpanded) return form.unexpanded_reason;
   if (!m.model->integrals.empty())
     return "integrals over time are states of their own: eomgen linearize gives A and B at a state";
   if (!m.contacts.empty())
@@ -25,7 +25,7 @@ std::string obstacle(const Mechanics& m, const DisplayForm& form) {
 
 class Linearisation {
  public:
-  Linearisation(Bridge& bridge, LinearForm& form, const std::vector<Sum>& residuals)
+  Linearisation(GinacBridge& bridge, LinearForm& form, const std::vector<Sum>& residuals)
       : bridge_(bridge), form_(form), r_(residuals) {
     for (const std::uint32_t q : form.coordinates) {
       for (const std::uint8_t order : {std::uint8_t{1}, std::uint8_t{2}}) rest_[coordinate_symbol(q, order)] = Sum();
@@ -35,14 +35,14 @@ class Linearisation {
   void run() {
     for (const Sum& r : r_) {
       const Sum rest = at_rest(r);
-      form_.rest.push_back(rest);
+      form_.rest_residuals.push_back(rest);
       for (const std::uint32_t q : form_.coordinates) {
-        add(slope(r, coordinate_symbol(q, 2)), form_.along.mass, form_.at_rest.mass);
-        add(slope(r, coordinate_symbol(q, 1)), form_.along.damping, form_.at_rest.damping);
-        add(slope(r, coordinate_symbol(q, 0)), form_.along.stiffness, form_.at_rest.stiffness);
+        add(slope(r, coordinate_symbol(q, 2)), form_.along_motion.mass, form_.at_rest.mass);
+        add(slope(r, coordinate_symbol(q, 1)), form_.along_motion.damping, form_.at_rest.damping);
+        add(slope(r, coordinate_symbol(q, 0)), form_.along_motion.stiffness, form_.at_rest.stiffness);
       }
       for (const std::uint32_t u : form_.inputs)
-        add(-slope(r, {SymbolKind::input, u, 0}), form_.along.input, form_.at_rest.input);
+        add(-slope(r, {SymbolKind::input, u, 0}), form_.along_motion.input, form_.at_rest.input);
     }
   }
 
@@ -54,7 +54,7 @@ class Linearisation {
     rest.push_back(at_rest(slope));
   }
 
-  Bridge& bridge_;
+  GinacBridge& bridge_;
   LinearForm& form_;
   const std::vector<Sum>& r_;
   std::map<Symbol, Sum> rest_;
@@ -64,8 +64,8 @@ class Linearisation {
 
 LinearForm linear_form(const Mechanics& mechanics, const DisplayForm& read) {
   LinearForm form;
-  form.why_not = obstacle(mechanics, read);
-  if (!form.why_not.empty()) return form;
+  form.skip_reason = obstacle(mechanics, read);
+  if (!form.skip_reason.empty()) return form;
   std::vector<Sum> residuals;
   for (const Equation& equation : read.equations) {
     if (!equation.of_motion) continue;
@@ -75,14 +75,14 @@ LinearForm linear_form(const Mechanics& mechanics, const DisplayForm& read) {
   for (std::uint32_t u = 0; u < mechanics.model->inputs.size(); ++u) form.inputs.push_back(u);
   try {
     const work::Budget budget(form_budget);
-    Bridge bridge(mechanics);
+    GinacBridge bridge(mechanics);
     Linearisation(bridge, form, residuals).run();
   } catch (const std::domain_error&) {
     form = {};
-    form.why_not = "the equations have no slope at rest";
+    form.skip_reason = "the equations have no slope at rest";
   } catch (const work::BudgetExceeded& over) {
     form = {};
-    form.why_not = over.what();
+    form.skip_reason = over.what();
   }
   return form;
 }

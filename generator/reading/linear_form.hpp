@@ -10,20 +10,20 @@ namespace eomgen::reading {
 
 /// n x n by rows (equations) and columns (coordinates); B n x m. Derivatives of r = M qddot + h - Q with respect to
 /// qddot, qdot, q, and of -r with respect to u.
-struct Slopes {
+struct LinearCoefficients {
   std::vector<Sum> mass, damping, stiffness, input;
 };
 
 struct LinearForm {
-  std::string why_not;                     // if set, the rest is empty: too long, multipliers, friction
+  std::string skip_reason;                     // if set, the rest is empty: too long, multipliers, friction
   std::vector<std::uint32_t> coordinates;  // n
   std::vector<std::uint32_t> inputs;       // m
-  Slopes along;                            // a motion
-  Slopes at_rest;                          // qdot = qddot = 0
-  std::vector<Sum> rest;                   // r at rest; 0 in an equilibrium
+  LinearCoefficients along_motion;                            // a motion
+  LinearCoefficients at_rest;                          // qdot = qddot = 0
+  std::vector<Sum> rest_residuals;                   // r at rest; 0 in an equilibrium
 };
 
-/// Never throws work::BudgetExceeded, but sets `why_not`.
+/// Never throws work::BudgetExceeded, but sets `skip_reason`.
 LinearForm linear_form(const mechanics::Mechanics& mechanics);
 
 }  // namespace eomgen::reading

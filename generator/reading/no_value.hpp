@@ -8,7 +8,7 @@
 
 namespace eomgen::reading {
 
-inline Error no_value(const mechanics::Mechanics& mechanics) {
+inline Error no_value_error(const mechanics::Mechanics& mechanics) {
   return Error(
       "reading", SourceLocation{mechanics.model->file, 0, 0, 1, ""},
       "an expression of this model has no value, whatever the state and the time: a division by 0, a logarithm "

@@ -138,7 +138,7 @@ std::vector<std::pair<Monomial, Rational>> display_order(const Sum& sum) {
   return terms;
 }
 
-bool leads_negative(const Sum& sum) {
+bool has_negative_leading_term(const Sum& sum) {
   if (sum.is_zero()) return false;
   auto first = sum.terms().begin();
   for (auto term = std::next(first); term != sum.terms().end(); ++term) {

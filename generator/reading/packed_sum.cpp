@@ -187,7 +187,7 @@ std::pair<PackedSum::Entry, bool> PackedSum::add(const Word* wanted, const Ratio
       slots_[at] = entry;
     }
   }
-  Held& held = entries_[entry];
+  StoredTerm& held = entries_[entry];
   const bool was = !symbolic::is_zero(held.coefficient);
   held.coefficient = was ? symbolic::plus(held.coefficient, coefficient) : coefficient;
   const bool is = !symbolic::is_zero(held.coefficient);

@@ -91,7 +91,7 @@ class PackedSum {
   const std::vector<Entry>& sorted();
 
  private:
-  struct Held {
+  struct StoredTerm {
     std::uint64_t hash;
     Rational coefficient;
     bool listed = false;
@@ -102,7 +102,7 @@ class PackedSum {
   const Lanes* lanes_;
   std::size_t words_, alive_ = 0;
   std::vector<Word> keys_;
-  std::vector<Held> entries_;
+  std::vector<StoredTerm> entries_;
   std::vector<Entry> slots_;          // their number is a power of 2; half are empty
   std::vector<Entry> order_, added_;  // listed, ascending; added since
 };

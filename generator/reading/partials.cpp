@@ -9,12 +9,12 @@
 
 namespace eomgen::reading {
 
-std::vector<Partials> partial_derivatives(const mechanics::Mechanics& m, const DisplayForm& form) try {
-  std::vector<Partials> result;
-  if (form.by_parts) return result;
-  Bridge bridge(m);
+std::vector<PartialDerivatives> partial_derivatives(const mechanics::Mechanics& m, const DisplayForm& form) try {
+  std::vector<PartialDerivatives> result;
+  if (form.is_unexpanded) return result;
+  GinacBridge bridge(m);
   for (const Equation& equation : form.equations) {
-    Partials p;
+    PartialDerivatives p;
     p.coordinate = equation.coordinate;
     try {
       const work::Budget budget(item_budget);
@@ -34,7 +34,7 @@ std::vector<Partials> partial_derivatives(const mechanics::Mechanics& m, const D
   }
   return result;
 } catch (const std::domain_error&) {
-  throw no_value(m);
+  throw no_value_error(m);
 }
 
 }  // namespace eomgen::reading

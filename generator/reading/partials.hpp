@@ -8,7 +8,7 @@
 
 namespace eomgen::reading {
 
-struct Partials {
+struct PartialDerivatives {
   std::uint32_t coordinate = 0;
   Sum momentum;               // dT/dqdot
   Sum rate;                   // d/dt of it
@@ -18,7 +18,7 @@ struct Partials {
   std::string left_out = {};  // why the members above are empty
 };
 
-/// One entry for each equation of `form`, in its order; none if by_parts. Each has its own budget.
-std::vector<Partials> partial_derivatives(const mechanics::Mechanics& mechanics, const DisplayForm& form);
+/// One entry for each equation of `form`, in its order; none if is_unexpanded. Each has its own budget.
+std::vector<PartialDerivatives> partial_derivatives(const mechanics::Mechanics& mechanics, const DisplayForm& form);
 
 }  // namespace eomgen::reading

@@ -116,7 +116,7 @@ Sum power(const Sum& x, const Rational& exponent) {
   }
   Sum primitive = divide(x, common);
   Sum factor = term_power(common.monomial, common.number, exponent);
-  if (is_integer(exponent) && leads_negative(primitive)) {
+  if (is_integer(exponent) && has_negative_leading_term(primitive)) {
     primitive = -primitive;
     if (cln::oddp(cln::numerator(exponent))) factor = -factor;
   }
@@ -161,7 +161,7 @@ Sum call(Op function, std::vector<Sum> args) {
     if (std::optional<Sum> value = without_quarter_turns(function, args[0])) return *std::move(value);
   }
   const auto negated = [&]() -> Sum { return call(function, {-args[0]}); };
-  if (args.size() == 1 && leads_negative(args[0])) {
+  if (args.size() == 1 && has_negative_leading_term(args[0])) {
     switch (symbolic::function_of(function).parity) {
       case symbolic::Parity::odd: return -negated();
       case symbolic::Parity::even: return negated();
@@ -175,7 +175,7 @@ Sum call(Op function, std::vector<Sum> args) {
   if (args.size() == 1 && args[0].size() == 1) {
     const auto& [monomial, coefficient] = *args[0].terms().begin();
     const bool single = monomial.size() == 1 && is_one(coefficient) && is_one(monomial[0].exponent);
-    if (function == Op::sin && single && monomial[0].atom->half_turn) atom.positive = true;
+    if (function == Op::sin && single && monomial[0].atom->is_half_turn_angle) atom.positive = true;
     if (function == Op::abs) {
       if (monomial.empty()) return Sum(cln::abs(coefficient));
       bool positive = true;

@@ -64,7 +64,7 @@ class Letters {
 void add_factor(Factorisation& result, Sum factor, long exponent) {
   if (factor.is_number()) return;  // the numeric content is known up to its sign
   factor = divide(factor, Content{content(factor).number, {}});
-  if (leads_negative(factor)) factor = -factor;
+  if (has_negative_leading_term(factor)) factor = -factor;
   for (auto& [known, times] : result.factors) {
     if (known == factor) {
       times += exponent;
@@ -90,13 +90,13 @@ Factorisation factorise(const Sum& whole) {
   Factorisation result;
   result.content = content(whole);
   Sum primitive = divide(whole, result.content);
-  if (leads_negative(primitive)) {
+  if (has_negative_leading_term(primitive)) {
     result.sign = -1;
     primitive = -primitive;
   }
   if (primitive.is_number()) return result;
   if (primitive.size() <= factored_terms && is_irreducible(primitive)) {
-    work::consume_budget(operations_of_reading(primitive) + 2 * primitive.size());
+    work::consume_budget(display_operation_count(primitive) + 2 * primitive.size());
     result.factors.emplace_back(primitive, 1);
     return result;
   }

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "mechanics/dependent.hpp"
+#include "mechanics/dependent_coordinates.hpp"
 #include "reading/approaches.hpp"
 #include "reading/forms.hpp"
 #include "reading/lagrangian.hpp"
@@ -19,9 +19,9 @@ namespace {
 using mechanics::Mechanics;
 
 // For equations that are too long to display: keeps the list of coordinates and forces only.
-void leave_by_parts(const Mechanics& m, DisplayForm& form, const std::string& why) {
-  form.by_parts = true;
-  form.why_by_parts = why;
+void leave_unexpanded(const Mechanics& m, DisplayForm& form, const std::string& why) {
+  form.is_unexpanded = true;
+  form.unexpanded_reason = why;
   form.kinetic = form.potential = form.lagrangian = form.translation = Sum();
   form.by_degree.reset();
   form.equations.clear();
@@ -49,42 +49,42 @@ std::string within_budget(Read&& read) {
 }
 
 /// The value of the coordinate that the constraint fixes, if any.
-void read_value(const Mechanics& m, Bridge& bridge, ReadConstraint& c, DisplayForm& form) {
+void read_value(const Mechanics& m, GinacBridge& bridge, DisplayConstraint& c, DisplayForm& form) {
   const auto fixes = [&c](const mechanics::FixedCoordinate& f) { return f.constraint == c.constraint; };
   const auto found = std::find_if(m.fixed.begin(), m.fixed.end(), fixes);
   if (found == m.fixed.end()) return;
-  const std::string no_value = within_budget([&] {
+  const std::string no_value_error = within_budget([&] {
     c.value = bridge.sum(found->value);
     c.value_rate = bridge.sum(found->rate);
     c.value_acceleration = bridge.sum(found->acceleration);
     c.fixes = *found;
   });
-  if (no_value.empty()) return;
-  c.no_rate = c.no_acceleration = no_value;
-  if (!form.by_parts) leave_by_parts(m, form, no_value);
+  if (no_value_error.empty()) return;
+  c.rate_skip_reason = c.acceleration_skip_reason = no_value_error;
+  if (!form.is_unexpanded) leave_unexpanded(m, form, no_value_error);
 }
 
-void read_rates(const Mechanics& m, Bridge& bridge, ReadConstraint& c) {
+void read_rates(const Mechanics& m, GinacBridge& bridge, DisplayConstraint& c) {
   const std::uint32_t k = c.constraint;
-  c.no_psi = within_budget([&] {
+  c.psi_skip_reason = within_budget([&] {
     if (c.holonomic) c.psi = bridge.sum(m.constraints[k].psi);
   });
-  c.no_rate = c.no_psi;
-  if (c.no_rate.empty()) {
-    c.no_rate = within_budget([&] {
+  c.rate_skip_reason = c.psi_skip_reason;
+  if (c.rate_skip_reason.empty()) {
+    c.rate_skip_reason = within_budget([&] {
       c.rate = c.holonomic ? bridge.total_derivative(c.psi) : simplify(bridge.sum(m.velocity_form(m.constraints[k])));
     });
   }
-  c.no_acceleration = c.no_rate;
-  if (c.no_acceleration.empty())
-    c.no_acceleration = within_budget([&] { c.acceleration = bridge.total_derivative(c.rate); });
+  c.acceleration_skip_reason = c.rate_skip_reason;
+  if (c.acceleration_skip_reason.empty())
+    c.acceleration_skip_reason = within_budget([&] { c.acceleration = bridge.total_derivative(c.rate); });
 }
 
-void add_constraints(const Mechanics& m, Bridge& bridge, Extent extent, DisplayForm& form) {
+void add_constraints(const Mechanics& m, GinacBridge& bridge, Extent extent, DisplayForm& form) {
   const work::Budget budget(form_budget);  // of all items together
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (!m.holds(k)) continue;
-    ReadConstraint c;
+    if (!m.is_independent(k)) continue;
+    DisplayConstraint c;
     c.constraint = k;
     c.label = m.constraints[k].label;
     c.holonomic = m.constraints[k].holonomic();
@@ -95,22 +95,22 @@ void add_constraints(const Mechanics& m, Bridge& bridge, Extent extent, DisplayF
 }
 
 /// The rotations; in Approach II with the constraints imposed. Throws work::BudgetExceeded.
-std::vector<ReadSpin> add_spins(const Mechanics& m, Bridge& bridge, DisplayForm& form) {
-  std::vector<ReadSpin> spins;
+std::vector<DisplayRotation> add_rotations(const Mechanics& m, GinacBridge& bridge, DisplayForm& form) {
+  std::vector<DisplayRotation> body_rotations;
   try {
-    spins = form.spins = read_spins(m, bridge);
-    if (form.approach == system::Approach::two && !spins.empty()) {
+    body_rotations = form.body_rotations = display_rotations(m, bridge);
+    if (form.approach == system::Approach::two && !body_rotations.empty()) {
       const std::map<Symbol, Sum> values = imposed_values(m, bridge);
-      for (ReadSpin& spin : form.spins) {
+      for (DisplayRotation& spin : form.body_rotations) {
         for (Sum& w : spin.w) w = simplify(bridge.substitute(w, values));
       }
     }
   } catch (const work::BudgetExceeded& over) {  // e.g. a long chain of relative rotations
-    form.spins.clear();
-    form.no_spins = over.what();
-    if (spins.empty()) throw;
+    form.body_rotations.clear();
+    form.rotations_skip_reason = over.what();
+    if (body_rotations.empty()) throw;
   }
-  return spins;
+  return body_rotations;
 }
 
 /// An upper bound of the number of terms of the expanded equations; trigonometric simplification gives fewer.
@@ -131,36 +131,36 @@ double most_terms(const symbolic::Dag& dag, symbolic::Ref expression) {
 
 }  // namespace
 
-DisplayForm derive_reading(const Mechanics& given, system::Approach approach, Extent extent) try {
-  const Mechanics m = approach == system::Approach::two ? mechanics::impose_dependent(given) : given;
+DisplayForm derive_display_form(const Mechanics& given, system::Approach approach, Extent extent) try {
+  const Mechanics m = approach == system::Approach::two ? mechanics::eliminate_dependent_coordinates(given) : given;
   DisplayForm form;
   form.approach = approach;
-  Bridge bridge(m);
+  GinacBridge bridge(m);
   // A result that would be too long is not started: along chains of relative rotations its length grows exponentially.
   constexpr double longest = 12000, longest_of_spins = 200000;
-  const bool grows = !m.spins.empty() || !m.dag->is_zero(m.kinetic_given);
+  const bool grows = !m.body_rotations.empty() || !m.dag->is_zero(m.kinetic_given);
   const double terms = grows ? most_terms(*m.dag, m.kinetic) : 0;
   try {
     const work::Budget budget(form_budget);  // one budget for the whole form
-    if (terms > longest_of_spins) form.no_spins = TermBudget().what();
-    const std::vector<ReadSpin> spins = form.no_spins.empty() ? add_spins(m, bridge, form) : std::vector<ReadSpin>{};
+    if (terms > longest_of_spins) form.rotations_skip_reason = TermBudget().what();
+    const std::vector<DisplayRotation> body_rotations = form.rotations_skip_reason.empty() ? add_rotations(m, bridge, form) : std::vector<DisplayRotation>{};
     if (terms > longest) throw TermBudget();
     if (approach == system::Approach::one)
-      approach_one(m, bridge, spins, form);
+      derive_approach_one(m, bridge, body_rotations, form);
     else
-      approach_two(m, bridge, spins, form);
+      derive_approach_two(m, bridge, body_rotations, form);
   } catch (const work::BudgetExceeded& over) {
-    leave_by_parts(m, form, over.what());
+    leave_unexpanded(m, form, over.what());
   }
-  if (extent == Extent::whole || !form.by_parts) add_constraints(m, bridge, extent, form);
+  if (extent == Extent::whole || !form.is_unexpanded) add_constraints(m, bridge, extent, form);
   return form;
 } catch (const std::domain_error&) {
-  throw no_value(given);
+  throw no_value_error(given);
 }
 
 std::vector<symbolic::Ref> residuals_on_dag(const DisplayForm& form, mechanics::Mechanics& m) {
   std::vector<symbolic::Ref> result;
-  if (form.by_parts) return result;
+  if (form.is_unexpanded) return result;
   symbolic::Dag& dag = *m.dag;
   for (const Equation& equation : form.equations) {
     if (!equation.of_motion) continue;
@@ -171,7 +171,7 @@ std::vector<symbolic::Ref> residuals_on_dag(const DisplayForm& form, mechanics::
     }
     result.push_back(residual);
   }
-  for (const ReadConstraint& c :
+  for (const DisplayConstraint& c :
        form.constraints) {  // coordinates that Approach II expressed by others have moved accordingly
     if (!c.fixes || m.is_eliminated(c.fixes->coordinate)) continue;
     result.push_back(dag.sub(m.qddot[c.fixes->coordinate], to_dag(dag, c.value_acceleration)));
@@ -179,12 +179,12 @@ std::vector<symbolic::Ref> residuals_on_dag(const DisplayForm& form, mechanics::
   return result;
 }
 
-Sum read(const Mechanics& m, symbolic::Ref expression) try {
+Sum display_sum(const Mechanics& m, symbolic::Ref expression) try {
   const work::Budget budget(item_budget);
-  Bridge bridge(m);
+  GinacBridge bridge(m);
   return bridge.sum(expression);
 } catch (const std::domain_error&) {
-  throw no_value(m);
+  throw no_value_error(m);
 }
 
 DisplayForm::DisplayForm() = default;

@@ -26,12 +26,12 @@ using work::LeftOut;
 
 /// One constraint psi = 0, with its first and second total time derivatives. For a velocity constraint, `rate` is its
 /// left-hand side.
-struct ReadConstraint {
+struct DisplayConstraint {
   std::uint32_t constraint;  // index into Mechanics::constraints
   std::string label;
   bool holonomic = true;
   Sum psi, rate, acceleration;
-  std::string no_psi, no_rate, no_acceleration;     // why they are omitted; empty if they are present
+  std::string psi_skip_reason, rate_skip_reason, acceleration_skip_reason;     // why they are omitted; empty if they are present
   std::optional<mechanics::FixedCoordinate> fixes;  // if it is q_c = d(t); in Approach II also of other coordinates
   Sum value, value_rate, value_acceleration;  // of that coordinate
 };
@@ -54,7 +54,7 @@ struct Equation {
 };
 
 /// lambda_k as an expression; empty if only the equations of motion together determine it.
-struct ReadReaction {
+struct DisplayReaction {
   std::uint32_t constraint;
   std::string label;
   std::optional<Sum> value;
@@ -68,7 +68,7 @@ struct SingularSet {
 };
 
 /// Rotation of a body: T = sum_ik J_ik w_i w_k/2.
-struct ReadSpin {
+struct DisplayRotation {
   std::string name;
   std::uint32_t frame = 0;
   Components w;
@@ -85,20 +85,20 @@ struct DisplayForm {
   ~DisplayForm();
 
   system::Approach approach = system::Approach::one;
-  bool by_parts = false;  // too large to expand: m r_ddot . dr/dq in place of the expanded equations
-  std::string why_by_parts;
+  bool is_unexpanded = false;  // too large to expand: m r_ddot . dr/dq in place of the expanded equations
+  std::string unexpanded_reason;
   Sum kinetic, potential, lagrangian;           // unconstrained for I, constrained for II
-  Sum translation;                              // the part of `kinetic` without rotations; 0 if by_parts
-  std::vector<ReadSpin> spins;                  // in II with the constraints imposed
-  std::string no_spins;                         // why they are omitted, if bodies rotate
+  Sum translation;                              // the part of `kinetic` without rotations; 0 if is_unexpanded
+  std::vector<DisplayRotation> body_rotations;                  // in II with the constraints imposed
+  std::string rotations_skip_reason;                         // why they are omitted, if bodies rotate
   std::optional<std::array<Sum, 3>> by_degree;  // II: T2, T1, T0, eq. (3.50)
-  std::vector<ReadConstraint> constraints;
+  std::vector<DisplayConstraint> constraints;
   std::vector<Equation> equations;  // I: all coordinates, II: the free ones
-  std::vector<ReadReaction> reactions;
+  std::vector<DisplayReaction> reactions;
 };
 
-/// Derives the equations in display form. Never throws work::BudgetExceeded, but sets by_parts.
-DisplayForm derive_reading(const mechanics::Mechanics& mechanics, system::Approach approach);
+/// Derives the equations in display form. Never throws work::BudgetExceeded, but sets is_unexpanded.
+DisplayForm derive_display_form(const mechanics::Mechanics& mechanics, system::Approach approach);
 
 /// Curvilinear coordinates of one particle: bases, metric, Christoffel symbols; n = 1, 2 or 3 coordinates.
 struct Geometry {
@@ -129,13 +129,13 @@ std::optional<Geometry> configuration_space(const mechanics::Mechanics& mechanic
 std::vector<SingularSet> singular_sets(const mechanics::Mechanics& mechanics, std::vector<LeftOut>* left_out = nullptr);
 
 /// lhs - rhs of each equation of motion, in the order of DisplayForm::equations, on the Dag of `mechanics`. Symbols: q,
-/// qdot, qddot of free coordinates, parameters, functions of time, inputs, multipliers. Empty if form.by_parts.
+/// qdot, qddot of free coordinates, parameters, functions of time, inputs, multipliers. Empty if form.is_unexpanded.
 std::vector<symbolic::Ref> residuals_on_dag(const DisplayForm& form, mechanics::Mechanics& mechanics);
 
 /// A scalar expression as the model's author wrote it, not expanded. Empty if it contains vectors.
 std::optional<Formula> as_written(const model::Model& model, model::NodeId expression);
 
 /// Any expression of the Dag, simplified for display. Throws work::BudgetExceeded.
-Sum read(const mechanics::Mechanics& mechanics, symbolic::Ref expression);
+Sum display_sum(const mechanics::Mechanics& mechanics, symbolic::Ref expression);
 
 }  // namespace eomgen::reading

@@ -50,7 +50,7 @@ std::vector<Formula> solutions(const Sum& factor) {
   const Atom& atom = *monomial[0].atom;
   const auto at = [](const Formula& left, Formula right) { return relation({left, std::move(right)}); };
   Formula pi;
-  pi.form = Form::pi;
+  pi.kind = FormulaKind::pi;
   if (atom.op == Op::sin) return {at(arrange(atom.args[0]), number(0)), at(arrange(atom.args[0]), pi)};
   if (atom.op == Op::cos) {
     const Formula half = fraction(pi, number(2));
@@ -93,7 +93,7 @@ class Sets {
   std::vector<SingularSet> found_;
 };
 
-bool positive_always(const Sum& factor) {
+bool is_always_positive(const Sum& factor) {
   // A sum of terms without a sign change, of which one does not vanish: m1 + m2 sin(x)^2.
   if (turns(factor)) return false;
   bool constant_part = false;
@@ -158,20 +158,20 @@ bool stays_away_from_zero(const Sum& factor) {
 }
 
 // For masses and bodies the determinant is never negative. A kinetic energy given by the file may have any sign.
-void add_determinant(const Mechanics& m, Bridge& bridge, const std::string& approach, const Sum& kinetic,
+void add_determinant(const Mechanics& m, GinacBridge& bridge, const std::string& approach, const Sum& kinetic,
                      const std::vector<std::uint32_t>& which, Sets& sets) {
   const bool of_masses = m.dag->is_zero(m.kinetic_given);
   Sets candidates;
   candidates.add_factors(approach, simplify(determinant(mass_matrix(bridge, kinetic, which), which.size())));
   for (const SingularSet& set : candidates.take()) {
-    if (!positive_always(set.factor) && !(of_masses && stays_away_from_zero(set.factor)))
+    if (!is_always_positive(set.factor) && !(of_masses && stays_away_from_zero(set.factor)))
       sets.add(approach, set.factor);
   }
 }
 
 // If the determinant is too large to expand: the angles of bodies are singular where their basis has no dual. If the
 // first or the last angle is eliminated, the basis of the other two is never singular.
-void add_rotations(const Mechanics& mechanics, Bridge& bridge, const std::map<Symbol, Sum>& values, Sets& sets) {
+void add_rotations(const Mechanics& mechanics, GinacBridge& bridge, const std::map<Symbol, Sum>& values, Sets& sets) {
   Mechanics m = mechanics;  // shares the Dag; lowering may add nodes to it
   for (const model::Body& body : m.model->bodies) {
     const model::Frame& frame = m.model->frames[body.frame];
@@ -188,7 +188,7 @@ void add_rotations(const Mechanics& mechanics, Bridge& bridge, const std::map<Sy
   }
 }
 
-void add_geometry(const Mechanics& m, Bridge& bridge, const std::map<Symbol, Sum>& values, Sets& sets) {
+void add_geometry(const Mechanics& m, GinacBridge& bridge, const std::map<Symbol, Sum>& values, Sets& sets) {
   if (m.q.size() <= largest_determinant) return;
   // Each particle's chart is singular where its metric is; the whole inertia matrix may be singular there.
   for (const Geometry& g : geometry(m)) {
@@ -202,7 +202,7 @@ void add_geometry(const Mechanics& m, Bridge& bridge, const std::map<Symbol, Sum
 }  // namespace
 
 std::vector<SingularSet> singular_sets(const Mechanics& m, std::vector<LeftOut>* left_out) try {
-  Bridge bridge(m);
+  GinacBridge bridge(m);
   Sets sets;
   std::vector<std::uint32_t> all;
   for (std::uint32_t i = 0; i < m.q.size(); ++i) all.push_back(i);
@@ -232,7 +232,7 @@ std::vector<SingularSet> singular_sets(const Mechanics& m, std::vector<LeftOut>*
   within_budget("the angles of the bodies", [&] { add_rotations(m, bridge, values, sets); });
   return sets.take();
 } catch (const std::domain_error&) {
-  throw no_value(m);
+  throw no_value_error(m);
 }
 
 }  // namespace eomgen::reading

@@ -43,7 +43,7 @@ std::vector<Sum> inverse_matrix(const std::vector<Sum>& matrix, std::size_t n) {
   return result;
 }
 
-std::vector<Sum> mass_matrix(Bridge& bridge, const Sum& kinetic, const std::vector<std::uint32_t>& coordinates) {
+std::vector<Sum> mass_matrix(GinacBridge& bridge, const Sum& kinetic, const std::vector<std::uint32_t>& coordinates) {
   const std::size_t n = coordinates.size();
   std::vector<Sum> result(n * n);
   for (std::size_t i = 0; i < n; ++i) {

@@ -11,6 +11,6 @@ Sum determinant(const std::vector<Sum>& matrix, std::size_t n);
 /// Cofactors over the determinant, cancelled; the determinant must not be zero.
 std::vector<Sum> inverse_matrix(const std::vector<Sum>& matrix, std::size_t n);
 /// M_ik = d2T/dqdot_i dqdot_k.
-std::vector<Sum> mass_matrix(Bridge& bridge, const Sum& kinetic, const std::vector<std::uint32_t>& coordinates);
+std::vector<Sum> mass_matrix(GinacBridge& bridge, const Sum& kinetic, const std::vector<std::uint32_t>& coordinates);
 
 }  // namespace eomgen::reading

@@ -94,7 +94,7 @@ struct Atom {
   Symbol symbol{};
   std::vector<Sum> args;
   bool positive = false;   // known to be > 0
-  bool half_turn = false;  // an angle in (0, pi)
+  bool is_half_turn_angle = false;  // an angle in (0, pi)
 };
 
 /// Product of two monomials as a sum. Powers of sums whose exponents become integers are expanded.
@@ -116,7 +116,7 @@ Sum divide(const Sum& sum, const Content& by);
 Monomial inverse(const Monomial& monomial);
 
 /// Whether the term displayed first has a negative coefficient; decides which sign is pulled out of brackets.
-bool leads_negative(const Sum& sum);
+bool has_negative_leading_term(const Sum& sum);
 /// Terms in display order: accelerations, velocities, coordinates, the rest.
 std::vector<std::pair<Monomial, Rational>> display_order(const Sum& sum);
 

@@ -3,7 +3,7 @@
 
 #include <cln/float.h>
 
-#include "reading/alphabet.hpp"
+#include "reading/atom_table.hpp"
 #include "reading/rational_function.hpp"
 #include "reading/trig.hpp"
 #include "symbolic/evaluate.hpp"
@@ -15,7 +15,7 @@ namespace {
 constexpr int digits = 50, agreed_digits = 40;
 constexpr std::uint64_t points = 5;
 
-Zero numerically(const Sum& sum) {
+ZeroTestResult numerically(const Sum& sum) {
   symbolic::Dag dag;
   std::vector<symbolic::Ref> terms;
   for (const auto& [monomial, coefficient] : sum.terms()) terms.push_back(to_dag(dag, Sum(monomial, coefficient)));
@@ -29,29 +29,29 @@ Zero numerically(const Sum& sum) {
         total = total + value;
         size = size + cln::abs(value);
       }
-      if (cln::abs(total) > small * size) return Zero::no;
+      if (cln::abs(total) > small * size) return ZeroTestResult::no;
       evaluated = true;
     } catch (const std::domain_error&) {
       continue;
     }
   }
-  return evaluated ? Zero::numerical : Zero::unknown;
+  return evaluated ? ZeroTestResult::numerical : ZeroTestResult::unknown;
 }
 
 }  // namespace
 
 bool is_zero(const Sum& sum) {
   if (sum.is_zero()) return true;
-  const Zero numbers = numerically(sum);
-  return numbers == Zero::numerical || (numbers == Zero::unknown && zero_test(sum) == Zero::proven);
+  const ZeroTestResult numbers = numerically(sum);
+  return numbers == ZeroTestResult::numerical || (numbers == ZeroTestResult::unknown && zero_test(sum) == ZeroTestResult::proven);
 }
 
-Zero zero_test(const Sum& sum) {
-  if (sum.is_zero()) return Zero::proven;
-  const Zero numbers = numerically(sum);
-  if (numbers == Zero::no) return numbers;
+ZeroTestResult zero_test(const Sum& sum) {
+  if (sum.is_zero()) return ZeroTestResult::proven;
+  const ZeroTestResult numbers = numerically(sum);
+  if (numbers == ZeroTestResult::no) return numbers;
   try {
-    if (cancel(expand_angles(sum)).is_zero()) return Zero::proven;
+    if (cancel(expand_angles(sum)).is_zero()) return ZeroTestResult::proven;
   } catch (const work::BudgetExceeded&) {
     return numbers;
   }

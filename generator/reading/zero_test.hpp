@@ -6,7 +6,7 @@
 
 namespace eomgen::reading {
 
-enum class Zero {
+enum class ZeroTestResult {
   proven,     // the canonical form is empty after trigonometric expansion
   numerical,  // not proven, but zero to 40 digits at every random point
   no,         // different from zero at some point
@@ -14,7 +14,7 @@ enum class Zero {
 };
 
 /// Tests exactly first, then at random points with 50 digits. The points are the same in every process.
-Zero zero_test(const Sum& sum);
+ZeroTestResult zero_test(const Sum& sum);
 /// The same if the certainty does not matter: a proof is sought only if there are no numerical values.
 bool is_zero(const Sum& sum);
 

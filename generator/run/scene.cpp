@@ -34,7 +34,7 @@ constexpr int digits = 40;
 class SceneEvaluator {
  public:
   SceneEvaluator(Mechanics& m, const std::vector<cln::cl_R>& parameters)
-      : m_(m), parameters_(parameters), written_(derive::write_out(m)) {}
+      : m_(m), parameters_(parameters), written_(derive::time_function_substitution(m)) {}
 
   double number(model::NodeId id, const char* what) { return number(mechanics::lower_scalar(m_, id), id, what); }
   void set_start(double t0) { t0_ = numeric::exact(t0); }
@@ -85,7 +85,7 @@ class SceneEvaluator {
 std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene& scene, SceneEvaluator& value,
                                                Scene& result) {
   std::vector<std::optional<Ref>> expressions;
-  symbolic::Substitution written = derive::write_out(m);
+  symbolic::Substitution written = derive::time_function_substitution(m);
   for (std::uint32_t i = 0; i < m.model->inputs.size(); ++i) {
     const auto given =
         std::find_if(scene.inputs.begin(), scene.inputs.end(), [&](const auto& s) { return s.input == i; });

@@ -111,7 +111,7 @@ class StartSolver {
 
   // The constraint determines an eliminated coordinate; a given value has to agree with it.
   void impose_fixed() {
-    symbolic::Substitution written = derive::write_out(p_.mechanics);
+    symbolic::Substitution written = derive::time_function_substitution(p_.mechanics);
     for (const mechanics::FixedCoordinate& fixed : p_.mechanics.fixed) {
       const std::vector<double> exact = rows_.evaluate({written(fixed.value), written(fixed.rate)});
       for (std::uint8_t order = 0; order < 2; ++order) {

@@ -55,7 +55,7 @@ void StartRows::drop_rolling() {
 
 // An angular velocity is linear in the rates: three further rows.
 void StartRows::add_turn(const StartProblem::Turn& turn) {
-  symbolic::Substitution imposed = derive::impose(p_.mechanics), written = derive::write_out(p_.mechanics);
+  symbolic::Substitution imposed = derive::constraint_substitution(p_.mechanics), written = derive::time_function_substitution(p_.mechanics);
   for (std::size_t k = 0; k < 3; ++k)
     add_rate(written(imposed(p_.mechanics.angular_velocity[turn.frame][k])), turn.value[k]);
 }

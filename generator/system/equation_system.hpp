@@ -64,8 +64,8 @@ struct Event {
 };
 
 /// A direction of a contact that another constraint blocks: phi has no component along it while the contact sticks and
-/// contact `by` is closed. See mechanics::HeldDirection.
-struct HeldDirection {
+/// contact `by` is closed. See mechanics::BlockedDirection.
+struct BlockedDirection {
   std::uint32_t by = 0;    // index into EquationSystem::contacts; its own index: always blocked
   std::vector<Ref> along;  // per tangent
 };
@@ -80,7 +80,7 @@ struct Contact {
   std::vector<Ref> gram;                 // |normal force|^2 = lambda^T gram lambda
   Ref normal;                            // the given normal force
   std::vector<Ref> slip, slip_rate;      // per tangent; the rate may depend on qddot
-  std::vector<HeldDirection> held;
+  std::vector<BlockedDirection> blocked;
   std::vector<std::array<Ref, 3>> directions;  // t_a; empty for friction on a coordinate
   Ref static_coefficient, dynamic_coefficient;
   std::optional<Ref> width;                 // of the regularised law, which has no static coefficient

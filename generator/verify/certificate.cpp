@@ -116,12 +116,12 @@ std::vector<system::EquationSystem> all_formulations(mechanics::Mechanics& mecha
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
       // Without eliminated coordinates both approaches coincide: a large system is derived only once.
       if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
-      derive::Outcome outcome = derive::derive_where_worth(formulation, mechanics, approach);
+      derive::DerivationResult outcome = derive::derive_if_worthwhile(formulation, mechanics, approach);
       if (outcome.system)
         systems.push_back(std::move(*outcome.system));
       else if (left_out != nullptr)
         left_out->push_back(
-            {fmt::format("{} {}", formulation.name, system::name(approach)), std::move(outcome.why), outcome.over_budget});
+            {fmt::format("{} {}", formulation.name, system::name(approach)), std::move(outcome.skip_reason), outcome.over_budget});
     }
   return systems;
 }
@@ -133,7 +133,7 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
   const int range = options.range ? *options.range : digits_of_range(mechanics);
   Oracle oracle(*mechanics.model, options.digits + guard_digits + range);
   for (std::uint32_t k = 0; k < mechanics.constraints.size(); ++k) {
-    if (!mechanics.holds(k)) oracle.imply(k);
+    if (!mechanics.is_independent(k)) oracle.imply(k);
   }
   Points points(oracle, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed,
                 leavable(mechanics));

@@ -166,7 +166,7 @@ void compare_integrals(const mechanics::Mechanics& mechanics, const EquationSyst
   const model::Model& m = oracle.model();
   if (m.integrals.empty()) return;
   const Lookup lookup(oracle, v.state);
-  symbolic::Substitution written = derive::write_out(mechanics);
+  symbolic::Substitution written = derive::time_function_substitution(mechanics);
   const Interpreter now = oracle.interpreter(v.state);
   double largest = 0;
   for (std::uint32_t i = 0; i < m.integrals.size(); ++i) {

@@ -27,7 +27,7 @@ class Law {
       roots_.push_back(rough ? contact.dynamic_coefficient : s.dag->zero());
       roots_.push_back(contact.width.value_or(s.dag->zero()));
       for (const std::uint32_t k : contact.reactions) roots_.push_back(s.reactions[k].value);
-      for (const system::HeldDirection& held : contact.held)
+      for (const system::BlockedDirection& held : contact.blocked)
         roots_.insert(roots_.end(), held.along.begin(), held.along.end());
     }
   }
@@ -52,7 +52,7 @@ class Law {
       const Real given = take(1)[0], mu = take(1)[0], width = take(1)[0];
       const std::vector<Real> lambda = take(c.reactions.size());
       std::vector<std::vector<Real>> held;  // by closed contacts
-      for (const system::HeldDirection& direction : c.held) {
+      for (const system::BlockedDirection& direction : c.blocked) {
         std::vector<Real> along = take(direction.along.size());
         const bool touches = !s_.contacts[direction.by].unilateral || presses(direction.by) >= 0;
         if (touches) held.push_back(std::move(along));

@@ -51,10 +51,10 @@ double sense(const AtStart& start, const analysis::DrawnForce& force, const mode
 std::pair<double, double> off(AtStart& start, std::size_t b) {
   symbolic::Dag& dag = *start.m.dag;
   symbolic::Derivation ddt = symbolic::total_time_derivative(dag, start.m.q.size(), start.model.functions.size());
-  symbolic::Substitution imposed = mechanics::impose(start.m), written = mechanics::write_out(start.m);
-  const mechanics::Spin& spin = start.m.spins[b];
+  symbolic::Substitution imposed = mechanics::constraint_substitution(start.m), written = mechanics::time_function_substitution(start.m);
+  const mechanics::BodyRotation& spin = start.m.body_rotations[b];
   symbolic::Vec3 H = symbolic::zero_vector(dag);
-  const std::array<Ref, 3> along = mechanics::momentum(dag, spin);
+  const std::array<Ref, 3> along = mechanics::angular_momentum(dag, spin);
   for (std::size_t k = 0; k < 3; ++k) H = symbolic::add(dag, H, symbolic::scale(dag, along[k], spin.axes[k]));
   std::vector<Ref> rate;
   for (const Ref h : H) rate.push_back(written(imposed(ddt(h))));
@@ -125,7 +125,7 @@ TEST_CASE("drawing: the drawn forces satisfy Newton's law for the masses") {
     start.solve();
     symbolic::Dag& dag = *start.m.dag;
     symbolic::Derivation ddt = symbolic::total_time_derivative(dag, start.m.q.size(), start.model.functions.size());
-    symbolic::Substitution imposed = mechanics::impose(start.m), written = mechanics::write_out(start.m);
+    symbolic::Substitution imposed = mechanics::constraint_substitution(start.m), written = mechanics::time_function_substitution(start.m);
     Vector wanted = Vector::Zero(), sum = wanted;
     double size = 0;
     for (const mechanics::PointMass& mass : start.m.masses) {
@@ -155,7 +155,7 @@ TEST_CASE("drawing: the drawn moments and forces satisfy Euler's law for the bod
     CAPTURE(model);
     AtStart start = shipped(name);
     start.solve();
-    for (std::size_t b = 0; b < start.m.spins.size(); ++b) {
+    for (std::size_t b = 0; b < start.m.body_rotations.size(); ++b) {
       CAPTURE(b);
       const auto [distance, size] = off(start, b);
       CHECK(size > 0);

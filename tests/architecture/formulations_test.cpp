@@ -35,7 +35,7 @@ Names registered() {
   return {names.begin(), names.end()};
 }
 
-/// "trees/branches" for "derive/trees/branches.hpp"; empty for files of other folders.
+/// "trees/particle_tree" for "derive/trees/particle_tree.hpp"; empty for files of other folders.
 std::string stem_in_derive(const std::string& path) {
   static const std::string folder = "derive/";
   if (!path.starts_with(folder)) return "";

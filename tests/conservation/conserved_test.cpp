@@ -17,7 +17,7 @@ std::vector<std::string> names(const std::string& text) {
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   system::EquationSystem s = derive::lagrange(m, system::Approach::two);
   std::vector<std::string> result;
-  for (const conservation::Conserved& c : conservation::conserved_quantities(m, s)) result.push_back(c.name);
+  for (const conservation::ConservedQuantity& c : conservation::conserved_quantities(m, s)) result.push_back(c.name);
   return result;
 }
 

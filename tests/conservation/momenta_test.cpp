@@ -16,7 +16,7 @@ struct Found {
   model::Model model;
   mechanics::Mechanics m;
   system::EquationSystem s;
-  std::vector<conservation::Conserved> conserved;
+  std::vector<conservation::ConservedQuantity> conserved;
 
   explicit Found(const std::string& text) : model(model::read_model_text(text, "momenta")) {
     m = mechanics::build_mechanics(model);
@@ -25,13 +25,13 @@ struct Found {
   }
   Found(const Found&) = delete;
 
-  const conservation::Conserved* named(const std::string& name) const {
+  const conservation::ConservedQuantity* named(const std::string& name) const {
     const auto found = std::find_if(conserved.begin(), conserved.end(), [&](const auto& c) { return c.name == name; });
     return found == conserved.end() ? nullptr : &*found;
   }
   std::vector<std::string> names() const {
     std::vector<std::string> result;
-    for (const conservation::Conserved& c : conserved) result.push_back(c.name);
+    for (const conservation::ConservedQuantity& c : conserved) result.push_back(c.name);
     return result;
   }
 };
@@ -77,12 +77,12 @@ TEST_CASE("momenta: Kepler's problem in Cartesian coordinates provably conserves
   const Found found(kepler());
   CHECK(found.names() ==
         std::vector<std::string>{"energy", "angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"});
-  for (const conservation::Conserved& c : found.conserved) CHECK(c.certainty == conservation::Certainty::proven);
+  for (const conservation::ConservedQuantity& c : found.conserved) CHECK(c.certainty == conservation::Certainty::proven);
 }
 
 TEST_CASE("momenta: the result is r x m v, and its magnitude the sum of the magnitudes of its terms") {
   const Found found(kepler());
-  const conservation::Conserved* h = found.named("angular_momentum.E2");
+  const conservation::ConservedQuantity* h = found.named("angular_momentum.E2");
   REQUIRE(h != nullptr);
   const auto value = [](const symbolic::Symbol& s) {
     if (s.kind == symbolic::SymbolKind::parameter) return 2.0;  // m

@@ -28,7 +28,7 @@ std::string refusal(const std::string& text) {
 
 struct Solved {
   explicit Solved(const std::string& text) : s(model::read_model_text(text, "custom")) {}
-  Sum x(std::size_t c) { return reading::read(s.mechanics, (*s.mechanics.place_position[1])[c]); }
+  Sum x(std::size_t c) { return reading::display_sum(s.mechanics, (*s.mechanics.place_position[1])[c]); }
   Sum q(const std::string& name) { return s.symbol(name); }
   System s;
 };
@@ -127,7 +127,7 @@ TEST_CASE("custom coordinates may measure from a particle, and may be prescribed
                                  "[[particle]]\nname = \"Q\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\", 0] }\n",
                              "relative"));
   const auto position = *s.mechanics.place_position[1];
-  CHECK(reading::read(s.mechanics, position[1]) == s.symbol("a") * s.symbol("b") + s.symbol("y"));
+  CHECK(reading::display_sum(s.mechanics, position[1]) == s.symbol("a") * s.symbol("b") + s.symbol("y"));
   System fixed(model::read_model_text(custom("custom = [\"k\", \"b\", \"c\"], x = [\"k*cos(b)\", \"k*sin(b)\", \"c\"]"),
                                       "fixed"));
   CHECK(fixed.model.coordinates.size() == 2);

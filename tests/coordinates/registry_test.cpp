@@ -56,13 +56,13 @@ struct Charted {
   std::array<double, 3> position(const Values& at) {
     std::array<double, 3> r;
     for (std::size_t c = 0; c < 3; ++c)
-      r[c] = value_of(reading::read(s.mechanics, (*s.mechanics.place_position[1])[c]), at);
+      r[c] = value_of(reading::display_sum(s.mechanics, (*s.mechanics.place_position[1])[c]), at);
     return r;
   }
   std::array<double, 3> unit_vector(std::size_t k, const Values& at) {
     const mechanics::Vec3 e = mechanics::lower_vector(s.mechanics, s.model.places[1].chart->unit_basis[k]);
     std::array<double, 3> values;
-    for (std::size_t c = 0; c < 3; ++c) values[c] = value_of(reading::read(s.mechanics, e[c]), at);
+    for (std::size_t c = 0; c < 3; ++c) values[c] = value_of(reading::display_sum(s.mechanics, e[c]), at);
     return values;
   }
 

@@ -75,7 +75,7 @@ TEST_CASE("gear: speeds follow the ratio, the second inertia counts divided by i
       CHECK(std::abs(run.final("a") - (0.1 + turned)) < same);
       CHECK(std::abs(run.final("b") - (0.2 + turned / ratio)) < same);
       CHECK(std::abs(run.final("reaction.pair") - (2 * acceleration - 3)) < same);
-      CHECK(run.simulation.derived->mechanics.freedom() == 1);
+      CHECK(run.simulation.derived->mechanics.degrees_of_freedom() == 1);
       CHECK(run.simulation.certificate.pass);
     }
   }

@@ -48,7 +48,7 @@ TEST_CASE("every joint leaves the degrees of freedom of its kind, and its reacti
     CAPTURE(kind.name);
     const FinishedRun run =
         run_text("joint_" + kind.name, rod_on_base(of_kind(kind), start + (slides(kind) ? ", x_dot = 0.5" : "")));
-    CHECK(run.simulation.derived->mechanics.freedom() == 2 + freedom.at(kind.name));
+    CHECK(run.simulation.derived->mechanics.degrees_of_freedom() == 2 + freedom.at(kind.name));
     CHECK(run.simulation.certificate.pass);
     CHECK(run.simulation.result.power_balance < 1e-8);
     CHECK(run.simulation.result.constraint_drift < 1e-12);
@@ -105,7 +105,7 @@ TEST_CASE("equations that hold identically have no multiplier; undetermined reac
                     at_rest = "u = 0, a = 0.2, psi = 0.3";
   const FinishedRun run = run_text("joint_planar", rod_on_base(joint, at_rest, planar));
   const mechanics::Mechanics& m = run.simulation.derived->mechanics;
-  CHECK(m.freedom() == 3);
+  CHECK(m.degrees_of_freedom() == 3);
   CHECK(m.active.size() == 2);
   const std::array<bool, 6> determined{true, true, false, false, false, true};
   CHECK(m.joints[0].determined == determined);

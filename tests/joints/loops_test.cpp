@@ -27,7 +27,7 @@ struct Built {
       : model(model::read_model_text(text, "loop.toml")), mechanics(mechanics::build_mechanics(model)) {}
   std::size_t redundant() const {
     std::size_t count = 0;
-    for (const mechanics::Constraint& c : mechanics.constraints) count += c.need == mechanics::Need::redundant;
+    for (const mechanics::Constraint& c : mechanics.constraints) count += c.redundancy == mechanics::Redundancy::redundant;
     return count;
   }
 };
@@ -62,7 +62,7 @@ TEST_CASE("the redundant equations of a planar loop depend neither on its length
   for (const std::string alpha : {"alpha = 1,", "alpha = 2.5,", "alpha = -0.4,"}) {
     const Built built(changed("four_bar_spatial_pins", {{"alpha = 1,", alpha}, {"l2 = \"1.2 m\"", "l2 = \"1.25 m\""}}));
     CHECK(built.redundant() == 3);
-    CHECK(built.mechanics.freedom() == 1);
+    CHECK(built.mechanics.degrees_of_freedom() == 1);
   }
 }
 
@@ -70,15 +70,15 @@ TEST_CASE("with a ball instead of one pin only the rotation of the coupler about
   const Built built(changed("four_bar_spatial_pins",
                             {{"type = \"pin\"", "type = \"ball\""}, {"axis = [\"crank.e3\", \"coupler.e3\"]\n", ""}}));
   CHECK(built.redundant() == 1);  // both ends of the coupler are in the plane, and so is its axis
-  CHECK(built.mechanics.freedom() == 1);
+  CHECK(built.mechanics.degrees_of_freedom() == 1);
 }
 
 TEST_CASE("a constraint of the model takes precedence over an equivalent equation of a joint") {
   const Built built(changed("four_bar_spatial_pins",
                             {{"[[joint]]", "[[constraint]]\nname = \"level\"\nholonomic = \"theta\"\n[[joint]]"}}));
-  CHECK(built.mechanics.freedom() == 1);
+  CHECK(built.mechanics.degrees_of_freedom() == 1);
   for (const mechanics::Constraint& c : built.mechanics.constraints) {
-    if (c.name == "level") CHECK(c.need == mechanics::Need::independent);
+    if (c.name == "level") CHECK(c.redundancy == mechanics::Redundancy::independent);
   }
   CHECK(built.redundant() == 4);
 }

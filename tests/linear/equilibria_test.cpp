@@ -46,7 +46,7 @@ TEST_CASE("double pendulum: four equilibria; the hanging one is stable by its en
     same(b, b > 1 ? pi : 0);
     CHECK(all.points[i].verdict.stability == (a + b > 1 ? Stability::unstable : Stability::stable));
     CHECK(all.points[i].family == 0);
-    CHECK(all.points[i].l.kind == linear::Kind::equilibrium);
+    CHECK(all.points[i].l.kind == linear::MotionKind::equilibrium);
   }
 }
 
@@ -87,7 +87,7 @@ TEST_CASE(
   same(value(all, 0, "psi_dot"), (a - root) / (2 * I * c));
   same(value(all, 1, "psi_dot"), (a + root) / (2 * I * c));
   for (const analysis::SteadyMotion& point : all.points) {
-    CHECK(point.l.kind == linear::Kind::steady);
+    CHECK(point.l.kind == linear::MotionKind::steady);
     CHECK(point.verdict.stability == Stability::stable);
     CHECK(point.l.structural_zeros == 4);
   }

@@ -7,7 +7,7 @@
 
 using namespace eomgen;
 using namespace eomgen::test;
-using linear::Kind;
+using linear::MotionKind;
 using linear::Precise;
 
 namespace {
@@ -22,7 +22,7 @@ void holds_against_differences(const Linearised& x) {
     for (const int side : {1, -1}) {
       linear::State<Precise> z = x.l.z;
       z[chart.independent[k]] = z[chart.independent[k]] + Precise(side) * h;
-      const auto moved = linear::projected(flow, z, x.l.setting, chart.dependent);
+      const auto moved = linear::project_onto_constraints(flow, z, x.l.setting, chart.dependent);
       REQUIRE(moved);
       fields.push_back(flow.at(*moved, x.l.setting));
     }
@@ -48,7 +48,7 @@ TEST_CASE("cart and pendulum: A and B at both equilibria are those of the linear
     const double M = x.parameter("M"), m = x.parameter("m"), l = x.parameter("l"), g = x.parameter("g"),
                  c = x.parameter("c");
     const double s = scene == std::string("hanging") ? 1 : -1;
-    CHECK(x.l.kind == Kind::equilibrium);
+    CHECK(x.l.kind == MotionKind::equilibrium);
     same(x.A("x_dot", "theta"), m * g / M);
     same(x.A("x_dot", "x_dot"), -c / M);
     same(x.A("theta_dot", "theta"), -s * g * (1 + m / M) / l);
@@ -72,7 +72,7 @@ TEST_CASE(
                  "\n[scene.rest]\nt = [0, 1]\ninitial = { y1 = 0, y2 = 0 }\nguess = { x1 = 1, x2 = 2 }\n");
   const double g = angles.parameter("g");
   for (const Linearised* x : {&angles, &cartesian}) {
-    CHECK(x->l.kind == Kind::equilibrium);
+    CHECK(x->l.kind == MotionKind::equilibrium);
     REQUIRE(x->l.spectrum.values.size() == 4);
     const double high = std::sqrt((2 + std::sqrt(2.0)) * g), low = std::sqrt((2 - std::sqrt(2.0)) * g);
     const double expected[] = {high, low, -low, -high};
@@ -94,7 +94,7 @@ TEST_CASE(
   const double a = x.parameter("Ja") * x.parameter("spin"), s2 = 1 - c * c,
                weight = x.parameter("m") * x.parameter("g") * x.parameter("L");
   const double square = (a * a / I - 3 * a * W * c + I * W * W * (s2 + 3 * c * c) - weight * c) / I;
-  CHECK(x.l.kind == Kind::steady);
+  CHECK(x.l.kind == MotionKind::steady);
   CHECK(x.zeros() == 4);
   CHECK(x.l.structural_zeros == 4);
   same(x.value(0).im, std::sqrt(square));
@@ -115,7 +115,7 @@ TEST_CASE(
       fmt::format(
           "\n[scene.circle]\nfrom = \"default\"\ninitial = {{ theta = 1.1, phi_dot = 2.5, psi_dot = {:.17g} }}\n",
           w - p * c));
-  CHECK(x.l.kind == Kind::steady);
+  CHECK(x.l.kind == MotionKind::steady);
   REQUIRE(x.l.spectrum.values.size() == 8);  // five positions, three speeds
   const double slope = A * p * p * (c * c - s * s) - K * p * w * c + m * g * R * s,
                by_p = 2 * A * p * s * c - K * w * s, by_w = -K * p * s;
@@ -138,7 +138,7 @@ TEST_CASE(
                                       fmt::format("\n[scene.upright]\nfrom = \"default\"\ninitial = {{ theta = "
                                                   "\"pi/2\", psi_dot = {:.17g}, phi_dot = {:.17g} }}\n",
                                                   rolls ? factor * critical : 0, rolls ? 0 : factor * critical));
-      CHECK(x.l.kind == Kind::steady);
+      CHECK(x.l.kind == MotionKind::steady);
       CHECK((x.value(0).re > 0) == (factor < 1));
     }
   }
@@ -150,7 +150,7 @@ TEST_CASE("sleigh: deviations decay at the rate m L1 u/(J + m L1^2) straight ahe
         linearised("R13_sleigh", "ahead",
                    fmt::format("\n[scene.ahead]\nfrom = \"default\"\ninitial = {{ x1_dot = {}, phi_dot = 0 }}\n", u));
     const double m = x.parameter("m"), L1 = x.parameter("L1"), rate = -m * L1 * u / (x.parameter("J") + m * L1 * L1);
-    CHECK(x.l.kind == Kind::steady);
+    CHECK(x.l.kind == MotionKind::steady);
     CHECK(x.l.structural_zeros == 4);  // position, direction, speed
     same(x.value(u > 0 ? 4 : 0).re, rate);
   }
@@ -162,7 +162,7 @@ TEST_CASE(
       "rotating_hoop", "bottom",
       "\n[scene.bottom]\nfrom = \"default\"\ninitial = { beta = 0 }\nparameters = { w = \"3 rad/s\", R = 1, g = 9 }\n");
   CHECK(x.l.symmetry.autonomous);
-  CHECK(x.l.kind == Kind::equilibrium);
+  CHECK(x.l.kind == MotionKind::equilibrium);
   CHECK(x.zeros() == 2);
   CHECK(x.l.structural_zeros == 0);
   const Linearised free =
@@ -172,10 +172,10 @@ TEST_CASE(
 
 TEST_CASE("a state on no steady motion is linearised along its motion and reported as such") {
   const Linearised x = linearised("R6_rolling_disk");
-  CHECK(x.l.kind == Kind::motion);
+  CHECK(x.l.kind == MotionKind::motion);
   holds_against_differences(x);
   const Linearised moving = linearised("P1_spherical_pendulum_varying");
-  CHECK(moving.l.kind == Kind::motion);
+  CHECK(moving.l.kind == MotionKind::motion);
   CHECK_FALSE(moving.l.symmetry.autonomous);
   holds_against_differences(moving);
   holds_against_differences(linearised("R1_free_body_euler_parameters"));
@@ -187,5 +187,5 @@ TEST_CASE("the state at a given time is that of the run") {
       run_model("S5_double_pendulum", [](pipeline::SimulationRequest& request) { request.overrides.t_end = 1.5; });
   CHECK(x.at("theta1") == run.final("theta1"));
   CHECK(x.at("theta2_dot") == run.final("theta2_dot"));
-  CHECK(x.l.kind == Kind::motion);
+  CHECK(x.l.kind == MotionKind::motion);
 }

@@ -16,10 +16,10 @@ struct Built {
   explicit Built(const std::string& text)
       : model(model::read_model_text(text, "dependent.toml")), m(mechanics::build_mechanics(model)) {}
 
-  std::string of(mechanics::Need need) const {
+  std::string of(mechanics::Redundancy need) const {
     std::string list;
     for (const mechanics::Constraint& c : m.constraints) {
-      if (c.need == need) list += (list.empty() ? "" : " ") + c.label;
+      if (c.redundancy == need) list += (list.empty() ? "" : " ") + c.label;
     }
     return list;
   }
@@ -67,8 +67,8 @@ TEST_CASE(
     "two wheels roll on one axle: the second wheel's equations of the axle's height and lateral slip repeat the "
     "first's") {
   const Built built(wheels_on_one_axle("z"));
-  CHECK(built.of(mechanics::Need::redundant) == "right.2 right.3");
-  CHECK(built.m.freedom() == 2);
+  CHECK(built.of(mechanics::Redundancy::redundant) == "right.2 right.3");
+  CHECK(built.m.degrees_of_freedom() == 2);
   // Lateral forces are shared in some way, and lateral is neither along E1 nor along E2.
   CHECK(built.undetermined() == "left.1 left.2 left.3 right.1 right.2 right.3");
 }
@@ -76,9 +76,9 @@ TEST_CASE(
 TEST_CASE(
     "a body rolls at constant height: the distance from the plane is an identity, and its force is undetermined") {
   const Built built(wheels_on_one_axle("R"));
-  CHECK(built.of(mechanics::Need::identity) == "left.3 right.3");
-  CHECK(built.of(mechanics::Need::redundant) == "right.2");
-  CHECK(built.m.freedom() == 2);
+  CHECK(built.of(mechanics::Redundancy::identity) == "left.3 right.3");
+  CHECK(built.of(mechanics::Redundancy::redundant) == "right.2");
+  CHECK(built.m.degrees_of_freedom() == 2);
   CHECK(built.undetermined() == "left.1 left.2 left.3 right.1 right.2 right.3");
 }
 
@@ -90,9 +90,9 @@ TEST_CASE("Bricard's mechanism has one degree of freedom with as many constraint
   for (const std::string& text : {bricard_by_products(), bricard_by_distances()}) {
     const Built built(text);
     CHECK(built.m.q.size() == built.m.constraints.size());
-    CHECK(built.m.freedom() == 1);
+    CHECK(built.m.degrees_of_freedom() == 1);
     std::size_t redundant = 0;
-    for (const mechanics::Constraint& c : built.m.constraints) redundant += c.need == mechanics::Need::redundant;
+    for (const mechanics::Constraint& c : built.m.constraints) redundant += c.redundancy == mechanics::Redundancy::redundant;
     CHECK(redundant == 1);
     CHECK_FALSE(built.undetermined().empty());
   }
@@ -101,7 +101,7 @@ TEST_CASE("Bricard's mechanism has one degree of freedom with as many constraint
 TEST_CASE("Bennett's loop has one degree of freedom with more scalar equations than coordinates") {
   const Built built(bennett_by_products());
   CHECK(built.m.constraints.size() == 4);
-  CHECK(built.m.freedom() == 1);
+  CHECK(built.m.degrees_of_freedom() == 1);
 }
 
 TEST_CASE("more constraints than coordinates without a configuration where all hold are rejected") {
@@ -112,10 +112,10 @@ TEST_CASE("more constraints than coordinates without a configuration where all h
 
 TEST_CASE("three parallel cranks move a platform if they are equal for all values of the parameters") {
   const Built built(cranks({"L", "L", "L"}, "L = 1\n"));
-  CHECK(built.m.freedom() == 1);
+  CHECK(built.m.degrees_of_freedom() == 1);
   CHECK(built.undetermined() == "crank0 crank1 crank2");
   CHECK(has(refusal(cranks({"L", "M", "L"}, "L = 1\nM = 1\n")), "for these values of the parameters only"));
-  CHECK(Built(cranks({"L", "L"}, "L = 1\n")).m.freedom() == 1);
+  CHECK(Built(cranks({"L", "L"}, "L = 1\n")).m.degrees_of_freedom() == 1);
   CHECK(Built(cranks({"L", "L"}, "L = 1\n")).undetermined().empty());
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("the unit length of Euler parameters is redundant if another body's pa
   for (const std::string k : {"0", "1", "2", "3"})
     text += "[[constraint]]\nname = \"c" + k + "\"\nholonomic = \"Ap" + k + " - Bp" + k + "\"\n";
   const Built built(text + "[scene.default]\ninitial = { Ap1 = 0.3, Ap2 = 0.2 }\n");
-  CHECK(built.m.freedom() == 3);
+  CHECK(built.m.degrees_of_freedom() == 3);
 }
 
 TEST_CASE("a constraint that the user can omit is rejected if all its equations repeat others") {

@@ -41,7 +41,7 @@ struct Found {
 
   std::string verdicts() const {
     std::string text;
-    for (const mechanics::Classification& c : m.classification)
+    for (const mechanics::ConstraintClassification& c : m.classification)
       text += std::string(text.empty() ? "" : " ") + name(c.integrable);
     return text;
   }
@@ -72,7 +72,7 @@ struct Found {
       }
       const Eigen::VectorXd any = Eigen::VectorXd::LinSpaced(n, 0.3, 1.7);
       const Eigen::VectorXd v = any - A.completeOrthogonalDecomposition().solve(A * any + b);
-      for (const mechanics::Integral& integral : m.integrals) {
+      for (const mechanics::ConstraintIntegral& integral : m.integrals) {
         constexpr double h = 1e-5;  // central differences: 1e-10 of truncation and of rounding
         const auto at = [&](double step) {
           return symbolic::evaluate(*m.dag, {integral.psi}, [&](const symbolic::Symbol& s) {
@@ -155,7 +155,7 @@ TEST_CASE("integrability: a combination is integrable although no single constra
   const Found found("x y z w", {velocity("x_dot + y*z_dot"), velocity("w_dot - y*z_dot")});
   CHECK(found.verdicts() == "no no");
   REQUIRE(found.m.integrals.size() == 1);
-  CHECK(found.m.integrals[0].of == std::vector<std::uint32_t>{0, 1});
+  CHECK(found.m.integrals[0].constraints == std::vector<std::uint32_t>{0, 1});
   CHECK(found.worst_rate() < 1e-8);
 }
 
@@ -192,7 +192,7 @@ TEST_CASE("integrability: a car reaches every configuration with any number of t
     CHECK(found.verdicts().find("yes") == std::string::npos);
     CHECK(found.verdicts().find("unknown") == std::string::npos);
     CHECK(found.m.integrals.empty());
-    for (const mechanics::Classification& c : found.m.classification)
+    for (const mechanics::ConstraintClassification& c : found.m.classification)
       CHECK(c.reason.find("combination") == std::string::npos);
   }
 }

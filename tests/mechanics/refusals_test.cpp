@@ -174,7 +174,7 @@ TEST_CASE(
   const std::string stop = "[[constraint]]\nname = \"stop\"\nholonomic = \"x\"\nholds = \"unilateral\"\n";
   const std::string plane = "[[constraint]]\nname = \"plane\"\nholonomic = \"y\"\n";
   const model::Model model = model::read_model_text(planar + stop + plane, "stop.toml");
-  CHECK(mechanics::build_mechanics(model).freedom() == 1);
+  CHECK(mechanics::build_mechanics(model).degrees_of_freedom() == 1);
   const std::string dry = "friction = { static = 0.3, dynamic = 0.2 }\n";
   CHECK(refusal(planar + stop + plane + dry).message == "accepted");  // the stop blocks the same direction as the plane
   const auto guide = [](const std::string& name, const std::string& coordinate) {
@@ -209,14 +209,14 @@ TEST_CASE("mechanics: friction along a blocked direction records the constraint 
         floor(constraint("wall", "3*x + 4*y", unilateral) + constraint("aside", "u - v^2", unilateral));
     REQUIRE(m.contacts.size() == (unilateral ? 3 : 1));
     const mechanics::Contact& plane = m.contacts[0];
-    REQUIRE(plane.held.size() == 1);
-    CHECK(plane.held[0].by == (unilateral ? 1 : 0));
+    REQUIRE(plane.blocked.size() == 1);
+    CHECK(plane.blocked[0].by == (unilateral ? 1 : 0));
     // Its part of E1, E2: the wall's gradient minus the part along the plane's normal.
     std::vector<symbolic::Ref> wanted;
     for (std::size_t k = 0; k < 3; ++k) {
       symbolic::Ref sum = m.dag->zero();
       for (std::size_t a = 0; a < 2; ++a)
-        sum = m.dag->add(sum, m.dag->mul(plane.held[0].along[a], plane.directions[a][k]));
+        sum = m.dag->add(sum, m.dag->mul(plane.blocked[0].along[a], plane.directions[a][k]));
       wanted.push_back(sum);
     }
     const std::vector<cln::cl_R> h = symbolic::evaluate(

@@ -14,9 +14,9 @@ TEST_CASE("P12: of the set (1.79) the first constraint is integrable, the others
   const model::Model model = model::read_model(test::model_path("P12_pfaffian_set"));
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
   REQUIRE(m.classification.size() == 3);
-  CHECK(m.classification[0].integrable == mechanics::Integrable::yes);
-  CHECK(m.classification[1].integrable == mechanics::Integrable::no);
-  CHECK(m.classification[2].integrable == mechanics::Integrable::no);
+  CHECK(m.classification[0].integrable == mechanics::Integrability::yes);
+  CHECK(m.classification[1].integrable == mechanics::Integrability::no);
+  CHECK(m.classification[2].integrable == mechanics::Integrability::no);
   REQUIRE(m.integrals.size() == 1);
   CHECK(m.integrals[0].label == "first");
   CHECK(print::render_expression(m, "", "", m.integrals[0].psi).text == "1/2 (x1^2 + y1^2 + 2 h0 sin(w t)/w)");

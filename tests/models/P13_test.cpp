@@ -28,13 +28,13 @@ using Field = std::function<double(const Place&)>;
 
 struct Expected {
   std::string name;
-  conservation::Verdict verdict;
+  conservation::ConservativeVerdict verdict;
   bool many_valued;
   Field U;  // empty: no potential
 };
 
 const std::vector<Expected>& expected() {
-  using enum conservation::Verdict;
+  using enum conservation::ConservativeVerdict;
   static const std::vector<Expected> fields{
       {"F1", no, false, {}},
       {"F2", yes, false, [](const Place& p) { return -k * p.x * p.y; }},
@@ -59,7 +59,7 @@ void check_fields(const std::string& name, const std::function<std::vector<doubl
   INFO(name);
   const model::Model model = model::read_model(test::model_path(name));
   mechanics::Mechanics m = mechanics::build_mechanics(model);
-  const std::vector<conservation::ForceClass> found = conservation::classify_forces(m);
+  const std::vector<conservation::ForceClassification> found = conservation::classify_forces(m);
   REQUIRE(found.size() == expected().size());
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Expected& right = expected()[i];
@@ -67,7 +67,7 @@ void check_fields(const std::string& name, const std::function<std::vector<doubl
     CHECK(found[i].name == right.name);
     CHECK(found[i].conservative == right.verdict);
     CHECK(found[i].many_valued == right.many_valued);
-    CHECK(found[i].reason.empty() == (right.verdict == conservation::Verdict::yes));
+    CHECK(found[i].reason.empty() == (right.verdict == conservation::ConservativeVerdict::yes));
     CHECK_FALSE(found[i].in_energy);
     REQUIRE(found[i].potential.has_value() == static_cast<bool>(right.U));
     if (!right.U) continue;
@@ -92,13 +92,13 @@ TEST_CASE("P13: in cylindrical coordinates the verdicts and the potentials are t
 TEST_CASE("P13: e_theta/r does work 2 pi c per turn although its curl vanishes, and its domain excludes the axis") {
   const model::Model model = model::read_model(test::model_path("P13_force_fields_cylindrical"));
   mechanics::Mechanics m = mechanics::build_mechanics(model);
-  const conservation::ForceClass vortex = conservation::classify_forces(m).back();
+  const conservation::ForceClassification vortex = conservation::classify_forces(m).back();
   REQUIRE(vortex.work.has_value());
   CHECK(value(m, *vortex.work, {1, 1, 1}) == doctest::Approx(2 * std::numbers::pi * c).epsilon(rounding));
   CHECK(vortex.reason.find("one turn of theta") != std::string::npos);
   const model::Model cartesian = model::read_model(test::model_path("P13_force_fields"));
   mechanics::Mechanics n = mechanics::build_mechanics(cartesian);
-  const conservation::ForceClass same = conservation::classify_forces(n).back();
+  const conservation::ForceClassification same = conservation::classify_forces(n).back();
   CHECK(same.reason.find("a closed path in the plane of x1 and x2") != std::string::npos);
   CHECK_FALSE(same.domain.empty());
 }

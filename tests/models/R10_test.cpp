@@ -55,11 +55,11 @@ TEST_CASE("R10: T is (7.111), U (7.112), and the moment along E3 has the compone
 
 TEST_CASE("R10: the moment along E3 is not conservative, spring and weight are") {
   Read r10("R10_lagrange_top");
-  const std::vector<conservation::ForceClass> found = conservation::classify_forces(r10.s.mechanics);
+  const std::vector<conservation::ForceClassification> found = conservation::classify_forces(r10.s.mechanics);
   REQUIRE(found.size() == 3);
-  CHECK(found[0].conservative == conservation::Verdict::yes);
-  CHECK(found[1].conservative == conservation::Verdict::yes);
-  CHECK(found[2].conservative == conservation::Verdict::no);
+  CHECK(found[0].conservative == conservation::ConservativeVerdict::yes);
+  CHECK(found[1].conservative == conservation::ConservativeVerdict::yes);
+  CHECK(found[2].conservative == conservation::ConservativeVerdict::no);
 }
 
 TEST_CASE("R10: released without precession it nutates between two roots of the cubic of its energy, with cusps") {

@@ -12,11 +12,11 @@ using namespace eomgen::test;
 
 TEST_CASE("R11: a constant moment is conservative only if the body rotates about its direction") {
   Read r11("R11_constant_moment"), axis("R11_constant_moment_fixed_axis");
-  CHECK(conservation::classify_forces(r11.s.mechanics).at(0).conservative == conservation::Verdict::no);
-  const conservation::ForceClass fixed = conservation::classify_forces(axis.s.mechanics).at(0);
-  CHECK(fixed.conservative == conservation::Verdict::yes);
+  CHECK(conservation::classify_forces(r11.s.mechanics).at(0).conservative == conservation::ConservativeVerdict::no);
+  const conservation::ForceClassification fixed = conservation::classify_forces(axis.s.mechanics).at(0);
+  CHECK(fixed.conservative == conservation::ConservativeVerdict::yes);
   REQUIRE(fixed.potential.has_value());
-  CHECK(same(reading::read(axis.s.mechanics, *fixed.potential), -(axis("M0") * axis("n"))));
+  CHECK(same(reading::display_sum(axis.s.mechanics, *fixed.potential), -(axis("M0") * axis("n"))));
 }
 
 // Ziegler's two ways to one attitude: half a turn about E3, or half turns about E1 and then E2, which do no work.

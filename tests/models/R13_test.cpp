@@ -13,7 +13,7 @@ TEST_CASE("R13: the constraint and the equations are (9.102), and it is not inte
   Read r13("R13_sleigh");
   const mechanics::Mechanics& m = r13.s.mechanics;
   REQUIRE(m.constraints.size() == 1);
-  CHECK(m.classification[0].integrable == mechanics::Integrable::no);
+  CHECK(m.classification[0].integrable == mechanics::Integrability::no);
   const Sum phi = r13("phi"), dphi = r13("phi_dot"), mu = r13.s.symbol.multiplier(0);
   const reading::DisplayForm form = r13.form(system::Approach::one);
   const auto multiplier = [&](const char* q) { return r13.equation(form, q).multipliers.at(0).slope; };

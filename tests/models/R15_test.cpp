@@ -56,7 +56,7 @@ void check_balance(const FinishedRun& run, const std::string& joint) {
 TEST_CASE("R15: a ball joint gives the same motion as relative coordinates, angles 1-3-1") {
   const FinishedRun joint = run_model("R15_ball_joint", tighten),
                  tree = run_text("R15_ball_built_in", built_in("R15_ball_joint"));
-  CHECK(joint.simulation.derived->mechanics.freedom() == 9);
+  CHECK(joint.simulation.derived->mechanics.degrees_of_freedom() == 9);
   check_balance(joint, "ball");
   for (const char* moment : {"reaction.ball.4", "reaction.ball.5", "reaction.ball.6"}) CHECK(joint.final(moment) == 0);
   for (const char* name : {"x1", "y1", "z1", "psi", "theta", "phi", "n1", "n2", "n3", "n1_dot", "n2_dot", "n3_dot"}) {
@@ -73,7 +73,7 @@ TEST_CASE("R15: a pin gives the same motion as a relative angle, angles 3-2-1") 
   replace(text, "n1_dot = 2,", "q_dot = 1.5,");  // n1_dot - psi_dot, since e3 = E3 at the start
   replace(text, "guess = { n2 = 0, n3 = 0 }", "");
   const FinishedRun joint = run_model("R15_pin_joint", tighten), tree = run_text("R15_pin_built_in", text);
-  CHECK(joint.simulation.derived->mechanics.freedom() == 7);
+  CHECK(joint.simulation.derived->mechanics.degrees_of_freedom() == 7);
   check_balance(joint, "pin");
   for (const char* name : {"x1", "y1", "z1", "psi", "theta", "phi", "x1_dot", "psi_dot", "theta_dot", "phi_dot"}) {
     CAPTURE(name);
@@ -83,7 +83,7 @@ TEST_CASE("R15: a pin gives the same motion as a relative angle, angles 3-2-1") 
 
 TEST_CASE("R15: two bodies with a spring (7.65) conserve energy, linear and angular momentum; angles 3-2-1") {
   const FinishedRun run = run_model("R15_spring", tighten);
-  CHECK(run.simulation.derived->mechanics.freedom() == 12);
+  CHECK(run.simulation.derived->mechanics.degrees_of_freedom() == 12);
   for (const char* name :
        {"energy", "linear_momentum.E1", "angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"}) {
     CAPTURE(name);

@@ -35,7 +35,7 @@ Sum slope(const reading::Equation& equation, std::uint32_t constraint) {
 
 TEST_CASE("R6: the plane exerts the force and, on the dual Euler basis, the moment of (9.84)") {
   const Read r6("R6_rolling_disk");
-  const reading::DisplayForm one = reading::derive_reading(r6.s.mechanics, system::Approach::one);
+  const reading::DisplayForm one = reading::derive_display_form(r6.s.mechanics, system::Approach::one);
   CHECK(shown(r6, one, "constraint force") == "F = lambda_1 E_1 + lambda_2 E_2 + lambda_3 E_3");
   CHECK(shown(r6, one, "constraint moment") ==
         "M = lambda_1 (R cos(phi) cos(theta) g^phi - R sin(phi) sin(theta) g^theta + R cos(phi) g^psi)"

@@ -15,7 +15,7 @@ namespace {
 using Six = std::array<Sum, 6>;  // along e1 .. e6: E1..E3 of P1, then of P2
 
 Six covariant(Read& s4, const std::string& q) {
-  reading::Bridge bridge(s4.s.mechanics);
+  reading::GinacBridge bridge(s4.s.mechanics);
   const reading::Symbol by = s4(q).terms().begin()->first[0].atom->symbol;
   Six a;
   for (std::size_t c = 0; c < 6; ++c)

@@ -174,9 +174,9 @@ TEST_CASE("bodies_in_contact: R16: two spheres roll on one another as Newton's a
   const FinishedRun run = run_rough("R16_sphere_on_sphere");
   const mechanics::Mechanics& mech = run.simulation.derived->mechanics;
   REQUIRE(mech.constraints.size() == 3);
-  CHECK(mech.classification[0].integrable == mechanics::Integrable::no);
-  CHECK(mech.classification[1].integrable == mechanics::Integrable::no);
-  CHECK(mech.classification[2].integrable == mechanics::Integrable::yes);
+  CHECK(mech.classification[0].integrable == mechanics::Integrability::no);
+  CHECK(mech.classification[1].integrable == mechanics::Integrability::no);
+  CHECK(mech.classification[2].integrable == mechanics::Integrability::yes);
   const Spheres spheres{run.parameter("m"), run.parameter("M"), run.parameter("R"), run.parameter("S")};
   const auto own = [&](std::size_t row, const std::string& body,
                        const char* angles) {  // w of a body along E1 E2 E3, 3-2-1 angles

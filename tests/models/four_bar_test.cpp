@@ -52,7 +52,7 @@ TEST_CASE(
   };
   const FinishedRun flat = run_model(path, tighten), spatial = run_model("four_bar_spatial_pins", tighten);
   const mechanics::Mechanics& m = spatial.simulation.derived->mechanics;
-  CHECK(m.freedom() == 1);
+  CHECK(m.degrees_of_freedom() == 1);
   CHECK(m.active.size() == 7);
   // The crank goes round, and tolerances of 1e-12 leave some 1e-10 at the end.
   for (const char* name : {"alpha", "psi", "beta", "alpha_dot", "psi_dot", "beta_dot"}) {

@@ -37,6 +37,6 @@ TEST_CASE("geared_hoist: the speed is that of a motor under load; the reactions 
     CHECK(at("reaction.rope") == near(m * (p("g") + r * gain / n)));
   }
   CHECK(run.simulation.result.power_balance < 1e-9);
-  CHECK(run.simulation.derived->mechanics.freedom() == 1);
+  CHECK(run.simulation.derived->mechanics.degrees_of_freedom() == 1);
   CHECK(run.simulation.certificate.pass);
 }

@@ -56,7 +56,7 @@ TEST_CASE("knife_edge: lambda has the sign of the normality prescription") {
 TEST_CASE("knife_edge: the display form has the constraint with its multiplier and time derivative") {
   const model::Model model = model::read_model(test::model_path("knife_edge"));
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
-  const reading::DisplayForm form = reading::derive_reading(m, system::Approach::two);
+  const reading::DisplayForm form = reading::derive_display_form(m, system::Approach::two);
   std::vector<std::string> text;
   for (const print::Item& item : print::render(m, form, {"constraints", "equations"}))
     text.push_back(item.role + ": " + item.text);

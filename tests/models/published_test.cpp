@@ -143,7 +143,7 @@ TEST_CASE("published: the heavy top of the Lie-group literature, in Euler parame
 
 TEST_CASE("published: Andrews' squeezing mechanism, where the test set's digits end after ten of the angles") {
   const test::FinishedRun run = check("andrews_squeezer", "default", "dop853", andrews, 1e-11);
-  CHECK(run.simulation.derived->mechanics.freedom() == 1);
+  CHECK(run.simulation.derived->mechanics.degrees_of_freedom() == 1);
   CHECK(run.simulation.derived->mechanics.active.size() == 6);
   CHECK(error(run, andrews_literature) < 5e-10);
   CHECK(error(run, andrews_literature) > 5e-11);  // the values above are nearer
@@ -226,7 +226,7 @@ TEST_CASE(
     "times") {
   const test::FinishedRun run = test::run_model("n_four_bar_2");  // rk4, as the scene says
   CHECK(run.simulation.result.outcome == eom::Outcome::done);
-  CHECK(run.simulation.derived->mechanics.freedom() == 1);
+  CHECK(run.simulation.derived->mechanics.degrees_of_freedom() == 1);
   for (const char* name : {"a0", "a1", "a2"})
     CHECK(run.final(name) == doctest::Approx(-31.750597186986101817).epsilon(1e-10));
   CHECK(run.final("a0_dot") == doctest::Approx(-1.5066421808418294699).epsilon(1e-9));

@@ -7,7 +7,7 @@ namespace eomgen::test {
 
 Read::Read(const std::string& name) : s(model::read_model(shipped(name))) {}
 
-reading::DisplayForm Read::form(system::Approach approach) { return reading::derive_reading(s.mechanics, approach); }
+reading::DisplayForm Read::form(system::Approach approach) { return reading::derive_display_form(s.mechanics, approach); }
 
 const reading::Equation& Read::equation(const reading::DisplayForm& form, const std::string& coordinate) const {
   for (const reading::Equation& e : form.equations) {

@@ -74,9 +74,9 @@ TEST_CASE("rolling: R6: the constraints are (9.79), two not integrable and one t
   CHECK(m.constraints[0].kind == mechanics::ConstraintKind::velocity);
   CHECK(m.constraints[1].kind == mechanics::ConstraintKind::velocity);
   CHECK(m.constraints[2].kind == mechanics::ConstraintKind::holonomic);
-  CHECK(m.classification[0].integrable == mechanics::Integrable::no);
-  CHECK(m.classification[1].integrable == mechanics::Integrable::no);
-  CHECK(m.classification[2].integrable == mechanics::Integrable::yes);
+  CHECK(m.classification[0].integrable == mechanics::Integrability::no);
+  CHECK(m.classification[1].integrable == mechanics::Integrability::no);
+  CHECK(m.classification[2].integrable == mechanics::Integrability::yes);
   const reading::DisplayForm form = r6.form(system::Approach::one);
   const Sum phi = r6("phi"), theta = r6("theta"), R = r6("R"), dphi = r6("phi_dot"), dtheta = r6("theta_dot"),
             dpsi = r6("psi_dot");

@@ -45,8 +45,8 @@ TEST_CASE("routh: of P9 with h is the single equation (2.172), with the energy (
   const reading::RouthForm form = reduced(p9.s.mechanics);
   REQUIRE(form.cyclic.size() == 1);
   REQUIRE(form.equations.size() == 1);
-  reading::Alphabet alphabet(p9.s.model);
-  const Sum h = alphabet(reading::momentum_symbol(form.cyclic[0]));
+  reading::AtomTable atom_table(p9.s.model);
+  const Sum h = atom_table(reading::momentum_symbol(form.cyclic[0]));
   const Sum m = p9("m"), g = p9("g"), c = p9("c"), u = p9("u"), du = p9("u_dot"), ddu = p9("u_ddot");
   CHECK(same(form.momenta[0], m * square(c * u) * p9("theta_dot")));
   CHECK(same(form.rates[0], over(h, m * square(c * u))));

@@ -41,7 +41,7 @@ TEST_CASE("six_bar: Sarrus' linkage is overconstrained by one, and moves along i
   };
   const FinishedRun one = run_model(path, tighten), all = run_model("six_bar_spatial", tighten);
   const mechanics::Mechanics& m = all.simulation.derived->mechanics;
-  CHECK(m.freedom() == 1);
+  CHECK(m.degrees_of_freedom() == 1);
   CHECK(m.active.size() == 9);
   const double a = one.final("a"), rate = one.final("a_dot");
   // Runs at 1e-12 of an oscillation with rates of the order of 2.

@@ -19,8 +19,8 @@ namespace {
 
 std::string document(const model::Model& model) {
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
-  return print::latex_document(m, reading::derive_reading(m, system::Approach::one),
-                               reading::derive_reading(m, system::Approach::two));
+  return print::latex_document(m, reading::derive_display_form(m, system::Approach::one),
+                               reading::derive_display_form(m, system::Approach::two));
 }
 
 model::Model hostile() {

@@ -19,7 +19,7 @@ struct Printed {
   explicit Printed(const model::Model& read, system::Approach approach, std::vector<std::string> show = {"all"})
       : model(read),
         mechanics(mechanics::build_mechanics(model)),
-        items(print::render(mechanics, reading::derive_reading(mechanics, approach), show)) {}
+        items(print::render(mechanics, reading::derive_display_form(mechanics, approach), show)) {}
   std::vector<Item> of(const std::string& key) const {
     std::vector<Item> result;
     std::copy_if(items.begin(), items.end(), std::back_inserter(result),
@@ -59,7 +59,7 @@ std::string expression(const std::string& is, const Form& form) {
           is + "\"\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\n",
       "text");
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
-  return print::print(reading::arrange(reading::read(m, m.scalar_definition[0])), print::Notation(m), form);
+  return print::print(reading::arrange(reading::display_sum(m, m.scalar_definition[0])), print::Notation(m), form);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST_CASE("everything that derive prints for every model fits on a page, in both
     const mechanics::Mechanics m = mechanics::build_mechanics(model);
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
       const std::string which = approach == system::Approach::one ? "I" : "II";
-      const reading::DisplayForm form = reading::derive_reading(m, approach);
+      const reading::DisplayForm form = reading::derive_display_form(m, approach);
       text += "\\section*{" + print::escape_latex(model.id) + ", " + which + "}\n";
       for (const print::Item& item : print::render(m, form, {"all"})) {
         text += "% ITEM " + model.id + " " + which + " " + item.key + " " + item.name + item.coordinate + " " +

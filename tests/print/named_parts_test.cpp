@@ -20,7 +20,7 @@
 
 using namespace eomgen;
 using print::Statement;
-using reading::Form;
+using reading::FormulaKind;
 using reading::Formula;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
@@ -48,9 +48,9 @@ Value times(const Value& a, const Value& b) {
 }
 
 std::string key(const Formula& f) {
-  std::string text = f.form == Form::dot ? "dot " + key(f.args[0]) : f.word;
+  std::string text = f.kind == FormulaKind::dot ? "dot " + key(f.args[0]) : f.word;
   for (const Formula& lower : f.lower)
-    text += lower.form == Form::number ? " " + std::to_string(cln::double_approx(lower.number))
+    text += lower.kind == FormulaKind::number ? " " + std::to_string(cln::double_approx(lower.number))
                                        : " q" + std::to_string(lower.symbol.index);
   return text;
 }
@@ -67,15 +67,15 @@ class Reader {
   }
 
   Value operator()(const Formula& f) {
-    switch (f.form) {
-      case Form::number: return number(cln::double_approx(f.number));
-      case Form::symbol: return number(symbol(f.symbol));
-      case Form::mark: return mark(f);
-      case Form::negative: return combined(number(0), (*this)(f.args[0]), -1);
-      case Form::fraction: return times((*this)(f.args[0]), number(1 / (*this)(f.args[1]).x[0]));
-      case Form::power: return number(std::pow((*this)(f.args[0]).x[0], (*this)(f.args[1]).x[0]));
-      case Form::call: return call(f);
-      case Form::product: {
+    switch (f.kind) {
+      case FormulaKind::number: return number(cln::double_approx(f.number));
+      case FormulaKind::symbol: return number(symbol(f.symbol));
+      case FormulaKind::mark: return mark(f);
+      case FormulaKind::negative: return combined(number(0), (*this)(f.args[0]), -1);
+      case FormulaKind::fraction: return times((*this)(f.args[0]), number(1 / (*this)(f.args[1]).x[0]));
+      case FormulaKind::power: return number(std::pow((*this)(f.args[0]).x[0], (*this)(f.args[1]).x[0]));
+      case FormulaKind::call: return call(f);
+      case FormulaKind::product: {
         Value result = number(1);
         for (const Formula& factor : f.args) {
           if (result.x == std::array<double, 3>{}) return result;  // 0 times an undefined vector
@@ -83,18 +83,18 @@ class Reader {
         }
         return result;
       }
-      case Form::sum: {
+      case FormulaKind::sum: {
         Value result = number(0);
         for (const Formula& term : f.args) result = combined(result, (*this)(term), 1);
         return result;
       }
-      case Form::dot_product: {
+      case FormulaKind::dot_product: {
         const Value a = (*this)(f.args[0]), b = (*this)(f.args[1]);
         return number(a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2]);
       }
-      case Form::dot: return dotted(f);
-      case Form::rate: return over_time([&] { return (*this)(f.args[0]); }, 1);
-      case Form::partial: return partial(f.args[0], f.args[1].symbol);
+      case FormulaKind::dot: return dotted(f);
+      case FormulaKind::rate: return over_time([&] { return (*this)(f.args[0]); }, 1);
+      case FormulaKind::partial: return partial(f.args[0], f.args[1].symbol);
       default: FAIL("a form that no part has"); return {};
     }
   }
@@ -181,7 +181,7 @@ TEST_CASE("named parts: with their definitions the equations are the equations o
     if (!is_plain(model)) continue;
     INFO(model.id);
     mechanics::Mechanics m = mechanics::build_mechanics(model);
-    const reading::DisplayForm form = reading::derive_reading(m, system::Approach::two);
+    const reading::DisplayForm form = reading::derive_display_form(m, system::Approach::two);
     std::vector<Statement> statements;
     print::add_equations_by_parts(m, form, statements);
     if (std::any_of(statements.begin(), statements.end(), [](const Statement& s) { return !s.left_out.empty(); }))
@@ -225,7 +225,7 @@ TEST_CASE("named parts: with their definitions the equations are the equations o
     ++models;
     by_forces +=
         std::any_of(statements.begin(), statements.end(), [](const Statement& part) { return part.role == "force"; });
-    for (const mechanics::Spin& spin : m.spins) with_axes_of_their_own += spin.carrier != spin.w ? 1 : 0;
+    for (const mechanics::BodyRotation& spin : m.body_rotations) with_axes_of_their_own += spin.axes_angular_velocity != spin.w ? 1 : 0;
   }
   CHECK(models > 15);
   CHECK(with_axes_of_their_own > 2);  // models with axes that rotate differently from their bodies
@@ -236,8 +236,8 @@ TEST_CASE("named parts: long forms use them, also for the constraint forces of a
   const model::Model model = model::read_model(test::source_folder() + "/models/R4_turntable.toml");
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
-    const reading::DisplayForm form = reading::derive_reading(m, approach);
-    REQUIRE(form.by_parts);
+    const reading::DisplayForm form = reading::derive_display_form(m, approach);
+    REQUIRE(form.is_unexpanded);
     std::vector<Statement> statements;
     print::add_statements(m, form, {"equations"}, statements);
     const auto count = [&](const char* role) {
@@ -261,8 +261,8 @@ TEST_CASE("named parts: equations and constraints use the same letters for const
     CAPTURE(model);
     const mechanics::Mechanics m =
         mechanics::build_mechanics(model::read_model(test::source_folder() + "/models/" + model + ".toml"));
-    const reading::DisplayForm form = reading::derive_reading(m, system::Approach::two);
-    REQUIRE(form.by_parts);
+    const reading::DisplayForm form = reading::derive_display_form(m, system::Approach::two);
+    REQUIRE(form.is_unexpanded);
     const std::vector<print::Item> constraints = print::render(m, form, {"constraints"});
     for (const print::Item& item : print::render(m, form, {"equations"})) {
       for (std::sregex_iterator match(item.text.begin(), item.text.end(), letter), end; match != end; ++match) {
@@ -311,7 +311,7 @@ spring = { between = ["A", "G"], stiffness = "k" }
 )toml";
   const model::Model model = model::read_model_text(text, "forces.toml");
   mechanics::Mechanics m = mechanics::build_mechanics(model);
-  const reading::DisplayForm form = reading::derive_reading(m, system::Approach::two);
+  const reading::DisplayForm form = reading::derive_display_form(m, system::Approach::two);
   std::vector<Statement> statements;
   print::add_equations_by_parts(m, form, statements);
   std::set<std::string> roles;

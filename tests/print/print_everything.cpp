@@ -14,8 +14,8 @@ int main(int argc, char** argv) {
     for (long i = std::strtol(argv[2], nullptr, 10); i > 0; --i) GiNaC::symbol burnt;
     const eomgen::model::Model model = eomgen::model::read_model(argv[1]);
     const eomgen::mechanics::Mechanics mechanics = eomgen::mechanics::build_mechanics(model);
-    const auto one = eomgen::reading::derive_reading(mechanics, eomgen::system::Approach::one);
-    const auto two = eomgen::reading::derive_reading(mechanics, eomgen::system::Approach::two);
+    const auto one = eomgen::reading::derive_display_form(mechanics, eomgen::system::Approach::one);
+    const auto two = eomgen::reading::derive_display_form(mechanics, eomgen::system::Approach::two);
     for (const auto& form : {one, two}) {
       for (const eomgen::print::Item& item : eomgen::print::render(mechanics, form, {"all"})) {
         std::printf("%s|%s|%s|%s\n%s\n%s\n%s\n", item.key.c_str(), item.name.c_str(), item.coordinate.c_str(),

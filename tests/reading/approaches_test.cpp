@@ -12,7 +12,7 @@ using reading::DisplayForm;
 
 namespace {
 
-DisplayForm derive(System& s, system::Approach approach) { return reading::derive_reading(s.mechanics, approach); }
+DisplayForm derive(System& s, system::Approach approach) { return reading::derive_display_form(s.mechanics, approach); }
 
 const Equation& of(const DisplayForm& form, System& s, const std::string& coordinate) {
   for (const Equation& equation : form.equations) {

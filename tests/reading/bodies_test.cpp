@@ -49,12 +49,12 @@ bool is_canonical(const Sum& sum) {
 TEST_CASE(
     "a rolling disk in Euler parameters: constraint and time derivative are canonical, and factors S/S are gone") {
   System s(model::read_model_text(rolling_disk, "disk"));
-  const reading::DisplayForm form = reading::derive_reading(s.mechanics, system::Approach::two);
+  const reading::DisplayForm form = reading::derive_display_form(s.mechanics, system::Approach::two);
   std::size_t seen = 0;
-  for (const reading::ReadConstraint& c : form.constraints) {
+  for (const reading::DisplayConstraint& c : form.constraints) {
     if (c.holonomic) continue;
     ++seen;
-    CHECK(c.no_acceleration.empty());
+    CHECK(c.acceleration_skip_reason.empty());
     CHECK(is_canonical(c.rate));
     CHECK(is_canonical(c.acceleration));
     // x1_dot, or x2_dot, is alone.

@@ -56,7 +56,7 @@ std::vector<Ref> every_operation(Nodes& n) {
 
 TEST_CASE("bridge: every operation keeps its value in a round trip") {
   Nodes n;
-  reading::Bridge bridge(n.system.mechanics);
+  reading::GinacBridge bridge(n.system.mechanics);
   for (const Ref r : every_operation(n)) {
     const Ref back = reading::to_dag(n.dag, bridge.sum(r));
     CAPTURE(static_cast<int>(n.dag[r].op));
@@ -66,7 +66,7 @@ TEST_CASE("bridge: every operation keeps its value in a round trip") {
 
 TEST_CASE("bridge: GiNaC's derivatives agree with the Dag's") {
   Nodes n;
-  reading::Bridge bridge(n.system.mechanics);
+  reading::GinacBridge bridge(n.system.mechanics);
   const Symbol x = n.dag.symbol_of(n.x);
   symbolic::Derivation by_x = symbolic::partial_derivative(n.dag, x);
   for (const Ref r : every_operation(n)) {
@@ -78,7 +78,7 @@ TEST_CASE("bridge: GiNaC's derivatives agree with the Dag's") {
 
 TEST_CASE("bridge: the same expression gives the same sum in any order of conversion") {
   Nodes n;
-  reading::Bridge one(n.system.mechanics), two(n.system.mechanics);
+  reading::GinacBridge one(n.system.mechanics), two(n.system.mechanics);
   const std::vector<Ref> roots = every_operation(n);
   for (auto r = roots.rbegin(); r != roots.rend(); ++r) (void)one.sum(*r);  // other serial numbers in other order
   for (const Ref r : roots) CHECK(one.sum(r) == two.sum(r));

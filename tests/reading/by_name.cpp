@@ -43,7 +43,7 @@ Sum sqrt(const Sum& x) { return reading::power(x, reading::Rational(1) / 2); }
 Sum square(const Sum& x) { return x * x; }
 Sum half(const Sum& x) { return reading::Rational(1) / 2 * x; }
 Sum over(const Sum& a, const Sum& b) { return a * reading::power(b, -1); }
-bool same(const Sum& a, const Sum& b) { return reading::zero_test(a - b) == reading::Zero::proven; }
+bool same(const Sum& a, const Sum& b) { return reading::zero_test(a - b) == reading::ZeroTestResult::proven; }
 std::string shipped(const std::string& name) { return test::source_folder() + "/models/" + name + ".toml"; }
 
 }  // namespace eomgen::test

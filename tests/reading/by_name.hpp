@@ -5,7 +5,7 @@
 #include <string>
 
 #include "mechanics/mechanics.hpp"
-#include "reading/alphabet.hpp"
+#include "reading/atom_table.hpp"
 #include "reading/reading.hpp"
 #include "reading/zero_test.hpp"
 
@@ -22,7 +22,7 @@ class ByName {
 
  private:
   const mechanics::Mechanics& m_;
-  reading::Alphabet alphabet_;
+  reading::AtomTable alphabet_;
 };
 
 Sum sin(const Sum& x);

@@ -189,7 +189,7 @@ TEST_CASE("without a curve the Frenet triad is rejected with a reason") {
        {std::pair{"P7_moving_sphere", "leave 2 degrees of freedom"}, std::pair{"S5_double_pendulum", "2 particles"},
         std::pair{"cart_pendulum", "0 particles"}}) {
     System s(model::read_model(shipped(name)));
-    CHECK(reading::why_no_curve(s.mechanics).find(why) != std::string::npos);
+    CHECK(reading::curve_obstacle(s.mechanics).find(why) != std::string::npos);
     CHECK_THROWS_AS(reading::frenet(s.mechanics), Error);
   }
 }

@@ -152,11 +152,11 @@ TEST_CASE("factors: sums with an atom in one term alone have none, others are fo
 TEST_CASE("zero test: proven, numerical, no") {
   System s = some_symbols();
   const Sum a = s.symbol("a"), b = s.symbol("b"), x = s.symbol("x");
-  CHECK(reading::zero_test(sin(Sum(3) * a) - Sum(3) * sin(a) + Sum(4) * power(sin(a), 3)) == reading::Zero::proven);
-  CHECK(reading::zero_test(sin(a + b) - sin(a) * cos(b) - cos(a) * sin(b)) == reading::Zero::proven);
-  CHECK(reading::zero_test(sin(a) - cos(a)) == reading::Zero::no);
+  CHECK(reading::zero_test(sin(Sum(3) * a) - Sum(3) * sin(a) + Sum(4) * power(sin(a), 3)) == reading::ZeroTestResult::proven);
+  CHECK(reading::zero_test(sin(a + b) - sin(a) * cos(b) - cos(a) * sin(b)) == reading::ZeroTestResult::proven);
+  CHECK(reading::zero_test(sin(a) - cos(a)) == reading::ZeroTestResult::no);
   const Sum hyperbolic =
       square(reading::call(symbolic::Op::cosh, {x})) - square(reading::call(symbolic::Op::sinh, {x})) - Sum(1);
-  CHECK(reading::zero_test(hyperbolic) == reading::Zero::numerical);
-  CHECK(reading::zero_test(reading::call(symbolic::Op::log, {-square(x)})) == reading::Zero::unknown);
+  CHECK(reading::zero_test(hyperbolic) == reading::ZeroTestResult::numerical);
+  CHECK(reading::zero_test(reading::call(symbolic::Op::log, {-square(x)})) == reading::ZeroTestResult::unknown);
 }

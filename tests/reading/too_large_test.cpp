@@ -31,30 +31,30 @@ std::string relative_chain(int n) {
 TEST_CASE("a chain of 15 relative angles is displayed by parts, with every coordinate, in seconds") {
   System s(model::read_model_text(relative_chain(15), "chain"));
   const auto start = std::chrono::steady_clock::now();
-  const reading::DisplayForm form = reading::derive_reading(s.mechanics, system::Approach::one);
+  const reading::DisplayForm form = reading::derive_display_form(s.mechanics, system::Approach::one);
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
-  CHECK(form.by_parts);
+  CHECK(form.is_unexpanded);
   CHECK(form.equations.size() == 15);
   CHECK(reading::residuals_on_dag(form, s.mechanics).empty());
 }
 
 TEST_CASE("a form too long in one approach is not tried in the other if both have the same equations") {
   System s(model::read_model_text(relative_chain(15), "chain"));
-  reading::Forms forms(s.mechanics);
+  reading::DisplayForms forms(s.mechanics);
   const reading::DisplayForm& one = forms(system::Approach::one);
-  CHECK(one.by_parts);
+  CHECK(one.is_unexpanded);
   const work::Budget nothing(0);
   const reading::DisplayForm& two = forms(system::Approach::two);
-  CHECK(two.by_parts);
+  CHECK(two.is_unexpanded);
   CHECK(two.approach == system::Approach::two);
   CHECK(two.equations.size() == 15);
-  CHECK(two.why_by_parts == one.why_by_parts);
-  CHECK(reading::derive_reading(s.mechanics, system::Approach::two).why_by_parts != one.why_by_parts);
+  CHECK(two.unexpanded_reason == one.unexpanded_reason);
+  CHECK(reading::derive_display_form(s.mechanics, system::Approach::two).unexpanded_reason != one.unexpanded_reason);
 }
 
 TEST_CASE("a chain of 4 relative angles is expanded, with residuals on the Dag") {
   System s(model::read_model_text(relative_chain(4), "chain"));
-  const reading::DisplayForm form = reading::derive_reading(s.mechanics, system::Approach::one);
-  CHECK_FALSE(form.by_parts);
+  const reading::DisplayForm form = reading::derive_display_form(s.mechanics, system::Approach::one);
+  CHECK_FALSE(form.is_unexpanded);
   CHECK(reading::residuals_on_dag(form, s.mechanics).size() == 4);
 }

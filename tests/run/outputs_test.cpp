@@ -47,7 +47,7 @@ struct Derived {
   model::Model model = model::read_model_text(rough, "outputs.toml");
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::one);
-  std::vector<conservation::Conserved> conserved = conservation::conserved_quantities(mechanics, system);
+  std::vector<conservation::ConservedQuantity> conserved = conservation::conserved_quantities(mechanics, system);
 
   const system::Output& output(const std::string& name) const {
     const system::Output* found = system::find(system.outputs, name);

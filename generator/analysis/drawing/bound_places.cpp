@@ -41,7 +41,7 @@ bool is_moving(const symbolic::Dag& dag, const std::vector<Ref>& expressions) {
 
 /// Constraints on the position of a particle: not those of joints, contacts of bodies and Euler parameters.
 bool binds_places(const mechanics::Mechanics& m, const mechanics::Constraint& c, const model::Constraint& of) {
-  return c.holonomic() && c.need == mechanics::Need::independent && !of.joint && !of.contact && !of.unit && !of.coupled &&
+  return c.holonomic() && c.redundancy == mechanics::Redundancy::independent && !of.joint && !of.contact && !of.unit && !of.coupled &&
          !m.dag->is_zero(c.psi);
 }
 

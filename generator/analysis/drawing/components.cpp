@@ -49,7 +49,7 @@ std::vector<std::pair<std::size_t, Vec3>> Components::on_masses() {
 
 std::vector<BodyMoment> Components::on_attitudes() {
   std::vector<BodyMoment> result;
-  for (std::size_t b = 0; b < m_.spins.size(); ++b) {
+  for (std::size_t b = 0; b < m_.body_rotations.size(); ++b) {
     const auto value = moments_.of_attitude(b, Q_);
     if (!value || mechanics::vanishes(*m_.dag, {(*value)[0], (*value)[1], (*value)[2]})) continue;
     result.push_back({b, *value});

@@ -29,8 +29,8 @@ class Collection {
         drawing_(drawing),
         system_(system),
         dag_(*mechanics.dag),
-        imposed_(mechanics::impose(mechanics)),
-        written_(mechanics::write_out(mechanics)),
+        imposed_(mechanics::constraint_substitution(mechanics)),
+        written_(mechanics::time_function_substitution(mechanics)),
         on_mass_(m_.masses.size(), symbolic::zero_vector(dag_)) {}
 
   void run() {
@@ -275,7 +275,7 @@ class Collection {
     const mechanics::Constraint& c = m_.constraints[k];
     const model::Constraint& of = *std::find_if(model_.constraints.begin(), model_.constraints.end(),
                                                 [&](const model::Constraint& other) { return other.name == c.name; });
-    if (of.joint || of.contact || of.unit || m_.spins.empty() || !m_.holds(k)) return;
+    if (of.joint || of.contact || of.unit || m_.body_rotations.empty() || !m_.is_independent(k)) return;
     std::vector<std::uint32_t> concerned;
     for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
       if (!dag_.is_zero(c.gradient[i]) && moves_bodies(i)) concerned.push_back(i);
@@ -300,7 +300,7 @@ class Collection {
   }
   bool moves_bodies(std::uint32_t c) {
     symbolic::Derivation by = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, c, 0});
-    for (std::size_t b = 0; b < m_.spins.size(); ++b) {
+    for (std::size_t b = 0; b < m_.body_rotations.size(); ++b) {
       const Vec3& r = *m_.place_position[model_.bodies[b].place];
       if (moments().turns(b, c) || !symbolic::is_zero(dag_, {by(r[0]), by(r[1]), by(r[2])})) return true;
     }

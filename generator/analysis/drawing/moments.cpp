@@ -34,8 +34,8 @@ double volume(const Triple& a, const Triple& b, const Triple& c) {
 
 BodyMoments::BodyMoments(Mechanics& mechanics) : m_(mechanics), moves_(mechanics.q.size(), false) {
   symbolic::Dag& dag = *m_.dag;
-  turns_.resize(m_.spins.size(), std::vector<Vec3>(m_.q.size(), symbolic::zero_vector(dag)));
-  numbers_.resize(m_.spins.size(), std::vector<Numbers>(m_.q.size()));
+  turns_.resize(m_.body_rotations.size(), std::vector<Vec3>(m_.q.size(), symbolic::zero_vector(dag)));
+  numbers_.resize(m_.body_rotations.size(), std::vector<Numbers>(m_.q.size()));
   std::vector<std::pair<std::size_t, std::uint32_t>> some;
   std::vector<Ref> all;
   for (std::uint32_t c = 0; c < m_.q.size(); ++c) {
@@ -44,8 +44,8 @@ BodyMoments::BodyMoments(Mechanics& mechanics) : m_(mechanics), moves_(mechanics
     for (const mechanics::PointMass& mass : m_.masses)
       moves_[c] = moves_[c] ||
                   !symbolic::is_zero(dag, {slope(mass.position[0]), slope(mass.position[1]), slope(mass.position[2])});
-    for (std::size_t b = 0; b < m_.spins.size(); ++b) {
-      const mechanics::Spin& spin = m_.spins[b];
+    for (std::size_t b = 0; b < m_.body_rotations.size(); ++b) {
+      const mechanics::BodyRotation& spin = m_.body_rotations[b];
       Vec3& sum = turns_[b][c];
       for (std::size_t k = 0; k < 3; ++k)
         sum = symbolic::add(dag, sum, symbolic::scale(dag, rate(spin.w[k]), spin.axes[k]));
@@ -162,9 +162,9 @@ std::vector<BodyMoment> BodyMoments::along_angle(const std::vector<Ref>& Q, Ref 
     for (std::size_t c = 0; c < v.size(); ++c) at[c][static_cast<std::size_t>(state)] = v[c];
   }
   std::vector<std::optional<std::size_t>> others{std::nullopt};
-  for (std::size_t b = 0; b < m_.spins.size(); ++b) others.emplace_back(b);
+  for (std::size_t b = 0; b < m_.body_rotations.size(); ++b) others.emplace_back(b);
   for (const std::optional<std::size_t>& other : others) {  // the ground first
-    for (std::size_t b = 0; b < m_.spins.size(); ++b) {
+    for (std::size_t b = 0; b < m_.body_rotations.size(); ++b) {
       if (other == b) continue;
       const auto moment = about_axis(b, other, Q, at);
       if (!moment) continue;
@@ -195,7 +195,7 @@ std::optional<Vec3> BodyMoments::of_attitude(std::size_t body, const std::vector
 }
 
 bool BodyMoments::turns_alone(std::size_t body, std::uint32_t c) const {
-  for (std::size_t other = 0; other < m_.spins.size(); ++other) {
+  for (std::size_t other = 0; other < m_.body_rotations.size(); ++other) {
     if (other != body && turns(other, c)) return false;
   }
   return turns(body, c) && !moves_[c];

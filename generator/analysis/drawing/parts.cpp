@@ -39,8 +39,8 @@ bool is_of_parameters(const symbolic::Dag& dag, Ref expression) {
 Drawing::Drawing(mechanics::Mechanics& mechanics)
     : mechanics_(mechanics),
       model_(*mechanics.model),
-      imposed_(mechanics::impose(mechanics)),
-      written_(mechanics::write_out(mechanics)) {
+      imposed_(mechanics::constraint_substitution(mechanics)),
+      written_(mechanics::time_function_substitution(mechanics)) {
   places();
   bodies();
   forces();

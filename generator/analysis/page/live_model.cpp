@@ -137,7 +137,7 @@ class Live {
     for (std::uint32_t i = 0; i < derived_.model.parameters.size(); ++i)
       p.push_back(expanded(dag_.symbol({SymbolKind::parameter, i, 0})));
     const std::size_t n = m_.free.size();
-    symbolic::Substitution written = mechanics::write_out(m_);
+    symbolic::Substitution written = mechanics::time_function_substitution(m_);
     for (std::size_t k = 0; k < 2 * n; ++k) {
       const std::uint32_t c = m_.free[k % n];
       Ref value = exact(dag_, k < n ? s_.scene.q[c] : s_.scene.qdot[c]);
@@ -155,7 +155,7 @@ class Live {
   /// Inputs of the scene over time.
   program::Function signals() {
     std::vector<Ref> u;
-    symbolic::Substitution written = mechanics::write_out(m_);
+    symbolic::Substitution written = mechanics::time_function_substitution(m_);
     for (std::uint32_t i = 0; i < derived_.model.inputs.size(); ++i) {
       model::NodeId id = derived_.model.inputs[i].default_value;
       for (const model::SceneInput& input : model_scene().inputs) {

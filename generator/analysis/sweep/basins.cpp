@@ -9,13 +9,13 @@ namespace eomgen::analysis {
 
 Basins::Basins(const SteadyMotions& found, double within) : within_(within) {
   const std::vector<std::string>& names = found.problem.flow->names();
-  const std::vector<std::size_t> ignored = linear::ignored_positions(found.search.symmetry);
+  const std::vector<std::size_t> ignored = linear::ignorable_positions(found.search.symmetry);
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (std::find(ignored.begin(), ignored.end(), i) != ignored.end()) continue;
     places.push_back(i);
     names_.push_back(names[i]);
-    turns_.push_back(i < found.search.turns.size() && found.search.turns[i]);
+    turns_.push_back(i < found.search.is_angle.size() && found.search.is_angle[i]);
   }
   for (const SteadyMotion& point : found.points) {
     Goal goal;

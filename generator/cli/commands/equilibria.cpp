@@ -23,7 +23,7 @@ struct Options : SceneOptions {
   std::size_t starts = 300;
 };
 
-Json to_json(const linear::Verdict& verdict) {
+Json to_json(const linear::StabilityVerdict& verdict) {
   if (verdict.stability == linear::Stability::unknown) return "unknown";
   return verdict.stability == linear::Stability::stable;
 }
@@ -42,18 +42,18 @@ Json to_json(const analysis::SteadyMotions& found, const Options& options) {
                       {"stable", to_json(point.verdict)},
                       {"reason", point.verdict.reason},
                       {"family", point.family},
-                      {"off", point.l.off}});
+                      {"off", point.l.parameter_change}});
   }
   for (const analysis::HeldValue& h : found.held)
     held.push_back({{"name", h.name}, {"value", h.value}, {"why", h.why}});
   return {{"format", 1},
           {"points", points},
           {"held", held},
-          {"held_in_vain", found.search.released},
+          {"held_in_vain", found.search.held_in_vain},
           {"starts", options.starts},
           {"converged", found.search.converged},
           {"further_members", found.search.further_members},
-          {"refused", found.search.refused},
+          {"refused", found.search.failed_starts},
           {"interrupted", found.search.interrupted},
           {"certificate", found.problem.certificate}};
 }
@@ -63,12 +63,12 @@ std::string text(const analysis::SteadyMotion& point, const std::vector<std::str
                                 point.verdict.reason);
   if (point.family > 0)
     out += fmt::format("  one of a family of {} dimension{}\n", point.family, point.family == 1 ? "" : "s");
-  if (point.l.off > 0)
+  if (point.l.parameter_change > 0)
     out += fmt::format(
         "  but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one\n",
-        point.l.off);
+        point.l.parameter_change);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const bool rest = point.l.kind == linear::Kind::equilibrium && 2 * i >= names.size();  // rates, all 0
+    const bool rest = point.l.kind == linear::MotionKind::equilibrium && 2 * i >= names.size();  // rates, all 0
     if (!rest) out += fmt::format("  {:<24} {:>24}\n", names[i], shown(point.l.z[i]));
   }
   out += "  eigenvalues";
@@ -76,7 +76,7 @@ std::string text(const analysis::SteadyMotion& point, const std::vector<std::str
     const linear::Eigenvalue& e = point.l.spectrum.values[i];
     if (e.im < 0 || (e.re == 0 && e.im == 0)) continue;  // one of each conjugate pair
     out += e.im == 0 ? fmt::format("  {:.8g}", e.re) : fmt::format("  {:.8g} +- {:.8g}i", e.re, e.im);
-    if (!e.holds()) out += " (in doubt)";
+    if (!e.is_reliable()) out += " (in doubt)";
   }
   return out + fmt::format("  and {} zeros, {} of them structural\n", point.l.spectrum.zeros, point.l.structural_zeros);
 }
@@ -92,9 +92,9 @@ std::string text(const analysis::SteadyMotions& found, const Options& options) {
     out += fmt::format("\nfurther           {} of the starts led to further members of families, which are not shown\n",
                        found.search.further_members);
   }
-  if (found.search.refused > 0) {
+  if (found.search.failed_starts > 0) {
     out += fmt::format("\nrefused           {} of the starts ended where the equations have no slope: {}\n",
-                       found.search.refused, found.search.reason);
+                       found.search.failed_starts, found.search.reason);
   }
   return out + fmt::format(
                    "\nsearch            {} starts, of which {} led to one; what a coordinate system does not cover is "

@@ -46,15 +46,15 @@ struct Answer {
   std::size_t accidental() const { return l.spectrum.zeros - l.structural_zeros; }
   std::string what() const {
     const std::string off =
-        l.off > 0
+        l.parameter_change > 0
             ? fmt::format(
                   " but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one",
-                  l.off)
+                  l.parameter_change)
             : "";
     switch (l.kind) {
-      case linear::Kind::equilibrium: return "an equilibrium" + off;
-      case linear::Kind::steady: return "a steady motion" + off + ": only ignorable coordinates change";
-      case linear::Kind::motion: break;
+      case linear::MotionKind::equilibrium: return "an equilibrium" + off;
+      case linear::MotionKind::steady: return "a steady motion" + off + ": only ignorable coordinates change";
+      case linear::MotionKind::motion: break;
     }
     return l.symmetry.autonomous ? "neither an equilibrium nor a steady motion: A(t) along the motion, at this instant"
                                  : "no steady motion, since the equations depend on t: A(t), at this instant";
@@ -85,8 +85,8 @@ Json to_json(const Answer& a) {
           {"A", rows(a.l.A)},
           {"B", rows(a.l.B)},
           {"eigenvalues", eigenvalues},
-          {"eigenvalues_hold", a.l.spectrum.holds()},
-          {"off", a.l.off},
+          {"eigenvalues_hold", a.l.spectrum.is_reliable()},
+          {"off", a.l.parameter_change},
           {"structural_zeros", a.l.structural_zeros},
           {"other_zeros", a.accidental()},
           {"ignorable", a.ignorable()},

@@ -107,7 +107,7 @@ class Formulas {
 };
 
 /// `taken`: bytes of the rest of the page.
-void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<conservation::Conserved>& conserved,
+void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<conservation::ConservedQuantity>& conserved,
                    std::size_t taken) {
   const reading::DisplayForm form = analysis::form_to_show(m);
   html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(form.approach)));
@@ -158,7 +158,7 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
   }
   if (conserved.empty()) return;
   html.heading(3, "Conserved");
-  for (const conservation::Conserved& c : conserved) {
+  for (const conservation::ConservedQuantity& c : conserved) {
     html.paragraph(c.title, "quiet");
     formulas.add(print::render_expression(m, "", "", c.expression).mathml);
     formulas.end();

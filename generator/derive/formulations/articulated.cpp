@@ -14,23 +14,23 @@
 namespace eomgen::derive {
 namespace {
 
-/// Applies to trees (derive/trees/branches.hpp) with one particle of constant mass at the end of every link, no
+/// Applies to trees (derive/trees/particle_tree.hpp) with one particle of constant mass at the end of every link, no
 /// multipliers, and links whose directions of force are known: as many coordinates as dimensions, or one fewer.
 std::optional<system::EquationSystem> by_articulated(Mechanics& m, system::Approach approach) {
-  if (!m.spins.empty()) {
+  if (!m.body_rotations.empty()) {
     std::optional<system::EquationSystem> s = equations_of_bodies(m, approach, "articulated", body_accelerations);
     if (s && !s->solution) s.reset();
     return s;
   }
   if (!m.active.empty() || !m.contacts.empty()) return std::nullopt;
   Dag& dag = *m.dag;
-  const std::optional<TreeEquations> motion = motion_of_tree(m, approach);
+  const std::optional<TreeEquations> motion = derive_tree_motion(m, approach);
   if (!motion) return std::nullopt;
-  const auto links = loaded_links(dag, motion->tree);
+  const auto links = tension_links(dag, motion->tree);
   if (!links) return std::nullopt;
   std::optional<system::EquationSystem> s = assemble_tree(m, *motion, "articulated", approach);
   if (!s) return std::nullopt;
-  system::Solution solution = accelerations(dag, motion->tree, *links);
+  system::Solution solution = tree_accelerations(dag, motion->tree, *links);
   symbolic::Substitution back = motion->tree.coordinates.back(dag);
   for (Ref& r : solution.qddot) r = back(r);
   for (symbolic::Pivot& pivot : solution.pivots) pivot = {back(pivot.pivot), back(pivot.scale)};
@@ -45,9 +45,9 @@ std::optional<system::EquationSystem> by_articulated(Mechanics& m, system::Appro
 FormulationEntry formulation::articulated() {
   return {.name = "articulated",
           .title = "a tree of particles or bodies: link after link, no mass matrix",
-          .applies = "applies to trees of particles or of bodies without multipliers and friction",
+          .applicability = "applies to trees of particles or of bodies without multipliers and friction",
           .derive = by_articulated,
-          .over_trees = true};
+          .is_for_trees = true};
 }
 
 }  // namespace eomgen::derive

@@ -105,7 +105,7 @@ std::optional<system::EquationSystem> by_christoffel(Mechanics& m, system::Appro
   const FullEquations full = equations(m, energy, m.potential, Q, all_coordinates(m));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "christoffel", approach);
   // Imposed velocities are linear in those of the free coordinates, so the energy stays quadratic.
-  symbolic::Substitution imposed = impose(m);
+  symbolic::Substitution imposed = constraint_substitution(m);
   QuadraticEnergy constrained(m, imposed(m.kinetic), m.free);
   const FullEquations motion = equations(m, constrained, imposed(m.potential), Q, m.free);
   return assemble(m, full, &motion, "christoffel", approach);
@@ -116,7 +116,7 @@ std::optional<system::EquationSystem> by_christoffel(Mechanics& m, system::Appro
 FormulationEntry formulation::christoffel() {
   return {.name = "christoffel",
           .title = "M(q), Christoffel symbols of the first kind, expanded",
-          .applies = "applies to small models whose kinetic energy stays short when it is multiplied out",
+          .applicability = "applies to small models whose kinetic energy stays short when it is multiplied out",
           .derive = by_christoffel};
 }
 

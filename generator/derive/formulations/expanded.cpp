@@ -29,7 +29,7 @@ std::optional<system::EquationSystem> by_expanded(Mechanics& m, system::Approach
   const Ref T = *kinetic, U = expander.expand_or_keep(m.potential);
   const FullEquations full = reduced(expander, euler_lagrange(m, T, U, Q, all_coordinates(m)));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "expanded", approach);
-  symbolic::Substitution imposed = impose(m);
+  symbolic::Substitution imposed = constraint_substitution(m);
   // An expansion has a common denominator. A second expansion would multiply it into unrelated terms.
   const auto constrained = [&](Ref whole, Ref reduced_whole) {
     return imposed(whole) == whole ? reduced_whole : expander.expand_or_keep(imposed(reduced_whole));
@@ -44,7 +44,7 @@ std::optional<system::EquationSystem> by_expanded(Mechanics& m, system::Approach
 FormulationEntry formulation::expanded() {
   return {.name = "expanded",
           .title = "T and U expanded first, sin^2 + cos^2 = 1 used",
-          .applies = "applies to small models whose kinetic energy stays short when it is multiplied out",
+          .applicability = "applies to small models whose kinetic energy stays short when it is multiplied out",
           .derive = by_expanded};
 }
 

@@ -14,11 +14,11 @@ using symbolic::SymbolKind;
 
 /// Euler's equations along the axes of the rotation, (dH/dt + W x H) . dw/dqdot_i with the angular velocity W of these
 /// axes, eqs. (8.41), (9.39).
-void add_spin(Mechanics& m, const mechanics::Spin& given, symbolic::Substitution* imposed,
+void add_spin(Mechanics& m, const mechanics::BodyRotation& given, symbolic::Substitution* imposed,
               const std::vector<std::uint32_t>& which, symbolic::Derivation& bias, FullEquations& result) {
   Dag& dag = *m.dag;
-  mechanics::Spin spin = given;
-  for (Vec3* v : {&spin.w, &spin.carrier}) {
+  mechanics::BodyRotation spin = given;
+  for (Vec3* v : {&spin.w, &spin.axes_angular_velocity}) {
     for (Ref& r : *v) r = imposed == nullptr ? r : (*imposed)(r);
   }
   const std::size_t n = which.size();
@@ -26,11 +26,11 @@ void add_spin(Mechanics& m, const mechanics::Spin& given, symbolic::Substitution
   for (const std::uint32_t i : which) {
     symbolic::Derivation by = symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 1});
     W.push_back({by(spin.w[0]), by(spin.w[1]), by(spin.w[2])});
-    JW.push_back(times(dag, spin, W.back()));
+    JW.push_back(inertia_times(dag, spin, W.back()));
   }
-  const Vec3 H = momentum(dag, spin);
-  const Vec3 rate = symbolic::add(dag, times(dag, spin, {bias(spin.w[0]), bias(spin.w[1]), bias(spin.w[2])}),
-                                  symbolic::cross(dag, spin.carrier, H));
+  const Vec3 H = angular_momentum(dag, spin);
+  const Vec3 rate = symbolic::add(dag, inertia_times(dag, spin, {bias(spin.w[0]), bias(spin.w[1]), bias(spin.w[2])}),
+                                  symbolic::cross(dag, spin.axes_angular_velocity, H));
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = i; k < n; ++k) {
       result.M[i * n + k] = dag.add(result.M[i * n + k], dot(dag, W[i], JW[k]));
@@ -76,7 +76,7 @@ FullEquations equations(Mechanics& m, symbolic::Substitution* imposed, const std
       result.f[i] = dag.sub(result.f[i], inertial);
     }
   }
-  for (const mechanics::Spin& spin : m.spins) add_spin(m, spin, imposed, which, bias, result);
+  for (const mechanics::BodyRotation& spin : m.body_rotations) add_spin(m, spin, imposed, which, bias, result);
   return result;
 }
 
@@ -87,7 +87,7 @@ std::optional<system::EquationSystem> by_jacobian(Mechanics& m, system::Approach
   const std::vector<Ref> Q = generalized_forces(m);
   const FullEquations full = equations(m, nullptr, Q, all_coordinates(m));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "jacobian", approach);
-  symbolic::Substitution imposed = impose(m);
+  symbolic::Substitution imposed = constraint_substitution(m);
   const FullEquations motion = equations(m, &imposed, Q, m.free);
   return assemble(m, full, &motion, "jacobian", approach);
 }
@@ -97,7 +97,7 @@ std::optional<system::EquationSystem> by_jacobian(Mechanics& m, system::Approach
 FormulationEntry formulation::jacobian() {
   return {.name = "jacobian",
           .title = "velocity Jacobians, M = sum m J^T J",
-          .applies = "applies to models of particles and bodies without energies of their own",
+          .applicability = "applies to models of particles and bodies without energies of their own",
           .derive = by_jacobian,
           .max_tree_size = 16};
 }

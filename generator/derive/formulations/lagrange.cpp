@@ -10,7 +10,7 @@ system::EquationSystem lagrange(Mechanics& m, system::Approach approach) {
   const std::vector<Ref> Q = generalized_forces(m);
   const FullEquations full = euler_lagrange(m, m.kinetic, m.potential, Q, all_coordinates(m));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "lagrange", approach);
-  symbolic::Substitution imposed = impose(m);
+  symbolic::Substitution imposed = constraint_substitution(m);
   const FullEquations motion = euler_lagrange(m, imposed(m.kinetic), imposed(m.potential), Q, m.free);
   return assemble(m, full, &motion, "lagrange", approach);
 }
@@ -19,7 +19,7 @@ FormulationEntry formulation::lagrange() {
   return {
       .name = "lagrange",
       .title = "T and U differentiated as they stand",
-      .applies = "applies to every model",
+      .applicability = "applies to every model",
       .derive = [](Mechanics& m, system::Approach approach) { return std::optional(derive::lagrange(m, approach)); },
       .max_tree_size = 16};
 }

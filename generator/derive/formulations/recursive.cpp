@@ -31,11 +31,11 @@ system::Solution factorised(Dag& dag, const BodyTree& tree, const std::vector<Li
   return result;
 }
 
-/// Applies to particles that form a tree (derive/trees/branches.hpp), derived with the constraints imposed; in Approach
+/// Applies to particles that form a tree (derive/trees/particle_tree.hpp), derived with the constraints imposed; in Approach
 /// I only if there are no constraints to impose.
 std::optional<system::EquationSystem> by_recursive(Mechanics& m, system::Approach approach) {
-  if (!m.spins.empty()) return equations_of_bodies(m, approach, "recursive", factorised);
-  const std::optional<TreeEquations> motion = motion_of_tree(m, approach);
+  if (!m.body_rotations.empty()) return equations_of_bodies(m, approach, "recursive", factorised);
+  const std::optional<TreeEquations> motion = derive_tree_motion(m, approach);
   if (!motion) return std::nullopt;
   std::optional<system::EquationSystem> s = assemble_tree(m, *motion, "recursive", approach);
   if (s && !motion->tree.coordinates.identity()) s->quasi = motion->quasi;
@@ -47,10 +47,10 @@ std::optional<system::EquationSystem> by_recursive(Mechanics& m, system::Approac
 FormulationEntry formulation::recursive() {
   return {.name = "recursive",
           .title = "a tree of particles or bodies: composite masses, forces from the tips inwards",
-          .applies = "applies to trees of particles or of bodies",
+          .applicability = "applies to trees of particles or of bodies",
           .derive = by_recursive,
           .max_tree_size = 32,
-          .over_trees = true};
+          .is_for_trees = true};
 }
 
 }  // namespace eomgen::derive

@@ -15,7 +15,7 @@ struct Articulated {
 
 /// The equation of one eliminated acceleration: u = (r - N.alpha - F.a)/D.
 struct Eliminated {
-  Vec3 turning, shifting;
+  Vec3 angular, linear;
   Ref r, D;
   Vec3 N, F;
   std::size_t index;
@@ -77,7 +77,7 @@ class Elimination {
     for (std::size_t j = 0; j < link.freedoms.size(); ++j) {
       const Freedom& freedom = link.freedoms[j];
       const Ref Q = link.absolute ? moment[j] : tree_.Q[freedom.index];
-      const Vec3 &s = freedom.turning, &v = freedom.shifting;
+      const Vec3 &s = freedom.angular, &v = freedom.linear;
       Eliminated e{
           s, v, {}, {}, symbolic::add(dag_, times(dag_, body.I, s), times(dag_, body.H, v)), {}, freedom.index};
       e.F = symbolic::add(dag_, times(dag_, transposed(body.H), s), times(dag_, body.M, v));
@@ -112,18 +112,18 @@ class Elimination {
     const BodyLink& link = tree_.links[l];
     Articulated body = bodies_[l];
     Articulated& to = bodies_[place(link.parent)];
-    if (!link.carried()) {  // the parent's rotation moves only the origin
+    if (!link.is_carried_by_parent()) {  // the parent's rotation moves only the origin
       body.I = body.H = zero_matrix(dag_);
       if (!link.relative) body.n = symbolic::zero_vector(dag_);
     } else {
       body.n = symbolic::add(dag_, body.n, times(dag_, body.I, motion_[l].bias));
       body.f = symbolic::add(dag_, body.f, times(dag_, transposed(body.H), motion_[l].bias));
     }
-    body.I = link.turn.to_parent(dag_, body.I, true);
-    body.H = link.turn.to_parent(dag_, body.H, false);
-    body.M = link.turn.to_parent(dag_, body.M, true);
-    body.n = symbolic::add(dag_, link.turn.to_parent(dag_, body.n), times(dag_, body.H, motion_[l].lift));
-    body.f = symbolic::add(dag_, link.turn.to_parent(dag_, body.f), times(dag_, body.M, motion_[l].lift));
+    body.I = link.rotation.to_parent(dag_, body.I, true);
+    body.H = link.rotation.to_parent(dag_, body.H, false);
+    body.M = link.rotation.to_parent(dag_, body.M, true);
+    body.n = symbolic::add(dag_, link.rotation.to_parent(dag_, body.n), times(dag_, body.H, motion_[l].origin_bias));
+    body.f = symbolic::add(dag_, link.rotation.to_parent(dag_, body.f), times(dag_, body.M, motion_[l].origin_bias));
     const Mat3 X = cross_matrix(dag_, link.offset), XM = product(dag_, X, body.M), HX = product(dag_, body.H, X);
     const Mat3 XMX = product(dag_, XM, X);
     to.M = add(dag_, to.M, body.M);
@@ -144,15 +144,15 @@ class Elimination {
     if (link.parent >= 0) {
       const auto& [inner_alpha, inner_a] = acceleration_[place(link.parent)];
       a = symbolic::add(dag_, inner_a, cross(dag_, inner_alpha, link.offset));
-      if (link.carried()) alpha = link.turn.to_own(dag_, inner_alpha);
+      if (link.is_carried_by_parent()) alpha = link.rotation.to_own_axes(dag_, inner_alpha);
     }
-    a = link.turn.to_own(dag_, symbolic::add(dag_, a, motion_[l].lift));
-    if (link.carried()) alpha = symbolic::add(dag_, alpha, motion_[l].bias);
+    a = link.rotation.to_own_axes(dag_, symbolic::add(dag_, a, motion_[l].origin_bias));
+    if (link.is_carried_by_parent()) alpha = symbolic::add(dag_, alpha, motion_[l].bias);
     for (auto e = eliminated_[l].rbegin(); e != eliminated_[l].rend(); ++e) {
       const Ref u = dag_.div(dag_.sub(e->r, dag_.add(dot(dag_, e->N, alpha), dot(dag_, e->F, a))), e->D);
       result_.qddot[e->index] = u;
-      alpha = symbolic::add(dag_, alpha, symbolic::scale(dag_, u, e->turning));
-      a = symbolic::add(dag_, a, symbolic::scale(dag_, u, e->shifting));
+      alpha = symbolic::add(dag_, alpha, symbolic::scale(dag_, u, e->angular));
+      a = symbolic::add(dag_, a, symbolic::scale(dag_, u, e->linear));
     }
     acceleration_.emplace_back(alpha, a);
   }

@@ -11,7 +11,7 @@ namespace eomgen::derive {
 namespace {
 
 FullEquations in_coordinates(Dag& dag, const BodyTree& tree) {
-  BodyEquations equations = body_equations(dag, tree, motion_of(dag, tree));
+  BodyEquations equations = body_equations(dag, tree, link_motions(dag, tree));
   return {std::move(equations.M), std::move(equations.f)};
 }
 
@@ -68,9 +68,9 @@ std::optional<system::EquationSystem> equations_of_bodies(Mechanics& m, system::
   }
   use_angular_velocities(dag, *tree);
   if (!m.contacts.empty() || !only_lengths(m, *tree)) return s;
-  const std::vector<LinkMotion> rates = motion_of(dag, *tree);
+  const std::vector<LinkMotion> rates = link_motions(dag, *tree);
   system::Solution solution = solve(dag, *tree, rates);
-  solution.qddot = second_rates(dag, *tree, rates, solution.qddot, solution.pivots);
+  solution.qddot = coordinate_accelerations(dag, *tree, rates, solution.qddot, solution.pivots);
   solution.lambda = multipliers_of_lengths(m, *tree, *s);
   s->solution = std::move(solution);
   return s;

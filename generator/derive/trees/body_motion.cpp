@@ -18,7 +18,7 @@ struct Angles {
 };
 
 std::optional<Angles> euler_angles(Dag& dag, const BodyLink& link) {
-  const std::vector<Step>& steps = link.turn.steps;
+  const std::vector<RotationStep>& steps = link.rotation.steps;
   if (steps.size() != 3 || link.angles.size() != 3) return std::nullopt;
   Angles angles;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -34,7 +34,7 @@ std::optional<Angles> euler_angles(Dag& dag, const BodyLink& link) {
     s[angles.axis[k]] = dag.one();
     for (std::size_t later = k + 1; later < 3; ++later) s = times(dag, steps[later].R, s);
     std::size_t which = 3;
-    for (std::size_t f = 0; f < 3; ++f) which = link.angles[f].turning == s ? f : which;
+    for (std::size_t f = 0; f < 3; ++f) which = link.angles[f].angular == s ? f : which;
     if (which == 3) return std::nullopt;
     angles.freedom[k] = which;
   }
@@ -45,17 +45,17 @@ std::optional<Angles> euler_angles(Dag& dag, const BodyLink& link) {
 }
 
 Ref volume(Dag& dag, const BodyLink& link) {
-  return dot(dag, link.angles[0].turning, cross(dag, link.angles[1].turning, link.angles[2].turning));
+  return dot(dag, link.angles[0].angular, cross(dag, link.angles[1].angular, link.angles[2].angular));
 }
 
 /// The vector normal to the rotation axes of the other two coordinates.
 Vec3 normal(Dag& dag, const BodyLink& link, std::size_t f) {
-  return cross(dag, link.angles[(f + 1) % 3].turning, link.angles[(f + 2) % 3].turning);
+  return cross(dag, link.angles[(f + 1) % 3].angular, link.angles[(f + 2) % 3].angular);
 }
 
 /// Solves for the rates of Euler angles one after another, from the last step back to the first.
 std::array<Ref, 3> angle_rates(Dag& dag, const BodyLink& link, const Angles& angles, Vec3 parent, Vec3 w, Vec3 own) {
-  const std::vector<Step>& steps = link.turn.steps;
+  const std::vector<RotationStep>& steps = link.rotation.steps;
   // Along the axes before the last step: the difference of the own acceleration and the parent's part.
   for (std::size_t k = 0; k < 2; ++k) {
     w = times(dag, steps[k].R, w);
@@ -102,7 +102,7 @@ void parameter_rates(Dag& dag, const BodyLink& link, const Vec3& alpha, std::vec
 
 }  // namespace
 
-std::vector<LinkMotion> motion_of(Dag& dag, const BodyTree& tree) {
+std::vector<LinkMotion> link_motions(Dag& dag, const BodyTree& tree) {
   const Vec3 none = symbolic::zero_vector(dag);
   std::vector<LinkMotion> result;
   for (const BodyLink& link : tree.links) {
@@ -110,7 +110,7 @@ std::vector<LinkMotion> motion_of(Dag& dag, const BodyTree& tree) {
     const LinkMotion parent = link.parent < 0 ? motion : result[static_cast<std::size_t>(link.parent)];
     if (link.relative) {
       motion.w = parent.w;
-      for (const Step& step : link.turn.steps) {
+      for (const RotationStep& step : link.rotation.steps) {
         motion.w = times(dag, step.R, motion.w);
         motion.bias = symbolic::add(dag, times(dag, step.R, motion.bias),
                                     symbolic::add(dag, cross(dag, motion.w, step.w), step.w_bias));
@@ -126,7 +126,7 @@ std::vector<LinkMotion> motion_of(Dag& dag, const BodyTree& tree) {
       motion.W[i][i] = dag.neg(dag.add(ww[(i + 1) % 3][(i + 1) % 3], ww[(i + 2) % 3][(i + 2) % 3]));
     }
     const Vec3 twice = symbolic::scale(dag, dag.integer(2), cross(dag, parent.w, link.offset_rate));
-    motion.lift = symbolic::add(dag, times(dag, parent.W, link.offset), symbolic::add(dag, twice, link.offset_bias));
+    motion.origin_bias = symbolic::add(dag, times(dag, parent.W, link.offset), symbolic::add(dag, twice, link.offset_bias));
     result.push_back(motion);
   }
   return result;
@@ -166,7 +166,7 @@ Vec3 joint_moment(Dag& dag, const BodyLink& link, const std::vector<Ref>& Q) {
     const Ref rest =
         dag.div(dag.sub(first, dag.mul(angles->symmetric() ? angles->c : angles->s, last)), angles->divisor());
     moment[angles->symmetric() ? angles->third : angles->axis[0]] = rest;
-    return times(dag, link.turn.steps[2].R, moment);
+    return times(dag, link.rotation.steps[2].R, moment);
   }
   for (std::size_t f = 0; f < 3; ++f) {
     moment = symbolic::add(dag, moment, symbolic::scale(dag, dag.div(own[f], volume(dag, link)), normal(dag, link, f)));
@@ -174,7 +174,7 @@ Vec3 joint_moment(Dag& dag, const BodyLink& link, const std::vector<Ref>& Q) {
   return moment;
 }
 
-std::vector<Ref> second_rates(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion,
+std::vector<Ref> coordinate_accelerations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion,
                               const std::vector<Ref>& u, std::vector<symbolic::Pivot>& pivots) {
   const Vec3 none = symbolic::zero_vector(dag);
   std::vector<Vec3> alpha;
@@ -184,8 +184,8 @@ std::vector<Ref> second_rates(Dag& dag, const BodyTree& tree, const std::vector<
     const bool ground = link.parent < 0;
     const Vec3 parent = ground ? none : alpha[static_cast<std::size_t>(link.parent)];
     if (!link.absolute) {
-      Vec3 sum = link.relative ? symbolic::add(dag, link.turn.to_own(dag, parent), motion[l].bias) : none;
-      for (const Freedom& f : link.freedoms) sum = symbolic::add(dag, sum, symbolic::scale(dag, u[f.index], f.turning));
+      Vec3 sum = link.relative ? symbolic::add(dag, link.rotation.to_own_axes(dag, parent), motion[l].bias) : none;
+      for (const Freedom& f : link.freedoms) sum = symbolic::add(dag, sum, symbolic::scale(dag, u[f.index], f.angular));
       alpha.push_back(sum);
       continue;
     }
@@ -198,7 +198,7 @@ std::vector<Ref> second_rates(Dag& dag, const BodyTree& tree, const std::vector<
       continue;
     }
     const Vec3 left =
-        symbolic::subtract(dag, alpha.back(), symbolic::add(dag, link.turn.to_own(dag, parent), motion[l].bias));
+        symbolic::subtract(dag, alpha.back(), symbolic::add(dag, link.rotation.to_own_axes(dag, parent), motion[l].bias));
     if (!link.parameters.empty()) {
       parameter_rates(dag, link, left, result);
       continue;

@@ -47,34 +47,34 @@ class Recursion {
       Vec3 a = symbolic::scale(dag_, dag_.integer(-1), tree_.gravity);
       if (link.parent >= 0)
         a = symbolic::add(dag_, acceleration_[place(link.parent)], cross(dag_, alpha[place(link.parent)], link.offset));
-      a = link.turn.to_own(dag_, symbolic::add(dag_, a, motion_[l].lift));
+      a = link.rotation.to_own_axes(dag_, symbolic::add(dag_, a, motion_[l].origin_bias));
       acceleration_.push_back(a);
-      if (link.carried()) alpha[l] = motion_[l].bias;
-      if (link.carried() && link.parent >= 0)
-        alpha[l] = symbolic::add(dag_, link.turn.to_own(dag_, alpha[place(link.parent)]), alpha[l]);
-      const Vec3 turning =
+      if (link.is_carried_by_parent()) alpha[l] = motion_[l].bias;
+      if (link.is_carried_by_parent() && link.parent >= 0)
+        alpha[l] = symbolic::add(dag_, link.rotation.to_own_axes(dag_, alpha[place(link.parent)]), alpha[l]);
+      const Vec3 angular =
           symbolic::add(dag_, cross(dag_, alpha[l], link.moment), times(dag_, motion_[l].W, link.moment));
-      F[l] = symbolic::add(dag_, symbolic::scale(dag_, link.mass, a), turning);
+      F[l] = symbolic::add(dag_, symbolic::scale(dag_, link.mass, a), angular);
       N[l] = symbolic::add(dag_, cross(dag_, link.moment, a), gyroscopic(dag_, link.inertia, motion_[l].w));
       N[l] = symbolic::add(dag_, N[l], times(dag_, link.inertia, alpha[l]));
     }
     for (std::size_t l = count; l-- > 0;) {
       const BodyLink& link = tree_.links[l];
-      Vec3 passed = link.carried() ? N[l] : none;
+      Vec3 passed = link.is_carried_by_parent() ? N[l] : none;
       if (link.absolute) {
         passed = joint_moment(dag_, link, tree_.Q);
         for (std::size_t k = 0; k < 3; ++k) result_.f[link.freedoms[k].index] = passed[k];
       }
       for (const Freedom& f : link.freedoms) {
-        const Ref needed = dag_.add(dot(dag_, f.turning, N[l]), dot(dag_, f.shifting, F[l]));
+        const Ref needed = dag_.add(dot(dag_, f.angular, N[l]), dot(dag_, f.linear, F[l]));
         result_.f[f.index] = dag_.sub(result_.f[f.index], needed);
       }
       if (link.parent < 0) continue;
       Vec3 &Fp = F[place(link.parent)], &Np = N[place(link.parent)];
-      const Vec3 force = link.turn.to_parent(dag_, F[l]);
+      const Vec3 force = link.rotation.to_parent(dag_, F[l]);
       Fp = symbolic::add(dag_, Fp, force);
       Np = symbolic::add(dag_, Np, cross(dag_, link.offset, force));
-      if (link.relative) Np = symbolic::add(dag_, Np, link.turn.to_parent(dag_, passed));
+      if (link.relative) Np = symbolic::add(dag_, Np, link.rotation.to_parent(dag_, passed));
     }
   }
 
@@ -86,10 +86,10 @@ class Recursion {
       const Composite& own = composite_[l];
       Composite& to = composite_[place(link.parent)];
       const Vec3 md = symbolic::scale(dag_, own.mass, link.offset);
-      const Vec3 h = link.carried() ? link.turn.to_parent(dag_, own.moment) : symbolic::zero_vector(dag_);
+      const Vec3 h = link.is_carried_by_parent() ? link.rotation.to_parent(dag_, own.moment) : symbolic::zero_vector(dag_);
       to.mass = dag_.add(to.mass, own.mass);
       to.moment = symbolic::add(dag_, to.moment, symbolic::add(dag_, md, h));
-      if (link.carried()) to.inertia = add(dag_, to.inertia, link.turn.to_parent(dag_, own.inertia, true));
+      if (link.is_carried_by_parent()) to.inertia = add(dag_, to.inertia, link.rotation.to_parent(dag_, own.inertia, true));
       // m (d.d 1 - d d^T) + 2 d.h 1 - d h^T - h d^T
       const Ref trace = dag_.add(dot(dag_, md, link.offset), dag_.mul(dag_.integer(2), dot(dag_, link.offset, h)));
       for (std::size_t i = 0; i < 3; ++i) {
@@ -108,17 +108,17 @@ class Recursion {
     const Composite& c = composite_[l];
     Momentum p;
     p.linear =
-        symbolic::add(dag_, cross(dag_, freedom.turning, c.moment), symbolic::scale(dag_, c.mass, freedom.shifting));
-    p.angular = symbolic::add(dag_, times(dag_, c.inertia, freedom.turning), cross(dag_, c.moment, freedom.shifting));
+        symbolic::add(dag_, cross(dag_, freedom.angular, c.moment), symbolic::scale(dag_, c.mass, freedom.linear));
+    p.angular = symbolic::add(dag_, times(dag_, c.inertia, freedom.angular), cross(dag_, c.moment, freedom.linear));
     const std::size_t n = tree_.Q.size();
     for (int inner = static_cast<int>(l); inner >= 0; inner = tree_.links[place(inner)].parent) {
       const BodyLink& link = tree_.links[place(inner)];
       for (const Freedom& other : link.freedoms) {
-        const Ref entry = dag_.add(dot(dag_, other.turning, p.angular), dot(dag_, other.shifting, p.linear));
+        const Ref entry = dag_.add(dot(dag_, other.angular, p.angular), dot(dag_, other.linear, p.linear));
         result_.M[freedom.index * n + other.index] = result_.M[other.index * n + freedom.index] = entry;
       }
-      p.linear = link.turn.to_parent(dag_, p.linear);
-      p.angular = link.carried() ? link.turn.to_parent(dag_, p.angular) : symbolic::zero_vector(dag_);
+      p.linear = link.rotation.to_parent(dag_, p.linear);
+      p.angular = link.is_carried_by_parent() ? link.rotation.to_parent(dag_, p.angular) : symbolic::zero_vector(dag_);
       p.angular = symbolic::add(dag_, p.angular, cross(dag_, link.offset, p.linear));
     }
   }

@@ -5,7 +5,7 @@
 #include <map>
 #include <tuple>
 
-#include "derive/trees/body_places.hpp"
+#include "derive/trees/place_decomposition.hpp"
 #include "derive/trees/tree_forces.hpp"
 
 namespace eomgen::derive {
@@ -39,8 +39,8 @@ class Builder {
     }
     if (!covers_coordinates()) return std::nullopt;
     Ref potential;
-    tree_.gravity = take_gravity(m_, expanded_, potential);
-    tree_.Q = other_forces(m_, of_, expanded_, potential);
+    tree_.gravity = extract_gravity(m_, expanded_, potential);
+    tree_.Q = non_gravity_forces(m_, of_, expanded_, potential);
     return std::move(tree_);
   }
 
@@ -99,7 +99,7 @@ class Builder {
   /// The place in the tree. Empty if its position does not have the form of a tree.
   std::optional<Anchor> anchor(std::uint32_t place) {
     if (const auto found = anchors_.find(place); found != anchors_.end()) return found->second;
-    const std::optional<WrittenPlace> written = written_place(m_, lower_, place);
+    const std::optional<PlaceDecomposition> written = decompose_place(m_, lower_, place);
     std::optional<Anchor> at = Anchor{-1, symbolic::zero_vector(dag_)};
     if (!written) at.reset();
     if (at && written->from) at = anchor(*written->from);
@@ -148,10 +148,10 @@ class Builder {
     BodyLink link = massless(at.link, frame);
     link.offset = at.offset;
     link.relative = relative;
-    link.turn = relative ? turn_of(frame) : Turn{};
+    link.rotation = relative ? rotation_of(frame) : RotationSequence{};
     for (std::uint32_t f = frame_of(at.link); !relative && f != 0; f = m_.model->frames[f].parent) {
-      const Turn back = turn_of(f).reversed();
-      link.turn.steps.insert(link.turn.steps.end(), back.steps.begin(), back.steps.end());
+      const RotationSequence back = rotation_of(f).reversed();
+      link.rotation.steps.insert(link.rotation.steps.end(), back.steps.begin(), back.steps.end());
     }
     if (relative) add_turning(link);
     const int index = append(std::move(link));
@@ -189,25 +189,25 @@ class Builder {
     return static_cast<int>(tree_.links.size()) - 1;
   }
 
-  Turn turn_of(std::uint32_t frame) {
-    Turn turn;
+  RotationSequence rotation_of(std::uint32_t frame) {
+    RotationSequence rotation;
     for (const model::RotationStage& stage : m_.model->frames[frame].stages) {
-      Step step;
+      RotationStep step;
       for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t j = 0; j < 3; ++j) step.R[k][j] = expanded_(lower_.scalar(stage.R[k][j]));
         step.w[k] = expanded_(lower_.scalar(stage.w[k]));
         step.w_bias[k] = bias_(step.w[k]);
       }
-      turn.steps.push_back(step);
+      rotation.steps.push_back(step);
     }
-    return turn;
+    return rotation;
   }
 
   void add_turning(BodyLink& link) {
     for (std::size_t i = 0; i < of_.size(); ++i) {
       symbolic::Derivation by = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, of_[i], 1});
       Vec3 s = symbolic::zero_vector(dag_);
-      for (const Step& step : link.turn.steps) {
+      for (const RotationStep& step : link.rotation.steps) {
         s = symbolic::add(dag_, times(dag_, step.R, s), {by(step.w[0]), by(step.w[1]), by(step.w[2])});
       }
       if (!is_zero(dag_, s)) link.freedoms.push_back({i, s, symbolic::zero_vector(dag_)});
@@ -258,7 +258,7 @@ class Builder {
   Dag& dag_;
   const std::vector<std::uint32_t>& of_;
   mechanics::Lowering lower_;
-  Expansion expanded_;
+  ImposedExpansion expanded_;
   symbolic::Derivation bias_;
   BodyTree tree_;
   std::vector<Spinning> spinning_;
@@ -269,24 +269,24 @@ class Builder {
 }  // namespace
 
 std::optional<BodyTree> body_tree(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
-  if (m.spins.empty() || of.empty() || !m.dag->is_zero(m.kinetic_given)) return std::nullopt;
+  if (m.body_rotations.empty() || of.empty() || !m.dag->is_zero(m.kinetic_given)) return std::nullopt;
   return Builder(m, of, imposed).build();
 }
 
 void use_angular_velocities(Dag& dag, BodyTree& tree) {
   for (BodyLink& link : tree.links) {
     const bool turns = std::all_of(link.freedoms.begin(), link.freedoms.end(),
-                                   [&](const Freedom& f) { return is_zero(dag, f.shifting); });
+                                   [&](const Freedom& f) { return is_zero(dag, f.linear); });
     link.absolute = turns && (link.freedoms.size() == 3 || (link.freedoms.size() == 4 && !link.parameters.empty()));
     if (!link.absolute) continue;
     link.angles = link.freedoms;
     link.freedoms.resize(3);
-    for (Step& step : link.turn.steps) {  // w of unit parameters is constant at e_ddot = 0
+    for (RotationStep& step : link.rotation.steps) {  // w of unit parameters is constant at e_ddot = 0
       if (!link.parameters.empty()) step.w_bias = symbolic::zero_vector(dag);
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      link.freedoms[k].turning = symbolic::zero_vector(dag);
-      link.freedoms[k].turning[k] = dag.one();
+      link.freedoms[k].angular = symbolic::zero_vector(dag);
+      link.freedoms[k].angular[k] = dag.one();
     }
   }
 }

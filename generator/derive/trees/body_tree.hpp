@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "derive/trees/turn.hpp"
+#include "derive/trees/rotation_sequence.hpp"
 
 namespace eomgen::derive {
 
@@ -14,7 +14,7 @@ namespace eomgen::derive {
 /// origin.
 struct Freedom {
   std::size_t index;  // into the requested coordinates
-  Vec3 turning, shifting;
+  Vec3 angular, linear;
 };
 
 /// Axes with an origin, and the masses fixed in them. All vectors of a link are along its own axes, except `offset`.
@@ -23,7 +23,7 @@ struct BodyLink {
   std::uint32_t frame = 0;        // of the model; its axes
   Vec3 offset;                    // from the parent's origin to the own one, along the parent's axes
   Vec3 offset_rate, offset_bias;  // its rate, and the derivative of that rate at zero qddot
-  Turn turn;
+  RotationSequence rotation;
   bool relative = true;   // axes relative to the parent; otherwise E1, E2, E3 on a rotating parent
   bool absolute = false;  // the angular velocity replaces the rates of its three (four) coordinates of rotation
   std::vector<Freedom> freedoms;
@@ -34,7 +34,7 @@ struct BodyLink {
   Mat3 inertia;  // about the origin
 
   /// Whether the parent's rotation carries the link, as its rates are relative to the parent.
-  bool carried() const { return relative && !absolute; }
+  bool is_carried_by_parent() const { return relative && !absolute; }
 };
 
 struct BodyTree {

@@ -185,7 +185,7 @@ class Recognition {
 }  // namespace
 
 std::optional<std::vector<PointMass>> particles_of_energy(Mechanics& m) {
-  if (!m.masses.empty() || !m.spins.empty() || m.dag->is_zero(m.kinetic_given) || m.q.size() < worth_looking)
+  if (!m.masses.empty() || !m.body_rotations.empty() || m.dag->is_zero(m.kinetic_given) || m.q.size() < worth_looking)
     return std::nullopt;
   return Recognition(m).run();
 }

@@ -63,7 +63,7 @@ Vec3 unit_if_plain(Dag& dag, Tidy& tidy, const Vec3& v) {
 }
 
 /// The axis along which nothing moves, if there is one: the tree is planar then.
-std::optional<std::size_t> still_axis(const Dag& dag, const Branches& tree) {
+std::optional<std::size_t> still_axis(const Dag& dag, const ParticleTree& tree) {
   for (std::size_t axis = 3; axis-- > 0;) {
     if (std::all_of(tree.J.begin(), tree.J.end(), [&](const Vec3& J) { return dag.is_zero(J[axis]); })) return axis;
   }
@@ -78,7 +78,7 @@ Vec3 unit(Dag& dag, std::size_t axis) {
 
 /// Directions normal to all J of a link and to one another, none along the axis `still`: the link itself if it is one,
 /// otherwise cross products. Empty if the J leave a plane without a simple basis.
-std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const LoadedLink& loaded, const Vec3& along,
+std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const TensionLink& loaded, const Vec3& along,
                                          std::optional<std::size_t> still) {
   const std::size_t left = (still ? 2 : 3) - loaded.J.size();
   if (left == 0) return std::vector<Vec3>{};
@@ -101,22 +101,22 @@ std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const LoadedLink&
 /// The linear system of the tensions, and the accelerations that follow.
 class Tensions {
  public:
-  Tensions(Dag& dag, const Branches& tree, const LoadedLinks& links)
+  Tensions(Dag& dag, const ParticleTree& tree, const TensionLinks& links)
       : dag_(dag), tidy_(dag), tree_(tree), links_(links) {
     for (std::size_t k = 0; k < links_.links.size(); ++k) {
       free_.push_back(free_force(links_.links[k]));
-      for (const Vec3& N : links_.links[k].N) carrying_.push_back({k, N});
+      for (const Vec3& N : links_.links[k].N) tension_directions_.push_back({k, N});
     }
   }
 
   system::Solution solve() {
     system::Solution result{std::vector<Ref>(tree_.J.size()), {}, {}};
-    const std::size_t n = carrying_.size();
+    const std::size_t n = tension_directions_.size();
     std::vector<Ref> S(n * n), b;
     for (std::size_t i = 0; i < n; ++i) {
-      const auto& [k, N] = carrying_[i];
+      const auto& [k, N] = tension_directions_[i];
       for (std::size_t j = 0; j <= i; ++j) {
-        S[i * n + j] = S[j * n + i] = response(k, N, carrying_[j].first, carrying_[j].second);
+        S[i * n + j] = S[j * n + i] = response(k, N, tension_directions_[j].first, tension_directions_[j].second);
       }
       b.push_back(dag_.neg(relative(k, N)));
     }
@@ -129,7 +129,7 @@ class Tensions {
 
  private:
   /// W_k / m_first: the force along the J that is equivalent to f_k on theta_k.
-  Vec3 free_force(const LoadedLink& loaded) {
+  Vec3 free_force(const TensionLink& loaded) {
     const Vec3 none = symbolic::zero_vector(dag_);
     std::vector<Ref> f;
     for (const std::size_t a : loaded.joints) f.push_back(dag_.div(tree_.f[a], links_.first_mass));
@@ -143,7 +143,7 @@ class Tensions {
   }
 
   /// x with J_a . sum_b J_b x_b = r_a.
-  std::vector<Ref> along_joints(const LoadedLink& loaded, const std::vector<Ref>& r,
+  std::vector<Ref> along_joints(const TensionLink& loaded, const std::vector<Ref>& r,
                                 std::vector<symbolic::Pivot>* pivots) {
     const std::size_t n = loaded.J.size();
     std::vector<Ref> gram(n * n);
@@ -161,9 +161,9 @@ class Tensions {
     // `force` acts on the particle of `source` and, reversed, on its parent.
     const auto weight_at = [&](int particle) {
       Ref w = dag_.zero();
-      if (particle == static_cast<int>(source)) w = dag_.add(w, links_.links[source].weight);
+      if (particle == static_cast<int>(source)) w = dag_.add(w, links_.links[source].inverse_mass_ratio);
       if (particle >= 0 && particle == links_.links[source].parent) {
-        w = dag_.sub(w, links_.links[static_cast<std::size_t>(particle)].weight);
+        w = dag_.sub(w, links_.links[static_cast<std::size_t>(particle)].inverse_mass_ratio);
       }
       return w;
     };
@@ -176,7 +176,7 @@ class Tensions {
 
   /// a_k - a_parent - c_k along `direction` without tensions.
   Ref relative(std::size_t k, const Vec3& direction) {
-    const LoadedLink& loaded = links_.links[k];
+    const TensionLink& loaded = links_.links[k];
     Ref sum = dag_.neg(tidy_.dot(direction, loaded.c));
     if (loaded.parent < 0) sum = dag_.add(sum, dot(dag_, direction, tree_.gravity));
     for (std::size_t s = 0; s < links_.links.size(); ++s) sum = dag_.add(sum, response(k, direction, s, free_[s]));
@@ -184,12 +184,12 @@ class Tensions {
   }
 
   void second_rates(std::size_t k, system::Solution& result) {
-    const LoadedLink& loaded = links_.links[k];
+    const TensionLink& loaded = links_.links[k];
     std::vector<Ref> r;
     for (const Vec3& J : loaded.J) {
       Ref sum = relative(k, J);
-      for (std::size_t i = 0; i < carrying_.size(); ++i) {
-        const auto& [source, N] = carrying_[i];
+      for (std::size_t i = 0; i < tension_directions_.size(); ++i) {
+        const auto& [source, N] = tension_directions_[i];
         if (source != k) sum = dag_.add(sum, dag_.mul(response(k, J, source, N), tension_[i]));
       }
       r.push_back(sum);
@@ -200,28 +200,28 @@ class Tensions {
 
   Dag& dag_;
   Tidy tidy_;
-  const Branches& tree_;
-  const LoadedLinks& links_;
+  const ParticleTree& tree_;
+  const TensionLinks& links_;
   std::vector<Vec3> free_;                              // W of each link
-  std::vector<std::pair<std::size_t, Vec3>> carrying_;  // link, direction
+  std::vector<std::pair<std::size_t, Vec3>> tension_directions_;  // link, direction
   std::vector<Ref> tension_;                            // T / m_first, for each of these
 };
 
 }  // namespace
 
-std::optional<LoadedLinks> loaded_links(Dag& dag, const Branches& tree) {
+std::optional<TensionLinks> tension_links(Dag& dag, const ParticleTree& tree) {
   Tidy tidy(dag);
   const std::optional<std::size_t> still = still_axis(dag, tree);
   const std::size_t dimensions = still ? 2 : 3;
   symbolic::Derivation bias = tree.coordinates.bias(dag);
-  LoadedLinks result;
+  TensionLinks result;
   for (const Link& link : tree.links) {
     if (link.particles.size() != 1 || link.joints.size() > dimensions) return {};
     const TreeParticle& particle = tree.particles[link.particles[0]];
     if (dag.is_zero(particle.mass) || !dag.is_zero(bias(particle.mass))) return {};
-    LoadedLink loaded{link.parent, {}, link.joints, {}, {}, {}};
+    TensionLink loaded{link.parent, {}, link.joints, {}, {}, {}};
     if (result.links.empty()) result.first_mass = particle.mass;
-    loaded.weight = dag.div(result.first_mass, particle.mass);
+    loaded.inverse_mass_ratio = dag.div(result.first_mass, particle.mass);
     for (const std::size_t a : link.joints) loaded.J.push_back(tree.J[a]);
     Vec3 along = particle.position;
     if (link.parent >= 0) {
@@ -238,7 +238,7 @@ std::optional<LoadedLinks> loaded_links(Dag& dag, const Branches& tree) {
   return result;
 }
 
-system::Solution accelerations(Dag& dag, const Branches& tree, const LoadedLinks& links) {
+system::Solution tree_accelerations(Dag& dag, const ParticleTree& tree, const TensionLinks& links) {
   return Tensions(dag, tree, links).solve();
 }
 

@@ -4,31 +4,31 @@
 
 #include <optional>
 
-#include "derive/trees/branches.hpp"
+#include "derive/trees/particle_tree.hpp"
 #include "system/equation_system.hpp"
 
 namespace eomgen::derive {
 
 /// One link with its particle. Vectors are in theta and its rate.
-struct LoadedLink {
+struct TensionLink {
   int parent = -1;
-  Ref weight;                       // m_first / m_k: dimensionless inverse mass
+  Ref inverse_mass_ratio;                       // m_first / m_k: dimensionless inverse mass
   std::vector<std::size_t> joints;  // indices of theta
   std::vector<Vec3> J;
   std::vector<Vec3> N;  // the directions of force: normal to all J, and to one another
   Vec3 c;               // acceleration relative to the parent at zero second derivatives
 };
 
-struct LoadedLinks {
-  std::vector<LoadedLink> links;  // parents first
+struct TensionLinks {
+  std::vector<TensionLink> links;  // parents first
   Ref first_mass;
 };
 
 /// Empty if a link has no particle or several, a mass that varies or is zero, or directions of force that are not
 /// known.
-std::optional<LoadedLinks> loaded_links(Dag& dag, const Branches& tree);
+std::optional<TensionLinks> tension_links(Dag& dag, const ParticleTree& tree);
 
 /// The second derivatives of theta, as expressions in theta and its rate.
-system::Solution accelerations(Dag& dag, const Branches& tree, const LoadedLinks& links);
+system::Solution tree_accelerations(Dag& dag, const ParticleTree& tree, const TensionLinks& links);
 
 }  // namespace eomgen::derive

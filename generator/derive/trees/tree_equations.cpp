@@ -5,7 +5,7 @@ namespace eomgen::derive {
 namespace {
 
 /// Per link: the inertia force and weight of the particles beyond it, d(m v)/dt - m g at zero accelerations.
-std::vector<Vec3> inertia_beyond(Dag& dag, const Branches& b) {
+std::vector<Vec3> inertia_beyond(Dag& dag, const ParticleTree& b) {
   const Vec3 none = symbolic::zero_vector(dag);
   std::vector<Vec3> force(b.links.size(), none);
   symbolic::Derivation bias = b.coordinates.bias(dag);
@@ -25,18 +25,18 @@ std::vector<Vec3> inertia_beyond(Dag& dag, const Branches& b) {
   return force;
 }
 
-system::QuasiVelocityEquations in_theta(Dag& dag, const Branches& b) {
+system::QuasiVelocityEquations in_theta(Dag& dag, const ParticleTree& b) {
   const std::size_t n = b.J.size();
   system::QuasiVelocityEquations result{b.coordinates.S_inverse, std::vector<Ref>(n * n, dag.zero()), {}};
   const std::vector<Vec3> force = inertia_beyond(dag, b);
   for (std::size_t a = 0; a < n; ++a) {
     for (std::size_t c = 0; c <= a; ++c) {
-      const std::size_t outer = b.beyond(b.of[a], b.of[c]) ? b.of[a] : b.of[c];
-      if (!b.beyond(outer, b.of[a]) || !b.beyond(outer, b.of[c])) continue;
+      const std::size_t outer = b.is_beyond(b.link_of[a], b.link_of[c]) ? b.link_of[a] : b.link_of[c];
+      if (!b.is_beyond(outer, b.link_of[a]) || !b.is_beyond(outer, b.link_of[c])) continue;
       const Ref entry = dag.mul(b.links[outer].mass_beyond, dot(dag, b.J[a], b.J[c]));
       result.M[a * n + c] = result.M[c * n + a] = entry;
     }
-    result.f.push_back(dag.sub(b.f[a], dot(dag, b.J[a], force[b.of[a]])));
+    result.f.push_back(dag.sub(b.f[a], dot(dag, b.J[a], force[b.link_of[a]])));
   }
   symbolic::Substitution back = b.coordinates.back(dag);
   for (Ref& r : result.M) r = back(r);
@@ -67,7 +67,7 @@ FullEquations in_model(Dag& dag, const QuasiCoordinates& coordinates, const syst
 }  // namespace
 
 std::optional<TreeEquations> tree_equations(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
-  std::optional<Branches> tree = branches(m, of, imposed);
+  std::optional<ParticleTree> tree = particle_tree(m, of, imposed);
   if (!tree) return std::nullopt;
   TreeEquations result{std::move(*tree), {}, {}};
   result.quasi = in_theta(*m.dag, result.tree);
@@ -75,7 +75,7 @@ std::optional<TreeEquations> tree_equations(Mechanics& m, const std::vector<std:
   return result;
 }
 
-std::optional<TreeEquations> motion_of_tree(Mechanics& m, system::Approach approach) {
+std::optional<TreeEquations> derive_tree_motion(Mechanics& m, system::Approach approach) {
   if (approach == system::Approach::one && !m.fixed.empty()) return std::nullopt;
   return tree_equations(m, m.free, true);
 }

@@ -10,10 +10,10 @@ namespace eomgen::derive {
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-Vec3 take_gravity(Mechanics& m, Expansion& expanded, Ref& other_potential) {
+Vec3 extract_gravity(Mechanics& m, ImposedExpansion& expanded, Ref& non_gravity_potential) {
   Dag& dag = *m.dag;
   Vec3 sum = symbolic::zero_vector(dag);
-  other_potential = expanded(mechanics::lower_scalar(m, m.model->energy.potential));
+  non_gravity_potential = expanded(mechanics::lower_scalar(m, m.model->energy.potential));
   for (std::size_t i = 0; i < m.model->forces.size(); ++i) {
     const model::NodeId gravity = m.model->forces[i].acceleration();
     Vec3 g = symbolic::zero_vector(dag);
@@ -23,12 +23,12 @@ Vec3 take_gravity(Mechanics& m, Expansion& expanded, Ref& other_potential) {
                            return s.kind == SymbolKind::parameter || s.kind == SymbolKind::time;
                          });
     for (std::size_t k = 0; k < 3 && uniform; ++k) sum[k] = dag.add(sum[k], g[k]);
-    if (!uniform) other_potential = dag.add(other_potential, expanded(m.potential_by_force[i]));
+    if (!uniform) non_gravity_potential = dag.add(non_gravity_potential, expanded(m.potential_by_force[i]));
   }
   return sum;
 }
 
-std::vector<Ref> other_forces(Mechanics& m, const std::vector<std::uint32_t>& of, Expansion& expanded, Ref potential) {
+std::vector<Ref> non_gravity_forces(Mechanics& m, const std::vector<std::uint32_t>& of, ImposedExpansion& expanded, Ref potential) {
   Dag& dag = *m.dag;
   const std::vector<Ref> Q = generalized_forces(m);
   std::vector<Ref> by_coordinate;

@@ -10,9 +10,9 @@
 namespace eomgen::derive {
 
 /// Expands functions of time, and imposes the constraints if `imposed`.
-class Expansion {
+class ImposedExpansion {
  public:
-  Expansion(Mechanics& m, bool imposed) : imposed_(imposed), impose_(impose(m)), write_(write_out(m)) {}
+  ImposedExpansion(Mechanics& m, bool imposed) : imposed_(imposed), impose_(constraint_substitution(m)), write_(time_function_substitution(m)) {}
   Ref operator()(Ref r) { return write_(imposed_ ? impose_(r) : r); }
   Vec3 operator()(const Vec3& v) { return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])}; }
 
@@ -21,10 +21,10 @@ class Expansion {
   symbolic::Substitution impose_, write_;
 };
 
-/// Splits off uniform gravity as an acceleration. `other_potential` receives the potential of everything else.
-Vec3 take_gravity(Mechanics& m, Expansion& expanded, Ref& other_potential);
+/// Splits off uniform gravity as an acceleration. `non_gravity_potential` receives the potential of everything else.
+Vec3 extract_gravity(Mechanics& m, ImposedExpansion& expanded, Ref& non_gravity_potential);
 
 /// Q_i - d(potential)/dq_i of the coordinates `of`.
-std::vector<Ref> other_forces(Mechanics& m, const std::vector<std::uint32_t>& of, Expansion& expanded, Ref potential);
+std::vector<Ref> non_gravity_forces(Mechanics& m, const std::vector<std::uint32_t>& of, ImposedExpansion& expanded, Ref potential);
 
 }  // namespace eomgen::derive

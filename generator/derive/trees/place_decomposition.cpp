@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "derive/trees/body_places.hpp"
+#include "derive/trees/place_decomposition.hpp"
 
 namespace eomgen::derive {
 namespace {
 
-class Reading {
+class PositionReader {
  public:
-  Reading(const Mechanics& m, mechanics::Lowering& lower) : m_(m), dag_(*m.dag), lower_(lower) {}
+  PositionReader(const Mechanics& m, mechanics::Lowering& lower) : m_(m), dag_(*m.dag), lower_(lower) {}
 
   /// Adds factor times the vector `id` to the result. False if its form is not supported.
   bool read(model::NodeId id, Ref factor) {
@@ -35,7 +35,7 @@ class Reading {
       default: return false;
     }
   }
-  const WrittenPlace& result() const { return result_; }
+  const PlaceDecomposition& result() const { return result_; }
 
  private:
   bool read_place(std::uint32_t place, Ref factor) {
@@ -54,13 +54,13 @@ class Reading {
   const Mechanics& m_;
   Dag& dag_;
   mechanics::Lowering& lower_;
-  WrittenPlace result_;
+  PlaceDecomposition result_;
 };
 
 }  // namespace
 
-std::optional<WrittenPlace> written_place(const Mechanics& m, mechanics::Lowering& lower, std::uint32_t place) {
-  Reading reading(m, lower);
+std::optional<PlaceDecomposition> decompose_place(const Mechanics& m, mechanics::Lowering& lower, std::uint32_t place) {
+  PositionReader reading(m, lower);
   if (!reading.read(m.model->places[place].position, m.dag->one())) return std::nullopt;
   return reading.result();
 }

@@ -18,19 +18,19 @@ using Real = cln::cl_R;
 bool sticks(const Contact& contact) { return contact.dimensions() > 0 && !contact.width; }
 
 /// A subset of the unilateral contacts that are closed.
-using Touching = std::vector<bool>;
+using ClosedContacts = std::vector<bool>;
 
-std::size_t sticking_directions(const Contact& contact, std::size_t index, const Touching& touching) {
-  if (!sticks(contact) || (contact.unilateral && !touching[index])) return 0;
-  const auto held = std::count_if(contact.held.begin(), contact.held.end(), [&](const HeldDirection& direction) {
-    return direction.by == index || touching[direction.by];
+std::size_t sticking_directions(const Contact& contact, std::size_t index, const ClosedContacts& closed) {
+  if (!sticks(contact) || (contact.unilateral && !closed[index])) return 0;
+  const auto held = std::count_if(contact.blocked.begin(), contact.blocked.end(), [&](const BlockedDirection& direction) {
+    return direction.by == index || closed[direction.by];
   });
   return contact.dimensions() - std::min(contact.dimensions(), static_cast<std::size_t>(held));
 }
 
 class Search {
  public:
-  explicit Search(Mechanics& m, FormSpace::SourceLocation where) : m_(m), space_(m, where) {
+  explicit Search(Mechanics& m, OneFormSpace::SampleSet where) : m_(m), space_(m, where) {
     for (const std::uint32_t k : m.active) {
       const auto leavable = std::find_if(m.contacts.begin(), m.contacts.end(), [k](const Contact& contact) {
         return contact.unilateral && contact.constraints[0] == k;
@@ -39,28 +39,28 @@ class Search {
     }
   }
 
-  bool sees() const { return space_.points() > 0; }
+  bool has_sample_points() const { return space_.points() > 0; }
 
   /// If more directions can stick than there are degrees of freedom, the motion does not determine the static friction.
-  void require_determinate(const Touching& touching) {
+  void require_determinate(const ClosedContacts& closed) {
     std::size_t freedom = m_.free.size() - m_.active.size(), directions = 0, apart = 0;
     bool any_touches = false;
     base_ = always_;
     for (std::size_t j = 0; j < m_.contacts.size(); ++j) {
       if (!m_.contacts[j].unilateral) continue;
-      apart += touching[j] ? 0 : 1;
-      any_touches = any_touches || touching[j];
-      if (touching[j]) base_.push_back(row(m_.constraints[m_.contacts[j].constraints[0]].gradient));
+      apart += closed[j] ? 0 : 1;
+      any_touches = any_touches || closed[j];
+      if (closed[j]) base_.push_back(row(m_.constraints[m_.contacts[j].constraints[0]].gradient));
     }
     freedom += apart;
     tangents_.clear();
     for (std::size_t j = 0; j < m_.contacts.size(); ++j) {
       const Contact& contact = m_.contacts[j];
-      const std::size_t own = sticking_directions(contact, j, touching);
+      const std::size_t own = sticking_directions(contact, j, closed);
       if (own == 0) continue;
       directions += own;
       for (const std::vector<Ref>& tangent : contact.tangents) tangents_.push_back(row(tangent));
-      const std::size_t free = sees() ? free_directions(base_) : directions;
+      const std::size_t free = has_sample_points() ? free_directions(base_) : directions;
       if (directions <= freedom && directions <= free) continue;
       const std::string where = !any_touches ? ""
                                 : apart == 0 ? " while everything touches"
@@ -70,14 +70,14 @@ class Search {
                                      (freedom == 1 ? " degree" : " degrees") + " of freedom"
                                : " directions, of which the constraints leave " + std::to_string(free) + " to move in";
       throw Error(
-          "mechanics", m_.model->where(law_of(m_, contact).span),
+          "mechanics", m_.model->where(friction_law_of(m_, contact).span),
           "with '" + contact.name + "' friction can hold " + std::to_string(directions) + left + where +
               ": where all stick, the forces are not determined",
           "give fewer contacts friction, or this one the smooth law (law = \"smooth\"), under which nothing sticks");
     }
   }
 
-  void look_at(std::uint32_t index) {
+  void examine_contact(std::uint32_t index) {
     Contact& contact = m_.contacts[index];
     tangents_.clear();
     for (const std::vector<Ref>& tangent : contact.tangents) tangents_.push_back(row(tangent));
@@ -88,7 +88,7 @@ class Search {
     if (free < tangents_.size()) {
       std::optional<std::vector<Ref>> along = always_held(contact);
       if (!along) return;  // too many directions; require_determinate reports it
-      contact.held.push_back({index, std::move(*along)});
+      contact.blocked.push_back({index, std::move(*along)});
     }
     for (std::uint32_t c = 0; c < m_.contacts.size(); ++c) {
       if (c == index || !m_.contacts[c].unilateral) continue;
@@ -98,15 +98,15 @@ class Search {
       if (free_directions(rows) == free) continue;
       // One remaining direction may have any length.
       std::optional<std::vector<Ref>> along =
-          free == 1 ? std::vector<Ref>(tangents_.size(), m_.dag->one()) : share_of(g, contact);
-      if (along) contact.held.push_back({c, std::move(*along)});
+          free == 1 ? std::vector<Ref>(tangents_.size(), m_.dag->one()) : tangent_components(g, contact);
+      if (along) contact.blocked.push_back({c, std::move(*along)});
     }
   }
 
  private:
   Row row(const std::vector<Ref>& by_coordinate) {
     Row result;
-    for (const std::uint32_t i : m_.free) result.push_back(space_.written(by_coordinate[i]));
+    for (const std::uint32_t i : m_.free) result.push_back(space_.impose_and_expand(by_coordinate[i]));
     return result;
   }
 
@@ -138,7 +138,7 @@ class Search {
       rows.push_back(g);
       const bool holds = free_directions(rows) < tangents_.size();
       rows.pop_back();
-      std::optional<std::vector<Ref>> along = holds ? share_of(g, contact) : std::nullopt;
+      std::optional<std::vector<Ref>> along = holds ? tangent_components(g, contact) : std::nullopt;
       if (along) return along;
     }
     return std::nullopt;
@@ -146,7 +146,7 @@ class Search {
 
   /// h with g = h_1 t_1 + h_2 t_2, up to a factor and the contact's own normal: minors of these rows. Empty if other
   /// constraints are involved.
-  std::optional<std::vector<Ref>> share_of(const Row& g, const Contact& contact) {
+  std::optional<std::vector<Ref>> tangent_components(const Row& g, const Contact& contact) {
     std::vector<Row> rows = tangents_;
     if (contact.constraints.size() == 1) {
       const Row normal = row(m_.constraints[contact.constraints[0]].gradient);
@@ -201,38 +201,38 @@ class Search {
   }
 
   [[noreturn]] void refuse(const Contact& contact) const {
-    throw Error("mechanics", m_.model->where(law_of(m_, contact).span),
+    throw Error("mechanics", m_.model->where(friction_law_of(m_, contact).span),
                 "the friction of '" + contact.name +
                     "' acts along directions that constraints block: it changes no equation of motion",
                 "remove the friction, or free the direction along which it is to act");
   }
 
   Mechanics& m_;
-  FormSpace space_;
+  OneFormSpace space_;
   std::vector<Row> always_, base_, tangents_;
 };
 
 }  // namespace
 
-void find_held_directions(Mechanics& m) {
+void find_blocked_directions(Mechanics& m) {
   if (std::none_of(m.contacts.begin(), m.contacts.end(), sticks)) return;
   if (m.free.size() < m.active.size()) return;  // reported elsewhere
   // Sample points on the constraints, if any are found: some directions are blocked only there.
   std::optional<Search> search;
-  search.emplace(m, FormSpace::SourceLocation::on_constraints);
-  if (!search->sees()) search.emplace(m, FormSpace::SourceLocation::anywhere);
-  if (search->sees()) {
+  search.emplace(m, OneFormSpace::SampleSet::on_constraints);
+  if (!search->has_sample_points()) search.emplace(m, OneFormSpace::SampleSet::unrestricted);
+  if (search->has_sample_points()) {
     for (std::uint32_t j = 0; j < m.contacts.size(); ++j)
-      if (sticks(m.contacts[j])) search->look_at(j);
+      if (sticks(m.contacts[j])) search->examine_contact(j);
   }
   std::vector<std::size_t> leavable;
   for (std::size_t j = 0; j < m.contacts.size(); ++j)
     if (m.contacts[j].unilateral) leavable.push_back(j);
   // From all contacts to none.
   for (std::size_t choice = std::size_t{1} << leavable.size(); choice-- > 0;) {
-    Touching touching(m.contacts.size(), false);
-    for (std::size_t i = 0; i < leavable.size(); ++i) touching[leavable[i]] = ((choice >> i) & 1) != 0;
-    search->require_determinate(touching);
+    ClosedContacts closed(m.contacts.size(), false);
+    for (std::size_t i = 0; i < leavable.size(); ++i) closed[leavable[i]] = ((choice >> i) & 1) != 0;
+    search->require_determinate(closed);
   }
 }
 

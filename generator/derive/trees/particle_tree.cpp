@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "derive/trees/branches.hpp"
+#include "derive/trees/particle_tree.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -15,7 +15,7 @@ namespace {
 using symbolic::Symbol;
 
 /// J of each theta and the particles that it moves. False if it moves two of them differently, or none.
-bool find_joints(Dag& dag, Branches& b, std::vector<std::set<std::size_t>>& moved) {
+bool find_joints(Dag& dag, ParticleTree& b, std::vector<std::set<std::size_t>>& moved) {
   for (const Symbol& theta : b.coordinates.theta) {
     symbolic::Derivation by = symbolic::partial_derivative(dag, theta);
     Vec3 common{};
@@ -35,13 +35,13 @@ bool find_joints(Dag& dag, Branches& b, std::vector<std::set<std::size_t>>& move
 }
 
 /// Links from the sets of moved particles, which must be nested or disjoint.
-bool find_links(Dag& dag, Branches& b, const std::vector<std::set<std::size_t>>& moved) {
+bool find_links(Dag& dag, ParticleTree& b, const std::vector<std::set<std::size_t>>& moved) {
   std::vector<std::size_t> order(moved.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t x, std::size_t y) { return moved[x].size() > moved[y].size(); });
   std::vector<const std::set<std::size_t>*> sets;
-  b.of.resize(moved.size());
+  b.link_of.resize(moved.size());
   for (const std::size_t a : order) {
     int parent = -1;
     bool known = false;
@@ -52,15 +52,15 @@ bool find_links(Dag& dag, Branches& b, const std::vector<std::set<std::size_t>>&
                             std::back_inserter(common));
       if (!inside && !common.empty()) return false;
       known = inside && sets[l]->size() == moved[a].size();
-      if (known) b.of[a] = l;
+      if (known) b.link_of[a] = l;
       if (inside) parent = static_cast<int>(l);  // sets shrink, so the last containing set is the smallest
     }
     if (!known) {
-      b.of[a] = b.links.size();
+      b.link_of[a] = b.links.size();
       b.links.push_back({{}, {}, parent, dag.zero()});
       sets.push_back(&moved[a]);
     }
-    b.links[b.of[a]].joints.push_back(a);
+    b.links[b.link_of[a]].joints.push_back(a);
   }
   for (std::size_t k = 0; k < b.particles.size(); ++k) {
     int innermost = -1;
@@ -77,25 +77,25 @@ bool find_links(Dag& dag, Branches& b, const std::vector<std::set<std::size_t>>&
 
 }  // namespace
 
-bool Branches::beyond(std::size_t outer, std::size_t inner) const {
+bool ParticleTree::is_beyond(std::size_t outer, std::size_t inner) const {
   for (int l = static_cast<int>(outer); l >= 0; l = links[static_cast<std::size_t>(l)].parent) {
     if (static_cast<std::size_t>(l) == inner) return true;
   }
   return false;
 }
 
-std::optional<Branches> branches(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
+std::optional<ParticleTree> particle_tree(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
   Dag& dag = *m.dag;
   std::vector<mechanics::PointMass> masses = m.masses;
   if (masses.empty())
     masses = particles_of_energy(m).value_or(std::vector<mechanics::PointMass>{});
   else if (!dag.is_zero(m.kinetic_given))
     return std::nullopt;
-  if (masses.empty() || !m.spins.empty()) return std::nullopt;
-  Expansion expanded(m, imposed);
+  if (masses.empty() || !m.body_rotations.empty()) return std::nullopt;
+  ImposedExpansion expanded(m, imposed);
   std::vector<Vec3> positions;
   for (const mechanics::PointMass& mass : masses) positions.push_back(expanded(mass.position));
-  Branches b;
+  ParticleTree b;
   b.coordinates = quasi_coordinates(dag, of, positions);
   symbolic::Derivation bias = b.coordinates.bias(dag);
   for (std::size_t k = 0; k < positions.size(); ++k) {
@@ -107,8 +107,8 @@ std::optional<Branches> branches(Mechanics& m, const std::vector<std::uint32_t>&
   std::vector<std::set<std::size_t>> moved;
   if (!find_joints(dag, b, moved) || !find_links(dag, b, moved)) return std::nullopt;
   Ref potential;
-  b.gravity = take_gravity(m, expanded, potential);
-  b.f = other_forces(m, of, expanded, potential);
+  b.gravity = extract_gravity(m, expanded, potential);
+  b.f = non_gravity_forces(m, of, expanded, potential);
   if (!b.coordinates.identity()) b.f = symbolic::multiply_transposed(dag, b.coordinates.S_inverse, b.f);
   return b;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mechanics/dependent.hpp"
+#include "mechanics/dependent_coordinates.hpp"
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ bool moves(const Dag& dag, Ref expression) {
   return std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::coordinate; });
 }
 
-bool is_touched(const Mechanics& m, std::uint32_t constraint) {
+bool has_contact(const Mechanics& m, std::uint32_t constraint) {
   return std::any_of(m.contacts.begin(), m.contacts.end(), [=](const Contact& c) {
     return std::find(c.constraints.begin(), c.constraints.end(), constraint) != c.constraints.end();
   });
@@ -35,7 +35,7 @@ bool in_configuration(const Mechanics& m, std::uint32_t constraint, std::uint32_
 
 std::optional<FixedCoordinate> solve(const Mechanics& m, std::uint32_t constraint) {
   Dag& dag = *m.dag;
-  const Ref psi = impose(m)(m.constraints[constraint].psi);
+  const Ref psi = constraint_substitution(m)(m.constraints[constraint].psi);
   std::optional<FixedCoordinate> best;
   bool best_is_plain = false;
   for (const std::uint32_t i : m.free) {
@@ -54,7 +54,7 @@ std::optional<FixedCoordinate> solve(const Mechanics& m, std::uint32_t constrain
 }
 
 // Coordinates fixed earlier may depend on this one.
-void take(Mechanics& m, FixedCoordinate next) {
+void add_fixed(Mechanics& m, FixedCoordinate next) {
   symbolic::Derivation ddt = symbolic::total_time_derivative(*m.dag, m.q.size(), m.model->functions.size());
   next.rate = ddt(next.value);
   next.acceleration = ddt(next.rate);
@@ -64,7 +64,7 @@ void take(Mechanics& m, FixedCoordinate next) {
   Mechanics only;
   only.dag = m.dag;
   only.fixed = {next};
-  symbolic::Substitution imposed = impose(only);
+  symbolic::Substitution imposed = constraint_substitution(only);
   for (FixedCoordinate& fixed : m.fixed) {
     for (Ref* r : {&fixed.value, &fixed.rate, &fixed.acceleration}) *r = imposed(*r);
   }
@@ -72,11 +72,11 @@ void take(Mechanics& m, FixedCoordinate next) {
 
 }  // namespace
 
-Mechanics impose_dependent(const Mechanics& mechanics) {
+Mechanics eliminate_dependent_coordinates(const Mechanics& mechanics) {
   Mechanics m = mechanics;
   for (const std::uint32_t k : mechanics.active) {
-    if (!m.constraints[k].holonomic() || m.constraints[k].unilateral || is_touched(m, k)) continue;
-    if (const std::optional<FixedCoordinate> next = solve(m, k)) take(m, *next);
+    if (!m.constraints[k].holonomic() || m.constraints[k].unilateral || has_contact(m, k)) continue;
+    if (const std::optional<FixedCoordinate> next = solve(m, k)) add_fixed(m, *next);
   }
   return m;
 }

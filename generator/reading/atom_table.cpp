@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "reading/alphabet.hpp"
+#include "reading/atom_table.hpp"
 
 #include <cln/integer.h>
 
@@ -15,7 +15,7 @@ void apply_range(const model::Model& model, const model::Coordinate& coordinate,
   if (lower.op != model::Op::number || cln::minusp(lower.value)) return;
   atom.positive = true;  // the range is open
   if (coordinate.upper == model::no_node) return;
-  atom.half_turn = model.arena[coordinate.upper].op == model::Op::pi;
+  atom.is_half_turn_angle = model.arena[coordinate.upper].op == model::Op::pi;
 }
 
 Ref factor_to_dag(Dag& dag, const Factor& factor, const Rational& exponent) {
@@ -40,7 +40,7 @@ Ref factor_to_dag(Dag& dag, const Factor& factor, const Rational& exponent) {
 
 }  // namespace
 
-const AtomPtr& Alphabet::atom(const Symbol& symbol) {
+const AtomPtr& AtomTable::atom(const Symbol& symbol) {
   const auto found = atoms_.find(symbol);
   if (found != atoms_.end()) return found->second;
   Atom atom;

@@ -9,6 +9,6 @@ namespace eomgen::mechanics {
 
 /// The same system without the coordinates that a frictionless constraint gives as functions of the others. Such a psi
 /// is linear in the coordinate, with a nonzero factor that does not depend on the motion. The result shares the Dag.
-Mechanics impose_dependent(const Mechanics& mechanics);
+Mechanics eliminate_dependent_coordinates(const Mechanics& mechanics);
 
 }  // namespace eomgen::mechanics

@@ -28,22 +28,22 @@ struct Link {
   Ref mass_beyond;                     // of all particles it moves
 };
 
-struct Branches {
+struct ParticleTree {
   QuasiCoordinates coordinates;
   std::vector<TreeParticle> particles;
   std::vector<Vec3> J;          // per theta
-  std::vector<std::size_t> of;  // link of each theta
+  std::vector<std::size_t> link_of;  // link of each theta
   std::vector<Link> links;      // parents first
   Vec3 gravity;                 // acceleration, of uniform gravity
   std::vector<Ref> f;           // per theta: the forces without gravity, S^-T (Q - dU/dq)
 
   /// Whether link `outer` is `inner` or one of its descendants.
-  bool beyond(std::size_t outer, std::size_t inner) const;
+  bool is_beyond(std::size_t outer, std::size_t inner) const;
 };
 
 /// The tree for the coordinates `of`. With `imposed`, the eliminated coordinates are functions of time. Empty if the
 /// particles form no tree, or if kinetic energy is given besides them. If it is given alone, the particles are those of
 /// point_energies.hpp.
-std::optional<Branches> branches(Mechanics& mechanics, const std::vector<std::uint32_t>& of, bool imposed);
+std::optional<ParticleTree> particle_tree(Mechanics& mechanics, const std::vector<std::uint32_t>& of, bool imposed);
 
 }  // namespace eomgen::derive

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "derive/trees/turn.hpp"
+#include "derive/trees/rotation_sequence.hpp"
 
 namespace eomgen::derive {
 
@@ -67,17 +67,17 @@ Mat3 about_axis_to_parent(Dag& dag, const Mat3& R, const Mat3& a, std::size_t i)
 
 }  // namespace
 
-Vec3 Turn::to_own(Dag& dag, Vec3 v) const {
-  for (const Step& step : steps) v = times(dag, step.R, v);
+Vec3 RotationSequence::to_own_axes(Dag& dag, Vec3 v) const {
+  for (const RotationStep& step : steps) v = times(dag, step.R, v);
   return v;
 }
 
-Vec3 Turn::to_parent(Dag& dag, Vec3 v) const {
+Vec3 RotationSequence::to_parent(Dag& dag, Vec3 v) const {
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) v = times(dag, transposed(step->R), v);
   return v;
 }
 
-Mat3 Turn::to_parent(Dag& dag, Mat3 a, bool symmetric) const {
+Mat3 RotationSequence::to_parent(Dag& dag, Mat3 a, bool symmetric) const {
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
     const std::size_t axis = axis_of(dag, step->R);
     if (symmetric && axis < 3) {
@@ -93,8 +93,8 @@ Mat3 Turn::to_parent(Dag& dag, Mat3 a, bool symmetric) const {
   return a;
 }
 
-Turn Turn::reversed() const {
-  Turn result;
+RotationSequence RotationSequence::reversed() const {
+  RotationSequence result;
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) result.steps.push_back({transposed(step->R), {}, {}});
   return result;
 }

@@ -10,12 +10,12 @@
 
 namespace eomgen::derive {
 
-struct WrittenPlace {
+struct PlaceDecomposition {
   std::optional<std::uint32_t> from;         // a place; none: the origin
   std::map<std::uint32_t, Vec3> components;  // by frame, along its own axes
 };
 
 /// Empty if the position is not such a sum (cross products, unit vectors, ..).
-std::optional<WrittenPlace> written_place(const Mechanics& mechanics, mechanics::Lowering& lower, std::uint32_t place);
+std::optional<PlaceDecomposition> decompose_place(const Mechanics& mechanics, mechanics::Lowering& lower, std::uint32_t place);
 
 }  // namespace eomgen::derive

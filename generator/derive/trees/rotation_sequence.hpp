@@ -21,21 +21,21 @@ Mat3 cross_matrix(Dag& dag, const Vec3& d);
 
 /// One step of the rotation from the axes of a parent to those of a link: e_k = sum_j R_kj p_j. Steps about one axis
 /// have the components of their angular velocity.
-struct Step {
+struct RotationStep {
   Mat3 R;
   Vec3 w, w_bias;  // along the axes after the step; its rate at zero qddot
 };
 
-class Turn {
+class RotationSequence {
  public:
-  std::vector<Step> steps;
+  std::vector<RotationStep> steps;
 
-  Vec3 to_own(Dag& dag, Vec3 v) const;
+  Vec3 to_own_axes(Dag& dag, Vec3 v) const;
   Vec3 to_parent(Dag& dag, Vec3 v) const;
   /// R^T A R of a matrix along the link's axes; symmetric ones stay symmetric.
   Mat3 to_parent(Dag& dag, Mat3 a, bool symmetric) const;
   /// The inverse rotation.
-  Turn reversed() const;
+  RotationSequence reversed() const;
 };
 
 /// The axis of a step's rotation, if it is one of the three: otherwise 3.

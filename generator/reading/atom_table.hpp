@@ -10,9 +10,9 @@
 namespace eomgen::reading {
 
 /// In: a Model (positive parameters, ranges of coordinates). Out: one atom per symbol.
-class Alphabet {
+class AtomTable {
  public:
-  explicit Alphabet(const model::Model& model) : model_(&model) {}
+  explicit AtomTable(const model::Model& model) : model_(&model) {}
   const AtomPtr& atom(const Symbol& symbol);
   Sum operator()(const Symbol& symbol) { return Sum(atom(symbol)); }
 
