@@ -89,8 +89,8 @@ print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion)
     if (e.im < 0 || (e.re == 0 && e.im == 0)) continue;
     result.eigenvalues.emplace_back(e.re, e.im);
   }
-  result.zeros = motion.l.spectrum.zeros;
-  result.family = motion.family;
+  result.zero_eigenvalues = motion.l.spectrum.zeros;
+  result.family_dimension = motion.family;
   result.stability = linear::in_words(motion.verdict.stability);
   result.reason = motion.verdict.reason;
   return result;
@@ -99,11 +99,11 @@ print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion)
 void look_for_steady_motions(const Mechanics& m, const DisplayForm& two, std::uint64_t seed,
                              print::Findings& findings) {
   if (m.degrees_of_freedom() <= 0) {
-    findings.no_steady = "the constraints prescribe the motion";
+    findings.steady_skip_reason = "the constraints prescribe the motion";
     return;
   }
   if (two.is_unexpanded || two.equations.size() > most_coordinates) {
-    findings.no_steady = "the search takes long for a system of this size; eomgen equilibria makes it";
+    findings.steady_skip_reason = "the search takes long for a system of this size; eomgen equilibria makes it";
     return;
   }
   SteadyRequest request;
@@ -117,7 +117,7 @@ void look_for_steady_motions(const Mechanics& m, const DisplayForm& two, std::ui
     for (const HeldValue& h : found.held) findings.held.emplace_back(h.name, h.value);
   } catch (const Error& error) {
     if (error.fault() == ErrorKind::check) throw;
-    findings.no_steady = error.message();
+    findings.steady_skip_reason = error.message();
   }
 }
 

@@ -33,7 +33,7 @@ void require_keys(const std::vector<std::string>& show) {
   }
 }
 
-std::string name_of(const print::Item& item) {
+std::string name_of(const print::PrintedFormula& item) {
   std::string name = item.key;
   for (const std::string* part : {&item.name, &item.coordinate, &item.role}) {
     if (!part->empty()) name += (name == item.key ? ": " : ", ") + *part;
@@ -42,11 +42,11 @@ std::string name_of(const print::Item& item) {
 }
 
 /// Items that exceeded their budget, and equations that are shown in parts.
-std::vector<work::LeftOut> left_out_of(const std::vector<print::Item>& items, const reading::DisplayForm& form) {
+std::vector<work::LeftOut> left_out_of(const std::vector<print::PrintedFormula>& items, const reading::DisplayForm& form) {
   std::vector<work::LeftOut> result;
   if (form.is_unexpanded) result.push_back({"equations written out", form.unexpanded_reason});
   if (!form.rotations_skip_reason.empty()) result.push_back({"angular velocities", form.rotations_skip_reason});
-  for (const print::Item& item : items) {
+  for (const print::PrintedFormula& item : items) {
     if (!item.left_out.empty()) result.push_back({name_of(item), item.left_out});
   }
   return result;
@@ -63,7 +63,7 @@ std::vector<Multiplier> legend(const mechanics::Mechanics& m, const reading::Dis
     };
     return form.is_unexpanded || std::any_of(form.equations.begin(), form.equations.end(), has);
   };
-  for (const print::MultiplierMeaning& meaning : print::multiplier_meanings(m)) {
+  for (const print::MultiplierDescription& meaning : print::multiplier_descriptions(m)) {
     if (!stands(meaning.constraint)) continue;
     const print::Glyph glyph = notation.multiplier(meaning.constraint);
     result.push_back({glyph.name, print::latex(glyph), m.constraints[meaning.constraint].label, meaning.text});
@@ -72,7 +72,7 @@ std::vector<Multiplier> legend(const mechanics::Mechanics& m, const reading::Dis
 }
 
 void add_conserved(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, const std::vector<std::string>& show,
-                   std::vector<print::Item>& items) {
+                   std::vector<print::PrintedFormula>& items) {
   const bool wanted =
       std::any_of(show.begin(), show.end(), [](const auto& key) { return key == "conserved" || key == "all"; });
   if (!wanted) return;
@@ -80,7 +80,7 @@ void add_conserved(mechanics::Mechanics& mechanics, reading::DisplayForms& forms
   const reading::DisplayForm& form = forms(system::Approach::two, reading::Extent::equations);
   for (const conservation::ConservedQuantity& c : conservation::conserved_quantities(mechanics, system)) {
     const auto named = in_named_functions(mechanics, form, c);
-    print::Item item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
+    print::PrintedFormula item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
                              : print::render_expression(mechanics, "conserved", c.name, c.expression);
     item.role = c.title;
     items.push_back(std::move(item));
@@ -89,7 +89,7 @@ void add_conserved(mechanics::Mechanics& mechanics, reading::DisplayForms& forms
 
 // Only on explicit request: another form of equations that `all` shows already.
 void add_routh(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, const std::vector<std::string>& show,
-               std::vector<print::Item>& items, std::vector<std::string>& notes) {
+               std::vector<print::PrintedFormula>& items, std::vector<std::string>& notes) {
   if (std::find(show.begin(), show.end(), "routh") == show.end()) return;
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const std::vector<std::uint32_t> cyclic =
@@ -98,14 +98,14 @@ void add_routh(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, co
   if (cyclic.empty()) notes.emplace_back("no coordinate is cyclic: there is nothing to reduce");
   if (form.is_unexpanded)
     notes.emplace_back("the reduction is too long to be written out, or the momenta do not give the rates");
-  for (print::Item& item : print::render_routh(mechanics, form)) items.push_back(std::move(item));
+  for (print::PrintedFormula& item : print::render_routh(mechanics, form)) items.push_back(std::move(item));
 }
 
 // Only on explicit request: n^2 entries of four matrices, twice.
 void add_linear(const mechanics::Mechanics& mechanics, reading::DisplayForms& forms, const std::vector<std::string>& show,
-                std::vector<print::Item>& items) {
+                std::vector<print::PrintedFormula>& items) {
   if (std::find(show.begin(), show.end(), "linear") == show.end()) return;
-  for (print::Item& item : print::render_linear(mechanics, forms.linear())) items.push_back(std::move(item));
+  for (print::PrintedFormula& item : print::render_linear(mechanics, forms.linear())) items.push_back(std::move(item));
 }
 
 system::Approach approach_to_show(const mechanics::Mechanics& m) {

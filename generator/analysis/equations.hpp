@@ -29,7 +29,7 @@ struct Multiplier {
 
 struct Equations {
   system::Approach approach = system::Approach::two;
-  std::vector<print::Item> items;
+  std::vector<print::PrintedFormula> items;
   std::vector<work::LeftOut> left_out;
   std::vector<Multiplier> multipliers;  // if forces are shown
   std::vector<std::string> notes;       // reasons why a requested result is empty

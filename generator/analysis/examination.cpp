@@ -17,7 +17,7 @@
 namespace eomgen::analysis {
 namespace {
 
-print::Item item_of(const mechanics::Mechanics& m, symbolic::Ref expression) {
+print::PrintedFormula item_of(const mechanics::Mechanics& m, symbolic::Ref expression) {
   return print::render_expression(m, "", "", expression);
 }
 std::string shown(const mechanics::Mechanics& m, symbolic::Ref expression) { return item_of(m, expression).text; }
@@ -103,7 +103,7 @@ void add_contacts(const mechanics::Mechanics& m, Examination& found) {
 }
 
 void add_singular(const mechanics::Mechanics& m, Examination& found) {
-  for (const print::Item& item : print::render_singular(m)) {
+  for (const print::PrintedFormula& item : print::render_singular(m)) {
     if (item.left_out.empty())
       found.singular.push_back({item, item.role});
     else

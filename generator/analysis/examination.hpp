@@ -46,7 +46,7 @@ struct ExaminedJoint {
 
 struct ExaminedForce {
   std::string name, conservative;  // "yes", "no", "unknown"
-  std::optional<print::Item> potential;
+  std::optional<print::PrintedFormula> potential;
   std::vector<std::string> domain;  // conditions under which the potential is valid
   bool many_valued = false, in_energy = false;
   std::string reason;
@@ -60,12 +60,12 @@ struct ExaminedContact {
 
 struct ExaminedConserved {
   std::string name, title;
-  print::Item expression;
+  print::PrintedFormula expression;
   std::string certainty;  // "proven" or "numerical"
 };
 
 struct ExaminedSet {
-  print::Item set;
+  print::PrintedFormula set;
   std::string approach;  // "I", "II", "both"
 };
 

@@ -117,7 +117,7 @@ auto writing(Write write) {
     return write();
   } catch (const std::system_error& error) {  // the writer belongs to the runtime, which has no Error
     throw Error("cli", {}, error.what(), "see to space on that disk and to your rights there",
-                emit::fault_of_writing(error.code()));
+                emit::write_fault(error.code()));
   }
 }
 

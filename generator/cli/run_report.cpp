@@ -103,7 +103,7 @@ std::string watched(const pipeline::Simulation& simulation) {
 Json RunReport::json() const {
   const auto& [derived_model, scene, program, certificate, code, result, charts] = simulation;
   const pipeline::Derived& derived = *derived_model;
-  const emit::Compiled& compiled = code.compiled();
+  const emit::CompiledModel& compiled = code.compiled();
   const pipeline::Timings& seconds = derived.seconds;
   Json final = Json::object(), invariants = Json::object(), events = Json::array(), kinks = Json::array();
   for (const auto& [name, value] : result.final) {
@@ -185,7 +185,7 @@ Json RunReport::json() const {
 std::string RunReport::text() const {
   const auto& [derived_model, scene, program, certificate, code, result, charts] = simulation;
   const pipeline::Derived& derived = *derived_model;
-  const emit::Compiled& compiled = code.compiled();
+  const emit::CompiledModel& compiled = code.compiled();
   const pipeline::Timings& seconds = derived.seconds;
   std::string out =
       line("model", fmt::format("{}, scene {}, t = {} to {}", derived.model.id, scene.name, scene.t0, scene.t1));

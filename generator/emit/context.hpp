@@ -39,13 +39,13 @@ struct TestVector {
   std::vector<FunctionValues> functions;  // rhs first
 };
 
-struct EventText {
+struct EventDescription {
   std::string name, direction, action;
 };
 
 /// Data that a program needs to run the model as `run` does: the default scene, whose code is described, and the output
 /// indices of the columns of its table.
-struct RunText {
+struct RunDescription {
   std::shared_ptr<const eom::hybrid::Problem> problem;
   std::vector<std::size_t> columns;
   std::vector<std::uint32_t> beyond_range = {};  // coordinates of the model that may leave their range
@@ -61,12 +61,12 @@ struct EmissionContext {
   std::vector<Quantity> inputs;       // the array u
   std::vector<Quantity> integrals;    // all of the model; those in Program::integrals are states after the velocities
   std::string start_parameter;        // name of the parameter for the start time; empty if none
-  std::vector<EventText> events;      // all of the model, in declared order
+  std::vector<EventDescription> events;      // all of the model, in declared order
   std::vector<std::string> singular;  // "sin(phi) = 0"
   double start_time = 0;
   std::vector<double> start;  // x at the start of the default scene
   std::vector<TestVector> tests;
-  std::shared_ptr<const RunText> run = {};  // if requested
+  std::shared_ptr<const RunDescription> run = {};  // if requested
   std::optional<double> single_error = {};  // error in single precision, if requested (single_precision.hpp)
 };
 

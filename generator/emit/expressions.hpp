@@ -18,26 +18,26 @@ class Expressions {
  public:
   /// Text and its operator precedence.
   struct Expression {
-    enum Binding : std::uint8_t { sum, product, atom };
+    enum Precedence : std::uint8_t { sum, product, atom };
     std::string text;
-    Binding binding = atom;
+    Precedence precedence = atom;
   };
 
   Expressions(const program::Function& function, const ModelNames& names, const Dialect& dialect);
 
-  Expression of(const program::Instruction& instruction);
-  Expression size_of(const program::Operand& operand) const;
+  Expression print(const program::Instruction& instruction);
+  Expression unsigned_value(const program::Operand& operand) const;
   Expression signed_value(const program::Operand& operand) const;
   /// The operand as a lane vector if the dialect has lanes; numbers are broadcast.
   Expression in_lanes(const program::Operand& operand, bool with_sign = false) const;
   /// Sets the text for the value of instruction `index`.
   void set(std::size_t index, Expression value) { value_[index] = std::move(value); }
 
-  const std::set<std::string>& called() const { return called_; }  // called functions of the C library
-  void call(const std::string& name) { called_.insert(name); }
+  const std::set<std::string>& library_calls() const { return library_calls_; }  // called functions of the C library
+  void call(const std::string& name) { library_calls_.insert(name); }
 
  private:
-  std::optional<Expression> of_lanes(const program::Instruction& instruction);
+  std::optional<Expression> print_lanes(const program::Instruction& instruction);
   Expression call(const std::string& name, const std::vector<program::Operand>& operands);
   Expression rounded(Expression value) const;
   std::string first_factor(const program::Operand& operand) const;
@@ -48,7 +48,7 @@ class Expressions {
   const ModelNames& names_;
   const Dialect& dialect_;
   std::vector<Expression> value_;
-  std::set<std::string> called_;
+  std::set<std::string> library_calls_;
 };
 
 }  // namespace eomgen::emit

@@ -36,7 +36,7 @@ class Parts {
   std::vector<FilePart> run() {
     for (const Function& function : program_.functions) {
       if (program_.charts.empty()) {
-        parts_.push_back({function.name, purpose(function.name), &function, false, "", ""});
+        parts_.push_back({function.name, function_purpose(function.name), &function, false, "", ""});
         continue;
       }
       in_each_chart(function.name);
@@ -53,8 +53,8 @@ class Parts {
  private:
   const Program* next(const Program* p) const {  // the program itself, then its chart variants
     if (p == nullptr) return &program_;
-    const std::size_t k = p == &program_ ? 0 : static_cast<std::size_t>(p - program_.second.data()) + 1;
-    return k < program_.second.size() ? &program_.second[k] : nullptr;
+    const std::size_t k = p == &program_ ? 0 : static_cast<std::size_t>(p - program_.chart_variants.data()) + 1;
+    return k < program_.chart_variants.size() ? &program_.chart_variants[k] : nullptr;
   }
 
   void in_each_chart(const std::string& name) {
@@ -80,12 +80,12 @@ class Parts {
     const std::string& name = function.name;
     const std::vector<Argument> list = abi_arguments(name);
     if (is_without_mode(name)) {
-      add(name, purpose(name) + " In the own charts.", argument_list(list, real_),
+      add(name, function_purpose(name) + " In the own charts.", argument_list(list, real_),
           fmt::format("  return {};\n", call(program_, name, list)));
-      add(name + "_in", purpose(name + "_in"), argument_list(abi_arguments(name + "_in"), real_), by_mode(name, list));
+      add(name + "_in", function_purpose(name + "_in"), argument_list(abi_arguments(name + "_in"), real_), by_mode(name, list));
       return;
     }
-    add(name, purpose(name), argument_list(list, real_), by_mode(name, list));
+    add(name, function_purpose(name), argument_list(list, real_), by_mode(name, list));
   }
 
   std::string by_mode(const std::string& name, const std::vector<Argument>& list) {
@@ -116,7 +116,7 @@ class Parts {
                           offset > 0 ? fmt::format(" + {}", offset) : "");
       offset += entries;
     }
-    add("prepare", purpose("prepare"), argument_list(abi_arguments("prepare"), real_), body + "  return code;\n");
+    add("prepare", function_purpose("prepare"), argument_list(abi_arguments("prepare"), real_), body + "  return code;\n");
   }
 
   /// Changes charts, one bit of `mode` at a time.
@@ -137,7 +137,7 @@ class Parts {
           "{1}to_own_{2}(y, y);\n",
           bit, prefix_, j + 1);
     }
-    add("chart", purpose("chart"), argument_list(abi_arguments("chart"), real_), body + "  return code;\n");
+    add("chart", function_purpose("chart"), argument_list(abi_arguments("chart"), real_), body + "  return code;\n");
   }
 
   void add(const std::string& name, const std::string& what, const std::string& arguments, const std::string& body) {

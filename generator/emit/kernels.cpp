@@ -10,7 +10,7 @@ namespace eomgen::emit {
 
 std::string sincos_lanes(const std::string& prefix, const std::string& linkage, const std::string& standard,
                          bool single) {
-  return rendered(single ? skeleton::kernels_sincos_lanes_single : skeleton::kernels_sincos_lanes,
+  return render_template(single ? skeleton::kernels_sincos_lanes_single : skeleton::kernels_sincos_lanes,
                   {{"prefix", prefix}, {"inline", linkage}, {"std", standard}}, {});
 }
 
@@ -26,7 +26,7 @@ std::string sincos_kernel(const std::string& prefix, const std::string& linkage,
   values.emplace_back("reach", single ? "2048.0f" : "65536.0");
   values.emplace_back("kept", single ? "FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16"
                                      : "FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 16");
-  return rendered(skeleton::kernels_sincos, values, {});
+  return render_template(skeleton::kernels_sincos, values, {});
 }
 
 }  // namespace eomgen::emit

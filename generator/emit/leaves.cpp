@@ -23,7 +23,7 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
     case Slot::contact: {
       std::string digit = fmt::format("({} & {})", names.mode, eom::contact_bits);
       for (std::uint32_t j = 0; j < i / 2; ++j) digit += fmt::format("/{}", eom::contact_states);
-      if (!dialect.typed) digit = fmt::format("({} | 0)", digit);  // JavaScript has no integer division
+      if (!dialect.is_typed) digit = fmt::format("({} | 0)", digit);  // JavaScript has no integer division
       const std::string one = dialect.constant(1);
       if (i % 2 == 1)
         return fmt::format("{0} % {1} < {2} ? {3} : -{3}", digit, eom::contact_states, eom::contact_states / 2, one);
@@ -37,7 +37,7 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
     case Slot::side: {  // two bits per kink: frozen above its surface, frozen below
       const std::size_t bit = program::first_kink_bit + 2 * i;
       const std::string side = fmt::format("(({0} >> {1} & 1) - ({0} >> {2} & 1))", names.mode, bit, bit + 1);
-      if (!dialect.typed) return side;
+      if (!dialect.is_typed) return side;
       return dialect.using_std ? dialect.real + side : fmt::format("({}){}", dialect.real, side);
     }
     default: break;
@@ -49,7 +49,7 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
 std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context, const std::string& block, Slot slot,
                           std::uint32_t i, bool takes_inputs) {
   const auto entry = [&](int array) {
-    return fmt::format("{}at({}, {}, {})", dialect.lanes, block, array, i);
+    return fmt::format("{}at({}, {}, {})", dialect.lane_prefix, block, array, i);
   };  // loads an entry of the arrays t, x, p, w, u
   switch (slot) {
     case Slot::time: return entry(0);
@@ -58,13 +58,13 @@ std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context
     case Slot::prepared: return entry(3);
     case Slot::input:
       return takes_inputs ? entry(4)
-                          : fmt::format("{}all({})", dialect.lanes, dialect.value(context.inputs.at(i).value));
+                          : fmt::format("{}all({})", dialect.lane_prefix, dialect.value(context.inputs.at(i).value));
     case Slot::contact: {
       int power = 1;
       for (std::uint32_t j = 0; j < i / 2; ++j) power *= eom::contact_states;
-      return fmt::format("{}{}({}, {})", dialect.lanes, i % 2 == 1 ? "presses" : "slides", block, power);
+      return fmt::format("{}{}({}, {})", dialect.lane_prefix, i % 2 == 1 ? "presses" : "slides", block, power);
     }
-    case Slot::side: return fmt::format("{}side({}, {})", dialect.lanes, block, program::first_kink_bit + 2 * i);
+    case Slot::side: return fmt::format("{}side({}, {})", dialect.lane_prefix, block, program::first_kink_bit + 2 * i);
     default: break;
   }
   throw std::logic_error("this operand is no leaf");
@@ -78,14 +78,14 @@ bool takes_inputs(const std::string& function) {
 
 }  // namespace
 
-std::vector<Loaded> loaded(const std::string& function, const Leaves& leaves, const ModelNames& names,
+std::vector<LeafLoads> leaf_loads(const std::string& function, const Leaves& leaves, const ModelNames& names,
                            const EmissionContext& context, const Dialect& dialect, const std::string& block) {
-  const bool lanes = !dialect.lanes.empty(), inputs = takes_inputs(function);
-  std::vector<Loaded> result;
+  const bool lanes = !dialect.lane_prefix.empty(), inputs = takes_inputs(function);
+  std::vector<LeafLoads> result;
   for (const Slot slot :
        {Slot::time, Slot::prepared, Slot::state, Slot::parameter, Slot::contact, Slot::input, Slot::side}) {
     if ((slot == Slot::time || slot == Slot::prepared) && !lanes) continue;
-    Loaded of{slot, {}};
+    LeafLoads of{slot, {}};
     for (const auto& [leaf_slot, i] : leaves) {
       if (leaf_slot != slot) continue;
       of.values.emplace_back(i, lanes ? leaf_of_lanes(dialect, context, block, slot, i, inputs)

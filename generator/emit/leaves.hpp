@@ -13,14 +13,14 @@
 namespace eomgen::emit {
 
 /// The leaves of one kind and their values.
-struct Loaded {
+struct LeafLoads {
   program::Slot slot;
   std::vector<std::pair<std::uint32_t, std::string>> values;  // never empty
 };
 
 /// The leaves of a function that need a name, and the expressions that load them: from the arguments of one state, or
 /// from the lanes of `block` (templates/batch) if the dialect has lanes.
-std::vector<Loaded> loaded(const std::string& function, const Leaves& leaves, const ModelNames& names,
+std::vector<LeafLoads> leaf_loads(const std::string& function, const Leaves& leaves, const ModelNames& names,
                            const EmissionContext& context, const Dialect& dialect, const std::string& block);
 
 }  // namespace eomgen::emit

@@ -98,9 +98,9 @@ std::vector<std::string> banner_lines(const program::Program& program, const Emi
   if (program.taylor) {
     lines.push_back(fmt::format("taylor      {} once, {} at each order, and {} sums of products",
                                 operations_text(program.taylor->start.operations),
-                                operations_text(program.taylor->next.operations), program.taylor->products));
+                                operations_text(program.taylor->next.operations), program.taylor->product_count));
   }
-  for (const program::Program& other : program.second) {
+  for (const program::Program& other : program.chart_variants) {
     for (const program::Function& function : other.functions) {
       lines.push_back(fmt::format("{:11} {} in {}", function.name == "rhs_prepared" ? "rhs after" : function.name,
                                   operations_text(function.operations), chart_title(program, other.in_charts)));
@@ -190,7 +190,7 @@ void add_charts(const program::Program& program, const EmissionContext& context,
   }
   if (program.charts.empty()) return;
   info["chart_modes"] = {0};
-  for (const program::Program& other : program.second) {
+  for (const program::Program& other : program.chart_variants) {
     info["chart_modes"].push_back(other.in_charts);
     json operations = json::object();
     std::set<std::uint32_t> given;
@@ -198,7 +198,7 @@ void add_charts(const program::Program& program, const EmissionContext& context,
       const program::Operations& o = function.operations;
       operations[function.name] = {{"add", o.add},   {"mul", o.mul},   {"div", o.div},
                                    {"sqrt", o.sqrt}, {"trig", o.trig}, {"other", o.other}};
-      if (function.name == "outputs") given.insert(function.places.begin(), function.places.end());
+      if (function.name == "outputs") given.insert(function.result_indices.begin(), function.result_indices.end());
     }
     info["chart_operations"].push_back(operations);
     json own = json::array();
@@ -240,7 +240,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["outputs"] = program.outputs;
   info["reactions"] = program.reactions;
   for (std::size_t i = 0; i < program.events.size(); ++i) {
-    const EventText& event = context.events.at(i);
+    const EventDescription& event = context.events.at(i);
     info["events"].push_back({{"name", event.name}, {"direction", event.direction}, {"action", event.action}});
   }
   for (std::size_t k = 0; k < program.kinks.size(); ++k) {
@@ -285,8 +285,8 @@ std::string defaults_body(const program::Program& program, const EmissionContext
         dialect.line_comments ? "  // " + comment_text(name) : "  /* " + comment_text(name) + " */";
     result += fmt::format("  {}[{}] = {};{}\n", array, i, dialect.value(value), remark);
   };
-  if (dialect.typed && x.empty()) result += "  (void)x;\n";
-  if (dialect.typed && context.parameters.empty()) result += "  (void)p;\n";
+  if (dialect.is_typed && x.empty()) result += "  (void)x;\n";
+  if (dialect.is_typed && context.parameters.empty()) result += "  (void)p;\n";
   for (std::size_t i = 0; i < x.size(); ++i) entry("x", i, context.start[i], x[i].name);
   for (std::size_t i = 0; i < context.parameters.size(); ++i) {
     entry("p", i, context.parameters[i].value, context.parameters[i].name);
@@ -295,7 +295,7 @@ std::string defaults_body(const program::Program& program, const EmissionContext
   return result;
 }
 
-std::string purpose(const std::string& function) {
+std::string function_purpose(const std::string& function) {
   const abi::Function* found = abi::find(function);
   return found == nullptr ? function : found->purpose;
 }

@@ -23,10 +23,10 @@ std::string info_json(const program::Program& program, const EmissionContext& co
 std::string defaults_body(const program::Program& program, const EmissionContext& context, const Dialect& dialect);
 
 /// The purpose of a function of the ABI, as a sentence.
-std::string purpose(const std::string& function);
+std::string function_purpose(const std::string& function);
 
 /// Fills in a skeleton of templates/. Values are code and are not escaped.
-std::string rendered(const std::string& skeleton, const std::vector<std::pair<std::string, std::string>>& values,
+std::string render_template(const std::string& skeleton, const std::vector<std::pair<std::string, std::string>>& values,
                      const std::vector<std::vector<std::pair<std::string, std::string>>>& functions);
 
 /// Throws Error if names and numbers in `context` do not match the program.

@@ -33,7 +33,7 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
   }
   for (const Quantity& q : context.parameters) names.parameters.push_back(table.declare(q.name));
   for (const Quantity& q : context.inputs) names.inputs.push_back(table.declare(q.name));
-  names.arguments_t = table.declare("t");
+  names.time = table.declare("t");
   names.x = table.declare("x");
   names.p = table.declare("p");
   names.w = table.declare("w");

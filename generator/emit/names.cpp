@@ -128,7 +128,7 @@ bool is_reserved(const std::string& name) {
          std::any_of(std::begin(macro_prefixes), std::end(macro_prefixes), begins);
 }
 
-std::span<const std::string_view> javascript_words() { return javascript; }
+std::span<const std::string_view> javascript_reserved_words() { return javascript; }
 
 std::string identifier(const std::string& text) {
   std::string result;

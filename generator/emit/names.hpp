@@ -17,7 +17,7 @@ bool is_reserved(const std::string& name);
 std::string identifier(const std::string& text);
 
 /// Reserved words of JavaScript, and names in pages and modules, that C and C++ do not reserve.
-std::span<const std::string_view> javascript_words();
+std::span<const std::string_view> javascript_reserved_words();
 
 /// Identifiers of one scope. `declare` returns the wanted name, with trailing underscores if it is taken.
 class NameTable {

@@ -7,18 +7,18 @@ namespace eomgen::emit {
 namespace {
 
 // Maximum number of instructions of an undivided function, and of a part.
-constexpr std::size_t longest_function = 3000, longest_part = 1000;
+constexpr std::size_t max_function_length = 3000, max_part_length = 1000;
 
 }  // namespace
 
-std::vector<std::size_t> parts_of(const program::Function& function) {
+std::vector<std::size_t> assign_parts(const program::Function& function) {
   const auto& code = function.code;
   std::vector<std::size_t> part(code.size(), 0);
-  if (code.size() <= longest_function) return part;
+  if (code.size() <= max_function_length) return part;
   std::size_t now = 0;
   for (std::size_t i = 0, since = 0; i < code.size(); ++i, ++since) {
     const bool together = i > 0 && code[i].pack != 0 && code[i].pack == code[i - 1].pack;
-    if (since >= longest_part && !together) {
+    if (since >= max_part_length && !together) {
       ++now;
       since = 0;
     }
@@ -27,7 +27,7 @@ std::vector<std::size_t> parts_of(const program::Function& function) {
   return part;
 }
 
-std::string calls_of_parts(const std::string& name, const FunctionText& text, const std::string& arguments,
+std::string part_calls(const std::string& name, const FunctionText& text, const std::string& arguments,
                            const std::string& real) {
   std::string result = fmt::format("  {} {}[{}];\n", real, text.work, text.work_size);
   for (std::size_t k = 1; k <= text.parts.size(); ++k) {

@@ -10,10 +10,10 @@
 namespace eomgen::emit {
 
 /// The part of each instruction; sines and cosines that are computed together stay in one part.
-std::vector<std::size_t> parts_of(const program::Function& function);
+std::vector<std::size_t> assign_parts(const program::Function& function);
 
 /// Calls "NAME_part2(t, x, .., work)" of every part, with a return if a part does not return 0.
-std::string calls_of_parts(const std::string& name, const FunctionText& text, const std::string& arguments,
+std::string part_calls(const std::string& name, const FunctionText& text, const std::string& arguments,
                            const std::string& real);
 
 }  // namespace eomgen::emit

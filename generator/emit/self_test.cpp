@@ -24,10 +24,10 @@ constexpr double relative_tolerance = 1e-11, single_relative_tolerance = 1e-5;
 // The range of normal numbers of single precision, with a margin.
 constexpr double single_least_number = 1e-37, single_largest_number = 1e37;
 // Safety factor on the first-order rounding bound.
-constexpr double caution = 16;
+constexpr double safety_factor = 16;
 constexpr int taylor_order = 4;
 // Limit of values per function. The second vector is always tested, the others while they fit.
-constexpr std::size_t most_values = 3000;
+constexpr std::size_t max_values = 3000;
 
 std::vector<cln::cl_R> exact(const std::vector<double>& values) {
   std::vector<cln::cl_R> result;
@@ -65,8 +65,8 @@ std::optional<FunctionValues> rounded(const std::string& function, const program
     }
     // Tolerances are rounded up to two digits.
     const double tolerance =
-        single ? std::max({single_relative_tolerance * largest, single_by_double * caution * off, single_least_number})
-               : std::max({relative_tolerance * largest, caution * off, least_number});
+        single ? std::max({single_relative_tolerance * largest, single_to_double_ulp * safety_factor * off, single_least_number})
+               : std::max({relative_tolerance * largest, safety_factor * off, least_number});
     values.tolerances.push_back(std::stod(fmt::format("{:.1e}", 1.05 * tolerance)));
   }
   return values;
@@ -76,7 +76,7 @@ std::optional<FunctionValues> values_at(const program::Program& program, const s
                                         const program::AbiArguments& arguments, bool single) {
   const std::optional<program::AbiResults> results = program::abi_values(program, function, arguments, digits);
   if (!results) return std::nullopt;
-  return rounded(function, *results, program::abi_bounds(program, function, arguments), single);
+  return rounded(function, *results, program::abi_error_bounds(program, function, arguments), single);
 }
 
 std::size_t entries(const program::Program& program, const std::string& function) {
@@ -89,7 +89,7 @@ std::size_t entries(const program::Program& program, const std::string& function
   return count;
 }
 
-bool is_held(std::size_t count, std::size_t index) { return (index + 1) * count <= most_values || index == 1; }
+bool is_held(std::size_t count, std::size_t index) { return (index + 1) * count <= max_values || index == 1; }
 
 /// The state in other charts, bit by bit as in NAME_chart.
 void add_charts(const program::Program& program, const program::AbiArguments& arguments, bool single,
@@ -156,7 +156,7 @@ class Body {
         if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
       }
     }
-    for (const auto& [function, to] : keys) hold(function, to);
+    for (const auto& [function, to] : keys) check_function(function, to);
     return text_ + "  return 0;";
   }
 
@@ -204,7 +204,7 @@ class Body {
     if (!starts_) return;
     const std::size_t n = program_.state_count(), count = context_.parameters.size();
     text_ += fmt::format("  {{\n    {} x[{}], p[{}];\n    int i;\n    {}(x, p);\n", real_, n,
-                         std::max<std::size_t>(1, count), names_.called("defaults"));
+                         std::max<std::size_t>(1, count), names_.function_name("defaults"));
     text_ +=
         fmt::format("    for (i = 0; i < {}; ++i) {{\n      if (!(x[i] == points[0][1 + i])) return 1;\n    }}\n", n);
     if (count > 0)
@@ -227,7 +227,7 @@ class Body {
     return rows;
   }
 
-  void hold(const std::string& function, int to) {
+  void check_function(const std::string& function, int to) {
     const std::vector<Row> rows = rows_of(function, to);
     std::string numbers, states;
     for (const Row& row : rows) {
@@ -259,15 +259,15 @@ class Body {
     const std::size_t prepared = program_.prepared_count();
     if (abi::find(function)->has_input(abi::Input::prepared))
       text_ += fmt::format("      {} w[{}];\n      if ({}(point + {}, w) != 0) return state + 1;\n", real_, prepared,
-                           names_.called("prepare"), at_p_);
-    text_ += wrapped(fmt::format("      if ({}({}{}) != 0) return state + 1;", names_.called(function),
+                           names_.function_name("prepare"), at_p_);
+    text_ += wrapped(fmt::format("      if ({}({}{}) != 0) return state + 1;", names_.function_name(function),
                                  arguments(function, to), arrays),
                      "          ") +
              "\n";
     std::size_t place = 0;
     for (std::size_t r = 0; r < shape.size(); ++r) {
       if (!shape[r].empty())
-        text_ += fmt::format("      if ({}({}, y{}, expected[k] + {})) return state + 1;\n", names_.differs,
+        text_ += fmt::format("      if ({}({}, y{}, expected[k] + {})) return state + 1;\n", names_.comparison,
                              shape[r].size(), r + 1, place);
       place += 1 + shape[r].size();
     }
@@ -293,8 +293,8 @@ class Body {
     }
     // At the first state the inputs have their defaults, as with a null pointer.
     const std::string given = fmt::format("point + {}", at_u_);
-    return context_.inputs.empty() ? names_.null
-           : starts_               ? fmt::format("state > 0 ? {} : {}", given, names_.null)
+    return context_.inputs.empty() ? names_.null_pointer
+           : starts_               ? fmt::format("state > 0 ? {} : {}", given, names_.null_pointer)
                                    : given;
   }
 
@@ -345,7 +345,7 @@ std::string selftest_comparison(const EmissionContext& context, const SelfTestNa
       "{}\n{} int {}(int count, const {}* got, const {}* expected){}{{\n  for (int i = 0; i < count; ++i) {{\n"
       "    if (!({}(got[i] - expected[i + 1]) <= expected[0])) return 1;\n  }}\n  return 0;\n}}\n\n",
       comment(dialect, "Whether values differ from the expected ones by more than expected[0]."),
-      dialect.line_comments ? "inline" : "static", names.differs, real_of(context, dialect), real_of(context, dialect),
+      dialect.line_comments ? "inline" : "static", names.comparison, real_of(context, dialect), real_of(context, dialect),
       dialect.line_comments ? " " : "\n", dialect.line_comments ? "std::fabs" : "fabs");
 }
 

@@ -20,9 +20,9 @@ std::optional<TestVector> test_vector(const program::Program& program, const Emi
 
 /// Names that differ between C and C++.
 struct SelfTestNames {
-  std::function<std::string(const std::string&)> called;  // name of a function of the ABI in code: "NAME_rhs"
-  std::string differs;                                    // name of the comparison function
-  std::string null;
+  std::function<std::string(const std::string&)> function_name;  // name of a function of the ABI in code: "NAME_rhs"
+  std::string comparison;                                    // name of the comparison function
+  std::string null_pointer;
 };
 
 std::string selftest_body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names,

@@ -26,7 +26,7 @@ std::vector<abi::Input> inputs_of(const std::string& function) {
 Argument argument(abi::Input input, const ModelNames& names) {
   using Kind = Argument::Kind;
   switch (input) {
-    case abi::Input::time: return {Kind::number, Slot::time, names.arguments_t};
+    case abi::Input::time: return {Kind::number, Slot::time, names.time};
     case abi::Input::state: return {Kind::input, Slot::state, names.x};
     case abi::Input::parameters: return {Kind::input, Slot::parameter, names.p};
     case abi::Input::prepared: return {Kind::input, Slot::prepared, names.w};
@@ -92,7 +92,7 @@ std::string argument_names(const program::Function& function, const FunctionText
   return list;
 }
 
-std::vector<std::string> unused(const program::Function& function, const FunctionText& text, const ModelNames& names,
+std::vector<std::string> unread_arguments(const program::Function& function, const FunctionText& text, const ModelNames& names,
                                 const Leaves& leaves) {
   const auto is_read = [&](Slot slot) {
     return slot != Slot::constant &&
@@ -109,7 +109,7 @@ std::vector<std::string> unused(const program::Function& function, const Functio
   return result;
 }
 
-std::string ignored(const std::vector<std::string>& names) {
+std::string void_casts(const std::vector<std::string>& names) {
   std::string result;
   for (const std::string& name : names) result += fmt::format("{}(void){};", result.empty() ? "  " : " ", name);
   return result.empty() ? "" : result + "\n";

@@ -20,7 +20,7 @@ namespace eomgen::emit {
 namespace {
 
 constexpr int many_digits = 40;
-constexpr double pivot_tolerance = single_by_double * program::pivot_tolerance;
+constexpr double pivot_tolerance = single_to_double_ulp * program::pivot_tolerance;
 constexpr float least_pivot = static_cast<float>(pivot_tolerance);
 
 double rounded(double value) { return static_cast<double>(static_cast<float>(value)); }
@@ -90,7 +90,7 @@ std::string literal(double value) {
 
 }  // namespace
 
-double single_number(double value) {
+double to_single(double value) {
   require_place(value);
   const std::string text = decimal(value);
   float number = 0;
@@ -98,7 +98,7 @@ double single_number(double value) {
   return static_cast<double>(number);
 }
 
-void make_single(const program::Program& program, EmissionContext& context) {
+void convert_to_single(const program::Program& program, EmissionContext& context) {
   for (const Quantity& p : context.parameters) require_place(p.value, fmt::format("parameter {} =", p.name));
   context.single_error = 0;
   std::vector<TestVector> tests;
@@ -126,8 +126,8 @@ Dialect single_dialect() {
   dialect.constant = [](const symbolic::Rational& value) { return literal(nearest_double(value)); };
   dialect.value = literal;
   dialect.pi = "3.14159265f";
-  dialect.absolute = "fabs";  // from tgmath.h, like all functions
-  dialect.reach = "2048.0f";
+  dialect.abs_function = "fabs";  // from tgmath.h, like all functions
+  dialect.sincos_range = "2048.0f";
   dialect.pivot_tolerance = pivot_tolerance;
   return dialect;
 }

@@ -10,14 +10,14 @@
 namespace eomgen::emit {
 
 /// The ratio of the unit in the last place of single precision to that of double precision.
-inline constexpr double single_by_double = 536870912;  // 2^29
+inline constexpr double single_to_double_ulp = 536870912;  // 2^29
 
 /// Sets EmissionContext::single_error: the largest error at the states of the self-test, relative to the largest entry
 /// of each array. Throws Error{stage "emit"} if the right-hand side has no value in single precision at any of them.
-void make_single(const program::Program& program, EmissionContext& context);
+void convert_to_single(const program::Program& program, EmissionContext& context);
 
 /// The number to which C rounds this one in single precision. Throws Error{stage "emit"} if it overflows.
-double single_number(double value);
+double to_single(double value);
 
 /// The dialect of C in single precision.
 Dialect single_dialect();

@@ -25,7 +25,7 @@ using symbolic::Op;
 using Expression = Expressions::Expression;
 
 // Shorter values that are used once are printed inline.
-constexpr std::size_t longest_inline = 64;
+constexpr std::size_t max_inline_length = 64;
 
 // Return code of a function that assumed small angles and found a large one.
 constexpr int code_too_far = -1;
@@ -38,12 +38,12 @@ class Printer {
         context_(context),
         dialect_(dialect),
         expressions_(function, names, dialect),
-        uses_(uses_of(function)) {}
+        uses_(count_uses(function)) {}
 
   FunctionText run() {
     const auto& code = function_.code;
     const bool packs = std::any_of(code.begin(), code.end(), [](const Instruction& i) { return i.pack > 0; });
-    text_.near_first = packs && dialect_.near_first && is_rhs();
+    text_.near_angles_first = packs && dialect_.near_angles_first && is_rhs();
     declare_names();
     declare_work();
     test_ready(-1);
@@ -54,10 +54,10 @@ class Printer {
     }
     write_results();
     if (parts() == 1)
-      text_.body = (in_lanes() ? fine_begins(0) : unused_arguments() + using_declarations()) + loads(0) + body_;
+      text_.body = (in_lanes() ? initial_lane_mask(0) : unused_arguments() + using_declarations()) + loads(0) + body_;
     else
       close_part(parts() - 1);
-    if (in_lanes()) text_.library = expressions_.called();
+    if (in_lanes()) text_.library = expressions_.library_calls();
     return std::move(text_);
   }
 
@@ -66,13 +66,13 @@ class Printer {
     for (const auto* list : {&names_.sides, &names_.contacts, &names_.state, &names_.parameters, &names_.inputs}) {
       for (const std::string& name : *list) table_.declare(name);
     }
-    for (const std::string& name : {names_.arguments_t, names_.x, names_.p, names_.w, names_.u, names_.mode})
+    for (const std::string& name : {names_.time, names_.x, names_.p, names_.w, names_.u, names_.mode})
       table_.declare(name);
-    if (text_.near_first) text_.guarded = guarded_ = table_.declare("guarded");
+    if (text_.near_angles_first) text_.guarded = guarded_ = table_.declare("guarded");
     if (in_lanes()) {
       text_.block = table_.declare("block");
-      text_.now = table_.declare("now");
-      fine_ = table_.declare("fine");
+      text_.block_index = table_.declare("now");
+      valid_lanes_ = table_.declare("fine");
     }
     for (const auto& result : function_.results) {
       if (!result.is_test()) text_.results.push_back(table_.declare(result.name));
@@ -89,9 +89,9 @@ class Printer {
     const bool last = part + 1 == parts();
     if (in_lanes()) {  // the first entry of the array passes the mask of valid lanes on
       const std::string hand_on =
-          last ? "" : fmt::format("  {}[0] = ({}){};\n  return 0;\n", text_.work, dialect_.real, fine_);
-      text_.parts.push_back(fmt::format("  (void){}; (void){}; (void){};\n", text_.block, text_.now, text_.work) +
-                            fine_begins(part) + loads(part) + body_ + hand_on);
+          last ? "" : fmt::format("  {}[0] = ({}){};\n  return 0;\n", text_.work, dialect_.real, valid_lanes_);
+      text_.parts.push_back(fmt::format("  (void){}; (void){}; (void){};\n", text_.block, text_.block_index, text_.work) +
+                            initial_lane_mask(part) + loads(part) + body_ + hand_on);
     } else {
       text_.parts.push_back(all_arguments() + using_declarations() + loads(part) + body_ +
                             (last ? "" : "  return 0;\n"));
@@ -104,8 +104,8 @@ class Printer {
     const Instruction& instruction = function_.code[index];
     if (!instruction.section.empty()) section_ = instruction.section;
     if (instruction.pack > text_.packs) open_pack(index);
-    const Expression e = instruction.pack == 0 ? expressions_.of(instruction) : from_pack(instruction);
-    if (uses_.kept[index]) {
+    const Expression e = instruction.pack == 0 ? expressions_.print(instruction) : from_pack(instruction);
+    if (uses_.needed_later[index]) {
       const std::string place = fmt::format("{}[{}]", text_.work, kept_count_++);
       text_.work_size = kept_count_;
       line(fmt::format("{} = {};", place, e.text));
@@ -115,12 +115,12 @@ class Printer {
     std::string name = suggested_name(instruction.name, names_);
     const bool trig = instruction.op == Op::sin || instruction.op == Op::cos;
     if (name.empty() && trig) name = trig_name(function_, instruction, expressions_);
-    if (name.empty() && !trig && uses_.count[index] <= 1 && e.text.size() <= longest_inline) {
+    if (name.empty() && !trig && uses_.count[index] <= 1 && e.text.size() <= max_inline_length) {
       expressions_.set(index, e);
       return;
     }
     name = name.empty() ? fmt::format("v{}", ++temporaries_) : table_.declare(name);
-    line(fmt::format("{} {} = {};", dialect_.declares(), name, e.text));
+    line(fmt::format("{} {} = {};", dialect_.declaration_prefix(), name, e.text));
     expressions_.set(index, {name, Expression::atom});
   }
 
@@ -142,20 +142,20 @@ class Printer {
     cosine_ = declared("cosine");
     line(fmt::format("{0} {2}[{1}], {3}[{1}];", dialect_.real, angles.size(), sine_, cosine_));
     if (in_lanes()) return sincos_of_lanes(angles, declared("reach"));
-    if (!text_.near_first) return sincos_of(angles, "  ", "sincos", "");
+    if (!text_.near_angles_first) return sincos_of(angles, "  ", "sincos", "");
     const std::string reach = declared("reach");
-    line(fmt::format("{}lanes {} = {{0}};", dialect_.kernels, reach));
+    line(fmt::format("{}lanes {} = {{0}};", dialect_.kernel_prefix, reach));
     body_ += fmt::format("  if ({}) {{\n", guarded_);
     sincos_of(angles, "    ", "sincos", "");
     body_ += "  } else {\n";
     sincos_of(angles, "    ", "sincos_near", ", &" + reach);
-    body_ += fmt::format("    if (!{}is_near(&{})) return {};\n  }}\n", dialect_.kernels, reach, code_too_far);
+    body_ += fmt::format("    if (!{}is_near(&{})) return {};\n  }}\n", dialect_.kernel_prefix, reach, code_too_far);
   }
   void sincos_of(const std::vector<std::string>& angles, const std::string& indent, const std::string& function,
                  const std::string& more) {
     for (std::size_t i = 0; i < angles.size(); i += 2) {
       const std::string place = i == 0 ? "" : fmt::format(" + {}", i);
-      body_ += wrapped(fmt::format("{}{}{}({}, {}, {}{}, {}{}{});", indent, dialect_.kernels, function, angles[i],
+      body_ += wrapped(fmt::format("{}{}{}({}, {}, {}{}, {}{}{});", indent, dialect_.kernel_prefix, function, angles[i],
                                    angles[i + 1], sine_, place, cosine_, place, more),
                        indent + "    ") +
                "\n";
@@ -164,12 +164,12 @@ class Printer {
   void sincos_of_lanes(const std::vector<std::string>& angles, const std::string& reach) {
     body_ += fmt::format("  {} {} = {{0}};\n", dialect_.real, reach);
     for (std::size_t i = 0; i < angles.size(); ++i) {
-      body_ += wrapped(fmt::format("  {0}sincos({1}, &{2}[{4}], &{3}[{4}], &{5});", dialect_.lanes, angles[i], sine_,
+      body_ += wrapped(fmt::format("  {0}sincos({1}, &{2}[{4}], &{3}[{4}], &{5});", dialect_.lane_prefix, angles[i], sine_,
                                    cosine_, i, reach),
                        "      ") +
                "\n";
     }
-    require(fmt::format("{} <= {}", reach, dialect_.reach));
+    require(fmt::format("{} <= {}", reach, dialect_.sincos_range));
   }
   Expression from_pack(const Instruction& instruction) const {
     return {fmt::format("{}[{}]", instruction.op == Op::sin ? sine_ : cosine_, instruction.lane), Expression::atom};
@@ -199,16 +199,16 @@ class Printer {
       const bool exact = test.scale.slot == Slot::constant && function_.constants[test.scale.index] == 0;
       if (in_lanes()) {
         require(exact ? fmt::format("{} != {}", pivot, dialect_.constant(0))
-                      : fmt::format("{0}abs({1}) > {2}*{0}abs({3})", dialect_.lanes, pivot,
+                      : fmt::format("{0}abs({1}) > {2}*{0}abs({3})", dialect_.lane_prefix, pivot,
                                     dialect_.value(dialect_.pivot_tolerance), expressions_.in_lanes(test.scale).text));
       } else if (exact) {
         line(fmt::format("if ({} == {}) return 1;", pivot, dialect_.constant(0)));
       } else {
-        expressions_.call(dialect_.absolute);
+        expressions_.call(dialect_.abs_function);
         const std::string least =
-            dialect_.rounded(fmt::format("{}*{}({})", dialect_.value(dialect_.pivot_tolerance), dialect_.absolute,
-                                         expressions_.size_of(test.scale).text));
-        line(fmt::format("if ({}({}) <= {}) return 1;", dialect_.absolute, pivot, least));
+            dialect_.rounded(fmt::format("{}*{}({})", dialect_.value(dialect_.pivot_tolerance), dialect_.abs_function,
+                                         expressions_.unsigned_value(test.scale).text));
+        line(fmt::format("if ({}({}) <= {}) return 1;", dialect_.abs_function, pivot, least));
       }
     }
   }
@@ -225,7 +225,7 @@ class Printer {
       const bool optional = may_be_null(r);
       if (optional) body_ += fmt::format("  if ({}) {{\n", text_.results[r]);
       for (std::size_t i = 0; i < entries.size(); ++i) {
-        const std::size_t place = r > 0 || function_.places.empty() ? i : function_.places[i];
+        const std::size_t place = r > 0 || function_.result_indices.empty() ? i : function_.result_indices[i];
         line(fmt::format("{}{}[{}] = {};", optional ? "  " : "", text_.results[r], place,
                          expressions_.signed_value(entries[i]).text) +
              remark(r, place));
@@ -243,7 +243,7 @@ class Printer {
       sum = dialect_.rounded(fmt::format("{} + {}[{}]", sum, dx, i));
     // inf - inf and nan - nan are nan, which compares false
     const std::string finite = table_.declare("finite");
-    line(fmt::format("{} {} = {};", dialect_.declares(), finite, sum));
+    line(fmt::format("{} {} = {};", dialect_.declaration_prefix(), finite, sum));
     line(fmt::format("return {0} - {0} <= {1} ? 0 : 5;", finite, dialect_.constant(0)));
   }
 
@@ -256,7 +256,7 @@ class Printer {
         require(fmt::format("{} >= {}", expressions_.in_lanes(entry, true).text, dialect_.constant(0)));
     }
     for (std::size_t i = 0; is_rhs() && i < function_.results[0].entries.size(); ++i) {
-      const std::size_t place = function_.places.empty() ? i : function_.places[i];
+      const std::size_t place = function_.result_indices.empty() ? i : function_.result_indices[i];
       if (place >= names_.acceleration.size())
         finite += (finite.empty() ? "" : " + ") + expressions_.in_lanes(function_.results[0].entries[i], true).text;
     }
@@ -266,21 +266,21 @@ class Printer {
       require(fmt::format("{0} - {0} <= {1}", sum, dialect_.constant(0)));
     }
     const std::string place = table_.declare("place");
-    line(fmt::format("const struct {0}target* {1} = {0}place({2}, {3});", dialect_.lanes, place, text_.block, fine_));
+    line(fmt::format("const struct {0}target* {1} = {0}place({2}, {3});", dialect_.lane_prefix, place, text_.block, valid_lanes_));
     const std::string step = table_.declare("step");
     line(fmt::format("const size_t {0} = {1}->step;", step, place));
     for (std::size_t r = 0, k = 0; r < function_.results.size(); ++r) {
       const std::vector<Operand>& entries = function_.results[r].entries;
       if (function_.results[r].is_test()) continue;
       const std::string& to = text_.results[k];
-      body_ += fmt::format("  {}* const {} = {}to({}, {}, {});\n", dialect_.element, to, dialect_.lanes, place,
-                           text_.now, k++);
+      body_ += fmt::format("  {}* const {} = {}to({}, {}, {});\n", dialect_.lane_type, to, dialect_.lane_prefix, place,
+                           text_.block_index, k++);
       if (entries.empty()) body_ += fmt::format("  (void){};\n", to);
       const bool optional = may_be_null(r);
       if (optional) body_ += fmt::format("  if ({}) {{\n", to);
       for (std::size_t i = 0; i < entries.size(); ++i) {
-        const std::size_t at = r > 0 || function_.places.empty() ? i : function_.places[i];
-        line(fmt::format("{}{}store({} + {}*{}, {});", optional ? "  " : "", dialect_.lanes, to, at, step,
+        const std::size_t at = r > 0 || function_.result_indices.empty() ? i : function_.result_indices[i];
+        line(fmt::format("{}{}store({} + {}*{}, {});", optional ? "  " : "", dialect_.lane_prefix, to, at, step,
                          expressions_.in_lanes(entries[i], true).text) +
              remark(r, at));
       }
@@ -289,11 +289,11 @@ class Printer {
     line(fmt::format("return {} != &{}->target;", place, text_.block));
   }
   void require(const std::string& condition) {
-    line(fmt::format("{} &= ({}mask)({});", fine_, dialect_.lanes, condition));
+    line(fmt::format("{} &= ({}mask)({});", valid_lanes_, dialect_.lane_prefix, condition));
   }
-  std::string fine_begins(std::size_t part) const {
-    return part == 0 ? fmt::format("  {0}mask {1} = {0}whole();\n", dialect_.lanes, fine_)
-                     : fmt::format("  {0}mask {1} = ({0}mask){2}[0];\n", dialect_.lanes, fine_, text_.work);
+  std::string initial_lane_mask(std::size_t part) const {
+    return part == 0 ? fmt::format("  {0}mask {1} = {0}whole();\n", dialect_.lane_prefix, valid_lanes_)
+                     : fmt::format("  {0}mask {1} = ({0}mask){2}[0];\n", dialect_.lane_prefix, valid_lanes_, text_.work);
   }
 
   void end_where_negative(int code, const std::vector<Operand>& entries) {
@@ -303,33 +303,33 @@ class Printer {
   }
 
   std::string remark(std::size_t result, std::size_t entry) const {
-    const std::string text = name_of_entry(function_, names_, result, entry);
+    const std::string text = result_entry_name(function_, names_, result, entry);
     if (text.empty()) return "";
     return dialect_.line_comments ? fmt::format("  // {}", text) : fmt::format("  /* {} */", text);
   }
 
-  bool in_lanes() const { return !dialect_.lanes.empty(); }
+  bool in_lanes() const { return !dialect_.lane_prefix.empty(); }
   bool is_rhs() const { return function_.name == "rhs" || function_.name == "rhs_prepared"; }
   /// Unused-argument casts of a part, which has all arguments of the function.
   std::string all_arguments() const {
-    if (!dialect_.typed) return "";
+    if (!dialect_.is_typed) return "";
     std::vector<std::string> names;
-    if (text_.near_first) names.push_back(guarded_);
+    if (text_.near_angles_first) names.push_back(guarded_);
     for (const Argument& argument : arguments(function_.name, text_, names_)) names.push_back(argument.name);
     names.push_back(text_.work);
-    return ignored(names);
+    return void_casts(names);
   }
   bool may_be_null(std::size_t result) const {
     const abi::Function* found = abi::find(function_.name);
     return found != nullptr && result < found->results.size() && found->results[result].may_be_null;
   }
   std::string unused_arguments() const {
-    return dialect_.typed ? ignored(unused(function_, text_, names_, uses_.leaves[0])) : "";
+    return dialect_.is_typed ? void_casts(unread_arguments(function_, text_, names_, uses_.leaves[0])) : "";
   }
   std::string using_declarations() const {
     if (!dialect_.using_std) return "";
     std::string result;
-    for (const std::string& name : expressions_.called())
+    for (const std::string& name : expressions_.library_calls())
       result += fmt::format("{}using std::{};", result.empty() ? "  " : " ", name);
     return result.empty() ? "" : wrapped(result, "  ") + "\n";
   }
@@ -338,11 +338,11 @@ class Printer {
   std::string loads(std::size_t part) const {
     std::string result;
     for (const auto& [slot, values] :
-         loaded(function_.name, uses_.leaves[part], names_, context_, dialect_, text_.block + ", " + text_.now)) {
+         leaf_loads(function_.name, uses_.leaves[part], names_, context_, dialect_, text_.block + ", " + text_.block_index)) {
       std::string list;
       for (const auto& [index, value] : values)
-        list += fmt::format("{} {} = {}", list.empty() ? "  " + dialect_.declares() : ",",
-                            expressions_.size_of({slot, index, false}).text, value);
+        list += fmt::format("{} {} = {}", list.empty() ? "  " + dialect_.declaration_prefix() : ",",
+                            expressions_.unsigned_value({slot, index, false}).text, value);
       result += wrapped(list + ";", "      ") + "\n";
     }
     return result;
@@ -357,7 +357,7 @@ class Printer {
   FunctionText text_;
   Uses uses_;
   std::size_t kept_count_ = 0;
-  std::string body_, section_, printed_section_, sine_, cosine_, guarded_, fine_;
+  std::string body_, section_, printed_section_, sine_, cosine_, guarded_, valid_lanes_;
   std::size_t temporaries_ = 0;
 };
 

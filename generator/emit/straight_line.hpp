@@ -19,27 +19,27 @@ struct Dialect {
   std::string (*constant)(const symbolic::Rational&);  // prints a nonnegative number
   std::string (*value)(double);                        // prints a default
   std::string pi;
-  std::string absolute;  // name of the function for |x|
+  std::string abs_function;  // name of the function for |x|
   double pivot_tolerance = program::pivot_tolerance;
-  std::string kernels;  // prefix of kernel names
+  std::string kernel_prefix;  // prefix of kernel names
   // Evaluates sines and cosines of small angles first. Without a call in between the compiler need not spill registers.
-  // The function restarts if an angle turns out to be large (FunctionText::near_first).
-  bool near_first = false;
+  // The function restarts if an angle turns out to be large (FunctionText::near_angles_first).
+  bool near_angles_first = false;
   bool line_comments = false;
   bool using_std = false;         // emits `using std::sin;` before calls
-  bool typed = true;              // false: JavaScript, which declares constants without a type
-  std::string reach = "65536.0";  // largest angle of sincos (templates/kernels)
-  std::string lanes;              // prefix of the functions of templates/batch; empty: one state
-  std::string element;            // type of one lane
-  std::string rounding;           // function that rounds each value if the language has doubles only
+  bool is_typed = true;              // false: JavaScript, which declares constants without a type
+  std::string sincos_range = "65536.0";  // largest angle of sincos (templates/kernels)
+  std::string lane_prefix;              // prefix of the functions of templates/batch; empty: one state
+  std::string lane_type;            // type of one lane
+  std::string rounding_function;           // function that rounds each value if the language has doubles only
 
   /// The start of a declaration.
-  std::string declares() const { return typed ? "const " + real : "const"; }
-  std::string rounded(const std::string& text) const { return rounding.empty() ? text : rounding + "(" + text + ")"; }
+  std::string declaration_prefix() const { return is_typed ? "const " + real : "const"; }
+  std::string rounded(const std::string& text) const { return rounding_function.empty() ? text : rounding_function + "(" + text + ")"; }
   /// Switches to lane vectors of the same numbers.
-  void in_lanes_of(const std::string& prefix) {
-    element = real;
-    lanes = prefix;
+  void use_lanes(const std::string& prefix) {
+    lane_type = real;
+    lane_prefix = prefix;
     real = prefix + "lanes";
   }
 };
@@ -53,7 +53,7 @@ struct ModelNames {
   std::vector<std::string> acceleration;     // "theta_ddot", for the free coordinates
   std::vector<std::string> all_coordinates;  // with eliminated ones (for names that a Program suggests)
   std::vector<std::string> prepared;         // entries of w, if lanes are loaded one by one
-  std::string arguments_t = "t", x, p, w, u, mode;  // names of the other arguments
+  std::string time = "t", x, p, w, u, mode;  // names of the other arguments
 };
 /// The identifiers of a model. `taken`: further reserved words.
 ModelNames model_names(const program::Program& program, const EmissionContext& context,
@@ -63,7 +63,7 @@ struct FunctionText {
   std::vector<std::string> results;  // names of the result arguments, in order
   std::string body;                  // statements, without braces
   std::uint32_t packs = 0;           // number of groups of sines and cosines
-  bool near_first = false;           // has a first argument `guarded`; if it is 0, -1 may be returned (angle too large)
+  bool near_angles_first = false;           // has a first argument `guarded`; if it is 0, -1 may be returned (angle too large)
   std::string guarded;
   /// Parts of a long function, called in order, because compile time grows faster than the length of a function. Each
   /// part has its own arguments and an array for values that later parts need. `body` is empty then.
@@ -71,7 +71,7 @@ struct FunctionText {
   std::string work, code;  // names of the array and of the return code of a part
   std::size_t work_size = 1;
   // For lanes: the names of the arguments, and functions of the C library that are called lane by lane.
-  std::string block, now;
+  std::string block, block_index;
   std::set<std::string> library;
 };
 

@@ -20,7 +20,7 @@ struct TargetEntry {
   const char* name;
   const char* title;
   std::vector<EmittedFile> (*emit)(const program::Program&, const EmissionContext&);
-  std::string (*name_of)(const std::string& id);  // NAME of files and symbols, from the model's id
+  std::string (*mangle)(const std::string& id);  // NAME of files and symbols, from the model's id
 };
 
 std::span<const TargetEntry> targets();

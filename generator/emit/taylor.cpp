@@ -95,7 +95,7 @@ std::string helper(const program::Function& function, const ModelNames& names, c
         generic ? "template <class Real>\n" : "", generic ? "" : "static ", name, k + 1,
         argument_list(arguments(function.name, text, names), dialect.real), dialect.real, text.work, text.parts[k]);
   }
-  if (!text.parts.empty()) text.body = calls_of_parts(name, text, argument_names(function, text, names), dialect.real);
+  if (!text.parts.empty()) text.body = part_calls(name, text, argument_names(function, text, names), dialect.real);
   const std::string head = function_head(name, function, text, names, dialect.real);
   if (generic) return fmt::format("{}// {}\ntemplate <class Real>\n{} {{\n{}}}\n", parts, remark, head, text.body);
   return fmt::format("{}/* {} */\nstatic {}\n{{\n{}}}\n", parts, remark, head, text.body);
@@ -103,13 +103,13 @@ std::string helper(const program::Function& function, const ModelNames& names, c
 
 }  // namespace
 
-ModelNames names_of_next(const ModelNames& names) {
+ModelNames taylor_next_names(const ModelNames& names) {
   ModelNames result = names;
   NameTable table;
   for (const auto* list : {&names.state, &names.parameters, &names.inputs}) {
     for (const std::string& name : *list) table.declare(name);
   }
-  result.arguments_t = table.declare("k");
+  result.time = table.declare("k");
   result.x = table.declare("x");
   result.w = table.declare("w");
   return result;
@@ -124,10 +124,10 @@ TaylorText print_taylor(const program::Program& program, const ModelNames& names
   text +=
       "\n" +
       helper(
-          taylor.next, names_of_next(names), context, dialect, prefix,
+          taylor.next, taylor_next_names(names), context, dialect, prefix,
           "From the coefficients x of order k: factors a, b of order k, k + 1 times the coefficients of order k + 1.");
-  text += "\n" + (generic ? fmt::format(fmt::runtime(template_sums), prefix, taylor.products)
-                          : fmt::format(fmt::runtime(c_sums), prefix, taylor.products, program::taylor_lanes));
+  text += "\n" + (generic ? fmt::format(fmt::runtime(template_sums), prefix, taylor.product_count)
+                          : fmt::format(fmt::runtime(c_sums), prefix, taylor.product_count, program::taylor_lanes));
   TaylorText result;
   const std::string name = prefix + "taylor";
   result.head = wrapped(fmt::format("int {}({})", name, argument_list(abi_arguments("taylor"), real)),
@@ -140,8 +140,8 @@ TaylorText print_taylor(const program::Program& program, const ModelNames& names
                       result.head);
   text += fmt::format(
       fmt::runtime(driver), fmt::arg("real", real), fmt::arg("prefix", prefix), fmt::arg("n", program.state_count()),
-      fmt::arg("series", taylor.products * program::taylor_order(taylor)), fmt::arg("prepared", taylor.prepared()),
-      fmt::arg("zeros", taylor.zeros), fmt::arg("products", taylor.products), fmt::arg("zero", dialect.constant(0)),
+      fmt::arg("series", taylor.product_count * program::taylor_order(taylor)), fmt::arg("prepared", taylor.workspace_size()),
+      fmt::arg("zeros", taylor.order_zero_count), fmt::arg("products", taylor.product_count), fmt::arg("zero", dialect.constant(0)),
       fmt::arg("one", dialect.constant(1)), fmt::arg("real_of_k", converted("k")),
       fmt::arg("real_of_next", converted("k + 1")));
   result.definition = text;

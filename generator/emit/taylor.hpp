@@ -14,7 +14,7 @@ struct TaylorText {
 };
 
 /// Names for taylor_next, in which k replaces the time and x_k has the names of the state.
-ModelNames names_of_next(const ModelNames& names);
+ModelNames taylor_next_names(const ModelNames& names);
 
 /// Prints NAME_taylor. `prefix`: "NAME_", or "" for the template.
 TaylorText print_taylor(const program::Program& program, const ModelNames& names, const EmissionContext& context,

@@ -12,16 +12,16 @@ using program::Instruction;
 using program::Operand;
 using program::Slot;
 
-Uses uses_of(const program::Function& function) {
+Uses count_uses(const program::Function& function) {
   const std::vector<Instruction>& code = function.code;
-  Uses uses{parts_of(function), {}, {}, {}};
+  Uses uses{assign_parts(function), {}, {}, {}};
   uses.count.assign(code.size(), 0);
-  uses.kept.assign(code.size(), false);
+  uses.needed_later.assign(code.size(), false);
   uses.leaves.resize(uses.part.empty() ? 1 : uses.part.back() + 1);
   const auto use = [&](const Operand& operand, bool repeated, std::size_t part) {
     if (operand.slot == Slot::value) {
       uses.count[operand.index] += repeated ? 2 : 1;
-      if (part != uses.part[operand.index]) uses.kept[operand.index] = true;
+      if (part != uses.part[operand.index]) uses.needed_later[operand.index] = true;
     } else {
       uses.leaves[part].insert({operand.slot, operand.index});
     }

@@ -30,17 +30,17 @@ std::string trig_name(const program::Function& function, const program::Instruct
   const Operand& argument = instruction.operands[0];
   if (argument.negated) return "";
   if (argument.slot != Slot::value)
-    return argument.slot == Slot::constant ? "" : head + expressions.size_of(argument).text;
+    return argument.slot == Slot::constant ? "" : head + expressions.unsigned_value(argument).text;
   const Instruction& inner = function.code[argument.index];
   const auto& o = inner.operands;
   if (inner.op != Op::add || o.size() != 2 || o[0].negated) return "";
   for (const Operand& operand : o) {
     if (operand.slot != Slot::state && operand.slot != Slot::parameter) return "";
   }
-  return head + expressions.size_of(o[0]).text + (o[1].negated ? "_minus_" : "_plus_") + expressions.size_of(o[1]).text;
+  return head + expressions.unsigned_value(o[0]).text + (o[1].negated ? "_minus_" : "_plus_") + expressions.unsigned_value(o[1]).text;
 }
 
-std::string name_of_entry(const program::Function& function, const ModelNames& names, std::size_t result,
+std::string result_entry_name(const program::Function& function, const ModelNames& names, std::size_t result,
                           std::size_t entry) {
   const std::size_t n = names.acceleration.size(), all = names.state.size();
   if (function.name == "rhs" && entry >= n && entry < 2 * n) return names.acceleration[entry - n];

@@ -17,7 +17,7 @@ std::string trig_name(const program::Function& function, const program::Instruct
                       const Expressions& expressions);
 
 /// The name of an entry of a result; empty if it has none.
-std::string name_of_entry(const program::Function& function, const ModelNames& names, std::size_t result,
+std::string result_entry_name(const program::Function& function, const ModelNames& names, std::size_t result,
                           std::size_t entry);
 
 }  // namespace eomgen::emit

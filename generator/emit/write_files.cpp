@@ -12,12 +12,12 @@ namespace eomgen::emit {
 namespace {
 
 [[noreturn]] void fail(const std::string& what, const std::error_code& reason) {
-  throw Error("emit", {}, what, "choose a folder that you may write to, with space left", fault_of_writing(reason));
+  throw Error("emit", {}, what, "choose a folder that you may write to, with space left", write_fault(reason));
 }
 
 }  // namespace
 
-ErrorKind fault_of_writing(const std::error_code& reason) {
+ErrorKind write_fault(const std::error_code& reason) {
   for (const std::errc lost :
        {std::errc::no_space_on_device, std::errc::io_error, std::errc::file_too_large, std::errc::broken_pipe,
         std::errc::too_many_files_open, std::errc::too_many_files_open_in_system}) {

@@ -17,6 +17,6 @@ std::vector<std::string> write_files(const std::string& folder, const std::vecto
 
 /// The fault category of a failed write: a disk or pipe that fails midway is a tool failure; a location without write
 /// access is wrong input.
-ErrorKind fault_of_writing(const std::error_code& reason);
+ErrorKind write_fault(const std::error_code& reason);
 
 }  // namespace eomgen::emit

@@ -61,7 +61,7 @@ pipeline::ApproachChoice choice_of(Approach approach);
 /// Converts each value to the exact shortest decimal that denotes it, as on the command line. Throws Error for values
 /// that are not finite.
 std::map<std::string, symbolic::Rational> exact(const std::map<std::string, double>& values);
-Formula formula_of(const print::Item& item);
+Formula formula_of(const print::PrintedFormula& item);
 std::vector<LeftOut> left_out_of(const std::vector<work::LeftOut>& list);
 
 }  // namespace eomgen

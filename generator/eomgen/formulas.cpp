@@ -98,7 +98,7 @@ Equations Model::equations(const EquationsOptions& options, const Task& task) co
     for (const std::string& note : found.notes) call.on_warning(note);
     Equations result;
     result.approach = system::name(found.approach);
-    for (const print::Item& item : found.items) {
+    for (const print::PrintedFormula& item : found.items) {
       if (item.left_out.empty()) result.formulas.push_back(formula_of(item));
     }
     result.left_out = left_out_of(found.left_out);

@@ -45,7 +45,7 @@ std::map<std::string, symbolic::Rational> exact(const std::map<std::string, doub
   return result;
 }
 
-Formula formula_of(const print::Item& item) {
+Formula formula_of(const print::PrintedFormula& item) {
   return {item.key, item.name, item.coordinate, item.role, item.text, item.latex, item.mathml};
 }
 

@@ -57,7 +57,7 @@ void add_second_charts(Derived& own, program::Program& program, const std::vecto
       if ((mask >> j & 1) != 0) exchanged.push_back(angle);
     }
   }
-  const std::vector<std::uint32_t> places = program::shared_outputs(program.outputs, own.candidates.front().outputs,
+  const std::vector<std::uint32_t> places = program::chart_independent_outputs(program.outputs, own.candidates.front().outputs,
                                                                     derived->candidates.front().outputs, exchanged);
   program::Request wanted = request.request;
   wanted.outputs.clear();
@@ -68,7 +68,7 @@ void add_second_charts(Derived& own, program::Program& program, const std::vecto
   require_pass(certificate, derived->model);
   for (double Timings::*part : {&Timings::derive, &Timings::optimise, &Timings::verify})
     own.seconds.*part += derived->seconds.*part;
-  program::add_second(program, std::move(second), mask, places);
+  program::add_chart_variant(program, std::move(second), mask, places);
 }
 
 ChartLibrary::ChartLibrary(Derived& own, program::Program program, emit::EmissionContext context, ChartRequest request)

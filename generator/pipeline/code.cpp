@@ -23,12 +23,12 @@ run::Code described_code(const program::Program& program) {
   code.first_kink_bit = program::first_kink_bit;
   for (const program::ContactInfo& contact : program.contacts) code.contacts.push_back({contact, contact.name, 0});
   if (program.taylor) code.taylor_order = static_cast<int>(program::taylor_order(*program.taylor));
-  for (const program::Program& second : program.second) {
+  for (const program::Program& second : program.chart_variants) {
     code.own_outputs.push_back({second.in_charts, {}});
     for (const program::Function& function : second.functions) {
       if (function.name != "outputs") continue;
       for (std::uint32_t i = 0; i < program.outputs.size(); ++i) {
-        if (std::find(function.places.begin(), function.places.end(), i) == function.places.end())
+        if (std::find(function.result_indices.begin(), function.result_indices.end(), i) == function.result_indices.end())
           code.own_outputs.back().outputs.push_back(i);
       }
     }
@@ -36,7 +36,7 @@ run::Code described_code(const program::Program& program) {
   return code;
 }
 
-CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& program)
+CompiledCode::CompiledCode(emit::CompiledModel compiled, const program::Program& program)
     : compiled_(std::move(compiled)), described_(described_code(program)) {
   for (const program::Function& function : program.functions) {
     for (const auto& result : function.results) {
@@ -120,7 +120,7 @@ CompiledCode compile(const program::Program& program, const emit::EmissionContex
   }
   if (source.empty() || header.empty()) throw std::logic_error("the cpp target emitted no C source");
   const work::DeferInterrupt heeded;  // the wait for the compiler handles an interrupt itself, and leaves no files
-  emit::Compiled compiled = emit::compile_and_load(source, header, name, &work::stop_flag());
+  emit::CompiledModel compiled = emit::compile_and_load(source, header, name, &work::stop_flag());
   if (!compiled.note.empty() && !again) {
     work::warn(format_warning({{},
                                compiled.note + "; what is compiled now is kept in a private one, for this run alone",

@@ -17,14 +17,14 @@ run::Code described_code(const program::Program& program);
 
 class CompiledCode {
  public:
-  CompiledCode(emit::Compiled compiled, const program::Program& program);
+  CompiledCode(emit::CompiledModel compiled, const program::Program& program);
 
   verify::CompiledForm form() const;
   run::Code for_run() const;
-  const emit::Compiled& compiled() const { return compiled_; }
+  const emit::CompiledModel& compiled() const { return compiled_; }
 
  private:
-  emit::Compiled compiled_;
+  emit::CompiledModel compiled_;
   run::Code described_;
   std::map<std::string, std::vector<std::size_t>> arrays_;  // sizes of the output arrays of each function
 };

@@ -133,7 +133,7 @@ Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionReq
   require_pass(result.certificate, derived->model);
   emit::EmissionContext context = emission_context(*derived, result.program, scene, result.certificate);
   if (has(request.with, "run")) context.run = run_text(*derived, scene, result.program);
-  if (request.single) emit::make_single(result.program, context);
+  if (request.single) emit::convert_to_single(result.program, context);
   result.single_error = context.single_error;
   result.files = emit::emit(result.program, context, request.target);
   result.seconds = derived->seconds;

@@ -24,7 +24,7 @@ constexpr std::uintmax_t most_bytes = 4 << 20;
 std::optional<std::filesystem::path> folder_of_certificates() {
   try {
     const emit::CacheFolder folder = emit::cache_folder();
-    if (folder.passing) return std::nullopt;
+    if (folder.scratch) return std::nullopt;
     return folder.path;
   } catch (const Error&) {
     return std::nullopt;
@@ -100,7 +100,7 @@ void keep_certificate(const std::string& key, const verify::Certificate& certifi
   try {
     json document = to_json(certificate);
     document["key"] = model::content_hash("certificate of " + key);
-    const emit::Workplace workplace(*folder, emit::workplace_name);
+    const emit::ScratchFolder workplace(*folder, emit::scratch_prefix);
     const std::filesystem::path written = workplace.path() / "certificate";
     std::ofstream out(written);
     out << document.dump() << '\n';

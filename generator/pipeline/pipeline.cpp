@@ -139,7 +139,7 @@ verify::ProgramForm program_form(const program::Program& program, int digits,
         return values.results.front();
       }};
   form.bounds = [&program, default_inputs](const std::string& function, const verify::At& at) {
-    return program::abi_bounds(program, function, abi_arguments(at, default_inputs));
+    return program::abi_error_bounds(program, function, abi_arguments(at, default_inputs));
   };
   return form;
 }
@@ -333,7 +333,7 @@ emit::EmissionContext emission_context(Derived& derived, const program::Program&
     if (derived.mechanics.dag->symbols({formula}).empty()) continue;
     if (const auto written = reading::as_written(model, p.value)) {
       context.parameters.back().expression =
-          print::print(*written, print::Notation(derived.mechanics), print::Format::language);
+          print::print(*written, print::Notation(derived.mechanics), print::Format::model_language);
     }
   }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
@@ -343,7 +343,7 @@ emit::EmissionContext emission_context(Derived& derived, const program::Program&
   for (const model::Event& event : model.events) {
     context.events.push_back({event.name, model::name(event.direction), event.stop ? "stop" : "record"});
   }
-  for (const print::Item& item : print::render_singular(derived.mechanics)) {
+  for (const print::PrintedFormula& item : print::render_singular(derived.mechanics)) {
     if (item.left_out.empty()) context.singular.push_back(item.text);
   }
   context.start_time = scene.t0;

@@ -37,7 +37,7 @@ std::vector<eom::hybrid::ExchangedChart> exchanged(const program::Program& progr
 
 }  // namespace
 
-std::shared_ptr<const emit::RunText> run_text(const Derived& derived, const run::Scene& scene,
+std::shared_ptr<const emit::RunDescription> run_text(const Derived& derived, const run::Scene& scene,
                                               const program::Program& program) {
   auto described = std::make_shared<Described>(Described{scene, described_code(program), {}});
   run::RunRequest request = run_request(derived, described->scene, described->code, true);
@@ -50,7 +50,7 @@ std::shared_ptr<const emit::RunText> run_text(const Derived& derived, const run:
   // As in `eomgen run`: if something jumps, the run does not change its coordinates.
   if (scene.jumps.functions.empty()) described->problem.charts = exchanged(program);
   if (described->problem.charts.empty()) described->problem.jumps = run::jump_functions(derived.candidates.front());
-  auto text = std::make_shared<emit::RunText>();
+  auto text = std::make_shared<emit::RunDescription>();
   for (std::size_t i = 0; i < 2 * derived.model.coordinates.size(); ++i) text->columns.push_back(i);
   for (const std::string& name : scene.outputs) {
     const auto place = std::find(program.outputs.begin(), program.outputs.end(), name);

@@ -72,7 +72,7 @@ std::vector<emit::TestVector> test_vectors(const program::Program& program, cons
     below |= 2 << (program::first_kink_bit + 2 * k);
   }
   if (above != 0) add(1, above), add(2, below);
-  for (const program::Program& other : program.second) {
+  for (const program::Program& other : program.chart_variants) {
     std::size_t count = 0;
     for (int k = 1; k < 9 && count < 2; ++k) {
       std::optional<emit::TestVector> vector = test_vector(program, context, k, other.in_charts, result.size());

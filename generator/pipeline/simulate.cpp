@@ -153,7 +153,7 @@ std::vector<symbolic::Ref> kink_values(const Derived& derived, const program::Pr
         candidate.form != program.form)
       continue;
     system::EquationSystem held = candidate;
-    for (const program::Kink& kink : program::hold_kinks(held)) values.push_back(kink.value);
+    for (const program::Kink& kink : program::freeze_kink_branches(held)) values.push_back(kink.value);
     if (values.size() == program.kinks.size()) return values;
     values.clear();
   }

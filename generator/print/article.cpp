@@ -12,12 +12,12 @@ using mechanics::Mechanics;
 using reading::Formula;
 using symbolic::SymbolKind;
 
-bool Article::builds_in() const {
+bool Article::approaches_differ() const {
   const auto fixes = [](const reading::DisplayConstraint& c) { return c.fixes.has_value(); };
   return std::any_of(two.constraints.begin(), two.constraints.end(), fixes);
 }
 
-std::string Article::name_of(std::uint32_t coordinate, std::uint8_t order) const {
+std::string Article::coordinate_math(std::uint32_t coordinate, std::uint8_t order) const {
   return out.math(reading::symbol({SymbolKind::coordinate, coordinate, order}));
 }
 
@@ -43,18 +43,18 @@ bool uses_amssymb(const model::Model& model) {
 
 }  // namespace
 
-std::string bold(const std::string& name) { return "\\textbf{" + words(name) + "}"; }
+std::string bold(const std::string& name) { return "\\textbf{" + escape_user_text(name) + "}"; }
 
 std::string latex_document(const Mechanics& m, const reading::DisplayForm& one, const reading::DisplayForm& two,
                            const std::optional<Findings>& findings) {
   const Notation notation(m);
-  LatexText out(notation);
+  LatexWriter out(notation);
   const model::Model& model = *m.model;
   Article article{m, model, one, two, findings ? &*findings : nullptr, out};
   if (findings) article.left_out = findings->left_out;
-  if (uses_amssymb(model)) out.need("amssymb");
+  if (uses_amssymb(model)) out.use_package("amssymb");
   out.title(model.title.empty() ? model.id : model.title);
-  if (!model.notes.empty()) out.paragraph(words(model.notes));
+  if (!model.notes.empty()) out.paragraph(escape_user_text(model.notes));
   write_system(article);
   write_coordinates(article);
   write_energies(article);
@@ -62,11 +62,11 @@ std::string latex_document(const Mechanics& m, const reading::DisplayForm& one, 
   write_constraint_forces(article);
   write_contacts(article);
   if (findings) {
-    write_conserved(article);
+    write_conserved_quantities(article);
     write_routh(article);
-    write_steady(article);
+    write_steady_motions(article);
   }
-  write_singular(article);
+  write_singular_sets(article);
   write_certificate(article);
   return out.finish();
 }

@@ -37,7 +37,7 @@ struct SteadyFinding {
   std::string kind;
   std::vector<std::pair<symbolic::Symbol, double>> values;  // coordinates and rates
   std::vector<std::complex<double>> eigenvalues;            // nonzero; for a pair the one in the upper half-plane
-  std::size_t zeros = 0, family = 0;
+  std::size_t zero_eigenvalues = 0, family_dimension = 0;
   std::string stability, reason;
 };
 
@@ -49,7 +49,7 @@ struct Findings {
   std::optional<reading::RouthForm> routh;  // if a coordinate is cyclic
   std::vector<SteadyFinding> steady;
   std::vector<std::pair<std::string, double>> held;  // names and values that the search kept fixed
-  std::string no_steady;                             // reason if no search was made, else empty
+  std::string steady_skip_reason;                             // reason if no search was made, else empty
   std::string certificate;                           // the verdict of the comparison
   std::string checked_formulations;  // compared with d'Alembert's principle: "lagrange I, lagrange II, ..."
   std::vector<work::LeftOut> left_out;

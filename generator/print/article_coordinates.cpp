@@ -41,13 +41,13 @@ class Coordinates {
 
  private:
   void legend() {
-    const std::vector<MultiplierMeaning> all = multiplier_meanings(m_);
+    const std::vector<MultiplierDescription> all = multiplier_descriptions(m_);
     if (all.empty()) return;
     out_.paragraph("The multipliers are");
     out_.raw("\\begin{longtable}{@{}lp{0.8\\linewidth}@{}}\n");
-    for (const MultiplierMeaning& meaning : all) {
+    for (const MultiplierDescription& meaning : all) {
       out_.raw(out_.math(reading::symbol({SymbolKind::multiplier, meaning.constraint, 0})) + " & " +
-               words(meaning.text) + " \\\\\n");
+               escape_user_text(meaning.text) + " \\\\\n");
     }
     out_.raw("\\end{longtable}\n");
     if (!model_.joints.empty()) out_.paragraph(joint_letters);
@@ -75,10 +75,10 @@ class Coordinates {
         return written ? out_.math(*written) : std::string();
       };
       const std::string lower = bound(q.lower), upper = bound(q.upper);
-      std::string range = lower.empty() && upper.empty() ? "" : a_.name_of(i);
+      std::string range = lower.empty() && upper.empty() ? "" : a_.coordinate_math(i);
       if (!lower.empty()) range = lower + " $<$ " + range;
       if (!upper.empty()) range += " $<$ " + upper;
-      out_.raw(a_.name_of(i) + " & " + unit_in_latex(q.unit.text) + " & " + range + " & " + role(i) + " \\\\\n");
+      out_.raw(a_.coordinate_math(i) + " & " + unit_in_latex(q.unit.text) + " & " + range + " & " + role(i) + " \\\\\n");
     }
     out_.raw("\\end{longtable}\n");
   }
@@ -108,8 +108,8 @@ class Coordinates {
   }
 
   static std::string reason(const std::string& sentence) {
-    static const std::string form = words("omega ^ d omega");
-    std::string text = words(sentence);
+    static const std::string form = escape_user_text("omega ^ d omega");
+    std::string text = escape_user_text(sentence);
     if (const std::size_t at = text.find(form); at != std::string::npos)
       text.replace(at, form.size(), "$\\omega \\wedge d\\omega$");
     return text;
@@ -132,7 +132,7 @@ class Coordinates {
       if (moves) text += "; rheonomic (a part of it is free of velocities)";
     }
     if (c.unilateral) text += "; unilateral: it pushes and does not pull";
-    if (read.fixes) text += "; it fixes " + a_.name_of(read.fixes->coordinate);
+    if (read.fixes) text += "; it fixes " + a_.coordinate_math(read.fixes->coordinate);
     return text;
   }
 
@@ -170,7 +170,7 @@ class Coordinates {
   Article& a_;
   const Mechanics& m_;
   const model::Model& model_;
-  LatexText& out_;
+  LatexWriter& out_;
   std::vector<Statement> statements_;
 };
 

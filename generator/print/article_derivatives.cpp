@@ -40,12 +40,12 @@ void write_energies(Article& a) {
         "The components $\\omega$ are those of the angular velocities, along the axes about which the moments of "
         "inertia are taken.");
   show(a.one);
-  if (!a.builds_in()) return;
+  if (!a.approaches_differ()) return;
   a.out.paragraph("With the constraints built in these are");
   show(a.two);
 }
 
-void write_law(Article& a) {
+void write_lagrange_law(Article& a) {
   const Letters letters(a.model, false);
   const Formula q = mark("q"), rate = dotted(q);
   std::vector<Formula> left{reading::make_formula(FormulaKind::rate, {reading::make_formula(FormulaKind::partial, {mark(letters.T), rate})}),
@@ -71,9 +71,9 @@ void write_law(Article& a) {
   a.out.paragraph(text + ".");
 }
 
-void write_partials(Article& a, const DisplayForm& form, std::vector<PartialDerivatives>& first) {
+void write_partial_derivatives(Article& a, const DisplayForm& form, std::vector<PartialDerivatives>& first) {
   if (form.is_unexpanded) {
-    a.out.paragraph("The partial derivatives are too large to be written out (" + words(form.unexpanded_reason) + ").");
+    a.out.paragraph("The partial derivatives are too large to be written out (" + escape_user_text(form.unexpanded_reason) + ").");
     return;
   }
   const bool two = form.approach == system::Approach::two;
@@ -85,7 +85,7 @@ void write_partials(Article& a, const DisplayForm& form, std::vector<PartialDeri
       return std::any_of(first.begin(), first.end(), [&](const PartialDerivatives& f) { return equal(f, p); });
     };
     for (const PartialDerivatives& p : all) {
-      if (as_before(p)) unchanged.push_back(a.name_of(p.coordinate));
+      if (as_before(p)) unchanged.push_back(a.coordinate_math(p.coordinate));
     }
     std::erase_if(all, as_before);
   } else {
@@ -122,7 +122,7 @@ void write_partials(Article& a, const DisplayForm& form, std::vector<PartialDeri
          reading::relation({partial(letters.U, 0), arrange(p.potential)}),
          reading::relation({mark("Q", {coordinate(p.coordinate, 0)}), arrange(p.force, Layout::terms)})});
     std::string why;
-    for (const Formula& f : shown) why = why.empty() ? a.out.too_long(f) : why;
+    for (const Formula& f : shown) why = why.empty() ? a.out.reason_too_long(f) : why;
     if (why.empty())
       a.out.display(shown);
     else

@@ -40,17 +40,17 @@ class Equations {
 
   void write() {
     std::vector<reading::PartialDerivatives> first;
-    write_law(a_);
-    if (a_.builds_in()) {
+    write_lagrange_law(a_);
+    if (a_.approaches_differ()) {
       out_.subsection("Approach I: all coordinates, constraints imposed afterwards");
-      write_partials(a_, a_.one, first);
+      write_partial_derivatives(a_, a_.one, first);
       out_.subsection("Approach II: constraints that fix a coordinate are built in");
-      write_partials(a_, a_.two, first);
+      write_partial_derivatives(a_, a_.two, first);
       out_.subsection("The equations by both approaches");
       imposed();
     } else {
       out_.subsection("Partial derivatives");
-      write_partials(a_, a_.one, first);
+      write_partial_derivatives(a_, a_.one, first);
       out_.subsection("The equations");
       if (!m_.constraints.empty())
         out_.paragraph("No constraint fixes a coordinate, so Approach I and Approach II are one.");
@@ -62,7 +62,7 @@ class Equations {
     if (!explicit_rows.empty()) out_.paragraph("The same, written out:");
     show(explicit_rows);
     parts(a_.one);
-    if (a_.builds_in()) parts(a_.two);
+    if (a_.approaches_differ()) parts(a_.two);
     decoupling();
   }
 
@@ -70,7 +70,7 @@ class Equations {
   /// Lists what approach II imposes on the equations.
   void imposed() {
     std::vector<std::string> names;
-    for (const mechanics::FixedCoordinate& fixed : m_.fixed) names.push_back(a_.name_of(fixed.coordinate));
+    for (const mechanics::FixedCoordinate& fixed : m_.fixed) names.push_back(a_.coordinate_math(fixed.coordinate));
     std::string text = "Where both approaches give the same equation it stands once.";
     if (!names.empty())
       text += " Those of Approach I have " + enumeration(names) + " with " + (names.size() == 1 ? "its" : "their") +
@@ -121,7 +121,7 @@ class Equations {
   bool same(const std::optional<Formula>& a, const std::optional<Formula>& b) const {
     return a.has_value() == b.has_value() && (!a || out_.math(*a) == out_.math(*b));
   }
-  bool merged(const Row& row) const { return !a_.builds_in() || same(row.one, row.two); }
+  bool merged(const Row& row) const { return !a_.approaches_differ() || same(row.one, row.two); }
   bool repeats(const Row& row, const std::vector<Row>& rows) const {
     return std::any_of(rows.begin(), rows.end(), [&](const Row& r) {
       return r.coordinate == row.coordinate && same(r.one, row.one) && same(r.two, row.two);
@@ -131,9 +131,9 @@ class Equations {
   void show(const std::vector<Row>& rows) {
     if (rows.empty()) return;
     const auto tall = [&](const std::optional<Formula>& f) {
-      return f && out_.lines(*f, whole_width).size() > tallest_row;
+      return f && out_.broken_lines(*f, whole_width).size() > tallest_row;
     };
-    if (!a_.builds_in() ||
+    if (!a_.approaches_differ() ||
         std::any_of(rows.begin(), rows.end(), [&](const Row& r) { return tall(r.one) || tall(r.two); })) {
       for (const Row& row : rows) listed(row);
       return;
@@ -153,22 +153,22 @@ class Equations {
 
   void listed(const Row& row) {
     if (merged(row)) {
-      if (row.one) out_.numbered(number(row), *row.one);
+      if (row.one) out_.numbered_display(number(row), *row.one);
       return;
     }
     if (row.one) {
-      out_.paragraph("Of " + a_.name_of(row.coordinate) + " by Approach I:");
-      out_.numbered(number(row), *row.one);
+      out_.paragraph("Of " + a_.coordinate_math(row.coordinate) + " by Approach I:");
+      out_.numbered_display(number(row), *row.one);
     }
     if (!row.two) return;
-    out_.paragraph("Of " + a_.name_of(row.coordinate) + " by Approach II:");
-    out_.numbered(number(row), *row.two);
+    out_.paragraph("Of " + a_.coordinate_math(row.coordinate) + " by Approach II:");
+    out_.numbered_display(number(row), *row.two);
   }
 
   void tabulated(const Row& row) {
-    const std::string name = a_.name_of(row.coordinate);
+    const std::string name = a_.coordinate_math(row.coordinate);
     const auto spanning = [&](const std::string& label, const Formula& f) {
-      out_.raw(label + " & \\multicolumn{2}{p{0.84\\linewidth}}{" + out_.cell(f, whole_width) + "} & " + number(row) +
+      out_.raw(label + " & \\multicolumn{2}{p{0.84\\linewidth}}{" + out_.table_cell(f, whole_width) + "} & " + number(row) +
                " \\\\[6pt]\n");
     };
     if (merged(row)) {
@@ -176,11 +176,11 @@ class Equations {
       return;
     }
     const auto short_enough = [&](const std::optional<Formula>& f) {
-      return !f || out_.lines(*f, half_width).size() <= tallest_beside;
+      return !f || out_.broken_lines(*f, half_width).size() <= tallest_beside;
     };
     if (short_enough(row.one) && short_enough(row.two)) {
       const auto cell = [&](const std::optional<Formula>& f) {
-        return f ? out_.cell(*f, half_width) : std::string("---");
+        return f ? out_.table_cell(*f, half_width) : std::string("---");
       };
       out_.raw(name + " & " + cell(row.one) + " & " + cell(row.two) + " & " + number(row) + " \\\\[6pt]\n");
       return;
@@ -239,14 +239,14 @@ class Equations {
                    "and the time derivatives of the constraints.");
     for (const reading::DisplayConstraint& c : a_.two.constraints) {
       if (!c.fixes || m_.is_eliminated(c.fixes->coordinate)) continue;
-      out_.paragraph("By Approach II \\textbf{" + words(c.label) + "} takes " + a_.name_of(c.fixes->coordinate) +
+      out_.paragraph("By Approach II \\textbf{" + escape_user_text(c.label) + "} takes " + a_.coordinate_math(c.fixes->coordinate) +
                      " out, and its multiplier with it.");
     }
   }
 
   Article& a_;
   const mechanics::Mechanics& m_;
-  LatexText& out_;
+  LatexWriter& out_;
   std::set<std::string> parts_;                   // parts that are already defined
   std::map<std::uint32_t, std::string> numbers_;  // number of the first equation of each coordinate
 };

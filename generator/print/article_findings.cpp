@@ -46,8 +46,8 @@ std::string reason_of(const Article& a, const ConservedFinding& c) {
   };
   switch (c.kind) {
     case OutputKind::momentum: {
-      const std::string q = a.name_of(c.index);
-      return q + " is cyclic: the Lagrangian of Approach II has " + a.name_of(c.index, 1) + " but not " + q +
+      const std::string q = a.coordinate_math(c.index);
+      return q + " is cyclic: the Lagrangian of Approach II has " + a.coordinate_math(c.index, 1) + " but not " + q +
              ", and along " + q +
              " neither a force beyond the potential nor a constraint that keeps its multiplier acts";
     }
@@ -72,7 +72,7 @@ std::optional<Formula> value_of(Article& a, const ConservedFinding& c) {
   try {
     const reading::Sum sum = c.named ? *c.named : reading::display_sum(a.m, c.expression);
     Formula value = reading::arrange(sum);
-    const std::string why = a.out.too_long(value);
+    const std::string why = a.out.reason_too_long(value);
     if (why.empty()) return value;
     a.left_out.push_back({c.title, why});
     return std::nullopt;
@@ -91,7 +91,7 @@ std::string eigenvalues_of(const SteadyFinding& s) {
       parts.push_back("$" + (e.real() == 0 ? "" : number_in_latex(e.real())) + " \\pm " + number_in_latex(e.imag()) +
                       "\\,\\mathrm{i}$");
   }
-  if (s.zeros > 0) parts.push_back(s.zeros == 1 ? "one zero" : std::to_string(s.zeros) + " zeros");
+  if (s.zero_eigenvalues > 0) parts.push_back(s.zero_eigenvalues == 1 ? "one zero" : std::to_string(s.zero_eigenvalues) + " zeros");
   return enumeration(parts);
 }
 
@@ -99,19 +99,19 @@ void write_steady_motion(Article& a, const SteadyFinding& s) {
   std::vector<std::string> values;
   for (const auto& [symbol, value] : s.values)
     values.push_back(a.out.math(reading::symbol(symbol)) + "~$= " + number_in_latex(value) + "$");
-  std::string text = "\\textbf{" + words(s.kind) + "}: ";
+  std::string text = "\\textbf{" + escape_user_text(s.kind) + "}: ";
   for (std::size_t i = 0; i < values.size(); ++i) text += (i > 0 ? ", " : "") + values[i];
   text += ". ";
-  if (s.family > 0)
-    text += "One of a family of " + std::to_string(s.family) + (s.family == 1 ? " dimension. " : " dimensions. ");
-  text += "\\emph{" + words(s.stability) + "}: " + words(s.reason) +
+  if (s.family_dimension > 0)
+    text += "One of a family of " + std::to_string(s.family_dimension) + (s.family_dimension == 1 ? " dimension. " : " dimensions. ");
+  text += "\\emph{" + escape_user_text(s.stability) + "}: " + escape_user_text(s.reason) +
           ". Eigenvalues of the linearised equations: " + eigenvalues_of(s) + ".";
   a.out.paragraph(text);
 }
 
 }  // namespace
 
-void write_conserved(Article& a) {
+void write_conserved_quantities(Article& a) {
   a.out.section("Conserved quantities");
   const std::vector<ConservedFinding>& all = a.findings->conserved;
   if (all.empty())
@@ -120,7 +120,7 @@ void write_conserved(Article& a) {
         "momentum along or about a fixed axis.");
   for (const ConservedFinding& c : all) {
     const std::string title =
-        c.kind == OutputKind::momentum ? "generalised momentum of " + a.name_of(c.index) : words(c.title);
+        c.kind == OutputKind::momentum ? "generalised momentum of " + a.coordinate_math(c.index) : escape_user_text(c.title);
     a.out.paragraph("The " + title + " is conserved: " + reason_of(a, c) +
                     (c.proven ? "." : " (shown by numbers, in 40 digits)."));
     const std::optional<Formula> value = value_of(a, c);
@@ -133,7 +133,7 @@ void write_routh(Article& a) {
   if (!a.findings->routh) return;
   const reading::RouthForm& form = *a.findings->routh;
   std::vector<std::string> names;
-  for (const std::uint32_t c : form.cyclic) names.push_back(a.name_of(c));
+  for (const std::uint32_t c : form.cyclic) names.push_back(a.coordinate_math(c));
   a.out.section("Routh's reduction");
   if (form.is_unexpanded) {
     a.out.paragraph("The reduction by " + enumeration(names) +
@@ -154,22 +154,22 @@ void write_routh(Article& a) {
   a.out.display({reading::relation({mark("cal R"), reading::arrange(form.routhian)})});
   if (form.equations.empty()) return;
   a.out.paragraph(form.equations.size() == 1 ? "and one equation is left:" : "and the equations that are left are");
-  for (const reading::Equation& equation : form.equations) a.out.numbered(a.out.next_number(), explicit_form(equation));
+  for (const reading::Equation& equation : form.equations) a.out.numbered_display(a.out.next_number(), explicit_form(equation));
   if (!form.energy) return;
   a.out.paragraph("The reduced motion keeps");
   a.out.display({reading::relation({mark(free_letter(a.model, "h", "cal H")), reading::arrange(*form.energy)})});
 }
 
-void write_steady(Article& a) {
+void write_steady_motions(Article& a) {
   a.out.section("Equilibria and steady motions");
   const Findings& found = *a.findings;
-  if (!found.no_steady.empty()) {
-    a.out.paragraph("None is given here: " + words(found.no_steady) + ".");
+  if (!found.steady_skip_reason.empty()) {
+    a.out.paragraph("None is given here: " + escape_user_text(found.steady_skip_reason) + ".");
     return;
   }
   std::string text = "At the parameters of the default scene";
   for (std::size_t i = 0; i < found.held.size(); ++i) {
-    text += (i == 0 ? ", with " : ", ") + words(found.held[i].first) + " held at $" +
+    text += (i == 0 ? ", with " : ", ") + escape_user_text(found.held[i].first) + " held at $" +
             number_in_latex(found.held[i].second) + "$";
   }
   a.out.paragraph(text + ", " +
@@ -180,7 +180,7 @@ void write_steady(Article& a) {
   for (const SteadyFinding& s : found.steady) write_steady_motion(a, s);
 }
 
-void write_singular(Article& a) {
+void write_singular_sets(Article& a) {
   std::vector<Statement> all;
   add_singular(a.m, all);
   if (all.empty()) return;
@@ -204,13 +204,13 @@ void write_singular(Article& a) {
 void write_certificate(Article& a) {
   if (a.findings != nullptr) {
     a.out.section("Certificate");
-    a.out.paragraph("The equations above and the formulations " + words(a.findings->checked_formulations) +
+    a.out.paragraph("The equations above and the formulations " + escape_user_text(a.findings->checked_formulations) +
                     " were compared with d'Alembert's principle, evaluated from the model alone: " +
-                    words(a.findings->certificate) + ".");
+                    escape_user_text(a.findings->certificate) + ".");
   }
   if (a.left_out.empty()) return;
   a.out.section("Left out");
-  for (const work::LeftOut& l : a.left_out) a.out.paragraph(words(l.what) + ": " + words(l.why) + ".");
+  for (const work::LeftOut& l : a.left_out) a.out.paragraph(escape_user_text(l.what) + ": " + escape_user_text(l.why) + ".");
 }
 
 }  // namespace eomgen::print

@@ -32,12 +32,12 @@ void write_contacts(Article& a) {
     }
     if (s.name != name) {
       if (!name.empty()) a.out.raw("\\end{longtable}\n");
-      a.out.paragraph("\\textbf{" + words(s.name) + "}:");
+      a.out.paragraph("\\textbf{" + escape_user_text(s.name) + "}:");
       a.out.raw("\\begin{longtable}{@{}p{0.18\\linewidth}p{0.76\\linewidth}@{}}\n");
       name = s.name;
     }
     const bool again = i > 0 && all[i - 1].name == s.name && all[i - 1].role == s.role;
-    a.out.raw((again ? "" : words(s.role)) + " & " + a.out.cell(s.formula, 58) + " \\\\[4pt]\n");
+    a.out.raw((again ? "" : escape_user_text(s.role)) + " & " + a.out.table_cell(s.formula, 58) + " \\\\[4pt]\n");
   }
   if (!name.empty()) a.out.raw("\\end{longtable}\n");
 }

@@ -5,7 +5,7 @@
 
 #include "print/article.hpp"
 #include "print/formulas.hpp"
-#include "print/latex_text.hpp"
+#include "print/latex_writer.hpp"
 #include "print/letters.hpp"
 #include "reading/partials.hpp"
 
@@ -16,12 +16,12 @@ struct Article {
   const model::Model& model;
   const reading::DisplayForm &one, &two;
   const Findings* findings;
-  LatexText& out;
+  LatexWriter& out;
   std::vector<work::LeftOut> left_out = {};
 
   /// Whether the equations of approach II differ from those of approach I.
-  bool builds_in() const;
-  std::string name_of(std::uint32_t coordinate, std::uint8_t order = 0) const;  // $\theta$
+  bool approaches_differ() const;
+  std::string coordinate_math(std::uint32_t coordinate, std::uint8_t order = 0) const;  // $\theta$
   /// The formulas of statements; omitted ones are listed in `left_out`.
   std::vector<reading::Formula> formulas(const std::vector<Statement>& statements);
 };
@@ -33,17 +33,17 @@ void write_system(Article& article);
 void write_coordinates(Article& article);
 void write_energies(Article& article);
 /// d/dt dT/dqdot - dT/dq + dU/dq = Q_q + ..
-void write_law(Article& article);
+void write_lagrange_law(Article& article);
 /// dT/dqdot, its rate, dT/dq, dU/dq, Q of each coordinate. Approach I fills `first`; approach II shows only those that
 /// differ from `first`.
-void write_partials(Article& article, const reading::DisplayForm& form, std::vector<reading::PartialDerivatives>& first);
+void write_partial_derivatives(Article& article, const reading::DisplayForm& form, std::vector<reading::PartialDerivatives>& first);
 void write_equations(Article& article);
 void write_constraint_forces(Article& article);
 void write_contacts(Article& article);
-void write_conserved(Article& article);
+void write_conserved_quantities(Article& article);
 void write_routh(Article& article);
-void write_steady(Article& article);
-void write_singular(Article& article);
+void write_steady_motions(Article& article);
+void write_singular_sets(Article& article);
 void write_certificate(Article& article);
 
 }  // namespace eomgen::print

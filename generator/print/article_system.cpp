@@ -58,7 +58,7 @@ class System {
 
   void figure() {
     if (a_.findings == nullptr || !a_.findings->figure) return;
-    out_.need("graphicx");
+    out_.use_package("graphicx");
     out_.raw(figure_in_latex(*a_.findings->figure, out_));
   }
 
@@ -89,7 +89,7 @@ class System {
                         from = place.from == 0 ? "" : " from " + bold(model_.places[place.from].name);
       if (!of.empty())
         text += (is_body ? ", its centre of mass in " : ", in ") +
-                (place.chart->system == "cartesian" ? "Cartesian" : words(place.chart->system)) + " coordinates " + of +
+                (place.chart->system == "cartesian" ? "Cartesian" : escape_user_text(place.chart->system)) + " coordinates " + of +
                 from;
     }
     if (is_body) {
@@ -108,7 +108,7 @@ class System {
     std::string name = frame.rotation;
     std::replace(name.begin(), name.end(), '_', ' ');
     const bool digits = !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
-    if (!digits) return words(name);
+    if (!digits) return escape_user_text(name);
     std::string dashed;
     for (const char c : name) dashed += (dashed.empty() ? "" : "-") + std::string(1, c);
     return dashed + " Euler angles";
@@ -165,8 +165,8 @@ class System {
     for (const model::Parameter& p : model_.parameters) {
       const std::optional<Formula> written =
           p.value == model::no_node ? std::nullopt : reading::as_written(model_, p.value);
-      const bool is_short = !written || out_.lines(*written, longest_value).size() == 1;
-      values.push_back(!written ? "" : is_short ? out_.math(*written) : out_.cell(*written, longest_value));
+      const bool is_short = !written || out_.broken_lines(*written, longest_value).size() == 1;
+      values.push_back(!written ? "" : is_short ? out_.math(*written) : out_.table_cell(*written, longest_value));
       all_short = all_short && is_short;
     }
     out_.raw(std::string("\\begin{longtable}{@{}l") + (all_short ? "l" : "p{0.42\\linewidth}") + "l" +
@@ -175,7 +175,7 @@ class System {
     for (std::uint32_t i = 0; i < model_.parameters.size(); ++i) {
       const model::Parameter& p = model_.parameters[i];
       out_.raw(out_.math(reading::symbol({SymbolKind::parameter, i, 0})) + " & " + values[i] + " & " +
-               unit_in_latex(p.unit.text) + (notes ? " & " + words(p.note) : "") + " \\\\[2pt]\n");
+               unit_in_latex(p.unit.text) + (notes ? " & " + escape_user_text(p.note) : "") + " \\\\[2pt]\n");
     }
     out_.raw("\\end{longtable}\n");
   }
@@ -204,7 +204,7 @@ class System {
                                 : "conservative";
     else
       text += found.conservative == "no" ? "not conservative" : "not known to be conservative";
-    if (!found.reason.empty()) text += " (" + words(found.reason) + ")";
+    if (!found.reason.empty()) text += " (" + escape_user_text(found.reason) + ")";
     if (found.conservative == "yes" && found.potential) {
       if (const auto U = read_short(*found.potential)) {
         std::vector<Formula> index;
@@ -227,7 +227,7 @@ class System {
   Article& a_;
   const Mechanics& m_;
   const model::Model& model_;
-  LatexText& out_;
+  LatexWriter& out_;
 };
 
 }  // namespace

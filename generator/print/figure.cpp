@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "print/latex_text.hpp"
+#include "print/latex_writer.hpp"
 
 namespace eomgen::print {
 namespace {
@@ -37,7 +37,7 @@ std::string in_latex(Figure::Stroke stroke) {
 
 }  // namespace
 
-std::string figure_in_latex(const Figure& figure, const LatexText& text) {
+std::string figure_in_latex(const Figure& figure, const LatexWriter& text) {
   std::string result =
       "\\begin{center}\n\\setlength{\\unitlength}{1mm}\\small\n"
       "\\newcommand{\\stroke}[5]{\\put(#1,#2){\\rotatebox{#3}{\\rule[-0.5\\dimexpr#5\\relax]{#4mm}{#5}}}}\n";

@@ -12,7 +12,7 @@
 
 namespace eomgen::print {
 
-class LatexText;
+class LatexWriter;
 
 struct Figure {
   using Point = std::array<double, 2>;  // x to the right, y upwards
@@ -39,6 +39,6 @@ struct Figure {
 };
 
 /// LaTeX of the figure, centred between paragraphs.
-std::string figure_in_latex(const Figure& figure, const LatexText& text);
+std::string figure_in_latex(const Figure& figure, const LatexWriter& text);
 
 }  // namespace eomgen::print

@@ -280,7 +280,7 @@ void add_constraints(const Mechanics& m, const DisplayForm& form, std::vector<St
 
 namespace {
 
-constexpr std::size_t most_terms = 300;  // terms of a readable equation
+constexpr std::size_t max_terms = 300;  // terms of a readable equation
 
 std::size_t longest_equation(const DisplayForm& form) {
   std::size_t longest = 0;
@@ -299,7 +299,7 @@ void add_equations(const Mechanics& m, const DisplayForm& form, std::vector<Stat
     }
   };
   if (form.is_unexpanded) return add_equations_by_parts(m, form, out);
-  if (const std::size_t terms = longest_equation(form); terms > most_terms) {
+  if (const std::size_t terms = longest_equation(form); terms > max_terms) {
     add_equations_by_parts(m, form, out);
     out.push_back(left_out("equations written out", "", "", "the longest has " + std::to_string(terms) + " terms"));
     return;

@@ -31,8 +31,8 @@ reading::Formula partial(reading::Formula of, reading::Formula by);
 /// The scalar product a . b.
 reading::Formula dot_product(reading::Formula a, reading::Formula b);
 
-struct Item;  // render.hpp
-std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& statements);
+struct PrintedFormula;  // render.hpp
+std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& statements);
 
 /// Adds the statements that `show` selects, in a fixed order of keys. If an interruption is thrown, the statements so
 /// far are complete.

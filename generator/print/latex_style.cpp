@@ -107,7 +107,7 @@ class LatexStyle final : public Style {
     }
     return {text, Piece::product};
   }
-  Piece rate(const Piece& inside) const override {
+  Piece time_derivative(const Piece& inside) const override {
     return {"\\frac{d}{dt}\\left(" + inside.text + "\\right)", Piece::call};
   }
   Piece partial(const Piece& above, const Piece& below) const override {
@@ -123,7 +123,7 @@ class LatexStyle final : public Style {
     return {a.text + " \\cdot " + b.text, Piece::product};
   }
   Piece integral(const Piece& inside) const override {
-    const std::string of = inside.binding < Piece::product ? bracket(inside.text) : inside.text;
+    const std::string of = inside.precedence < Piece::product ? bracket(inside.text) : inside.text;
     return {"\\int_{t_{0}}^{t} " + of + "\\,dt", Piece::product};
   }
   Piece differential(const Piece& a) const override { return {"d" + a.text, Piece::atom}; }
@@ -134,7 +134,7 @@ class LatexStyle final : public Style {
   std::string equals() const override { return " = "; }
   std::string at_least() const override { return " \\ge "; }
   std::string comma() const override { return ",\\quad "; }
-  std::string whole(const std::vector<std::string>& pieces, const std::vector<Start>& starts) const override {
+  std::string lay_out(const std::vector<std::string>& pieces, const std::vector<PieceStart>& starts) const override {
     std::size_t total = 0;
     for (const std::string& piece : pieces) total += visible(piece);
     std::string result;
@@ -147,7 +147,7 @@ class LatexStyle final : public Style {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const std::string& piece = pieces[i];
       const std::size_t more = visible(piece);
-      const bool apart = starts[i] == Start::abbreviation;
+      const bool apart = starts[i] == PieceStart::abbreviation;
       if (apart || (width > 0 && width + more > line_width_)) {
         result += apart ? " \\\\\n&" : " \\\\\n&\\quad{}";
         width = apart ? 0 : 4;
@@ -161,8 +161,8 @@ class LatexStyle final : public Style {
   bool fits(const std::string& text) const override { return visible(text) <= line_width_; }
   std::string open_bracket() const override { return "\\bigl("; }
   std::string close_bracket() const override { return "\\bigr)"; }
-  std::string open_rate() const override { return "\\frac{d}{dt}\\Bigl("; }
-  std::string close_rate() const override { return "\\Bigr)"; }
+  std::string open_time_derivative() const override { return "\\frac{d}{dt}\\Bigl("; }
+  std::string close_time_derivative() const override { return "\\Bigr)"; }
 
  private:
   static std::string letter(const std::string& word) {
@@ -186,7 +186,7 @@ class LatexStyle final : public Style {
     return result;
   }
   static std::string arguments(const std::vector<Piece>& args) {
-    if (args.size() == 1 && args[0].binding >= Piece::atom) {
+    if (args.size() == 1 && args[0].precedence >= Piece::atom) {
       return args[0].text.starts_with("\\") ? args[0].text : " " + args[0].text;
     }
     std::string result;

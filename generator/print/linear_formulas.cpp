@@ -51,7 +51,7 @@ class Entries {
 
 }  // namespace
 
-std::vector<Item> render_linear(const mechanics::Mechanics& m, const LinearForm& form) {
+std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& m, const LinearForm& form) {
   std::vector<Statement> out;
   if (!form.skip_reason.empty()) {
     out.push_back(left_out("linear", "", "", form.skip_reason));

@@ -167,8 +167,8 @@ class MathmlStyle final : public Style {
     }
     return {row(text), Piece::product};
   }
-  Piece rate(const Piece& inside) const override {
-    return {row(open_rate() + inside.text + close_rate()), Piece::call};
+  Piece time_derivative(const Piece& inside) const override {
+    return {row(open_time_derivative() + inside.text + close_time_derivative()), Piece::call};
   }
   Piece partial(const Piece& above, const Piece& below) const override {
     return {"<mfrac>" + row("<mo>∂</mo>" + above.text) + row("<mo>∂</mo>" + below.text) + "</mfrac>", Piece::call};
@@ -180,7 +180,7 @@ class MathmlStyle final : public Style {
     return {row(a.text + op("·") + b.text), Piece::product};
   }
   Piece integral(const Piece& inside) const override {
-    const std::string of = inside.binding < Piece::product ? bracket(inside.text) : inside.text;
+    const std::string of = inside.precedence < Piece::product ? bracket(inside.text) : inside.text;
     return {
         row("<msubsup><mo>∫</mo><msub><mi>t</mi><mn>0</mn></msub><mi>t</mi></msubsup>" + of + "<mi>d</mi><mi>t</mi>"),
         Piece::product};
@@ -193,7 +193,7 @@ class MathmlStyle final : public Style {
   std::string equals() const override { return infix("="); }
   std::string at_least() const override { return infix("≥"); }
   std::string comma() const override { return op(",") + "<mspace width=\"1em\"/>"; }
-  std::string whole(const std::vector<std::string>& pieces, const std::vector<Start>&) const override {
+  std::string lay_out(const std::vector<std::string>& pieces, const std::vector<PieceStart>&) const override {
     static const std::string open = "<math displaystyle=\"true\">", close = "</math>";
     std::string result;
     const bool split = pieces.size() > kept_together;
@@ -204,10 +204,10 @@ class MathmlStyle final : public Style {
     }
     return result + close;
   }
-  std::string open_rate() const override {
+  std::string open_time_derivative() const override {
     return "<mfrac><mi>d</mi>" + row("<mi>d</mi><mi>t</mi>") + "</mfrac>" + open_bracket();
   }
-  std::string close_rate() const override { return close_bracket(); }
+  std::string close_time_derivative() const override { return close_bracket(); }
   // Brackets that span several elements: each would stretch separately.
   std::string open_bracket() const override { return "<mo stretchy=\"false\">(</mo>"; }
   std::string close_bracket() const override { return "<mo stretchy=\"false\">)</mo>"; }
@@ -236,7 +236,7 @@ class MathmlStyle final : public Style {
     return result;
   }
   static std::string applied_to(const std::vector<Piece>& args) {
-    if (args.size() == 1 && args[0].binding >= Piece::atom) return invisible(apply_function, true) + args[0].text;
+    if (args.size() == 1 && args[0].precedence >= Piece::atom) return invisible(apply_function, true) + args[0].text;
     std::string inside;
     for (std::size_t i = 0; i < args.size(); ++i) inside += (i > 0 ? op(",") : "") + args[i].text;
     return invisible(apply_function, false) + bracketed(inside);

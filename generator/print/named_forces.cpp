@@ -24,12 +24,12 @@ std::vector<Formula> lower_index(std::uint32_t j, std::uint32_t k) {
 
 }  // namespace
 
-bool NamedForces::are_vectors(const model::Force& force) {
+bool NamedForces::has_only_vector_effects(const model::Force& force) {
   return std::all_of(force.effects.begin(), force.effects.end(),
                      [](const model::Effect& e) { return e.load_type != LoadType::work && e.load_type != LoadType::component; });
 }
 
-bool NamedForces::work(std::uint32_t j, std::uint32_t k, std::uint32_t i, std::vector<Formula>& terms) {
+bool NamedForces::add_generalised_force(std::uint32_t j, std::uint32_t k, std::uint32_t i, std::vector<Formula>& terms) {
   const model::Effect& effect = m_.model->forces[j].effects[k];
   if (effect.load_type == LoadType::acceleration || effect.load_type == LoadType::potential) return true;  // in U
   const std::vector<Formula> of = lower_index(j, k);
@@ -44,12 +44,12 @@ bool NamedForces::work(std::uint32_t j, std::uint32_t k, std::uint32_t i, std::v
       const std::optional<Formula> between = line(j, k), c = scalar(effect.value);
       if (!between || !c) return false;
       const Formula part = reading::fraction(dot_product(s, dotted(s)), dot_product(s, s));
-      words_.define("force", name, reading::relation({F, reading::negative(reading::product({*c, part, s}))}));
+      callbacks_.define("force", name, reading::relation({F, reading::negative(reading::product({*c, part, s}))}));
     } else {
       const std::optional<Formula> value = vector(effect.value), at = moment ? std::optional(F) : vector(effect.at);
       if (!value || !at) return false;
-      if (!moment) words_.define("point", name, reading::relation({s, *at}));
-      words_.define(moment ? "moment" : "force", name, reading::relation({F, *value}));
+      if (!moment) callbacks_.define("point", name, reading::relation({s, *at}));
+      callbacks_.define(moment ? "moment" : "force", name, reading::relation({F, *value}));
     }
     effects_.emplace_back(j, k);
   }
@@ -66,11 +66,11 @@ std::optional<Formula> NamedForces::line(std::uint32_t j, std::uint32_t k) {
   Formula s = mark("bold s", lower_index(j, k));
   std::vector<Formula> terms{*a};
   if (!reading::is_zero(*b)) terms.push_back(reading::negative(*b));
-  words_.define("line", force.name, reading::relation({s, reading::sum(std::move(terms))}));
+  callbacks_.define("line", force.name, reading::relation({s, reading::sum(std::move(terms))}));
   return s;
 }
 
-std::optional<Formula> NamedForces::spring(std::uint32_t j) {
+std::optional<Formula> NamedForces::spring_energy(std::uint32_t j) {
   const model::Force& force = m_.model->forces[j];
   const model::NodeId stiffness = force.value("stiffness"), length = force.value("length");
   std::vector<Formula> terms;
@@ -103,8 +103,8 @@ std::optional<Formula> NamedForces::spring(std::uint32_t j) {
 // As written in the model, unless constraints would have to be imposed on it.
 std::optional<Formula> NamedForces::scalar(model::NodeId node) {
   const Ref lowered = mechanics::lower_scalar(m_, node);
-  if (std::optional<Formula> written = words_.as_written(node, lowered)) return written;
-  return words_.read(lowered);
+  if (std::optional<Formula> written = callbacks_.as_written(node, lowered)) return written;
+  return callbacks_.read(lowered);
 }
 
 // In terms of named vectors with their definitions; else components along E1, E2, E3.
@@ -112,14 +112,14 @@ std::optional<Formula> NamedForces::vector(model::NodeId node) {
   VectorFormula by_names(m_, [this](model::NodeId factor) { return scalar(factor); });
   if (std::optional<Formula> formula = by_names(node)) {
     for (const std::uint32_t place : by_names.places()) {
-      if (!point(place)) return std::nullopt;
+      if (!define_point(place)) return std::nullopt;
     }
     return formula;
   }
   const Vec3 components = mechanics::lower_vector(m_, node);
   std::vector<Formula> written, axes;
   for (std::uint32_t k = 0; k < 3; ++k) {
-    const std::optional<Formula> component = words_.read(components[k]);
+    const std::optional<Formula> component = callbacks_.read(components[k]);
     if (!component) return std::nullopt;
     written.push_back(*component);
     axes.push_back(mark("E", {index(k + 1)}));
@@ -132,14 +132,14 @@ std::optional<Formula> NamedForces::vector(model::NodeId node) {
 }
 
 // Defines r of a place without a mass.
-bool NamedForces::point(std::uint32_t place) {
+bool NamedForces::define_point(std::uint32_t place) {
   const auto is_there = [place](const mechanics::PointMass& mass) { return mass.place == place; };
   if (std::any_of(m_.masses.begin(), m_.masses.end(), is_there) || std::count(points_.begin(), points_.end(), place))
     return true;
   points_.push_back(place);
   const std::optional<Formula> written = vector(m_.model->places[place].position);
   if (written)
-    words_.define("position", m_.model->places[place].name, reading::relation({mark("r", {index(place)}), *written}));
+    callbacks_.define("position", m_.model->places[place].name, reading::relation({mark("r", {index(place)}), *written}));
   return written.has_value();
 }
 

@@ -18,34 +18,34 @@ namespace eomgen::print {
 class NamedForces {
  public:
   /// Callbacks that format parts and collect their definitions.
-  struct Words {
+  struct Callbacks {
     std::function<std::optional<reading::Formula>(symbolic::Ref)> read;  // nothing if it is too long
     /// Returns nothing if constraints must be imposed on the expression.
     std::function<std::optional<reading::Formula>(model::NodeId, symbolic::Ref lowered)> as_written;
     std::function<void(const std::string& role, const std::string& name, reading::Formula)> define;
   };
 
-  NamedForces(mechanics::Mechanics& mechanics, Words words) : m_(mechanics), words_(std::move(words)) {}
+  NamedForces(mechanics::Mechanics& mechanics, Callbacks callbacks) : m_(mechanics), callbacks_(std::move(callbacks)) {}
 
   /// Whether all effects of a force are vectors or have a potential.
-  static bool are_vectors(const model::Force& force);
+  static bool has_only_vector_effects(const model::Force& force);
 
   /// The energy of force j if it is a spring with a stiffness; else nothing.
-  std::optional<reading::Formula> spring(std::uint32_t j);
+  std::optional<reading::Formula> spring_energy(std::uint32_t j);
 
   /// Appends the generalised force of effect k of force j along coordinate i to `terms`. Returns false if it has no
   /// such form.
-  bool work(std::uint32_t j, std::uint32_t k, std::uint32_t i, std::vector<reading::Formula>& terms);
+  bool add_generalised_force(std::uint32_t j, std::uint32_t k, std::uint32_t i, std::vector<reading::Formula>& terms);
 
  private:
   std::optional<reading::Formula> scalar(model::NodeId node);
   std::optional<reading::Formula> vector(model::NodeId node);
-  bool point(std::uint32_t place);
+  bool define_point(std::uint32_t place);
   /// Defines a letter for the line s = a - b and returns it.
   std::optional<reading::Formula> line(std::uint32_t j, std::uint32_t k);
 
   mechanics::Mechanics& m_;
-  Words words_;
+  Callbacks callbacks_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> effects_;  // effects whose letters are defined
   std::vector<std::uint32_t> points_;                             // places whose letters are defined
 };

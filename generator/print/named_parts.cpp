@@ -28,7 +28,7 @@ using symbolic::SymbolKind;
 using symbolic::Vec3;
 
 constexpr std::size_t longest_numerator = 12;  // terms; longer sums are not combined in one fraction
-constexpr std::size_t most_terms = 100;        // terms of a readable part
+constexpr std::size_t max_terms = 100;        // terms of a readable part
 constexpr std::size_t longest_energy = 24;     // terms; named forces are shorter than longer energies
 
 /// 0 for a zero vector.
@@ -113,7 +113,7 @@ class NamedParts {
     for (std::uint32_t j = 0; j < m_.potential_by_force.size(); ++j) {
       const Ref energy = m_.potential_by_force[j];
       if (m_.dag->is_zero(energy) || read(energy, longest_energy)) continue;
-      std::optional<Formula> spring = forces_.spring(j);
+      std::optional<Formula> spring = forces_.spring_energy(j);
       if (!spring) return define("potential energy", "", letter, m_.potential);
       terms.push_back(*std::move(spring));
       rest = m_.dag->sub(rest, energy);
@@ -124,7 +124,7 @@ class NamedParts {
     define("potential energy", "", reading::relation({letter, reading::sum(std::move(terms))}));
   }
 
-  std::optional<Formula> read(Ref r, std::size_t most = most_terms) {
+  std::optional<Formula> read(Ref r, std::size_t most = max_terms) {
     try {
       const Sum sum = reading::display_sum(m_, value(r));
       if (sum.size() <= most) return arranged(sum);
@@ -153,7 +153,7 @@ class NamedParts {
     const auto along = [&](std::uint32_t k) {
       Ref sum = dag.zero();
       for (std::size_t j = 0; j < m_.force_components.size(); ++j) {
-        if (!rest || !NamedForces::are_vectors(m_.model->forces[j])) sum = dag.add(sum, m_.force_components[j][k]);
+        if (!rest || !NamedForces::has_only_vector_effects(m_.model->forces[j])) sum = dag.add(sum, m_.force_components[j][k]);
       }
       for (const mechanics::Contact& contact : m_.contacts) {
         for (std::uint32_t a = 0; a < contact.dimensions(); ++a)
@@ -182,9 +182,9 @@ class NamedParts {
       const model::Force& force = m_.model->forces[j];
       const std::vector<Ref>& components = m_.force_components[j];
       const bool acts = std::any_of(components.begin(), components.end(), [&](Ref r) { return !m_.dag->is_zero(r); });
-      if (!acts || !NamedForces::are_vectors(force)) continue;
+      if (!acts || !NamedForces::has_only_vector_effects(force)) continue;
       for (std::uint32_t k = 0; k < force.effects.size(); ++k) {
-        if (!forces_.work(j, k, i, terms)) {
+        if (!forces_.add_generalised_force(j, k, i, terms)) {
           out_.push_back(left_out("parts", name, "generalised force", why));
           return;
         }

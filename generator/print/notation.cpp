@@ -76,8 +76,8 @@ std::vector<JointDirection> joint_directions(const mechanics::Mechanics& m) {
 
 }  // namespace
 
-std::vector<MultiplierMeaning> multiplier_meanings(const mechanics::Mechanics& m) {
-  std::vector<MultiplierMeaning> result;
+std::vector<MultiplierDescription> multiplier_descriptions(const mechanics::Mechanics& m) {
+  std::vector<MultiplierDescription> result;
   const std::vector<JointDirection> of_joints = joint_directions(m);
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     if (!m.is_independent(k)) continue;

@@ -50,12 +50,12 @@ std::string mathml(const Glyph& glyph);
 
 /// The meaning of a multiplier, for a legend: "of the constraint 'wire.2'", "force of the joint 'pin' on 'second' along
 /// E1".
-struct MultiplierMeaning {
+struct MultiplierDescription {
   std::uint32_t constraint;
   std::string text;
 };
 /// Descriptions for the active constraints; empty if there is only one.
-std::vector<MultiplierMeaning> multiplier_meanings(const mechanics::Mechanics& mechanics);
+std::vector<MultiplierDescription> multiplier_descriptions(const mechanics::Mechanics& mechanics);
 
 /// The Greek letter with this name in UTF-8; empty if there is none.
 std::string_view greek(std::string_view name);

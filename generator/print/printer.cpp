@@ -7,7 +7,7 @@
 #include <functional>
 #include <optional>
 
-#include "print/shorten.hpp"
+#include "print/shortener.hpp"
 #include "symbolic/functions.hpp"
 
 namespace eomgen::print {
@@ -30,9 +30,9 @@ std::optional<std::string> as_decimal(const reading::Rational& value) {
   return std::to_string(cln::cl_I_to_long(whole)) + "." + decimals;
 }
 
-class Walk {
+class FormulaPrinter {
  public:
-  Walk(const Style& style, const Notation& notation) : style_(style), notation_(notation) {}
+  FormulaPrinter(const Style& style, const Notation& notation) : style_(style), notation_(notation) {}
 
   Piece operator()(const Formula& f) const {
     switch (f.kind) {
@@ -46,7 +46,7 @@ class Walk {
       case FormulaKind::product: return product(f);
       case FormulaKind::fraction: return style_.fraction((*this)(f.args[0]), (*this)(f.args[1]));
       case FormulaKind::sum: return {joined(signed_terms(f)), Piece::sum};
-      case FormulaKind::rate: return style_.rate((*this)(f.args[0]));
+      case FormulaKind::rate: return style_.time_derivative((*this)(f.args[0]));
       case FormulaKind::partial: return style_.partial((*this)(f.args[0]), (*this)(f.args[1]));
       case FormulaKind::dot: return style_.dotted((*this)(f.args[0]), f.order);
       case FormulaKind::dot_product:
@@ -63,39 +63,39 @@ class Walk {
   }
 
   /// Top-level terms of all sides of a relation with signs and equals signs, then the definitions of abbreviations.
-  std::string whole(const Formula& f) const {
+  std::string lay_out(const Formula& f) const {
     std::vector<std::string> all;
-    std::vector<Start> starts;
-    const auto add = [&](std::vector<std::string> terms, const std::string& before, Start start) {
+    std::vector<PieceStart> starts;
+    const auto add = [&](std::vector<std::string> terms, const std::string& before, PieceStart start) {
       terms.front() = before + terms.front();
       for (std::size_t i = 0; i < terms.size(); ++i) {
         all.push_back(std::move(terms[i]));
-        starts.push_back(i == 0 ? start : Start::no);
+        starts.push_back(i == 0 ? start : PieceStart::none);
       }
     };
-    Shortener shorten([this](const Formula& term) { return at_least(term, Piece::product); },
+    Shortener shortener([this](const Formula& term) { return at_least(term, Piece::product); },
                       [this](const std::string& text) { return style_.fits(text); });
     const std::vector<Formula> sides = f.kind == FormulaKind::relation ? f.args : std::vector<Formula>{f};
     for (std::size_t side = 0; side < sides.size(); ++side) {
       if (side > 0 && reading::is_zero(sides[side])) {  // "= 0" stays on the last line
         all.back() += between(f) + (*this)(sides[side]).text;
       } else {
-        add(broken_terms(sides[side], shorten), side > 0 ? between(f) : "", Start::side);
+        add(broken_terms(sides[side], shortener), side > 0 ? between(f) : "", PieceStart::side);
       }
     }
-    for (std::size_t i = 0; i < shorten.meanings().size(); ++i) {
+    for (std::size_t i = 0; i < shortener.definitions().size(); ++i) {
       all.back() += ",";
-      const Formula meaning = shorten.meanings()[i];
-      add(broken_terms(meaning, shorten), (*this)(Shortener::abbreviation(i)).text + style_.equals(),
-          Start::abbreviation);
+      const Formula meaning = shortener.definitions()[i];
+      add(broken_terms(meaning, shortener), (*this)(Shortener::abbreviation(i)).text + style_.equals(),
+          PieceStart::abbreviation);
     }
-    return style_.whole(all, starts);
+    return style_.lay_out(all, starts);
   }
 
  private:
-  std::string at_least(const Formula& f, Piece::Binding binding) const {
+  std::string at_least(const Formula& f, Piece::Precedence precedence) const {
     const Piece piece = (*this)(f);
-    return piece.binding < binding ? style_.bracket(piece.text) : piece.text;
+    return piece.precedence < precedence ? style_.bracket(piece.text) : piece.text;
   }
   Piece number(const Formula& f) const {
     if (!f.word.empty()) return style_.literal(f.word);
@@ -130,14 +130,14 @@ class Walk {
     if (base.kind == FormulaKind::call && whole && symbolic::function_of(base.op).raised)
       return style_.call_power(base.op, pieces(base.args), exponent);
     Piece piece = (*this)(base);
-    if (piece.binding < Piece::atom) piece = {style_.bracket(piece.text), Piece::atom};
+    if (piece.precedence < Piece::atom) piece = {style_.bracket(piece.text), Piece::atom};
     return style_.power(piece, exponent);
   }
   Piece product(const Formula& f) const {
     std::vector<Piece> factors;
     for (const Formula& factor : f.args) {
       Piece piece = (*this)(factor);
-      if (piece.binding < Piece::product) piece = {style_.bracket(piece.text), Piece::atom};
+      if (piece.precedence < Piece::product) piece = {style_.bracket(piece.text), Piece::atom};
       factors.push_back(std::move(piece));
     }
     return style_.product(factors);
@@ -159,18 +159,18 @@ class Walk {
     return result;
   }
   /// Pieces between which a line may break: terms, and the terms of a bracket that is too long for a line.
-  std::vector<std::string> line_pieces(const Formula& f, Shortener& shorten, bool leads = true) const {
+  std::vector<std::string> line_pieces(const Formula& f, Shortener& shortener, bool leads = true) const {
     std::vector<std::string> result;
     add_signed(f, [&](const Formula& term, bool minus) {
-      std::vector<std::string> pieces = shorten.fits(term) ? std::vector<std::string>{} : bracket_pieces(term, shorten);
-      if (pieces.empty()) pieces = {at_least(shorten(term), Piece::product)};
+      std::vector<std::string> pieces = shortener.fits(term) ? std::vector<std::string>{} : bracket_pieces(term, shortener);
+      if (pieces.empty()) pieces = {at_least(shortener(term), Piece::product)};
       pieces.front() = sign(minus, leads && result.empty()) + pieces.front();
       result.insert(result.end(), pieces.begin(), pieces.end());
     });
     return result;
   }
   /// Pieces of a product with one sum as a factor, broken within the sum; empty for other terms.
-  std::vector<std::string> bracket_pieces(const Formula& term, Shortener& shorten) const {
+  std::vector<std::string> bracket_pieces(const Formula& term, Shortener& shortener) const {
     const auto is_sum = [](const Formula& f) { return f.kind == FormulaKind::sum; };
     if (term.kind != FormulaKind::product || std::count_if(term.args.begin(), term.args.end(), is_sum) != 1) return {};
     const auto at =
@@ -178,11 +178,11 @@ class Walk {
     const std::string place = "\x1a";  // no printed text has this character
     std::vector<Piece> factors = pieces(term.args);
     for (Piece& factor : factors) {
-      if (factor.binding < Piece::product) factor = {style_.bracket(factor.text), Piece::atom};
+      if (factor.precedence < Piece::product) factor = {style_.bracket(factor.text), Piece::atom};
     }
     factors[at] = {place, Piece::atom};
     const std::string around = style_.product(factors).text;
-    std::vector<std::string> result = line_pieces(term.args[at], shorten);
+    std::vector<std::string> result = line_pieces(term.args[at], shortener);
     result.front() = around.substr(0, around.find(place)) + style_.open_bracket() + result.front();
     result.back() += style_.close_bracket() + around.substr(around.find(place) + place.size());
     return result;
@@ -193,18 +193,18 @@ class Walk {
     return result;
   }
   // d/dt of a long sum may break inside.
-  std::vector<std::string> broken_terms(const Formula& side, Shortener& shorten) const {
+  std::vector<std::string> broken_terms(const Formula& side, Shortener& shortener) const {
     if (side.kind == FormulaKind::relation || side.kind == FormulaKind::list) return {(*this)(side).text};
     const Formula& first = side.kind == FormulaKind::sum ? side.args[0] : side;
     if (first.kind != FormulaKind::rate || first.args[0].kind != FormulaKind::sum || first.args[0].args.size() < 2) {
-      return line_pieces(side, shorten);
+      return line_pieces(side, shortener);
     }
-    std::vector<std::string> result = line_pieces(first.args[0], shorten);
-    result.front() = style_.open_rate() + result.front();
-    result.back() += style_.close_rate();
+    std::vector<std::string> result = line_pieces(first.args[0], shortener);
+    result.front() = style_.open_time_derivative() + result.front();
+    result.back() += style_.close_time_derivative();
     if (side.kind != FormulaKind::sum) return result;
     for (std::size_t i = 1; i < side.args.size(); ++i) {
-      for (std::string& piece : line_pieces(side.args[i], shorten, false)) result.push_back(std::move(piece));
+      for (std::string& piece : line_pieces(side.args[i], shortener, false)) result.push_back(std::move(piece));
     }
     return result;
   }
@@ -219,7 +219,7 @@ std::string print(const Formula& formula, const Notation& notation, Format forma
   std::unique_ptr<Style> style;
   switch (format) {
     case Format::text: style = text_style(false); break;
-    case Format::language: style = text_style(true); break;
+    case Format::model_language: style = text_style(true); break;
     case Format::latex: style = latex_style(); break;
     case Format::mathml: style = mathml_style(); break;
   }
@@ -227,7 +227,7 @@ std::string print(const Formula& formula, const Notation& notation, Format forma
 }
 
 std::string print(const Formula& formula, const Notation& notation, const Style& style) {
-  return Walk(style, notation).whole(formula);
+  return FormulaPrinter(style, notation).lay_out(formula);
 }
 
 }  // namespace eomgen::print

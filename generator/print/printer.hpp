@@ -16,18 +16,18 @@ enum class Format {
   text,   // m d^2 sin^2(phi) theta_dot
   latex,  // m d^{2} \sin^{2}\phi\, \dot{\theta}
   mathml,
-  language,  // m*d^2*sin(phi)^2*theta_dot: the language of model files
+  model_language,  // m*d^2*sin(phi)^2*theta_dot: the language of model files
 };
 
 /// Printed text and its operator precedence.
 struct Piece {
-  enum Binding { relation, sum, product, call, atom };
+  enum Precedence { relation, sum, product, call, atom };
   std::string text;
-  Binding binding = atom;
+  Precedence precedence = atom;
 };
 
 /// The part of a formula that a piece starts: a side of a relation, or the definition of an abbreviation.
-enum class Start { no, side, abbreviation };
+enum class PieceStart { none, side, abbreviation };
 
 /// One output format. Operands already have the brackets that they need, unless stated otherwise.
 class Style {
@@ -44,7 +44,7 @@ class Style {
   virtual Piece power(const Piece& base, const std::string& exponent) const = 0;
   virtual Piece fraction(const Piece& above, const Piece& below) const = 0;  // without brackets
   virtual Piece product(const std::vector<Piece>& factors) const = 0;
-  virtual Piece rate(const Piece& inside) const = 0;  // d/dt, without brackets
+  virtual Piece time_derivative(const Piece& inside) const = 0;  // d/dt, without brackets
   virtual Piece partial(const Piece& above, const Piece& below) const = 0;
   virtual Piece dotted(const Piece& base, int dots) const = 0;
   virtual Piece dot_product(const Piece& a, const Piece& b) const = 0;
@@ -59,15 +59,15 @@ class Style {
   virtual std::string comma() const = 0;
   /// Lays out a formula from its top-level pieces. Long formulas are broken into lines or elements. `starts[i]`: the
   /// part that piece i starts.
-  virtual std::string whole(const std::vector<std::string>& pieces, const std::vector<Start>& starts) const = 0;
+  virtual std::string lay_out(const std::vector<std::string>& pieces, const std::vector<PieceStart>& starts) const = 0;
   /// Whether a term fits on a line of its own.
   virtual bool fits(const std::string&) const { return true; }
   /// Brackets that span several lines.
   virtual std::string open_bracket() const { return "("; }
   virtual std::string close_bracket() const { return ")"; }
   /// Opening and closing of a time derivative that spans several lines.
-  virtual std::string open_rate() const = 0;
-  virtual std::string close_rate() const = 0;
+  virtual std::string open_time_derivative() const = 0;
+  virtual std::string close_time_derivative() const = 0;
 };
 
 std::unique_ptr<Style> text_style(bool language);

@@ -5,11 +5,11 @@
 
 namespace eomgen::print {
 
-std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& all) {
+std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& all) {
   const Notation notation(mechanics);
-  std::vector<Item> items;
+  std::vector<PrintedFormula> items;
   for (const Statement& statement : all) {
-    Item item;
+    PrintedFormula item;
     item.key = statement.key;
     item.name = statement.name;
     item.coordinate = statement.coordinate;
@@ -23,7 +23,7 @@ std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vecto
   return items;
 }
 
-std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
+std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                          const std::vector<std::string>& show, bool* interrupted) {
   std::vector<Statement> all;
   std::optional<work::DeferInterrupt> kept;  // partial results are printed after a stop request
@@ -37,16 +37,16 @@ std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::D
   return render(mechanics, all);
 }
 
-std::vector<Item> render_singular(const mechanics::Mechanics& mechanics) {
+std::vector<PrintedFormula> render_singular(const mechanics::Mechanics& mechanics) {
   std::vector<Statement> all;
   add_singular(mechanics, all);
   return render(mechanics, all);
 }
 
-Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
+PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
                        const reading::Sum& expression) {
   const Notation notation(mechanics);
-  Item item;
+  PrintedFormula item;
   item.key = std::move(key);
   item.name = std::move(name);
   const reading::Formula formula = reading::arrange(expression);
@@ -56,12 +56,12 @@ Item render_expression(const mechanics::Mechanics& mechanics, std::string key, s
   return item;
 }
 
-Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
+PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
                        symbolic::Ref expression) {
   try {
     return render_expression(mechanics, key, name, reading::display_sum(mechanics, expression));
   } catch (const work::BudgetExceeded& over) {
-    Item item;
+    PrintedFormula item;
     item.left_out = over.what();
     item.key = std::move(key);
     item.name = std::move(name);

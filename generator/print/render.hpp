@@ -14,7 +14,7 @@ namespace eomgen::print {
 
 /// One printed formula. `key`: equations (momentum form, one per coordinate), explicit (M qddot + h = Q), reactions,
 /// friction, basis, metric, christoffel, line_element, frenet, energies, lagrangian, constraints, singular.
-struct Item {
+struct PrintedFormula {
   std::string key, name;
   std::string coordinate;
   std::string text, latex, mathml;
@@ -24,23 +24,23 @@ struct Item {
 
 /// The formulas that `show` selects (keys, or "all"); "equations" includes the explicit form. On an interruption it
 /// throws work::Interrupted, or, if `interrupted` is given, sets it and returns the formulas so far.
-std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
+std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                          const std::vector<std::string>& show, bool* interrupted = nullptr);
 
 /// M, C, K, B under the key "linear": along a motion, or at rest with the equilibrium equations.
-std::vector<Item> render_linear(const mechanics::Mechanics& mechanics, const reading::LinearForm& form);
+std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& mechanics, const reading::LinearForm& form);
 
 /// Routh's reduction under the key "routh": constant momenta, the resulting rates, the Routhian, the reduced equations.
-std::vector<Item> render_routh(const mechanics::Mechanics& mechanics, const reading::RouthForm& form);
+std::vector<PrintedFormula> render_routh(const mechanics::Mechanics& mechanics, const reading::RouthForm& form);
 
 /// The singular sets, which are not part of `form`.
-std::vector<Item> render_singular(const mechanics::Mechanics& mechanics);
+std::vector<PrintedFormula> render_singular(const mechanics::Mechanics& mechanics);
 
 /// An expression of the Dag, simplified for display: potentials, conserved quantities.
-Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
+PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
                        symbolic::Ref expression);
 
-Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
+PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
                        const reading::Sum& expression);
 
 }  // namespace eomgen::print

@@ -11,7 +11,7 @@ using reading::Formula;
 using reading::Layout;
 using reading::RouthForm;
 
-std::vector<Item> render_routh(const mechanics::Mechanics& m, const RouthForm& form) {
+std::vector<PrintedFormula> render_routh(const mechanics::Mechanics& m, const RouthForm& form) {
   std::vector<Statement> out;
   const auto add = [&](std::string name, std::string coordinate, std::string role, Formula formula) {
     out.push_back({"routh", std::move(name), std::move(coordinate), std::move(role), std::move(formula)});

@@ -50,8 +50,8 @@ class TextStyle final : public Style {
     return {base.text + "^" + (plain ? exponent : "(" + exponent + ")"), Piece::call};
   }
   Piece fraction(const Piece& above, const Piece& below) const override {
-    const std::string top = above.binding < Piece::product ? "(" + above.text + ")" : above.text;
-    const std::string bottom = below.binding <= Piece::product ? "(" + below.text + ")" : below.text;
+    const std::string top = above.precedence < Piece::product ? "(" + above.text + ")" : above.text;
+    const std::string bottom = below.precedence <= Piece::product ? "(" + below.text + ")" : below.text;
     return {top + "/" + bottom, Piece::product};
   }
   Piece product(const std::vector<Piece>& factors) const override {
@@ -59,12 +59,12 @@ class TextStyle final : public Style {
     for (std::size_t i = 0; i < factors.size(); ++i) {
       // a b/c x would read as a b/(c x); a number such as 1/2 may stand first
       const bool is_number = factors[i].text.find_first_not_of("0123456789/") == std::string::npos;
-      const bool bracket_it = factors[i].binding == Piece::product && (i > 0 || !is_number) && factors.size() > 1;
+      const bool bracket_it = factors[i].precedence == Piece::product && (i > 0 || !is_number) && factors.size() > 1;
       text += (i > 0 ? (language_ ? "*" : " ") : "") + (bracket_it ? "(" + factors[i].text + ")" : factors[i].text);
     }
     return {text, Piece::product};
   }
-  Piece rate(const Piece& inside) const override {
+  Piece time_derivative(const Piece& inside) const override {
     return {(language_ ? "ddt(" : "d/dt(") + inside.text + ")", Piece::atom};
   }
   Piece partial(const Piece& above, const Piece& below) const override {
@@ -83,11 +83,11 @@ class TextStyle final : public Style {
   std::string equals() const override { return " = "; }
   std::string at_least() const override { return " >= "; }
   std::string comma() const override { return ", "; }
-  std::string whole(const std::vector<std::string>& pieces, const std::vector<Start>&) const override {
+  std::string lay_out(const std::vector<std::string>& pieces, const std::vector<PieceStart>&) const override {
     return joined(pieces, "");
   }
-  std::string open_rate() const override { return language_ ? "ddt(" : "d/dt("; }
-  std::string close_rate() const override { return ")"; }
+  std::string open_time_derivative() const override { return language_ ? "ddt(" : "d/dt("; }
+  std::string close_time_derivative() const override { return ")"; }
 
  private:
   static std::string letter(const std::string& word) {

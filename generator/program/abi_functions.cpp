@@ -34,7 +34,7 @@ void fix_parameters(system::EquationSystem& s, const std::map<std::uint32_t, sym
 }
 
 /// Sets rows of A and gamma to 0 for open contacts.
-void leave_open_contacts(system::EquationSystem& s) {
+void drop_open_contacts(system::EquationSystem& s) {
   Dag& dag = *s.dag;
   const std::size_t n = s.free.size();
   for (std::uint32_t j = 0; j < s.contacts.size(); ++j) {
@@ -50,8 +50,8 @@ void leave_open_contacts(system::EquationSystem& s) {
 }
 
 /// A function with its result arguments, which have no entries yet.
-WantedFunction nothing_of(const char* name) {
-  WantedFunction function{name, {}, {}, {}};
+FunctionExpressions empty_function(const char* name) {
+  FunctionExpressions function{name, {}, {}, {}};
   for (const abi::Result& result : abi::find(name)->results) function.results.push_back({result.name, {}});
   return function;
 }
@@ -67,18 +67,18 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
                            Ties ties, bool hold)
     : system_(std::move(system)), n_(system_.free.size()), m_(system_.active.size()) {
   fix_parameters(system_, fix);
-  live_M_ = system_.M, live_f_ = system_.f, live_A_ = system_.A;
-  if (hold) kinks_ = hold_kinks(system_);
-  leave_open_contacts(system_);
+  modeless_M_ = system_.M, modeless_f_ = system_.f, modeless_A_ = system_.A;
+  if (hold) kinks_ = freeze_kink_branches(system_);
+  drop_open_contacts(system_);
   Dag& dag = *system_.dag;
   std::map<Symbol, Ref> solution;
   ties_ = ties;
   if (system_.solution)
     std::tie(qddot_, lambda_) = std::tie(system_.solution->qddot, system_.solution->lambda);
   else if (system_.contacts.empty())
-    std::tie(qddot_, lambda_) = solve().motion();
+    std::tie(qddot_, lambda_) = solve().solve_accelerations();
   else
-    close_contacts(solution);
+    solve_contacts(solution);
   for (std::size_t i = 0; i < n_; ++i) {
     qdot_.push_back(dag.symbol({SymbolKind::coordinate, system_.free[i], 1}));
     const Symbol qddot{SymbolKind::coordinate, system_.free[i], 2};
@@ -93,8 +93,8 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
   solution_ = std::make_unique<Substitution>(dag, std::move(solution));
 }
 
-void AbiFunctions::close_contacts(std::map<Symbol, Ref>& solution) {
-  friction_ = close_friction(system_, solve());
+void AbiFunctions::solve_contacts(std::map<Symbol, Ref>& solution) {
+  friction_ = solve_friction_laws(system_, solve());
   qddot_ = friction_.qddot;
   lambda_ = friction_.lambda;
   for (std::size_t b = 0; b < friction_.phi.size(); ++b) {
@@ -102,12 +102,12 @@ void AbiFunctions::close_contacts(std::map<Symbol, Ref>& solution) {
   }
 }
 
-const LinearSolve& AbiFunctions::solve() {
-  if (!solve_) solve_ = make_solve(system_, ties_);
+const LinearSolver& AbiFunctions::solve() {
+  if (!solve_) solve_ = make_linear_solver(system_, ties_);
   return *solve_;
 }
 
-void AbiFunctions::label_matrices(WantedFunction& function) {
+void AbiFunctions::label_matrices(FunctionExpressions& function) {
   for (std::size_t i = 0; i < n_; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       function.labels.push_back({system_.M[i * n_ + j], "M_" + indices(j, i, n_), section_mass});
@@ -124,7 +124,7 @@ void AbiFunctions::label_matrices(WantedFunction& function) {
   }
 }
 
-void AbiFunctions::add_solution(WantedFunction& function) {
+void AbiFunctions::add_solution(FunctionExpressions& function) {
   const std::vector<Ref> needed = [&] {
     std::vector<Ref> roots;
     for (const auto& result : function.results) roots.insert(roots.end(), result.entries.begin(), result.entries.end());
@@ -153,15 +153,15 @@ void AbiFunctions::add_solution(WantedFunction& function) {
   }
 }
 
-WantedFunction AbiFunctions::rhs() {
-  WantedFunction function = nothing_of("rhs");
+FunctionExpressions AbiFunctions::rhs() {
+  FunctionExpressions function = empty_function("rhs");
   auto& dx = function.results[0].entries;
   dx = qdot_;
   dx.insert(dx.end(), qddot_.begin(), qddot_.end());
   for (const system::IntegralState& integral : system_.integrals) dx.push_back(integral.rate);
-  if (!friction_.none.empty()) {
-    function.results.push_back({"", friction_.none, no_solution});
-    function.results.push_back({"", friction_.many, many_solutions});
+  if (!friction_.existence.empty()) {
+    function.results.push_back({"", friction_.existence, no_solution});
+    function.results.push_back({"", friction_.uniqueness, many_solutions});
   }
   add_solution(function);
   return function;
@@ -169,7 +169,7 @@ WantedFunction AbiFunctions::rhs() {
 
 // d(qddot)/ds by differentiating the equations of motion, not their solution. With qddot and lambda constant,
 //   M dqddot = df + dA^T lambda - dM qddot + A^T dlambda,   A dqddot = -(dgamma + dA qddot).
-std::vector<Ref> AbiFunctions::column(Symbol along) {
+std::vector<Ref> AbiFunctions::derivative_column(Symbol along) {
   Dag& dag = *system_.dag;
   symbolic::Derivation d = symbolic::partial_derivative(dag, along);
   std::vector<Ref> r, c;
@@ -196,36 +196,36 @@ std::vector<Ref> AbiFunctions::column(Symbol along) {
   return lower;
 }
 
-WantedFunction AbiFunctions::jac() {
+FunctionExpressions AbiFunctions::jac() {
   const Dag& dag = *system_.dag;
-  WantedFunction function = nothing_of("jac");
+  FunctionExpressions function = empty_function("jac");
   auto& dfdx = function.results[0].entries;
   auto& dfdt = function.results[1].entries;
   for (std::uint8_t order = 0; order < 2; ++order) {
     for (std::size_t j = 0; j < n_; ++j) {
       for (std::size_t i = 0; i < n_; ++i) dfdx.push_back(order == 1 && i == j ? dag.one() : dag.zero());
-      const std::vector<Ref> lower = column({SymbolKind::coordinate, system_.free[j], order});
+      const std::vector<Ref> lower = derivative_column({SymbolKind::coordinate, system_.free[j], order});
       dfdx.insert(dfdx.end(), lower.begin(), lower.end());
     }
   }
   for (const system::IntegralState& integral : system_.integrals) {
     dfdx.insert(dfdx.end(), n_, dag.zero());
-    const std::vector<Ref> lower = column({SymbolKind::integral, integral.integral, 0});
+    const std::vector<Ref> lower = derivative_column({SymbolKind::integral, integral.integral, 0});
     dfdx.insert(dfdx.end(), lower.begin(), lower.end());
   }
   dfdt.assign(n_, dag.zero());
-  const std::vector<Ref> lower = column({SymbolKind::time, 0, 0});
+  const std::vector<Ref> lower = derivative_column({SymbolKind::time, 0, 0});
   dfdt.insert(dfdt.end(), lower.begin(), lower.end());
   add_solution(function);
   return function;
 }
 
-WantedFunction AbiFunctions::jac_p(std::size_t parameters) {
-  WantedFunction function = nothing_of("jac_p");
+FunctionExpressions AbiFunctions::jac_p(std::size_t parameters) {
+  FunctionExpressions function = empty_function("jac_p");
   auto& dfdp = function.results[0].entries;
   for (std::uint32_t j = 0; j < parameters; ++j) {
     dfdp.insert(dfdp.end(), n_, system_.dag->zero());
-    const std::vector<Ref> lower = column({SymbolKind::parameter, j, 0});
+    const std::vector<Ref> lower = derivative_column({SymbolKind::parameter, j, 0});
     dfdp.insert(dfdp.end(), lower.begin(), lower.end());
   }
   add_solution(function);
@@ -234,9 +234,9 @@ WantedFunction AbiFunctions::jac_p(std::size_t parameters) {
 
 // Momenta of L = T - U. Their rate is f + (dp/dq) qdot + dp/dt, since M = dp/dqdot and M qddot = f + A^T lambda. This
 // holds for every formulation.
-WantedFunction AbiFunctions::momenta() {
+FunctionExpressions AbiFunctions::momenta() {
   Dag& dag = *system_.dag;
-  WantedFunction function = nothing_of("momenta");
+  FunctionExpressions function = empty_function("momenta");
   const Ref lagrangian = dag.sub(system_.kinetic, system_.potential);
   symbolic::Derivation by_time = symbolic::partial_derivative(dag, {SymbolKind::time, 0, 0});
   std::map<Symbol, Ref> none;
@@ -245,7 +245,7 @@ WantedFunction AbiFunctions::momenta() {
   Substitution frictionless(dag, none);
   for (std::size_t i = 0; i < n_; ++i) {
     const Ref p = symbolic::partial_derivative(dag, {SymbolKind::coordinate, system_.free[i], 1})(lagrangian);
-    Ref rate = dag.add(frictionless(live_f_[i]), by_time(p));
+    Ref rate = dag.add(frictionless(modeless_f_[i]), by_time(p));
     for (std::size_t j = 0; j < n_; ++j) {
       rate = dag.add(rate, dag.mul(symbolic::partial_derivative(dag, {SymbolKind::coordinate, system_.free[j], 0})(p), qdot_[j]));
     }
@@ -256,32 +256,32 @@ WantedFunction AbiFunctions::momenta() {
   return function;
 }
 
-WantedFunction AbiFunctions::mass() {
-  WantedFunction function = nothing_of("mass");
+FunctionExpressions AbiFunctions::mass() {
+  FunctionExpressions function = empty_function("mass");
   for (std::size_t j = 0; j < n_; ++j) {
-    for (std::size_t i = 0; i < n_; ++i) function.results[0].entries.push_back(live_M_[i * n_ + j]);
+    for (std::size_t i = 0; i < n_; ++i) function.results[0].entries.push_back(modeless_M_[i * n_ + j]);
   }
   std::map<Symbol, Ref> none;  // h excludes friction, which depends on the mode
   for (std::size_t b = 0; b < friction_.phi.size(); ++b) {
     none[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = system_.dag->zero();
   }
   Substitution frictionless(*system_.dag, none);
-  for (const Ref f : live_f_) function.results[1].entries.push_back(system_.dag->neg(frictionless(f)));
+  for (const Ref f : modeless_f_) function.results[1].entries.push_back(system_.dag->neg(frictionless(f)));
   label_matrices(function);
   return function;
 }
 
-WantedFunction AbiFunctions::constraints() {
-  WantedFunction function = nothing_of("constraints");
+FunctionExpressions AbiFunctions::constraints() {
+  FunctionExpressions function = empty_function("constraints");
   function.results[0].entries = system_.psi;
   function.results[2].entries = system_.b;
   for (std::size_t j = 0; j < n_; ++j) {
-    for (std::size_t k = 0; k < m_; ++k) function.results[1].entries.push_back(live_A_[k * n_ + j]);
+    for (std::size_t k = 0; k < m_; ++k) function.results[1].entries.push_back(modeless_A_[k * n_ + j]);
   }
   return function;
 }
 
-Ref AbiFunctions::written_out(Ref expression, bool& solved) {
+Ref AbiFunctions::substitute_solution(Ref expression, bool& solved) {
   for (const Symbol& symbol : system_.dag->symbols({expression})) {
     solved = solved || symbol.kind == SymbolKind::multiplier || symbol.kind == SymbolKind::friction ||
              (symbol.kind == SymbolKind::coordinate && symbol.order == 2);
@@ -289,18 +289,18 @@ Ref AbiFunctions::written_out(Ref expression, bool& solved) {
   return solved ? (*solution_)(expression) : expression;
 }
 
-WantedFunction AbiFunctions::reactions() {
-  WantedFunction function = nothing_of("reactions");
+FunctionExpressions AbiFunctions::reactions() {
+  FunctionExpressions function = empty_function("reactions");
   bool solved = false;
   for (const auto& reaction : system_.reactions) {
-    function.results[0].entries.push_back(written_out(reaction.value, solved));
+    function.results[0].entries.push_back(substitute_solution(reaction.value, solved));
   }
   if (solved) add_solution(function);
   return function;
 }
 
-WantedFunction AbiFunctions::outputs(const std::vector<std::string>& names) {
-  WantedFunction function = nothing_of("outputs");
+FunctionExpressions AbiFunctions::outputs(const std::vector<std::string>& names) {
+  FunctionExpressions function = empty_function("outputs");
   bool solved = false;
   for (const std::string& name : names) {
     const auto found = std::find_if(system_.outputs.begin(), system_.outputs.end(),
@@ -310,19 +310,19 @@ WantedFunction AbiFunctions::outputs(const std::vector<std::string>& names) {
       for (const auto& output : system_.outputs) known += (known.empty() ? "" : ", ") + output.name;
       throw Error("program", {}, fmt::format("there is no output `{}`", name), "outputs of this model: " + known);
     }
-    function.results[0].entries.push_back(written_out(found->value, solved));
+    function.results[0].entries.push_back(substitute_solution(found->value, solved));
   }
   if (solved) add_solution(function);
   return function;
 }
 
-WantedFunction AbiFunctions::events() {
-  WantedFunction function = nothing_of("events");
+FunctionExpressions AbiFunctions::events() {
+  FunctionExpressions function = empty_function("events");
   bool solved = false;
   for (const system::Event& event : system_.events)
-    function.results[0].entries.push_back(written_out(event.value, solved));
+    function.results[0].entries.push_back(substitute_solution(event.value, solved));
   for (const Kink& kink : kinks_) function.results[0].entries.push_back(kink.value);
-  for (const ContactWatch& watch : friction_.watch) {
+  for (const ContactIndicators& watch : friction_.indicators) {
     solved = true;
     for (const Ref value : {watch.slip, watch.above, watch.below, watch.hold, watch.margin})
       function.results[0].entries.push_back(value);

@@ -11,28 +11,28 @@
 #include "program/friction.hpp"
 #include "program/kinks.hpp"
 #include "program/program.hpp"
-#include "program/solve.hpp"
+#include "program/linear_solver.hpp"
 #include "symbolic/calculus.hpp"
 
 namespace eomgen::program {
 
-struct WantedLabel {
+struct LabelledExpression {
   Ref value;
   std::string name, section;
 };
 
 /// The expressions of one Result.
-struct WantedResult {
+struct ResultExpressions {
   std::string name;
   std::vector<Ref> entries;
   int code = 0;
 };
 
-struct WantedFunction {
+struct FunctionExpressions {
   std::string name;
-  std::vector<WantedResult> results;
+  std::vector<ResultExpressions> results;
   std::vector<Pivot> pivots;
-  std::vector<WantedLabel> labels;
+  std::vector<LabelledExpression> labels;
 };
 
 /// Solves the equations of motion and builds the functions of the ABI from the solution.
@@ -42,42 +42,42 @@ class AbiFunctions {
   AbiFunctions(system::EquationSystem system, const std::map<std::uint32_t, symbolic::Rational>& fix,
                Ties ties = Ties::ascending, bool hold = false);
 
-  WantedFunction rhs();
-  WantedFunction jac();
-  WantedFunction jac_p(std::size_t parameters);
-  WantedFunction mass();
-  WantedFunction constraints();
+  FunctionExpressions rhs();
+  FunctionExpressions jac();
+  FunctionExpressions jac_p(std::size_t parameters);
+  FunctionExpressions mass();
+  FunctionExpressions constraints();
   /// dT/dqdot and its time derivative without constraint forces and contact friction.
-  WantedFunction momenta();
-  WantedFunction reactions();
+  FunctionExpressions momenta();
+  FunctionExpressions reactions();
   /// Throws Error with the list of known names if a name is unknown.
-  WantedFunction outputs(const std::vector<std::string>& names);
+  FunctionExpressions outputs(const std::vector<std::string>& names);
   /// The events of the model, then the surfaces of the frozen kinks, then slip, above, below, hold and margin of each
   /// contact (friction.hpp).
-  WantedFunction events();
+  FunctionExpressions events();
 
   const std::vector<Kink>& kinks() const { return kinks_; }
 
   const system::EquationSystem& system() const { return system_; }
 
  private:
-  void add_solution(WantedFunction& function);
-  void label_matrices(WantedFunction& function);
-  std::vector<Ref> column(symbolic::Symbol along);
+  void add_solution(FunctionExpressions& function);
+  void label_matrices(FunctionExpressions& function);
+  std::vector<Ref> derivative_column(symbolic::Symbol along);
   /// Substitutes the solution for qddot and the active multipliers. Sets `solved` to true if the expression contains
   /// any of them.
-  Ref written_out(Ref expression, bool& solved);
+  Ref substitute_solution(Ref expression, bool& solved);
 
   system::EquationSystem system_;
   std::vector<Kink> kinks_;
-  std::vector<Ref> live_M_, live_f_, live_A_;  // for functions without a mode argument
+  std::vector<Ref> modeless_M_, modeless_f_, modeless_A_;  // for functions without a mode argument
   std::size_t n_, m_;
   std::vector<Ref> qdot_, qddot_symbol_, lambda_symbol_;
-  void close_contacts(std::map<symbolic::Symbol, Ref>& solution);
-  const LinearSolve& solve();  // created on first use; a system that is solved already may never need it
+  void solve_contacts(std::map<symbolic::Symbol, Ref>& solution);
+  const LinearSolver& solve();  // created on first use; a system that is solved already may never need it
 
   Ties ties_ = Ties::ascending;
-  std::unique_ptr<LinearSolve> solve_;
+  std::unique_ptr<LinearSolver> solve_;
   std::vector<Ref> qddot_, lambda_;
   std::unique_ptr<symbolic::Substitution> solution_;
   FrictionSolution friction_;  // if there are contacts

@@ -49,7 +49,7 @@ Values<cl_R> run(const Function& function, const Arguments<cl_R>& at, int digits
 Values<double> run(const Function& function, const Arguments<double>& at, int) { return interpret(function, at); }
 
 // Whether emitted code would return 0: checks pivots and the tests that return a code.
-bool ends_well(const Function& function, const Values<cl_R>& values) {
+bool passes_tests(const Function& function, const Values<cl_R>& values) {
   for (const auto& [pivot, scale] : values.pivots) {
     const cl_R least = cl_R(2 * pivot_tolerance) * cln::abs(scale);
     if (cln::zerop(pivot) || cln::abs(pivot) <= least) return false;
@@ -72,10 +72,10 @@ void drop_codes(const Function& function, std::vector<std::vector<Real>>& result
 
 /// Scatters results to their indices. Entries that exist only in other charts stay 0.
 template <class Real>
-void put_in_place(const Program& all, const Function& function, std::vector<std::vector<Real>>& results) {
-  if (function.places.empty()) return;
+void scatter_results(const Program& all, const Function& function, std::vector<std::vector<Real>>& results) {
+  if (function.result_indices.empty()) return;
   std::vector<Real> whole(function.name == "outputs" ? all.outputs.size() : results[0].size(), Real(0));
-  for (std::size_t i = 0; i < function.places.size(); ++i) whole.at(function.places[i]) = results[0][i];
+  for (std::size_t i = 0; i < function.result_indices.size(); ++i) whole.at(function.result_indices[i]) = results[0][i];
   results[0] = std::move(whole);
 }
 
@@ -83,7 +83,7 @@ void put_in_place(const Program& all, const Function& function, std::vector<std:
 template <class Result, class One>
 Result all_prepared(const Program& program, const One& one) {
   Result result = one(*find(program, "prepare"));
-  for (const Program& other : program.second) {
+  for (const Program& other : program.chart_variants) {
     const Function* prepare = find(other, "prepare");
     if (prepare == nullptr) continue;
     const Result more = one(*prepare);
@@ -103,25 +103,25 @@ std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real
   const Values<Real> start = run(taylor.start, at, digits);
   if (!checked(start)) throw std::domain_error("the start of the series is singular");
   std::vector<Real> w = start.results[0], after = start.results[1];
-  w.resize(taylor.prepared(), Real(0));
+  w.resize(taylor.workspace_size(), Real(0));
   coefficients.insert(coefficients.end(), after.begin(), after.end());
   std::vector<std::vector<Real>> a{{}}, b{{}};  // factors by order, from order 1 on
   for (int k = 1; k < order; ++k) {
-    for (std::size_t i = 0; i < taylor.products; ++i) {
+    for (std::size_t i = 0; i < taylor.product_count; ++i) {
       Real sum = 0;
       for (int j = 1; j < k; ++j) sum = sum + a[static_cast<std::size_t>(j)][i] * b[static_cast<std::size_t>(k - j)][i];
-      w[taylor.zeros + i] = sum;
+      w[taylor.order_zero_count + i] = sum;
     }
-    w[taylor.prepared() - 2] = Real(k == 1 ? 1 : 0);
-    w[taylor.prepared() - 1] = Real(1) / Real(k);
+    w[taylor.workspace_size() - 2] = Real(k == 1 ? 1 : 0);
+    w[taylor.workspace_size() - 1] = Real(1) / Real(k);
     Arguments<Real> next{
         Real(k), {coefficients.end() - static_cast<std::ptrdiff_t>(n), coefficients.end()}, at.p, at.u, w, at.side,
         at.mode};
     const Values<Real> values = run(taylor.next, next, digits);
     a.push_back(values.results[0]);
     b.push_back(values.results[1]);
-    a.back().resize(taylor.products, Real(0));
-    b.back().resize(taylor.products, Real(0));
+    a.back().resize(taylor.product_count, Real(0));
+    b.back().resize(taylor.product_count, Real(0));
     for (const Real& value : values.results[2]) coefficients.push_back(value / Real(k + 1));
   }
   return coefficients;
@@ -150,9 +150,9 @@ std::vector<double> in_binary64(const std::vector<cl_R>& values) {
 
 }  // namespace
 
-const Program* in_charts(const Program& program, int mode) {
+const Program* program_in_charts(const Program& program, int mode) {
   if (eom::charts_of(mode) == eom::charts_of(program.in_charts)) return &program;
-  for (const Program& other : program.second) {
+  for (const Program& other : program.chart_variants) {
     if (eom::charts_of(mode) == eom::charts_of(other.in_charts)) return &other;
   }
   return nullptr;
@@ -167,17 +167,17 @@ std::vector<std::string> abi_function_names(const Program& program) {
 
 std::optional<AbiResults> abi_values(const Program& program, const std::string& function, const AbiArguments& arguments,
                                      int digits) try {
-  const Program* const here = in_charts(program, arguments.at.mode);
+  const Program* const here = program_in_charts(program, arguments.at.mode);
   if (here == nullptr) return std::nullopt;
   Arguments<cl_R> at = prepared_for(*here, function, arguments.at, arguments.default_inputs);
   if (function == "taylor") {
-    const auto checked = [&](const Values<cl_R>& values) { return ends_well(here->taylor->start, values); };
+    const auto checked = [&](const Values<cl_R>& values) { return passes_tests(here->taylor->start, values); };
     return AbiResults{taylor_coefficients<cl_R>(*here->taylor, at, arguments.order, digits, checked)};
   }
   if (function == "prepare") {
     return AbiResults{all_prepared<std::vector<cl_R>>(program, [&](const Function& prepare) {
       Values<cl_R> values = interpret(prepare, at, digits);
-      if (!ends_well(prepare, values)) throw std::domain_error("singular");
+      if (!passes_tests(prepare, values)) throw std::domain_error("singular");
       return values.results[0];
     })};
   }
@@ -190,22 +190,22 @@ std::optional<AbiResults> abi_values(const Program& program, const std::string& 
   }
   if (wanted == nullptr) return std::nullopt;
   Values<cl_R> values = interpret(*wanted, at, digits);
-  if (!ends_well(*wanted, values)) return std::nullopt;
+  if (!passes_tests(*wanted, values)) return std::nullopt;
   drop_codes(*wanted, values.results);
-  put_in_place(program, *wanted, values.results);
+  scatter_results(program, *wanted, values.results);
   return std::move(values.results);
 } catch (const std::domain_error&) {
   return std::nullopt;
 }
 
-std::vector<std::vector<double>> abi_bounds(const Program& program, const std::string& function,
+std::vector<std::vector<double>> abi_error_bounds(const Program& program, const std::string& function,
                                             const AbiArguments& arguments) {
-  const Program& here = *in_charts(program, arguments.at.mode);
+  const Program& here = *program_in_charts(program, arguments.at.mode);
   Arguments<double> at = prepared_for(here, function, in_binary64(arguments.at), in_binary64(arguments.default_inputs));
   if (function == "taylor") {
     // The recurrences couple orders. The estimate is a hundred times the actual error of binary64 here.
     constexpr int digits = 40;
-    constexpr double caution = 100;
+    constexpr double safety_factor = 100;
     const std::optional<AbiResults> exact = abi_values(program, function, arguments, digits);
     if (!exact)
       return {std::vector<double>(at.x.size() * static_cast<std::size_t>(arguments.order + 1),
@@ -216,7 +216,7 @@ std::vector<std::vector<double>> abi_bounds(const Program& program, const std::s
     double largest = 0;
     for (const double value : got) largest = std::max(largest, std::fabs(value));
     for (std::size_t i = 0; i < got.size(); ++i)
-      off.push_back(caution * (std::fabs(got[i] - to_binary64(exact->front()[i])) + half_unit * largest));
+      off.push_back(safety_factor * (std::fabs(got[i] - to_binary64(exact->front()[i])) + unit_roundoff * largest));
     return {off};
   }
   if (function == "prepare") {
@@ -224,19 +224,19 @@ std::vector<std::vector<double>> abi_bounds(const Program& program, const std::s
         program, [&](const Function& prepare) { return rounding_bounds(prepare, at)[0]; })};
   }
   const Function* wanted = find(here, function);
-  std::vector<double> w_off;
+  std::vector<double> w_error;
   if (function == "rhs_prepared") {
     if (wanted == nullptr) {
       wanted = find(here, "rhs");
     } else {
       const Function& prepare = *find(here, "prepare");
       at.w = interpret(prepare, at).results[0];
-      w_off = rounding_bounds(prepare, at)[0];
+      w_error = rounding_bounds(prepare, at)[0];
     }
   }
-  std::vector<std::vector<double>> bounds = rounding_bounds(*wanted, at, w_off);
+  std::vector<std::vector<double>> bounds = rounding_bounds(*wanted, at, w_error);
   drop_codes(*wanted, bounds);
-  put_in_place(program, *wanted, bounds);
+  scatter_results(program, *wanted, bounds);
   return bounds;
 }
 

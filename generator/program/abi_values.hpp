@@ -25,7 +25,7 @@ struct AbiArguments {
 };
 
 /// The program for the charts of a mode; nullptr if there is none.
-const Program* in_charts(const Program& program, int mode);
+const Program* program_in_charts(const Program& program, int mode);
 
 /// Functions of the program: "rhs", "jac", .., "prepare", "rhs_prepared", "taylor".
 std::vector<std::string> abi_function_names(const Program& program);
@@ -36,7 +36,7 @@ std::optional<AbiResults> abi_values(const Program& program, const std::string& 
                                      int digits);
 
 /// Error bounds of binary64 (rounding.hpp), in the same lists; for taylor an estimate.
-std::vector<std::vector<double>> abi_bounds(const Program& program, const std::string& function,
+std::vector<std::vector<double>> abi_error_bounds(const Program& program, const std::string& function,
                                             const AbiArguments& arguments);
 
 }  // namespace eomgen::program

@@ -19,62 +19,62 @@
 namespace eomgen::program {
 namespace {
 
-constexpr double worth_optimising = 1.5;  // times the cheapest raw cost
+constexpr double max_cost_ratio = 1.5;  // times the cheapest raw cost
 
 struct Candidate {
   std::size_t index = 0;  // index of the candidate
   std::unique_ptr<AbiFunctions> functions;
-  WantedFunction rhs;
-  Polynomials raw;                  // as derived
-  std::vector<Polynomials> starts;  // for cheap candidates: flattened; expanded
-  Polynomials best;
+  FunctionExpressions rhs;
+  PolynomialGraph raw;                  // as derived
+  std::vector<PolynomialGraph> starts;  // for cheap candidates: flattened; expanded
+  PolynomialGraph best;
   Operations operations;  // before, then after optimisation
   std::size_t raw_cost = 0;
 };
 
-Polynomials tested(Polynomials graph) {
+PolynomialGraph tested(PolynomialGraph graph) {
   reduce_pivots(graph);
   return flatten(graph, false);
 }
 
 /// Optimises the graph. Afterwards common factors of a pivot and its scale that only optimisation reveals are
 /// cancelled.
-Polynomials optimised(const std::vector<Polynomials>& graphs) {
-  Polynomials best = optimise(graphs);
+PolynomialGraph optimised(const std::vector<PolynomialGraph>& graphs) {
+  PolynomialGraph best = optimise(graphs);
   while (true) {
-    Polynomials again = tested(best);
+    PolynomialGraph again = tested(best);
     if (count_operations(again).cost() >= count_operations(best).cost()) return best;
     best = std::move(again);
   }
 }
 
-Polynomials as_derived(const AbiFunctions& functions, const WantedFunction& wanted) {
+PolynomialGraph as_derived(const AbiFunctions& functions, const FunctionExpressions& wanted) {
   const system::EquationSystem& system = functions.system();
   return from_dag(*system.dag, wanted, system.free, system.integrals);
 }
 
 /// The function as derived, and the function with small products expanded.
-std::vector<Polynomials> starts(const Polynomials& graph) {
-  constexpr std::size_t worth_expanding = 3000;  // nodes; larger systems do not benefit
-  std::vector<Polynomials> result = {tested(flatten(graph, false))};
-  if (graph.size() < worth_expanding) result.push_back(tested(flatten(expand(graph), false)));
+std::vector<PolynomialGraph> starts(const PolynomialGraph& graph) {
+  constexpr std::size_t max_expanded_nodes = 3000;  // nodes; larger systems do not benefit
+  std::vector<PolynomialGraph> result = {tested(flatten(graph, false))};
+  if (graph.size() < max_expanded_nodes) result.push_back(tested(flatten(expand(graph), false)));
   return result;
 }
 
-std::vector<ResultShape> shape(const WantedFunction& wanted) {
+std::vector<ResultShape> shape(const FunctionExpressions& wanted) {
   std::vector<ResultShape> shape;
-  for (const WantedResult& result : wanted.results) shape.push_back({result.name, result.entries.size(), result.code});
+  for (const ResultExpressions& result : wanted.results) shape.push_back({result.name, result.entries.size(), result.code});
   return shape;
 }
 
-Function finished(const Polynomials& graph, const WantedFunction& wanted) {
+Function finished(const PolynomialGraph& graph, const FunctionExpressions& wanted) {
   return schedule(graph, wanted.name, shape(wanted));
 }
 
 void add_prepared(const Candidate& chosen, Program& program) {
-  constexpr std::size_t worth_searching = 1500;  // flops; larger programs are split without a search
-  std::vector<Polynomials> graphs{chosen.best};
-  if (chosen.operations.flops() < worth_searching) {
+  constexpr std::size_t max_searched_flops = 1500;  // flops; larger programs are split without a search
+  std::vector<PolynomialGraph> graphs{chosen.best};
+  if (chosen.operations.flops() < max_searched_flops) {
     graphs.insert(graphs.begin(), chosen.starts.begin(), chosen.starts.end());
   }
   std::optional<Hoisted> hoisted = hoist(graphs, chosen.operations, "rhs_prepared", shape(chosen.rhs));
@@ -113,7 +113,7 @@ std::size_t choose(std::vector<Candidate>& candidates) {
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Candidate& candidate = candidates[i];
-    if (static_cast<double>(candidate.raw_cost) > worth_optimising * static_cast<double>(cheapest)) continue;
+    if (static_cast<double>(candidate.raw_cost) > max_cost_ratio * static_cast<double>(cheapest)) continue;
     candidate.starts = starts(candidate.raw);
     candidate.best = optimised(candidate.starts);
     candidate.operations = count_operations(candidate.best);
@@ -123,8 +123,8 @@ std::size_t choose(std::vector<Candidate>& candidates) {
 }
 
 // One entry per system, for its cheaper order of elimination.
-std::vector<Tried> tried(const std::vector<Candidate>& candidates, const std::vector<system::EquationSystem>& systems) {
-  std::vector<Tried> result;
+std::vector<CandidateCost> candidate_costs(const std::vector<Candidate>& candidates, const std::vector<system::EquationSystem>& systems) {
+  std::vector<CandidateCost> result;
   std::optional<std::size_t> last;
   for (const Candidate& candidate : candidates) {
     const system::EquationSystem& system = systems[candidate.index];
@@ -150,8 +150,8 @@ std::size_t parameter_count(const system::EquationSystem& system) {
   return count;
 }
 
-WantedFunction wanted_function(AbiFunctions& functions, const std::string& name, const Request& request) {
-  static const std::map<std::string_view, WantedFunction (AbiFunctions::*)()> formulas{
+FunctionExpressions function_expressions(AbiFunctions& functions, const std::string& name, const Request& request) {
+  static const std::map<std::string_view, FunctionExpressions (AbiFunctions::*)()> formulas{
       {"jac", &AbiFunctions::jac},
       {"mass", &AbiFunctions::mass},
       {"momenta", &AbiFunctions::momenta},
@@ -183,15 +183,15 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   program.formulation = system.formulation;
   program.approach = system.approach;
   program.form = system.form;
-  program.tried = tried(candidates, systems);
+  program.candidates = candidate_costs(candidates, systems);
   program.active_constraints = system.active.size();
   for (const system::Contact& contact : system.contacts) {
     program.contacts.push_back({contact.shape(), contact.name});
   }
   program.holonomic = system.holonomic;
   program.functions.push_back(finished(chosen.best, chosen.rhs));
-  const auto add = [&](const WantedFunction& wanted) {
-    const std::vector<Polynomials> graphs = starts(as_derived(*chosen.functions, wanted));
+  const auto add = [&](const FunctionExpressions& wanted) {
+    const std::vector<PolynomialGraph> graphs = starts(as_derived(*chosen.functions, wanted));
     program.functions.push_back(finished(request.optimise ? optimised(graphs) : graphs[0], wanted));
   };
   for (const std::string& name : request.with) {
@@ -200,7 +200,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
       program.taylor = taylor_series(program.functions.front());
       continue;
     }
-    add(wanted_function(*chosen.functions, name, request));
+    add(function_expressions(*chosen.functions, name, request));
     if (name == "events") {
       for (const system::Event& event : system.events) program.events.push_back(event.name);
       for (const Kink& kink : chosen.functions->kinks()) program.kinks.emplace_back(program::name(kink));

@@ -23,7 +23,7 @@ struct Request {
 
 /// Ranks the candidates by the unoptimised cost of their right-hand sides. Optimises those within 1.5 times of the
 /// cheapest and keeps the cheapest result (ties: the first). Builds the other functions for that candidate: the
-/// requested ones, and `prepare` and `rhs_prepared` if the split pays off. `Program::tried` lists all candidates.
+/// requested ones, and `prepare` and `rhs_prepared` if the split pays off. `Program::candidates` lists all candidates.
 /// Throws Error for unknown or unsupported functions and outputs.
 Program build_program(std::vector<system::EquationSystem>& candidates, const Request& request);
 

@@ -17,7 +17,7 @@ Function exchange(const symbolic::Dag& dag, const std::string& name, const Progr
                   const system::ChartChange& change, const std::vector<Ref>& formulas) {
   // Symbols that occur in a formula exist in the graph; the others are created in a copy.
   symbolic::Dag graph = dag;
-  WantedFunction wanted{name, {{"y", {}}}, {}, {}};
+  FunctionExpressions wanted{name, {{"y", {}}}, {}, {}};
   std::vector<system::IntegralState> integrals;
   for (std::uint8_t order = 0; order < 2; ++order) {
     for (const std::uint32_t q : program.free) {
@@ -31,13 +31,13 @@ Function exchange(const symbolic::Dag& dag, const std::string& name, const Progr
     wanted.results[0].entries.push_back(graph.symbol({symbolic::SymbolKind::integral, i, 0}));
     integrals.push_back({i, graph.zero()});
   }
-  const Polynomials result = flatten(from_dag(graph, wanted, program.free, integrals), false);
+  const PolynomialGraph result = flatten(from_dag(graph, wanted, program.free, integrals), false);
   return schedule(result, wanted.name, {{"y", wanted.results[0].entries.size()}});
 }
 
 }  // namespace
 
-std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& outputs,
+std::vector<std::uint32_t> chart_independent_outputs(const std::vector<std::string>& outputs,
                                           const std::vector<system::Output>& own,
                                           const std::vector<system::Output>& second,
                                           const std::vector<std::uint32_t>& exchanged) {
@@ -54,10 +54,10 @@ std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& output
 }
 
 void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<system::ChartChange>& changes) {
-  if (program.kinks.size() > most_kinks_with_charts) {
+  if (program.kinks.size() > max_kinks_with_charts) {
     throw Error("program", {}, fmt::format("{} kinks leave no bits of `mode` for charts", program.kinks.size()),
                 fmt::format("at most {} kinks are possible with charts: omit the charts or the events",
-                            most_kinks_with_charts));
+                            max_kinks_with_charts));
   }
   for (const system::ChartChange& change : changes) {
     ChartInfo info{change.of, change.own, change.second, change.singularity, {}, 0, change.second_at_sine, {}, {}};
@@ -73,7 +73,7 @@ void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<sy
   }
 }
 
-void add_second(Program& program, Program second, unsigned charts, const std::vector<std::uint32_t>& places) {
+void add_chart_variant(Program& program, Program second, unsigned charts, const std::vector<std::uint32_t>& places) {
   const bool fits = second.free == program.free && second.integrals == program.integrals &&
                     second.holonomic == program.holonomic && second.active_constraints == program.active_constraints &&
                     second.reactions == program.reactions && second.kinks.size() == program.kinks.size() &&
@@ -85,9 +85,9 @@ void add_second(Program& program, Program second, unsigned charts, const std::ve
   }
   second.in_charts = eom::mode_of_charts(charts);
   for (Function& function : second.functions) {
-    if (function.name == "outputs") function.places = places;
+    if (function.name == "outputs") function.result_indices = places;
   }
-  program.second.push_back(std::move(second));
+  program.chart_variants.push_back(std::move(second));
 }
 
 }  // namespace eomgen::program

@@ -9,12 +9,12 @@
 namespace eomgen::program {
 
 /// Limit of frozen kinks in a program with several charts: chart bits take part of `mode`.
-inline constexpr std::size_t most_kinks_with_charts = 10;
+inline constexpr std::size_t max_kinks_with_charts = 10;
 
 /// Indices of the outputs that a program in second charts can compute with the same meaning. Excluded are momenta and
 /// accelerations of exchanged angles, and quantities that only the own charts conserve. `own`, `second`: outputs of the
 /// equations in these charts; `exchanged`: coordinates of the model.
-std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& outputs,
+std::vector<std::uint32_t> chart_independent_outputs(const std::vector<std::string>& outputs,
                                           const std::vector<system::Output>& own,
                                           const std::vector<system::Output>& second,
                                           const std::vector<std::uint32_t>& exchanged);
@@ -24,6 +24,6 @@ void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<sy
 
 /// Adds the variant `second`, in the second charts `charts`, to `program`. The variant computes only the outputs at the
 /// indices `places`. Throws Error if the two programs are incompatible.
-void add_second(Program& program, Program second, unsigned charts, const std::vector<std::uint32_t>& places);
+void add_chart_variant(Program& program, Program second, unsigned charts, const std::vector<std::uint32_t>& places);
 
 }  // namespace eomgen::program

@@ -18,12 +18,12 @@ using symbolic::Dag;
 using symbolic::Ref;
 using symbolic::Symbol;
 
-constexpr std::size_t wanted = 4;
+constexpr std::size_t max_points = 4;
 constexpr std::uint64_t tries = 12;
-constexpr int most_steps = 40;
+constexpr int max_steps = 40;
 constexpr double difference = 6e-6;     // for central differences: the cube root of epsilon
 constexpr double longest_step = 0.5;    // for values between 0.2 and 1.2
-constexpr double nearest_step = 1e-11;  // differences are accurate to about 1e-10; then two steps reach rounding
+constexpr double converged_step = 1e-11;  // differences are accurate to about 1e-10; then two steps reach rounding
 constexpr double zero = 1e-11;          // for psi, after a step of that length at slopes of about 1
 constexpr double shortest_row = 1e-6;   // relative to the same row at the start of the search
 
@@ -34,9 +34,9 @@ Eigen::VectorXd values(const Dag& dag, const std::vector<Ref>& roots, const Poin
 }
 
 /// Newton's method with minimum-norm steps; returns nothing if it does not converge.
-std::optional<Point> onto(const Dag& dag, const std::vector<Ref>& psi, const std::vector<Symbol>& moved, Point at) {
+std::optional<Point> project_onto_constraints(const Dag& dag, const std::vector<Ref>& psi, const std::vector<Symbol>& moved, Point at) {
   Eigen::MatrixXd J(static_cast<Eigen::Index>(psi.size()), static_cast<Eigen::Index>(moved.size()));
-  for (int k = 0; k < most_steps; ++k) {
+  for (int k = 0; k < max_steps; ++k) {
     const Eigen::VectorXd now = values(dag, psi, at);
     for (std::size_t j = 0; j < moved.size(); ++j) {
       Point up = at, down = at;
@@ -49,7 +49,7 @@ std::optional<Point> onto(const Dag& dag, const std::vector<Ref>& psi, const std
     const double length = step.norm();
     if (length > longest_step) step *= longest_step / length;
     for (std::size_t j = 0; j < moved.size(); ++j) at[moved[j]] += step[static_cast<Eigen::Index>(j)];
-    if (length > nearest_step) continue;
+    if (length > converged_step) continue;
     const Eigen::VectorXd left = values(dag, psi, at);
     if (!left.allFinite() || left.lpNorm<Eigen::Infinity>() > zero) return std::nullopt;
     return at;
@@ -96,11 +96,11 @@ std::vector<Point> points_on_constraints(const system::EquationSystem& s, const 
   std::copy_if(any.begin(), any.end(), std::back_inserter(coordinates),
                [](const Symbol& symbol) { return symbol.kind == symbolic::SymbolKind::coordinate; });
   std::vector<Point> result;
-  for (std::uint64_t point = 1; point <= tries && result.size() < wanted; ++point) {
+  for (std::uint64_t point = 1; point <= tries && result.size() < max_points; ++point) {
     Point from;
     for (const Symbol& symbol : symbols) from[symbol] = symbolic::sample_double(symbol, point);
     for (const auto* moved : {&std::as_const(coordinates), &any}) {
-      std::optional<Point> at = onto(dag, psi, *moved, from);
+      std::optional<Point> at = project_onto_constraints(dag, psi, *moved, from);
       if (!at || is_degenerate(dag, rows_of_A, n, from, *at)) continue;
       result.push_back(std::move(*at));
       break;

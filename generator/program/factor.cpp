@@ -20,7 +20,7 @@ struct Shared {
 
 class Factoring {
  public:
-  Factoring(Polynomials& graph, std::uint64_t seed) : graph_(graph), seed_(seed) {}
+  Factoring(PolynomialGraph& graph, std::uint64_t seed) : graph_(graph), seed_(seed) {}
 
   /// Factors the sum of one node once.
   void refine(NodeId id) {
@@ -46,7 +46,7 @@ class Factoring {
         if (!front.factors.empty()) term.factors = multiply(term.factors, front.factors, -1);
       }
       // The normal form of the bracket may be an existing sum; a new sum is factored in turn.
-      Term bracket = graph_.normal(std::move(with));
+      Term bracket = graph_.normalise(std::move(with));
       refine(bracket);
       without.push_back(multiply(front, bracket));
       terms = std::move(without);
@@ -119,7 +119,7 @@ class Factoring {
     for (const Factor& f : bracket.factors) refine(f.node);
   }
 
-  Polynomials& graph_;
+  PolynomialGraph& graph_;
   std::uint64_t seed_;
   std::vector<bool> done_;
   std::vector<std::pair<std::uint64_t, int>> saved_;  // for the sum that is searched for a factor
@@ -127,9 +127,9 @@ class Factoring {
 
 }  // namespace
 
-void factor_sums(Polynomials& graph, std::uint64_t seed) {
+void factor_sums(PolynomialGraph& graph, std::uint64_t seed) {
   Factoring factoring(graph, seed);
-  for (const NodeId id : graph.order()) factoring.refine(id);
+  for (const NodeId id : graph.topological_order()) factoring.refine(id);
 }
 
 }  // namespace eomgen::program

@@ -33,11 +33,11 @@ class Writer {
     }
     for (const Function& f : p.functions) function(f);
     if (p.taylor) {
-      words(p.taylor->zeros, p.taylor->products);
+      words(p.taylor->order_zero_count, p.taylor->product_count);
       function(p.taylor->start);
       function(p.taylor->next);
     }
-    for (const Program& other : p.second) program(other);
+    for (const Program& other : p.chart_variants) program(other);
   }
 
  private:
@@ -67,7 +67,7 @@ class Writer {
       words(result.name, result.code, result.entries.size());
       for (const Operand& o : result.entries) operand(o);
     }
-    list(f.places);
+    list(f.result_indices);
     for (const symbolic::Rational& constant : f.constants) {
       std::ostringstream out;
       out << constant;

@@ -21,12 +21,12 @@ bool is_even(Op op) { return op == Op::cos || op == Op::cosh || op == Op::abs; }
 
 class Flattening {
  public:
-  Flattening(const Polynomials& from, bool inline_products, bool expand)
+  Flattening(const PolynomialGraph& from, bool inline_products, bool expand)
       : from_(from), inline_products_(inline_products), expand_(expand), value_(from.size()) {}
 
-  Polynomials run() {
-    const std::vector<NodeId> order = from_.order();
-    uses_ = from_.uses(order);
+  PolynomialGraph run() {
+    const std::vector<NodeId> order = from_.topological_order();
+    uses_ = from_.use_counts(order);
     to_.reserve(order.size());
     if (expand_) find_barriers();
     for (const NodeId id : order) {
@@ -35,9 +35,9 @@ class Flattening {
         for (const Factor& f : value_[id].factors) closed_.insert(f.node);
       }
     }
-    for (const Term& result : from_.results) to_.results.push_back(to_.operand(translate(result)));
+    for (const Term& result : from_.results) to_.results.push_back(to_.as_operand(translate(result)));
     for (const PivotPair& pair : from_.pivots) {
-      to_.pivots.push_back({to_.operand(translate(pair.pivot)), to_.operand(translate(pair.scale))});
+      to_.pivots.push_back({to_.as_operand(translate(pair.pivot)), to_.as_operand(translate(pair.scale))});
     }
     for (const Label& label : from_.labels) {
       // A label survives only if its value is still a node of its own.
@@ -99,7 +99,7 @@ class Flattening {
     }
     bool small = unit || std::abs(exponent) <= largest_number;
     for (const Factor& f : base.factors) small = small && std::abs(std::int64_t{f.exponent} * exponent) <= largest;
-    return power(small ? base : to_.operand(base), exponent);
+    return power(small ? base : to_.as_operand(base), exponent);
   }
 
   Term value(NodeId id) {
@@ -121,9 +121,9 @@ class Flattening {
         terms.push_back(std::move(moved));
       }
     }
-    Term result = to_.normal(std::move(terms));
+    Term result = to_.normalise(std::move(terms));
     const bool shared = uses_[id] > 1 && !inline_products_;
-    if (shared && !result.is_constant() && !result.is_node()) result = to_.operand(result);
+    if (shared && !result.is_constant() && !result.is_node()) result = to_.as_operand(result);
     return result;
   }
 
@@ -173,7 +173,7 @@ class Flattening {
 
   Term call(const Node& node) {
     std::vector<Term> arguments;
-    for (const Term& argument : node.terms) arguments.push_back(to_.operand(translate(argument)));
+    for (const Term& argument : node.terms) arguments.push_back(to_.as_operand(translate(argument)));
     Rational sign = 1;
     if (cln::minusp(arguments[0].coefficient) && (is_odd(node.op) || is_even(node.op))) {
       arguments[0].coefficient = -arguments[0].coefficient;
@@ -182,9 +182,9 @@ class Flattening {
     return {sign, {{to_.call(node.op, std::move(arguments)), 1}}};
   }
 
-  const Polynomials& from_;
+  const PolynomialGraph& from_;
   bool inline_products_, expand_;
-  Polynomials to_;
+  PolynomialGraph to_;
   std::vector<bool> barrier_;  // nodes of from_
   std::set<NodeId> closed_;    // nodes of to_
   std::vector<Term> value_;
@@ -193,10 +193,10 @@ class Flattening {
 
 }  // namespace
 
-Polynomials flatten(const Polynomials& graph, bool inline_products) {
+PolynomialGraph flatten(const PolynomialGraph& graph, bool inline_products) {
   return Flattening(graph, inline_products, false).run();
 }
 
-Polynomials expand(const Polynomials& graph) { return Flattening(graph, true, true).run(); }
+PolynomialGraph expand(const PolynomialGraph& graph) { return Flattening(graph, true, true).run(); }
 
 }  // namespace eomgen::program

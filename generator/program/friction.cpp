@@ -21,9 +21,9 @@ struct Affine {
   std::vector<Ref> slope;
 };
 
-class Closure {
+class FrictionLawSolver {
  public:
-  Closure(const system::EquationSystem& system, const LinearSolve& solve) : s_(system), dag_(*system.dag) {
+  FrictionLawSolver(const system::EquationSystem& system, const LinearSolver& solve) : s_(system), dag_(*system.dag) {
     for (const Contact& contact : s_.contacts) count_ += contact.slip.size();
     solve_motion(solve);
     matrix_.assign(count_ * count_, dag_.zero());
@@ -40,7 +40,7 @@ class Closure {
     for (std::size_t i = 0; i < motion_.size(); ++i) {
       (i < s_.free.size() ? result_.qddot : result_.lambda).push_back(at(motion_[i]));
     }
-    for (std::uint32_t j = 0; j < s_.contacts.size(); ++j) add_watch(j);
+    for (std::uint32_t j = 0; j < s_.contacts.size(); ++j) add_indicators(j);
     return std::move(result_);
   }
 
@@ -48,7 +48,7 @@ class Closure {
   Symbol phi_symbol(std::size_t b) const { return {SymbolKind::friction, static_cast<std::uint32_t>(b), 0}; }
 
   // qddot and lambda as affine functions of phi, with one solve per tangent.
-  void solve_motion(const LinearSolve& solve) {
+  void solve_motion(const LinearSolver& solve) {
     std::map<Symbol, Ref> none;
     for (std::size_t b = 0; b < count_; ++b) none[phi_symbol(b)] = dag_.zero();
     Substitution without(dag_, none);
@@ -100,7 +100,7 @@ class Closure {
     return s_.contacts[j].unilateral ? dag_.one() : dag_.symbol(system::normal_sign_symbol(j));
   }
   /// Selects `apart` if contact j is open, else `touching`.
-  Ref by_touch(std::uint32_t j, Ref apart, Ref touching) const {
+  Ref select_by_contact(std::uint32_t j, Ref apart, Ref touching) const {
     if (!s_.contacts[j].unilateral || apart == touching) return touching;
     return dag_.select(dag_.symbol(system::normal_sign_symbol(j)), dag_.zero(), apart, touching);
   }
@@ -119,7 +119,7 @@ class Closure {
   }
   Ref speed(const Contact& c) const { return root(squares(c)); }
   /// Component a of the unit vector of slip.
-  Ref heading(std::uint32_t j, std::size_t a) const {
+  Ref sliding_direction(std::uint32_t j, std::size_t a) const {
     const Contact& c = s_.contacts[j];
     if (c.width) return dag_.div(c.slip[a], root(dag_.add(squares(c), dag_.mul(*c.width, *c.width))));
     return c.slip.size() == 1 ? slides(j) : dag_.div(c.slip[a], speed(c));
@@ -135,15 +135,15 @@ class Closure {
       const std::size_t row = c.first + a;
       if (c.reactions.size() == 2 && !coupled_.empty()) {
         by_normal_[place_of(j)][row] =
-            dag_.neg(by_mode(j, dag_.zero(), dag_.mul(c.dynamic_coefficient, heading(j, a))));
+            dag_.neg(by_mode(j, dag_.zero(), dag_.mul(c.dynamic_coefficient, sliding_direction(j, a))));
       }
       for (std::size_t b = 0; b < count_; ++b) {
         const Ref none = b == row ? dag_.one() : dag_.zero();  // open contact: phi = 0
-        matrix_[row * count_ + b] = by_touch(j, none, by_mode(j, rate.slope[b], law.slope[b]));
+        matrix_[row * count_ + b] = select_by_contact(j, none, by_mode(j, rate.slope[b], law.slope[b]));
       }
-      right_[row] = by_touch(j, dag_.zero(), dag_.neg(by_mode(j, rate.value, law.value)));
+      right_[row] = select_by_contact(j, dag_.zero(), dag_.neg(by_mode(j, rate.value, law.value)));
     }
-    if (c.reactions.size() == 1 && !c.slip.empty()) watch_surface(j);
+    if (c.reactions.size() == 1 && !c.slip.empty()) set_surface_margin(j);
   }
 
   /// Rows that vanish while sticking: the slip rate; phi itself along directions that another contact constrains.
@@ -164,8 +164,8 @@ class Closure {
     const std::vector<Affine> where_it_touches = sticking_rows(c, rates, next + 1, more);
     for (std::size_t a = 0; a < rows.size(); ++a) {
       const Affine& other = where_it_touches[a];
-      rows[a].value = by_touch(held.by, rows[a].value, other.value);
-      for (std::size_t b = 0; b < count_; ++b) rows[a].slope[b] = by_touch(held.by, rows[a].slope[b], other.slope[b]);
+      rows[a].value = select_by_contact(held.by, rows[a].value, other.value);
+      for (std::size_t b = 0; b < count_; ++b) rows[a].slope[b] = select_by_contact(held.by, rows[a].slope[b], other.slope[b]);
     }
     return rows;
   }
@@ -189,7 +189,7 @@ class Closure {
   /// The row that vanishes while sliding: phi_a + mu |N| w_a/|w|.
   Affine sliding_law(std::uint32_t j, std::size_t a) {
     const Contact& c = s_.contacts[j];
-    const Ref drag = dag_.mul(c.dynamic_coefficient, heading(j, a));
+    const Ref drag = dag_.mul(c.dynamic_coefficient, sliding_direction(j, a));
     Affine law{dag_.zero(), std::vector<Ref>(count_, dag_.zero())};
     law.slope[c.first + a] = dag_.one();
     if (c.reactions.empty()) {
@@ -240,7 +240,7 @@ class Closure {
     const auto value = [](const Affine& l) { return l.value; };
     const auto slope = [&c](const Affine& l) { return l.slope[c.first]; };
     const Ref square = form(value, value), feedback = form(slope, slope),
-              sigma_mu = dag_.mul(heading(j, 0), c.dynamic_coefficient);
+              sigma_mu = dag_.mul(sliding_direction(j, 0), c.dynamic_coefficient);
     if (dag_.is_zero(feedback)) {
       curve_normal_[j] = root(square);
       return;
@@ -257,26 +257,26 @@ class Closure {
   }
 
   // phi = -mu w p sqrt(g) (x0 + L phi) has exactly one solution with p x >= 0 for one p if |factor L| < 1.
-  void watch_surface(std::uint32_t j) {
+  void set_surface_margin(std::uint32_t j) {
     const Contact& c = s_.contacts[j];
     Ref feedback = dag_.zero();  // of friction on its own normal force, sliding with p = 1
     const Ref pressed = dag_.mul(c.dynamic_coefficient, root(c.gram[0]));
     for (std::size_t a = 0; a < c.slip.size(); ++a) {
-      feedback = dag_.add(feedback, dag_.mul(dag_.mul(pressed, heading(j, a)), normal_[j][0].slope[c.first + a]));
+      feedback = dag_.add(feedback, dag_.mul(dag_.mul(pressed, sliding_direction(j, a)), normal_[j][0].slope[c.first + a]));
     }
     if (dag_.is_zero(feedback)) return;
     const Ref own = dag_.add(dag_.one(), dag_.mul(presses(j), feedback));
     // A unilateral contact does not pull: p = 1. It may also open, which the law allows if x0 < 0.
     const Ref single = c.unilateral ? own : dag_.sub(dag_.one(), absolute(feedback));
-    margin_[j] = by_touch(j, dag_.one(), by_mode(j, dag_.one(), single));
+    margin_[j] = select_by_contact(j, dag_.one(), by_mode(j, dag_.one(), single));
     add_codes(margin_[j], dag_.mul(dag_.mul(presses(j), normal_[j][0].value), own));
   }
 
   /// Adds the codes for a negative margin: several solutions if `several` is positive, otherwise none.
   void add_codes(Ref margin, Ref several) {
     const Ref minus = dag_.integer(-1), one = dag_.one(), zero = dag_.zero();
-    result_.none.push_back(dag_.select(margin, zero, dag_.select(several, zero, minus, one), one));
-    result_.many.push_back(dag_.select(margin, zero, dag_.select(several, zero, one, minus), one));
+    result_.existence.push_back(dag_.select(margin, zero, dag_.select(several, zero, minus, one), one));
+    result_.uniqueness.push_back(dag_.select(margin, zero, dag_.select(several, zero, one, minus), one));
   }
 
   void solve_rows() {
@@ -309,8 +309,8 @@ class Closure {
         result_.phi[b] = dag_.add(result_.phi[b], dag_.mul(sides[1 + d][b], normal.nu[d]));
       }
     }
-    add_codes(normal.settled, normal.several);
-    if (coupled_.size() == 1) margin_[coupled_[0]] = normal.settled;
+    add_codes(normal.solution_margin, normal.multiplicity);
+    if (coupled_.size() == 1) margin_[coupled_[0]] = normal.solution_margin;
   }
 
   /// |N| of contact j; for a surface, `press` is set to the signed multiplier.
@@ -326,12 +326,12 @@ class Closure {
     return root(square);
   }
 
-  void add_watch(std::uint32_t j) {
+  void add_indicators(std::uint32_t j) {
     const Contact& c = s_.contacts[j];
     const Ref one = dag_.one();
-    ContactWatch watch{one, one, one, one, one};
+    ContactIndicators watch{one, one, one, one, one};
     const Ref normal = normal_force(j, watch.hold);
-    if (c.unilateral) watch.hold = by_touch(j, s_.psi[*c.unilateral], watch.hold);
+    if (c.unilateral) watch.hold = select_by_contact(j, s_.psi[*c.unilateral], watch.hold);
     if (!c.slip.empty()) watch.slip = c.slip[0];
     if (c.slip.size() == 2) watch.below = c.slip[1];
     if (c.can_stick()) {
@@ -342,7 +342,7 @@ class Closure {
         watch.above = dag_.sub(limit, root(dag_.add(dag_.mul(phi, phi), dag_.power(result_.phi[c.first + 1], 2))));
     }
     if (margin_.contains(j)) watch.margin = margin_.at(j);
-    result_.watch.push_back(watch);
+    result_.indicators.push_back(watch);
   }
 
   const system::EquationSystem& s_;
@@ -360,8 +360,8 @@ class Closure {
 
 }  // namespace
 
-FrictionSolution close_friction(const system::EquationSystem& system, const LinearSolve& solve) {
-  return Closure(system, solve).run();
+FrictionSolution solve_friction_laws(const system::EquationSystem& system, const LinearSolver& solve) {
+  return FrictionLawSolver(system, solve).run();
 }
 
 }  // namespace eomgen::program

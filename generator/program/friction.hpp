@@ -9,13 +9,13 @@
 // no solution or several (Painleve).
 #pragma once
 
-#include "program/solve.hpp"
+#include "program/linear_solver.hpp"
 #include "symbolic/calculus.hpp"
 
 namespace eomgen::program {
 
 /// Monitored functions of one contact. All but slip are positive inside the mode.
-struct ContactWatch {
+struct ContactIndicators {
   Ref slip;    // along the first tangent, signed
   Ref above;   // one tangent: mu_s |N| - phi; two: mu_s |N| - |phi|
   Ref below;   // one tangent: mu_s |N| + phi; two: the slip along the second
@@ -25,11 +25,11 @@ struct ContactWatch {
 
 struct FrictionSolution {
   std::vector<Ref> qddot, lambda, phi;
-  std::vector<Ref> none, many;  // negative if a law has no solution, or several
-  std::vector<ContactWatch> watch;
+  std::vector<Ref> existence, uniqueness;  // negative if a law has no solution, or several
+  std::vector<ContactIndicators> indicators;
 };
 
 /// Solves the friction laws of all contacts.
-FrictionSolution close_friction(const system::EquationSystem& system, const LinearSolve& solve);
+FrictionSolution solve_friction_laws(const system::EquationSystem& system, const LinearSolver& solve);
 
 }  // namespace eomgen::program

@@ -17,7 +17,7 @@ class Conversion {
              const std::vector<system::IntegralState>& integrals)
       : dag_(dag), free_(free), integrals_(integrals) {}
 
-  Polynomials run(const WantedFunction& wanted) {
+  PolynomialGraph run(const FunctionExpressions& wanted) {
     std::vector<Ref> roots;
     for (const auto& result : wanted.results) roots.insert(roots.end(), result.entries.begin(), result.entries.end());
     for (const Pivot& pivot : wanted.pivots) roots.insert(roots.end(), {pivot.pivot, pivot.scale});
@@ -33,7 +33,7 @@ class Conversion {
     for (const Pivot& pivot : wanted.pivots) {
       graph_.pivots.push_back({value_[pivot.pivot.id], value_[pivot.scale.id]});
     }
-    for (const WantedLabel& label : wanted.labels) {
+    for (const LabelledExpression& label : wanted.labels) {
       if (known_[label.value.id]) graph_.labels.push_back({value_[label.value.id], label.name, label.section});
     }
     return std::move(graph_);
@@ -108,19 +108,19 @@ class Conversion {
   const symbolic::Dag& dag_;
   const std::vector<std::uint32_t>& free_;
   const std::vector<system::IntegralState>& integrals_;
-  Polynomials graph_;
+  PolynomialGraph graph_;
   std::vector<Term> value_;
   std::vector<bool> known_;
 };
 
 /// The summands of a value; the value itself if it is not a sum.
-std::vector<Term> summands(const Polynomials& graph, const Term& value) {
+std::vector<Term> summands(const PolynomialGraph& graph, const Term& value) {
   if (!value.is_node()) return {value};
   const Node& node = graph[value.factors[0].node];
   return node.kind == Node::Kind::sum ? node.terms : std::vector<Term>{value};
 }
 
-Monomial common_factor(const Polynomials& graph, const Term& a, const Term& b) {
+Monomial common_factor(const PolynomialGraph& graph, const Term& a, const Term& b) {
   std::vector<Term> terms = summands(graph, a);
   const std::vector<Term> more = summands(graph, b);
   terms.insert(terms.end(), more.begin(), more.end());
@@ -141,15 +141,15 @@ Monomial common_factor(const Polynomials& graph, const Term& a, const Term& b) {
 
 }  // namespace
 
-Polynomials from_dag(const symbolic::Dag& dag, const WantedFunction& wanted, const std::vector<std::uint32_t>& free,
+PolynomialGraph from_dag(const symbolic::Dag& dag, const FunctionExpressions& wanted, const std::vector<std::uint32_t>& free,
                      const std::vector<system::IntegralState>& integrals) {
   return Conversion(dag, free, integrals).run(wanted);
 }
 
-void reduce_pivots(Polynomials& graph) {
-  Polynomials untested = graph;
+void reduce_pivots(PolynomialGraph& graph) {
+  PolynomialGraph untested = graph;
   untested.pivots.clear();
-  const std::vector<bool> divides = untested.divisors(untested.order());
+  const std::vector<bool> divides = untested.divisors(untested.topological_order());
   std::vector<PivotPair> reduced;
   std::vector<NodeId> nonzero;
   const auto divide = [&](const Term& value, const Monomial& by) {

@@ -9,19 +9,19 @@
 namespace eomgen::program {
 namespace {
 
-constexpr std::size_t worth_hoisting = 50;  // this multiple of the savings must reach the total cost
+constexpr std::size_t min_saving_divisor = 50;  // this multiple of the savings must reach the total cost
 
 /// Splits every monomial into a parametric part and the rest.
 class Splitting {
  public:
-  explicit Splitting(const Polynomials& graph) : rest_(graph), prepare_(graph), parametric_(graph.size(), false) {
+  explicit Splitting(const PolynomialGraph& graph) : rest_(graph), prepare_(graph), parametric_(graph.size(), false) {
     prepare_.results.clear();
     prepare_.pivots.clear();
     prepare_.labels.clear();
   }
 
-  std::pair<Polynomials, Polynomials> run() {
-    const std::vector<NodeId> order = rest_.order();
+  std::pair<PolynomialGraph, PolynomialGraph> run() {
+    const std::vector<NodeId> order = rest_.topological_order();
     for (const NodeId id : order) parametric_[id] = is_parametric(id);
     for (const NodeId id : order) {
       if (!parametric_[id] && rest_[id].kind != Node::Kind::leaf) split(id);
@@ -88,12 +88,12 @@ class Splitting {
     rest_.terms_of(id) = std::move(terms);
   }
 
-  Polynomials rest_, prepare_;
+  PolynomialGraph rest_, prepare_;
   std::vector<bool> parametric_;
 };
 
 /// Keeps only the entries of w that `rest` reads, in reading order.
-void keep_needed(Function& rest, Polynomials& prepare) {
+void keep_needed(Function& rest, PolynomialGraph& prepare) {
   std::map<std::uint32_t, std::uint32_t> place;
   std::vector<Term> kept;
   const auto visit = [&](Operand& operand) {
@@ -114,14 +114,14 @@ void keep_needed(Function& rest, Polynomials& prepare) {
 
 }  // namespace
 
-std::optional<Hoisted> hoist(const std::vector<Polynomials>& starts, const Operations& whole, const std::string& name,
+std::optional<Hoisted> hoist(const std::vector<PolynomialGraph>& starts, const Operations& whole, const std::string& name,
                              const std::vector<ResultShape>& shape) {
-  Polynomials best, prepare;
-  const std::size_t least = std::max<std::size_t>(2, (whole.cost() + worth_hoisting - 1) / worth_hoisting);
+  PolynomialGraph best, prepare;
+  const std::size_t least = std::max<std::size_t>(2, (whole.cost() + min_saving_divisor - 1) / min_saving_divisor);
   if (whole.cost() < least) return std::nullopt;
   std::size_t cost = whole.cost() - least;
   bool found = false;
-  for (const Polynomials& start : starts) {
+  for (const PolynomialGraph& start : starts) {
     auto [first, rest] = Splitting(start).run();
     if (first.results.empty()) continue;
     rest = optimise({flatten(rest, false)});

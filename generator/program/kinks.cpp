@@ -17,9 +17,9 @@ using symbolic::Ref;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-class Holding {
+class KinkFreezing {
  public:
-  explicit Holding(Dag& dag) : dag_(dag) {}
+  explicit KinkFreezing(Dag& dag) : dag_(dag) {}
 
   /// New kinks are collected while `collects` is true; later expressions only share known kinks.
   bool collects = true;
@@ -52,7 +52,7 @@ class Holding {
     const auto index = static_cast<std::uint32_t>(known - kinks.begin());
     if (known == kinks.end()) {
       const bool left = std::find(left_.begin(), left_.end(), value) != left_.end();
-      if (!collects || left || kinks.size() == most_kinks || !moves(value)) return live;
+      if (!collects || left || kinks.size() == max_kinks || !moves(value)) return live;
       kinks.push_back({op, value});
     }
     const Ref zero = dag_.zero(), side = dag_.symbol({SymbolKind::branch, index, 0});
@@ -88,10 +88,10 @@ const char* name(const Kink& kink) {
   }
 }
 
-bool has_kinks(system::EquationSystem system) { return !hold_kinks(system).empty(); }
+bool has_kinks(system::EquationSystem system) { return !freeze_kink_branches(system).empty(); }
 
-std::vector<Kink> hold_kinks(system::EquationSystem& s) {
-  Holding hold(*s.dag);
+std::vector<Kink> freeze_kink_branches(system::EquationSystem& s) {
+  KinkFreezing hold(*s.dag);
   using system::ExpressionRole;
   system::for_each_expression(s, [&hold](Ref& r, ExpressionRole part) {
     if (part == ExpressionRole::constraints) return;  // start states and projections do not freeze branches

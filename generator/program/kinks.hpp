@@ -22,14 +22,14 @@ struct Kink {
 const char* name(const Kink& kink);
 
 /// Bits of `mode` for the sides: two per kink, from first_kink_bit on. Further kinks cannot be frozen.
-inline constexpr std::size_t first_kink_bit = 8, most_kinks = 11;
+inline constexpr std::size_t first_kink_bit = 8, max_kinks = 11;
 
 /// Whether the equations of motion have kinks that can be frozen.
 bool has_kinks(system::EquationSystem system);
 
 /// Makes the branches of the equations of motion and of the contact laws depend on sides, and equal branches in
 /// reactions, outputs and events. Surfaces of parameters alone, surfaces of mode changes of contacts, and surfaces
-/// beyond most_kinks are unchanged.
-std::vector<Kink> hold_kinks(system::EquationSystem& system);
+/// beyond max_kinks are unchanged.
+std::vector<Kink> freeze_kink_branches(system::EquationSystem& system);
 
 }  // namespace eomgen::program

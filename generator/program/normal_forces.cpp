@@ -36,10 +36,10 @@ class Iteration {
     for (const Ref nu : result.nu) size = dag_.call(Op::max, size, nu);
     const symbolic::Rational enough =
         symbolic::Rational(1) / 1000000000;  // its square, the remaining error, is at rounding level
-    result.settled = dag_.sub(dag_.mul(dag_.constant(enough), size), last);
+    result.solution_margin = dag_.sub(dag_.mul(dag_.constant(enough), size), last);
     // At rest without any normal force the iteration has converged.
-    result.settled = dag_.select(dag_.zero(), size, result.settled, dag_.one());
-    result.several = dag_.integer(-1);  // the number of solutions is unknown in that case
+    result.solution_margin = dag_.select(dag_.zero(), size, result.solution_margin, dag_.one());
+    result.multiplicity = dag_.integer(-1);  // the number of solutions is unknown in that case
     return result;
   }
 

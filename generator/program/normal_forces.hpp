@@ -18,8 +18,8 @@ struct CurveForce {
 
 struct NormalForces {
   std::vector<symbolic::Ref> nu;
-  symbolic::Ref settled;  // negative: no solution, several, or no convergence
-  symbolic::Ref several;  // positive if there are several solutions in that case
+  symbolic::Ref solution_margin;  // negative: no solution, several, or no convergence
+  symbolic::Ref multiplicity;  // positive if there are several solutions in that case
 };
 
 /// Solves for one curve in closed form. Solves for several curves by an unrolled Newton iteration that starts at the

@@ -68,12 +68,12 @@ Term content(const std::vector<Term>& terms) {
 
 }  // namespace
 
-bool Polynomials::is_product(NodeId id) const {
+bool PolynomialGraph::is_product(NodeId id) const {
   const Node& node = nodes_[id];
   return node.kind == Node::Kind::sum && node.terms.size() == 1 && symbolic::is_one(node.terms[0].coefficient);
 }
 
-Monomial Polynomials::expanded(const Monomial& monomial) const {
+Monomial PolynomialGraph::expanded(const Monomial& monomial) const {
   Monomial result;
   for (const Factor& f : monomial) {
     if (is_product(f.node))
@@ -87,7 +87,7 @@ Monomial Polynomials::expanded(const Monomial& monomial) const {
 }
 
 /// The square of a sine or cosine in a term; products are expanded for the search.
-bool Polynomials::has_square(const Monomial& monomial) const {
+bool PolynomialGraph::has_square(const Monomial& monomial) const {
   for (const Factor& f : monomial) {
     if (f.exponent >= 2 && is_trig(f.node)) return true;
   }
@@ -99,7 +99,7 @@ bool Polynomials::has_square(const Monomial& monomial) const {
 
 // c K sin^2 + c K cos^2 -> c K, and c K - c K cos^2 -> c K sin^2 if that sine exists. Products are expanded for the
 // search, because squares may be hidden, as in (l cos)^2.
-bool Polynomials::apply_pythagoras(std::vector<Term>& terms) {
+bool PolynomialGraph::apply_pythagoras(std::vector<Term>& terms) {
   if (std::none_of(terms.begin(), terms.end(), [this](const Term& term) { return has_square(term.factors); }))
     return false;
   std::vector<Monomial> open;
@@ -114,7 +114,7 @@ bool Polynomials::apply_pythagoras(std::vector<Term>& terms) {
   for (std::size_t i = 0; i < terms.size(); ++i) {
     for (const Factor& f : open[i]) {
       NodeId other = 0;
-      if (f.exponent < 2 || !partner(f.node, other)) continue;
+      if (f.exponent < 2 || !find_trig_partner(f.node, other)) continue;
       const Monomial rest = multiply(open[i], {{f.node, 1}}, -2);
       const Monomial swapped = multiply(rest, {{other, 1}}, 2);
       std::size_t j = find(swapped, terms[i].coefficient);
@@ -129,7 +129,7 @@ bool Polynomials::apply_pythagoras(std::vector<Term>& terms) {
   return false;
 }
 
-Term Polynomials::normal(std::vector<Term> terms) {
+Term PolynomialGraph::normalise(std::vector<Term> terms) {
   collect(terms);
   constexpr std::size_t longest = 400;  // the search for squares is quadratic
   while (terms.size() > 1 && terms.size() < longest && apply_pythagoras(terms)) collect(terms);

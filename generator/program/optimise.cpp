@@ -10,16 +10,16 @@
 namespace eomgen::program {
 namespace {
 
-struct Costed {
-  Polynomials graph;
+struct CostedGraph {
+  PolynomialGraph graph;
   std::size_t cost = 0;
 };
 
 /// One descent: factor, share and flatten while the cost falls by a thousandth.
-Costed descend(const Costed& start, std::uint64_t seed) {
+CostedGraph descend(const CostedGraph& start, std::uint64_t seed) {
   constexpr int rounds = 8;
-  Polynomials graph = start.graph;
-  std::optional<Costed> better;
+  PolynomialGraph graph = start.graph;
+  std::optional<CostedGraph> better;
   std::size_t cost = start.cost;
   for (int round = 0; round < rounds; ++round) {
     factor_sums(graph, seed);
@@ -32,7 +32,7 @@ Costed descend(const Costed& start, std::uint64_t seed) {
     if (now < cost) {
       cost = now;
       if (last) return {std::move(graph), now};
-      better = Costed{graph, now};
+      better = CostedGraph{graph, now};
     }
     if (last) break;
   }
@@ -41,22 +41,22 @@ Costed descend(const Costed& start, std::uint64_t seed) {
 
 }  // namespace
 
-Polynomials optimise(const std::vector<Polynomials>& starts) {
+PolynomialGraph optimise(const std::vector<PolynomialGraph>& starts) {
   // Programs with tens of operations are tried in many orders, programs with thousands in one order per start.
   constexpr std::size_t budget = 4000, most = 12;
-  std::optional<Costed> best;
-  for (const Polynomials& start : starts) {
+  std::optional<CostedGraph> best;
+  for (const PolynomialGraph& start : starts) {
     const std::size_t orders = std::clamp<std::size_t>(budget / (count_operations(start).flops() + 1), 1, most);
     for (const bool inline_products : {false, true}) {
-      Costed flat{flatten(start, inline_products), 0};
+      CostedGraph flat{flatten(start, inline_products), 0};
       flat.cost = count_operations(flat.graph).cost();
       for (std::uint64_t seed = 0; seed < orders; ++seed) {
-        Costed found = descend(flat, seed);
+        CostedGraph found = descend(flat, seed);
         if (!best || best->cost == 0 || found.cost < best->cost) best = std::move(found);
       }
     }
   }
-  return best ? std::move(best->graph) : Polynomials();
+  return best ? std::move(best->graph) : PolynomialGraph();
 }
 
 }  // namespace eomgen::program

@@ -83,7 +83,7 @@ std::uint64_t hash_of_call(Op op, const std::vector<Term>& arguments) {
 
 }  // namespace
 
-NodeId Polynomials::leaf(const Operand& operand) {
+NodeId PolynomialGraph::leaf(const Operand& operand) {
   const std::uint64_t h = hash_mix(static_cast<std::uint64_t>(operand.slot) + 1, operand.index);
   const NodeId* const known = index_.find(h, [&](NodeId id) {
     const Node& node = nodes_[id];
@@ -96,7 +96,7 @@ NodeId Polynomials::leaf(const Operand& operand) {
   return add(h, std::move(node));
 }
 
-NodeId Polynomials::call(Op op, std::vector<Term> arguments) {
+NodeId PolynomialGraph::call(Op op, std::vector<Term> arguments) {
   const std::uint64_t h = hash_of_call(op, arguments);
   const NodeId* const known = index_.find(h, [&](NodeId id) {
     const Node& node = nodes_[id];
@@ -110,7 +110,7 @@ NodeId Polynomials::call(Op op, std::vector<Term> arguments) {
   return add(h, std::move(node));
 }
 
-NodeId Polynomials::sum(std::vector<Term> terms) {
+NodeId PolynomialGraph::sum(std::vector<Term> terms) {
   const std::uint64_t h = hash(terms, 7);
   const NodeId* const known =
       index_.find(h, [&](NodeId id) { return nodes_[id].kind == Node::Kind::sum && nodes_[id].terms == terms; });
@@ -120,21 +120,21 @@ NodeId Polynomials::sum(std::vector<Term> terms) {
   return add(h, std::move(node));
 }
 
-NodeId Polynomials::fresh_sum(std::vector<Term> terms) {
+NodeId PolynomialGraph::fresh_sum(std::vector<Term> terms) {
   Node node;
   node.terms = std::move(terms);
   nodes_.push_back(std::move(node));
   return static_cast<NodeId>(nodes_.size() - 1);
 }
 
-NodeId Polynomials::add(std::uint64_t hash, Node node) {
+NodeId PolynomialGraph::add(std::uint64_t hash, Node node) {
   nodes_.push_back(std::move(node));
   const auto id = static_cast<NodeId>(nodes_.size() - 1);
   index_.add(hash, id);
   return id;
 }
 
-bool Polynomials::partner(NodeId trig, NodeId& result) const {
+bool PolynomialGraph::find_trig_partner(NodeId trig, NodeId& result) const {
   if (!is_trig(trig)) return false;
   const Node& node = nodes_[trig];
   const Op wanted = node.op == Op::sin ? Op::cos : Op::sin;
@@ -145,31 +145,31 @@ bool Polynomials::partner(NodeId trig, NodeId& result) const {
   return found != nullptr;
 }
 
-Term Polynomials::operand(const Term& term) {
+Term PolynomialGraph::as_operand(const Term& term) {
   if (term.is_constant() || term.is_node()) return term;
   const bool negative = cln::minusp(term.coefficient);
   const NodeId id = sum({{cln::abs(term.coefficient), term.factors}});
   return {negative ? -1 : 1, {{id, 1}}};
 }
 
-bool Polynomials::is_trig(NodeId id) const {
+bool PolynomialGraph::is_trig(NodeId id) const {
   const Node& node = nodes_[id];
   return node.kind == Node::Kind::call && (node.op == Op::sin || node.op == Op::cos);
 }
 
-std::vector<NodeId> Polynomials::order() const {
+std::vector<NodeId> PolynomialGraph::topological_order() const {
   std::vector<NodeId> result, trig;
-  Walk(*this).from_results([&](NodeId id) {
+  DepthFirstTraversal(*this).visit_results([&](NodeId id) {
     if (is_trig(id)) trig.push_back(id);
   });
   const auto keep = [&](NodeId id) { result.push_back(id); };
-  Walk walk(*this);
-  for (const NodeId id : trig) walk.from(id, keep);
-  walk.from_results(keep);
+  DepthFirstTraversal traversal(*this);
+  for (const NodeId id : trig) traversal.visit(id, keep);
+  traversal.visit_results(keep);
   return result;
 }
 
-std::vector<std::uint32_t> Polynomials::uses(const std::vector<NodeId>& order) const {
+std::vector<std::uint32_t> PolynomialGraph::use_counts(const std::vector<NodeId>& order) const {
   std::vector<std::uint32_t> result(nodes_.size(), 0);
   const auto count = [&](const Term& term) {
     for (const Factor& f : term.factors) result[f.node] += static_cast<std::uint32_t>(std::abs(f.exponent));
@@ -182,7 +182,7 @@ std::vector<std::uint32_t> Polynomials::uses(const std::vector<NodeId>& order) c
   return result;
 }
 
-std::vector<std::uint32_t> Polynomials::divisor_uses(const std::vector<NodeId>& order) const {
+std::vector<std::uint32_t> PolynomialGraph::divisor_use_counts(const std::vector<NodeId>& order) const {
   std::vector<std::uint32_t> result(nodes_.size(), 0);
   for (const NodeId id : order) {
     for (const Term& term : nodes_[id].terms) {
@@ -192,7 +192,7 @@ std::vector<std::uint32_t> Polynomials::divisor_uses(const std::vector<NodeId>& 
   return result;
 }
 
-std::vector<NodeId> Polynomials::atoms(const Term& term) const {
+std::vector<NodeId> PolynomialGraph::atoms(const Term& term) const {
   std::vector<NodeId> result, stack;
   for (const Factor& f : term.factors) stack.push_back(f.node);
   while (!stack.empty()) {
@@ -210,8 +210,8 @@ std::vector<NodeId> Polynomials::atoms(const Term& term) const {
   return result;
 }
 
-std::vector<bool> Polynomials::divisors(const std::vector<NodeId>& order) const {
-  const std::vector<std::uint32_t> direct = divisor_uses(order);
+std::vector<bool> PolynomialGraph::divisors(const std::vector<NodeId>& order) const {
+  const std::vector<std::uint32_t> direct = divisor_use_counts(order);
   std::vector<bool> result(nodes_.size(), false);
   for (const NodeId id : order) {
     if (direct[id] == 0) continue;

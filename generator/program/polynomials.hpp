@@ -84,7 +84,7 @@ class NodeIndex {
   std::size_t taken_ = 0;
 };
 
-class Polynomials {
+class PolynomialGraph {
  public:
   void reserve(std::size_t nodes) {
     nodes_.reserve(nodes);
@@ -98,11 +98,11 @@ class Polynomials {
   NodeId fresh_sum(std::vector<Term> terms);
 
   /// The sum of `terms` in normal form: like terms collected, sin^2 + cos^2 = 1 applied, the common factor extracted.
-  Term normal(std::vector<Term> terms);
+  Term normalise(std::vector<Term> terms);
   /// Converts a term to an operand of an instruction: a constant, or plus or minus a node.
-  Term operand(const Term& term);
+  Term as_operand(const Term& term);
   /// Finds sin(x) for cos(x) and vice versa. Returns false if the graph does not contain it.
-  bool partner(NodeId trig, NodeId& result) const;
+  bool find_trig_partner(NodeId trig, NodeId& result) const;
   bool is_trig(NodeId id) const;  // a sine or cosine
 
   const Node& operator[](NodeId id) const { return nodes_[id]; }
@@ -110,11 +110,11 @@ class Polynomials {
   std::size_t size() const { return nodes_.size(); }
 
   /// Nodes that results and pivots depend on, operands first; sines and cosines as early as possible.
-  std::vector<NodeId> order() const;
+  std::vector<NodeId> topological_order() const;
   /// Number of uses of each node by the nodes of `order`, results and pivots.
-  std::vector<std::uint32_t> uses(const std::vector<NodeId>& order) const;
+  std::vector<std::uint32_t> use_counts(const std::vector<NodeId>& order) const;
   /// Number of terms in `order` that divide by each node.
-  std::vector<std::uint32_t> divisor_uses(const std::vector<NodeId>& order) const;
+  std::vector<std::uint32_t> divisor_use_counts(const std::vector<NodeId>& order) const;
   /// Nodes that occur as divisors, alone or as factors of products.
   std::vector<bool> divisors(const std::vector<NodeId>& order) const;
   /// The factors of a value, with products expanded, ascending.
@@ -135,11 +135,11 @@ class Polynomials {
 };
 
 /// Visits nodes once each, operands before users, without recursion.
-class Walk {
+class DepthFirstTraversal {
  public:
-  explicit Walk(const Polynomials& graph) : graph_(graph), state_(graph.size(), open) {}
+  explicit DepthFirstTraversal(const PolynomialGraph& graph) : graph_(graph), state_(graph.size(), open) {}
   template <class Take>
-  void from(NodeId root, const Take& take) {
+  void visit(NodeId root, const Take& take) {
     stack_.push_back(root);
     while (!stack_.empty()) {
       const NodeId id = stack_.back();
@@ -160,49 +160,49 @@ class Walk {
     }
   }
   template <class Take>
-  void from(const Term& term, const Take& take) {
-    for (const Factor& f : term.factors) from(f.node, take);
+  void visit(const Term& term, const Take& take) {
+    for (const Factor& f : term.factors) visit(f.node, take);
   }
   template <class Take>
-  void from_results(const Take& take) {  // and pivots
+  void visit_results(const Take& take) {  // and pivots
     for (const PivotPair& pair : graph_.pivots) {
-      from(pair.pivot, take);
-      from(pair.scale, take);
+      visit(pair.pivot, take);
+      visit(pair.scale, take);
     }
-    for (const Term& term : graph_.results) from(term, take);
+    for (const Term& term : graph_.results) visit(term, take);
   }
 
  private:
   enum State : std::uint8_t { open, operands_taken, done };
-  const Polynomials& graph_;
+  const PolynomialGraph& graph_;
   std::vector<State> state_;
   std::vector<NodeId> stack_;
 };
 
 /// Operation count of the straight-line code that `schedule` generates for a graph.
-Operations count_operations(const Polynomials& graph);
+Operations count_operations(const PolynomialGraph& graph);
 
 /// Generates straight-line code. `shape`: the results; their entries are the results of the graph in order.
-Function schedule(const Polynomials& graph, const std::string& name, const std::vector<ResultShape>& shape);
+Function schedule(const PolynomialGraph& graph, const std::string& name, const std::vector<ResultShape>& shape);
 
 /// Merges chains: a node with one use is merged into its user. With `inline_products`, shared products are merged too,
 /// so that other factorings can be found.
-Polynomials flatten(const Polynomials& graph, bool inline_products);
+PolynomialGraph flatten(const PolynomialGraph& graph, bool inline_products);
 
 /// Expands small products of sums inside the entries of M, f and the like (labelled values). There the terms of
 /// Lagrange's equations cancel.
-Polynomials expand(const Polynomials& graph);
+PolynomialGraph expand(const PolynomialGraph& graph);
 
 /// Rewrites sums as f*(...) + ..., the most frequent factor first; `seed` breaks ties.
-void factor_sums(Polynomials& graph, std::uint64_t seed);
+void factor_sums(PolynomialGraph& graph, std::uint64_t seed);
 /// Common subexpression elimination: the most frequent pair of factors (or summands) becomes a node, repeatedly.
-void share_products(Polynomials& graph, std::uint64_t seed);
-void share_sums(Polynomials& graph, std::uint64_t seed);
+void share_products(PolynomialGraph& graph, std::uint64_t seed);
+void share_sums(PolynomialGraph& graph, std::uint64_t seed);
 
 /// A pseudo-random number that depends on the arguments only.
 std::uint64_t hash_mix(std::uint64_t a, std::uint64_t b);
 
 /// The cheapest graph found by several seeded orders of the passes, starting from equivalent graphs.
-Polynomials optimise(const std::vector<Polynomials>& starts);
+PolynomialGraph optimise(const std::vector<PolynomialGraph>& starts);
 
 }  // namespace eomgen::program

@@ -83,7 +83,7 @@ struct ResultShape {
 struct Function {
   std::string name;  // in the ABI: "rhs", "prepare", "mass", ...
   std::vector<Result> results;
-  std::vector<std::uint32_t> places;  // destination of the entries of the first result; empty: in order
+  std::vector<std::uint32_t> result_indices;  // destination of the entries of the first result; empty: in order
   std::vector<symbolic::Rational> constants;
   std::vector<Instruction> code;
   std::vector<PivotTest> pivots;
@@ -97,11 +97,11 @@ struct Taylor {
   Function start;  // "taylor_start": results z (into w), dx
   Function next;  // "taylor_next": time is k, the state x is x_k; results a, b (k-th factors of each sum), dx (its k-th
                   // coefficient)
-  std::size_t zeros = 0, products = 0;
-  std::size_t prepared() const { return zeros + products + 2; }
+  std::size_t order_zero_count = 0, product_count = 0;
+  std::size_t workspace_size() const { return order_zero_count + product_count + 2; }
 };
 
-struct Tried {
+struct CandidateCost {
   std::string formulation;
   system::Approach approach = system::Approach::two;
   system::Form form = system::Form::multipliers;
@@ -134,24 +134,24 @@ struct Program {
   std::vector<std::uint32_t> free;       // coordinates of the model; state x = (q_free, qdot_free, integrals)
   std::vector<std::uint32_t> integrals;  // of the model
   /// Number of entries of the first result of a function; 0 if the function does not exist.
-  std::size_t entries(std::string_view function_name) const {
+  std::size_t result_size(std::string_view function_name) const {
     for (const Function& function : functions) {
       if (function.name == function_name) return function.results[0].entries.size();
     }
     return 0;
   }
   std::size_t prepared_count() const {  // length of the array w; one chart after the other
-    std::size_t count = entries("prepare");
-    for (const Program& other : second) count += count > 0 ? other.entries("prepare") : 0;
+    std::size_t count = result_size("prepare");
+    for (const Program& other : chart_variants) count += count > 0 ? other.result_size("prepare") : 0;
     return count;
   }
-  std::size_t event_count() const { return entries("events"); }  // length of the array g
+  std::size_t event_count() const { return result_size("events"); }  // length of the array g
   std::size_t state_count() const { return 2 * free.size() + integrals.size(); }
   std::string formulation;
   system::Approach approach = system::Approach::two;
   system::Form form = system::Form::multipliers;
   std::vector<Function> functions;  // rhs first; `prepare` and `rhs_prepared` last, if they save work
-  std::vector<Tried> tried;
+  std::vector<CandidateCost> candidates;
   std::vector<std::string> reactions;  // labels, in the order of the array lambda
   std::vector<std::string> outputs;    // names, in the order of the array y
   std::vector<std::string> events;     // events of the model; they precede others in the array g
@@ -162,7 +162,7 @@ struct Program {
   std::optional<Taylor> taylor;   // if requested
   std::vector<bool> holonomic;    // per active constraint; false if it constrains velocities only
   std::vector<ChartInfo> charts;  // exchangeable charts; empty if the code has one chart
-  std::vector<Program> second;    // the same functions with second charts
+  std::vector<Program> chart_variants;    // the same functions with second charts
   int in_charts = 0;              // for a variant in second charts: its bits of `mode`
 };
 

@@ -3,7 +3,7 @@
 
 namespace eomgen::program {
 
-Function restricted(const Function& function, const std::vector<std::size_t>& entries) {
+Function restrict_results(const Function& function, const std::vector<std::size_t>& entries) {
   std::vector<bool> needed(function.code.size(), false);
   const auto need = [&](const Operand& operand) {
     if (operand.slot == Slot::value) needed[operand.index] = true;

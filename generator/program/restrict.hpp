@@ -10,6 +10,6 @@ namespace eomgen::program {
 
 /// `function` with the given entries of its first result only, in this order, and the code that they need. Pivot tests
 /// are removed: entries may be infinite or NaN where the original function returns 1.
-Function restricted(const Function& function, const std::vector<std::size_t>& entries);
+Function restrict_results(const Function& function, const std::vector<std::size_t>& entries);
 
 }  // namespace eomgen::program

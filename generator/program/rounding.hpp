@@ -11,11 +11,11 @@
 namespace eomgen::program {
 
 /// Unit roundoff of binary64: 2^-53, half a unit in the last place of 1.
-inline constexpr double half_unit = 0x1p-53;
+inline constexpr double unit_roundoff = 0x1p-53;
 
-/// One list per Function::results; `w_off`: errors of the prepared values. A bound is infinite if rounding may select
+/// One list per Function::results; `w_error`: errors of the prepared values. A bound is infinite if rounding may select
 /// another branch, or if there is no value.
 std::vector<std::vector<double>> rounding_bounds(const Function& function, const Arguments<double>& arguments,
-                                                 const std::vector<double>& w_off = {});
+                                                 const std::vector<double>& w_error = {});
 
 }  // namespace eomgen::program

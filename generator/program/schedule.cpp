@@ -39,10 +39,10 @@ void count_term(const Term& term, const std::vector<std::uint32_t>& divides, Ope
 
 }  // namespace
 
-Operations count_operations(const Polynomials& graph) {
+Operations count_operations(const PolynomialGraph& graph) {
   Operations operations;
-  const std::vector<NodeId> order = graph.order();
-  const std::vector<std::uint32_t> divides = graph.divisor_uses(order);
+  const std::vector<NodeId> order = graph.topological_order();
+  const std::vector<std::uint32_t> divides = graph.divisor_use_counts(order);
   for (const NodeId id : order) {
     const Node& node = graph[id];
     if (divides[id] > 1) ++operations.div;
@@ -58,33 +58,33 @@ namespace {
 
 class Schedule {
  public:
-  Schedule(const Polynomials& graph, std::string name)
+  Schedule(const PolynomialGraph& graph, std::string name)
       : graph_(graph), value_(graph.size()), reciprocal_(graph.size()), has_reciprocal_(graph.size(), false) {
     function_.name = std::move(name);
   }
 
   Function run(const std::vector<ResultShape>& shape) {
     prepare();
-    Walk walk(graph_);
+    DepthFirstTraversal traversal(graph_);
     const auto take = [this](NodeId id) { emit(id); };
     section_ = "sines and cosines";
-    for (const std::vector<NodeId>& level : trig_levels()) emit_together(level, walk);
+    for (const std::vector<NodeId>& level : trig_levels()) emit_together(level, traversal);
     section_.clear();
     for (const Label& label : graph_.labels) {
       if (!needed_[label.value.factors[0].node]) continue;
       section_ = label.section;
-      walk.from(label.value, take);
+      traversal.visit(label.value, take);
     }
     section_ = "values";
-    walk.from_results(take);
+    traversal.visit_results(take);
     finish(shape);
     return std::move(function_);
   }
 
  private:
   void prepare() {
-    const std::vector<NodeId> order = graph_.order();
-    divides_ = graph_.divisor_uses(order);
+    const std::vector<NodeId> order = graph_.topological_order();
+    divides_ = graph_.divisor_use_counts(order);
     needed_.assign(graph_.size(), false);
     flipped_.assign(graph_.size(), false);
     for (const NodeId id : order) needed_[id] = true;
@@ -107,7 +107,7 @@ class Schedule {
     std::vector<std::size_t> depth(graph_.size(), 0);
     std::vector<bool> taken(graph_.size(), false);
     std::vector<std::vector<NodeId>> levels;
-    for (const NodeId id : graph_.order()) {
+    for (const NodeId id : graph_.topological_order()) {
       for (const Term& term : graph_[id].terms) {
         for (const Factor& f : term.factors) depth[id] = std::max(depth[id], depth[f.node]);
       }
@@ -115,7 +115,7 @@ class Schedule {
       const std::size_t level = depth[id]++;
       if (levels.size() <= level) levels.resize(level + 1);
       NodeId other = 0;
-      for (const NodeId next : {id, graph_.partner(id, other) && needed_[other] ? other : id}) {
+      for (const NodeId next : {id, graph_.find_trig_partner(id, other) && needed_[other] ? other : id}) {
         if (!taken[next]) levels[level].push_back(next);
         taken[next] = true;
       }
@@ -123,12 +123,12 @@ class Schedule {
     return levels;
   }
 
-  void emit_together(const std::vector<NodeId>& trig, Walk& walk) {
+  void emit_together(const std::vector<NodeId>& trig, DepthFirstTraversal& traversal) {
     const auto take = [this](NodeId id) { emit(id); };
     std::vector<std::pair<Operand, NodeId>> angles;
     for (const NodeId id : trig) {
       const Term& angle = graph_[id].terms[0];
-      walk.from(angle, take);
+      traversal.visit(angle, take);
       angles.emplace_back(angle.is_constant() ? constant(angle.coefficient) : term(angle, ""), id);
     }
     const auto angle_of = [](const auto& pair) {
@@ -146,7 +146,7 @@ class Schedule {
     packs_ += pack ? 1 : 0;
     for (std::size_t i = 0; i < angles.size(); ++i) {
       const Operand& angle = angles[i].first;
-      walk.from(angles[i].second,
+      traversal.visit(angles[i].second,
                 [&](NodeId id) { value_[id] = add_instruction(graph_[id].op, {angle}, name_of(id)); });
       if (!pack) continue;
       function_.code.back().pack = packs_;
@@ -271,7 +271,7 @@ class Schedule {
   }
 
   void test_pivots() {
-    const std::vector<bool> divides = graph_.divisors(graph_.order());
+    const std::vector<bool> divides = graph_.divisors(graph_.topological_order());
     std::vector<bool> tested(graph_.size(), false);
     for (const PivotPair& pair : graph_.pivots) {
       if (!pair.scale.is_constant() || pair.scale.coefficient != 0) {
@@ -286,7 +286,7 @@ class Schedule {
     }
   }
 
-  const Polynomials& graph_;
+  const PolynomialGraph& graph_;
   Function function_;
   std::vector<Operand> value_, reciprocal_;
   std::vector<bool> has_reciprocal_, needed_, flipped_;
@@ -298,7 +298,7 @@ class Schedule {
 
 }  // namespace
 
-Function schedule(const Polynomials& graph, const std::string& name, const std::vector<ResultShape>& shape) {
+Function schedule(const PolynomialGraph& graph, const std::string& name, const std::vector<ResultShape>& shape) {
   return Schedule(graph, name).run(shape);
 }
 

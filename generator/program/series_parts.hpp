@@ -12,7 +12,7 @@
 
 namespace eomgen::program {
 
-inline Operand minus(Operand operand) {
+inline Operand negate(Operand operand) {
   operand.negated = !operand.negated;
   return operand;
 }
@@ -20,10 +20,10 @@ inline Operand minus(Operand operand) {
 /// A value of the right-hand side. `zero`: coefficient of order 0, in `start`; `next`: coefficient of order k, in
 /// `next`, if the value depends on time or state.
 struct Series {
-  bool moves = false;
+  bool varies = false;
   Operand zero, next;
 };
-inline Series minus(Series series) { return {series.moves, minus(series.zero), minus(series.next)}; }
+inline Series negate(Series series) { return {series.varies, negate(series.zero), negate(series.next)}; }
 
 using Key = std::tuple<Slot, std::uint32_t, bool>;
 inline Key key(const Operand& o) { return {o.slot, o.index, o.negated}; }
@@ -38,7 +38,7 @@ inline Operand constant(Function& function, const symbolic::Rational& value) {
   return {Slot::constant, index, false};
 }
 
-inline Operand push(Function& function, symbolic::Op op, std::vector<Operand> operands, std::string name = {}) {
+inline Operand append_instruction(Function& function, symbolic::Op op, std::vector<Operand> operands, std::string name = {}) {
   if (operands.size() == 1 && (op == symbolic::Op::add || op == symbolic::Op::mul)) return operands[0];
   Instruction instruction;
   instruction.op = op;

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "error.hpp"
-#include "program/series_code.hpp"
+#include "program/series_builder.hpp"
 #include "symbolic/functions.hpp"
 
 namespace eomgen::program {
@@ -21,9 +21,9 @@ using symbolic::Slope;
 
 constexpr std::size_t stack_budget = std::size_t{1} << 21;  // bytes for the series of all products
 
-class Recurrences : private SeriesCode {
+class Recurrences : private SeriesBuilder {
  public:
-  explicit Recurrences(const Function& rhs) : SeriesCode(rhs), rhs_(rhs) {}
+  explicit Recurrences(const Function& rhs) : SeriesBuilder(rhs), rhs_(rhs) {}
 
   Taylor run() {
     for (const Instruction& instruction : rhs_.code) {
@@ -45,12 +45,12 @@ class Recurrences : private SeriesCode {
 
   Series of(const Instruction& instruction) {
     std::vector<Series> a;
-    bool moves = false;
+    bool varies = false;
     for (const Operand& operand : instruction.operands) {
       a.push_back(read(operand));
-      moves = moves || a.back().moves;
+      varies = varies || a.back().varies;
     }
-    if (!moves) return copied(instruction);
+    if (!varies) return copied(instruction);
     const std::string& name = instruction.name;
     switch (instruction.op) {  // operations other than functions of one argument with a known derivative
       case Op::add: return total(a, name);
@@ -73,7 +73,7 @@ class Recurrences : private SeriesCode {
     std::vector<Operand> zero, next;
     for (const Series& s : a) {
       zero.push_back(s.zero);
-      if (s.moves) next.push_back(s.next);
+      if (s.varies) next.push_back(s.next);
     }
     return {true, at_start(Op::add, zero, name), at_next(Op::add, next)};
   }
@@ -82,27 +82,27 @@ class Recurrences : private SeriesCode {
     const auto [at, anew] = products_.try_emplace(std::minmax(keys(a), keys(b)));
     if (!anew) return at->second;
     Series& c = at->second;
-    c.moves = true;
+    c.varies = true;
     c.zero = at_start(Op::mul, {a.zero, b.zero}, name);
     const Operand s = sum(a.next, b.next);
     if (keys(a) == keys(b)) {
-      c.next = at_next(Op::add, {s, at_next(Op::mul, {constant(next_, 2), kept(a.zero), a.next})});
+      c.next = at_next(Op::add, {s, at_next(Op::mul, {constant(next_, 2), start_value(a.zero), a.next})});
     } else {
       c.next =
-          at_next(Op::add, {s, at_next(Op::mul, {kept(a.zero), b.next}), at_next(Op::mul, {a.next, kept(b.zero)})});
+          at_next(Op::add, {s, at_next(Op::mul, {start_value(a.zero), b.next}), at_next(Op::mul, {a.next, start_value(b.zero)})});
     }
     return c;
   }
 
   Series scaled(const Series& a, const Operand& factor, const std::string& name = {}) {
-    return {true, at_start(Op::mul, {factor, a.zero}, name), at_next(Op::mul, {kept(factor), a.next})};
+    return {true, at_start(Op::mul, {factor, a.zero}, name), at_next(Op::mul, {start_value(factor), a.next})};
   }
 
   Series product(const std::vector<Series>& a, const std::string& name) {
     std::vector<Operand> still;
     std::vector<Series> moving;
     for (const Series& s : a) {
-      if (s.moves)
+      if (s.varies)
         moving.push_back(s);
       else
         still.push_back(s.zero);
@@ -117,22 +117,22 @@ class Recurrences : private SeriesCode {
 
   Series quotient(const Series& a, const Series& b, const std::string& name) {
     const Operand inverse = at_start(Op::div, {one(), b.zero});
-    if (!b.moves) return {true, at_start(Op::div, {a.zero, b.zero}, name), at_next(Op::mul, {a.next, kept(inverse)})};
+    if (!b.varies) return {true, at_start(Op::div, {a.zero, b.zero}, name), at_next(Op::mul, {a.next, start_value(inverse)})};
     Series c{true, at_start(Op::div, {a.zero, b.zero}, name), {}};
-    const Operand s = open(b.next);
-    std::vector<Operand> rest{minus(s), minus(at_next(Op::mul, {b.next, kept(c.zero)}))};
-    if (a.moves) rest.insert(rest.begin(), a.next);
-    c.next = at_next(Op::mul, {kept(inverse), at_next(Op::add, rest)});
-    close(s, c.next);
+    const Operand s = open_sum(b.next);
+    std::vector<Operand> rest{negate(s), negate(at_next(Op::mul, {b.next, start_value(c.zero)}))};
+    if (a.varies) rest.insert(rest.begin(), a.next);
+    c.next = at_next(Op::mul, {start_value(inverse), at_next(Op::add, rest)});
+    close_sum(s, c.next);
     return c;
   }
 
   Series root(const Series& a, const std::string& name = {}) {
     Series c{true, at_start(Op::sqrt, {a.zero}, name), {}};
     const Operand inverse = at_start(Op::div, {constant(start_, Rational(1) / 2), c.zero});
-    const Operand s = open({});
-    c.next = at_next(Op::mul, {kept(inverse), at_next(Op::add, {a.next, minus(s)})});
-    close(s, c.next, c.next);
+    const Operand s = open_sum({});
+    c.next = at_next(Op::mul, {start_value(inverse), at_next(Op::add, {a.next, negate(s)})});
+    close_sum(s, c.next, c.next);
     return c;
   }
 
@@ -153,36 +153,36 @@ class Recurrences : private SeriesCode {
 
   /// s' = c a', c' = s a', or c' = -s a' if `turns`.
   void pair(const Series& a, Series& s, Series& c, bool turns) {
-    const Operand w = weighted(a), of_c = open(w), of_s = open(w);
-    const auto signed_by = [turns](const Operand& o) { return turns ? minus(o) : o; };
-    s.next = unweighted(at_next(Op::add, {of_c, at_next(Op::mul, {w, kept(c.zero)})}));
-    c.next = unweighted(at_next(Op::add, {signed_by(of_s), signed_by(at_next(Op::mul, {w, kept(s.zero)}))}));
-    close(of_c, c.next);
-    close(of_s, s.next);
+    const Operand w = times_order(a), of_c = open_sum(w), of_s = open_sum(w);
+    const auto signed_by = [turns](const Operand& o) { return turns ? negate(o) : o; };
+    s.next = divide_by_order(at_next(Op::add, {of_c, at_next(Op::mul, {w, start_value(c.zero)})}));
+    c.next = divide_by_order(at_next(Op::add, {signed_by(of_s), signed_by(at_next(Op::mul, {w, start_value(s.zero)}))}));
+    close_sum(of_c, c.next);
+    close_sum(of_s, s.next);
   }
 
   /// The coefficient of c with c' = b a'. The k-th coefficient of b may be set later by close_sum(result.second,
   /// b.next).
   std::pair<Operand, Operand> integrated(const Series& a, const Operand& b_zero) {
-    const Operand w = weighted(a), s = open(w);
-    return {unweighted(at_next(Op::add, {s, at_next(Op::mul, {w, kept(b_zero)})})), s};
+    const Operand w = times_order(a), s = open_sum(w);
+    return {divide_by_order(at_next(Op::add, {s, at_next(Op::mul, {w, start_value(b_zero)})})), s};
   }
 
   /// c_k for b c' = n', given k n_k.
   Operand divided(const std::vector<Operand>& n, const Series& b) {
     const Operand inverse = at_start(Op::div, {one(), b.zero});
-    const Operand s = open({});
+    const Operand s = open_sum({});
     std::vector<Operand> rest = n;
-    rest.push_back(minus(s));
-    const Operand w = at_next(Op::mul, {kept(inverse), at_next(Op::add, rest)});
-    close(s, w, b.next);
-    return unweighted(w);
+    rest.push_back(negate(s));
+    const Operand w = at_next(Op::mul, {start_value(inverse), at_next(Op::add, rest)});
+    close_sum(s, w, b.next);
+    return divide_by_order(w);
   }
 
   /// 1 + sign a^2.
   Series one_and_square(const Series& a, bool plus) {
     const Series square = times(a, a);
-    return total({Series{false, one(), {}}, plus ? square : minus(square)});
+    return total({Series{false, one(), {}}, plus ? square : negate(square)});
   }
 
   /// A function of one argument, by its derivative in the table of functions.
@@ -193,22 +193,22 @@ class Recurrences : private SeriesCode {
       return c;
     }
     const symbolic::Function& f = symbolic::function_of(instruction.op);
-    const auto fall = [&f](const Operand& o) { return f.falls() ? minus(o) : o; };
+    const auto fall = [&f](const Operand& o) { return f.falls() ? negate(o) : o; };
     switch (f.slope()) {
       case Slope::self: {
         const auto [next, s] = integrated(a[0], c.zero);
         c.next = next;
-        close(s, next);
+        close_sum(s, next);
         return c;
       }
       case Slope::one_plus_v2:
       case Slope::one_minus_v2: {
         const bool plus = f.slope() == Slope::one_plus_v2;
         const Operand square = at_start(Op::mul, {c.zero, c.zero});
-        const Operand slope = at_start(Op::add, {one(), plus ? square : minus(square)});
+        const Operand slope = at_start(Op::add, {one(), plus ? square : negate(square)});
         const auto [next, s] = integrated(a[0], slope);
         c.next = next;
-        close(s, one_and_square(c, plus).next);
+        close_sum(s, one_and_square(c, plus).next);
         return c;
       }
       case Slope::other: {
@@ -217,9 +217,9 @@ class Recurrences : private SeriesCode {
         pair(a[0], odd ? c : other, odd ? other : c, f.falls() || symbolic::function_of(f.other()).falls());
         return c;
       }
-      case Slope::over_x: c.next = divided({weighted(a[0])}, a[0]); return c;
-      case Slope::over_one_plus_x2: c.next = divided({weighted(a[0])}, one_and_square(a[0], true)); return c;
-      case Slope::over_root: c.next = divided({fall(weighted(a[0]))}, root(one_and_square(a[0], false))); return c;
+      case Slope::over_x: c.next = divided({times_order(a[0])}, a[0]); return c;
+      case Slope::over_one_plus_x2: c.next = divided({times_order(a[0])}, one_and_square(a[0], true)); return c;
+      case Slope::over_root: c.next = divided({fall(times_order(a[0]))}, root(one_and_square(a[0], false))); return c;
       default: throw std::logic_error("an operation without a recurrence");
     }
   }
@@ -228,17 +228,17 @@ class Recurrences : private SeriesCode {
   Operand angle(const Series& y, const Series& x) {
     std::vector<Operand> n;
     const auto add = [&](const Series& moving, const Series& factor, bool negated) {
-      if (!moving.moves) return;
-      const Operand w = weighted(moving), rest = at_next(Op::mul, {w, kept(factor.zero)});
-      n.push_back(negated ? minus(rest) : rest);
-      if (!factor.moves) return;
+      if (!moving.varies) return;
+      const Operand w = times_order(moving), rest = at_next(Op::mul, {w, start_value(factor.zero)});
+      n.push_back(negated ? negate(rest) : rest);
+      if (!factor.varies) return;
       const Operand s = sum(w, factor.next);
-      n.push_back(negated ? minus(s) : s);
+      n.push_back(negated ? negate(s) : s);
     };
     add(y, x, false);
     add(x, y, true);
     const auto square = [this](const Series& s) {
-      return s.moves ? times(s, s) : Series{false, at_start(Op::mul, {s.zero, s.zero}), {}};
+      return s.varies ? times(s, s) : Series{false, at_start(Op::mul, {s.zero, s.zero}), {}};
     };
     return divided(n, total({square(x), square(y)}));
   }
@@ -246,19 +246,19 @@ class Recurrences : private SeriesCode {
   /// a c' = b c a' if b is constant, else c' = c (b log a)'.
   Series general_power(const Series& a, const Series& b, const Instruction& instruction) {
     Series c{true, copied(instruction).zero, {}};
-    if (b.moves) {
+    if (b.varies) {
       const Series log =
-          a.moves ? function({a}, logarithm(instruction)) : Series{false, at_start(Op::log, {a.zero}), {}};
-      const Series exponent = a.moves ? times(b, log) : scaled(b, log.zero);
+          a.varies ? function({a}, logarithm(instruction)) : Series{false, at_start(Op::log, {a.zero}), {}};
+      const Series exponent = a.varies ? times(b, log) : scaled(b, log.zero);
       const auto [next, s] = integrated(exponent, c.zero);
       c.next = next;
-      close(s, next);
+      close_sum(s, next);
       return c;
     }
-    const Operand w = weighted(a), s = open(w);
-    const Operand n = at_next(Op::add, {s, at_next(Op::mul, {w, kept(c.zero)})});
-    c.next = divided({at_next(Op::mul, {kept(b.zero), n})}, a);
-    close(s, c.next);
+    const Operand w = times_order(a), s = open_sum(w);
+    const Operand n = at_next(Op::add, {s, at_next(Op::mul, {w, start_value(c.zero)})});
+    c.next = divided({at_next(Op::mul, {start_value(b.zero), n})}, a);
+    close_sum(s, c.next);
     return c;
   }
   static Instruction logarithm(const Instruction& power) {
@@ -271,17 +271,17 @@ class Recurrences : private SeriesCode {
   /// Keeps the branch of order 0.
   Series branch(const std::vector<Series>& a, const Instruction& instruction) {
     Series c = copied(instruction);
-    const auto next_of = [this](const Series& s) { return s.moves ? s.next : constant(next_, 0); };
+    const auto next_of = [this](const Series& s) { return s.varies ? s.next : constant(next_, 0); };
     const auto choose = [&](const Operand& low, const Operand& high, const Operand& yes, const Operand& no) {
-      c.moves = true;
-      c.next = at_next(Op::select, {kept(low), kept(high), yes, no});
+      c.varies = true;
+      c.next = at_next(Op::select, {start_value(low), start_value(high), yes, no});
     };
     switch (instruction.op) {
-      case Op::abs: choose(a[0].zero, constant(start_, 0), minus(a[0].next), a[0].next); break;
+      case Op::abs: choose(a[0].zero, constant(start_, 0), negate(a[0].next), a[0].next); break;
       case Op::min: choose(a[1].zero, a[0].zero, next_of(a[1]), next_of(a[0])); break;
       case Op::max: choose(a[0].zero, a[1].zero, next_of(a[1]), next_of(a[0])); break;
       case Op::select:
-        if (a[2].moves || a[3].moves) choose(a[0].zero, a[1].zero, next_of(a[2]), next_of(a[3]));
+        if (a[2].varies || a[3].varies) choose(a[0].zero, a[1].zero, next_of(a[2]), next_of(a[3]));
         break;
       default: break;  // sign: constant
     }
@@ -297,7 +297,7 @@ class Recurrences : private SeriesCode {
 }  // namespace
 
 std::size_t taylor_order(const Taylor& taylor) {
-  return std::min(taylor_highest_order, stack_budget / (2 * sizeof(double) * taylor.products));
+  return std::min(taylor_highest_order, stack_budget / (2 * sizeof(double) * taylor.product_count));
 }
 
 Taylor recurrences(const Function& rhs) { return Recurrences(rhs).run(); }
@@ -306,7 +306,7 @@ Taylor taylor_series(const Function& rhs) {
   Taylor taylor = recurrences(rhs);
   if (taylor_order(taylor) < taylor_lowest_order) {
     throw Error("program", {},
-                fmt::format("the equations are too large for Taylor series: {} products", taylor.products),
+                fmt::format("the equations are too large for Taylor series: {} products", taylor.product_count),
                 "take another solver, and leave taylor out of --with");
   }
   return taylor;

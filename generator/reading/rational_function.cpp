@@ -21,7 +21,7 @@ struct AtomLess {
   bool operator()(const AtomPtr& a, const AtomPtr& b) const { return compare(*a, *b) < 0; }
 };
 
-/// Polynomials over atoms as GiNaC polynomials over symbols.
+/// PolynomialGraph over atoms as GiNaC polynomials over symbols.
 class Letters {
  public:
   /// Empty if an exponent is negative or no integer.

@@ -23,7 +23,7 @@ Expansion::Expansion(const program::Taylor& taylor, int digits)
   at_k_ = values_.size();
   at_x_ = at_k_ + 1;
   at_w_ = at_x_ + states_;
-  at_code_ = at_w_ + taylor.prepared();
+  at_code_ = at_w_ + taylor.workspace_size();
   values_.resize(at_code_ + next.code.size(), cln::cl_float(0, format_));
   for (const program::Instruction& instruction : next.code) {
     if (instruction.op != Op::add && instruction.op != Op::mul && instruction.op != Op::select)
@@ -87,8 +87,8 @@ std::vector<std::vector<Number>> Expansion::operator()(const Number& t, const st
   const auto rounded = [this](const cln::cl_R& value) { return cln::cl_float(value, format_); };
   std::vector<std::vector<Number>> c{x, {}}, a(1), b(1);
   for (const cln::cl_R& value : start[1]) c[1].push_back(rounded(value));
-  for (std::size_t i = 0; i < taylor_.zeros; ++i) values_[at_w_ + i] = rounded(start[0][i]);
-  const std::size_t at_sums = at_w_ + taylor_.zeros, last = at_w_ + taylor_.prepared() - 1;
+  for (std::size_t i = 0; i < taylor_.order_zero_count; ++i) values_[at_w_ + i] = rounded(start[0][i]);
+  const std::size_t at_sums = at_w_ + taylor_.order_zero_count, last = at_w_ + taylor_.workspace_size() - 1;
   for (int k = 1; k < order; ++k) {
     const auto n = static_cast<std::size_t>(k);
     for (std::size_t i = 0; i < sums_; ++i) {

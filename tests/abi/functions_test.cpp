@@ -59,7 +59,7 @@ struct Emitted {
       if (file.name == name + ".h") header_text = file.text;
     }
     header = in_one_line(header_text);
-    const emit::Compiled compiled = emit::compile_and_load(source, header_text, name);
+    const emit::CompiledModel compiled = emit::compile_and_load(source, header_text, name);
     info = nlohmann::json::parse(compiled.model.info);
     for (const abi::Function& function : abi::functions()) {
       if (compiled.model.has(function.name)) loaded.insert(function.name);

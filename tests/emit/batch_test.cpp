@@ -30,7 +30,7 @@ std::vector<Width> widths(const Example& e) {
 }
 
 std::vector<Example> in_single(std::vector<Example> all) {
-  for (Example& e : all) emit::make_single(e.program, e.context);
+  for (Example& e : all) emit::convert_to_single(e.program, e.context);
   return all;
 }
 
@@ -57,9 +57,9 @@ std::string wrong(const std::string& folder, const Example& e, const Width& widt
   }
   if (e.program.taylor) command.emplace_back("-DTAYLOR");
   const std::string said =
-      complaints(command, {EOMGEN_TEST_HARNESS, folder + "/" + name + ".c", folder + "/" + name + "_batch.c", "-lm"});
+      compiler_diagnostics(command, {EOMGEN_TEST_HARNESS, folder + "/" + name + ".c", folder + "/" + name + "_batch.c", "-lm"});
   if (!said.empty()) return said;
-  const emit::Finished finished = emit::run_process({program});
+  const emit::ProcessResult finished = emit::run_process({program});
   return finished.status == 0 ? "" : fmt::format("line {} of the harness: {}", finished.status, finished.output);
 }
 
@@ -156,11 +156,11 @@ TEST_CASE("batch: hostile names, and every available compiler") {
     const Folder folder;
     emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
     const std::string c = folder.path + "/two_batch.c";
-    CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/o"}, {c}) == "");
+    CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/o"}, {c}) == "");
     if (emit::run_process({"clang", "--version"}).started) {
-      CHECK(complaints({"clang", "-std=c11", "-c", "-o", folder.path + "/o"}, {c}) == "");
+      CHECK(compiler_diagnostics({"clang", "-std=c11", "-c", "-o", folder.path + "/o"}, {c}) == "");
     }
-    CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-ffast-math", "-c", "-o", folder.path + "/o"}, {c})
+    CHECK(compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", "-ffast-math", "-c", "-o", folder.path + "/o"}, {c})
               .find("without -ffast-math") != std::string::npos);
   }
 }

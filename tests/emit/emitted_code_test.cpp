@@ -26,12 +26,12 @@ void compiles_everywhere(const Example& e) {
       "int main() {{ return eom::{0}::selftest() + {0}_selftest(); }}\n",
       name);
   const std::string object = folder.path + "/object.o", program = folder.path + "/use";
-  CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object}, {c}) == "");
-  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", program + ".o"}, {c}) == "");
-  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-O2", "-o", program}, {cpp, object, "-lm"}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object}, {c}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", program + ".o"}, {c}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-O2", "-o", program}, {cpp, object, "-lm"}) == "");
   if (emit::run_process({"clang", "--version"}).started) {
-    CHECK(complaints({"clang", "-std=c11", "-c", "-o", program + ".o"}, {c}) == "");
-    CHECK(complaints({"clang", "-std=c++20", "-x", "c++", "-c", "-o", program + ".o"}, {cpp}) == "");
+    CHECK(compiler_diagnostics({"clang", "-std=c11", "-c", "-o", program + ".o"}, {c}) == "");
+    CHECK(compiler_diagnostics({"clang", "-std=c++20", "-x", "c++", "-c", "-o", program + ".o"}, {cpp}) == "");
   }
   CHECK(emit::run_process({program}).status == 0);
 }
@@ -67,8 +67,8 @@ TEST_CASE("emitted code: right-hand sides and series with thousands of operation
   CHECK(text.find("long_chain_taylor_next_part2(") != std::string::npos);
   std::ofstream(use) << "#include \"long_chain.hpp\"\n#include \"long_chain.h\"\n"
                         "int main() { return eom::long_chain::selftest() + long_chain_selftest(); }\n";
-  CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O1", "-c", "-o", object}, {c}) == "");
-  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {use, object, "-lm"}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", "-O1", "-c", "-o", object}, {c}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {use, object, "-lm"}) == "");
   CHECK(emit::run_process({program}).status == 0);
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("emitted code: no model name collides with a name of the runtime") {
   }
   const Folder folder;
   std::ofstream(folder.path + "/use.cpp") << text;
-  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-fsyntax-only", "-I", lib.string(), "-isystem", EOMGEN_TEST_EIGEN},
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-fsyntax-only", "-I", lib.string(), "-isystem", EOMGEN_TEST_EIGEN},
                    {folder.path + "/use.cpp"}) == "");
 }
 
@@ -145,8 +145,8 @@ int main() {
 }
 )";
   const std::string object = folder.path + "/object.o", program = folder.path + "/use";
-  CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object}, {folder.path + "/spherical.c"}) == "");
-  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp", object, "-lm"}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object}, {folder.path + "/spherical.c"}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp", object, "-lm"}) == "");
   CHECK(emit::run_process({program}).status == 0);
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("emitted code: -ffast-math is rejected") {
   emit::write_files(folder.path, emit::emit(e.program, e.context));
   for (const char* flag : {"-ffast-math", "-ffinite-math-only"}) {
     const auto said =
-        complaints({EOMGEN_TEST_CC, "-std=c11", flag, "-c", "-o", folder.path + "/o"}, {folder.path + "/pendulum.c"});
+        compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", flag, "-c", "-o", folder.path + "/o"}, {folder.path + "/pendulum.c"});
     CHECK(said.find("without -ffast-math") != std::string::npos);
   }
 }
@@ -224,7 +224,7 @@ int main() {
 }
 )";
   const std::string program = folder.path + "/use";
-  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp"}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp"}) == "");
   CHECK(emit::run_process({program}).status == 0);
 }
 
@@ -265,16 +265,16 @@ int main() {{
 )",
                                                            e.context.id);
     const std::string object = folder.path + "/object.o", program = folder.path + "/use";
-    CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object},
+    CHECK(compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object},
                      {folder.path + "/" + e.context.id + ".c"}) == "");
-    CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp", object, "-lm"}) == "");
+    CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp", object, "-lm"}) == "");
     CHECK(emit::run_process({program}).status == 0);
   }
 }
 
 TEST_CASE("emitted code: codes 1 and 5 distinguish singular from not finite") {
   const Folder cache;
-  const Setting setting("EOMGEN_CACHE_DIR", cache.path);
+  const ScopedEnvironmentVariable setting("EOMGEN_CACHE_DIR", cache.path);
   const Example e = examples()[1];
   const auto files = emit::emit(e.program, e.context, "c");
   const auto compiled = emit::compile_and_load(files[0].text, files[1].text, "double_pendulum");
@@ -295,7 +295,7 @@ TEST_CASE("emitted code: codes 1 and 5 distinguish singular from not finite") {
 
 TEST_CASE("emitted code: compiled functions agree with the interpreter in 50 digits") {
   const Folder cache;
-  const Setting setting("EOMGEN_CACHE_DIR", cache.path);
+  const ScopedEnvironmentVariable setting("EOMGEN_CACHE_DIR", cache.path);
   for (const Example& e : examples()) {
     INFO(e.context.id);
     const auto files = emit::emit(e.program, e.context, "c");
@@ -335,7 +335,7 @@ TEST_CASE("emitted code: compiled functions agree with the interpreter in 50 dig
 
 TEST_CASE("emitted code: right-hand sides at angles after ten thousand revolutions, and at infinite angles") {
   const Folder cache;
-  const Setting setting("EOMGEN_CACHE_DIR", cache.path);
+  const ScopedEnvironmentVariable setting("EOMGEN_CACHE_DIR", cache.path);
   const Example e = examples()[1];
   const auto files = emit::emit(e.program, e.context, "c");
   const auto compiled = emit::compile_and_load(files[0].text, files[1].text, e.context.id);

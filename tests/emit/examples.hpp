@@ -67,29 +67,29 @@ inline std::vector<Example> examples() {
           example("double_pendulum", double_pendulum(), {"theta1", "theta2"}, {"m1", "m2", "l1", "l2", "g"}),
           example("cart", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"}),
           example("spherical", spherical_pendulum(), {"x", "y", "z"}, {"m", "g", "L0", "a", "w"}),
-          example("massless", massless(), {"x", "y", "z"}, {"m", "k"})};
+          example("massless", massless_coordinate(), {"x", "y", "z"}, {"m", "k"})};
 }
 
 using Folder = eomgen::test::TemporaryFolder;
 
 /// Sets an environment variable within a scope.
-struct Setting {
+struct ScopedEnvironmentVariable {
   std::string name, before;
   bool had;
-  Setting(const std::string& variable, const std::string& value) : name(variable) {
+  ScopedEnvironmentVariable(const std::string& variable, const std::string& value) : name(variable) {
     const char* old = ::getenv(name.c_str());
     had = old != nullptr;
     if (had) before = old;
     ::setenv(name.c_str(), value.c_str(), 1);
   }
-  ~Setting() {
+  ~ScopedEnvironmentVariable() {
     if (had)
       ::setenv(name.c_str(), before.c_str(), 1);
     else
       ::unsetenv(name.c_str());
   }
-  Setting(const Setting&) = delete;
-  Setting& operator=(const Setting&) = delete;
+  ScopedEnvironmentVariable(const ScopedEnvironmentVariable&) = delete;
+  ScopedEnvironmentVariable& operator=(const ScopedEnvironmentVariable&) = delete;
 };
 
 inline std::string file_named(const std::vector<emit::EmittedFile>& files, const std::string& ending) {
@@ -99,17 +99,17 @@ inline std::string file_named(const std::vector<emit::EmittedFile>& files, const
   return "";
 }
 
-inline const std::vector<std::string>& strict() {
+inline const std::vector<std::string>& strict_warning_flags() {
   static const std::vector<std::string> list = {"-Wall",    "-Wextra",      "-Wpedantic",
                                                 "-Wshadow", "-Wconversion", "-Werror"};
   return list;
 }
 
 /// The messages of the compiler; empty if there are none.
-inline std::string complaints(std::vector<std::string> command, const std::vector<std::string>& arguments) {
-  command.insert(command.end(), strict().begin(), strict().end());
+inline std::string compiler_diagnostics(std::vector<std::string> command, const std::vector<std::string>& arguments) {
+  command.insert(command.end(), strict_warning_flags().begin(), strict_warning_flags().end());
   command.insert(command.end(), arguments.begin(), arguments.end());
-  const emit::Finished finished = emit::run_process(command);
+  const emit::ProcessResult finished = emit::run_process(command);
   if (!finished.started) return "not started: " + command[0];
   return finished.status == 0 && finished.output.empty()
              ? ""

@@ -27,7 +27,7 @@ void loads(const Example& e, const std::string& more = "") {
     return;
   }
   emit::write_files(folder.path, files);
-  const emit::Finished finished = emit::run_process(
+  const emit::ProcessResult finished = emit::run_process(
       {"node", "-e",
        fmt::format("const assert = require('assert'), m = require('{}/{}'); assert.strictEqual(m.selftest(), 0); "
                    "assert.strictEqual(m.info.states.length, {}); {}",

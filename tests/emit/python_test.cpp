@@ -12,13 +12,13 @@ namespace {
 
 void compiles_and_imports(const Example& e, const std::string& more = "pass") {
   const Folder folder;
-  const Setting cache("EOMGEN_CACHE_DIR", folder.path);
+  const ScopedEnvironmentVariable cache("EOMGEN_CACHE_DIR", folder.path);
   const auto files = emit::emit(e.program, e.context, "python");
   emit::write_files(folder.path, files);
   const std::string name = emit::mangled_id(e.context.id), module = emit::module_name(e.context.id),
                     c = folder.path + "/" + name + "_simulate.c";
-  CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", folder.path + "/c.o"}, {c}) == "");
-  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/cpp.o"}, {c}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", folder.path + "/c.o"}, {c}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/cpp.o"}, {c}) == "");
   for (const auto& file : files) {
     for (const char letter : file.text)
       CHECK_MESSAGE((static_cast<unsigned char>(letter) < 0x7f && (letter >= ' ' || letter == '\n')), file.name);
@@ -29,7 +29,7 @@ void compiles_and_imports(const Example& e, const std::string& more = "pass") {
       "assert len(m.rhs(0, m.defaults['x'])) == len(m.states) == {2}; assert len(m.params) == {3}; "
       "assert m.simulate(m.defaults['t'] + 1e-3).outcome == 'done'; {4}",
       folder.path, module, e.context.start.size(), e.context.parameters.size(), more);
-  const emit::Finished finished = emit::run_process({"python3", "-c", use});
+  const emit::ProcessResult finished = emit::run_process({"python3", "-c", use});
   CHECK_MESSAGE(finished.status == 0, finished.output);
 }
 
@@ -69,7 +69,7 @@ TEST_CASE("target python: compiled code is cached and loaded only in folders tha
   const std::string use = fmt::format(
       "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{}'); import {} as m; print(m._library._name)",
       folder.path, emit::mangled_id(e.context.id));
-  const Setting cache("EOMGEN_CACHE_DIR", shared.path);
+  const ScopedEnvironmentVariable cache("EOMGEN_CACHE_DIR", shared.path);
   CHECK(emit::run_process({"python3", "-c", use}).output.starts_with(shared.path));
   CHECK(emit::run_process({"python3", "-c", use}).output.starts_with(shared.path));
   std::filesystem::permissions(shared.path, std::filesystem::perms::all);

@@ -29,7 +29,7 @@ const Sources& sources() {
   }();
   return made;
 }
-emit::Compiled load() { return emit::compile_and_load(sources().c, sources().h, "pendulum"); }
+emit::CompiledModel load() { return emit::compile_and_load(sources().c, sources().h, "pendulum"); }
 
 std::string failure(const std::string& c) {
   try {
@@ -45,7 +45,7 @@ std::string failure(const std::string& c) {
 
 TEST_CASE("cache: compiled once, found the second time, and compiled again for another source") {
   const Folder cache;
-  const Setting setting("EOMGEN_CACHE_DIR", cache.path);
+  const ScopedEnvironmentVariable setting("EOMGEN_CACHE_DIR", cache.path);
   CHECK_FALSE(load().cached);
   const auto again = load();
   CHECK(again.cached);
@@ -60,7 +60,7 @@ TEST_CASE("cache: compiled once, found the second time, and compiled again for a
 
 TEST_CASE("cache: a damaged entry is detected and replaced") {
   const Folder cache;
-  const Setting setting("EOMGEN_CACHE_DIR", cache.path);
+  const ScopedEnvironmentVariable setting("EOMGEN_CACHE_DIR", cache.path);
   const std::string path = load().path;
   for (const std::string& damage : {std::string("garbage"), std::string()}) {
     std::filesystem::remove(path);
@@ -79,7 +79,7 @@ TEST_CASE("cache: a damaged entry is detected and replaced") {
 
 TEST_CASE("cache: several processes at once all get their code") {
   const Folder cache;
-  const Setting setting("EOMGEN_CACHE_DIR", cache.path);
+  const ScopedEnvironmentVariable setting("EOMGEN_CACHE_DIR", cache.path);
   (void)sources();
   std::vector<pid_t> children;
   for (int i = 0; i < 4; ++i) {
@@ -107,8 +107,8 @@ TEST_CASE("cache: several processes at once all get their code") {
 
 TEST_CASE("compiler: a missing one is reported with the install command") {
   const Folder cache;
-  const Setting folder("EOMGEN_CACHE_DIR", cache.path);
-  const Setting compiler("EOMGEN_CC", "no-such-compiler");
+  const ScopedEnvironmentVariable folder("EOMGEN_CACHE_DIR", cache.path);
+  const ScopedEnvironmentVariable compiler("EOMGEN_CC", "no-such-compiler");
   CHECK(
       failure(sources().c) ==
       "the C compiler `no-such-compiler` does not run / sudo apt-get install gcc libc6-dev, or unset EOMGEN_CC and CC");
@@ -116,7 +116,7 @@ TEST_CASE("compiler: a missing one is reported with the install command") {
 
 TEST_CASE("compiler: its messages about invalid code are shown, and nothing is cached") {
   const Folder cache;
-  const Setting folder("EOMGEN_CACHE_DIR", cache.path);
+  const ScopedEnvironmentVariable folder("EOMGEN_CACHE_DIR", cache.path);
   const std::string said = failure("int pendulum_abi(void) { return mistake; }\n");
   CHECK(said.find("mistake") != std::string::npos);
   CHECK(said.find("failed on emitted code") != std::string::npos);
@@ -125,7 +125,7 @@ TEST_CASE("compiler: its messages about invalid code are shown, and nothing is c
 
 TEST_CASE("compiled code that fails its self-test is rejected and not cached") {
   const Folder cache;
-  const Setting folder("EOMGEN_CACHE_DIR", cache.path);
+  const ScopedEnvironmentVariable folder("EOMGEN_CACHE_DIR", cache.path);
   std::string c = sources().c;
   const std::size_t place = c.find("sin(theta)");
   REQUIRE(place != std::string::npos);
@@ -135,21 +135,21 @@ TEST_CASE("compiled code that fails its self-test is rejected and not cached") {
 }
 
 TEST_CASE("cache: an unusable folder is reported") {
-  const Setting folder("EOMGEN_CACHE_DIR", "/proc/no-such-folder");
+  const ScopedEnvironmentVariable folder("EOMGEN_CACHE_DIR", "/proc/no-such-folder");
   CHECK(failure(sources().c).find("cannot use the cache folder /proc/no-such-folder") != std::string::npos);
 }
 
 TEST_CASE("cache: a folder that another user could write to is not used, and this is reported") {
   const Folder place;
   const std::string cache = place.path + "/cache";
-  const Setting setting("EOMGEN_CACHE_DIR", cache);
+  const ScopedEnvironmentVariable setting("EOMGEN_CACHE_DIR", cache);
   CHECK(load().note.empty());
   CHECK(std::filesystem::status(cache).permissions() == std::filesystem::perms::owner_all);
   CHECK(load().cached);
   const auto refused = [&](const std::string& why) {
     std::string path;
     {
-      const emit::Compiled code = load();
+      const emit::CompiledModel code = load();
       CHECK_FALSE(code.cached);
       CHECK(code.note.find(cache) != std::string::npos);
       CHECK(code.note.find(why) != std::string::npos);
@@ -194,22 +194,22 @@ TEST_CASE(
     "cache: without a home it is in the temporary folder, also if TMPDIR is not a folder, and never in one that "
     "existed before") {
   const Folder temporary;
-  const Setting none("EOMGEN_CACHE_DIR", ""), xdg("XDG_CACHE_HOME", ""), home("HOME", "");
-  const Setting there("TMPDIR", temporary.path);
+  const ScopedEnvironmentVariable none("EOMGEN_CACHE_DIR", ""), xdg("XDG_CACHE_HOME", ""), home("HOME", "");
+  const ScopedEnvironmentVariable there("TMPDIR", temporary.path);
   const std::string predictable = temporary.path + "/eomgen-" + std::to_string(::geteuid());
   std::filesystem::create_directory(predictable);
   REQUIRE(::chmod(predictable.c_str(), 0777) == 0);
-  const emit::Compiled code = load();
+  const emit::CompiledModel code = load();
   CHECK_FALSE(code.note.empty());
   CHECK(std::filesystem::is_empty(predictable));
   CHECK_FALSE(load().cached);
-  const Setting missing("TMPDIR", temporary.path + "/nowhere");
+  const ScopedEnvironmentVariable missing("TMPDIR", temporary.path + "/nowhere");
   CHECK((load().model.rhs != nullptr));
 }
 
 TEST_CASE("cache: leftovers of killed runs are removed, folders in use are not") {
   const Folder cache;
-  const Setting setting("EOMGEN_CACHE_DIR", cache.path);
+  const ScopedEnvironmentVariable setting("EOMGEN_CACHE_DIR", cache.path);
   const auto make = [&](const std::string& name, bool old) {
     const std::string path = cache.path + "/" + name;
     std::filesystem::create_directory(path);
@@ -233,7 +233,7 @@ TEST_CASE("processes: a hanging process is terminated with its children") {
   const Folder folder;
   const std::atomic<bool> raised{true};
   const auto begin = std::chrono::steady_clock::now();
-  const emit::Finished finished = emit::run_process({"/bin/sh", "-c", "sleep 100 & sleep 100"}, &raised);
+  const emit::ProcessResult finished = emit::run_process({"/bin/sh", "-c", "sleep 100 & sleep 100"}, &raised);
   CHECK(finished.interrupted);
   CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(10));
 }

@@ -50,7 +50,7 @@ struct Kernel {
                                  real);
     std::vector<std::string> command{EOMGEN_TEST_CC, "-std=c11", "-fPIC", "-shared", "-o", library};
     command.insert(command.end(), flags.begin(), flags.end());
-    const std::string said = complaints(command, {source, "-lm"});
+    const std::string said = compiler_diagnostics(command, {source, "-lm"});
     CHECK(said == "");
     handle = ::dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
     REQUIRE((handle != nullptr));

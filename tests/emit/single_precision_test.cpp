@@ -17,7 +17,7 @@ namespace {
 
 std::vector<Example> single_examples() {
   std::vector<Example> all = examples();
-  for (Example& e : all) emit::make_single(e.program, e.context);
+  for (Example& e : all) emit::convert_to_single(e.program, e.context);
   return all;
 }
 
@@ -25,7 +25,7 @@ bool runs(const char* program) { return emit::run_process({program, "--version"}
 
 /// The numbers in the output of a command.
 std::vector<double> printed(const std::vector<std::string>& command) {
-  const emit::Finished finished = emit::run_process(command);
+  const emit::ProcessResult finished = emit::run_process(command);
   CHECK_MESSAGE(finished.status == 0, finished.output);
   std::istringstream words(finished.output);
   std::vector<double> values;
@@ -48,7 +48,7 @@ std::vector<std::string> with(std::vector<std::string> command, const std::vecto
 std::string wrong_c(const std::string& folder, const Example& e) {
   const std::string name = emit::mangled_id(e.context.id), use = folder + "/use";
   std::ofstream(use + ".c") << fmt::format("#include \"{0}.h\"\nint main(void) {{ return {0}_selftest(); }}\n", name);
-  const std::string said = complaints(with(compile_c(), {"-o", use}), {use + ".c", folder + "/" + name + ".c", "-lm"});
+  const std::string said = compiler_diagnostics(with(compile_c(), {"-o", use}), {use + ".c", folder + "/" + name + ".c", "-lm"});
   if (!said.empty()) return said;
   return emit::run_process({use}).status == 0 ? "" : "its self test";
 }
@@ -61,7 +61,7 @@ std::string wrong_templates(const std::string& folder, const std::string& header
       "  return {1}::rhs(0.0f, x, p, static_cast<const float*>(nullptr), 0, dx){2};\n}}\n",
       header, space, selftest);
   const std::string said =
-      complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", folder + "/use_cpp"}, {folder + "/use.cpp"});
+      compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-o", folder + "/use_cpp"}, {folder + "/use.cpp"});
   if (!said.empty()) return said;
   return emit::run_process({folder + "/use_cpp"}).status == 0 ? "" : "the templates' self test";
 }
@@ -69,10 +69,10 @@ std::string wrong_templates(const std::string& folder, const std::string& header
 std::string wrong_module(const std::string& folder, const Example& e) {
   if (!runs("python3")) return "";
   const std::string c = folder + "/" + emit::mangled_id(e.context.id) + "_simulate.c";
-  const std::string said = complaints(with(compile_c(), {"-c", "-Wno-double-promotion", "-o", folder + "/c.o"}), {c});
+  const std::string said = compiler_diagnostics(with(compile_c(), {"-c", "-Wno-double-promotion", "-o", folder + "/c.o"}), {c});
   if (!said.empty()) return said;
-  const Setting cache("EOMGEN_CACHE_DIR", folder);
-  const emit::Finished finished = emit::run_process(
+  const ScopedEnvironmentVariable cache("EOMGEN_CACHE_DIR", folder);
+  const emit::ProcessResult finished = emit::run_process(
       {"python3", "-c",
        fmt::format("import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{}'); import {} as m\n"
                    "import ctypes\n"
@@ -91,7 +91,7 @@ std::string wrong_module(const std::string& folder, const Example& e) {
 
 std::string wrong_script(const std::string& folder, const Example& e) {
   if (!runs("node")) return "";
-  const emit::Finished finished = emit::run_process(
+  const emit::ProcessResult finished = emit::run_process(
       {"node", "-e",
        fmt::format("const assert = require('assert'), m = require('{}/{}.js'); assert.strictEqual(m.selftest(), 0); "
                    "assert.strictEqual(m.info.real, 'float')",
@@ -106,7 +106,7 @@ const std::map<std::string, std::string (*)(const std::string& folder, const Exa
     {"batch",  // batch_test.cpp tests the values of lanes
      [](const std::string& folder, const Example& e) {
        const std::string of_c = wrong_c(folder, e), c = folder + "/" + emit::mangled_id(e.context.id) + "_batch.c";
-       return of_c.empty() ? complaints(with(compile_c(), {"-c", "-o", folder + "/batch.o"}), {c}) : of_c;
+       return of_c.empty() ? compiler_diagnostics(with(compile_c(), {"-c", "-o", folder + "/batch.o"}), {c}) : of_c;
      }},
     {"cpp",
      [](const std::string& folder, const Example& e) {
@@ -152,7 +152,7 @@ TEST_CASE("single precision: C uses no doubles and loses few digits, and its sel
   for (Example e : examples()) {
     INFO(e.context.id);
     CHECK(file_named(emit::emit(e.program, e.context, "c"), ".c").find("float ") == std::string::npos);
-    emit::make_single(e.program, e.context);
+    emit::convert_to_single(e.program, e.context);
     const Folder folder;
     const std::vector<emit::EmittedFile> files = emit::emit(e.program, e.context, "c");
     emit::write_files(folder.path, files);
@@ -200,7 +200,7 @@ TEST_CASE("single precision: JavaScript gives the bits of C, except for library 
         "    code = {0}_rhs((float)(0.1*s), x, p, NULL, 0, dx);\n    printf(\"%d\\n\", code);\n"
         "    for (i = 0; i < {2}; ++i) printf(\"%.9g\\n\", code == 0 ? (double)dx[i] : 0.0);\n  }}\n  return 0;\n}}\n",
         name, numbers, n, states);
-    REQUIRE(complaints(with(compile_c(), {"-Wno-double-promotion", "-o", folder.path + "/use"}),
+    REQUIRE(compiler_diagnostics(with(compile_c(), {"-Wno-double-promotion", "-o", folder.path + "/use"}),
                        {folder.path + "/use.c", folder.path + "/" + name + ".c", "-lm"}) == "");
     std::ofstream(folder.path + "/use.js") << fmt::format(
         "const m = require('./{0}.js'), numbers = [{1}];\n"
@@ -235,7 +235,7 @@ TEST_CASE("single precision: the template header passes its self-test too, in do
   const emit::TestVector& first = e.context.tests[0];  // the defaults, which are not exact in single precision
   e.context.start_time = first.t;
   for (std::size_t i = 0; i < first.p.size(); ++i) e.context.parameters[i].value = first.p[i];
-  emit::make_single(e.program, e.context);
+  emit::convert_to_single(e.program, e.context);
   const Folder folder;
   emit::write_files(folder.path, emit::emit(e.program, e.context, "cpp"));
   CHECK(wrong_templates(folder.path, "two.hpp", "eom::two", " + eom::two::selftest()") == "");
@@ -246,7 +246,7 @@ TEST_CASE("single precision: underflow gives 0, and states that overflow are not
   const auto made = [&e](double factor) {
     emit::EmissionContext context = e.context;
     for (double& x : context.tests[1].x) x *= factor;
-    emit::make_single(e.program, context);
+    emit::convert_to_single(e.program, context);
     return context;
   };
   CHECK(made(1e-25).tests.size() == e.context.tests.size());  // products of two rates underflow
@@ -257,13 +257,13 @@ TEST_CASE("single precision: underflow gives 0, and states that overflow are not
 
 TEST_CASE("single precision: every target rejects numbers that overflow") {
   CHECK(emit::single_dialect().value(0.1) == "0.1f");
-  CHECK(emit::single_number(0.1) == static_cast<double>(0.1f));
+  CHECK(emit::to_single(0.1) == static_cast<double>(0.1f));
   CHECK_THROWS_AS(emit::single_dialect().value(1e60), Error);
-  CHECK_THROWS_AS(emit::single_number(1e-60), Error);
+  CHECK_THROWS_AS(emit::to_single(1e-60), Error);
   Example e = examples()[0], other = e;
-  emit::make_single(e.program, e.context);
+  emit::convert_to_single(e.program, e.context);
   e.context.parameters[0].value = other.context.parameters[0].value = 1e60;
-  CHECK_THROWS_WITH_AS(emit::make_single(other.program, other.context),
+  CHECK_THROWS_WITH_AS(emit::convert_to_single(other.program, other.context),
                        doctest::Contains("the parameter m = 1e+60 is outside the range of single precision"), Error);
   for (const char* target : {"c", "batch", "python", "javascript"}) {
     INFO(target);

@@ -17,7 +17,7 @@ using namespace eomgen::test;
 namespace {
 
 std::string shown(const Read& read, const reading::DisplayForm& form, const std::string& role) {
-  for (const print::Item& item : print::render(read.s.mechanics, form, {"reactions"})) {
+  for (const print::PrintedFormula& item : print::render(read.s.mechanics, form, {"reactions"})) {
     if (item.role == role) return item.text;
   }
   return "";

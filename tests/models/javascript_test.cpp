@@ -108,7 +108,7 @@ TEST_CASE(
   }
   files.push_back({"calls.json", all.dump()});
   emit::write_files(folder.path, files);
-  const emit::Finished finished = emit::run_process({"sh", "-c", "cd '" + folder.path + "' && node compare.js"});
+  const emit::ProcessResult finished = emit::run_process({"sh", "-c", "cd '" + folder.path + "' && node compare.js"});
   CAPTURE(finished.output);
   REQUIRE(finished.status == 0);
   std::istringstream lines(finished.output);

@@ -58,7 +58,7 @@ TEST_CASE("knife_edge: the display form has the constraint with its multiplier a
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
   const reading::DisplayForm form = reading::derive_display_form(m, system::Approach::two);
   std::vector<std::string> text;
-  for (const print::Item& item : print::render(m, form, {"constraints", "equations"}))
+  for (const print::PrintedFormula& item : print::render(m, form, {"constraints", "equations"}))
     text.push_back(item.role + ": " + item.text);
   const auto shown = [&](const std::string& line) { return std::find(text.begin(), text.end(), line) != text.end(); };
   CHECK(shown("binds velocities, not integrable: x_dot sin(theta) - y_dot cos(theta) = 0"));

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "print/article.hpp"
-#include "print/latex_text.hpp"
+#include "print/latex_writer.hpp"
 #include "print/render.hpp"
 #include "support/folders.hpp"
 

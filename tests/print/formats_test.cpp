@@ -11,7 +11,7 @@
 #include "support/folders.hpp"
 
 using namespace eomgen;
-using print::Item;
+using print::PrintedFormula;
 
 namespace {
 
@@ -20,15 +20,15 @@ struct Printed {
       : model(read),
         mechanics(mechanics::build_mechanics(model)),
         items(print::render(mechanics, reading::derive_display_form(mechanics, approach), show)) {}
-  std::vector<Item> of(const std::string& key) const {
-    std::vector<Item> result;
+  std::vector<PrintedFormula> of(const std::string& key) const {
+    std::vector<PrintedFormula> result;
     std::copy_if(items.begin(), items.end(), std::back_inserter(result),
-                 [&](const Item& item) { return item.key == key; });
+                 [&](const PrintedFormula& item) { return item.key == key; });
     return result;
   }
   model::Model model;
   mechanics::Mechanics mechanics;
-  std::vector<Item> items;
+  std::vector<PrintedFormula> items;
 };
 
 std::string shipped(const std::string& name) { return test::source_folder() + "/models/" + name + ".toml"; }
@@ -86,7 +86,7 @@ TEST_CASE("P7 reads as (2.111)") {
 TEST_CASE("P7 by approach II reads as (2.109), without the constraint force") {
   const Printed two(model::read_model(shipped("P7_moving_sphere")), system::Approach::two, {"equations", "energies"});
   REQUIRE(two.of("equations").size() == 2);
-  for (const Item& item : two.items) CHECK(item.text.find("lambda") == std::string::npos);
+  for (const PrintedFormula& item : two.items) CHECK(item.text.find("lambda") == std::string::npos);
   CHECK(two.of("energies")[0].text == "T~ = 1/2 m (d^2 phi_dot^2 + d^2 sin^2(phi) theta_dot^2 + d_dot^2)");
 }
 
@@ -104,7 +104,7 @@ TEST_CASE("everything that `all` selects exists in three formats, and MathML is 
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
       const Printed printed(model::read_model(shipped(name)), approach);
       CHECK(printed.items.size() > 3);
-      for (const Item& item : printed.items) {
+      for (const PrintedFormula& item : printed.items) {
         CAPTURE(item.text);
         CHECK_FALSE(item.text.empty());
         CHECK_FALSE(item.latex.empty());
@@ -137,7 +137,7 @@ TEST_CASE("MathML: a space separates a function from its argument, and factors t
 TEST_CASE("brackets appear only if needed") {
   using print::Format;
   CHECK(expression("a/(b*c)", Format::text) == "a/(b c)");
-  CHECK(expression("a/b*c", Format::language) == "a*c/b");
+  CHECK(expression("a/b*c", Format::model_language) == "a*c/b");
   CHECK(expression("x/(a + b)", Format::latex) == "\\frac{x}{a + b}");
   CHECK(expression("sin(x + y)^2*cos(x)^3", Format::text) == "cos^3(x) sin^2(x + y)");
   CHECK(expression("sqrt(x + y)", Format::latex) == "\\sqrt{x + y}");
@@ -145,8 +145,8 @@ TEST_CASE("brackets appear only if needed") {
   CHECK(expression("-(a - b)*x", Format::text) == "(b - a) x");
   CHECK(expression("x/2 + y/3", Format::text) == "1/2 x + 1/3 y");
   CHECK(expression("abs(x)*min(x, y)", Format::latex) == "\\left|x\\right| \\min(x, y)");
-  CHECK(expression("if(x < y, x, -y)", Format::language) == "if(x < y, x, -y)");
-  CHECK(expression("(x + y)^(a/b)", Format::language) == "(x + y)^(a/b)");
+  CHECK(expression("if(x < y, x, -y)", Format::model_language) == "if(x < y, x, -y)");
+  CHECK(expression("(x + y)^(a/b)", Format::model_language) == "(x + y)^(a/b)");
 }
 
 TEST_CASE("lines break inside brackets, and unbreakable parts are abbreviated") {
@@ -169,9 +169,9 @@ TEST_CASE("lines break inside brackets, and unbreakable parts are abbreviated") 
 TEST_CASE("the language of model files can be pasted back") {
   for (const char* text : {"a*x^2/(b + c) - 3/7*sin(x - y)*x_dot", "sqrt(x^2 + y^2)^(-3)", "atan2(x, y)*exp(-x^2)",
                            "abs(x*y)^3/log(2 + x^2)"}) {
-    const std::string once = expression(text, print::Format::language);
+    const std::string once = expression(text, print::Format::model_language);
     CAPTURE(once);
-    CHECK(expression(once, print::Format::language) == once);
+    CHECK(expression(once, print::Format::model_language) == once);
   }
 }
 
@@ -225,7 +225,7 @@ TEST_CASE("linear: trivial equilibrium conditions are omitted, and none begins w
                              "= [\"x\", \"y\"] }\n[[force]]\non = \"P\"\nforce = \"k*x*E1\"\n",
                              "text"));
   std::vector<std::string> rest;
-  for (const Item& item : print::render_linear(m, reading::linear_form(m))) {
+  for (const PrintedFormula& item : print::render_linear(m, reading::linear_form(m))) {
     if (item.role == "at rest where") rest.push_back(item.text);
   }
   CHECK(rest == std::vector<std::string>{"k x = 0"});
@@ -242,8 +242,8 @@ TEST_CASE("decimals in the model stay decimals, and simple fractions stay fracti
 
 TEST_CASE("the constraint force on a particle is a vector along the unit vectors of its coordinates") {
   const Printed cone(model::read_model(shipped("P4_moving_cone")), system::Approach::one, {"reactions"});
-  const auto is_force = [](const Item& item) { return item.role == "constraint force"; };
-  const std::vector<Item> of_cone = cone.of("reactions");
+  const auto is_force = [](const PrintedFormula& item) { return item.role == "constraint force"; };
+  const std::vector<PrintedFormula> of_cone = cone.of("reactions");
   const auto found = std::find_if(of_cone.begin(), of_cone.end(), is_force);
   REQUIRE(found != of_cone.end());
   CHECK(found->text == "N = (lambda/R) e_phi");
@@ -255,7 +255,7 @@ TEST_CASE("by approach II no vector contains the multiplier of an imposed constr
   for (const char* name : {"P7_moving_sphere", "P4_moving_cone", "P8_smooth_helix"}) {
     CAPTURE(name);
     const model::Model model = model::read_model(shipped(name));
-    for (const Item& item : Printed(model, system::Approach::two, {"reactions"}).items)
+    for (const PrintedFormula& item : Printed(model, system::Approach::two, {"reactions"}).items)
       CHECK_MESSAGE(item.text.find("lambda") == std::string::npos, item.text);
   }
   const model::Model sphere = model::read_model(shipped("P7_moving_sphere"));
@@ -268,6 +268,6 @@ TEST_CASE("numeric factors of moments are combined in front") {
       "\"l\"] }\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
       "rotation = { euler = \"313\", angles = [\"psi\", \"theta\", \"phi\"] }\n",
       "text");
-  for (const Item& item : Printed(model, system::Approach::two, {"energies"}).of("energies"))
+  for (const PrintedFormula& item : Printed(model, system::Approach::two, {"energies"}).of("energies"))
     CHECK(item.text.find("1/2 (1/12") == std::string::npos);
 }

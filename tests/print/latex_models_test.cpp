@@ -48,7 +48,7 @@ TEST_CASE("everything that derive prints for every model fits on a page, in both
       const std::string which = approach == system::Approach::one ? "I" : "II";
       const reading::DisplayForm form = reading::derive_display_form(m, approach);
       text += "\\section*{" + print::escape_latex(model.id) + ", " + which + "}\n";
-      for (const print::Item& item : print::render(m, form, {"all"})) {
+      for (const print::PrintedFormula& item : print::render(m, form, {"all"})) {
         text += "% ITEM " + model.id + " " + which + " " + item.key + " " + item.name + item.coordinate + " " +
                 item.role + "\n\\[\n" + item.latex + "\n\\]\n";
       }

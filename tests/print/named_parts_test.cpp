@@ -263,14 +263,14 @@ TEST_CASE("named parts: equations and constraints use the same letters for const
         mechanics::build_mechanics(model::read_model(test::source_folder() + "/models/" + model + ".toml"));
     const reading::DisplayForm form = reading::derive_display_form(m, system::Approach::two);
     REQUIRE(form.is_unexpanded);
-    const std::vector<print::Item> constraints = print::render(m, form, {"constraints"});
-    for (const print::Item& item : print::render(m, form, {"equations"})) {
+    const std::vector<print::PrintedFormula> constraints = print::render(m, form, {"constraints"});
+    for (const print::PrintedFormula& item : print::render(m, form, {"equations"})) {
       for (std::sregex_iterator match(item.text.begin(), item.text.end(), letter), end; match != end; ++match) {
         const std::string given = (*match)[1].str() + " = ";
         CAPTURE(given);
         seen.insert(given);
         CHECK(std::any_of(constraints.begin(), constraints.end(),
-                          [&](const print::Item& c) { return c.text.starts_with(given); }));
+                          [&](const print::PrintedFormula& c) { return c.text.starts_with(given); }));
       }
     }
   }

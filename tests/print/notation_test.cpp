@@ -103,13 +103,13 @@ TEST_CASE("names of joint multipliers contain the joint and the force or moment,
 TEST_CASE("a legend describes the multipliers if there are several") {
   const auto meanings = [](const char* name) {
     const model::Model model = model::read_model(test::source_folder() + "/models/" + name + ".toml");
-    return print::multiplier_meanings(mechanics::build_mechanics(model));
+    return print::multiplier_descriptions(mechanics::build_mechanics(model));
   };
-  const std::vector<print::MultiplierMeaning> pin = meanings("R15_pin_joint");
+  const std::vector<print::MultiplierDescription> pin = meanings("R15_pin_joint");
   REQUIRE(pin.size() == 5);
   CHECK(pin[0].text == "of the joint 'pin' on 'second': force along E1");
   CHECK(pin[3].text == "of the joint 'pin' on 'second': moment along b x a1");
-  const std::vector<print::MultiplierMeaning> wire = meanings("P8_rough_helix");
+  const std::vector<print::MultiplierDescription> wire = meanings("P8_rough_helix");
   REQUIRE(wire.size() == 2);
   CHECK(wire[1].text == "of the constraint 'wire.2'");
   CHECK(meanings("P7_moving_sphere").empty());

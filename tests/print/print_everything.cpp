@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     const auto one = eomgen::reading::derive_display_form(mechanics, eomgen::system::Approach::one);
     const auto two = eomgen::reading::derive_display_form(mechanics, eomgen::system::Approach::two);
     for (const auto& form : {one, two}) {
-      for (const eomgen::print::Item& item : eomgen::print::render(mechanics, form, {"all"})) {
+      for (const eomgen::print::PrintedFormula& item : eomgen::print::render(mechanics, form, {"all"})) {
         std::printf("%s|%s|%s|%s\n%s\n%s\n%s\n", item.key.c_str(), item.name.c_str(), item.coordinate.c_str(),
                     item.role.c_str(), item.text.c_str(), item.latex.c_str(), item.mathml.c_str());
       }

@@ -101,7 +101,7 @@ TEST_CASE("kinks: those beyond the bits of mode follow the state") {
     return sum;
   });
   const auto plain = build(system), held = build(system, {"events"});
-  CHECK(held.kinks.size() == program::most_kinks);
+  CHECK(held.kinks.size() == program::max_kinks);
   const auto arguments = arguments_at<cln::cl_R>(system, 3);
   CHECK(difference(program::interpret(held.functions[0], arguments, 60).results[0],
                    program::interpret(plain.functions[0], arguments, 60).results[0]) < tolerances::same_value);
@@ -123,7 +123,7 @@ TEST_CASE("kinks: those of a contact law are frozen, except the speed whose sign
   contact.dynamic_coefficient = dag.add(speed, rough);
   s.contacts = {contact};
   CHECK(program::has_kinks(s));
-  const std::vector<program::Kink> kinks = program::hold_kinks(s);
+  const std::vector<program::Kink> kinks = program::freeze_kink_branches(s);
   REQUIRE(kinks.size() == 1);
   CHECK(dag.call(Op::abs, kinks[0].value) == rough);
   const auto uses_side = [&](Ref r) {

@@ -13,10 +13,10 @@ using namespace test_systems;
 
 namespace {
 
-program::Function written(const Maker& k, const std::vector<Scalar>& results) {
-  program::WantedFunction wanted{"outputs", {{"y", {}}}, {}, {}};
+program::Function written(const SystemBuilder& k, const std::vector<Scalar>& results) {
+  program::FunctionExpressions wanted{"outputs", {{"y", {}}}, {}, {}};
   for (const Scalar& result : results) wanted.results[0].entries.push_back(result.ref);
-  const program::Polynomials graph = program::from_dag(*k.dag, wanted, {0, 1, 2});
+  const program::PolynomialGraph graph = program::from_dag(*k.dag, wanted, {0, 1, 2});
   return program::schedule(program::flatten(graph, false), "outputs", {{"y", results.size()}});
 }
 
@@ -56,14 +56,14 @@ void well_formed(const program::Function& function) {
 }  // namespace
 
 TEST_CASE("packs: all angles of state and time form one pack, whatever their sines are used for") {
-  const Maker k;
+  const SystemBuilder k;
   const auto function = written(k, {k.sin(k.q(0)) * k.cos(k.q(1) - k.q(0)), k.sin(k.p(0) * k.t()) / k.cos(k.q(0))});
   well_formed(function);
   CHECK(sizes(function) == std::vector<std::size_t>{3});
 }
 
 TEST_CASE("packs: angles that depend on sines form further packs") {
-  const Maker k;
+  const SystemBuilder k;
   const Scalar inner = k.sin(k.q(0)), other = k.cos(k.q(1));
   const auto function = written(k, {k.sin(inner + k.q(2)) + k.cos(other), k.sin(k.cos(inner) * k.q(1))});
   well_formed(function);
@@ -74,7 +74,7 @@ TEST_CASE("packs: angles that depend on sines form further packs") {
 }
 
 TEST_CASE("packs: a single angle uses the C library") {
-  const Maker k;
+  const SystemBuilder k;
   CHECK(sizes(written(k, {k.sin(k.q(0))})).empty());
   CHECK(sizes(written(k, {k.sin(k.q(0)) + k.q(1), k.cos(k.q(0))})).empty());
 }

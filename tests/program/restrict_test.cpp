@@ -16,7 +16,7 @@ TEST_CASE("restriction: entries in any order keep their values with fewer instru
     const program::Function whole = build(system).functions[0];
     const std::size_t n = whole.results[0].entries.size();
     const std::vector<std::size_t> places{n - 1, 0, n - 1};
-    const program::Function part = program::restricted(whole, places);
+    const program::Function part = program::restrict_results(whole, places);
     CHECK(part.code.size() <= whole.code.size());
     const auto arguments = arguments_at<cln::cl_R>(system, 1);
     const auto all = program::interpret(whole, arguments, 60).results[0],
@@ -24,6 +24,6 @@ TEST_CASE("restriction: entries in any order keep their values with fewer instru
     REQUIRE(some.size() == places.size());
     for (std::size_t i = 0; i < places.size(); ++i)
       CHECK(difference({all[places[i]]}, {some[i]}) < tolerances::same_value);
-    CHECK(program::restricted(whole, {0}).code.empty());  // a rate is an entry of the state
+    CHECK(program::restrict_results(whole, {0}).code.empty());  // a rate is an entry of the state
   }
 }

@@ -20,7 +20,7 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 
 /// Symbols of one system under construction.
-struct Maker {
+struct SystemBuilder {
   std::shared_ptr<Dag> dag = std::make_shared<Dag>();
 
   Scalar s(Ref r) const { return {dag.get(), r}; }
@@ -36,7 +36,7 @@ struct Maker {
 };
 
 /// M and f of d/dt dT/dqdot - dT/dq + dV/dq = Q.
-inline system::EquationSystem lagrange(const Maker& k, std::uint32_t n, Scalar T, Scalar V, std::vector<Scalar> Q) {
+inline system::EquationSystem lagrange(const SystemBuilder& k, std::uint32_t n, Scalar T, Scalar V, std::vector<Scalar> Q) {
   system::EquationSystem system;
   system.dag = k.dag;
   system.formulation = "lagrange";
@@ -58,7 +58,7 @@ inline system::EquationSystem lagrange(const Maker& k, std::uint32_t n, Scalar T
 }
 
 /// Adds psi = 0 with its multiplier as constraint `index`.
-inline void constrain(system::EquationSystem& system, const Maker& k, const std::string& label, Scalar psi) {
+inline void constrain(system::EquationSystem& system, const SystemBuilder& k, const std::string& label, Scalar psi) {
   const auto n = static_cast<std::uint32_t>(system.free.size());
   const auto index = static_cast<std::uint32_t>(system.active.size());
   const Scalar rate = k.ddt(psi, n);  // A qdot + b
@@ -80,7 +80,7 @@ inline void constrain(system::EquationSystem& system, const Maker& k, const std:
 
 /// Parameters m, l, g; theta from the downward vertical.
 inline system::EquationSystem pendulum() {
-  const Maker k;
+  const SystemBuilder k;
   const Scalar m = k.p(0), l = k.p(1), g = k.p(2);
   const Scalar T = k.number(1, 2) * m * l * l * k.q(0, 1) * k.q(0, 1);
   return lagrange(k, 1, T, -(m * g * l * k.cos(k.q(0))), {k.number(0)});
@@ -88,7 +88,7 @@ inline system::EquationSystem pendulum() {
 
 /// Parameters m1, m2, l1, l2, g; absolute angles; textbook energies.
 inline system::EquationSystem double_pendulum() {
-  const Maker k;
+  const SystemBuilder k;
   const Scalar m1 = k.p(0), m2 = k.p(1), l1 = k.p(2), l2 = k.p(3), g = k.p(4), w1 = k.q(0, 1), w2 = k.q(1, 1);
   const Scalar half = k.number(1, 2);
   const Scalar T = half * (m1 + m2) * l1 * l1 * w1 * w1 + half * m2 * l2 * l2 * w2 * w2 +
@@ -99,7 +99,7 @@ inline system::EquationSystem double_pendulum() {
 
 /// n point masses on massless rods, absolute angles; M = sum J^T m J on velocity Jacobians. Parameters m_1.., l_1.., g.
 inline system::EquationSystem chain(std::uint32_t n) {
-  const Maker k;
+  const SystemBuilder k;
   Dag& dag = *k.dag;
   const Scalar g = k.p(2 * n);
   system::EquationSystem system;
@@ -134,7 +134,7 @@ inline system::EquationSystem chain(std::uint32_t n) {
 
 /// A particle on a sphere of radius L(t) = L0 + a sin(w t), Cartesian: parameters m, g, L0, a, w; multiplier "sphere".
 inline system::EquationSystem spherical_pendulum() {
-  const Maker k;
+  const SystemBuilder k;
   const Scalar m = k.p(0), half = k.number(1, 2);
   Scalar T = k.number(0), square = k.number(0);
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -149,15 +149,15 @@ inline system::EquationSystem spherical_pendulum() {
 
 /// Cart of mass M with a pendulum (m, l), force F on the cart, damping c. Parameters M, m, l, g, c; input F.
 inline system::EquationSystem cart_pendulum() {
-  const Maker k;
+  const SystemBuilder k;
   const Scalar M = k.p(0), m = k.p(1), l = k.p(2), g = k.p(3), half = k.number(1, 2), w = k.q(1, 1), v = k.q(0, 1);
   const Scalar T = half * (M + m) * v * v + m * l * v * w * k.cos(k.q(1)) + half * m * l * l * w * w;
   return lagrange(k, 2, T, -(m * g * l * k.cos(k.q(1))), {k.u(0) - k.p(4) * v, k.number(0)});
 }
 
 /// Two masses on a line and a massless coordinate z between them that a constraint ties: M alone is singular.
-inline system::EquationSystem massless() {
-  const Maker k;
+inline system::EquationSystem massless_coordinate() {
+  const SystemBuilder k;
   const Scalar m = k.p(0), stiffness = k.p(1), half = k.number(1, 2);
   const Scalar T = half * m * (k.q(0, 1) * k.q(0, 1) + k.q(1, 1) * k.q(1, 1));
   const Scalar z = k.q(2);

@@ -79,8 +79,8 @@ void follows_the_motion(const system::EquationSystem& system, std::uint64_t poin
 }
 
 /// The right-hand side of qddot = g for one coordinate.
-system::EquationSystem one(const std::function<Scalar(const Maker&)>& g) {
-  const Maker k;
+system::EquationSystem one(const std::function<Scalar(const SystemBuilder&)>& g) {
+  const SystemBuilder k;
   system::EquationSystem system;
   system.dag = k.dag;
   system.formulation = "lagrange";
@@ -94,7 +94,7 @@ system::EquationSystem one(const std::function<Scalar(const Maker&)>& g) {
 
 TEST_CASE("taylor: the recurrences of mechanical systems, including the solve") {
   for (const auto& system :
-       {pendulum(), double_pendulum(), cart_pendulum(), spherical_pendulum(), massless(), chain(3)}) {
+       {pendulum(), double_pendulum(), cart_pendulum(), spherical_pendulum(), massless_coordinate(), chain(3)}) {
     CAPTURE(system.free.size());
     for (const std::uint64_t point : std::initializer_list<std::uint64_t>{1, 4}) follows_the_motion(system, point);
   }
@@ -102,7 +102,7 @@ TEST_CASE("taylor: the recurrences of mechanical systems, including the solve") 
 
 TEST_CASE("taylor: the recurrence of every operation") {
   const auto call = [](Op op) {
-    return [op](const Maker& k) {
+    return [op](const SystemBuilder& k) {
       return k.s(k.dag->call(op, (k.q(0) * k.number(2, 3) + k.q(0, 1) * k.t() * k.number(1, 7)).ref));
     };
   };
@@ -113,32 +113,32 @@ TEST_CASE("taylor: the recurrence of every operation") {
   }
   for (const Op op : {Op::asin, Op::acos}) {  // inside their domain
     follows_the_motion(
-        one([op](const Maker& k) { return k.s(k.dag->call(op, (k.q(0) * k.t() * k.number(1, 3)).ref)); }), 2);
+        one([op](const SystemBuilder& k) { return k.s(k.dag->call(op, (k.q(0) * k.t() * k.number(1, 3)).ref)); }), 2);
   }
   for (const Op op : {Op::atan2, Op::min, Op::max}) {
     CAPTURE(static_cast<int>(op));
-    follows_the_motion(one([op](const Maker& k) { return k.s(k.dag->call(op, k.q(0).ref, (k.q(0, 1) * k.t()).ref)); }),
+    follows_the_motion(one([op](const SystemBuilder& k) { return k.s(k.dag->call(op, k.q(0).ref, (k.q(0, 1) * k.t()).ref)); }),
                        2);
-    follows_the_motion(one([op](const Maker& k) { return k.s(k.dag->call(op, k.q(0).ref, k.p(0).ref)); }), 2);
-    follows_the_motion(one([op](const Maker& k) { return k.s(k.dag->call(op, k.p(0).ref, k.q(0).ref)); }), 3);
+    follows_the_motion(one([op](const SystemBuilder& k) { return k.s(k.dag->call(op, k.q(0).ref, k.p(0).ref)); }), 2);
+    follows_the_motion(one([op](const SystemBuilder& k) { return k.s(k.dag->call(op, k.p(0).ref, k.q(0).ref)); }), 3);
   }
 }
 
 TEST_CASE("taylor: powers, quotients and branches of varying and constant values") {
-  const auto pow = [](const Maker& k, Scalar a, Scalar b) { return k.s(k.dag->pow(a.ref, b.ref)); };
-  const std::vector<std::function<Scalar(const Maker&)>> list = {
-      [&](const Maker& k) { return pow(k, k.q(0), k.p(0)); },
-      [&](const Maker& k) { return pow(k, k.p(0), k.q(0)); },
-      [&](const Maker& k) { return pow(k, k.q(0), k.q(0, 1)); },
-      [&](const Maker& k) { return pow(k, k.q(0) * k.t(), k.number(7, 3)); },
-      [&](const Maker& k) { return k.q(0) / k.p(0) + k.p(1) / k.q(0) + k.q(0) / k.q(0, 1); },
-      [&](const Maker& k) { return k.number(1) / (k.q(0) * k.q(0) * k.q(0)) - k.q(0) * k.q(0, 1) * k.p(2) * k.t(); },
-      [&](const Maker& k) {
+  const auto pow = [](const SystemBuilder& k, Scalar a, Scalar b) { return k.s(k.dag->pow(a.ref, b.ref)); };
+  const std::vector<std::function<Scalar(const SystemBuilder&)>> list = {
+      [&](const SystemBuilder& k) { return pow(k, k.q(0), k.p(0)); },
+      [&](const SystemBuilder& k) { return pow(k, k.p(0), k.q(0)); },
+      [&](const SystemBuilder& k) { return pow(k, k.q(0), k.q(0, 1)); },
+      [&](const SystemBuilder& k) { return pow(k, k.q(0) * k.t(), k.number(7, 3)); },
+      [&](const SystemBuilder& k) { return k.q(0) / k.p(0) + k.p(1) / k.q(0) + k.q(0) / k.q(0, 1); },
+      [&](const SystemBuilder& k) { return k.number(1) / (k.q(0) * k.q(0) * k.q(0)) - k.q(0) * k.q(0, 1) * k.p(2) * k.t(); },
+      [&](const SystemBuilder& k) {
         return k.s(k.dag->select(k.q(0).ref, k.p(0).ref, (k.q(0) * k.q(0)).ref, k.sin(k.q(0, 1)).ref));
       },
-      [&](const Maker& k) { return k.s(k.dag->select(k.p(0).ref, k.q(0).ref, (k.q(0) * k.q(0)).ref, k.p(1).ref)); },
-      [&](const Maker& k) { return k.sin(k.q(0)) * k.cos(k.q(0, 1)) + k.cos(k.q(0)) + k.t() * k.t(); },
-      [&](const Maker& k) { return k.p(0) * k.q(0) + k.u(0); }};
+      [&](const SystemBuilder& k) { return k.s(k.dag->select(k.p(0).ref, k.q(0).ref, (k.q(0) * k.q(0)).ref, k.p(1).ref)); },
+      [&](const SystemBuilder& k) { return k.sin(k.q(0)) * k.cos(k.q(0, 1)) + k.cos(k.q(0)) + k.t() * k.t(); },
+      [&](const SystemBuilder& k) { return k.p(0) * k.q(0) + k.u(0); }};
   for (std::size_t i = 0; i < list.size(); ++i) {
     CAPTURE(i);
     follows_the_motion(one(list[i]), 2);

@@ -78,7 +78,7 @@ TEST_CASE("reference: inputs are constant on each segment") {
 }
 
 TEST_CASE("reference: a run that cannot continue reports the time and the reason") {
-  const Maker
+  const SystemBuilder
       k;  // qddot = -sqrt(q) from rest at 1 meets 0, where the root is singular, at B(2/3, 1/2)/sqrt(3) = 1.49371
   system::EquationSystem system;
   system.dag = k.dag;

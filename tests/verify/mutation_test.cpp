@@ -210,7 +210,7 @@ std::string library(const test::TemporaryFolder& folder, const Subject& s, const
   for (std::size_t k = 0; k < changes.size(); ++k) out << mutator.changed(changes[k], fmt::format("{}_m{}", s.name, k));
   out.close();
   const std::string library = folder.path + "/" + s.name + ".so";
-  const emit::Finished finished = emit::run_process({EOMGEN_TEST_CC, "-std=c11", "-O0", "-w", "-fPIC", "-shared", "-o",
+  const emit::ProcessResult finished = emit::run_process({EOMGEN_TEST_CC, "-std=c11", "-O0", "-w", "-fPIC", "-shared", "-o",
                                                      library, folder.path + "/" + s.name + ".c", "-lm"});
   INFO(finished.output);
   REQUIRE(finished.status == 0);

@@ -41,13 +41,13 @@ class Live {
     program::Program program = s_.program;
     program.functions.clear();
     program.taylor.reset();
-    program.second.clear();
+    program.chart_variants.clear();
     program.charts.clear();
     for (const program::Function& function : s_.program.functions) {
       if (function.name == "rhs" || function.name == "mass" || function.name == "constraints")
         program.functions.push_back(function);
       if (function.name == "events" && s_.program.event_count() > 0) program.functions.push_back(function);
-      if (function.name == "outputs") program.functions.push_back(program::restricted(function, chosen()));
+      if (function.name == "outputs") program.functions.push_back(program::restrict_results(function, chosen()));
     }
     program.outputs = outputs_;
     program.reactions.clear();
@@ -92,12 +92,12 @@ class Live {
     return places;
   }
 
-  program::Function function(const std::string& name, const std::vector<program::WantedResult>& results) {
-    program::WantedFunction wanted;
+  program::Function function(const std::string& name, const std::vector<program::ResultExpressions>& results) {
+    program::FunctionExpressions wanted;
     wanted.name = name;
     wanted.results = results;
     std::vector<program::ResultShape> shape;
-    for (const program::WantedResult& result : results) shape.push_back({result.name, result.entries.size()});
+    for (const program::ResultExpressions& result : results) shape.push_back({result.name, result.entries.size()});
     return program::schedule(program::flatten(program::from_dag(dag_, wanted, s_.program.free), false), name, shape);
   }
 

@@ -25,7 +25,7 @@ SurfaceCode surface_code(const pipeline::Simulation& simulation, const Drawing& 
     integrals.push_back({i, dag.zero()});
   }
   for (std::size_t k = 0; k < surfaces.size(); ++k) {
-    program::WantedFunction wanted;
+    program::FunctionExpressions wanted;
     wanted.name = "surface_" + std::to_string(k + 1);
     std::vector<symbolic::Ref> entries = surfaces[k].psi;
     entries.insert(entries.end(), surfaces[k].position.begin(), surfaces[k].position.end());

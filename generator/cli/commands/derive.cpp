@@ -26,11 +26,11 @@ void require_format(const std::string& format) {
   throw Error("derive", {}, fmt::format("there is no format {}", model::quote(format)), choice_of(format, known));
 }
 
-const std::string& in_format(const print::Item& item, const std::string& format) {
+const std::string& in_format(const print::PrintedFormula& item, const std::string& format) {
   return format == "latex" ? item.latex : format == "mathml" ? item.mathml : item.text;
 }
 
-Json to_json(const std::vector<print::Item>& items, const std::string& approach, const std::vector<std::string>& show,
+Json to_json(const std::vector<print::PrintedFormula>& items, const std::string& approach, const std::vector<std::string>& show,
              const std::vector<work::LeftOut>& left_out) {
   Json result{{"format", 1}, {"approach", approach}, {"equations", Json::array()}, {"reactions", Json::array()}};
   const bool all = std::find(show.begin(), show.end(), "all") != show.end();
@@ -39,7 +39,7 @@ Json to_json(const std::vector<print::Item>& items, const std::string& approach,
         std::find(show.begin(), show.end(), key) != show.end() || (all && key != "linear" && key != "routh");
     if (wanted && key != "all") result[key] = Json::array();  // present even if there is nothing to show
   }
-  for (const print::Item& item : items) {
+  for (const print::PrintedFormula& item : items) {
     if (!item.left_out.empty()) continue;
     Json entry;
     if (!item.coordinate.empty()) entry["coordinate"] = item.coordinate;
@@ -56,7 +56,7 @@ Json to_json(const std::vector<print::Item>& items, const std::string& approach,
 }
 
 /// Heading of a group of formulas.
-std::string heading_of(const print::Item& item) {
+std::string heading_of(const print::PrintedFormula& item) {
   const auto named = [&](const std::string& what) {
     return item.name.empty() ? what : fmt::format("{} '{}'", what, item.name);
   };
@@ -82,10 +82,10 @@ std::string heading_of(const print::Item& item) {
   return item.key + ": " + item.role;
 }
 
-std::string readable(const std::vector<print::Item>& items, const std::string& approach, const std::string& format,
+std::string readable(const std::vector<print::PrintedFormula>& items, const std::string& approach, const std::string& format,
                      const std::vector<work::LeftOut>& left_out, const std::vector<analysis::Multiplier>& multipliers) {
   std::string text = fmt::format("Approach {}\n", approach), heading;
-  for (const print::Item& item : items) {
+  for (const print::PrintedFormula& item : items) {
     if (!item.left_out.empty()) continue;
     const std::string next = heading_of(item);
     if (next != heading) text += fmt::format("\n{}\n", next);

@@ -32,7 +32,7 @@ std::vector<std::string> target_names() {
 
 std::string name_for(const std::string& target, const std::string& id) {
   for (const emit::TargetEntry& entry : emit::targets()) {
-    if (target == entry.name) return entry.name_of(id);
+    if (target == entry.name) return entry.mangle(id);
   }
   return emit::mangled_id(id);
 }
@@ -100,7 +100,7 @@ int execute(const Options& options, const Common& common) {
   const pipeline::Timings& seconds = emission.seconds;
   if (common.json) {
     Json tried = Json::array();
-    for (const program::Tried& t : program.tried)
+    for (const program::CandidateCost& t : program.candidates)
       tried.push_back({{"formulation", t.formulation},
                        {"approach", system::name(t.approach)},
                        {"form", system::name(t.form)},
@@ -134,7 +134,7 @@ int execute(const Options& options, const Common& common) {
     fmt::print("prepared    {}, after {} once for the parameters\n", to_text(program.functions.back().operations),
                to_text(program.functions.rbegin()[1].operations));
   }
-  for (const program::Tried& t : program.tried) {
+  for (const program::CandidateCost& t : program.candidates) {
     fmt::print("tried       {:<10} {:<3} {}{}\n", t.formulation, system::name(t.approach), to_text(t.operations),
                with_form(t.form));
   }

@@ -166,7 +166,7 @@ int execute(const Options& options, const Common& common) {
     tables.write(options.out);
   } catch (const std::system_error& error) {
     throw Error("merge", {}, error.what(), "see to space on that disk and to your rights there",
-                emit::fault_of_writing(error.code()));
+                emit::write_fault(error.code()));
   }
   if (common.json) {
     Json found{{"format", 1}, {"shards", tables.shards()}, {"runs", tables.runs()}, {"file", options.out}};

@@ -119,12 +119,12 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
                                                                   {"friction", "Contacts"},
                                                                   {"singular", "Where the equations fail"}};
   for (const auto& [key, title] : sections) {
-    const std::vector<print::Item> items = print::render(m, form, {key});
+    const std::vector<print::PrintedFormula> items = print::render(m, form, {key});
     if (items.empty()) continue;
     html.heading(3, title);
     std::string before;
-    std::vector<print::Item> derivatives;  // of constraints: folded, after the equations
-    for (const print::Item& item : items) {
+    std::vector<print::PrintedFormula> derivatives;  // of constraints: folded, after the equations
+    for (const print::PrintedFormula& item : items) {
       if (key == "constraints" && item.role.ends_with("time derivative") && item.left_out.empty()) {
         derivatives.push_back(item);
         continue;
@@ -148,7 +148,7 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
     formulas.end();
     if (derivatives.empty()) continue;
     html.markup("<details><summary>Their time derivatives</summary>");
-    for (const print::Item& item : derivatives) {
+    for (const print::PrintedFormula& item : derivatives) {
       formulas.end();
       html.paragraph(item.name + ", " + item.role, "quiet");
       formulas.add(item.mathml);

@@ -28,7 +28,7 @@ constexpr const char* mark = "# sweep: ";
 [[noreturn]] void lost(const std::system_error& error) {
   throw Error("sweep", {}, error.what(),
               "see to space on that disk and to your rights there; the same command goes on from what is there",
-              emit::fault_of_writing(error.code()));
+              emit::write_fault(error.code()));
 }
 
 /// Opens a file that may be taken over: regular, owned by the user, not a link, and not being written.

@@ -28,7 +28,7 @@ using program::Function;
 using program::Slot;
 
 // Limit of the numbers of one block, which are on the stack: all entries and results of a state together.
-constexpr std::size_t most_numbers = 8192;
+constexpr std::size_t max_numbers = 8192;
 
 // The arrays of a block, in the order of `from`.
 struct Array {
@@ -50,7 +50,7 @@ class File {
         name_(mangled_id(context.id)),
         prefix_(name_ + "_batch_"),
         names_(model_names(program, context)) {
-    dialect_ = dialect_of_lanes(single(), prefix_);
+    dialect_ = lane_dialect(single(), prefix_);
     NameTable table;
     for (const auto* list : {&names_.state, &names_.contacts, &names_.parameters, &names_.inputs, &names_.sides}) {
       for (const std::string& name : *list) table.declare(name);
@@ -71,10 +71,10 @@ class File {
         {"contact_states", std::to_string(eom::contact_states)},
         {"sincos", packs_ ? sincos() : ""},
         {"names", named()}};
-    const std::vector<std::pair<std::string, std::string>> numbers = values_of_lanes(single());
+    const std::vector<std::pair<std::string, std::string>> numbers = lane_template_values(single());
     values.insert(values.end(), numbers.begin(), numbers.end());
-    return {{name_ + "_batch.c", rendered(skeleton::batch_model_batch_c, values, defined_)},
-            {name_ + "_batch.h", rendered(skeleton::batch_model_batch_h, values, declared_)}};
+    return {{name_ + "_batch.c", render_template(skeleton::batch_model_batch_c, values, defined_)},
+            {name_ + "_batch.h", render_template(skeleton::batch_model_batch_h, values, declared_)}};
   }
 
  private:
@@ -116,7 +116,7 @@ class File {
            const std::vector<std::pair<std::string, std::size_t>>& results, const std::string& block) {
     const std::string head =
         wrapped(fmt::format("int {}_{}_batch({})", name_, function, batch_arguments(list)), "    ");
-    declared_.push_back({{"purpose", purpose(function)}, {"prototype", head}});
+    declared_.push_back({{"purpose", function_purpose(function)}, {"prototype", head}});
     defined_.push_back({{"adaptor", adaptor(function, list)},
                         {"kernel", kernel(function, block)},
                         {"many", driver(function, list, results)},
@@ -126,7 +126,7 @@ class File {
     std::size_t numbers = 0;
     for (const Array& array : arrays) numbers += takes(list, array.slot) ? entries(array) : 0;
     for (const auto& [name, size] : results) numbers += size;
-    return numbers <= most_numbers;
+    return numbers <= max_numbers;
   }
 
   static bool takes(const std::vector<Argument>& list, Slot slot) {
@@ -142,9 +142,9 @@ class File {
     std::string inputs, results;
     for (const Argument& a : list) {
       if (a.kind == Argument::Kind::result)
-        results += fmt::format("{}* {}, ", dialect_.element, a.name);
+        results += fmt::format("{}* {}, ", dialect_.lane_type, a.name);
       else
-        inputs += fmt::format("const {}* {}, ", is_integer(a) ? "int" : dialect_.element, a.name);
+        inputs += fmt::format("const {}* {}, ", is_integer(a) ? "int" : dialect_.lane_type, a.name);
     }
     return "size_t count, size_t stride, " + inputs + "int own, " + results + "int* codes";
   }
@@ -152,8 +152,8 @@ class File {
   /// Prints the function for the lanes of one block.
   std::string block_function(const std::string& function, const FunctionText& text) {
     const std::string block = name_for_width(function + "_block"),
-                      arguments = fmt::format("const struct {}block* {}, size_t {}", prefix_, text.block, text.now),
-                      handed = fmt::format("{}, {}", text.block, text.now);
+                      arguments = fmt::format("const struct {}block* {}, size_t {}", prefix_, text.block, text.block_index),
+                      handed = fmt::format("{}, {}", text.block, text.block_index);
     std::string result;
     for (std::size_t k = 0; k < text.parts.size(); ++k) {
       const std::string part = name_for_width(fmt::format("{}_part{}", function, k + 1));
@@ -161,7 +161,7 @@ class File {
                             dialect_.real, text.work, text.parts[k]);
     }
     const std::string body =
-        text.parts.empty() ? text.body : calls_of_parts(prefix_ + function, text, handed, dialect_.real);
+        text.parts.empty() ? text.body : part_calls(prefix_ + function, text, handed, dialect_.real);
     packs_ = packs_ || text.packs > 0;
     library_.insert(text.library.begin(), text.library.end());
     return result + fmt::format("{}INLINE int {}({})\n{{\n{}}}\n\n", prefix_, block, arguments, body);
@@ -211,7 +211,7 @@ class File {
       std::string values;
       for (const Quantity& input : context_.inputs)
         values += (values.empty() ? "" : ", ") + dialect_.value(input.value);
-      body += wrapped(fmt::format("  static const {} standing[] = {{{}}};", dialect_.element, values), "      ") + "\n";
+      body += wrapped(fmt::format("  static const {} standing[] = {{{}}};", dialect_.lane_type, values), "      ") + "\n";
     }
     const auto size = [&](std::size_t count) {
       if (count > 0) numbers += (numbers.empty() ? "" : " + ") + std::to_string(count);
@@ -247,7 +247,7 @@ class File {
                           size(results[r].second));
     }
     if (function == "taylor") fill += rows_asked_for();
-    body += fmt::format("  {} room[({}WIDTH + 1)*({})];\n", dialect_.element, prefix_, numbers.empty() ? "1" : numbers);
+    body += fmt::format("  {} room[({}WIDTH + 1)*({})];\n", dialect_.lane_type, prefix_, numbers.empty() ? "1" : numbers);
     const std::string head =
         wrapped(fmt::format("static int {}({})", name_for_width(function + "_many"), batch_arguments(list)), "    ");
     return fmt::format("{}\n{{\n{}{}  return {}run(&call, count, stride, room, codes);\n}}\n", head, body, fill,

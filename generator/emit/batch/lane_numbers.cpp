@@ -6,7 +6,7 @@
 
 namespace eomgen::emit {
 
-Dialect dialect_of_lanes(bool single, const std::string& prefix) {
+Dialect lane_dialect(bool single, const std::string& prefix) {
   Dialect dialect;
   if (single) {
     dialect = single_dialect();
@@ -15,13 +15,13 @@ Dialect dialect_of_lanes(bool single, const std::string& prefix) {
     dialect.constant = [](const symbolic::Rational& value) { return decimal(nearest_double(value)); };
     dialect.value = decimal;
     dialect.pi = "3.141592653589793";
-    dialect.absolute = "fabs";
+    dialect.abs_function = "fabs";
   }
-  dialect.in_lanes_of(prefix);
+  dialect.use_lanes(prefix);
   return dialect;
 }
 
-std::vector<std::pair<std::string, std::string>> values_of_lanes(bool single) {
+std::vector<std::pair<std::string, std::string>> lane_template_values(bool single) {
   if (single) {
     return {{"real", "float"},
             {"integer", "int"},

@@ -11,9 +11,9 @@
 namespace eomgen::emit {
 
 /// The dialect of C with lanes; `prefix`: of the functions of templates/batch.
-Dialect dialect_of_lanes(bool single, const std::string& prefix);
+Dialect lane_dialect(bool single, const std::string& prefix);
 
 /// Values for the skeletons of templates/batch: types, lanes per register, tests of all lanes at once.
-std::vector<std::pair<std::string, std::string>> values_of_lanes(bool single);
+std::vector<std::pair<std::string, std::string>> lane_template_values(bool single);
 
 }  // namespace eomgen::emit

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(program::taylor_lanes % 4 == 0);
 
-constexpr std::size_t most_lanes = 8, stack_budget = std::size_t{1} << 21;  // bytes, the same as for one state
+constexpr std::size_t max_lanes = 8, stack_budget = std::size_t{1} << 21;  // bytes, the same as for one state
 
 // Sums have the order of additions of NAME_taylor_sums. Orders are computed up to the highest that a lane requests.
 constexpr const char* text = R"(/* sums[i] = a_1 b_(k-1) + ... + a_(k-1) b_1 of each product i. */
@@ -106,28 +106,28 @@ static int {0}taylor_block(const struct {0}block* block, size_t now)
 
 bool taylor_fits_lanes(const program::Taylor& taylor, std::size_t states) {
   const std::size_t orders = program::taylor_order(taylor) + 1,
-                    numbers = 2 * taylor.products * orders + taylor.prepared() + states * orders;
-  return numbers * most_lanes * sizeof(double) <= stack_budget;
+                    numbers = 2 * taylor.product_count * orders + taylor.workspace_size() + states * orders;
+  return numbers * max_lanes * sizeof(double) <= stack_budget;
 }
 
 std::string taylor_block(const program::Program& program, const ModelNames& names, const EmissionContext& context,
                          const Dialect& dialect,
                          const std::function<std::string(const std::string&, const FunctionText&)>& kernel) {
   const program::Taylor& taylor = *program.taylor;
-  ModelNames of_next = names_of_next(names);
+  ModelNames of_next = taylor_next_names(names);
   NameTable table;
   for (const auto* list : {&of_next.state, &of_next.parameters, &of_next.inputs}) {
     for (const std::string& name : *list) table.declare(name);
   }
   of_next.prepared.clear();
-  for (std::size_t i = 0; i < taylor.prepared(); ++i) of_next.prepared.push_back(table.declare(fmt::format("w_{}", i)));
+  for (std::size_t i = 0; i < taylor.workspace_size(); ++i) of_next.prepared.push_back(table.declare(fmt::format("w_{}", i)));
   const std::size_t orders = program::taylor_order(taylor);
   return kernel("taylor_start", print_function(taylor.start, names, context, dialect)) +
          kernel("taylor_next", print_function(taylor.next, of_next, context, dialect)) +
-         fmt::format(fmt::runtime(text), dialect.lanes, fmt::arg("name", mangled_id(context.id)),
-                     fmt::arg("n", program.state_count()), fmt::arg("products", taylor.products),
-                     fmt::arg("series", taylor.products * orders), fmt::arg("prepared", taylor.prepared()),
-                     fmt::arg("zeros", taylor.zeros), fmt::arg("coefficients", program.state_count() * (orders + 1)));
+         fmt::format(fmt::runtime(text), dialect.lane_prefix, fmt::arg("name", mangled_id(context.id)),
+                     fmt::arg("n", program.state_count()), fmt::arg("products", taylor.product_count),
+                     fmt::arg("series", taylor.product_count * orders), fmt::arg("prepared", taylor.workspace_size()),
+                     fmt::arg("zeros", taylor.order_zero_count), fmt::arg("coefficients", program.state_count() * (orders + 1)));
 }
 
 }  // namespace eomgen::emit

@@ -27,7 +27,7 @@ Dialect c_dialect() {
   dialect.constant = [](const symbolic::Rational& value) { return decimal(nearest_double(value)); };
   dialect.value = decimal;
   dialect.pi = "3.141592653589793";
-  dialect.absolute = "fabs";
+  dialect.abs_function = "fabs";
   return dialect;
 }
 
@@ -48,7 +48,7 @@ std::string definition(const std::string& name, const program::Function& functio
   const char* linkage = internal ? "static " : "";
   const auto head = [&](const std::string& what) { return function_head(what, function, text, names, real); };
   if (!text.parts.empty()) {
-    const std::string guard = text.near_first ? fmt::format("int {}, ", text.guarded) : "";
+    const std::string guard = text.near_angles_first ? fmt::format("int {}, ", text.guarded) : "";
     const std::string list = guard + argument_list(arguments(function.name, text, names), real);
     std::string parts;
     for (std::size_t k = 0; k < text.parts.size(); ++k) {
@@ -57,12 +57,12 @@ std::string definition(const std::string& name, const program::Function& functio
           "{})\n{{\n{}}}\n\n",
           name, k + 1, list, real, text.work, text.parts[k]);
     }
-    const std::string handed = (text.near_first ? text.guarded + ", " : "") + argument_names(function, text, names);
-    text.body = calls_of_parts(name, text, handed, real);
+    const std::string handed = (text.near_angles_first ? text.guarded + ", " : "") + argument_names(function, text, names);
+    text.body = part_calls(name, text, handed, real);
     text.parts.clear();
     return parts + definition(name, function, text, names, real, internal);
   }
-  if (!text.near_first) return fmt::format("{}{}\n{{\n{}}}\n", linkage, head(name), text.body);
+  if (!text.near_angles_first) return fmt::format("{}{}\n{{\n{}}}\n", linkage, head(name), text.body);
   const std::string arguments = argument_names(function, text, names);
   std::string inner = head(name + "_from");
   inner.insert(inner.find('(') + 1, fmt::format("int {}, ", text.guarded));
@@ -96,8 +96,8 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   const std::string name = mangled_id(context.id);
   const bool single = context.single_error.has_value();
   Dialect dialect = single ? single_dialect() : c_dialect();
-  dialect.kernels = name + "_";
-  dialect.near_first = true;
+  dialect.kernel_prefix = name + "_";
+  dialect.near_angles_first = true;
   if (single && (program.taylor || context.run)) {
     throw Error("emit", {}, "Taylor series and run headers support double precision only",
                 "leave taylor and run out of --with, or --real float");
@@ -123,7 +123,7 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   if (program.taylor) {
     const TaylorText text = print_taylor(program, names, context, dialect, name + "_");
     functions.push_back({{"definition", text.definition}});
-    declared.push_back({{"purpose", purpose("taylor")}, {"prototype", text.head}});
+    declared.push_back({{"purpose", function_purpose("taylor")}, {"prototype", text.head}});
   }
   const SelfTestNames test{[&name](const std::string& f) { return name + "_" + f; }, name + "_differs", "0"};
   const std::vector<std::pair<std::string, std::string>> values = {
@@ -140,8 +140,8 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
       {"defaults", defaults_body(program, context, dialect)},
       {"comparison", selftest_comparison(context, test, dialect)},
       {"selftest", selftest_body(program, context, test, dialect)}};
-  std::vector<EmittedFile> files{{fmt::format("{}.c", name), rendered(skeleton::c_model_c, values, functions)},
-                                 {fmt::format("{}.h", name), rendered(skeleton::c_model_h, values, declared)}};
+  std::vector<EmittedFile> files{{fmt::format("{}.c", name), render_template(skeleton::c_model_c, values, functions)},
+                                 {fmt::format("{}.h", name), render_template(skeleton::c_model_h, values, declared)}};
   for (EmittedFile& file : emit_run_header(program, context)) files.push_back(std::move(file));
   return files;
 }

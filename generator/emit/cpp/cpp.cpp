@@ -54,16 +54,16 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
     const TaylorText text = print_taylor(program, names, context, dialect, "");
     taylor = "\n" + text.definition;
   }
-  const SelfTestNames test{[](const std::string& f) { return f + "<double>"; }, template_kernels + "differs",
+  const SelfTestNames test{[](const std::string& f) { return f + "<double>"; }, template_kernel_prefix + "differs",
                            "nullptr"};
   std::vector<EmittedFile> files = {
       {name + ".hpp",
-       rendered(skeleton::cpp_model_hpp,
+       render_template(skeleton::cpp_model_hpp,
                 {{"banner", banner(program, context, "// ", "// ", "")},
                  {"name", name},
                  {"includes", packs ? "#include <cfloat>\n#include <cmath>\n#include <cstddef>\n#include <cstring>"
                                     : "#include <cmath>\n#include <cstddef>"},
-                 {"kernels", packs ? generic_sincos + sincos_kernel(template_kernels, "inline", "std::") : ""},
+                 {"kernels", packs ? generic_sincos + sincos_kernel(template_kernel_prefix, "inline", "std::") : ""},
                  {"enums", index_names(names, program.prepared_count(), program.taylor)},
                  {"prepared", (program.prepared_count() > 0 ? prepared_struct : "") + taylor},
                  {"info", string_literal(info_json(program, context), "      ")},

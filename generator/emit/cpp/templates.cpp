@@ -43,8 +43,8 @@ Dialect template_dialect() {
   dialect.constant = real_constant;
   dialect.value = [](double value) { return "Real(" + decimal(value) + ")"; };
   dialect.pi = "Real(3.141592653589793238462643383279502884L)";
-  dialect.absolute = "abs";
-  dialect.kernels = template_kernels;
+  dialect.abs_function = "abs";
+  dialect.kernel_prefix = template_kernel_prefix;
   dialect.line_comments = true;
   dialect.using_std = true;
   return dialect;
@@ -93,7 +93,7 @@ TemplateFunctions template_functions(const program::Program& program, const Mode
             {{"purpose", fmt::format("Part {} of {}.", k + 1, part.name)}, {"head", head}, {"body", text.parts[k]}});
       }
       if (!text.parts.empty())
-        text.body = calls_of_parts(part.name, text, argument_names(*part.function, text, names), "Real");
+        text.body = part_calls(part.name, text, argument_names(*part.function, text, names), "Real");
       entry.emplace_back("head", mark + function_head(part.name, *part.function, text, names, "Real"));
       entry.emplace_back("body", text.body);
     }

@@ -12,7 +12,7 @@
 
 namespace eomgen::emit {
 
-inline const std::string template_kernels = "eom_";  // prefix of grouped sines and cosines
+inline const std::string template_kernel_prefix = "eom_";  // prefix of grouped sines and cosines
 
 Dialect template_dialect();
 

@@ -67,9 +67,9 @@ std::vector<EmittedFile> emit_cuda(const program::Program& program, const Emissi
       {"defaults", defaults_body(program, context, dialect)}};
   const std::vector<std::pair<std::string, std::string>> of_header = {
       {"banner", banner(program, context, "/* ", " * ", " */")}, {"name", name}, {"passed_over", passed_over(program)}};
-  return {{name + ".cuh", rendered(skeleton::cuda_model_cuh, values, functions)},
-          {name + "_ensemble.cu", rendered(skeleton::cuda_model_ensemble_cu, values, {})},
-          {name + "_ensemble.h", rendered(skeleton::cuda_model_ensemble_h, of_header, {})}};
+  return {{name + ".cuh", render_template(skeleton::cuda_model_cuh, values, functions)},
+          {name + "_ensemble.cu", render_template(skeleton::cuda_model_ensemble_cu, values, {})},
+          {name + "_ensemble.h", render_template(skeleton::cuda_model_ensemble_h, of_header, {})}};
 }
 
 }  // namespace eomgen::emit

@@ -29,7 +29,7 @@ std::string number(double value) {
   return decimal(value);
 }
 
-std::string rounded_number(double value) { return number(single_number(value)); }
+std::string rounded_number(double value) { return number(to_single(value)); }
 
 /// In single precision, sums, products, quotients and roots have the same bits as in C: rounding to 53 and then to 24
 /// bits equals one rounding to 24 bits.
@@ -43,11 +43,11 @@ Dialect javascript_dialect(bool single) {
     dialect.value = rounded_number;
     dialect.pi = "3.1415927410125732";
     dialect.pivot_tolerance = single_dialect().pivot_tolerance;
-    dialect.rounding = "fround";
+    dialect.rounding_function = "fround";
   }
-  dialect.absolute = "abs";
+  dialect.abs_function = "abs";
   dialect.line_comments = true;
-  dialect.typed = false;
+  dialect.is_typed = false;
   return dialect;
 }
 
@@ -68,7 +68,7 @@ std::string harmless(std::string text) {
   return text;
 }
 
-const char* array_of(const Dialect& dialect) { return dialect.rounding.empty() ? "Float64Array" : "Float32Array"; }
+const char* array_of(const Dialect& dialect) { return dialect.rounding_function.empty() ? "Float64Array" : "Float32Array"; }
 
 std::string parameter_list(const std::string& function, const FunctionText& text, const ModelNames& names) {
   std::string list;
@@ -77,7 +77,7 @@ std::string parameter_list(const std::string& function, const FunctionText& text
 }
 
 bool reads_time(const program::Function& function) {
-  const Uses uses = uses_of(function);
+  const Uses uses = count_uses(function);
   return std::any_of(uses.leaves.begin(), uses.leaves.end(), [](const Leaves& leaves) {
     return std::any_of(leaves.begin(), leaves.end(),
                        [](const auto& leaf) { return leaf.first == program::Slot::time; });
@@ -90,8 +90,8 @@ std::string definition(const program::Function& function, const FunctionText& te
                        const Dialect& dialect) {
   const std::string list = parameter_list(function.name, text, names);
   std::string head = fmt::format("function {}({})", function.name, list);
-  if (!dialect.rounding.empty() && reads_time(function))
-    head += fmt::format(" {{\n  {0} = {1};\n", names.arguments_t, dialect.rounded(names.arguments_t));
+  if (!dialect.rounding_function.empty() && reads_time(function))
+    head += fmt::format(" {{\n  {0} = {1};\n", names.time, dialect.rounded(names.time));
   else
     head += " {\n";
   if (text.parts.empty()) return fmt::format("{}{}}}\n", head, text.body);
@@ -151,14 +151,14 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
   require_known(program);
   const std::string name = script_name(context.id);
   const Dialect dialect = javascript_dialect(context.single_error.has_value());
-  const ModelNames names = model_names(program, context, javascript_words());
+  const ModelNames names = model_names(program, context, javascript_reserved_words());
   std::vector<std::vector<std::pair<std::string, std::string>>> functions;
   std::string list;
   for (const program::Function& emitted : program.functions) {
     const program::Function function = without_packs(emitted);
     const FunctionText text = print_function(function, names, context, dialect);
     functions.push_back(
-        {{"purpose", purpose(function.name)}, {"definition", definition(function, text, names, dialect)}});
+        {{"purpose", function_purpose(function.name)}, {"definition", definition(function, text, names, dialect)}});
     list += ", " + function.name;
   }
   const std::vector<std::pair<std::string, std::string>> values = {
@@ -168,11 +168,11 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
       {"defaults", defaults_body(program, context, dialect)},
       {"list", list},
       {"array", array_of(dialect)},
-      {"rounding", dialect.rounding.empty() ? "" : ", " + dialect.rounding},
+      {"rounding", dialect.rounding_function.empty() ? "" : ", " + dialect.rounding_function},
       {"prepared", std::to_string(program.prepared_count())},
       {"without_inputs", without_inputs()},
       {"vectors", vectors(context)}};
-  return {{name + ".js", rendered(skeleton::javascript_model_js, values, functions)}};
+  return {{name + ".js", render_template(skeleton::javascript_model_js, values, functions)}};
 }
 
 }  // namespace eomgen::emit

@@ -19,7 +19,7 @@ constexpr const char* wrapped_functions[] = {"rhs",         "jac",       "jac_p"
                                              "constraints", "reactions", "outputs", "events"};
 
 /// _rhs = _function("rhs", "daaaia"): one letter per argument type.
-std::string functions_of_c() {
+std::string c_function_declarations() {
   std::string lines;
   for (const char* name : wrapped_functions) {
     const abi::Function& function = *abi::find(name);
@@ -33,7 +33,7 @@ std::string functions_of_c() {
 }
 
 /// Values for the skeletons that depend on the floating-point type.
-std::vector<std::pair<std::string, std::string>> of_numbers(bool single) {
+std::vector<std::pair<std::string, std::string>> number_values(bool single) {
   if (!single) {
     return {{"real", "double"},          {"cast", ""},
             {"c_real", "c_double"},      {"tolerances", "rtol=1e-9, atol=1e-12"},
@@ -63,14 +63,14 @@ std::vector<EmittedFile> emit_python(const program::Program& program, const Emis
   std::vector<EmittedFile> files = emit_c(program, context);
   const std::string name = mangled_id(context.id);
   std::vector<std::pair<std::string, std::string>> values = {
-      {"name", name}, {"banner", banner(program, context, "# ", "# ", "")}, {"functions_of_c", functions_of_c()}};
-  const std::vector<std::pair<std::string, std::string>> numbers = of_numbers(context.single_error.has_value());
+      {"name", name}, {"banner", banner(program, context, "# ", "# ", "")}, {"functions_of_c", c_function_declarations()}};
+  const std::vector<std::pair<std::string, std::string>> numbers = number_values(context.single_error.has_value());
   values.insert(values.end(), numbers.begin(), numbers.end());
-  files.push_back({name + "_simulate.c", rendered(skeleton::python_simulate_c, values, {})});
-  files.push_back({module_name(context.id) + ".py", rendered(skeleton::python_model_py, values, {})});
+  files.push_back({name + "_simulate.c", render_template(skeleton::python_simulate_c, values, {})});
+  files.push_back({module_name(context.id) + ".py", render_template(skeleton::python_model_py, values, {})});
   if (context.run) {
     files.push_back(
-        {name + "_run.cpp", rendered(skeleton::python_run_cpp,
+        {name + "_run.cpp", render_template(skeleton::python_run_cpp,
                                      {{"banner", banner(program, context, "// ", "// ", "")}, {"name", name}}, {})});
   }
   return files;

@@ -174,7 +174,7 @@ std::string beyond_text(const std::vector<std::uint32_t>& coordinates) {
                      any);
 }
 
-std::string problem_text(const RunText& run) {
+std::string problem_text(const RunDescription& run) {
   const Problem& p = *run.problem;
   Statements s("problem");
   s.set("t0", p.t0);
@@ -233,7 +233,7 @@ std::vector<EmittedFile> emit_run_header(const program::Program& program, const 
     return std::isinf(r.lower) || std::isinf(r.upper);
   });
   return {{name + "_run.hpp",
-           rendered(skeleton::cpp_run_hpp,
+           render_template(skeleton::cpp_run_hpp,
                     {{"name", name},
                      {"banner", banner(program, context, "// ", "// ", "")},
                      {"code", code_text(program, *problem.code, name)},

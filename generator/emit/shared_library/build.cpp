@@ -47,7 +47,7 @@ bool runs(const std::vector<std::string>& command, std::string& version) {
   if (command.empty()) return false;
   std::vector<std::string> question = command;
   question.push_back("--version");
-  const Finished finished = run_process(question);
+  const ProcessResult finished = run_process(question);
   version = finished.output;
   return finished.started && finished.status == 0;
 }
@@ -109,7 +109,7 @@ void compile_into(const fs::path& folder, const Compiler& compiler, const Recipe
        {(folder / recipe.files.front().first).string(), std::string("-o"), library.string()})
     command.push_back(argument);
   command.insert(command.end(), recipe.libraries.begin(), recipe.libraries.end());
-  const Finished finished = run_process(command, recipe.interrupt);
+  const ProcessResult finished = run_process(command, recipe.interrupt);
   if (finished.interrupted)
     throw Error("compile", {}, "interrupted during compilation", "nothing was computed that could be kept",
                 ErrorKind::numerical);
@@ -140,7 +140,7 @@ void put_in_place(const fs::path& made, const fs::path& entry, const std::string
 
 }  // namespace
 
-Built build_library(const Recipe& recipe, const std::function<void(const std::string& path)>& examine) {
+BuiltLibrary build_library(const Recipe& recipe, const std::function<void(const std::string& path)>& examine) {
   const Compiler compiler = find_compiler(recipe);
   std::string key;
   for (const auto& [name, text] : recipe.files) key += text + '\0';
@@ -151,12 +151,12 @@ Built build_library(const Recipe& recipe, const std::function<void(const std::st
   const fs::path entry = cache.path / model::content_hash(key);
   const std::string file = recipe.name + ".so";
   const std::string library = (entry / file).string();
-  Built built{library, true, 0, cache.passing, cache.why};
+  BuiltLibrary built{library, true, 0, cache.scratch, cache.reason};
 
-  if (!cache.passing && is_whole(entry, recipe.name)) return built;
-  if (!cache.passing) clear_leftovers(cache.path, workplace_name);
+  if (!cache.scratch && is_whole(entry, recipe.name)) return built;
+  if (!cache.scratch) clear_leftovers(cache.path, scratch_prefix);
   try {
-    const Workplace workplace(cache.path, workplace_name);
+    const ScratchFolder workplace(cache.path, scratch_prefix);
     const auto begin = std::chrono::steady_clock::now();
     compile_into(workplace.path(), compiler, recipe);
     built.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -31,12 +31,12 @@ fs::path temporary_folder() {
   return !named.empty() && ::access(named.c_str(), W_OK | X_OK) == 0 ? named : fs::path("/tmp");
 }
 
-struct Wish {
+struct RequestedFolder {
   fs::path path;
   bool by_name = true;  // a folder that this program created for itself
 };
 
-Wish wished() {
+RequestedFolder requested_folder() {
   if (const std::string own = environment("EOMGEN_CACHE_DIR"); !own.empty()) return {own, false};
   if (const std::string xdg = environment("XDG_CACHE_HOME"); !xdg.empty()) return {fs::path(xdg) / "eomgen"};
   if (const std::string home = environment("HOME"); !home.empty()) return {fs::path(home) / ".cache" / "eomgen"};
@@ -44,7 +44,7 @@ Wish wished() {
 }
 
 /// The reason why other users may have written to this folder; empty if they cannot.
-std::string distrust(const fs::path& folder) {
+std::string distrust_reason(const fs::path& folder) {
   struct stat found {};
   if (::lstat(folder.c_str(), &found) != 0)
     return std::string("it cannot be looked at: ") + std::system_category().message(errno);
@@ -67,7 +67,7 @@ std::string distrust(const fs::path& folder) {
 
 }  // namespace
 
-Workplace::Workplace(const fs::path& parent, const std::string& name) {
+ScratchFolder::ScratchFolder(const fs::path& parent, const std::string& name) {
   std::string place = (parent / (name + "XXXXXX")).string();
   if (::mkdtemp(place.data()) == nullptr)
     throw std::system_error(errno, std::generic_category(), "cannot make a folder in " + parent.string());
@@ -76,25 +76,25 @@ Workplace::Workplace(const fs::path& parent, const std::string& name) {
   if (lock_ >= 0) ::flock(lock_, LOCK_EX | LOCK_NB);
 }
 
-Workplace::~Workplace() {
+ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
   if (lock_ >= 0) ::close(lock_);
 }
 
 CacheFolder cache_folder() {
-  const Wish wish = wished();
-  fs::path folder = wish.path;
+  const RequestedFolder requested = requested_folder();
+  fs::path folder = requested.path;
   if (!folder.has_filename()) folder = folder.parent_path();  // trailing slash
   struct stat found {};
   if (::lstat(folder.c_str(), &found) != 0) {
     std::error_code failed;
     if (folder.has_parent_path()) fs::create_directories(folder.parent_path(), failed);
     if (failed || (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)) fail(folder);
-  } else if (wish.by_name && S_ISDIR(found.st_mode) && found.st_uid == ::geteuid() && (found.st_mode & 0022) == 0) {
+  } else if (requested.by_name && S_ISDIR(found.st_mode) && found.st_uid == ::geteuid() && (found.st_mode & 0022) == 0) {
     ::chmod(folder.c_str(), 0700);  // created by an earlier version: readable by others, not writable
   }
-  std::string why = distrust(folder);
+  std::string why = distrust_reason(folder);
   if (why.empty()) {
     if (::access(folder.c_str(), W_OK | X_OK) != 0) fail(folder);
     return {folder, nullptr, ""};
@@ -102,8 +102,8 @@ CacheFolder cache_folder() {
   try {
     constexpr const char* private_name = "eomgen-private-";
     clear_leftovers(temporary_folder(), private_name);
-    auto passing = std::make_shared<Workplace>(temporary_folder(), private_name);
-    return {passing->path(), passing, fmt::format("the cache folder {} is not used: {}", folder.string(), why)};
+    auto scratch = std::make_shared<ScratchFolder>(temporary_folder(), private_name);
+    return {scratch->path(), scratch, fmt::format("the cache folder {} is not used: {}", folder.string(), why)};
   } catch (const std::system_error&) {
     fail(temporary_folder());
   }
@@ -114,10 +114,10 @@ bool is_own_file(const fs::path& path) {
   return ::lstat(path.c_str(), &found) == 0 && S_ISREG(found.st_mode) && found.st_uid == ::geteuid();
 }
 
-bool is_own_folder(const fs::path& path) { return distrust(path).empty(); }
+bool is_own_folder(const fs::path& path) { return distrust_reason(path).empty(); }
 
 void clear_leftovers(const fs::path& folder, const std::string& name) {
-  constexpr std::time_t just_made = 60;  // s, between creation and locking of a folder
+  constexpr std::time_t creation_grace = 60;  // s, between creation and locking of a folder
   std::error_code none;
   std::vector<fs::path> left;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {
@@ -128,7 +128,7 @@ void clear_leftovers(const fs::path& folder, const std::string& name) {
     const int file = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (file < 0) continue;
     const bool old =
-        ::fstat(file, &found) == 0 && found.st_uid == ::geteuid() && std::time(nullptr) - found.st_mtime > just_made;
+        ::fstat(file, &found) == 0 && found.st_uid == ::geteuid() && std::time(nullptr) - found.st_mtime > creation_grace;
     if (old && ::flock(file, LOCK_EX | LOCK_NB) == 0) fs::remove_all(place, none);
     ::close(file);
   }

@@ -9,13 +9,13 @@
 namespace eomgen::emit {
 
 /// A temporary folder that is locked while it exists and removed with its contents by the destructor.
-class Workplace {
+class ScratchFolder {
  public:
   /// Creates a folder with an unpredictable name in `parent`, accessible to this user only. Throws std::system_error.
-  Workplace(const std::filesystem::path& parent, const std::string& name);
-  ~Workplace();
-  Workplace(const Workplace&) = delete;
-  Workplace& operator=(const Workplace&) = delete;
+  ScratchFolder(const std::filesystem::path& parent, const std::string& name);
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
 
  private:
@@ -25,8 +25,8 @@ class Workplace {
 
 struct CacheFolder {
   std::filesystem::path path;
-  std::shared_ptr<Workplace> passing;  // private replacement for this process if the cache is not trusted
-  std::string why;                     // reason for the replacement
+  std::shared_ptr<ScratchFolder> scratch;  // private replacement for this process if the cache is not trusted
+  std::string reason;                     // reason for the replacement
 };
 
 /// The cache folder: $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen, ~/.cache/eomgen, or eomgen-UID in the temporary folder.
@@ -41,6 +41,6 @@ bool is_own_folder(const std::filesystem::path& path);
 /// Removes folders with the prefix `name` that killed runs left behind.
 void clear_leftovers(const std::filesystem::path& folder, const std::string& name);
 
-inline constexpr const char* workplace_name = "make-";
+inline constexpr const char* scratch_prefix = "make-";
 
 }  // namespace eomgen::emit

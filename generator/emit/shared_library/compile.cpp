@@ -4,7 +4,7 @@
 
 namespace eomgen::emit {
 
-Compiled compile_and_load(const std::string& c_source, const std::string& header, const std::string& name,
+CompiledModel compile_and_load(const std::string& c_source, const std::string& header, const std::string& name,
                           const std::atomic<bool>* interrupt) {
   Recipe recipe;
   recipe.name = name;
@@ -17,7 +17,7 @@ Compiled compile_and_load(const std::string& c_source, const std::string& header
   recipe.remedy = "check the compiler (EOMGEN_CC, CC); if it is in order, please report the model";
   recipe.interrupt = interrupt;
   // The library is loaded before it enters the cache: code that fails its self-test is never cached.
-  const Built built = build_library(recipe, [&name](const std::string& path) { LoadedModel(path, name); });
+  const BuiltLibrary built = build_library(recipe, [&name](const std::string& path) { LoadedModel(path, name); });
   return {LoadedModel(built.path, name), built.path, built.cached, built.seconds, built.folder, built.note};
 }
 

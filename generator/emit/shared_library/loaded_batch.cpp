@@ -83,7 +83,7 @@ LoadedBatch compile_and_load_batch(const std::vector<std::pair<std::string, std:
   recipe.what = "emitted batches";
   recipe.remedy = "check the compiler (EOMGEN_CC, CC); if it is in order, please report the model";
   recipe.interrupt = interrupt;
-  const Built built = build_library(recipe, [&name](const std::string& path) { LoadedBatch(path, name); });
+  const BuiltLibrary built = build_library(recipe, [&name](const std::string& path) { LoadedBatch(path, name); });
   LoadedBatch loaded(built.path, name);
   loaded.folder = built.folder;
   return loaded;

@@ -40,7 +40,7 @@ class LoadedBatch {
   BatchJacobian jac = nullptr;                   // null if not emitted or too large for lanes
   BatchSeries taylor = nullptr;
   int width = 1;                                 // number of lanes
-  std::shared_ptr<const Workplace> folder = {};  // private folder of this process, if used
+  std::shared_ptr<const ScratchFolder> folder = {};  // private folder of this process, if used
 
  private:
   struct Close {

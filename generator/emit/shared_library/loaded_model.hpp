@@ -30,14 +30,14 @@ class LoadedModel : public abi::CompiledFunctions {
   void* handle_ = nullptr;
 };
 
-class Workplace;
+class ScratchFolder;
 
-struct Compiled {
+struct CompiledModel {
   LoadedModel model;
   std::string path;                              // path of the library in the cache
   bool cached = false;                           // true if it was cached already
   double seconds = 0;                            // time of the compiler
-  std::shared_ptr<const Workplace> folder = {};  // private folder of this process, if used
+  std::shared_ptr<const ScratchFolder> folder = {};  // private folder of this process, if used
   std::string note = {};                         // reason for the private folder
 };
 
@@ -45,7 +45,7 @@ struct Compiled {
 /// cache: $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen or ~/.cache/eomgen. The compiler: $EOMGEN_CC, $CC, cc or gcc.
 /// Throws Error{ErrorKind::tool}: no compiler (with the install command), or a compiler failure (with its output).
 /// `interrupt` terminates the compiler.
-Compiled compile_and_load(const std::string& c_source, const std::string& header, const std::string& name,
+CompiledModel compile_and_load(const std::string& c_source, const std::string& header, const std::string& name,
                           const std::atomic<bool>* interrupt = nullptr);
 
 }  // namespace eomgen::emit

@@ -16,11 +16,11 @@ extern char** environ;
 namespace eomgen::emit {
 namespace {
 
-constexpr int patience = 50;  // ms, polling interval for interruptions
+constexpr int poll_interval = 50;  // ms, polling interval for interruptions
 
 /// Whether this program handles Ctrl-C. If so, the child gets its own process group, so that all of it can be
 /// terminated.
-bool outlives_interrupts() {
+bool handles_interrupts() {
   struct sigaction now {};
   return ::sigaction(SIGINT, nullptr, &now) == 0 && now.sa_handler != SIG_DFL;
 }
@@ -43,7 +43,7 @@ bool read_all(int pipe, std::string& output, const std::atomic<bool>* interrupt)
   while (true) {
     if (interrupt != nullptr && *interrupt) return false;
     pollfd waiting{pipe, POLLIN, 0};
-    const int ready = ::poll(&waiting, 1, interrupt == nullptr ? -1 : patience);
+    const int ready = ::poll(&waiting, 1, interrupt == nullptr ? -1 : poll_interval);
     if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
     const ssize_t n = ::read(pipe, buffer.data(), buffer.size());
     if (n < 0 && errno == EINTR) continue;
@@ -57,7 +57,7 @@ void end(pid_t child, bool own_group) {
   ::kill(target, SIGTERM);  // lets compilers remove their temporary files
   for (int k = 0; k < 4; ++k) {
     if (::waitpid(child, nullptr, WNOHANG) != 0) break;
-    ::poll(nullptr, 0, patience);
+    ::poll(nullptr, 0, poll_interval);
   }
   ::kill(target, SIGKILL);
   while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
@@ -66,8 +66,8 @@ void end(pid_t child, bool own_group) {
 
 }  // namespace
 
-Finished run_process(const std::vector<std::string>& arguments, const std::atomic<bool>* interrupt) {
-  Finished result;
+ProcessResult run_process(const std::vector<std::string>& arguments, const std::atomic<bool>* interrupt) {
+  ProcessResult result;
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) return result;
   posix_spawn_file_actions_t actions;
@@ -75,7 +75,7 @@ Finished run_process(const std::vector<std::string>& arguments, const std::atomi
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, pipe[1], STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, pipe[1], STDERR_FILENO);
-  const bool own_group = interrupt != nullptr && outlives_interrupts();
+  const bool own_group = interrupt != nullptr && handles_interrupts();
   posix_spawnattr_t attributes;
   set_attributes(attributes, own_group);
   std::vector<char*> argv;

@@ -8,7 +8,7 @@
 
 namespace eomgen::emit {
 
-struct Finished {
+struct ProcessResult {
   bool started = false;  // false: the program was not found
   int status = 0;        // exit status; 128 + signal after a signal
   std::string output;    // standard output and standard error
@@ -17,6 +17,6 @@ struct Finished {
 
 /// Runs `arguments[0]`, which is searched in PATH. Standard input is empty. If `interrupt` is set meanwhile, the
 /// process and its children are terminated.
-Finished run_process(const std::vector<std::string>& arguments, const std::atomic<bool>* interrupt = nullptr);
+ProcessResult run_process(const std::vector<std::string>& arguments, const std::atomic<bool>* interrupt = nullptr);
 
 }  // namespace eomgen::emit

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Comparison of the unrolled solve with Eigen at random points.
-#include "program/solve.hpp"
+#include "program/linear_solver.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 
 #include "error.hpp"
 #include "program/abi_functions.hpp"
-#include "program/constrained_solve.hpp"
+#include "program/null_space_solver.hpp"
 #include "program/systems.hpp"
 #include "program/values.hpp"
 #include "support/tolerances.hpp"
@@ -82,13 +82,13 @@ TEST_CASE("solve: with constraints accelerations and multipliers solve the KKT s
 }
 
 TEST_CASE("solve: a massless coordinate that a constraint determines leaves the multipliers unchanged") {
-  const auto system = massless();
+  const auto system = massless_coordinate();
   CHECK(program::is_singular_everywhere(*system.dag, system.M, 3));
   check_against_eigen(system);
 }
 
 TEST_CASE("solve: an undetermined massless coordinate is rejected") {
-  auto system = massless();
+  auto system = massless_coordinate();
   system.active.clear();
   system.A.clear();
   system.psi.clear();
@@ -99,7 +99,7 @@ TEST_CASE("solve: an undetermined massless coordinate is rejected") {
 
 TEST_CASE("solve: structural zeros of M cost no operations") {
   // Two independent pendulums: no operation couples them.
-  const Maker k;
+  const SystemBuilder k;
   const Scalar half = k.number(1, 2), l = k.p(0), g = k.p(1);
   Scalar T = k.number(0), V = k.number(0);
   for (std::uint32_t i = 0; i < 2; ++i) {
@@ -115,7 +115,7 @@ TEST_CASE("solve: structural zeros of M cost no operations") {
 TEST_CASE("solve: the order of elimination preserves the zeros of an arrow-shaped M") {
   // One cart with four pendulums: M is an arrow matrix. In minimum degree order the pendulums come first and there is
   // no fill-in.
-  const Maker k;
+  const SystemBuilder k;
   const Scalar half = k.number(1, 2), m = k.p(0), l = k.p(1), g = k.p(2);
   Scalar T = half * m * k.q(0, 1) * k.q(0, 1), V = k.number(0);
   constexpr std::uint32_t pendulums = 4;
@@ -153,7 +153,7 @@ TEST_CASE("solve: the pivot test detects exactly the singular matrices") {
 TEST_CASE(
     "the null space and Chaplygin forms agree with the full system, multipliers included, also without inertia in one "
     "direction") {
-  const Maker k;
+  const SystemBuilder k;
   const auto square = [](Scalar x) { return x * x; };
   for (const bool massless : {false, true}) {
     Scalar T = k.number(1, 2) * (k.p(0) * square(k.q(0, 1)) + k.p(1) * square(k.q(1, 1)) +
@@ -175,7 +175,7 @@ TEST_CASE(
 
 TEST_CASE("dependent columns are chosen at points on the constraints") {
   // In the row (q1, q0 + p0) the first entry is shorter, and it is 0 wherever q1 (q0 + p0) = 0 holds near q1 = 0.
-  const Maker k;
+  const SystemBuilder k;
   Scalar T = k.number(0);
   for (std::uint32_t i = 0; i < 3; ++i) T = T + k.p(1) * k.q(i, 1) * k.q(i, 1);
   system::EquationSystem system = lagrange(k, 3, T, k.q(0) + k.q(2), {k.number(0), k.number(0), k.number(0)});
@@ -194,7 +194,7 @@ TEST_CASE("dependent columns are chosen at points on the constraints") {
 
 TEST_CASE("rows that are dependent everywhere on the constraints have no dependent columns") {
   // Elsewhere every determinant is a multiple of the first psi.
-  const Maker k;
+  const SystemBuilder k;
   Scalar T = k.number(0);
   for (std::uint32_t i = 0; i < 4; ++i) T = T + k.p(0) * k.q(i, 1) * k.q(i, 1);
   const Scalar none = k.number(0), psi = k.q(2) + k.q(0) * k.q(0);
@@ -205,13 +205,13 @@ TEST_CASE("rows that are dependent everywhere on the constraints have no depende
   for (const system::Form form : {system::Form::nullspace, system::Form::chaplygin}) {
     system.form = form;
     CHECK_FALSE(program::form_applies(system, form, false));
-    CHECK_THROWS_AS(program::make_solve(system, program::Ties::ascending), Error);
+    CHECK_THROWS_AS(program::make_linear_solver(system, program::Ties::ascending), Error);
   }
 }
 
 TEST_CASE(
     "forms that hold everywhere: blocks with one column more than rows, or with a determinant that cannot vanish") {
-  const Maker k;
+  const SystemBuilder k;
   const auto square = [](Scalar x) { return x * x; };
   const Scalar T = square(k.q(0, 1)) + square(k.q(1, 1)) + square(k.q(2, 1));
   system::EquationSystem two = lagrange(k, 3, T, k.number(0), {k.number(0), k.number(0), k.number(0)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "print/latex_text.hpp"
+#include "print/latex_writer.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -11,7 +11,7 @@ namespace {
 using reading::Formula;
 
 constexpr std::size_t page_width = 78;    // visible characters
-constexpr std::size_t most_lines = 24;    // maximum of formulas other than equations
+constexpr std::size_t max_lines = 24;    // maximum of formulas other than equations
 constexpr std::size_t longest_word = 24;  // longer words may be broken
 
 constexpr const char* begin = R"(\documentclass[10pt,a4paper,fleqn]{article}
@@ -40,7 +40,7 @@ bool continues(char c) { return (static_cast<unsigned char>(c) & 0xc0u) == 0x80u
 
 }  // namespace
 
-std::string words(std::string_view text) {
+std::string escape_user_text(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size();) {
     if (is_blank(text[i])) {
@@ -90,14 +90,14 @@ std::string enumeration(const std::vector<std::string>& parts) {
   return result;
 }
 
-LatexText::LatexText(const Notation& notation)
-    : notation_(notation), wide_(latex_style(page_width)), endless_(latex_style(std::string::npos)) {}
+LatexWriter::LatexWriter(const Notation& notation)
+    : notation_(notation), wide_(latex_style(page_width)), unbroken_(latex_style(std::string::npos)) {}
 
-void LatexText::title(const std::string& text) {
-  text_ += "\\begin{center}\n\\LARGE " + words(text) + "\n\\end{center}\n";
+void LatexWriter::title(const std::string& text) {
+  text_ += "\\begin{center}\n\\LARGE " + escape_user_text(text) + "\n\\end{center}\n";
 }
 
-std::vector<std::string> LatexText::lines(const Formula& formula, std::size_t width) const {
+std::vector<std::string> LatexWriter::broken_lines(const Formula& formula, std::size_t width) const {
   static const std::string opening = "\\begin{aligned}[t]\n", closing = "\n\\end{aligned}", between = " \\\\\n";
   std::string text = print(formula, notation_, *latex_style(width));
   if (!text.starts_with(opening)) return {"& " + text};
@@ -110,12 +110,12 @@ std::vector<std::string> LatexText::lines(const Formula& formula, std::size_t wi
   return result;
 }
 
-void LatexText::display(const std::vector<Formula>& formulas) {
+void LatexWriter::display(const std::vector<Formula>& formulas) {
   std::vector<std::string> all;
   for (const Formula& f : formulas) {
-    std::vector<std::string> more = lines(f, page_width);
+    std::vector<std::string> more = broken_lines(f, page_width);
     // TeX keeps a whole display in memory, which overflows at some hundred lines.
-    if (!all.empty() && all.size() + more.size() > most_lines) {
+    if (!all.empty() && all.size() + more.size() > max_lines) {
       aligned(all);
       all.clear();
     }
@@ -124,33 +124,33 @@ void LatexText::display(const std::vector<Formula>& formulas) {
   if (!all.empty()) aligned(all);
 }
 
-void LatexText::aligned(const std::vector<std::string>& all) {
+void LatexWriter::aligned(const std::vector<std::string>& all) {
   if (text_.ends_with("\n\n")) text_.pop_back();  // the display belongs to the paragraph
   text_ += "\\begin{align*}\n";
   for (std::size_t i = 0; i < all.size(); ++i) text_ += all[i] + (i + 1 < all.size() ? " \\\\\n" : "\n");
   text_ += "\\end{align*}\n";
 }
 
-void LatexText::numbered(const std::string& label, const Formula& formula) {
+void LatexWriter::numbered_display(const std::string& label, const Formula& formula) {
   constexpr std::size_t room = 8;  // space for the equation number
-  std::vector<std::string> all = lines(formula, page_width - room);
+  std::vector<std::string> all = broken_lines(formula, page_width - room);
   all.back() += " \\tag*{" + label + "}";
   aligned(all);
 }
 
-std::string LatexText::cell(const Formula& formula, std::size_t width) const {
+std::string LatexWriter::table_cell(const Formula& formula, std::size_t width) const {
   return "$\\displaystyle " + print(formula, notation_, *latex_style(width)) + "$";
 }
 
-std::string LatexText::too_long(const Formula& formula) const {
-  const std::size_t count = lines(formula, page_width).size();
-  return count <= most_lines ? "" : "takes " + std::to_string(count) + " lines";
+std::string LatexWriter::reason_too_long(const Formula& formula) const {
+  const std::size_t count = broken_lines(formula, page_width).size();
+  return count <= max_lines ? "" : "takes " + std::to_string(count) + " lines";
 }
 
-bool LatexText::fits_on_a_line(const Formula& formula) const {
-  return wide_->fits(print(formula, notation_, *endless_));
+bool LatexWriter::fits_on_a_line(const Formula& formula) const {
+  return wide_->fits(print(formula, notation_, *unbroken_));
 }
 
-std::string LatexText::finish() { return std::string(begin) + packages_ + preamble + text_ + "\\end{document}\n"; }
+std::string LatexWriter::finish() { return std::string(begin) + packages_ + preamble + text_ + "\\end{document}\n"; }
 
 }  // namespace eomgen::print

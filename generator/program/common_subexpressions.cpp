@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "program/frequency.hpp"
+#include "program/frequent_pair_queue.hpp"
 #include "symbolic/small_numbers.hpp"
 
 namespace eomgen::program {
@@ -35,10 +35,10 @@ class Numbers {
 
 class ProductSharing {
  public:
-  ProductSharing(Polynomials& graph, std::uint64_t seed) : graph_(graph), pairs_(seed) {}
+  ProductSharing(PolynomialGraph& graph, std::uint64_t seed) : graph_(graph), pairs_(seed) {}
 
   void run() {
-    for (const NodeId id : graph_.order()) {
+    for (const NodeId id : graph_.topological_order()) {
       if (graph_[id].kind != Node::Kind::sum) continue;
       for (std::size_t k = 0; k < graph_[id].terms.size(); ++k) add_row(id, k);
     }
@@ -143,8 +143,8 @@ class ProductSharing {
     }
   }
 
-  Polynomials& graph_;
-  Frequency pairs_;
+  PolynomialGraph& graph_;
+  FrequentPairQueue pairs_;
   Numbers numbers_;
   std::vector<Row> rows_;
   std::vector<Counted> distinct_;  // for the current row
@@ -152,10 +152,10 @@ class ProductSharing {
 
 class SumSharing {
  public:
-  SumSharing(Polynomials& graph, std::uint64_t seed) : graph_(graph), pairs_(seed) {}
+  SumSharing(PolynomialGraph& graph, std::uint64_t seed) : graph_(graph), pairs_(seed) {}
 
   void run() {
-    for (const NodeId id : graph_.order()) {
+    for (const NodeId id : graph_.topological_order()) {
       const Node& node = graph_[id];
       if (node.kind != Node::Kind::sum || node.terms.size() < 2 || node.terms.size() > longest) continue;
       Row row{id, {}};
@@ -248,8 +248,8 @@ class SumSharing {
     }
   }
 
-  Polynomials& graph_;
-  Frequency pairs_;
+  PolynomialGraph& graph_;
+  FrequentPairQueue pairs_;
   Numbers numbers_;
   std::vector<Monomial> monomials_;
   NodeIndex index_;
@@ -258,7 +258,7 @@ class SumSharing {
 
 }  // namespace
 
-void share_products(Polynomials& graph, std::uint64_t seed) { ProductSharing(graph, seed).run(); }
-void share_sums(Polynomials& graph, std::uint64_t seed) { SumSharing(graph, seed).run(); }
+void share_products(PolynomialGraph& graph, std::uint64_t seed) { ProductSharing(graph, seed).run(); }
+void share_sums(PolynomialGraph& graph, std::uint64_t seed) { SumSharing(graph, seed).run(); }
 
 }  // namespace eomgen::program

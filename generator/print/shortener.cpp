@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "print/shorten.hpp"
+#include "print/shortener.hpp"
 
 #include <algorithm>
 
@@ -35,7 +35,7 @@ Formula Shortener::name_of(const Formula& sum) {
   const std::string text = text_(sum);
   const auto known = std::find(texts_.begin(), texts_.end(), text);
   const auto index = static_cast<std::size_t>(known - texts_.begin());
-  if (known == texts_.end()) texts_.push_back(text), meanings_.push_back(sum);
+  if (known == texts_.end()) texts_.push_back(text), definitions_.push_back(sum);
   return abbreviation(index);
 }
 

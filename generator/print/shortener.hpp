@@ -22,7 +22,7 @@ class Shortener {
   reading::Formula operator()(reading::Formula term);
 
   /// The abbreviated sums so far; S_1 is the first.
-  const std::vector<reading::Formula>& meanings() const { return meanings_; }
+  const std::vector<reading::Formula>& definitions() const { return definitions_; }
   static reading::Formula abbreviation(std::size_t index);
 
  private:
@@ -30,7 +30,7 @@ class Shortener {
 
   std::function<std::string(const reading::Formula&)> text_;
   std::function<bool(const std::string&)> fits_;
-  std::vector<reading::Formula> meanings_;
+  std::vector<reading::Formula> definitions_;
   std::vector<std::string> texts_;  // texts of the sums: equal sums share a name
 };
 

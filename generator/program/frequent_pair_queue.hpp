@@ -13,9 +13,9 @@
 namespace eomgen::program {
 
 /// Pairs are 64-bit keys that occur in rows. `seed` breaks ties; the order of the hash table has no influence.
-class Frequency {
+class FrequentPairQueue {
  public:
-  explicit Frequency(std::uint64_t seed) : seed_(seed), entries_(std::size_t{1} << first_bits) {}
+  explicit FrequentPairQueue(std::uint64_t seed) : seed_(seed), entries_(std::size_t{1} << first_bits) {}
 
   void add(std::uint64_t key, std::uint32_t row, int count = 1) {
     Entry& entry = at(key);

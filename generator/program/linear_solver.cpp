@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "program/solve.hpp"
+#include "program/linear_solver.hpp"
 
 #include <cln/real.h>
 
@@ -9,7 +9,7 @@
 
 #include "error.hpp"
 #include "numeric/elimination.hpp"
-#include "program/constrained_solve.hpp"
+#include "program/null_space_solver.hpp"
 #include "program/polynomials.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/sample.hpp"
@@ -56,7 +56,7 @@ std::vector<bool> within_singular_blocks(const Dag& dag, const std::vector<Ref>&
 
 }  // namespace
 
-Solve::Solve(const system::EquationSystem& system, Ties ties)
+LdlSolver::LdlSolver(const system::EquationSystem& system, Ties ties)
     : dag_(system.dag),
       n_(system.free.size()),
       m_(system.active.size()),
@@ -97,11 +97,11 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
 }
 
 // M + A^T S A with the selected rows of A.
-void Solve::augment(std::vector<Ref>& M, const std::vector<bool>& taken) {
+void LdlSolver::augment(std::vector<Ref>& M, const std::vector<bool>& taken) {
   Dag& dag = *dag_;
   S_.assign(m_, dag.zero());
   for (std::size_t c = 0; c < m_; ++c) {
-    if (taken[c]) S_[c] = size_of_row(M, c);
+    if (taken[c]) S_[c] = constraint_scale(M, c);
   }
   for (std::size_t i = 0; i < n_; ++i) {
     for (std::size_t j = 0; j < n_; ++j) {
@@ -113,7 +113,7 @@ void Solve::augment(std::vector<Ref>& M, const std::vector<bool>& taken) {
 }
 
 // The sum of the inertias of the coordinates in a constraint; 1 if none of them has inertia.
-Ref Solve::size_of_row(const std::vector<Ref>& M, std::size_t c) const {
+Ref LdlSolver::constraint_scale(const std::vector<Ref>& M, std::size_t c) const {
   Dag& dag = *dag_;
   Ref sum = dag.zero();
   for (std::size_t i = 0; i < n_; ++i) {
@@ -122,33 +122,33 @@ Ref Solve::size_of_row(const std::vector<Ref>& M, std::size_t c) const {
   return dag.is_zero(sum) ? dag.one() : sum;
 }
 
-std::vector<Ref> Solve::forward(const std::vector<Ref>& r) const {
+std::vector<Ref> LdlSolver::forward(const std::vector<Ref>& r) const {
   return mass_->forward(quasi_ ? symbolic::multiply_transposed(*dag_, quasi_->S_inverse, r) : r);
 }
 
-std::vector<Ref> Solve::backward(const std::vector<Ref>& z) const {
+std::vector<Ref> LdlSolver::backward(const std::vector<Ref>& z) const {
   const std::vector<Ref> x = mass_->backward(z);
   return quasi_ ? symbolic::multiply(*dag_, quasi_->S_inverse, x) : x;
 }
 
-std::pair<std::vector<Ref>, std::vector<Ref>> Solve::motion() const {
+std::pair<std::vector<Ref>, std::vector<Ref>> LdlSolver::solve_accelerations() const {
   std::vector<Ref> c;
   for (const Ref gamma : gamma_) c.push_back(dag_->neg(gamma));
-  if (quasi_) return from(mass_->forward(quasi_->f), c);
+  if (quasi_) return solve_from_forward(mass_->forward(quasi_->f), c);
   return (*this)(f_, c);
 }
 
-std::pair<std::vector<Ref>, std::vector<Ref>> Solve::operator()(std::vector<Ref> r, const std::vector<Ref>& c) const {
+std::pair<std::vector<Ref>, std::vector<Ref>> LdlSolver::operator()(std::vector<Ref> r, const std::vector<Ref>& c) const {
   Dag& dag = *dag_;
   if (augmented_) {
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t k = 0; k < m_; ++k) r[i] = dag.add(r[i], dag.mul(A_[k * n_ + i], dag.mul(S_[k], c[k])));
     }
   }
-  return from(forward(r), c);
+  return solve_from_forward(forward(r), c);
 }
 
-std::pair<std::vector<Ref>, std::vector<Ref>> Solve::from(std::vector<Ref> z, const std::vector<Ref>& c) const {
+std::pair<std::vector<Ref>, std::vector<Ref>> LdlSolver::solve_from_forward(std::vector<Ref> z, const std::vector<Ref>& c) const {
   Dag& dag = *dag_;
   std::vector<Ref> lambda;
   if (m_ > 0) {
@@ -162,12 +162,12 @@ std::pair<std::vector<Ref>, std::vector<Ref>> Solve::from(std::vector<Ref> z, co
   return {backward(z), lambda};
 }
 
-std::unique_ptr<LinearSolve> make_solve(const system::EquationSystem& system, Ties ties) {
-  if (system.form == system::Form::multipliers) return std::make_unique<Solve>(system, ties);
-  return std::make_unique<ConstrainedSolve>(system, ties);
+std::unique_ptr<LinearSolver> make_linear_solver(const system::EquationSystem& system, Ties ties) {
+  if (system.form == system::Form::multipliers) return std::make_unique<LdlSolver>(system, ties);
+  return std::make_unique<NullSpaceSolver>(system, ties);
 }
 
-std::vector<Pivot> Solve::pivots() const {
+std::vector<Pivot> LdlSolver::pivots() const {
   std::vector<Pivot> result = mass_->pivots();
   if (schur_) result.insert(result.end(), schur_->pivots().begin(), schur_->pivots().end());
   return result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "program/series_code.hpp"
+#include "program/series_builder.hpp"
 
 #include <algorithm>
 
@@ -16,14 +16,14 @@ constexpr Operand time_rate{Slot::side, 0}, one_over_k{Slot::side, 1}, order_k{S
 
 }  // namespace
 
-SeriesCode::SeriesCode(const Function& rhs) {
+SeriesBuilder::SeriesBuilder(const Function& rhs) {
   start_.name = "taylor_start";
   next_.name = "taylor_next";
   start_.constants = rhs.constants;
   start_.uses_input = rhs.uses_input;
 }
 
-Series SeriesCode::read(const Operand& operand) const {
+Series SeriesBuilder::read(const Operand& operand) const {
   Series series;
   switch (operand.slot) {
     case Slot::value: series = values_[operand.index]; break;
@@ -31,10 +31,10 @@ Series SeriesCode::read(const Operand& operand) const {
     case Slot::time: series = {true, {Slot::time, 0}, time_rate}; break;
     default: series.zero = {operand.slot, operand.index};
   }
-  return operand.negated ? minus(series) : series;
+  return operand.negated ? negate(series) : series;
 }
 
-Operand SeriesCode::kept(const Operand& value) {
+Operand SeriesBuilder::start_value(const Operand& value) {
   Operand result = value;
   if (value.slot == Slot::constant) {
     result = constant(next_, start_.constants[value.index]);
@@ -47,32 +47,32 @@ Operand SeriesCode::kept(const Operand& value) {
   return result;
 }
 
-Operand SeriesCode::open(const Operand& a) {
+Operand SeriesBuilder::open_sum(const Operand& a) {
   factors_.push_back({a, {}});
   return {Slot::input, static_cast<std::uint32_t>(factors_.size() - 1)};
 }
 
-Operand SeriesCode::sum(const Operand& a, const Operand& b) {
-  const Operand result = open(a);
-  close(result, b);
+Operand SeriesBuilder::sum(const Operand& a, const Operand& b) {
+  const Operand result = open_sum(a);
+  close_sum(result, b);
   return result;
 }
 
-Operand SeriesCode::weighted(const Series& a) {
-  const auto [at, anew] = weighted_.try_emplace(key(a.next));
+Operand SeriesBuilder::times_order(const Series& a) {
+  const auto [at, anew] = times_order_.try_emplace(key(a.next));
   if (anew) at->second = at_next(Op::mul, {order_k, a.next});
   return at->second;
 }
 
-Operand SeriesCode::unweighted(const Operand& w) { return at_next(Op::mul, {one_over_k, w}); }
+Operand SeriesBuilder::divide_by_order(const Operand& w) { return at_next(Op::mul, {one_over_k, w}); }
 
-void SeriesCode::write_results(const Function& rhs) {
+void SeriesBuilder::write_results(const Function& rhs) {
   for (const Result& result : rhs.results) {
     std::vector<Operand> zero, next;
     for (const Operand& entry : result.entries) {
       const Series series = read(entry);
       zero.push_back(series.zero);
-      next.push_back(series.moves ? series.next : constant(next_, 0));
+      next.push_back(series.varies ? series.next : constant(next_, 0));
     }
     start_.results.push_back({result.name, zero, result.code});
     if (!result.is_test()) next_.results.push_back({result.name, next});
@@ -90,14 +90,14 @@ void SeriesCode::write_results(const Function& rhs) {
 }
 
 /// Resolves an operand of `next` that was created before the length of w was known.
-void SeriesCode::place(Operand& o) const {
+void SeriesBuilder::place(Operand& o) const {
   const auto zeros = static_cast<std::uint32_t>(zeros_.size()), sums = static_cast<std::uint32_t>(factors_.size());
   if (o.slot == Slot::input) o = {Slot::prepared, zeros + o.index, o.negated};
   if (o.slot == Slot::side) o = {Slot::prepared, zeros + sums + o.index, o.negated};
 }
 
 /// Renumbers packs and lanes by adjacency: an added partner may have its angle in another pack.
-void SeriesCode::number_packs() {
+void SeriesBuilder::number_packs() {
   std::uint32_t packs = 0, before = 0;
   std::vector<Operand> angles;
   for (Instruction& instruction : start_.code) {
@@ -113,7 +113,7 @@ void SeriesCode::number_packs() {
   }
 }
 
-Taylor SeriesCode::finished(const Function& rhs) {
+Taylor SeriesBuilder::finished(const Function& rhs) {
   write_results(rhs);
   number_packs();
   for (Instruction& instruction : next_.code)

@@ -9,7 +9,7 @@
 
 #include <memory>
 
-#include "program/solve.hpp"
+#include "program/linear_solver.hpp"
 
 namespace eomgen::program {
 
@@ -24,30 +24,30 @@ std::optional<std::vector<DependentBlock>> dependent_blocks(const system::Equati
 
 /// Whether the form exists for this system; with `everywhere`, whether it also holds wherever the constraints are
 /// independent.
-bool form_applies(const system::EquationSystem& system, system::Form form, bool everywhere);
+bool is_form_applicable(const system::EquationSystem& system, system::Form form, bool everywhere);
 
-class ConstrainedSolve : public LinearSolve {
+class NullSpaceSolver : public LinearSolver {
  public:
-  ConstrainedSolve(const system::EquationSystem& system, Ties ties);
+  NullSpaceSolver(const system::EquationSystem& system, Ties ties);
 
   Unknowns operator()(std::vector<Ref> r, const std::vector<Ref>& c) const override;
-  Unknowns motion() const override;
+  Unknowns solve_accelerations() const override;
   std::vector<Pivot> pivots() const override;
 
  private:
   void add_null_vectors(const DependentBlock& block, bool divided);
-  std::vector<Ref> particular(const std::vector<Ref>& c) const;
+  std::vector<Ref> particular_solution(const std::vector<Ref>& c) const;
   std::vector<Ref> multipliers(const std::vector<Ref>& excess) const;
-  Ref simpler(Ref r) const;
+  Ref simplify_entry(Ref r) const;
 
   std::shared_ptr<Dag> dag_;
   std::size_t n_, m_;
-  bool divided_;  // Chaplygin's form
+  bool uses_quotients_;  // Chaplygin's form
   std::vector<Ref> M_, A_, f_, gamma_;
   std::vector<DependentBlock> blocks_;
-  std::vector<std::vector<Ref>> adjugate_;         // per block, divided by its determinant if divided_
+  std::vector<std::vector<Ref>> adjugate_;         // per block, divided by its determinant if uses_quotients_
   std::vector<std::vector<Ref>> Z_;                // columns
-  std::unique_ptr<Factorisation> reduced_, gram_;  // Z^T M Z; A A^T if not divided_
+  std::unique_ptr<Factorisation> reduced_, gram_;  // Z^T M Z; A A^T if not uses_quotients_
 };
 
 }  // namespace eomgen::program

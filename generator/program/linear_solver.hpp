@@ -31,35 +31,35 @@ using symbolic::Ties;
 using Unknowns = std::pair<std::vector<Ref>, std::vector<Ref>>;
 
 /// The solver of one EquationSystem in one of the forms.
-class LinearSolve {
+class LinearSolver {
  public:
-  virtual ~LinearSolve() = default;
+  virtual ~LinearSolver() = default;
   /// x, lambda of M x = r + A^T lambda, A x = c.
   virtual Unknowns operator()(std::vector<Ref> r, const std::vector<Ref>& c) const = 0;
   /// qddot and lambda of the equations of motion.
-  virtual Unknowns motion() const = 0;
+  virtual Unknowns solve_accelerations() const = 0;
   virtual std::vector<Pivot> pivots() const = 0;
 };
 
 /// Selects the solver by system.form.
-std::unique_ptr<LinearSolve> make_solve(const system::EquationSystem& system, Ties ties);
+std::unique_ptr<LinearSolver> make_linear_solver(const system::EquationSystem& system, Ties ties);
 
 /// Solves one EquationSystem for any right-hand side by LDL^T factorisation.
-class Solve : public LinearSolve {
+class LdlSolver : public LinearSolver {
  public:
-  explicit Solve(const system::EquationSystem& system, Ties ties = Ties::ascending);
+  explicit LdlSolver(const system::EquationSystem& system, Ties ties = Ties::ascending);
 
   Unknowns operator()(std::vector<Ref> r, const std::vector<Ref>& c) const override;
-  Unknowns motion() const override;
+  Unknowns solve_accelerations() const override;
   std::vector<Pivot> pivots() const override;
   bool augmented() const { return augmented_; }
 
  private:
   void augment(std::vector<Ref>& M, const std::vector<bool>& taken);
-  Ref size_of_row(const std::vector<Ref>& M, std::size_t c) const;
+  Ref constraint_scale(const std::vector<Ref>& M, std::size_t c) const;
   std::vector<Ref> forward(const std::vector<Ref>& r) const;
   std::vector<Ref> backward(const std::vector<Ref>& z) const;
-  std::pair<std::vector<Ref>, std::vector<Ref>> from(std::vector<Ref> z, const std::vector<Ref>& c) const;
+  std::pair<std::vector<Ref>, std::vector<Ref>> solve_from_forward(std::vector<Ref> z, const std::vector<Ref>& c) const;
 
   std::shared_ptr<Dag> dag_;
   std::size_t n_, m_;

@@ -11,8 +11,8 @@
 
 namespace eomgen::print {
 
-/// Escapes user text. Words that are longer than a line may be broken anywhere.
-std::string words(std::string_view text);
+/// Escapes user text. Callbacks that are longer than a line may be broken anywhere.
+std::string escape_user_text(std::string_view text);
 
 /// kg*m^2/s^2 -> $\mathrm{kg}\,\mathrm{m}^{2}/\mathrm{s}^{2}$; empty if the unit is empty.
 std::string unit_in_latex(const std::string& unit);
@@ -20,9 +20,9 @@ std::string unit_in_latex(const std::string& unit);
 /// "a", "a and b", "a, b and c"
 std::string enumeration(const std::vector<std::string>& parts);
 
-class LatexText {
+class LatexWriter {
  public:
-  explicit LatexText(const Notation& notation);
+  explicit LatexWriter(const Notation& notation);
 
   void title(const std::string& text);
   void section(const std::string& title) { text_ += "\n\\section{" + title + "}\n"; }
@@ -33,22 +33,22 @@ class LatexText {
   /// Adds displayed formulas one below another; page breaks between them are allowed.
   void display(const std::vector<reading::Formula>& formulas);
   /// Adds a displayed formula with an equation number.
-  void numbered(const std::string& label, const reading::Formula& formula);
+  void numbered_display(const std::string& label, const reading::Formula& formula);
 
-  std::string math(const reading::Formula& formula) const { return "$" + print(formula, notation_, *endless_) + "$"; }
+  std::string math(const reading::Formula& formula) const { return "$" + print(formula, notation_, *unbroken_) + "$"; }
   /// LaTeX of a table cell of the given width in characters.
-  std::string cell(const reading::Formula& formula, std::size_t width) const;
+  std::string table_cell(const reading::Formula& formula, std::size_t width) const;
   /// Lines of a display of the given width.
-  std::vector<std::string> lines(const reading::Formula& formula, std::size_t width) const;
+  std::vector<std::string> broken_lines(const reading::Formula& formula, std::size_t width) const;
   /// The reason why a display is too long besides the equations; empty if it is short enough.
-  std::string too_long(const reading::Formula& formula) const;
+  std::string reason_too_long(const reading::Formula& formula) const;
   bool fits_on_a_line(const reading::Formula& formula) const;
 
   /// The number of the next equation.
   std::string next_number() { return "(" + std::to_string(++equations_) + ")"; }
 
   /// Loads a package beyond those of every document.
-  void need(const std::string& package) { packages_ += "\\usepackage{" + package + "}\n"; }
+  void use_package(const std::string& package) { packages_ += "\\usepackage{" + package + "}\n"; }
 
   std::string finish();
 
@@ -56,7 +56,7 @@ class LatexText {
   void aligned(const std::vector<std::string>& lines);
 
   const Notation& notation_;
-  std::unique_ptr<Style> wide_, endless_;
+  std::unique_ptr<Style> wide_, unbroken_;
   std::string text_, packages_;
   std::size_t equations_ = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "program/constrained_solve.hpp"
+#include "program/null_space_solver.hpp"
 
 #include <cln/real.h>
 
@@ -16,7 +16,7 @@
 namespace eomgen::program {
 namespace {
 
-constexpr std::size_t most_rows = 3, most_columns = 12;  // limits of blocks whose determinants are written out
+constexpr std::size_t max_rows = 3, max_columns = 12;  // limits of blocks whose determinants are written out
 constexpr std::size_t term_budget = 60;
 
 using Columns = std::vector<std::size_t>;
@@ -74,7 +74,7 @@ std::vector<std::pair<Columns, Columns>> connected(const Dag& dag, const std::ve
 
 /// Whether r is 0 in many digits at all test points: a determinant whose terms cancel, but leave a rounding error in
 /// binary64.
-bool is_rounding(const Dag& dag, Ref r) {
+bool is_zero_numerically(const Dag& dag, Ref r) {
   const cln::cl_R small = cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 30));
   for (std::uint64_t point = 1; point <= 4; ++point) {
     try {
@@ -88,7 +88,7 @@ bool is_rounding(const Dag& dag, Ref r) {
 }
 
 /// Whether the determinant, relative to the lengths of its rows, is 0 at all test points on the constraints.
-bool vanishes_where_they_hold(const Dag& dag, const std::vector<Ref>& A, std::size_t n, const DependentBlock& block,
+bool vanishes_on_constraints(const Dag& dag, const std::vector<Ref>& A, std::size_t n, const DependentBlock& block,
                               const std::vector<Point>& points) {
   constexpr double rounding = 1e-8;  // for points with errors of 1e-11 and slopes of about 100
   std::vector<Ref> roots{block.determinant};
@@ -118,7 +118,7 @@ std::optional<DependentBlock> block_of(const system::EquationSystem& s, const Co
   Dag& dag = *s.dag;
   const std::vector<Ref>& A = s.A;
   const std::size_t n = s.free.size();
-  if (rows.size() > most_rows || columns.size() > most_columns || columns.size() < rows.size()) return std::nullopt;
+  if (rows.size() > max_rows || columns.size() > max_columns || columns.size() < rows.size()) return std::nullopt;
   std::optional<std::vector<Point>> points;
   std::optional<DependentBlock> best;
   std::size_t best_size = 0;
@@ -131,10 +131,10 @@ std::optional<DependentBlock> block_of(const system::EquationSystem& s, const Co
     block.determinant = determinant(dag, A, n, rows, block.dependent);
     if (dag.is_zero(block.determinant) || is_singular_everywhere(dag, {dag.power(block.determinant, 2)}, 1)) continue;
     const std::size_t size = never_vanishes(dag, block.determinant) ? 0 : dag.reachable({block.determinant}).size();
-    if ((best && size >= best_size) || (size > 0 && is_rounding(dag, block.determinant))) continue;
+    if ((best && size >= best_size) || (size > 0 && is_zero_numerically(dag, block.determinant))) continue;
     if (size > 0) {
       if (!points) points = points_on_constraints(s, rows);
-      if (vanishes_where_they_hold(dag, A, n, block, *points)) continue;
+      if (vanishes_on_constraints(dag, A, n, block, *points)) continue;
     }
     best = std::move(block);
     best_size = size;
@@ -154,7 +154,7 @@ std::optional<std::vector<DependentBlock>> dependent_blocks(const system::Equati
   return result;
 }
 
-bool form_applies(const system::EquationSystem& s, system::Form form, bool everywhere) {
+bool is_form_applicable(const system::EquationSystem& s, system::Form form, bool everywhere) {
   if (form == system::Form::multipliers) return true;
   if (s.active.empty() || s.active.size() >= s.free.size()) return false;
   const auto can_be_left = [](const system::Contact& contact) { return contact.unilateral.has_value(); };
@@ -169,11 +169,11 @@ bool form_applies(const system::EquationSystem& s, system::Form form, bool every
   });
 }
 
-ConstrainedSolve::ConstrainedSolve(const system::EquationSystem& s, Ties ties)
+NullSpaceSolver::NullSpaceSolver(const system::EquationSystem& s, Ties ties)
     : dag_(s.dag),
       n_(s.free.size()),
       m_(s.active.size()),
-      divided_(s.form == system::Form::chaplygin),
+      uses_quotients_(s.form == system::Form::chaplygin),
       M_(s.M),
       A_(s.A),
       f_(s.f),
@@ -192,7 +192,7 @@ ConstrainedSolve::ConstrainedSolve(const system::EquationSystem& s, Ties ties)
     for (const Columns* columns : {&block.dependent, &block.independent}) {
       for (const std::size_t i : *columns) bound[i] = true;
     }
-    add_null_vectors(block, divided_);
+    add_null_vectors(block, uses_quotients_);
   }
   for (std::size_t i = 0; i < n_; ++i) {
     if (bound[i]) continue;
@@ -207,23 +207,23 @@ ConstrainedSolve::ConstrainedSolve(const system::EquationSystem& s, Ties ties)
       for (std::size_t j = 0; j < n_; ++j) column = dag.add(column, dag.mul(M_[i * n_ + j], Z_[b][j]));
       for (std::size_t a = 0; a <= b; ++a) G[a * k + b] = dag.add(G[a * k + b], dag.mul(Z_[a][i], column));
     }
-    for (std::size_t a = 0; a <= b; ++a) G[b * k + a] = G[a * k + b] = simpler(G[a * k + b]);
+    for (std::size_t a = 0; a <= b; ++a) G[b * k + a] = G[a * k + b] = simplify_entry(G[a * k + b]);
   }
   reduced_ = std::make_unique<Factorisation>(dag, std::move(G), k, ties);
-  if (divided_) return;
+  if (uses_quotients_) return;
   std::vector<Ref> gram(m_ * m_, dag.zero());
   for (std::size_t a = 0; a < m_; ++a) {
     for (std::size_t b = 0; b < m_; ++b) {
       for (std::size_t i = 0; i < n_; ++i)
         gram[a * m_ + b] = dag.add(gram[a * m_ + b], dag.mul(A_[a * n_ + i], A_[b * n_ + i]));
-      gram[a * m_ + b] = simpler(gram[a * m_ + b]);
+      gram[a * m_ + b] = simplify_entry(gram[a * m_ + b]);
     }
   }
   gram_ = std::make_unique<Factorisation>(dag, std::move(gram), m_, ties);
 }
 
 // The dependent part of a null vector is -adj(A_d) A_i with det(A_d) at index i; or, divided, with 1 at index i.
-void ConstrainedSolve::add_null_vectors(const DependentBlock& block, bool divided) {
+void NullSpaceSolver::add_null_vectors(const DependentBlock& block, bool divided) {
   Dag& dag = *dag_;
   const std::size_t r = block.rows.size();
   std::vector<Ref> adjugate(r * r);
@@ -244,19 +244,19 @@ void ConstrainedSolve::add_null_vectors(const DependentBlock& block, bool divide
       Ref sum = dag.zero();
       for (std::size_t j = 0; j < r; ++j)
         sum = dag.sub(sum, dag.mul(adjugate[i * r + j], A_[block.rows[j] * n_ + free]));
-      Z_.back()[block.dependent[i]] = simpler(sum);
+      Z_.back()[block.dependent[i]] = simplify_entry(sum);
     }
   }
   adjugate_.push_back(std::move(adjugate));
 }
 
-Ref ConstrainedSolve::simpler(Ref r) const { return symbolic::expand_if_shorter(*dag_, r, term_budget); }
+Ref NullSpaceSolver::simplify_entry(Ref r) const { return symbolic::expand_if_shorter(*dag_, r, term_budget); }
 
 /// p with A p = c: its independent part is 0, or p has minimum norm, which exists wherever the rows are independent.
-std::vector<Ref> ConstrainedSolve::particular(const std::vector<Ref>& c) const {
+std::vector<Ref> NullSpaceSolver::particular_solution(const std::vector<Ref>& c) const {
   Dag& dag = *dag_;
   std::vector<Ref> p(n_, dag.zero());
-  if (!divided_) {
+  if (!uses_quotients_) {
     const std::vector<Ref> y = gram_->backward(gram_->forward(c));
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t k = 0; k < m_; ++k) p[i] = dag.add(p[i], dag.mul(A_[k * n_ + i], y[k]));
@@ -275,10 +275,10 @@ std::vector<Ref> ConstrainedSolve::particular(const std::vector<Ref>& c) const {
 }
 
 /// Solves A^T lambda = excess for lambda.
-std::vector<Ref> ConstrainedSolve::multipliers(const std::vector<Ref>& excess) const {
+std::vector<Ref> NullSpaceSolver::multipliers(const std::vector<Ref>& excess) const {
   Dag& dag = *dag_;
   std::vector<Ref> lambda(m_, dag.zero());
-  if (!divided_) {
+  if (!uses_quotients_) {
     for (std::size_t k = 0; k < m_; ++k) {
       for (std::size_t i = 0; i < n_; ++i) lambda[k] = dag.add(lambda[k], dag.mul(A_[k * n_ + i], excess[i]));
     }
@@ -296,9 +296,9 @@ std::vector<Ref> ConstrainedSolve::multipliers(const std::vector<Ref>& excess) c
   return lambda;
 }
 
-Unknowns ConstrainedSolve::operator()(std::vector<Ref> r, const std::vector<Ref>& c) const {
+Unknowns NullSpaceSolver::operator()(std::vector<Ref> r, const std::vector<Ref>& c) const {
   Dag& dag = *dag_;
-  std::vector<Ref> x = particular(c);
+  std::vector<Ref> x = particular_solution(c);
   const auto excess = [&] {
     std::vector<Ref> result;
     for (std::size_t i = 0; i < n_; ++i) {
@@ -323,24 +323,24 @@ Unknowns ConstrainedSolve::operator()(std::vector<Ref> r, const std::vector<Ref>
   return {std::move(x), std::move(lambda)};
 }
 
-Unknowns ConstrainedSolve::motion() const {
+Unknowns NullSpaceSolver::solve_accelerations() const {
   std::vector<Ref> c;
   for (const Ref gamma : gamma_) c.push_back(dag_->neg(gamma));
   return (*this)(f_, c);
 }
 
 // Pivots of the two factorisations, and the determinants that are divided by, relative to their rows.
-std::vector<Pivot> ConstrainedSolve::pivots() const {
+std::vector<Pivot> NullSpaceSolver::pivots() const {
   Dag& dag = *dag_;
   std::vector<Pivot> result;
   for (const DependentBlock& block : blocks_) {
-    if (!divided_ || never_vanishes(dag, block.determinant)) continue;
+    if (!uses_quotients_ || never_vanishes(dag, block.determinant)) continue;
     Ref scale = dag.zero();
     for (const std::size_t k : block.rows) {
       for (std::size_t i = 0; i < n_; ++i) scale = dag.add(scale, dag.power(A_[k * n_ + i], 2));
     }
     const auto rows = static_cast<long>(block.rows.size());
-    result.push_back({dag.power(block.determinant, 2), dag.power(simpler(scale), rows)});
+    result.push_back({dag.power(block.determinant, 2), dag.power(simplify_entry(scale), rows)});
   }
   result.insert(result.end(), reduced_->pivots().begin(), reduced_->pivots().end());
   if (gram_) result.insert(result.end(), gram_->pivots().begin(), gram_->pivots().end());
