@@ -87,8 +87,8 @@ void by_hand_alone(const Problem& problem) {
 
 void compare(const Problem& problem) {
   const pipeline::Simulation simulation = prepare(problem);
-  const run::Code code = simulation.code.for_run();
-  run::RunRequest request = pipeline::run_request(*simulation.derived, simulation.scene, code, false);
+  const run::Code code = simulation.code.code_for_run();
+  run::RunRequest request = pipeline::make_run_request(*simulation.derived, simulation.scene, code, false);
   request.watch_power = false;
   const run::Scene& scene = simulation.scene;
   reference::Problem posed{simulation.program.functions.front(),
@@ -112,7 +112,7 @@ void compare(const Problem& problem) {
   const ByHand same = by_hand(problem, rounded, start, scene.t1);
   const ByHand truth = by_hand(problem, exact, problem.start(exact), published::number(problem.t1));
 
-  const std::vector<double> sizes = bench::scales(reference);
+  const std::vector<double> sizes = bench::component_scales(reference);
   int both = 33, hand = 33;
   for (std::size_t i = 0; i < posed.x.size(); ++i) {
     const std::string& name = request.state_names[i];

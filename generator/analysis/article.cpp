@@ -59,7 +59,7 @@ void check_against_oracle(Mechanics& m, const DisplayForm& one, const DisplayFor
   // Omits the measured differences: their last digits depend on the machine's word size, and output must be identical.
   findings.certificate = fmt::format("{} at {} random states in {} digits, {} comparisons", certificate.verdict(),
                                      certificate.points, certificate.options.digits, certificate.comparisons.size());
-  for (const std::string& name : certificate.agreeing())
+  for (const std::string& name : certificate.agreeing_forms())
     findings.checked_formulations += (findings.checked_formulations.empty() ? "" : ", ") + name;
 }
 

@@ -28,7 +28,7 @@ void require_smooth(const Simulation& simulation, const run::RunRequest& request
   if (!simulation.program.contacts.empty())
     unsupported("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
   for (const run::Signal& signal : simulation.scene.inputs) {
-    if (signal.moves()) unsupported("an input is an expression of t", "write it into the force, or give it as a table");
+    if (signal.is_varying()) unsupported("an input is an expression of t", "write it into the force, or give it as a table");
   }
   // A scene with a fixed step may not be solvable with adaptive steps.
   run::Integration trial(request, simulation.scene.step > 0 ? "rk4" : "dop853");
@@ -48,7 +48,7 @@ void require_smooth(const Simulation& simulation, const run::RunRequest& request
               end.outcome == eom::Outcome::stopped_by_event ? ErrorKind::input : ErrorKind::numerical);
 }
 
-reference::Problem problem_of(const Simulation& simulation, const run::RunRequest& request,
+reference::Problem make_problem(const Simulation& simulation, const run::RunRequest& request,
                               const std::vector<double>& times) {
   const run::Scene& scene = simulation.scene;
   reference::Problem problem{simulation.program.functions.front(),
@@ -85,12 +85,12 @@ reference::Problem problem_of(const Simulation& simulation, const run::RunReques
 std::vector<std::string> solvers_for(const BenchmarkRequest& options, const run::Scene& scene, const run::Code& code,
                                      std::vector<std::pair<std::string, std::string>>& left_out) {
   std::vector<std::string> chosen;
-  for (const std::string& name : run::solvers_among("bench", options.solvers)) {
-    const eom::Eligibility found = run::eligible(name, scene, code);
+  for (const std::string& name : run::select_solvers("bench", options.solvers)) {
+    const eom::Eligibility found = run::check_eligibility(name, scene, code);
     if (found)
       chosen.push_back(name);
     else if (found.reason == eom::Eligibility::Reason::refused || !options.solvers.empty())
-      left_out.emplace_back(name, run::reason_of(found));  // skips solvers that are made for other models
+      left_out.emplace_back(name, run::ineligibility_reason(found));  // skips solvers that are made for other models
   }
   return chosen;
 }
@@ -123,8 +123,8 @@ Benchmark benchmark(const BenchmarkRequest& asked) {
   const auto show = [&asked](const std::string& what) {
     if (asked.progress) asked.progress(what);
   };
-  const run::Code code = simulation.code.for_run();
-  run::RunRequest request = pipeline::run_request(*simulation.derived, simulation.scene, code, false);
+  const run::Code code = simulation.code.code_for_run();
+  run::RunRequest request = pipeline::make_run_request(*simulation.derived, simulation.scene, code, false);
   request.watch_power = false;
   request.interrupt = asked.interrupt;
   require_smooth(simulation, request);
@@ -134,7 +134,7 @@ Benchmark benchmark(const BenchmarkRequest& asked) {
     times.push_back(scene.t0 + (scene.t1 - scene.t0) * static_cast<double>(k) / looks);
   times.push_back(scene.t1);
 
-  reference::Problem problem = problem_of(simulation, request, times);
+  reference::Problem problem = make_problem(simulation, request, times);
   problem.progress = [&show](double fraction) { show(fmt::format("reference: {:.0f} %", 100 * fraction)); };
   const Clock::time_point start = Clock::now();
   result.reference = reference::solve(problem);
@@ -144,8 +144,8 @@ Benchmark benchmark(const BenchmarkRequest& asked) {
   measured.seconds_limit = asked.seconds;
   if (asked.libraries && asked.solvers.empty()) {
     show("compiling what calls other libraries");
-    bench::LibrariesFound found = bench::find_libraries(request, problem.x, asked.seconds);
-    measured.others = std::move(found.others);
+    bench::FoundLibraries found = bench::find_libraries(request, problem.x, asked.seconds);
+    measured.external_solvers = std::move(found.external_solvers);
     result.left_out.insert(result.left_out.end(), found.left_out.begin(), found.left_out.end());
   }
   measured.progress = show;

@@ -112,7 +112,7 @@ void add_singular(const mechanics::Mechanics& m, Examination& found) {
 }
 
 void add_charts(const mechanics::Mechanics& m, Examination& found) {
-  for (const model::ChartPair& chart : pipeline::charts_of(m)) {
+  for (const model::ChartPair& chart : pipeline::list_charts(m)) {
     ExaminedChart one{chart.of, chart.own, chart.second, {}, chart.refusal};
     for (const std::uint32_t q : chart.angles) one.angles.push_back(m.model->coordinates[q].name);
     found.charts.push_back(std::move(one));

@@ -18,7 +18,7 @@
 namespace eomgen::analysis {
 namespace {
 
-using pipeline::Derived;
+using pipeline::DerivedModel;
 
 /// Labels of the requested constraints; all of the form q = f(t) if none are named.
 std::vector<std::string> chosen_constraints(const mechanics::Mechanics& m, const std::vector<std::string>& names) {
@@ -197,14 +197,14 @@ InverseAnswer along_a_run(const InverseRequest& asked) {
   request.estimate = false;
   request.max_steps = asked.max_steps;
   request.seed = asked.seed;
-  request.prepare = [&](Derived& derived) {
+  request.prepare = [&](DerivedModel& derived) {
     const std::vector<std::string> labels = chosen_constraints(derived.mechanics, asked.constraints);
     for (system::EquationSystem& system : derived.candidates)
       result.forces = force_columns(derived.mechanics, system, labels);
     return result.forces;
   };
   std::vector<std::size_t> index;
-  request.begin = [&](const Derived& derived, const run::Scene& scene, const std::vector<std::string>& names) {
+  request.begin = [&](const DerivedModel& derived, const run::Scene& scene, const std::vector<std::string>& names) {
     result.columns = columns_of(derived.model, result.forces, scene);
     if (asked.begin) asked.begin(scene, result.columns);
     for (const std::string& column : result.columns) {

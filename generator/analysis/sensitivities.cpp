@@ -14,7 +14,7 @@
 namespace eomgen::analysis {
 namespace {
 
-using pipeline::Derived;
+using pipeline::DerivedModel;
 using pipeline::Simulation;
 using pipeline::SimulationRequest;
 
@@ -33,7 +33,7 @@ std::vector<double> values_of(const run::Scene& scene, const run::Code& code, st
 class Directions {
  public:
   Directions(const Simulation& simulation, const SimulationRequest& request, std::size_t states)
-      : simulation_(simulation), request_(request), code_(simulation.code.for_run()), states_(states) {}
+      : simulation_(simulation), request_(request), code_(simulation.code.code_for_run()), states_(states) {}
 
   run::Direction of(const std::string& name, const std::vector<std::string>& state_names) const {
     const model::Model& model = simulation_.derived->model;
@@ -97,7 +97,7 @@ class Directions {
   }
 
   std::vector<double> changed(const std::string& name, double value, double scale, const cln::cl_RA& part) const {
-    Derived& derived = *simulation_.derived;
+    DerivedModel& derived = *simulation_.derived;
     run::Overrides overrides = request_.overrides;
     overrides.values[name] = numeric::exact(value) + numeric::exact(scale) * part;
     try {
@@ -120,9 +120,9 @@ class Directions {
 
 run::Sensitivities sensitivities(const Simulation& simulation, const SimulationRequest& request,
                                  const std::vector<std::string>& names) {
-  const run::Code code = simulation.code.for_run();
+  const run::Code code = simulation.code.code_for_run();
   const run::RunRequest run = [&] {
-    run::RunRequest made = pipeline::run_request(*simulation.derived, simulation.scene, code, false);
+    run::RunRequest made = pipeline::make_run_request(*simulation.derived, simulation.scene, code, false);
     made.interrupt = request.interrupt;
     made.max_steps = request.max_steps;
     return made;
@@ -131,7 +131,7 @@ run::Sensitivities sensitivities(const Simulation& simulation, const SimulationR
     if (kink.count > 0)
       throw Error(
           "run", {},
-          fmt::format("--sensitivity: the run crosses a kink ({}), where derivatives of the end may jump", kink.of),
+          fmt::format("--sensitivity: the run crosses a kink ({}), where derivatives of the end may jump", kink.kink),
           "shorten the run (--t-end), or smooth the law");
   }
   const Directions directions(simulation, request, run.state_names.size());

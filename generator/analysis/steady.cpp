@@ -17,13 +17,13 @@ namespace {
 using linear::Precise;
 using linear::Setting;
 using pipeline::ApproachChoice;
-using pipeline::Derived;
+using pipeline::DerivedModel;
 using pipeline::Simulation;
 using pipeline::SimulationRequest;
 
 constexpr int neighbour_count = 2;
 
-void require_one_mode(const std::string& command, const Derived& derived) {
+void require_one_mode(const std::string& command, const DerivedModel& derived) {
   const auto& contacts = derived.candidates.front().contacts;
   if (contacts.empty()) return;
   const model::Model& model = derived.model;
@@ -42,7 +42,7 @@ void require_one_mode(const std::string& command, const Derived& derived) {
       "linearise a copy of the model without the friction (or with the contact held) where it stays in one mode");
 }
 
-std::string certified(Derived& derived, std::uint64_t seed) {
+std::string certified(DerivedModel& derived, std::uint64_t seed) {
   verify::Subjects subjects;
   subjects.systems = verify::all_formulations(derived.mechanics);
   const verify::Certificate certificate =
@@ -59,7 +59,7 @@ struct Reached {
 Reached run_until(const std::string& command, SimulationRequest request, double t, const run::Scene& scene) {
   request.overrides.t_end = t;
   request.estimate = false;
-  request.prepare = [](Derived& derived) {
+  request.prepare = [](DerivedModel& derived) {
     std::vector<std::string> names;
     for (system::EquationSystem& s : derived.candidates) {
       for (const system::IntegralState& i : s.integrals) {
@@ -98,7 +98,7 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
 
 Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, const Reached& state,
                             std::optional<std::uint64_t> moved) {
-  Derived& d = *p.derived;
+  DerivedModel& d = *p.derived;
   Setting<Precise> setting;
   setting.parameters =
       run::exact_parameters(d.mechanics, d.model.scene(p.scene.name), overrides, linear::working_digits + 20, moved);
@@ -123,7 +123,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
                              std::uint64_t seed) {
   SteadyProblem p;
   p.derived = pipeline::derive_model(model, ApproachChoice::two);
-  Derived& d = *p.derived;
+  DerivedModel& d = *p.derived;
   require_one_mode(command, d);
   p.certificate = certified(d, seed);
   p.scene = run::resolve_scene(d.mechanics, p.system(), d.model.scene(scene), overrides);
@@ -160,7 +160,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
 }
 
 Source without_slope(const SteadyProblem& p, const linear::State<Precise>& z) {
-  Derived& d = *p.derived;
+  DerivedModel& d = *p.derived;
   const model::Model& model = d.model;
   symbolic::Dag& dag = *d.mechanics.dag;
   symbolic::Substitution imposed = derive::constraint_substitution(d.mechanics), written = derive::time_function_substitution(d.mechanics);

@@ -13,7 +13,7 @@
 namespace eomgen::analysis {
 
 struct SteadyProblem {
-  std::unique_ptr<pipeline::Derived> derived;
+  std::unique_ptr<pipeline::DerivedModel> derived;
   run::Scene scene;
   std::unique_ptr<linear::Flow> flow;
   linear::State<linear::Precise> z;  // state at time `t`; by default the initial state

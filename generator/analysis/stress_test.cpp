@@ -16,7 +16,7 @@
 namespace eomgen::analysis {
 namespace {
 
-using pipeline::Derived;
+using pipeline::DerivedModel;
 using stress::Row;
 using stress::Verdict;
 using LeftOut = std::vector<std::pair<std::string, std::string>>;
@@ -28,7 +28,7 @@ class Variation {
       : simulation_(simulation), overrides_(overrides), code_(code) {}
 
   std::optional<run::Scene> scene(const stress::Case& test, std::string& why) const {
-    pipeline::Derived& derived = *simulation_.derived;
+    pipeline::DerivedModel& derived = *simulation_.derived;
     run::Overrides overrides = overrides_;
     for (const auto& [p, factor] : test.factor) {
       overrides.values[derived.model.parameters[p].name] = numeric::exact(simulation_.scene.parameters[p] * factor);
@@ -53,17 +53,17 @@ class Variation {
       kept.push_back(i);
     }
     for (const std::uint32_t i : derived.mechanics.free) {
-      if (test.zeros && scene.q[i] == 0) scene.q[i] = *test.zeros;
-      if (test.zeros && scene.qdot[i] == 0) scene.qdot[i] = *test.zeros;
+      if (test.zero_replacement && scene.q[i] == 0) scene.q[i] = *test.zero_replacement;
+      if (test.zero_replacement && scene.qdot[i] == 0) scene.qdot[i] = *test.zero_replacement;
     }
     if (constrained && !kept.empty() &&
-        !stress::meet_constraints(scene, pipeline::run_request(derived, scene, code_, false), kept)) {
+        !stress::project_start(scene, pipeline::make_run_request(derived, scene, code_, false), kept)) {
       why = "the constraints allow no start there";
       return std::nullopt;
     }
-    for (double& rate : scene.qdot) rate *= test.speed;
-    scene.t1 = scene.t0 + (scene.t1 - scene.t0) * test.span / (test.speed > 1 ? test.speed : 1);
-    if (constrained && test.speed != 1 && broken(scene, test.speed)) {
+    for (double& rate : scene.qdot) rate *= test.speed_factor;
+    scene.t1 = scene.t0 + (scene.t1 - scene.t0) * test.span_factor / (test.speed_factor > 1 ? test.speed_factor : 1);
+    if (constrained && test.speed_factor != 1 && broken(scene, test.speed_factor)) {
       why = "the constraints move, so that their velocities cannot be multiplied";
       return std::nullopt;
     }
@@ -72,7 +72,7 @@ class Variation {
 
  private:
   bool broken(const run::Scene& scene, double speed) const {
-    const run::RunRequest request = pipeline::run_request(*simulation_.derived, scene, code_, false);
+    const run::RunRequest request = pipeline::make_run_request(*simulation_.derived, scene, code_, false);
     run::Integration integration(request, "dop853");
     const std::vector<double> x = integration.initial_state();
     double largest = 0;
@@ -131,25 +131,25 @@ std::size_t StressFindings::count(Verdict verdict) const {
 
 StressFindings stress_test(const StressRequest& asked) {
   StressFindings found;
-  found.solvers = run::solvers_among("stress", asked.solvers);
+  found.solvers = run::select_solvers("stress", asked.solvers);
   const pipeline::SimulationRequest wanted = simulation_request(asked);
   const pipeline::Simulation simulation = pipeline::simulate(wanted);
   const work::DeferInterrupt kept;
   found.scene = simulation.scene.name;
-  const run::Code code = simulation.code.for_run();
+  const run::Code code = simulation.code.code_for_run();
   const Variation variation(simulation, wanted.overrides, code);
   stress::Request request;
-  request.run = [&](const run::Scene& scene) { return pipeline::run_request(*simulation.derived, scene, code, true); };
+  request.run = [&](const run::Scene& scene) { return pipeline::make_run_request(*simulation.derived, scene, code, true); };
   request.solvers = found.solvers;
   request.seconds_limit = asked.seconds;
   request.steps_limit = asked.steps;
   request.interrupt = asked.interrupt;
   request.progress = asked.progress;
   stress::Auditor auditor(simulation.derived->mechanics, simulation.program);
-  request.seen = [&](const stress::Case& test, const run::Scene& scene, const std::vector<stress::Sample>& samples) {
-    auditor.see(test.name, scene, code, samples);
+  request.on_motion = [&](const stress::Case& test, const run::Scene& scene, const std::vector<stress::Sample>& samples) {
+    auditor.add_motion(test.name, scene, code, samples);
   };
-  for (const stress::Case& test : stress::cases(simulation.derived->mechanics, simulation.scene, asked.quick)) {
+  for (const stress::Case& test : stress::make_cases(simulation.derived->mechanics, simulation.scene, asked.quick)) {
     if (asked.interrupt != nullptr && *asked.interrupt) break;
     std::string why;
     try {

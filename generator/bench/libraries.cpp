@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "bench/repeat.hpp"
+#include "bench/median_time.hpp"
 #include "emit/shared_library/build.hpp"
 #include "error.hpp"
 #include "skeletons/gsl_c.hpp"
@@ -181,8 +181,8 @@ const std::vector<Library>& libraries() {
   return list;
 }
 
-LibrariesFound find_libraries(const run::RunRequest& request, const std::vector<double>& start, double seconds) {
-  LibrariesFound found;
+FoundLibraries find_libraries(const run::RunRequest& request, const std::vector<double>& start, double seconds) {
+  FoundLibraries found;
   const std::string why = does_not_fit(request);
   auto calls = std::make_shared<Calls>(Calls{request, std::vector<double>(request.code.prepared), seconds});
   if (request.code.prepare != nullptr && why.empty())
@@ -200,7 +200,7 @@ LibrariesFound find_libraries(const run::RunRequest& request, const std::vector<
       continue;
     }
     for (const Library::Solver& solver : library.solvers)
-      found.others.push_back({solver.name, Runner{loaded, loaded->solver(solver.function), solver.name, start, calls}});
+      found.external_solvers.push_back({solver.name, Runner{loaded, loaded->solver(solver.function), solver.name, start, calls}});
   }
   return found;
 }

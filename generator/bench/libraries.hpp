@@ -26,12 +26,12 @@ struct Library {
 };
 const std::vector<Library>& libraries();
 
-struct LibrariesFound {
-  std::vector<Other> others;
+struct FoundLibraries {
+  std::vector<ExternalSolver> external_solvers;
   std::vector<std::pair<std::string, std::string>> left_out;  // name, reason
 };
 
 /// The solvers that can integrate the scene. `request` has to outlive the result; a run is stopped after `seconds`.
-LibrariesFound find_libraries(const run::RunRequest& request, const std::vector<double>& start, double seconds);
+FoundLibraries find_libraries(const run::RunRequest& request, const std::vector<double>& start, double seconds);
 
 }  // namespace eomgen::bench

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "bench/bench.hpp"
-#include "bench/repeat.hpp"
+#include "bench/median_time.hpp"
 #include "run/integration.hpp"
 
 namespace eomgen::bench {
@@ -20,7 +20,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 class Measurement {
  public:
-  explicit Measurement(const Request& request) : request_(request), scales_(scales(request.reference)) {}
+  explicit Measurement(const Request& request) : request_(request), scales_(component_scales(request.reference)) {}
 
   Row row(const std::string& solver, double rtol, double step) {
     Row row;
@@ -42,7 +42,7 @@ class Measurement {
     return row;
   }
 
-  Row other(const Other& other, double rtol) {
+  Row run_external(const ExternalSolver& other, double rtol) {
     const run::Scene& scene = request_.run.scene;
     Row row = other.run(rtol, scene.rtol > 0 ? rtol * scene.atol / scene.rtol : rtol);
     if (row.errors.empty()) {
@@ -109,7 +109,7 @@ class Measurement {
 
 }  // namespace
 
-std::vector<double> scales(const reference::Solution& reference) {
+std::vector<double> component_scales(const reference::Solution& reference) {
   std::vector<double> result(reference.x.back().size());
   double largest = 0;
   for (const std::vector<double>& x : reference.x) {
@@ -134,7 +134,7 @@ std::vector<Row> measure(const Request& request) {
   }
   for (const std::string& solver : request.solvers) {
     if (request.progress) request.progress(solver);
-    const bool adaptive = run::method_named(solver).adaptive;
+    const bool adaptive = run::get_method(solver).adaptive;
     for (int k = 0; k < (adaptive ? tightest - 2 : step_sizes); ++k) {
       if (interrupted()) return rows;
       rows.push_back(adaptive
@@ -143,10 +143,10 @@ std::vector<Row> measure(const Request& request) {
       if (rows.back().outcome == "interrupted") break;  // tighter tolerances take longer
     }
   }
-  for (const Other& other : request.others) {
+  for (const ExternalSolver& other : request.external_solvers) {
     if (request.progress) request.progress(other.name);
     for (int k = 0; k < tightest - 2 && !interrupted(); ++k) {
-      rows.push_back(measurement.other(other, std::pow(10.0, -3 - k)));
+      rows.push_back(measurement.run_external(other, std::pow(10.0, -3 - k)));
       if (rows.back().outcome == "interrupted" || rows.back().outcome == "failed (-1)") break;
     }
   }

@@ -33,7 +33,7 @@ std::string stiffness(const std::vector<Row>& rows) {
 
 }  // namespace
 
-std::string advice(const std::vector<Row>& rows) {
+std::string recommend_solvers(const std::vector<Row>& rows) {
   constexpr double worth_naming =
       1.1;  // `auto` mostly equals one of the other solvers, and its times are theirs within the noise of clocks
   const auto seconds = [](const Row& row) {
@@ -60,7 +60,7 @@ std::string advice(const std::vector<Row>& rows) {
   return "For true errors along the whole run take" + text + "." + stiffness(rows);
 }
 
-eom::Plot diagram(const std::vector<Row>& rows, const std::string& title) {
+eom::Plot work_precision_diagram(const std::vector<Row>& rows, const std::string& title) {
   eom::Plot plot;
   plot.title = title;
   plot.x_label = "median run time in s";
@@ -80,7 +80,7 @@ eom::Plot diagram(const std::vector<Row>& rows, const std::string& title) {
   return plot;
 }
 
-Machine machine() {
+Machine describe_machine() {
   Machine result;
   result.cores = std::thread::hardware_concurrency();
   std::ifstream file("/proc/cpuinfo");

@@ -18,7 +18,7 @@ std::string setting(const bench::Row& row) {
 
 Json BenchReport::json() const {
   const run::Scene& scene = found.simulation.scene;
-  const bench::Machine machine = bench::machine();
+  const bench::Machine machine = bench::describe_machine();
   Json list = Json::array();
   for (const bench::Row& row : found.rows) {
     Json errors = Json::object();
@@ -54,12 +54,12 @@ Json BenchReport::json() const {
           {"rows", list},
           {"left_out", missing},
           {"machine", {{"processor", machine.processor}, {"cores", machine.cores}, {"compiler", compiler}}},
-          {"advice", bench::advice(found.rows)}};
+          {"advice", bench::recommend_solvers(found.rows)}};
 }
 
 std::string BenchReport::text() const {
   const run::Scene& scene = found.simulation.scene;
-  const bench::Machine machine = bench::machine();
+  const bench::Machine machine = bench::describe_machine();
   std::string out = fmt::format("model       {}, scene {}, t = {} to {}\n", found.simulation.derived->model.id,
                                 scene.name, scene.t0, scene.t1);
   out += fmt::format("reference   {}: they agree in {} digits, at the end in {} ({:.1f} s)\n", found.reference.method,
@@ -76,7 +76,7 @@ std::string BenchReport::text() const {
                        row.rhs_evaluations, row.outcome);
   }
   for (const auto& [solver, why] : found.left_out) out += fmt::format("\nleft out    {}: {}", solver, why);
-  return out + (found.left_out.empty() ? "\n" : "\n\n") + bench::advice(found.rows) + "\n";
+  return out + (found.left_out.empty() ? "\n" : "\n\n") + bench::recommend_solvers(found.rows) + "\n";
 }
 
 std::string BenchReport::csv() const {

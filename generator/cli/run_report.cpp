@@ -102,7 +102,7 @@ std::string watched(const pipeline::Simulation& simulation) {
 
 Json RunReport::json() const {
   const auto& [derived_model, scene, program, certificate, code, result, charts] = simulation;
-  const pipeline::Derived& derived = *derived_model;
+  const pipeline::DerivedModel& derived = *derived_model;
   const emit::CompiledModel& compiled = code.compiled();
   const pipeline::Timings& seconds = derived.seconds;
   Json final = Json::object(), invariants = Json::object(), events = Json::array(), kinks = Json::array();
@@ -119,7 +119,7 @@ Json RunReport::json() const {
   Json changes = Json::array();
   for (const eom::MethodChange& c : result.reason.changes)
     changes.push_back({{"t", c.t}, {"from", c.from}, {"to", c.to}, {"reason", eom::to_text(c)}});
-  for (const run::KinkCrossings& k : result.kinks) kinks.push_back({{"of", k.of}, {"crossings", k.count}});
+  for (const run::KinkCrossings& k : result.kinks) kinks.push_back({{"of", k.kink}, {"crossings", k.count}});
   Json document{
       {"format", 1},
       {"model", derived.model.id},
@@ -152,13 +152,13 @@ Json RunReport::json() const {
       {"contact_work", result.contact_work},
       {"events", events},
       {"kinks", kinks},
-      {"solved", scene.solved},
+      {"solved", scene.solved_notes},
       {"undetermined", undetermined(simulation)},
       {"formulation", program.formulation},
       {"approach", system::name(program.approach)},
       {"operations", to_json(program.functions.front().operations)},
       {"certificate", certificate.summary()}};
-  if (result.statistics.jacobians > 0 || run::uses_jacobian(run::method_named(result.solver))) {
+  if (result.statistics.jacobians > 0 || run::uses_jacobian(run::get_method(result.solver))) {
     const eom::Statistics& cost = result.statistics;
     document["implicit"] = {{"jacobians", cost.jacobians},
                             {"difference_evaluations", cost.difference_evaluations},
@@ -184,12 +184,12 @@ Json RunReport::json() const {
 
 std::string RunReport::text() const {
   const auto& [derived_model, scene, program, certificate, code, result, charts] = simulation;
-  const pipeline::Derived& derived = *derived_model;
+  const pipeline::DerivedModel& derived = *derived_model;
   const emit::CompiledModel& compiled = code.compiled();
   const pipeline::Timings& seconds = derived.seconds;
   std::string out =
       line("model", fmt::format("{}, scene {}, t = {} to {}", derived.model.id, scene.name, scene.t0, scene.t1));
-  for (const std::string& sentence : scene.solved) out += line("start", sentence);
+  for (const std::string& sentence : scene.solved_notes) out += line("start", sentence);
   out += line("certificate", certificate.summary());
   out +=
       line("right-hand side", fmt::format("{} (formulation {}, approach {})", to_text(program.functions.front().operations),
@@ -212,10 +212,10 @@ std::string RunReport::text() const {
                                      e.kind == "impulse" ? fmt::format(", work {:.6g}", e.work) : ""));
   }
   for (const run::KinkCrossings& k : result.kinks)
-    out += line("kink", fmt::format("of {}: crossed {} times", k.of, k.count));
+    out += line("kink", fmt::format("of {}: crossed {} times", k.kink, k.count));
   out += line("steps", fmt::format("{} accepted, {} rejected, {} evaluations", result.statistics.steps,
                                    result.statistics.rejected, result.statistics.rhs_evaluations));
-  if (result.statistics.jacobians > 0 || run::uses_jacobian(run::method_named(result.solver)))
+  if (result.statistics.jacobians > 0 || run::uses_jacobian(run::get_method(result.solver)))
     out += line("implicit steps", implicit_cost(result.statistics));
   out += "\n" + final_values(simulation) + "\n" + watched(simulation);
   if (const auto open = undetermined(simulation); !open.empty())
@@ -225,7 +225,7 @@ std::string RunReport::text() const {
            fmt::format(
                "derive {:.3f}, optimise {:.3f}, verify {:.3f}{}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}{}",
                seconds.read + seconds.derive, seconds.optimise, seconds.verify,
-               derived.kept_certificate ? " (kept)" : "", compiled.seconds, compiled.cached ? " (from the cache)" : "",
+               derived.certificate_from_cache ? " (kept)" : "", compiled.seconds, compiled.cached ? " (from the cache)" : "",
                result.seconds_integrate, result.seconds_estimate,
                charts && charts->seconds() > 0 ? fmt::format(", second charts {:.3f}", charts->seconds()) : ""));
   for (const WrittenFile& file : files) {

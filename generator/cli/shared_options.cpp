@@ -47,12 +47,12 @@ void add_outputs(Arguments& app, SceneOptions& options) {
 }
 
 void add_approach(Arguments& app, std::string& approach) {
-  const std::vector<std::string> words = pipeline::approach_words();
+  const std::vector<std::string> words = pipeline::approach_names();
   app.add_option("--approach", approach, fmt::format("{}", fmt::join(words, ", "))).show_preset().one_of(words);
 }
 
 void add_form(Arguments& app, std::string& form) {
-  const std::vector<std::string> words = pipeline::form_words();
+  const std::vector<std::string> words = pipeline::form_names();
   app.add_option("--form", form, fmt::format("{}: how constraints that stay are solved", fmt::join(words, ", ")))
       .show_preset()
       .one_of(words);

@@ -34,7 +34,7 @@ Sources Model::emit(const EmitOptions& options, const Task& task) const {
   return with_lock(task, [&](Call&) {
     pipeline::EmissionRequest request{options.target,
                                       choice_of(options.approach),
-                                      pipeline::form_choice(options.form),
+                                      pipeline::parse_form(options.form),
                                       options.with,
                                       options.outputs,
                                       options.fix,

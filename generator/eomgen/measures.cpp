@@ -39,7 +39,7 @@ Benchmark Model::benchmark(const BenchmarkOptions& options, const Task& task) co
           {row.solver, row.rtol, row.step, row.error, row.seconds, row.steps, row.rhs_evaluations, row.outcome});
     for (const auto& [solver, why] : found.left_out) result.left_out.push_back({solver, why});
     result.reference_digits = found.reference.digits_at_end;
-    result.advice = bench::advice(found.rows);
+    result.advice = bench::recommend_solvers(found.rows);
     result.conclusive = found.conclusive();
     return result;
   });

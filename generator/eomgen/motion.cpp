@@ -21,7 +21,7 @@ run::Overrides overrides_of(const Options& options) {
   overrides.every = options.every;
   overrides.rtol = options.rtol;
   overrides.atol = options.atol;
-  overrides.at_start = true;
+  overrides.allow_empty_span = true;
   return overrides;
 }
 
@@ -35,7 +35,7 @@ pipeline::SimulationRequest request_of(std::shared_ptr<const model::Model> model
   request.overrides.solver = options.solver;
   request.overrides.outputs = options.outputs;
   request.approach = choice_of(options.approach);
-  request.form = pipeline::form_choice(options.form);
+  request.form = pipeline::parse_form(options.form);
   request.estimate = options.error_estimate;
   request.charts = options.charts;
   request.max_steps = options.max_steps;
@@ -90,7 +90,7 @@ Motion Model::run(const RunOptions& options, const Task& task) const {
     request.ready = [&kept] { kept.emplace(); };
     request.interrupt = call.stopped();
     request.progress = call.progress();
-    request.begin = [&](const pipeline::Derived& derived, const run::Scene& scene,
+    request.begin = [&](const pipeline::DerivedModel& derived, const run::Scene& scene,
                         const std::vector<std::string>& names) {
       motion.columns = shown(derived.model, scene);
       for (const std::string& column : motion.columns)

@@ -77,7 +77,7 @@ std::optional<Eigen::VectorXd> motion(const system::EquationSystem& s, const run
 
 /// Whether the accelerations and energies of `own` equal those of equations derived without the range, on both sides.
 template <class Own>
-bool holds_beyond(const Derived& derived, const run::Scene& scene, const std::vector<std::uint32_t>& own_free,
+bool holds_beyond(const DerivedModel& derived, const run::Scene& scene, const std::vector<std::uint32_t>& own_free,
                   std::uint32_t coordinate, double t, std::span<const double> x, const Own& own) {
   if (!of_system(derived.model, coordinate)) return false;
   const auto place = std::find(own_free.begin(), own_free.end(), coordinate);
@@ -105,7 +105,7 @@ bool holds_beyond(const Derived& derived, const run::Scene& scene, const std::ve
 
 }  // namespace
 
-bool holds_beyond_range(const Derived& derived, const run::Scene& scene, const run::Code& code,
+bool equations_hold_beyond_range(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
                         std::uint32_t coordinate, double t, std::span<const double> x) {
   if (!code.contacts.empty() || code.integrals > 0) return false;
   const std::size_t n = code.free.size();
@@ -127,7 +127,7 @@ bool holds_beyond_range(const Derived& derived, const run::Scene& scene, const r
   return holds_beyond(derived, scene, code.free, coordinate, t, x, own);
 }
 
-std::vector<std::uint32_t> held_beyond_range(const Derived& derived, const run::Scene& scene) {
+std::vector<std::uint32_t> coordinates_valid_beyond_range(const DerivedModel& derived, const run::Scene& scene) {
   const system::EquationSystem& system = derived.candidates.front();
   if (!system.contacts.empty() || !system.integrals.empty()) return {};
   std::vector<double> start;

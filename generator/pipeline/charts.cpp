@@ -13,7 +13,7 @@
 
 namespace eomgen::pipeline {
 
-std::vector<model::ChartPair> charts_of(const mechanics::Mechanics& m) {
+std::vector<model::ChartPair> list_charts(const mechanics::Mechanics& m) {
   std::vector<model::ChartPair> charts = model::charts(*m.model);
   std::size_t count = 0;
   for (model::ChartPair& chart : charts) {
@@ -28,14 +28,14 @@ std::vector<model::ChartPair> charts_of(const mechanics::Mechanics& m) {
   return charts;
 }
 
-std::vector<model::ChartPair> exchangeable(const std::vector<model::ChartPair>& charts) {
+std::vector<model::ChartPair> exchangeable_charts(const std::vector<model::ChartPair>& charts) {
   std::vector<model::ChartPair> result;
   std::copy_if(charts.begin(), charts.end(), std::back_inserter(result),
                [](const auto& chart) { return chart.refusal.empty(); });
   return result;
 }
 
-void add_second_charts(Derived& own, program::Program& program, const std::vector<model::ChartPair>& charts,
+void add_second_charts(DerivedModel& own, program::Program& program, const std::vector<model::ChartPair>& charts,
                        unsigned mask, const ChartRequest& request) {
   if (program.charts.empty()) {
     symbolic::Dag dag;
@@ -71,21 +71,21 @@ void add_second_charts(Derived& own, program::Program& program, const std::vecto
   program::add_chart_variant(program, std::move(second), mask, places);
 }
 
-ChartLibrary::ChartLibrary(Derived& own, program::Program program, emit::EmissionContext context, ChartRequest request)
+ChartLibrary::ChartLibrary(DerivedModel& own, program::Program program, emit::EmissionContext context, ChartRequest request)
     : own_(own),
       program_(std::move(program)),
       context_(std::move(context)),
       request_(std::move(request)),
-      charts_(exchangeable(charts_of(own.mechanics))) {}
+      charts_(exchangeable_charts(list_charts(own.mechanics))) {}
 
-const run::Code& ChartLibrary::in(unsigned mask) {
+const run::Code& ChartLibrary::code_for(unsigned mask) {
   if (std::find(known_.begin(), known_.end(), mask) != known_.end()) return compiled_.back()->functions;
   const auto start = std::chrono::steady_clock::now();
   add_second_charts(own_, program_, charts_, mask, request_);
   known_.push_back(mask);
   context_.tests = test_vectors(program_, context_);
   CompiledCode code = compile(program_, context_, true);
-  const run::Code functions = code.for_run();
+  const run::Code functions = code.code_for_run();
   compiled_.push_back(std::make_unique<Compiled>(Compiled{std::move(code), functions}));
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return compiled_.back()->functions;

@@ -14,9 +14,9 @@
 namespace eomgen::pipeline {
 
 /// All second charts, also those that the mechanics exclude, with the reason.
-std::vector<model::ChartPair> charts_of(const mechanics::Mechanics& mechanics);
+std::vector<model::ChartPair> list_charts(const mechanics::Mechanics& mechanics);
 /// The exchangeable charts, at most as many as `mode` has bits for.
-std::vector<model::ChartPair> exchangeable(const std::vector<model::ChartPair>& charts);
+std::vector<model::ChartPair> exchangeable_charts(const std::vector<model::ChartPair>& charts);
 
 /// Options of the programs of one model, in any charts.
 struct ChartRequest {
@@ -28,17 +28,17 @@ struct ChartRequest {
 
 /// Derives, verifies and optimises the second charts of `mask`, and adds them to `program`. Throws Error{ErrorKind::check}
 /// if the verification fails.
-void add_second_charts(Derived& own, program::Program& program, const std::vector<model::ChartPair>& charts,
+void add_second_charts(DerivedModel& own, program::Program& program, const std::vector<model::ChartPair>& charts,
                        unsigned mask, const ChartRequest& request);
 
 /// Provides a run near a chart singularity with code for all charts that it has requested so far.
 class ChartLibrary {
  public:
-  ChartLibrary(Derived& own, program::Program program, emit::EmissionContext context, ChartRequest request);
+  ChartLibrary(DerivedModel& own, program::Program program, emit::EmissionContext context, ChartRequest request);
 
   const std::vector<model::ChartPair>& charts() const { return charts_; }
   /// Code with the charts of `mask`. Throws Error if a second chart cannot be derived or compiled.
-  const run::Code& in(unsigned mask);
+  const run::Code& code_for(unsigned mask);
   /// Seconds of derivation, verification and compilation.
   double seconds() const { return seconds_; }
 
@@ -48,7 +48,7 @@ class ChartLibrary {
     run::Code functions;
   };
 
-  Derived& own_;
+  DerivedModel& own_;
   program::Program program_;
   emit::EmissionContext context_;
   ChartRequest request_;

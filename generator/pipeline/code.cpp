@@ -11,7 +11,7 @@
 
 namespace eomgen::pipeline {
 
-run::Code described_code(const program::Program& program) {
+run::Code describe_code(const program::Program& program) {
   run::Code code;
   code.prepared = program.prepared_count();
   code.output_names = program.outputs;
@@ -37,7 +37,7 @@ run::Code described_code(const program::Program& program) {
 }
 
 CompiledCode::CompiledCode(emit::CompiledModel compiled, const program::Program& program)
-    : compiled_(std::move(compiled)), described_(described_code(program)) {
+    : compiled_(std::move(compiled)), described_(describe_code(program)) {
   for (const program::Function& function : program.functions) {
     for (const auto& result : function.results) {
       if (!result.is_test()) arrays_[function.name].push_back(result.entries.size());
@@ -56,7 +56,7 @@ std::vector<double> rounded(const std::vector<verify::Real>& values) {
 
 /// Calls a compiled function by name; nothing if it returns an error code.
 std::optional<std::vector<std::vector<double>>> called(const emit::LoadedModel& m, const std::string& function,
-                                                       const verify::At& at, const std::vector<std::size_t>& sizes,
+                                                       const verify::AbiArguments& at, const std::vector<std::size_t>& sizes,
                                                        std::size_t prepared) {
   const double t = cln::double_approx(at.t);
   const std::vector<double> x = rounded(at.x), p = rounded(at.p), u = rounded(at.u);
@@ -79,7 +79,7 @@ verify::CompiledForm CompiledCode::form() const {
   verify::CompiledForm form;
   form.name = "emitted code";
   form.call = [model, arrays = arrays_, prepared = described_.prepared](const std::string& function,
-                                                                        const verify::At& at) {
+                                                                        const verify::AbiArguments& at) {
     return called(*model, function, at, arrays.at(function), prepared);
   };
   const std::size_t size = 2 * described_.free.size() + described_.integrals;
@@ -98,7 +98,7 @@ verify::CompiledForm CompiledCode::form() const {
   return form;
 }
 
-run::Code CompiledCode::for_run() const {
+run::Code CompiledCode::code_for_run() const {
   const emit::LoadedModel& model = compiled_.model;
   run::Code code = described_;
   const auto bind = [&](const auto& one) { one(code, model); };  // the functions of a run
@@ -129,7 +129,7 @@ CompiledCode compile(const program::Program& program, const emit::EmissionContex
   return {std::move(compiled), program};
 }
 
-std::vector<double> default_inputs(Derived& derived) {
+std::vector<double> default_inputs(DerivedModel& derived) {
   const run::Scene scene =
       run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
   std::vector<double> result;
@@ -137,7 +137,7 @@ std::vector<double> default_inputs(Derived& derived) {
   return result;
 }
 
-CompiledCode compile_for_check(Derived& derived, const program::Program& program) {
+CompiledCode compile_for_verification(DerivedModel& derived, const program::Program& program) {
   const run::Scene scene =
       run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
   verify::Certificate pending;

@@ -13,14 +13,14 @@
 namespace eomgen::pipeline {
 
 /// The description of a program's code, with null functions.
-run::Code described_code(const program::Program& program);
+run::Code describe_code(const program::Program& program);
 
 class CompiledCode {
  public:
   CompiledCode(emit::CompiledModel compiled, const program::Program& program);
 
   verify::CompiledForm form() const;
-  run::Code for_run() const;
+  run::Code code_for_run() const;
   const emit::CompiledModel& compiled() const { return compiled_; }
 
  private:
@@ -33,9 +33,9 @@ class CompiledCode {
 CompiledCode compile(const program::Program& program, const emit::EmissionContext& context, bool again = false);
 
 /// The values that the emitted code uses for inputs that are not given.
-std::vector<double> default_inputs(Derived& derived);
+std::vector<double> default_inputs(DerivedModel& derived);
 
 /// The same without a certificate, for the verification that creates the certificate.
-CompiledCode compile_for_check(Derived& derived, const program::Program& program);
+CompiledCode compile_for_verification(DerivedModel& derived, const program::Program& program);
 
 }  // namespace eomgen::pipeline

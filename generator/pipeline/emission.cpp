@@ -32,9 +32,9 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-program::Request request_of(const EmissionRequest& options, Derived& derived, const run::Scene& scene) {
+program::Request request_of(const EmissionRequest& options, DerivedModel& derived, const run::Scene& scene) {
   program::Request request;
-  if (has(options.with, "run")) request = run_functions(derived, scene, run::choose_solver(scene.solver, scene).first);
+  if (has(options.with, "run")) request = functions_for_run(derived, scene, run::choose_solver(scene.solver, scene).first);
   for (const std::string& name : options.with) {
     if (name == "energy") {
       request.outputs.push_back("energy");
@@ -86,8 +86,8 @@ void require_with(const std::vector<std::string>& with) {
 }
 
 /// Adds all second charts and their combinations; warns of charts that cannot be exchanged.
-void add_all_charts(Derived& derived, program::Program& program, const ChartRequest& request) {
-  const std::vector<model::ChartPair> all = charts_of(derived.mechanics);
+void add_all_charts(DerivedModel& derived, program::Program& program, const ChartRequest& request) {
+  const std::vector<model::ChartPair> all = list_charts(derived.mechanics);
   for (const model::ChartPair& chart : all) {
     if (chart.refusal.empty()) continue;
     work::warn(
@@ -95,7 +95,7 @@ void add_all_charts(Derived& derived, program::Program& program, const ChartRequ
                     "euler_parameters or cartesian ones\n",
                     chart.of, chart.own, chart.refusal));
   }
-  const std::vector<model::ChartPair> charts = exchangeable(all);
+  const std::vector<model::ChartPair> charts = exchangeable_charts(all);
   if (charts.empty()) {
     throw Error("emit", SourceLocation{derived.model.file, 0, 0, 1, ""}, "this model has no chart that can be exchanged",
                 "leave charts out of --with; eomgen check lists the charts");

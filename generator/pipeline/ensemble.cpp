@@ -15,8 +15,8 @@
 
 #include "emit/targets.hpp"
 #include "error.hpp"
-#include "pipeline/tidy_graph.hpp"
-#include "run/looked_at.hpp"
+#include "pipeline/graph_trimmer.hpp"
+#include "run/monitored_functions.hpp"
 #include "work.hpp"
 
 namespace eomgen::pipeline {
@@ -27,7 +27,7 @@ namespace {
 constexpr double doubtful_energy = eom::hybrid::balance::without_estimate / 10;
 
 emit::LoadedBatch compile_batch(const Simulation& first) {
-  Derived& derived = *first.derived;
+  DerivedModel& derived = *first.derived;
   const run::Scene defaults =
       run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
   const emit::EmissionContext context = emission_context(derived, first.program, defaults, first.certificate);
@@ -39,7 +39,7 @@ emit::LoadedBatch compile_batch(const Simulation& first) {
 }
 
 bool stands_still(const run::Scene& scene) {
-  const auto still = [](const run::Signal& signal) { return !signal.moves() && signal.jumps().empty(); };
+  const auto still = [](const run::Signal& signal) { return !signal.is_varying() && signal.jumps().empty(); };
   return std::all_of(scene.inputs.begin(), scene.inputs.end(), still) && scene.jumps.functions.empty() &&
          scene.clock.bounds.empty() && scene.clock.breaks.empty();
 }
@@ -70,11 +70,11 @@ std::string ranged(const Simulation& first, const run::Code& code) {
 
 class Runs {
  public:
-  Runs(const Simulation& first, const emit::LoadedBatch* batch, const EnsembleRuns& asked)
+  Runs(const Simulation& first, const emit::LoadedBatch* batch, const EnsembleRequest& asked)
       : first_(first),
         asked_(asked),
         graph_(first),
-        code_(first.code.for_run()),
+        code_(first.code.code_for_run()),
         batch_(batch),
         how_(asked.runs.size(), How::together),
         energy_(asked.runs.size()) {
@@ -91,7 +91,7 @@ class Runs {
       events_.push_back({direction == model::Event::Direction::up     ? eom::Direction::up
                          : direction == model::Event::Direction::down ? eom::Direction::down
                                                                       : eom::Direction::any,
-                         first.scene.stops[i] ? eom::Watch::breaking : eom::Watch::passing});
+                         first.scene.ends_run[i] ? eom::Watch::breaking : eom::Watch::passing});
     }
     if (!events_.empty()) {
       ranges_.resize(how_.size());
@@ -141,7 +141,7 @@ class Runs {
   /// methods get it without extra cost, others need more evaluations for it, which a separate run counts.
   bool has_lanes(const run::Scene& scene) const {
     if (batch_ == nullptr || !wants_lanes(scene)) return false;
-    const eom::MethodInfo& method = run::method_named(scene.solver);
+    const eom::MethodInfo& method = run::get_method(scene.solver);
     return method.ensemble ||
            (watches_energy_ && (!method.needs.used.has(eom::Feature::jacobian) || batch_->jac != nullptr) &&
             (!method.needs.required.has(eom::Feature::series) || batch_->taylor != nullptr));
@@ -206,14 +206,14 @@ class Runs {
 
   /// The scene of a run; nothing if it has no valid start, which has been reported.
   std::optional<run::Scene> scene_of(std::size_t member) {
-    graph_.tidy();
-    Derived& derived = *first_.derived;
+    graph_.trim();
+    DerivedModel& derived = *first_.derived;
     try {
       return run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(first_.scene.name),
-                                asked_.values(asked_.runs[member]));
+                                asked_.overrides(asked_.runs[member]));
     } catch (const Error& error) {
       if (error.stage() != "scene") throw;
-      asked_.refused(asked_.runs[member], error.message());
+      asked_.on_refusal(asked_.runs[member], error.message());
       return std::nullopt;
     }
   }
@@ -229,12 +229,12 @@ class Runs {
           const std::lock_guard<std::mutex> guard(lock_);  // scenes are resolved in the model's own graph
           scene = scene_of(member);
           if (!scene) continue;
-          request.emplace(run_request(*first_.derived, *scene, code_, false));
+          request.emplace(make_run_request(*first_.derived, *scene, code_, false));
         }
         request->interrupt = asked_.interrupt;
         const run::RunResult result = run::integrate_scene(*request);
         const std::lock_guard<std::mutex> guard(lock_);
-        if (!stopped()) asked_.done(asked_.runs[member], result);
+        if (!stopped()) asked_.on_end(asked_.runs[member], result);
       }
     });
   }
@@ -295,18 +295,18 @@ class Runs {
         result.statistics = end.statistics;
         for (std::size_t i = 0; i < y.size(); ++i) result.final.emplace_back(code_.output_names[i], y[i]);
         const std::lock_guard<std::mutex> guard(lock_);
-        return asked_.done(run, result);
+        return asked_.on_end(run, result);
       }
     }
     const std::lock_guard<std::mutex> guard(lock_);
-    graph_.tidy();
-    result = run_again(first_, asked_.values(run), false);
-    if (!stopped()) asked_.done(run, result);
+    graph_.trim();
+    result = rerun(first_, asked_.overrides(run), false);
+    if (!stopped()) asked_.on_end(run, result);
   }
 
   const Simulation& first_;
-  const EnsembleRuns& asked_;
-  TidyGraph graph_;
+  const EnsembleRequest& asked_;
+  GraphTrimmer graph_;
   run::Code code_;
   const emit::LoadedBatch* batch_;  // null: runs are made one by one
   std::vector<How> how_;
@@ -328,7 +328,7 @@ std::string ensemble_solver(const model::Scene& scene, const run::Overrides& ove
 }
 
 std::string ensemble_obstacle(const Simulation& first) {
-  const run::Code code = first.code.for_run();
+  const run::Code code = first.code.code_for_run();
   if (!code.contacts.empty()) return "the model has contacts with friction, or unilateral contacts";
   if (!code.kinks.empty()) return "the equations have kinks (abs, sign, min, max, if), which are located";
   if (code.active_constraints > 0) return "constraints keep multipliers, and each step is projected onto them";
@@ -347,6 +347,6 @@ Ensemble::Ensemble(const Simulation& first) : first_(first) {
   if (Runs::wants_lanes(first.scene)) batch_.emplace(compile_batch(first));
 }
 
-void Ensemble::run(const EnsembleRuns& asked) { Runs(first_, batch_ ? &*batch_ : nullptr, asked).run(); }
+void Ensemble::run(const EnsembleRequest& asked) { Runs(first_, batch_ ? &*batch_ : nullptr, asked).run(); }
 
 }  // namespace eomgen::pipeline

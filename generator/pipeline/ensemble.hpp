@@ -15,13 +15,13 @@
 
 namespace eomgen::pipeline {
 
-struct EnsembleRuns {
+struct EnsembleRequest {
   std::vector<std::size_t> runs;
   std::size_t threads = 1;
-  std::function<run::Overrides(std::size_t run)> values;
+  std::function<run::Overrides(std::size_t run)> overrides;
   /// Called by one thread at a time, in no particular order; not for runs that an interruption ended.
-  std::function<void(std::size_t run, const run::RunResult& result)> done;
-  std::function<void(std::size_t run, const std::string& why)> refused;  // called for a run without a valid start
+  std::function<void(std::size_t run, const run::RunResult& result)> on_end;
+  std::function<void(std::size_t run, const std::string& why)> on_refusal;  // called for a run without a valid start
   const std::atomic<bool>* interrupt = nullptr;
 };
 
@@ -39,7 +39,7 @@ class Ensemble {
   /// `first` has to outlive the ensemble.
   explicit Ensemble(const Simulation& first);
   /// Runs that end early, and runs with events in time alone, are repeated as separate runs.
-  void run(const EnsembleRuns& asked);
+  void run(const EnsembleRequest& asked);
 
  private:
   const Simulation& first_;

@@ -13,7 +13,7 @@
 #include "error.hpp"
 #include "model/names.hpp"
 #include "numeric/numbers.hpp"
-#include "pipeline/kept_certificates.hpp"
+#include "pipeline/certificate_cache.hpp"
 #include "pipeline/self_test_states.hpp"
 #include "print/notation.hpp"
 #include "print/printer.hpp"
@@ -59,7 +59,7 @@ void require_freedom(const mechanics::Mechanics& m) {
 }
 
 // Adds candidates in the requested forms.
-void take_forms(Derived& derived, FormChoice choice) {
+void take_forms(DerivedModel& derived, FormChoice choice) {
   if (choice == system::Form::multipliers) return;
   std::vector<system::EquationSystem> others;
   for (const system::EquationSystem& candidate : derived.candidates) {
@@ -87,7 +87,7 @@ void take_forms(Derived& derived, FormChoice choice) {
 }
 
 // The other forms, as derived: all must agree.
-std::vector<program::Program> other_forms(const Derived& derived, const program::Program& program,
+std::vector<program::Program> other_forms(const DerivedModel& derived, const program::Program& program,
                                           const std::map<std::uint32_t, symbolic::Rational>& fixed) {
   std::vector<program::Program> result;
   for (const system::Form form : {system::Form::multipliers, system::Form::nullspace, system::Form::chaplygin}) {
@@ -105,7 +105,7 @@ std::vector<program::Program> other_forms(const Derived& derived, const program:
   return result;
 }
 
-program::AbiArguments abi_arguments(const verify::At& at, const std::vector<verify::Real>& default_inputs) {
+program::AbiArguments abi_arguments(const verify::AbiArguments& at, const std::vector<verify::Real>& default_inputs) {
   return {{at.t, at.x, at.p, at.u, {}, {}, at.mode}, default_inputs, at.order};
 }
 
@@ -117,7 +117,7 @@ verify::ProgramForm with_functions(verify::ProgramForm form, const program::Prog
   form.approach = program.approach;
   form.outputs = program.outputs;
   form.default_inputs = default_inputs;
-  form.call = [&program, default_inputs](const std::string& function, const verify::At& at, int digits) {
+  form.call = [&program, default_inputs](const std::string& function, const verify::AbiArguments& at, int digits) {
     return program::abi_values(program, function, abi_arguments(at, default_inputs), digits);
   };
   return form;
@@ -138,7 +138,7 @@ verify::ProgramForm program_form(const program::Program& program, int digits,
         }
         return values.results.front();
       }};
-  form.bounds = [&program, default_inputs](const std::string& function, const verify::At& at) {
+  form.bounds = [&program, default_inputs](const std::string& function, const verify::AbiArguments& at) {
     return program::abi_error_bounds(program, function, abi_arguments(at, default_inputs));
   };
   return form;
@@ -179,19 +179,19 @@ Choice chosen(const Choices<Choice>& choices, const char* what, const std::strin
 
 }  // namespace
 
-Derived::Derived(std::shared_ptr<const model::Model> read) : shared(std::move(read)), model(*shared) {}
-Derived::~Derived() = default;
+DerivedModel::DerivedModel(std::shared_ptr<const model::Model> read) : shared(std::move(read)), model(*shared) {}
+DerivedModel::~DerivedModel() = default;
 
-std::vector<std::string> approach_words() { return words(approach_choices()); }
-ApproachChoice approach_choice(const std::string& text) { return chosen(approach_choices(), "approach", text); }
+std::vector<std::string> approach_names() { return words(approach_choices()); }
+ApproachChoice parse_approach(const std::string& text) { return chosen(approach_choices(), "approach", text); }
 
-std::vector<std::string> form_words() { return words(form_choices()); }
-FormChoice form_choice(const std::string& text) { return chosen(form_choices(), "form", text); }
+std::vector<std::string> form_names() { return words(form_choices()); }
+FormChoice parse_form(const std::string& text) { return chosen(form_choices(), "form", text); }
 
-std::unique_ptr<Derived> derive_model(std::shared_ptr<const model::Model> model, ApproachChoice approach,
+std::unique_ptr<DerivedModel> derive_model(std::shared_ptr<const model::Model> model, ApproachChoice approach,
                                       FormChoice form) {
   const work::Stage stage("deriving the equations");
-  auto derived = std::make_unique<Derived>(std::move(model));
+  auto derived = std::make_unique<DerivedModel>(std::move(model));
   Stopwatch watch;
   derived->mechanics = mechanics::build_mechanics(derived->shared);
   require_freedom(derived->mechanics);
@@ -207,7 +207,7 @@ std::unique_ptr<Derived> derive_model(std::shared_ptr<const model::Model> model,
   return derived;
 }
 
-program::Program make_program(Derived& derived, const program::Request& request) {
+program::Program make_program(DerivedModel& derived, const program::Request& request) {
   const work::Stage stage("optimising the code");
   Stopwatch watch;
   program::Request complete = request;
@@ -236,7 +236,7 @@ void add_forms(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, ve
 
 }  // namespace
 
-void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjects) {
+void add_display_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjects) {
   reading::DisplayForms forms(mechanics);
   add_forms(mechanics, forms, subjects);
 }
@@ -244,9 +244,9 @@ void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjec
 namespace {
 
 /// The key of everything that a certificate depends on. Empty: the certificate is not cached.
-std::string key_of(const Derived& derived, const program::Program& program, const Verification& options) {
+std::string key_of(const DerivedModel& derived, const program::Program& program, const Verification& options) {
   const std::string identity = program_identity();
-  if (!options.keep || options.compiled != nullptr || identity.empty() || derived.model.content_hash.empty()) return "";
+  if (!options.use_cache || options.compiled != nullptr || identity.empty() || derived.model.content_hash.empty()) return "";
   std::string key = fmt::format("{}\n{}\n{} {} {} {}\n", identity, derived.model.content_hash, options.digits,
                                 options.points, options.seed, options.reductions);
   for (const auto& [parameter, value] : options.fixed)
@@ -257,15 +257,15 @@ std::string key_of(const Derived& derived, const program::Program& program, cons
 
 }  // namespace
 
-verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options) {
+verify::Certificate certify(DerivedModel& derived, const program::Program& program, const Verification& options) {
   const work::Stage stage("comparing the derivations");
   Stopwatch watch;
   const std::string key = key_of(derived, program, options);
   if (!key.empty()) {
-    if (std::optional<verify::Certificate> kept = kept_certificate(key)) {
+    if (std::optional<verify::Certificate> kept = load_certificate(key)) {
       kept->options = {options.digits, options.points, options.seed, options.fixed};
       derived.seconds.verify += watch.lap();
-      derived.kept_certificate = true;
+      derived.certificate_from_cache = true;
       return std::move(*kept);
     }
   }
@@ -281,7 +281,7 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   std::vector<verify::Real> inputs(derived.model.inputs.size(), verify::Real(cln::cl_RA(1) / 3));
   for (std::size_t i = 0; i < options.default_inputs.size(); ++i)
     inputs.at(i) = numeric::exact(options.default_inputs[i]);
-  const int range = verify::digits_of_range(derived.mechanics), digits = options.digits + range;
+  const int range = verify::required_extra_digits(derived.mechanics), digits = options.digits + range;
   subjects.programs.push_back(with_functions(program_form(program, digits, inputs), program, inputs));
   const std::vector<program::Program> forms = other_forms(derived, program, options.fixed);
   for (const program::Program& form : forms) {
@@ -293,7 +293,7 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
       derived.mechanics, subjects, {options.digits, options.points, options.seed, options.fixed, range});
   derived.seconds.verify += watch.lap();
   if (certificate.interrupted && !options.partial) throw work::Interrupted{};
-  if (!key.empty()) keep_certificate(key, certificate);
+  if (!key.empty()) store_certificate(key, certificate);
   return certificate;
 }
 
@@ -305,7 +305,7 @@ void require_pass(const verify::Certificate& certificate, const model::Model& mo
       failures +=
           fmt::format("{}{} against {}: {:.3g}", failures.empty() ? "" : "; ", c.a, c.b, c.max_relative_difference);
   }
-  for (const std::string& name : certificate.agreeing()) agreeing += (agreeing.empty() ? "" : ", ") + name;
+  for (const std::string& name : certificate.agreeing_forms()) agreeing += (agreeing.empty() ? "" : ", ") + name;
   throw Error("verify", SourceLocation{model.file, 0, 0, 1, ""},
               fmt::format("the derivations of this model disagree ({}), so nothing is emitted; {}", failures,
                           agreeing.empty() ? "none agrees with d'Alembert's principle"
@@ -314,7 +314,7 @@ void require_pass(const verify::Certificate& certificate, const model::Model& mo
               ErrorKind::check);
 }
 
-emit::EmissionContext emission_context(Derived& derived, const program::Program& program, const run::Scene& scene,
+emit::EmissionContext emission_context(DerivedModel& derived, const program::Program& program, const run::Scene& scene,
                                        const verify::Certificate& certificate) {
   const model::Model& model = derived.model;
   emit::EmissionContext context;

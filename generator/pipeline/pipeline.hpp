@@ -24,20 +24,20 @@ struct Timings {
 };
 
 enum class ApproachChoice { automatic, one, two };
-std::vector<std::string> approach_words();                // "auto", "I", "II"
-ApproachChoice approach_choice(const std::string& text);  // from one of these names; throws Error
+std::vector<std::string> approach_names();                // "auto", "I", "II"
+ApproachChoice parse_approach(const std::string& text);  // from one of these names; throws Error
 
 /// A form of the equations; nothing for the cheapest one that holds everywhere.
 using FormChoice = std::optional<system::Form>;
-std::vector<std::string> form_words();            // "auto", and the names of system::Form
-FormChoice form_choice(const std::string& text);  // from one of these names; throws Error
+std::vector<std::string> form_names();            // "auto", and the names of system::Form
+FormChoice parse_form(const std::string& text);  // from one of these names; throws Error
 
 /// A model and its equations. It cannot be moved: products refer to it.
-struct Derived {
-  explicit Derived(std::shared_ptr<const model::Model> read);
-  ~Derived();
-  Derived(const Derived&) = delete;
-  Derived& operator=(const Derived&) = delete;
+struct DerivedModel {
+  explicit DerivedModel(std::shared_ptr<const model::Model> read);
+  ~DerivedModel();
+  DerivedModel(const DerivedModel&) = delete;
+  DerivedModel& operator=(const DerivedModel&) = delete;
 
   std::shared_ptr<const model::Model> shared;
   const model::Model& model;
@@ -45,18 +45,18 @@ struct Derived {
   std::vector<system::EquationSystem> candidates;  // applicable formulations, in the requested approaches
   std::vector<conservation::ConservedQuantity> conserved;
   Timings seconds;
-  bool kept_certificate = false;  // the certificate comes from an earlier command for the same model and program
+  bool certificate_from_cache = false;  // the certificate comes from an earlier command for the same model and program
 };
 
 /// Builds the mechanics and derives the equations. Throws Error.
-std::unique_ptr<Derived> derive_model(std::shared_ptr<const model::Model> model, ApproachChoice approach,
+std::unique_ptr<DerivedModel> derive_model(std::shared_ptr<const model::Model> model, ApproachChoice approach,
                                       FormChoice form = std::nullopt);
 
 /// The cheapest program of the candidates; adds its time to `seconds`.
-program::Program make_program(Derived& derived, const program::Request& request);
+program::Program make_program(DerivedModel& derived, const program::Request& request);
 
 /// Adds both display forms, if they are written out.
-void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjects);
+void add_display_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjects);
 
 /// Options of the comparison of every formulation, both display forms and the optimised program with the oracle.
 struct Verification {
@@ -68,15 +68,15 @@ struct Verification {
   bool reductions = false;                                 // also Routh's reduction, which code is not made of
   std::vector<double> default_inputs = {};  // of the emitted code, for mass and constraints; none: arbitrary values
   bool partial = false;                     // accept a certificate that an interruption cut short
-  bool keep = true;                         // use the cache of certificates
+  bool use_cache = true;                         // use the cache of certificates
 };
-verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options);
+verify::Certificate certify(DerivedModel& derived, const program::Program& program, const Verification& options);
 
 /// Throws Error{ErrorKind::check} with the failures if the certificate is negative: such a model is not emitted.
 void require_pass(const verify::Certificate& certificate, const model::Model& model);
 
 /// The description of the model in the sources, with start and parameters of the default scene.
-emit::EmissionContext emission_context(Derived& derived, const program::Program& program, const run::Scene& scene,
+emit::EmissionContext emission_context(DerivedModel& derived, const program::Program& program, const run::Scene& scene,
                                        const verify::Certificate& certificate);
 
 /// Number of states that are checked each time code is emitted; `verify` checks more.

@@ -8,7 +8,7 @@
 #include "pipeline/code.hpp"
 #include "pipeline/simulate.hpp"
 #include "run/bind.hpp"
-#include "run/looked_at.hpp"
+#include "run/monitored_functions.hpp"
 
 namespace eomgen::pipeline {
 namespace {
@@ -37,12 +37,12 @@ std::vector<eom::hybrid::ExchangedChart> exchanged(const program::Program& progr
 
 }  // namespace
 
-std::shared_ptr<const emit::RunDescription> run_text(const Derived& derived, const run::Scene& scene,
+std::shared_ptr<const emit::RunDescription> run_text(const DerivedModel& derived, const run::Scene& scene,
                                               const program::Program& program) {
-  auto described = std::make_shared<Described>(Described{scene, described_code(program), {}});
-  run::RunRequest request = run_request(derived, described->scene, described->code, true);
+  auto described = std::make_shared<Described>(Described{scene, describe_code(program), {}});
+  run::RunRequest request = make_run_request(derived, described->scene, described->code, true);
   request.every = row_interval(scene);
-  described->problem = run::problem_of(request, run::choose_solver(scene.solver, scene).first);
+  described->problem = run::make_problem(request, run::choose_solver(scene.solver, scene).first);
   described->problem.beyond_range = {};
   described->problem.time = scene.time;  // a run evaluates it with its own numbers
   described->problem.breaks = {};
@@ -56,7 +56,7 @@ std::shared_ptr<const emit::RunDescription> run_text(const Derived& derived, con
     const auto place = std::find(program.outputs.begin(), program.outputs.end(), name);
     text->columns.push_back(static_cast<std::size_t>(place - program.outputs.begin()));
   }
-  text->beyond_range = held_beyond_range(derived, scene);
+  text->beyond_range = coordinates_valid_beyond_range(derived, scene);
   text->problem = std::shared_ptr<const eom::hybrid::Problem>(described, &described->problem);
   return text;
 }

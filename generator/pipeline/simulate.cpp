@@ -9,7 +9,7 @@
 #include "error.hpp"
 #include "pipeline/beyond_range.hpp"
 #include "program/kinks.hpp"
-#include "run/looked_at.hpp"
+#include "run/monitored_functions.hpp"
 
 namespace eomgen::pipeline {
 namespace {
@@ -42,7 +42,7 @@ std::string magnitude_of(const system::EquationSystem& system, std::size_t conse
 }
 
 /// All outputs of the compiled code: coordinates, energies, monitored quantities, reactions, requested outputs.
-std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& scene, bool watch_power) {
+std::vector<std::string> code_outputs(const DerivedModel& derived, const run::Scene& scene, bool watch_power) {
   std::vector<std::string> names;
   const auto add = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -76,14 +76,14 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
   return names;
 }
 
-bool energy_is_conserved(const Derived& derived) {
+bool energy_is_conserved(const DerivedModel& derived) {
   return std::any_of(derived.conserved.begin(), derived.conserved.end(),
                      [](const conservation::ConservedQuantity& c) { return c.kind == OutputKind::energy; });
 }
 
 }  // namespace
 
-std::vector<eom::expressions::Table> bounded_events(const Derived& derived, const run::Code& code) {
+std::vector<eom::expressions::Table> bounded_events(const DerivedModel& derived, const run::Code& code) {
   const system::EquationSystem& system = derived.candidates.front();
   std::vector<std::optional<symbolic::Ref>> functions;
   for (const system::Event& event : system.events) functions.emplace_back(event.value);
@@ -103,7 +103,7 @@ double row_interval(const run::Scene& scene) {
   return scene.every > 0 ? scene.every : scene.t1 > scene.t0 ? (scene.t1 - scene.t0) / default_rows : 1;
 }
 
-std::vector<std::string> state_names(const Derived& derived) {
+std::vector<std::string> state_names(const DerivedModel& derived) {
   std::vector<std::string> names;
   for (const char* suffix : {"", "_dot"}) {
     for (const std::uint32_t i : derived.mechanics.free) names.push_back(derived.model.coordinates[i].name + suffix);
@@ -114,7 +114,7 @@ std::vector<std::string> state_names(const Derived& derived) {
   return names;
 }
 
-run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
+run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
   run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {},
                       {},   {}};
   const system::EquationSystem& system = derived.candidates.front();
@@ -129,14 +129,14 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
     if (output.kind == OutputKind::redundant) run.redundant.push_back(output.name);
   }
   run.contacts = contact_outputs(system);
-  run.bounded = {bounded_events(derived, code), run::narrow_functions(system)};
-  run.beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
-    return holds_beyond_range(derived, scene, code, coordinate, t, x);
+  run.bounded_functions = {bounded_events(derived, code), run::narrow_functions(system)};
+  run.holds_beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
+    return equations_hold_beyond_range(derived, scene, code, coordinate, t, x);
   };
   for (const std::uint32_t k : system.active) run.constraint_names.push_back(derived.mechanics.constraints[k].label);
   for (std::size_t i = 0; i < derived.model.events.size(); ++i) {
     const model::Event& event = derived.model.events[i];
-    run.events.push_back({event.name, eom::Direction::any, scene.stops[i]});
+    run.events.push_back({event.name, eom::Direction::any, scene.ends_run[i]});
     if (event.direction == model::Event::Direction::up) run.events.back().direction = eom::Direction::up;
     if (event.direction == model::Event::Direction::down) run.events.back().direction = eom::Direction::down;
   }
@@ -146,7 +146,7 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
 namespace {
 
 /// The kink surfaces of a program as expressions.
-std::vector<symbolic::Ref> kink_values(const Derived& derived, const program::Program& program) {
+std::vector<symbolic::Ref> kink_values(const DerivedModel& derived, const program::Program& program) {
   std::vector<symbolic::Ref> values;
   for (const system::EquationSystem& candidate : derived.candidates) {
     if (program.kinks.empty() || candidate.formulation != program.formulation || candidate.approach != program.approach ||
@@ -172,7 +172,7 @@ void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& lib
     }
     run.charts.push_back(std::move(exchanged));
   }
-  run.in_charts = [library](unsigned charts) -> const run::Code& { return library->in(charts); };
+  run.code_for_charts = [library](unsigned charts) -> const run::Code& { return library->code_for(charts); };
 }
 
 }  // namespace
@@ -182,7 +182,7 @@ namespace {
 /// The features that code needs for a solver, or for every eligible solver.
 eom::Features wanted_features(const std::string& solver, bool every, eom::Features system) {
   const auto wants = [](const eom::Needs& needs) { return needs.required | needs.used; };
-  eom::Features wanted = wants(run::method_named(solver).needs);
+  eom::Features wanted = wants(run::get_method(solver).needs);
   for (const eom::MethodInfo& method : eom::methods()) {
     if (every && eom::eligible(method, system)) wanted = wanted | wants(method.needs);
   }
@@ -191,7 +191,7 @@ eom::Features wanted_features(const std::string& solver, bool every, eom::Featur
 
 }  // namespace
 
-program::Request run_functions(const Derived& derived, const run::Scene& scene, const std::string& solver,
+program::Request functions_for_run(const DerivedModel& derived, const run::Scene& scene, const std::string& solver,
                                bool every_solver) {
   const system::EquationSystem& system = derived.candidates.front();
   const eom::Features features = run::features_of(system, program::has_kinks(system));
@@ -211,20 +211,20 @@ program::Request run_functions(const Derived& derived, const run::Scene& scene, 
 }
 
 Simulation simulate(const SimulationRequest& request) {
-  std::unique_ptr<Derived> derived = derive_model(request.model, request.approach, request.form);
+  std::unique_ptr<DerivedModel> derived = derive_model(request.model, request.approach, request.form);
   mechanics::Mechanics& mechanics = derived->mechanics;
   const std::vector<std::string> prepared = request.prepare ? request.prepare(*derived) : std::vector<std::string>{};
   const system::EquationSystem& system = derived->candidates.front();
-  const bool possible = request.charts && !exchangeable(charts_of(mechanics)).empty();
+  const bool possible = request.charts && !exchangeable_charts(list_charts(mechanics)).empty();
   run::Overrides overrides = request.overrides, none;
-  overrides.exchanges_charts = none.exchanges_charts = possible;
+  overrides.can_exchange_charts = none.can_exchange_charts = possible;
   run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), overrides);
   const std::string solver =
       run::choose_solver(scene.solver, scene).first;  // reports a wrong name before the compilation
-  const eom::Refusal* const keeps_charts = run::method_named(solver).needs.refusal(eom::Feature::charts);
+  const eom::Refusal* const keeps_charts = run::get_method(solver).needs.refusal(eom::Feature::charts);
   const bool exchanges = possible && scene.jumps.functions.empty() && keeps_charts == nullptr;
 
-  program::Request wanted = run_functions(*derived, scene, solver, request.every_solver);
+  program::Request wanted = functions_for_run(*derived, scene, solver, request.every_solver);
   for (const std::string& name : prepared) {
     if (std::find(wanted.outputs.begin(), wanted.outputs.end(), name) == wanted.outputs.end())
       wanted.outputs.push_back(name);
@@ -246,9 +246,9 @@ Simulation simulate(const SimulationRequest& request) {
                                             ChartRequest{wanted, request.approach, request.form, request.seed});
   }
 
-  run::Code functions = code.for_run();
+  run::Code functions = code.code_for_run();
   functions.kink_values = kink_values(*derived, program);
-  run::RunRequest run = run_request(*derived, scene, functions, request.estimate);
+  run::RunRequest run = make_run_request(*derived, scene, functions, request.estimate);
   allow_charts(run, charts);
   if (request.begin) {
     run.every = request.rows ? std::max((scene.t1 - scene.t0) / *request.rows, std::numeric_limits<double>::min())
@@ -269,15 +269,15 @@ Simulation simulate(const SimulationRequest& request) {
           std::move(code),    std::move(result), std::move(charts)};
 }
 
-run::RunResult run_again(const Simulation& simulation, const run::Overrides& overrides, bool estimate) {
-  Derived& derived = *simulation.derived;
+run::RunResult rerun(const Simulation& simulation, const run::Overrides& overrides, bool estimate) {
+  DerivedModel& derived = *simulation.derived;
   run::Overrides allowed = overrides;
-  allowed.exchanges_charts = simulation.charts != nullptr;
+  allowed.can_exchange_charts = simulation.charts != nullptr;
   const run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(),
                                               derived.model.scene(simulation.scene.name), allowed);
-  run::Code code = simulation.code.for_run();
+  run::Code code = simulation.code.code_for_run();
   code.kink_values = kink_values(derived, simulation.program);
-  run::RunRequest run = run_request(derived, scene, code, estimate);
+  run::RunRequest run = make_run_request(derived, scene, code, estimate);
   allow_charts(run, simulation.charts);
   return run::integrate_scene(run);
 }

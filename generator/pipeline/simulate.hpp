@@ -36,12 +36,12 @@ struct SimulationRequest {
   bool charts = true;             // the run may change to second charts near singularities
   std::uint64_t seed = 1;
   /// Called after the derivation: may add outputs to every candidate, and returns those that the code must have.
-  std::function<std::vector<std::string>(Derived&)> prepare;
+  std::function<std::vector<std::string>(DerivedModel&)> prepare;
   /// Called after derivation and verification, before the compiler is called.
   std::function<void()> ready;
   /// Called before the first row with the names of all columns (at least the coordinates with their rates, energy,
   /// kinetic, potential, reactions and the outputs of the scene). Empty: no rows.
-  std::function<void(const Derived&, const run::Scene&, const std::vector<std::string>& names)> begin;
+  std::function<void(const DerivedModel&, const run::Scene&, const std::vector<std::string>& names)> begin;
   std::function<void(double t, std::span<const double> values)> row;
   std::size_t max_steps = 0;   // as in run::RunRequest
   std::optional<double> rows;  // the number of rows, instead of the interval of the scene
@@ -50,7 +50,7 @@ struct SimulationRequest {
 };
 
 struct Simulation {
-  std::unique_ptr<Derived> derived;
+  std::unique_ptr<DerivedModel> derived;
   run::Scene scene;
   program::Program program;
   verify::Certificate certificate;
@@ -67,20 +67,20 @@ Simulation simulate(const SimulationRequest& request);
 
 /// The functions and outputs that a run of the scene by this solver uses. every_solver: by any eligible solver. Throws
 /// Error{stage "run"} if the solver is not eligible.
-program::Request run_functions(const Derived& derived, const run::Scene& scene, const std::string& solver,
+program::Request functions_for_run(const DerivedModel& derived, const run::Scene& scene, const std::string& solver,
                                bool every_solver = false);
 
 /// Names of the states: free coordinates, their rates, integrals over time.
-std::vector<std::string> state_names(const Derived& derived);
+std::vector<std::string> state_names(const DerivedModel& derived);
 
 /// The request of a run with compiled code, without rows.
-run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate);
+run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& scene, const run::Code& code, bool estimate);
 
 /// Tables of the event functions of the code that depend on the state alone: events, kink surfaces, gaps of contacts.
-std::vector<eom::expressions::Table> bounded_events(const Derived& derived, const run::Code& code);
+std::vector<eom::expressions::Table> bounded_events(const DerivedModel& derived, const run::Code& code);
 
 /// Runs the same compiled code with other values, for sweeps and for tests over tolerances. `overrides` may change all
 /// values; outputs are limited to those in the code. No rows.
-run::RunResult run_again(const Simulation& simulation, const run::Overrides& overrides, bool estimate = true);
+run::RunResult rerun(const Simulation& simulation, const run::Overrides& overrides, bool estimate = true);
 
 }  // namespace eomgen::pipeline

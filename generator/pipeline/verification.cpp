@@ -9,7 +9,7 @@ namespace eomgen::pipeline {
 namespace {
 
 /// Every function that `emit` offers, except Taylor series if the program is too large for them.
-program::Program with_every_function(Derived& derived) {
+program::Program with_every_function(DerivedModel& derived) {
   program::Request request;
   request.with = abi::optional_functions();
   std::erase(request.with, "outputs");  // outputs are requested by name
@@ -33,7 +33,7 @@ std::optional<verify::Certificate> certify_prescribed(const std::shared_ptr<cons
   if (mechanics.degrees_of_freedom() > 0) return std::nullopt;
   verify::Subjects subjects;
   subjects.systems = verify::all_formulations(mechanics, &subjects.left_out);
-  add_reading_forms(mechanics, subjects);
+  add_display_forms(mechanics, subjects);
   return verify::certify(mechanics, subjects, {request.digits, request.points, request.seed, {}});
 }
 
@@ -41,16 +41,16 @@ std::optional<verify::Certificate> certify_prescribed(const std::shared_ptr<cons
 
 verify::Certificate verify_model(std::shared_ptr<const model::Model> model, const VerificationRequest& request) {
   if (const auto prescribed = certify_prescribed(model, request)) return *prescribed;
-  const std::unique_ptr<Derived> derived = derive_model(std::move(model), ApproachChoice::automatic);
+  const std::unique_ptr<DerivedModel> derived = derive_model(std::move(model), ApproachChoice::automatic);
   const program::Program program = with_every_function(*derived);
   Verification verification{request.digits, request.points, request.seed, nullptr};
   verification.reductions = true;
   verification.partial = true;
-  verification.keep = false;
+  verification.use_cache = false;
   std::optional<CompiledCode> code;
   verify::CompiledForm compiled;
   if (request.compile) {
-    code.emplace(compile_for_check(*derived, program));
+    code.emplace(compile_for_verification(*derived, program));
     compiled = code->form();
     verification.compiled = &compiled;
     verification.default_inputs = default_inputs(*derived);

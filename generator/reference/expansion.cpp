@@ -14,7 +14,7 @@ using program::Operand;
 using program::Slot;
 using symbolic::Op;
 
-Expansion::Expansion(const program::Taylor& taylor, int digits)
+TaylorExpansion::TaylorExpansion(const program::Taylor& taylor, int digits)
     : taylor_(taylor), digits_(digits), format_(cln::float_format(static_cast<std::uintptr_t>(digits))) {
   const program::Function& next = taylor.next;
   states_ = next.results[2].entries.size();
@@ -40,7 +40,7 @@ Expansion::Expansion(const program::Taylor& taylor, int digits)
   }
 }
 
-Expansion::Place Expansion::place(const Operand& operand) const {
+TaylorExpansion::Place TaylorExpansion::place(const Operand& operand) const {
   const auto at = [&](std::size_t first) { return Place{first + operand.index, operand.negated}; };
   switch (operand.slot) {
     case Slot::constant: return at(0);
@@ -53,9 +53,9 @@ Expansion::Place Expansion::place(const Operand& operand) const {
   }
 }
 
-Number Expansion::number(double value) const { return cln::cl_float(numeric::exact(value), format_); }
+Number TaylorExpansion::number(double value) const { return cln::cl_float(numeric::exact(value), format_); }
 
-void Expansion::run_next() {
+void TaylorExpansion::run_next() {
   for (std::size_t i = 0; i < code_.size(); ++i) {
     const std::vector<Place>& o = code_[i].operands;
     Number& result = values_[at_code_ + i];
@@ -75,7 +75,7 @@ void Expansion::run_next() {
   }
 }
 
-std::vector<std::vector<Number>> Expansion::operator()(const Number& t, const std::vector<Number>& x,
+std::vector<std::vector<Number>> TaylorExpansion::operator()(const Number& t, const std::vector<Number>& x,
                                                        const std::vector<double>& p, const std::vector<double>& u,
                                                        int order) {
   program::Arguments<cln::cl_R> at;

@@ -14,9 +14,9 @@ namespace eomgen::reference {
 
 using Number = cln::cl_F;
 
-class Expansion {
+class TaylorExpansion {
  public:
-  Expansion(const program::Taylor& taylor, int digits);
+  TaylorExpansion(const program::Taylor& taylor, int digits);
 
   /// c[k][i], k = 0..order. Throws std::domain_error if a function leaves its domain.
   std::vector<std::vector<Number>> operator()(const Number& t, const std::vector<Number>& x,

@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "error.hpp"
-#include "reference/consistent.hpp"
+#include "reference/consistent_start.hpp"
 #include "reference/expansion.hpp"
 
 namespace eomgen::reference {
@@ -45,7 +45,7 @@ class Run {
       : problem_(problem), settings_(settings), expand_(taylor, settings.digits), t_(expand_.number(problem.t0)) {
     for (const double x : problem.x) x_.push_back(expand_.number(x));
     if (problem.constraints != nullptr) {
-      x_ = consistent(*problem.constraints, problem.coordinates, t_, std::move(x_), problem.p, settings.digits);
+      x_ = make_consistent(*problem.constraints, problem.coordinates, t_, std::move(x_), problem.p, settings.digits);
     }
   }
 
@@ -107,7 +107,7 @@ class Run {
 
   const Problem& problem_;
   Settings settings_;
-  Expansion expand_;
+  TaylorExpansion expand_;
   Number t_;
   std::vector<Number> x_;
   States wanted_;

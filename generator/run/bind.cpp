@@ -60,24 +60,24 @@ void bind_start(const RunRequest& request, Problem& problem) {
   for (const std::uint32_t i : request.code.free) problem.start.push_back(scene.q[i]);
   for (const std::uint32_t i : request.code.free) problem.start.push_back(scene.qdot[i]);
   for (std::size_t i = 0; i < scene.lower.size(); ++i) problem.ranges.push_back({scene.lower[i], scene.upper[i]});
-  problem.apart = scene.apart;
+  problem.apart = scene.open;
 }
 
 void bind_time(const Scene& scene, Problem& problem) {
-  problem.inputs = signals_of(scene);
+  problem.inputs = input_signals(scene);
   problem.breaks = scene.clock.breaks;
   problem.bounds = scene.clock.bounds;
 }
 
 }  // namespace
 
-std::vector<eom::hybrid::Signal> signals_of(const Scene& scene) {
+std::vector<eom::hybrid::Signal> input_signals(const Scene& scene) {
   std::vector<eom::hybrid::Signal> signals;
-  for (const Signal& signal : scene.inputs) signals.push_back(signal.of_run());
+  for (const Signal& signal : scene.inputs) signals.push_back(signal.runtime_signal());
   return signals;
 }
 
-Problem problem_of(const RunRequest& request, const std::string& solver) {
+Problem make_problem(const RunRequest& request, const std::string& solver) {
   const Scene& scene = request.scene;
   Problem problem;
   problem.code = &request.code;
@@ -92,8 +92,8 @@ Problem problem_of(const RunRequest& request, const std::string& solver) {
   problem.max_steps = request.steps_allowed(scene.step > 0);
   problem.events = request.events;
   problem.charts = request.charts;
-  problem.in_charts = request.in_charts;
-  problem.beyond_range = request.beyond_range;
+  problem.in_charts = request.code_for_charts;
+  problem.beyond_range = request.holds_beyond_range;
   problem.state_names = request.state_names;
   problem.constraint_names = request.constraint_names;
   problem.estimate = request.estimate;
@@ -105,7 +105,7 @@ Problem problem_of(const RunRequest& request, const std::string& solver) {
   bind_start(request, problem);
   bind_time(scene, problem);
   problem.jumps = scene.jumps;
-  problem.bounded = request.bounded;
+  problem.bounded = request.bounded_functions;
   return problem;
 }
 

@@ -12,9 +12,9 @@
 namespace eomgen::run {
 
 /// The inputs of a scene.
-std::vector<eom::hybrid::Signal> signals_of(const Scene& scene);
+std::vector<eom::hybrid::Signal> input_signals(const Scene& scene);
 
 /// The problem of a run. `request` has to outlive it. `solver`: an eligible one.
-eom::hybrid::Problem problem_of(const RunRequest& request, const std::string& solver);
+eom::hybrid::Problem make_problem(const RunRequest& request, const std::string& solver);
 
 }  // namespace eomgen::run

@@ -44,7 +44,7 @@ std::vector<std::string> solver_names() {
   return names;
 }
 
-std::vector<std::string> solvers_among(const std::string& stage, const std::vector<std::string>& asked) {
+std::vector<std::string> select_solvers(const std::string& stage, const std::vector<std::string>& asked) {
   std::vector<std::string> known = solver_names();
   for (const std::string& name : asked) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
@@ -56,7 +56,7 @@ std::vector<std::string> solvers_among(const std::string& stage, const std::vect
   return known;
 }
 
-const eom::MethodInfo& method_named(const std::string& name) {
+const eom::MethodInfo& get_method(const std::string& name) {
   if (const eom::MethodInfo* method = eom::find_method(name)) return *method;
   throw std::logic_error("no method is called " + name);
 }
@@ -78,27 +78,27 @@ eom::Features features_of(const Code& code) { return eom::hybrid::features_of(co
 
 eom::Features features_of(const Scene& scene) {
   return eom::Features{}.set(Feature::moving_inputs, std::any_of(scene.inputs.begin(), scene.inputs.end(),
-                                                                 [](const Signal& input) { return input.moves(); }));
+                                                                 [](const Signal& input) { return input.is_varying(); }));
 }
 
-eom::Eligibility eligible(const std::string& solver, const Scene& scene, const Code& code) {
-  return eom::eligible(method_named(solver), features_of(scene) | features_of(code));
+eom::Eligibility check_eligibility(const std::string& solver, const Scene& scene, const Code& code) {
+  return eom::eligible(get_method(solver), features_of(scene) | features_of(code));
 }
 
-std::string reason_of(const eom::Eligibility& found) {
+std::string ineligibility_reason(const eom::Eligibility& found) {
   if (found) return "";
   if (found.reason == eom::Eligibility::Reason::missing) return without(found.feature);
   return with(found.feature) + std::string(found.why);
 }
 
 void require_eligible(const std::string& solver, eom::Features features) {
-  const eom::MethodInfo& method = method_named(solver);
+  const eom::MethodInfo& method = get_method(solver);
   const eom::Eligibility found = eom::eligible(method, features);
   if (found) return;
   const bool compiled = found.reason == eom::Eligibility::Reason::refused || found.feature == Feature::constraints;
   const std::string instead = *method.needs.instead == '\0' ? "" : fmt::format("{}, ", method.needs.instead);
   const char* const what = found.feature == Feature::moving_inputs ? "scene" : "model";
-  throw Error("run", {}, fmt::format("solver '{}' cannot integrate this {}: {}", solver, what, reason_of(found)),
+  throw Error("run", {}, fmt::format("solver '{}' cannot integrate this {}: {}", solver, what, ineligibility_reason(found)),
               compiled ? fmt::format("take {}dop853 or auto", instead)
                        : fmt::format("choose the solver {} when the code is made", solver));
 }

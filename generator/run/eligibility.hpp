@@ -19,10 +19,10 @@ std::vector<std::string> solver_names();
 
 /// The solvers with these names, in the registry's order; without names all of them. Throws Error{stage} for an unknown
 /// name, with the nearest ones.
-std::vector<std::string> solvers_among(const std::string& stage, const std::vector<std::string>& asked);
+std::vector<std::string> select_solvers(const std::string& stage, const std::vector<std::string>& asked);
 
 /// The method with this name; throws std::logic_error if there is none.
-const eom::MethodInfo& method_named(const std::string& name);
+const eom::MethodInfo& get_method(const std::string& name);
 /// Whether the method uses df/dx if it is available: the implicit methods for stiff systems do.
 bool uses_jacobian(const eom::MethodInfo& method);
 
@@ -33,10 +33,10 @@ eom::Features features_of(const Code& code);
 /// Features of a scene, without those of its code.
 eom::Features features_of(const Scene& scene);
 
-eom::Eligibility eligible(const std::string& solver, const Scene& scene, const Code& code);
+eom::Eligibility check_eligibility(const std::string& solver, const Scene& scene, const Code& code);
 
 /// The reason why a solver is not eligible; "" if it is.
-std::string reason_of(const eom::Eligibility& eligibility);
+std::string ineligibility_reason(const eom::Eligibility& eligibility);
 /// Throws Error{stage "run"} with this reason and an alternative, unless the solver is eligible.
 void require_eligible(const std::string& solver, eom::Features features);
 

@@ -17,7 +17,7 @@ using symbolic::SymbolKind;
 
 class Writer {
  public:
-  Writer(const Dag& dag, const Lookup& lookup) : dag_(dag), lookup_(lookup), place_(dag.size(), unseen) {}
+  Writer(const Dag& dag, const SymbolResolver& lookup) : dag_(dag), lookup_(lookup), place_(dag.size(), unseen) {}
 
   std::optional<Table> write(const std::vector<Ref>& roots) {
     add(roots);
@@ -53,16 +53,16 @@ class Writer {
   }
 
   void add_symbol(Ref r) {
-    const Leaf leaf = lookup_(dag_.symbol_of(r));
+    const SymbolMeaning leaf = lookup_(dag_.symbol_of(r));
     switch (leaf.kind) {
-      case Leaf::Kind::expression:
+      case SymbolMeaning::Kind::expression:
         add({leaf.expression});
         place_[r.id] = place_[leaf.expression.id];
         return;
-      case Leaf::Kind::parameter: put(r, Op::parameter, static_cast<std::int32_t>(leaf.index)); return;
-      case Leaf::Kind::variable: put(r, Op::variable, static_cast<std::int32_t>(leaf.index)); return;
-      case Leaf::Kind::number: put(r, Op::number, number(leaf.number)); return;
-      case Leaf::Kind::unknown: break;
+      case SymbolMeaning::Kind::parameter: put(r, Op::parameter, static_cast<std::int32_t>(leaf.index)); return;
+      case SymbolMeaning::Kind::variable: put(r, Op::variable, static_cast<std::int32_t>(leaf.index)); return;
+      case SymbolMeaning::Kind::number: put(r, Op::number, number(leaf.number)); return;
+      case SymbolMeaning::Kind::unknown: break;
     }
     complete_ = false;
     put(r, Op::number, number(0));
@@ -78,7 +78,7 @@ class Writer {
   }
 
   const Dag& dag_;
-  const Lookup& lookup_;
+  const SymbolResolver& lookup_;
   std::vector<std::int32_t> place_;  // in the table, of each node of the Dag
   Table table_;
   bool complete_ = true;
@@ -86,29 +86,29 @@ class Writer {
 
 }  // namespace
 
-std::optional<Table> table_of(const Dag& dag, const std::vector<Ref>& roots, const Lookup& lookup) {
+std::optional<Table> make_table(const Dag& dag, const std::vector<Ref>& roots, const SymbolResolver& lookup) {
   return Writer(dag, lookup).write(roots);
 }
 
-Lookup variables_of(const system::EquationSystem& s) {
+SymbolResolver run_variables(const system::EquationSystem& s) {
   return [&s](const Symbol& symbol) {
     const std::size_t n = s.free.size();
     switch (symbol.kind) {
-      case SymbolKind::time: return Leaf::of_variable(0);
-      case SymbolKind::parameter: return Leaf::of_parameter(symbol.index);
-      case SymbolKind::input: return Leaf::of_variable(1 + 2 * n + s.integrals.size() + symbol.index);
-      case SymbolKind::branch: return Leaf::of(0);
+      case SymbolKind::time: return SymbolMeaning::of_variable(0);
+      case SymbolKind::parameter: return SymbolMeaning::of_parameter(symbol.index);
+      case SymbolKind::input: return SymbolMeaning::of_variable(1 + 2 * n + s.integrals.size() + symbol.index);
+      case SymbolKind::branch: return SymbolMeaning::of(0);
       case SymbolKind::coordinate: {
         const auto place = std::find(s.free.begin(), s.free.end(), symbol.index);
-        if (symbol.order > 1 || place == s.free.end()) return Leaf{};
-        return Leaf::of_variable(1 + symbol.order * n + static_cast<std::size_t>(place - s.free.begin()));
+        if (symbol.order > 1 || place == s.free.end()) return SymbolMeaning{};
+        return SymbolMeaning::of_variable(1 + symbol.order * n + static_cast<std::size_t>(place - s.free.begin()));
       }
       case SymbolKind::integral:
         for (std::size_t i = 0; i < s.integrals.size(); ++i) {
-          if (s.integrals[i].integral == symbol.index) return Leaf::of_variable(1 + 2 * n + i);
+          if (s.integrals[i].integral == symbol.index) return SymbolMeaning::of_variable(1 + 2 * n + i);
         }
-        return Leaf{};
-      default: return Leaf{};
+        return SymbolMeaning{};
+      default: return SymbolMeaning{};
     }
   };
 }

@@ -17,23 +17,23 @@ using eom::expressions::Table;
 
 /// The meaning of a symbol: a number, a parameter, the index of a variable, another expression; or unknown, if it
 /// cannot be evaluated.
-struct Leaf {
+struct SymbolMeaning {
   enum class Kind { number, parameter, variable, expression, unknown } kind = Kind::unknown;
   double number = 0;
   std::size_t index = 0;
   symbolic::Ref expression{};
 
-  static Leaf of(double value) { return {Kind::number, value, 0, {}}; }
-  static Leaf of_parameter(std::size_t index) { return {Kind::parameter, 0, index, {}}; }
-  static Leaf of_variable(std::size_t index) { return {Kind::variable, 0, index, {}}; }
-  static Leaf of_expression(symbolic::Ref e) { return {Kind::expression, 0, 0, e}; }
+  static SymbolMeaning of(double value) { return {Kind::number, value, 0, {}}; }
+  static SymbolMeaning of_parameter(std::size_t index) { return {Kind::parameter, 0, index, {}}; }
+  static SymbolMeaning of_variable(std::size_t index) { return {Kind::variable, 0, index, {}}; }
+  static SymbolMeaning of_expression(symbolic::Ref e) { return {Kind::expression, 0, 0, e}; }
 };
-using Lookup = std::function<Leaf(const symbolic::Symbol&)>;
+using SymbolResolver = std::function<SymbolMeaning(const symbolic::Symbol&)>;
 
 /// The table of the roots; nothing if a symbol cannot be evaluated.
-std::optional<Table> table_of(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& roots, const Lookup& lookup);
+std::optional<Table> make_table(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& roots, const SymbolResolver& lookup);
 
 /// The variables of a run (eom/hybrid/problem.hpp): t, free coordinates, their rates, integrals, inputs.
-Lookup variables_of(const system::EquationSystem& system);
+SymbolResolver run_variables(const system::EquationSystem& system);
 
 }  // namespace eomgen::run

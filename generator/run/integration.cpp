@@ -9,7 +9,7 @@ namespace eomgen::run {
 
 struct Integration::Bound {
   Bound(const RunRequest& request, const std::string& solver)
-      : problem(problem_of(request, solver)), integration(problem) {}
+      : problem(make_problem(request, solver)), integration(problem) {}
   eom::hybrid::Problem problem;
   eom::hybrid::Integration integration;
 };

@@ -53,7 +53,7 @@ std::vector<Ref> parameter_formulas(Mechanics& m, const model::Scene& scene, con
   std::vector<Ref> formula = m.parameter_value;
   for (const auto& [index, value] : scene.parameters) formula[index] = mechanics::lower_scalar(m, value);
   for (const auto& [name, value] : overrides.values) {
-    if (start_named(*m.model, name)) continue;
+    if (find_start(*m.model, name)) continue;
     const auto found = std::find_if(m.model->parameters.begin(), m.model->parameters.end(),
                                     [&wanted = name](const model::Parameter& p) { return p.name == wanted; });
     if (found == m.model->parameters.end()) {
@@ -152,7 +152,7 @@ void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values) {
   }
 }
 
-void require_coefficients(const Mechanics& m, const std::vector<cln::cl_R>& values, const model::Scene& scene) {
+void require_friction_coefficients(const Mechanics& m, const std::vector<cln::cl_R>& values, const model::Scene& scene) {
   for (const mechanics::Contact& contact : m.contacts) {
     if (contact.dimensions() == 0) continue;
     const std::vector<Ref> both{contact.width ? contact.dynamic_coefficient : contact.static_coefficient,

@@ -15,7 +15,7 @@ namespace eomgen::run {
 void require_masses(mechanics::Mechanics& mechanics, const std::vector<cln::cl_R>& parameters);
 
 /// Throws if a coefficient of friction is negative or undefined, or the static one is less than the dynamic one.
-void require_coefficients(const mechanics::Mechanics& mechanics, const std::vector<cln::cl_R>& parameters,
+void require_friction_coefficients(const mechanics::Mechanics& mechanics, const std::vector<cln::cl_R>& parameters,
                           const model::Scene& scene);
 
 }  // namespace eomgen::run

@@ -14,21 +14,21 @@
 namespace eomgen::run {
 namespace {
 
-SolverReason::Slopes slopes_of(const Code& code) {
-  return code.jac != nullptr ? SolverReason::Slopes::compiled : SolverReason::Slopes::differences;
+SolverReason::JacobianSource jacobian_source(const Code& code) {
+  return code.jac != nullptr ? SolverReason::JacobianSource::compiled : SolverReason::JacobianSource::differences;
 }
 
 /// The functions of the code that the solver uses, before the run.
-SolverReason reason_of(const RunRequest& request, const std::string& solver, SolverReason::Basis basis) {
+SolverReason solver_reason(const RunRequest& request, const std::string& solver, SolverReason::Basis basis) {
   SolverReason reason;
   reason.basis = basis;
-  const eom::MethodInfo& method = method_named(solver);
-  if (uses_jacobian(method)) reason.slopes = slopes_of(request.code);
-  reason.series = method.needs.required.has(eom::Feature::series);
+  const eom::MethodInfo& method = get_method(solver);
+  if (uses_jacobian(method)) reason.jacobian = jacobian_source(request.code);
+  reason.uses_series = method.needs.required.has(eom::Feature::series);
   reason.keeps_constraints = method.needs.required.has(eom::Feature::constraints);
-  reason.momenta = method.needs.required.has(eom::Feature::momenta);
-  reason.discrete_forces = reason.momenta && request.watch_power;
-  reason.time_unfollowed_from = request.scene.clock.unfollowed_from;
+  reason.uses_momenta = method.needs.required.has(eom::Feature::momenta);
+  reason.uses_discrete_forces = reason.uses_momenta && request.watch_power;
+  reason.time_unresolved_from = request.scene.clock.unfollowed_from;
   return reason;
 }
 
@@ -37,11 +37,11 @@ void take_choice(const RunRequest& request, const eom::Choice& choice, RunResult
   if (choice.method != nullptr) result.solver = choice.method;
   result.reason.changes = choice.changes;
   if (!choice.changes.empty() && result.statistics.jacobians > 0)
-    result.reason.slopes_after_change = slopes_of(request.code);
+    result.reason.jacobian_after_change = jacobian_source(request.code);
 }
 
 /// The reason why the run ended, in terms of the command line.
-std::string told_end(const eom::hybrid::RunResult& run) {
+std::string describe_end(const eom::hybrid::RunResult& run) {
   using Kind = eom::hybrid::Reason::Kind;
   const eom::hybrid::Reason& reason = run.reason;
   if (reason.kind == Kind::range) {
@@ -61,7 +61,7 @@ std::string told_end(const eom::hybrid::RunResult& run) {
 }
 
 /// The error estimate by names; warnings about it in terms of the command line.
-void tell_error(const RunRequest& request, const eom::hybrid::RunResult& run, RunResult& result) {
+void report_error(const RunRequest& request, const eom::hybrid::RunResult& run, RunResult& result) {
   const eom::hybrid::EndError& error = run.error;
   result.estimate_note = error.note;
   if (error.doubt.kind == eom::hybrid::Doubt::Kind::passed_over) {
@@ -83,12 +83,12 @@ void tell_error(const RunRequest& request, const eom::hybrid::RunResult& run, Ru
 std::pair<std::string, SolverReason::Basis> choose_solver(const std::string& asked, const Scene& scene) {
   using Basis = SolverReason::Basis;
   if (asked != eom::Automatic::name) {
-    solvers_among("run", {asked});
-    if (!method_named(asked).adaptive && scene.step <= 0) {
+    select_solvers("run", {asked});
+    if (!get_method(asked).adaptive && scene.step <= 0) {
       throw Error("run", {}, fmt::format("solver '{}' takes steps of a fixed size, and none is given", asked),
                   "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
     }
-    return {asked, Basis::asked};
+    return {asked, Basis::requested};
   }
   if (scene.step > 0) return {"rk4", Basis::fixed_step};
   return {eom::Automatic::name, scene.rtol > 1e-6 ? Basis::loose_tolerance : Basis::tight_tolerance};
@@ -99,18 +99,18 @@ RunResult integrate_scene(const RunRequest& request) {
   const auto [solver, basis] = choose_solver(request.scene.solver, request.scene);
   result.solver = solver;
   require_eligible(solver, features_of(request.scene) | features_of(request.code));
-  result.reason = reason_of(request, solver, basis);
-  const eom::hybrid::Problem problem = problem_of(request, solver);
+  result.reason = solver_reason(request, solver, basis);
+  const eom::hybrid::Problem problem = make_problem(request, solver);
   if (const std::vector<eom::hybrid::FinerSteps> finer = eom::hybrid::finer_steps(problem); !finer.empty())
     result.reason.shorter_steps_from = finer.front().begin;
   const eom::hybrid::RunResult run = run_problem(problem);
   if (request.scene.t1 == request.scene.t0 && result.solver == eom::Automatic::name) {
     result.solver = "dop853";
-    result.reason = {SolverReason::Basis::nothing_moves};
+    result.reason = {SolverReason::Basis::empty_span};
   }
   result.outcome = run.outcome;
-  result.doubt = run.error.doubt;
-  result.detail = told_end(run);
+  result.estimate_warning = run.error.doubt;
+  result.detail = describe_end(run);
   result.t = run.t;
   result.statistics = run.statistics;
   result.seconds_integrate = run.seconds;
@@ -136,7 +136,7 @@ RunResult integrate_scene(const RunRequest& request) {
   }
   result.state = run.state;
   result.reason.narrow_unsure_from = run.unsure_from;
-  tell_error(request, run, result);
+  report_error(request, run, result);
   return result;
 }
 

@@ -36,7 +36,7 @@ struct Invariant {
 using RunEvent = eom::hybrid::Event;
 
 struct KinkCrossings {
-  std::string of;
+  std::string kink;
   std::size_t count = 0;
 };
 
@@ -53,7 +53,7 @@ struct RunResult {
   SolverReason reason;  // why it was chosen
   eom::Outcome outcome = eom::Outcome::done;
   std::string detail;        // the cause, in terms of the command line, or ""
-  eom::hybrid::Doubt doubt;  // of the estimate
+  eom::hybrid::Doubt estimate_warning;  // of the estimate
   double t = 0;
   eom::Statistics statistics;
   double seconds_integrate = 0, seconds_estimate = 0;
@@ -109,11 +109,11 @@ struct RunRequest {
   std::vector<ContactOutputs> contacts = {};    // per Code::contacts
   std::vector<std::string> redundant = {};      // outputs: psi of redundant constraints
   std::vector<ExchangedChart> charts = {};      // none: the run stays in its coordinates
-  std::function<const Code&(unsigned charts)> in_charts =
+  std::function<const Code&(unsigned charts)> code_for_charts =
       {};  // code with these second charts, and all that were requested before
-  eom::hybrid::BoundedFunctions bounded = {};
+  eom::hybrid::BoundedFunctions bounded_functions = {};
   /// Whether the equations hold beyond the range of a coordinate; if empty, they do not.
-  std::function<bool(std::uint32_t coordinate, double t, std::span<const double> x)> beyond_range = {};
+  std::function<bool(std::uint32_t coordinate, double t, std::span<const double> x)> holds_beyond_range = {};
   std::vector<std::string> constraint_names = {};  // of Code::active_constraints
   std::size_t max_steps = 0;  // accepted and rejected together; 0: the limit of eom::Options, and no limit for fixed
                               // steps, whose number is known

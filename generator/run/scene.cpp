@@ -14,7 +14,7 @@
 #include "derive/imposition.hpp"
 #include "numeric/numbers.hpp"
 #include "run/bind.hpp"
-#include "run/looked_at.hpp"
+#include "run/monitored_functions.hpp"
 #include "run/parameters.hpp"
 #include "run/start.hpp"
 #include "run/time_functions.hpp"
@@ -121,9 +121,9 @@ std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene&
 // Functions of time alone, and the jumps that they cause.
 void resolve_clock(const Mechanics& m, const system::EquationSystem& system,
                    const std::vector<std::optional<Ref>>& expressions, Scene& result) {
-  for (Signal& input : result.inputs) input.parameters(result.parameters);
+  for (Signal& input : result.inputs) input.set_parameters(result.parameters);
   result.time = time_functions(system, expressions);
-  result.clock = eom::hybrid::look_at_time(result.time, result.parameters, signals_of(result), result.t0, result.t1);
+  result.clock = eom::hybrid::look_at_time(result.time, result.parameters, input_signals(result), result.t0, result.t1);
   eom::hybrid::JumpFunctions jumps = jump_functions(system);
   const eom::hybrid::Jumps found(jumps, system.free.size(), system.integrals.size(), m.model->inputs.size(),
                                  result.parameters, !result.clock.breaks.empty());
@@ -195,7 +195,7 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
 
 }  // namespace
 
-std::optional<StartProblem::Key> start_named(const model::Model& model, const std::string& name) {
+std::optional<StartProblem::Key> find_start(const model::Model& model, const std::string& name) {
   for (std::uint32_t i = 0; i < model.coordinates.size(); ++i) {
     if (name == model.coordinates[i].name) return StartProblem::Key{i, 0};
     if (name == model.coordinates[i].name + "_dot") return StartProblem::Key{i, 1};
@@ -209,7 +209,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.name = scene.name;
   const std::vector<cln::cl_R> parameters = exact_parameters(m, scene, overrides, digits);
   require_masses(m, parameters);
-  require_coefficients(m, parameters, scene);
+  require_friction_coefficients(m, parameters, scene);
   for (const cln::cl_R& p : parameters) result.parameters.push_back(cln::double_approx(p));
   // The start is computed with the binary64 parameters that the run will use.
   std::vector<cln::cl_R> rounded;
@@ -233,7 +233,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.max_step = overrides.max_step.value_or(result.max_step);
   result.every = overrides.every.value_or(result.every);
   result.solver = overrides.solver.value_or(scene.solver);
-  const bool at_start = overrides.at_start && overrides.t_end && result.t1 == result.t0;
+  const bool at_start = overrides.allow_empty_span && overrides.t_end && result.t1 == result.t0;
   if (overrides.t_end && !(result.t1 > result.t0) && !at_start) {
     throw Error(
         "scene", {},
@@ -250,16 +250,16 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
     problem.given[key] = {v, span};
   };
   for (const auto& [name, v] : overrides.values) {
-    if (const auto key = start_named(*m.model, name)) give(*key, cln::double_approx(v), scene.span);
+    if (const auto key = find_start(*m.model, name)) give(*key, cln::double_approx(v), scene.span);
   }
   for (const model::InitialValue& initial : scene.initial) {
     const StartProblem::Key key{initial.coordinate, initial.order};
     if (!problem.given.contains(key)) give(key, value.number(initial.value, "an initial value"), initial.span);
   }
   for (const model::InitialAngularVelocity& given : scene.rotations) {
-    StartProblem::Turn turn{given.frame, {}, given.span};
+    StartProblem::AngularVelocity turn{given.frame, {}, given.span};
     for (std::size_t k = 0; k < 3; ++k) turn.value[k] = value.number(given.value[k], "an initial angular velocity");
-    problem.turns.push_back(turn);
+    problem.angular_velocities.push_back(turn);
   }
   for (const model::InitialValue& guess : scene.guess) {
     problem.guess[{guess.coordinate, guess.order}] = value.number(guess.value, "a guess");
@@ -283,16 +283,16 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.qdot = problem.qdot;
   resolve_ranges(m, value, result);
   require_ranges(m, scene, result);
-  result.solved = problem.solved;
+  result.solved_notes = problem.solved_notes;
   if (problem.given.empty() && scene.rotations.empty()) {
-    result.solved.insert(result.solved.begin(),
+    result.solved_notes.insert(result.solved_notes.begin(),
                          "no initial values: all coordinates and rates start at 0" +
-                             std::string(problem.solved.empty() ? "" : ", but for those that follow"));
+                             std::string(problem.solved_notes.empty() ? "" : ", but for those that follow"));
   }
-  result.apart = problem.apart;
-  for (const model::Event& event : m.model->events) result.stops.push_back(event.stop);
-  for (const std::uint32_t i : scene.stop) result.stops[i] = true;
-  if (!overrides.exchanges_charts) require_regular(m, system, scene, result);
+  result.open = problem.open;
+  for (const model::Event& event : m.model->events) result.ends_run.push_back(event.stop);
+  for (const std::uint32_t i : scene.stop) result.ends_run[i] = true;
+  if (!overrides.can_exchange_charts) require_regular(m, system, scene, result);
 
   std::vector<model::OutputReference> wanted = scene.outputs;
   if (!overrides.outputs.empty()) {

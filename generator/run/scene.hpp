@@ -25,8 +25,8 @@ struct Overrides {
   std::optional<double> t_end, rtol, atol, step, max_step, every;
   std::optional<std::string> solver;
   std::vector<std::string> outputs;  // replace those of the scene, unless empty
-  bool at_start = false;             // t_end may be the start: nothing moves then
-  bool exchanges_charts = false;     // a start at a chart singularity is no error: the run uses other charts
+  bool allow_empty_span = false;             // t_end may be the start: nothing moves then
+  bool can_exchange_charts = false;     // a start at a chart singularity is no error: the run uses other charts
 };
 
 struct Scene {
@@ -52,13 +52,13 @@ struct Scene {
   eom::hybrid::Clock clock;          // their properties in the span of the run
   eom::hybrid::JumpFunctions jumps;  // functions that may jump; empty: none
   std::vector<std::string> outputs;  // expanded, without the coordinates, each once
-  std::vector<bool> stops;           // per event of the model: whether it ends the run
-  std::vector<bool> apart;           // per contact: whether it is open at the start
-  std::vector<std::string> solved;   // sentences about values that follow from the constraints
+  std::vector<bool> ends_run;           // per event of the model: whether it ends the run
+  std::vector<bool> open;           // per contact: whether it is open at the start
+  std::vector<std::string> solved_notes;   // sentences about values that follow from the constraints
 };
 
 /// The coordinate (order 0) or rate (order 1) with this name, "theta" or "theta_dot".
-std::optional<std::pair<std::uint32_t, std::uint8_t>> start_named(const model::Model& model, const std::string& name);
+std::optional<std::pair<std::uint32_t, std::uint8_t>> find_start(const model::Model& model, const std::string& name);
 
 inline constexpr double start_tolerance = 1e-8;  // relative; the contract's
 

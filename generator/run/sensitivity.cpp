@@ -115,7 +115,7 @@ eom::Result run(const RunRequest& request, const std::string& solver, double t_e
 
 /// The method of the run; if it needs a series, momenta or constraints, a method of similar order that does not.
 std::string without_requirements(const std::string& solver) {
-  const eom::MethodInfo& method = method_named(solver);
+  const eom::MethodInfo& method = get_method(solver);
   if (method.needs.required.none()) return solver;
   return uses_jacobian(method) ? "radau5" : "dop853";
 }
@@ -137,7 +137,7 @@ Sensitivities integrate_sensitivities(const RunRequest& request, const std::stri
   eom::Options options;
   options.rtol = request.scene.rtol;
   options.atol = request.scene.atol;
-  options.fixed_step = method_named(result.solver).adaptive ? 0 : request.scene.step;
+  options.fixed_step = get_method(result.solver).adaptive ? 0 : request.scene.step;
   options.interrupt = request.interrupt;
   if (t_end > request.scene.t0) options.step_bounds = request.scene.clock.bounds;
   if (request.scene.max_step > 0) options.max_step = request.scene.max_step;
@@ -154,7 +154,7 @@ Sensitivities integrate_sensitivities(const RunRequest& request, const std::stri
   }
   if (!estimate || end.outcome != eom::Outcome::done) return result;
   const eom::ErrorEstimate error = eom::estimate_error(
-      method_named(result.solver).order, request.scene.t0, end, options,
+      get_method(result.solver).order, request.scene.t0, end, options,
       [&](const eom::Options& tighter) { return run(request, result.solver, t_end, directions, tighter); });
   for (std::size_t d = 0; d < directions.size(); ++d) {
     for (std::size_t i = 0; i < n; ++i) result.list[d].error.push_back(error.x[(d + 1) * n + i] / directions[d].scale);

@@ -8,9 +8,9 @@ namespace eomgen::run {
 using symbolic::SymbolKind;
 
 Signal::Signal(const symbolic::Dag& dag, symbolic::Ref expression, const std::vector<double>& values) {
-  signal_.expression = *table_of(dag, {expression}, [](const symbolic::Symbol& s) {
-    if (s.kind == SymbolKind::time) return Leaf::of_variable(0);
-    return s.kind == SymbolKind::parameter ? Leaf::of_parameter(s.index) : Leaf::of(0);
+  signal_.expression = *make_table(dag, {expression}, [](const symbolic::Symbol& s) {
+    if (s.kind == SymbolKind::time) return SymbolMeaning::of_variable(0);
+    return s.kind == SymbolKind::parameter ? SymbolMeaning::of_parameter(s.index) : SymbolMeaning::of(0);
   });
   parameters(values);
 }
@@ -18,7 +18,7 @@ Signal::Signal(const symbolic::Dag& dag, symbolic::Ref expression, const std::ve
 Signal::Signal(std::vector<double> time, std::vector<double> value)
     : signal_{{}, std::move(time), std::move(value), {}} {}
 
-void Signal::parameters(const std::vector<double>& values) {
+void Signal::set_parameters(const std::vector<double>& values) {
   if (!signal_.expression.empty()) code_ = eom::expressions::Code(signal_.expression, values);
 }
 
@@ -26,6 +26,6 @@ double Signal::operator()(double t, double side_of) const {
   return signal_.expression.empty() ? eom::hybrid::in_segment(signal_, side_of) : code_.value({&t, 1});
 }
 
-bool Signal::moves() const { return eom::hybrid::moves(signal_); }
+bool Signal::is_varying() const { return eom::hybrid::moves(signal_); }
 
 }  // namespace eomgen::run

@@ -19,14 +19,14 @@ class Signal {
   Signal(std::vector<double> time, std::vector<double> value);
 
   /// Sets new values of the parameters in its expression.
-  void parameters(const std::vector<double>& values);
+  void set_parameters(const std::vector<double>& values);
 
   /// The value at t. At a jump: the value of the segment that `side_of` (a time inside the current segment) lies in.
   double operator()(double t, double side_of) const;
   /// Whether the signal varies between its jumps.
-  bool moves() const;
+  bool is_varying() const;
   const std::vector<double>& jumps() const { return signal_.times; }
-  const eom::hybrid::Signal& of_run() const { return signal_; }
+  const eom::hybrid::Signal& runtime_signal() const { return signal_; }
 
  private:
   eom::hybrid::Signal signal_;

@@ -44,11 +44,11 @@ class StartSolver {
     leave(1);
     if (rows_.add_rolling()) {
       const std::vector<double> given = p_.qdot;
-      const std::vector<std::string> told = p_.solved;
+      const std::vector<std::string> told = p_.solved_notes;
       newton(1, unknowns(1));
-      if (rows_.worst(1) <= start_tolerance) return;
+      if (rows_.largest_residual(1) <= start_tolerance) return;
       p_.qdot = given;  // the body slides
-      p_.solved = told;
+      p_.solved_notes = told;
       rows_.drop_rolling();
     }
     solve(1);
@@ -58,9 +58,9 @@ class StartSolver {
   // A unilateral contact is open if all coordinates in its gap are given, and the gap is positive (order 0) or
   // increasing (order 1).
   void leave(std::uint8_t order) {
-    p_.apart.resize(s_.contacts.size(), false);
+    p_.open.resize(s_.contacts.size(), false);
     for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
-      if (!s_.contacts[j].unilateral || p_.apart[j]) continue;
+      if (!s_.contacts[j].unilateral || p_.open[j]) continue;
       const std::size_t k = *s_.contacts[j].unilateral;
       VectorXd residual;
       MatrixXd A;
@@ -72,7 +72,7 @@ class StartSolver {
         if (A(row, static_cast<Eigen::Index>(i)) != 0) given = given && p_.given.contains(key) && !may_move(key);
       }
       if (!given || !(residual(row) > 0) || rows_.relative(residual, A, order, row) <= start_tolerance) continue;
-      p_.apart[j] = order == 0;  // the run reports a contact that opens
+      p_.open[j] = order == 0;  // the run reports a contact that opens
       rows_.drop(k);
     }
   }
@@ -98,8 +98,8 @@ class StartSolver {
   void hold_angles(std::set<StartProblem::Key>& held) const {
     const model::Model& model = *p_.mechanics.model;
     for (std::uint32_t f = 1; f < model.frames.size(); ++f) {
-      const auto given = [f](const StartProblem::Turn& turn) { return turn.frame == f; };
-      const bool turns = std::any_of(p_.turns.begin(), p_.turns.end(), given);
+      const auto given = [f](const StartProblem::AngularVelocity& turn) { return turn.frame == f; };
+      const bool turns = std::any_of(p_.angular_velocities.begin(), p_.angular_velocities.end(), given);
       for (const model::NodeId entry : model.frames[f].entries) {
         const model::Node& node = model.arena[entry];
         if (node.op != model::Op::coordinate) continue;
@@ -128,7 +128,7 @@ class StartSolver {
           }
         }
         rows_.value(key) = exact[order];
-        p_.solved.push_back(fmt::format("{} = {} follows from '{}'", rows_.label(key), exact[order], constraint));
+        p_.solved_notes.push_back(fmt::format("{} = {} follows from '{}'", rows_.label(key), exact[order], constraint));
       }
     }
   }
@@ -154,19 +154,19 @@ class StartSolver {
     rows_.linearise(0, residual, A);
     std::vector<std::size_t> open;
     for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
-      if (!s_.contacts[j].unilateral || p_.apart[j]) continue;
+      if (!s_.contacts[j].unilateral || p_.open[j]) continue;
       const Eigen::Index row = row_of(0, *s_.contacts[j].unilateral);
       if (residual(row) > 0 && rows_.relative(residual, A, 0, row) > start_tolerance) open.push_back(j);
     }
     return open;
   }
   Eigen::Index row_of(std::uint8_t order, std::size_t constraint) const {
-    const auto found = std::find(rows_.of(order).begin(), rows_.of(order).end(), constraint);
-    return static_cast<Eigen::Index>(found - rows_.of(order).begin());
+    const auto found = std::find(rows_.of_order(order).begin(), rows_.of_order(order).end(), constraint);
+    return static_cast<Eigen::Index>(found - rows_.of_order(order).begin());
   }
 
   /// Opens the contacts that are incompatible with the given values, if they are open at the initial guess.
-  void leave_what_cannot_touch(const std::vector<double>& begin, const std::vector<std::string>& told) {
+  void open_unreachable_contacts(const std::vector<double>& begin, const std::vector<std::string>& told) {
     const std::vector<double> end = p_.q;
     p_.q = begin;
     const std::vector<std::size_t> open = open_contacts();
@@ -174,14 +174,14 @@ class StartSolver {
       p_.q = end;
       return;
     }
-    p_.solved = told;
+    p_.solved_notes = told;
     std::string names;
     for (const std::size_t j : open) {
-      p_.apart[j] = true;
+      p_.open[j] = true;
       rows_.drop(*s_.contacts[j].unilateral);
       names += (names.empty() ? "'" : ", '") + s_.contacts[j].name + "'";
     }
-    p_.solved.push_back(names + (open.size() == 1 ? " is" : " are") + " apart: the start cannot be met while " +
+    p_.solved_notes.push_back(names + (open.size() == 1 ? " is" : " are") + " apart: the start cannot be met while " +
                         (open.size() == 1 ? "it touches" : "all touch"));
     solve(0);
     for (const std::size_t j : open) require_open(s_.contacts[j]);
@@ -194,34 +194,34 @@ class StartSolver {
   }
 
   void solve(std::uint8_t order) {
-    if (rows_.of(order).empty()) return;
+    if (rows_.of_order(order).empty()) return;
     std::vector<std::size_t> free = unknowns(order);
-    const std::vector<std::string> told = p_.solved;
+    const std::vector<std::string> told = p_.solved_notes;
     for (const std::size_t i : free) {
       const auto guess = p_.guess.find({s_.free[i], order});
       if (guess != p_.guess.end()) rows_.value({s_.free[i], order}) = guess->second;
     }
     const std::vector<double> begin = p_.q;
-    if (rows_.worst(order) > rounding) newton(order, free);
-    if (rows_.worst(order) > start_tolerance && !loose_.empty()) {
+    if (rows_.largest_residual(order) > rounding) newton(order, free);
+    if (rows_.largest_residual(order) > start_tolerance && !loose_.empty()) {
       loose_.clear();
       free = unknowns(order);
       newton(order, free);
       if (order == 0) hold_angles(loose_);
     }
-    if (order == 1 && rows_.worst(order) > start_tolerance &&
+    if (order == 1 && rows_.largest_residual(order) > start_tolerance &&
         !held_.empty()) {  // the velocity of a rolling body is given instead of its spin
       held_.clear();
       free = unknowns(order);
       newton(order, free);
     }
-    if (rows_.worst(order) > start_tolerance) choose(order, free);
-    if (order == 0 && rows_.worst(order) > start_tolerance) {
-      leave_what_cannot_touch(begin, told);
-      if (rows_.of(order).empty()) return;
+    if (rows_.largest_residual(order) > start_tolerance) choose(order, free);
+    if (order == 0 && rows_.largest_residual(order) > start_tolerance) {
+      open_unreachable_contacts(begin, told);
+      if (rows_.of_order(order).empty()) return;
     }
     Eigen::Index k = 0;
-    if (rows_.worst(order, &k) > start_tolerance) refuse_start(p_, rows_, order, static_cast<std::size_t>(k), free);
+    if (rows_.largest_residual(order, &k) > start_tolerance) refuse_start(p_, rows_, order, static_cast<std::size_t>(k), free);
   }
 
   /// If several choices satisfy the constraints (as for rolling without a given spin about the normal), solves for the
@@ -239,7 +239,7 @@ class StartSolver {
     }
     std::vector<std::size_t> chosen;
     std::string open;
-    const std::vector<bool> felt = felt_most(columns, first, start_rank_tolerance);
+    const std::vector<bool> felt = select_most_sensitive(columns, first, start_rank_tolerance);
     for (std::size_t i = 0; i < free.size(); ++i) {
       const StartProblem::Key key{s_.free[free[i]], order};
       if (felt[i])
@@ -249,8 +249,8 @@ class StartSolver {
     }
     if (chosen.size() == free.size() || open.empty()) return;
     newton(order, chosen);
-    if (rows_.worst(order) <= start_tolerance)
-      p_.solved.push_back(open + " (chosen: the constraints can be met in several ways)");
+    if (rows_.largest_residual(order) <= start_tolerance)
+      p_.solved_notes.push_back(open + " (chosen: the constraints can be met in several ways)");
   }
 
   // Unknowns that no constraint depends on locally keep their values.
@@ -276,7 +276,7 @@ class StartSolver {
       for (const std::size_t i : free) {
         const StartProblem::Key key{s_.free[i], order};
         if (rows_.value(key) == start[key.first]) continue;
-        p_.solved.push_back(fmt::format("{} = {} follows from the constraints", rows_.label(key), rows_.value(key)));
+        p_.solved_notes.push_back(fmt::format("{} = {} follows from the constraints", rows_.label(key), rows_.value(key)));
       }
       return;
     }
@@ -294,7 +294,7 @@ class StartSolver {
       for (const std::size_t i : free) {
         if (A.col(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff() > 0) moving.push_back(i);
       }
-      if (moving.empty()) return rows_.worst(order) <= rounding;
+      if (moving.empty()) return rows_.largest_residual(order) <= rounding;
       MatrixXd columns(A.rows(), static_cast<Eigen::Index>(moving.size()));
       for (std::size_t i = 0; i < moving.size(); ++i) {
         columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(moving[i]));
@@ -302,7 +302,7 @@ class StartSolver {
       auto [move, rank] = numeric::least_squares(columns, residual, start_rank_tolerance);
       if (rank < columns.cols()) {
         if (!partly) return false;
-        if (!keep_fixed(columns, rank, start_rank_tolerance, move)) return rows_.worst(order) <= rounding;
+        if (!keep_determined(columns, rank, start_rank_tolerance, move)) return rows_.largest_residual(order) <= rounding;
       }
       double size = 0, scale = 0;
       for (std::size_t i = 0; i < moving.size(); ++i) {
@@ -311,9 +311,9 @@ class StartSolver {
         size = std::max(size, std::abs(move(static_cast<Eigen::Index>(i))));
         scale = std::max(scale, std::abs(x));
       }
-      if (size <= start_rounding * scale || rows_.worst(order) <= start_rounding) return rows_.worst(order) <= rounding;
+      if (size <= start_rounding * scale || rows_.largest_residual(order) <= start_rounding) return rows_.largest_residual(order) <= rounding;
     }
-    return rows_.worst(order) <= rounding;
+    return rows_.largest_residual(order) <= rounding;
   }
 
   static constexpr double rounding = 1e-14;  // of rows_.relative(): a few units in the last place of a sum of terms

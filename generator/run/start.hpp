@@ -28,16 +28,16 @@ struct StartProblem {
   const std::vector<double>& parameters;
   std::map<Key, Given> given;
   std::map<Key, double> guess;
-  struct Turn {  // the angular velocity of a frame along its own axes, given instead of rates
+  struct AngularVelocity {  // the angular velocity of a frame along its own axes, given instead of rates
     std::uint32_t frame;
     std::array<double, 3> value;
     model::Span span;
   };
-  std::vector<Turn> turns;
+  std::vector<AngularVelocity> angular_velocities;
 
   std::vector<double> q, qdot;           // out: all coordinates
-  std::vector<std::string> solved = {};  // out: a sentence for each value that follows from the constraints
-  std::vector<bool> apart = {};          // out: per contact, whether it is open
+  std::vector<std::string> solved_notes = {};  // out: a sentence for each value that follows from the constraints
+  std::vector<bool> open = {};          // out: per contact, whether it is open
 };
 
 /// Computes q and qdot: positions by Newton's method on psi = 0, then rates by A qdot + b = 0. Throws

@@ -29,8 +29,8 @@ std::optional<Broken> first_broken(const StartRows& rows, const std::vector<std:
   MatrixXd columns(A.rows(), static_cast<Eigen::Index>(free.size()));
   for (std::size_t i = 0; i < free.size(); ++i)
     columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(free[i]));
-  const std::vector<std::size_t>& bound = rows.of(1);
-  const std::size_t turns = rows.first_turn();
+  const std::vector<std::size_t>& bound = rows.of_order(1);
+  const std::size_t turns = rows.first_angular_velocity_row();
   std::vector<std::size_t> before;
   for (std::size_t k = 0; k < bound.size(); ++k) {
     if (bound[k] >= turns) before.push_back(k);
@@ -60,7 +60,7 @@ std::optional<Broken> first_broken(const StartRows& rows, const std::vector<std:
   return std::nullopt;
 }
 
-[[noreturn]] void refuse_turn(const StartProblem& problem, const StartProblem::Turn& turn, double off) {
+[[noreturn]] void refuse_angular_velocity(const StartProblem& problem, const StartProblem::AngularVelocity& turn, double off) {
   throw Error("scene", problem.mechanics.model->where(turn.span),
               fmt::format("no rates give '{}' this angular velocity: a component is off by {:.6g}",
                           problem.mechanics.model->frames[turn.frame].name, off),
@@ -77,13 +77,13 @@ void refuse_start(const StartProblem& problem, const StartRows& rows, std::uint8
   MatrixXd A;
   rows.linearise(order, residual, A);
   std::optional<Broken> broken;
-  if (order == 1 && !problem.turns.empty()) broken = first_broken(rows, free);
+  if (order == 1 && !problem.angular_velocities.empty()) broken = first_broken(rows, free);
   if (broken) k = broken->row;
   const auto row = static_cast<Eigen::Index>(k);
   const double off = broken ? broken->off : residual(row);
   const double relative = broken ? broken->relative : rows.relative(residual, A, order, row);
-  const std::size_t bound = rows.of(order)[k], turns = rows.first_turn(), m = s.active.size();
-  if (bound >= turns) refuse_turn(problem, problem.turns[(bound - turns) / 3], residual(row));
+  const std::size_t bound = rows.of_order(order)[k], turns = rows.first_angular_velocity_row(), m = s.active.size();
+  if (bound >= turns) refuse_angular_velocity(problem, problem.angular_velocities[(bound - turns) / 3], residual(row));
   const mechanics::Constraint& constraint =
       problem.mechanics.constraints[bound < m ? s.active[bound] : s.redundant[bound - m].constraint];
   std::string given, open;

@@ -33,7 +33,7 @@ StartRows::StartRows(StartProblem& problem)
     b_.push_back(watched.b);
   }
   target_.assign(b_.size(), 0);
-  for (const StartProblem::Turn& turn : p_.turns) add_turn(turn);
+  for (const StartProblem::AngularVelocity& turn : p_.angular_velocities) add_angular_velocity(turn);
 }
 
 // Rates of a body that rolls with friction follow from rolling, if the given rates allow it: further rows with slip 0.
@@ -41,7 +41,7 @@ bool StartRows::add_rolling() {
   const std::size_t before = rows_[1].size();
   for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
     const std::optional<std::uint32_t> body_contact = p_.mechanics.contacts[j].body_contact;
-    if (!body_contact || !p_.mechanics.model->constraints[*body_contact].is_rolling_with_friction() || p_.apart[j]) continue;
+    if (!body_contact || !p_.mechanics.model->constraints[*body_contact].is_rolling_with_friction() || p_.open[j]) continue;
     if (s_.contacts[j].unilateral &&
         std::find(rows_[1].begin(), rows_[1].end(), *s_.contacts[j].unilateral) == rows_[1].end())
       continue;
@@ -50,11 +50,11 @@ bool StartRows::add_rolling() {
   return rows_[1].size() > before;
 }
 void StartRows::drop_rolling() {
-  while (!rows_[1].empty() && rows_[1].back() >= first_turn() + 3 * p_.turns.size()) rows_[1].pop_back();
+  while (!rows_[1].empty() && rows_[1].back() >= first_angular_velocity_row() + 3 * p_.angular_velocities.size()) rows_[1].pop_back();
 }
 
 // An angular velocity is linear in the rates: three further rows.
-void StartRows::add_turn(const StartProblem::Turn& turn) {
+void StartRows::add_angular_velocity(const StartProblem::AngularVelocity& turn) {
   symbolic::Substitution imposed = derive::constraint_substitution(p_.mechanics), written = derive::time_function_substitution(p_.mechanics);
   for (std::size_t k = 0; k < 3; ++k)
     add_rate(written(imposed(p_.mechanics.angular_velocity[turn.frame][k])), turn.value[k]);
@@ -126,7 +126,7 @@ double StartRows::relative(const VectorXd& residual, const MatrixXd& A, std::uin
   return terms > size ? size / terms : 1;
 }
 
-double StartRows::worst(std::uint8_t order, Eigen::Index* where) const {
+double StartRows::largest_residual(std::uint8_t order, Eigen::Index* where) const {
   VectorXd residual;
   MatrixXd A;
   linearise(order, residual, A);

@@ -23,9 +23,9 @@ class StartRows {
   explicit StartRows(StartProblem& problem);
 
   /// Numbers of the rows of an order.
-  const std::vector<std::size_t>& of(std::uint8_t order) const { return rows_[order]; }
+  const std::vector<std::size_t>& of_order(std::uint8_t order) const { return rows_[order]; }
   /// The number of the first row of the first given angular velocity.
-  std::size_t first_turn() const { return m_ + s_.redundant.size(); }
+  std::size_t first_angular_velocity_row() const { return m_ + s_.redundant.size(); }
   /// Removes a row from both orders.
   void drop(std::size_t number) {
     for (auto& rows : rows_) std::erase(rows, number);
@@ -39,7 +39,7 @@ class StartRows {
   /// |residual_k| against the size of its linear terms: the relative measure of the contract.
   double relative(const Eigen::VectorXd& residual, const Eigen::MatrixXd& A, std::uint8_t order, Eigen::Index k) const;
   /// The largest of them, and its row.
-  double worst(std::uint8_t order, Eigen::Index* where = nullptr) const;
+  double largest_residual(std::uint8_t order, Eigen::Index* where = nullptr) const;
 
   double& value(StartProblem::Key key) { return (key.second == 0 ? p_.q : p_.qdot)[key.first]; }
   std::string label(StartProblem::Key key) const;
@@ -47,7 +47,7 @@ class StartRows {
   std::vector<double> evaluate(const std::vector<symbolic::Ref>& refs) const;
 
  private:
-  void add_turn(const StartProblem::Turn& turn);
+  void add_angular_velocity(const StartProblem::AngularVelocity& turn);
   void add_rate(symbolic::Ref w, double wanted);
   double lookup(const symbolic::Symbol& s) const;
 

@@ -8,7 +8,7 @@ namespace eomgen::run {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-bool keep_fixed(const MatrixXd& columns, Index rank, double tolerance, Eigen::VectorXd& move) {
+bool keep_determined(const MatrixXd& columns, Index rank, double tolerance, Eigen::VectorXd& move) {
   const Eigen::JacobiSVD<MatrixXd> svd(columns, Eigen::ComputeFullV);
   const MatrixXd open = svd.matrixV().rightCols(columns.cols() - rank);
   bool any = false;
@@ -20,7 +20,7 @@ bool keep_fixed(const MatrixXd& columns, Index rank, double tolerance, Eigen::Ve
   return any;
 }
 
-std::vector<bool> felt_most(MatrixXd columns, const std::vector<bool>& first, double tolerance) {
+std::vector<bool> select_most_sensitive(MatrixXd columns, const std::vector<bool>& first, double tolerance) {
   std::vector<bool> taken(first.size(), false);
   const double least = tolerance * columns.norm();
   for (const bool named : {true, false}) {

@@ -10,10 +10,10 @@ namespace eomgen::run {
 
 /// Keeps only the changes of determined unknowns, which are the same for every solution; other entries of `move` become
 /// 0. Returns false if there are none. `rank`: of the columns.
-bool keep_fixed(const Eigen::MatrixXd& columns, Eigen::Index rank, double tolerance, Eigen::VectorXd& move);
+bool keep_determined(const Eigen::MatrixXd& columns, Eigen::Index rank, double tolerance, Eigen::VectorXd& move);
 
 /// Selects as many unknowns as the constraints can determine: first those in `first`, then those with the largest
 /// derivatives outside the span of the selected columns.
-std::vector<bool> felt_most(Eigen::MatrixXd columns, const std::vector<bool>& first, double tolerance);
+std::vector<bool> select_most_sensitive(Eigen::MatrixXd columns, const std::vector<bool>& first, double tolerance);
 
 }  // namespace eomgen::run

@@ -87,11 +87,11 @@ class Finder {
 
  private:
   void add(const std::vector<Ref>& roots, std::vector<Table>& tables) {
-    std::optional<Table> table = table_of(dag_, roots, [&](const Symbol& s) {
-      if (s.kind == SymbolKind::time) return Leaf::of_variable(0);
-      if (s.kind == SymbolKind::parameter) return Leaf::of_parameter(s.index);
-      if (s.kind != SymbolKind::input) return Leaf{};
-      return inputs_[s.index] ? Leaf::of_expression(*inputs_[s.index]) : Leaf::of_variable(1 + s.index);
+    std::optional<Table> table = make_table(dag_, roots, [&](const Symbol& s) {
+      if (s.kind == SymbolKind::time) return SymbolMeaning::of_variable(0);
+      if (s.kind == SymbolKind::parameter) return SymbolMeaning::of_parameter(s.index);
+      if (s.kind != SymbolKind::input) return SymbolMeaning{};
+      return inputs_[s.index] ? SymbolMeaning::of_expression(*inputs_[s.index]) : SymbolMeaning::of_variable(1 + s.index);
     });
     if (table) tables.push_back(std::move(*table));
   }

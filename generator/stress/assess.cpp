@@ -13,8 +13,8 @@ namespace eomgen::stress {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double kept_within = 100;  // tolerances times the condition of the end state
-constexpr double told_within = 10;   // estimates
+constexpr double pass_within = 100;  // tolerances times the condition of the end state
+constexpr double reported_within = 10;   // estimates
 constexpr std::size_t most_fixed_steps = 2000;
 constexpr double limit_of_rk4 = 2.8;  // 2.785 along the real axis, 2.828 along the imaginary one
 constexpr double fewest_stable = 4;   // least number of stable steps in a span
@@ -31,18 +31,18 @@ class Assessment {
     row.test = test_.name;
     row.solver = solver;
     if (reference_ != nullptr) row.condition = reference_->condition;
-    Clock clock(request_.seconds_limit, request_.interrupt);
-    const run::RunResult result = made(scene_, solver, clock);
+    TimeLimit clock(request_.seconds_limit, request_.interrupt);
+    const run::RunResult result = run_solver(scene_, solver, clock);
     row.seconds = clock.seconds();
-    row.outcome = clock.was_late() ? "interrupted" : eom::name(result.outcome);
-    row.note = clock.was_late()         ? "exceeds the time limit"
+    row.outcome = clock.was_exceeded() ? "interrupted" : eom::name(result.outcome);
+    row.note = clock.was_exceeded()         ? "exceeds the time limit"
                : !result.detail.empty() ? result.detail
                                         : result.estimate_note;
-    if (clock.was_late() || result.outcome != eom::Outcome::done) {
+    if (clock.was_exceeded() || result.outcome != eom::Outcome::done) {
       row.error = row.estimate = infinity;
       row.verdict = Verdict::reported;
     } else if (reference_ != nullptr) {
-      compare(result, run::method_named(solver).adaptive, row);
+      compare(result, run::get_method(solver).adaptive, row);
     } else {
       row.error = row.estimate = infinity;
       row.verdict = Verdict::undetected;
@@ -54,43 +54,43 @@ class Assessment {
  private:
   double fixed_steps() const {
     const std::size_t usual = std::min(most_fixed_steps, std::max<std::size_t>(1, request_.steps_limit / 4));
-    return test_.of_limit ? std::ceil((scene_.t1 - scene_.t0) / (*test_.of_limit * stable_step_))
+    return test_.stability_fraction ? std::ceil((scene_.t1 - scene_.t0) / (*test_.stability_fraction * stable_step_))
                           : static_cast<double>(usual);
   }
 
-  run::RunResult made(const run::Scene& given, const std::string& solver, Clock& clock) const {
+  run::RunResult run_solver(const run::Scene& given, const std::string& solver, TimeLimit& clock) const {
     run::Scene scene = given;
     scene.solver = solver;
-    if (!run::method_named(solver).adaptive) scene.step = (scene.t1 - scene.t0) / fixed_steps();
+    if (!run::get_method(solver).adaptive) scene.step = (scene.t1 - scene.t0) / fixed_steps();
     run::RunRequest request = request_.run(scene);
     request.watch_power = false;
     request.max_steps = request_.steps_limit;
     std::atomic<bool> stop{false};
     request.interrupt = &stop;
     request.progress = [&](double) {
-      if (clock.late()) stop = true;
+      if (clock.is_exceeded()) stop = true;
     };
     return run::integrate_scene(request);
   }
 
   void compare(const run::RunResult& result, bool adaptive, Row& row) const {
-    const double condition = std::min(reference_->condition, most_condition),
+    const double condition = std::min(reference_->condition, max_condition),
                  largest = *std::max_element(reference_->scale.begin(), reference_->scale.end());
-    bool kept = true;
+    bool passes = true;
     for (std::size_t i = 0; i < reference_->x.size(); ++i) {
       const double scale = reference_->scale[i], error = std::abs(result.state[i] - reference_->x[i]) / scale;
       // The start and every sum are rounded to binary64, relative to the largest component.
-      double tolerance = unit * largest / scale;
+      double tolerance = unit_roundoff * largest / scale;
       if (adaptive)
         tolerance =
             std::max({tolerance, scene_.rtol, scene_.atol / scale});  // a fixed step promises only its error estimate
-      kept = kept && error <= kept_within * tolerance * condition;
+      passes = passes && error <= pass_within * tolerance * condition;
       row.error = std::isnan(error) ? infinity : std::max(row.error, error);
       row.estimate = std::max(row.estimate, result.error_estimate[i].second / scale);
     }
-    if (kept)
+    if (passes)
       row.verdict = Verdict::pass;
-    else if (row.error - reference_->uncertainty <= told_within * row.estimate || result.doubt)
+    else if (row.error - reference_->uncertainty <= reported_within * row.estimate || result.estimate_warning)
       row.verdict = Verdict::reported;
     else
       row.verdict = Verdict::undetected;
@@ -136,11 +136,11 @@ std::vector<Row> assess(const Case& test, const run::Scene& given, const Request
   std::vector<Row> rows;
   std::optional<ReferenceSolution> reference;
   const auto interrupted = [&] { return request.interrupt != nullptr && *request.interrupt; };
-  if (!test.without_value) {
+  if (!test.has_no_motion) {
     for (int k = 0; k <= shortenings && !reference; ++k) {
       if (interrupted()) return rows;
       double next = 0;
-      reference = ReferenceRuns(scene, given.t1 - given.t0, test.nearness, request).solution(left_out, next);
+      reference = ReferenceSolver(scene, given.t1 - given.t0, test.singularity_distance, request).solution(left_out, next);
       if (reference) break;
       if (next == 0) return rows;
       scene.t1 = scene.t0 + next;
@@ -148,9 +148,9 @@ std::vector<Row> assess(const Case& test, const run::Scene& given, const Request
     if (!reference) return rows;
   }
   left_out.clear();
-  if (reference && request.seen) request.seen(test, scene, reference->samples);
-  const double stable = test.of_limit ? stable_step(scene, request) : 0;
-  if (test.of_limit && !(stable > 0 && (scene.t1 - scene.t0) / stable > fewest_stable)) {
+  if (reference && request.on_motion) request.on_motion(test, scene, reference->samples);
+  const double stable = test.stability_fraction ? stable_step(scene, request) : 0;
+  if (test.stability_fraction && !(stable > 0 && (scene.t1 - scene.t0) / stable > fewest_stable)) {
     left_out = "it has no motion that is fast enough to make a few steps unstable";
     return rows;
   }
@@ -158,7 +158,7 @@ std::vector<Row> assess(const Case& test, const run::Scene& given, const Request
   const run::RunRequest run = request.run(scene);
   for (const std::string& solver : request.solvers) {
     if (interrupted()) break;
-    if (!run::eligible(solver, scene, run.code) || (test.of_limit && run::method_named(solver).adaptive)) continue;
+    if (!run::check_eligibility(solver, scene, run.code) || (test.stability_fraction && run::get_method(solver).adaptive)) continue;
     if (request.progress) request.progress(test.name + ", " + solver);
     rows.push_back(assessment.row(solver));
     if (scene.t1 != given.t1 && rows.back().note.empty()) rows.back().note = fmt::format("until t = {:g}", scene.t1);

@@ -61,13 +61,13 @@ Auditor::Auditor(const mechanics::Mechanics& mechanics, const program::Program& 
     : rhs_(program.functions.front()), divided_(rhs_) {
   divided_.results = {{"denominators", {}}};
   divided_.places.clear();
-  for (const Divisor& d : divisors(rhs_, program, mechanics)) {
+  for (const Divisor& d : list_divisors(rhs_, program, mechanics)) {
     divided_.results.front().entries.push_back(d.operand);
     audit_.denominators.push_back({d.expression, d.zero, d.test});
   }
 }
 
-void Auditor::see(const std::string& test, const run::Scene& scene, const run::Code& code,
+void Auditor::add_motion(const std::string& test, const run::Scene& scene, const run::Code& code,
                   const std::vector<Sample>& samples) {
   std::vector<const Sample*> taken;
   for (const std::size_t place : places) {
@@ -76,15 +76,15 @@ void Auditor::see(const std::string& test, const run::Scene& scene, const run::C
   if (!all_finite(scene.parameters)) return;
   for (const Sample* sample : taken) {
     ++audit_.states;
-    look_at_mass(test, scene, code, *sample);
-    look_at_denominators(test, scene, *sample, inputs(scene, sample->t));
+    audit_mass(test, scene, code, *sample);
+    audit_denominators(test, scene, *sample, inputs(scene, sample->t));
   }
   while (!taken.empty() && taken.size() * rhs_.code.size() > most_work) taken.pop_back();
-  look_at_digits(test, scene, code, taken);
+  audit_digits(test, scene, code, taken);
 }
 
 /// The condition on the null space of the constraints: M alone may be singular (Euler parameters).
-void Auditor::look_at_mass(const std::string& test, const run::Scene& scene, const run::Code& code,
+void Auditor::audit_mass(const std::string& test, const run::Scene& scene, const run::Code& code,
                            const Sample& sample) {
   if (code.mass == nullptr) return;
   const auto n = static_cast<Eigen::Index>(code.free.size()), m = static_cast<Eigen::Index>(code.active_constraints);
@@ -107,7 +107,7 @@ void Auditor::look_at_mass(const std::string& test, const run::Scene& scene, con
   if (d.allFinite()) raise(audit_.scaled_mass_condition, condition(d.asDiagonal() * M * d.asDiagonal()), test);
 }
 
-void Auditor::look_at_denominators(const std::string& test, const run::Scene& scene, const Sample& sample,
+void Auditor::audit_denominators(const std::string& test, const run::Scene& scene, const Sample& sample,
                                    const std::vector<double>& u) {
   const program::Values<double> values =
       program::interpret(divided_, {sample.t, sample.x, scene.parameters, u, {}, {}, sample.mode});
@@ -126,7 +126,7 @@ void Auditor::look_at_denominators(const std::string& test, const run::Scene& sc
 }
 
 /// The digits lost of each acceleration, relative to its largest value in the motion.
-void Auditor::look_at_digits(const std::string& test, const run::Scene& scene, const run::Code& code,
+void Auditor::audit_digits(const std::string& test, const run::Scene& scene, const run::Code& code,
                              const std::vector<const Sample*>& samples) {
   const std::size_t n = code.free.size();
   std::vector<double> scale(n, 0.0), off(n, 0.0);

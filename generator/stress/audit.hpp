@@ -41,14 +41,14 @@ class Auditor {
   Auditor(const mechanics::Mechanics& mechanics, const program::Program& program);
 
   /// Audits a few states of a motion.
-  void see(const std::string& test, const run::Scene& scene, const run::Code& code, const std::vector<Sample>& samples);
+  void add_motion(const std::string& test, const run::Scene& scene, const run::Code& code, const std::vector<Sample>& samples);
   const Audit& audit() const { return audit_; }
 
  private:
-  void look_at_mass(const std::string& test, const run::Scene& scene, const run::Code& code, const Sample& sample);
-  void look_at_denominators(const std::string& test, const run::Scene& scene, const Sample& sample,
+  void audit_mass(const std::string& test, const run::Scene& scene, const run::Code& code, const Sample& sample);
+  void audit_denominators(const std::string& test, const run::Scene& scene, const Sample& sample,
                             const std::vector<double>& u);
-  void look_at_digits(const std::string& test, const run::Scene& scene, const run::Code& code,
+  void audit_digits(const std::string& test, const run::Scene& scene, const run::Code& code,
                       const std::vector<const Sample*>& samples);
 
   const program::Function& rhs_;

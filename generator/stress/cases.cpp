@@ -29,9 +29,9 @@ class Cases {
       result_.push_back({.name = fmt::format("rtol {:g}", rtol), .rtol = rtol});
     }
     for (const double part : chosen({0.5, 0.9, 1.1}, {0.9, 1.1}))
-      result_.push_back({.name = fmt::format("{:g} of the stable step", part), .of_limit = part});
+      result_.push_back({.name = fmt::format("{:g} of the stable step", part), .stability_fraction = part});
     for (const double span : chosen({0.1, 10, 100, 1000}, {10}))
-      result_.push_back({.name = fmt::format("span x {:g}", span), .span = span});
+      result_.push_back({.name = fmt::format("span x {:g}", span), .span_factor = span});
     if (std::any_of(scene_.qdot.begin(), scene_.qdot.end(), [](double v) { return v != 0; })) slow();
     zeros();
     return std::move(result_);
@@ -62,7 +62,7 @@ class Cases {
       const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
       for (const double value : chosen({nan, infinite, -infinite}, {nan})) {
         result_.push_back(
-            {.name = fmt::format("{} = {}", parameter.name, value), .value = {{p, value}}, .without_value = true});
+            {.name = fmt::format("{} = {}", parameter.name, value), .value = {{p, value}}, .has_no_motion = true});
       }
     }
   }
@@ -100,12 +100,12 @@ class Cases {
 
   void speeds(double factor) {
     if (std::all_of(scene_.qdot.begin(), scene_.qdot.end(), [](double v) { return v == 0; })) return;
-    result_.push_back({.name = fmt::format("speed x {:g}", factor), .speed = factor});
+    result_.push_back({.name = fmt::format("speed x {:g}", factor), .speed_factor = factor});
   }
 
   // Starts with zero or very small slip.
   void slow() {
-    result_.push_back({.name = "from rest", .speed = 0});
+    result_.push_back({.name = "from rest", .speed_factor = 0});
     if (m_.contacts.empty()) return;
     for (const double factor : chosen({1e-3, 1e-6, 1e-9, 1e-12, 1e-15}, {1e-9})) speeds(factor);
   }
@@ -113,7 +113,7 @@ class Cases {
   void zeros() {
     bool any = false;
     for (const std::uint32_t i : m_.free) any = any || scene_.q[i] == 0 || scene_.qdot[i] == 0;
-    if (any) result_.push_back({.name = fmt::format("zeros of the start {:g}", denormal), .zeros = denormal});
+    if (any) result_.push_back({.name = fmt::format("zeros of the start {:g}", denormal), .zero_replacement = denormal});
   }
 
   void charts() {
@@ -140,7 +140,7 @@ class Cases {
     result_.push_back({.name = fmt::format("{} at {:g} {} {:g}", m_.model->coordinates[i].name, bound,
                                            offset < 0 ? '-' : '+', std::abs(offset)),
                        .start = {{i, bound + offset}},
-                       .nearness = std::abs(offset)});
+                       .singularity_distance = std::abs(offset)});
   }
 
   const mechanics::Mechanics& m_;
@@ -151,7 +151,7 @@ class Cases {
 
 }  // namespace
 
-std::vector<Case> cases(const mechanics::Mechanics& mechanics, const run::Scene& scene, bool quick) {
+std::vector<Case> make_cases(const mechanics::Mechanics& mechanics, const run::Scene& scene, bool quick) {
   return Cases(mechanics, scene, quick).all();
 }
 

@@ -139,7 +139,7 @@ std::string test_of(const Function& function, const Operand& denominator) {
 
 }  // namespace
 
-std::vector<Divisor> divisors(const Function& function, const program::Program& program,
+std::vector<Divisor> list_divisors(const Function& function, const program::Program& program,
                               const mechanics::Mechanics& mechanics) {
   std::vector<Operand> whole;
   for (const Instruction& i : function.code) {

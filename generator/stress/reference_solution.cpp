@@ -22,7 +22,7 @@ constexpr double disturbance = 1e-7;   // of the start: large relative to roundi
 constexpr double bends_within = 1e-2;  // largest disturbance relative to the distance from a chart singularity
 constexpr double disturbed_rtol = 1e-13;
 constexpr std::size_t sample_count = 32, early_samples = 2;
-constexpr double doubt = 3;  // the errors of two runs may be larger than their difference
+constexpr double safety_factor = 3;  // the errors of two runs may be larger than their difference
 constexpr double most_uncertain = 1e-6;
 constexpr double shorter = 0.5;          // next span relative to the span that was reached
 constexpr double smallest_scale = 1e-9;  // of the largest component
@@ -40,25 +40,25 @@ double distance(const State& a, const State& b, const State& scale) {
   return largest;
 }
 
-ReferenceRuns::ReferenceRuns(const run::Scene& scene, double whole, double nearness, const Request& request)
+ReferenceSolver::ReferenceSolver(const run::Scene& scene, double whole, double nearness, const Request& request)
     : scene_(scene),
       whole_(whole),
-      disturbance_(std::clamp(bends_within * nearness, 4 * unit, disturbance)),
+      disturbance_(std::clamp(bends_within * nearness, 4 * unit_roundoff, disturbance)),
       request_(request),
       run_(request.run(scene)) {
   run_.estimate = false;
   run_.watch_power = false;
 }
 
-std::optional<ReferenceSolution> ReferenceRuns::solution(std::string& why, double& next_span) {
+std::optional<ReferenceSolution> ReferenceSolver::solution(std::string& why, double& next_span) {
   const double span = scene_.t1 - scene_.t0;
   ReferenceSolution reference;
   State second;
   std::vector<double> reached;
   for (const TightSolver& solver : tight_solvers) {
-    if (!run::eligible(solver.name, scene_, run_.code) || !second.empty()) continue;
+    if (!run::check_eligibility(solver.name, scene_, run_.code) || !second.empty()) continue;
     State scale;
-    Tight run = tight(solver.name, solver.rtol, nullptr, &scale);
+    TightRun run = run_tight(solver.name, solver.rtol, nullptr, &scale);
     if (run.late) {  // a faster machine might reach the end: no verdict
       why = by_the_clock;
       next_span = 0;
@@ -89,8 +89,8 @@ std::optional<ReferenceSolution> ReferenceRuns::solution(std::string& why, doubl
     return std::nullopt;
   }
   // The start and every sum are rounded to binary64, even if two runs agree better.
-  reference.uncertainty = doubt * distance(reference.x, second, reference.scale) + unit * reference.condition;
-  if (reference.growth <= most_condition && reference.uncertainty < most_uncertain) {
+  reference.uncertainty = safety_factor * distance(reference.x, second, reference.scale) + unit_roundoff * reference.condition;
+  if (reference.growth <= max_condition && reference.uncertainty < most_uncertain) {
     const run::Integration start(run_, solver_);
     reference.samples.insert(reference.samples.begin(), {scene_.t0, start.initial_state(), start.contact_mode()});
     return reference;
@@ -100,9 +100,9 @@ std::optional<ReferenceSolution> ReferenceRuns::solution(std::string& why, doubl
   return std::nullopt;
 }
 
-ReferenceRuns::Tight ReferenceRuns::tight(const std::string& solver, double rtol, const State* start,
+ReferenceSolver::TightRun ReferenceSolver::run_tight(const std::string& solver, double rtol, const State* start,
                                           State* scale) const {
-  run::Scene scene = start != nullptr ? started(*start) : scene_;
+  run::Scene scene = start != nullptr ? scene_from(*start) : scene_;
   run::RunRequest request = request_.run(scene);
   request.estimate = request.watch_power = false;
   run::Integration integration(request, solver);
@@ -110,25 +110,25 @@ ReferenceRuns::Tight ReferenceRuns::tight(const std::string& solver, double rtol
   options.rtol = rtol;
   options.atol = rtol * 1e-3;
   options.max_steps = request_.steps_limit;
-  Clock clock(request_.seconds_limit, request_.interrupt);
+  TimeLimit clock(request_.seconds_limit, request_.interrupt);
   const State x0 = integration.initial_state();
   if (scale != nullptr) scale->assign(x0.size(), 0);
-  Tight result;
+  TightRun result;
   const eom::Result end = integration.run(options, [&](const eom::StepView& view) {
     sample(view, integration.contact_mode(), result.samples);
     for (std::size_t i = 0; scale != nullptr && i < view.x1.size(); ++i)
       (*scale)[i] = std::max((*scale)[i], std::abs(view.x1[i]));
-    return !clock.late();
+    return !clock.is_exceeded();
   });
-  result.late = clock.was_late();
+  result.late = clock.was_exceeded();
   result.reached = (end.t - scene.t0) / (scene.t1 - scene.t0);
   if (end.outcome != eom::Outcome::done || result.late) return result;
-  if (scale != nullptr) level(*scale, x0);
+  if (scale != nullptr) set_scale_floor(*scale, x0);
   result.x.assign(end.x.begin(), end.x.begin() + static_cast<std::ptrdiff_t>(run_.state_names.size()));
   return result;
 }
 
-void ReferenceRuns::sample(const eom::StepView& view, int mode, std::vector<Sample>& samples) const {
+void ReferenceSolver::sample(const eom::StepView& view, int mode, std::vector<Sample>& samples) const {
   while (samples.size() < sample_count) {
     const double part = static_cast<double>(samples.size() + 1) / static_cast<double>(sample_count);
     const double t = samples.size() + 1 == sample_count ? scene_.t1 : scene_.t0 + part * (scene_.t1 - scene_.t0);
@@ -140,7 +140,7 @@ void ReferenceRuns::sample(const eom::StepView& view, int mode, std::vector<Samp
 }
 
 // A component that stays 0 has the rounding errors of the others.
-void ReferenceRuns::level(State& scale, const State& x0) const {
+void ReferenceSolver::set_scale_floor(State& scale, const State& x0) const {
   scale.resize(run_.state_names.size());
   double largest = 0;
   for (std::size_t i = 0; i < scale.size(); ++i)
@@ -150,7 +150,7 @@ void ReferenceRuns::level(State& scale, const State& x0) const {
   for (std::size_t i = 0; i < n; ++i) scale[n + i] = std::max(scale[n + i], scale[i] / whole_);
 }
 
-run::Scene ReferenceRuns::started(const State& x) const {
+run::Scene ReferenceSolver::scene_from(const State& x) const {
   run::Scene scene = scene_;
   const std::vector<std::uint32_t>& free = run_.code.free;
   for (std::size_t i = 0; i < free.size(); ++i) {
@@ -161,22 +161,22 @@ run::Scene ReferenceRuns::started(const State& x) const {
 }
 
 /// The largest effect of several disturbances on the end state; false if one of them cannot be integrated to the end.
-bool ReferenceRuns::condition(ReferenceSolution& reference) {
+bool ReferenceSolver::condition(ReferenceSolution& reference) {
   const State x0 = run::Integration(run_, solver_).initial_state();
   for (const int pattern : {0, 1, 2}) {
     // If this disturbance leaves the chart, the opposite one is tried.
-    if (!moved(reference, x0, pattern, 1) && (late_ || !moved(reference, x0, pattern, -1))) return false;
+    if (!follow_disturbed(reference, x0, pattern, 1) && (late_ || !follow_disturbed(reference, x0, pattern, -1))) return false;
   }
   return true;
 }
 
-bool ReferenceRuns::moved(ReferenceSolution& reference, const State& x0, int pattern, double sign) {
+bool ReferenceSolver::follow_disturbed(ReferenceSolution& reference, const State& x0, int pattern, double sign) {
   State x = x0;
   for (std::size_t i = 0; i < 2 * run_.code.free.size(); ++i) {
     const bool against = pattern > 0 && ((i >> (pattern - 1)) & 1) != 0;
     x[i] += (against ? -sign : sign) * disturbance_ * reference.scale[i];
   }
-  const Tight end = tight(solver_, std::max(rtol_, disturbed_rtol), &x, nullptr);
+  const TightRun end = run_tight(solver_, std::max(rtol_, disturbed_rtol), &x, nullptr);
   late_ = late_ || end.late;
   if (end.x.empty() || end.samples.size() != reference.samples.size()) return false;
   double early = 1;

@@ -15,14 +15,14 @@
 namespace eomgen::stress {
 
 /// The time limit of a run.
-class Clock {
+class TimeLimit {
  public:
   using Steady = std::chrono::steady_clock;
-  Clock(double seconds, const std::atomic<bool>* interrupt)
+  TimeLimit(double seconds, const std::atomic<bool>* interrupt)
       : start_(Steady::now()), limit_(seconds), interrupt_(interrupt) {}
   double seconds() const { return std::chrono::duration<double>(Steady::now() - start_).count(); }
-  bool late() { return late_ = late_ || seconds() > limit_ || (interrupt_ != nullptr && *interrupt_); }
-  bool was_late() const { return late_; }
+  bool is_exceeded() { return late_ = late_ || seconds() > limit_ || (interrupt_ != nullptr && *interrupt_); }
+  bool was_exceeded() const { return late_; }
 
  private:
   Steady::time_point start_;
@@ -43,33 +43,33 @@ struct ReferenceSolution {
   std::vector<Sample> samples;  // the start first
 };
 
-inline constexpr double unit = std::numeric_limits<double>::epsilon();
-inline constexpr double most_condition =
+inline constexpr double unit_roundoff = std::numeric_limits<double>::epsilon();
+inline constexpr double max_condition =
     1.6e5;  // e^12: beyond twelve Lyapunov times a comparison proves nothing; also the largest factor of tolerances
 
-class ReferenceRuns {
+class ReferenceSolver {
  public:
   /// whole: the requested span, of which the scene may cover a part; nearness: the distance of the start from the
   /// singularity of a chart.
-  ReferenceRuns(const run::Scene& scene, double whole, double nearness, const Request& request);
+  ReferenceSolver(const run::Scene& scene, double whole, double nearness, const Request& request);
 
   /// The reference solution; nothing if no two solvers reach the same end state. Then `why` has the reason, `next_span`
   /// the span to try next (0: none).
   std::optional<ReferenceSolution> solution(std::string& why, double& next_span);
 
  private:
-  struct Tight {
+  struct TightRun {
     State x;             // empty: the run did not reach the end
     double reached = 0;  // the fraction of the span that it covered
     bool late = false;
     std::vector<Sample> samples;
   };
-  Tight tight(const std::string& solver, double rtol, const State* start, State* scale) const;
+  TightRun run_tight(const std::string& solver, double rtol, const State* start, State* scale) const;
   void sample(const eom::StepView& view, int mode, std::vector<Sample>& samples) const;
-  void level(State& scale, const State& x0) const;
-  run::Scene started(const State& x) const;
+  void set_scale_floor(State& scale, const State& x0) const;
+  run::Scene scene_from(const State& x) const;
   bool condition(ReferenceSolution& reference);
-  bool moved(ReferenceSolution& reference, const State& x0, int pattern, double sign);
+  bool follow_disturbed(ReferenceSolution& reference, const State& x0, int pattern, double sign);
 
   const run::Scene& scene_;
   double whole_, disturbance_;

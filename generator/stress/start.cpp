@@ -15,7 +15,7 @@ class Start {
   Start(const run::Scene& scene, const run::RunRequest& run)
       : run_(run),
         n_(run.code.free.size()),
-        problem_(run::problem_of(run, "auto")),
+        problem_(run::make_problem(run, "auto")),
         rows_(problem_),
         x_(run.state_names.size()) {
     for (std::size_t i = 0; i < n_; ++i) {
@@ -76,7 +76,7 @@ class Start {
 
 }  // namespace
 
-bool meet_constraints(run::Scene& scene, const run::RunRequest& run, const std::vector<std::uint32_t>& kept) {
+bool project_start(run::Scene& scene, const run::RunRequest& run, const std::vector<std::uint32_t>& kept) {
   return Start(scene, run).meet(scene, kept);
 }
 

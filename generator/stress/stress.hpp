@@ -20,22 +20,22 @@ struct Case {
   std::vector<std::pair<std::uint32_t, double>> factor = {};  // parameters with their factors
   std::vector<std::pair<std::uint32_t, double>> value = {};   // parameters with new values, finite or not
   std::vector<std::pair<std::uint32_t, double>> start = {};   // coordinates with new initial values
-  double speed = 1;                               // factor of all initial velocities; the span is divided by it
-  double span = 1;                                // factor of the span
+  double speed_factor = 1;                               // factor of all initial velocities; the span is divided by it
+  double span_factor = 1;                                // factor of the span
   std::optional<double> rtol = std::nullopt;      // atol in proportion
-  std::optional<double> of_limit = std::nullopt;  // fixed steps, relative to the stability limit of rk4 at the start
-  std::optional<double> zeros = std::nullopt;     // replaces initial values of 0
-  double nearness = 1;                            // distance of the start from a chart singularity
-  bool without_value = false;                     // no motion exists: the outcome `done` is wrong
+  std::optional<double> stability_fraction = std::nullopt;  // fixed steps, relative to the stability limit of rk4 at the start
+  std::optional<double> zero_replacement = std::nullopt;     // replaces initial values of 0
+  double singularity_distance = 1;                            // distance of the start from a chart singularity
+  bool has_no_motion = false;                     // no motion exists: the outcome `done` is wrong
 };
 
 /// All variations for this model and scene: factors of stiffnesses, masses and inertias; speeds; starts near the bounds
 /// of charts; tolerances; steps at the stability limit; rest and very small slip; long spans; values that are not
 /// numbers, or denormal. `quick`: a few of each kind.
-std::vector<Case> cases(const mechanics::Mechanics& mechanics, const run::Scene& scene, bool quick);
+std::vector<Case> make_cases(const mechanics::Mechanics& mechanics, const run::Scene& scene, bool quick);
 
 /// Applies a case to the scene; nothing if its start violates a constraint.
-using Vary = std::function<std::optional<run::Scene>(const Case&)>;
+using VaryScene = std::function<std::optional<run::Scene>(const Case&)>;
 
 /// The error is within 100 tolerances; or larger, but covered by the estimate or the outcome; or not reported at all.
 enum class Verdict { pass, reported, undetected };
@@ -64,7 +64,7 @@ struct Request {
   std::function<void(const std::string&)> progress = {};
   const std::atomic<bool>* interrupt = nullptr;
   /// Called with states of a reference solution: its start, and 32 along the motion.
-  std::function<void(const Case&, const run::Scene&, const std::vector<Sample>&)> seen = {};
+  std::function<void(const Case&, const run::Scene&, const std::vector<Sample>&)> on_motion = {};
 };
 
 /// One row for each eligible solver; none if there is no reference solution, with the reason in `left_out`.

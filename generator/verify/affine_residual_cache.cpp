@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "verify/plain_forces.hpp"
+#include "verify/applied_forces.hpp"
 
 namespace eomgen::verify {
 namespace {
@@ -54,7 +54,7 @@ void Inertia::add_energy(std::size_t i, std::size_t k, const Real& entry) {
   sum = sum + entry;
 }
 
-std::vector<Residual> Inertia::at(const std::vector<Real>& qddot) const {
+std::vector<Residual> Inertia::multiply(const std::vector<Real>& qddot) const {
   std::vector<Residual> sums(rows_.size());
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     Real energy = 0;
@@ -73,37 +73,37 @@ AffineResidualCache::AffineResidualCache(const Oracle& oracle, const State& at)
       oracle_(oracle),
       model_(oracle.model()),
       now_(oracle.interpreter(state, &margin_)),
-      row_(oracle.constraints().size()),
-      along_(oracle.constraints().size()),
-      second_(oracle.constraints().size()) {}
+      gradient_(oracle.constraints().size()),
+      path_values_(oracle.constraints().size()),
+      psi_ddot_offset_(oracle.constraints().size()) {}
 
 const Inertia& AffineResidualCache::inertia() {
-  look();
+  evaluate_residuals();
   return *inertia_;
 }
 
-const std::vector<Residual>& AffineResidualCache::rest() {
-  look();
-  return rest_;
+const std::vector<Residual>& AffineResidualCache::offset() {
+  evaluate_residuals();
+  return offset_;
 }
 
-void AffineResidualCache::look() {
+void AffineResidualCache::evaluate_residuals() {
   if (inertia_) return;
   Inertia inertia(state.q.size());
   inertia_ = std::move(inertia);
-  rest_.assign(state.q.size(), {});
+  offset_.assign(state.q.size(), {});
   add_particles();
   add_rotations();
   add_energies();
-  subtract_forces(model_, oracle_.precision(), now_, rest_);
+  subtract_forces(model_, oracle_.precision(), now_, offset_);
 }
 
 /// sum over particles of d(m v)/dt . dr/dq_i
 void AffineResidualCache::add_particles() {
-  Interpreter& by_q = now_.by_coordinates(false);
-  Interpreter& later = now_.along_time();
-  Interpreter& twice = later.along_time();
-  for (const Mass& point : masses(model_)) {
+  Interpreter& by_q = now_.with_coordinate_slopes(false);
+  Interpreter& later = now_.with_time_slope();
+  Interpreter& twice = later.with_time_slope();
+  for (const Mass& point : list_masses(model_)) {
     const Vector v = slope(twice.place(point.place), twice.level(), 0);  // v + a eps
     const Jet mass = later.scalar(point.mass);
     const Vector rate = slope(mass * v, later.level(), 0);
@@ -118,14 +118,14 @@ void AffineResidualCache::add_particles() {
     inertia_->add(along, tangent, momentum);
     const Real size = length(rate);
     for (std::size_t i = 0; i < along.size(); ++i)
-      rest_[along[i]].add(dot(rate, tangent[i]).real(), size * length(tangent[i]));
+      offset_[along[i]].add(dot(rate, tangent[i]).real(), size * length(tangent[i]));
   }
 }
 
 /// sum over bodies of dH/dt . dw/dqdot_i, eq. (9.39); sizes as for particles.
 void AffineResidualCache::add_rotations() {
-  Interpreter& by_q = now_.by_coordinates(false);
-  Interpreter& later = now_.along_time();
+  Interpreter& by_q = now_.with_coordinate_slopes(false);
+  Interpreter& later = now_.with_time_slope();
   for (const model::Body& body : model_.bodies) {
     const Vector H = inertia_times(body, later, later.angular_velocity(body.frame));
     const Vector rate = slope(H, later.level(), 0);
@@ -146,7 +146,7 @@ void AffineResidualCache::add_rotations() {
     // The axes rotate: terms that cancel in dH/dt are as large as w x H.
     const Real size = length(rate) + length(H) * length(now_.angular_velocity(body.frame));
     for (std::size_t i = 0; i < along.size(); ++i)
-      rest_[along[i]].add(dot(rate, turn[i]).real(), size * length(turn[i]));
+      offset_[along[i]].add(dot(rate, turn[i]).real(), size * length(turn[i]));
   }
 }
 
@@ -154,62 +154,62 @@ void AffineResidualCache::add_rotations() {
 /// the sum of the sizes of its part in qddot and of the remainder.
 void AffineResidualCache::add_energies() {
   if (model_.energy.kinetic != model::no_node) {
-    Interpreter& later = now_.along_time().by_rates();
+    Interpreter& later = now_.with_time_slope().with_rate_slopes();
     const Jet momenta = later.scalar(model_.energy.kinetic);
-    const unsigned time = now_.along_time().level();
+    const unsigned time = now_.with_time_slope().level();
     for (const std::size_t i : momenta.directions(later.level()))
-      rest_[i].add(momenta.slope(later.level(), i).slope(time, 0).real());
-    Interpreter& once = now_.by_rates();
-    Interpreter& twice = once.by_rates();
+      offset_[i].add(momenta.slope(later.level(), i).slope(time, 0).real());
+    Interpreter& once = now_.with_rate_slopes();
+    Interpreter& twice = once.with_rate_slopes();
     const Jet T = twice.scalar(model_.energy.kinetic);
     for (const std::size_t i : T.directions(twice.level())) {
       const Jet& p = T.slope(twice.level(), i);
       for (const std::size_t k : p.directions(once.level()))
         inertia_->add_energy(i, k, p.slope(once.level(), k).real());
     }
-    Interpreter& by_q = now_.by_coordinates(false);
+    Interpreter& by_q = now_.with_coordinate_slopes(false);
     const Jet at = by_q.scalar(model_.energy.kinetic);
-    for (const std::size_t i : at.directions(by_q.level())) rest_[i].add(-at.slope(by_q.level(), i).real());
+    for (const std::size_t i : at.directions(by_q.level())) offset_[i].add(-at.slope(by_q.level(), i).real());
   }
   if (model_.energy.potential != model::no_node) {
-    Interpreter& by_q = now_.by_coordinates(false);
+    Interpreter& by_q = now_.with_coordinate_slopes(false);
     const Jet U = by_q.scalar(model_.energy.potential);
-    for (const std::size_t i : U.directions(by_q.level())) rest_[i].add(U.slope(by_q.level(), i).real());
+    for (const std::size_t i : U.directions(by_q.level())) offset_[i].add(U.slope(by_q.level(), i).real());
   }
 }
 
-const std::vector<Real>& AffineResidualCache::row(std::size_t constraint) {
-  if (row_[constraint]) return *row_[constraint];
-  const bool positions = oracle_.holonomic(constraint);
-  Interpreter& varied = positions ? now_.by_coordinates(false) : now_.by_rates();
+const std::vector<Real>& AffineResidualCache::gradient(std::size_t constraint) {
+  if (gradient_[constraint]) return *gradient_[constraint];
+  const bool positions = oracle_.is_holonomic(constraint);
+  Interpreter& varied = positions ? now_.with_coordinate_slopes(false) : now_.with_rate_slopes();
   const Jet value = varied.scalar(oracle_.constraints()[constraint]);
   std::vector<Real> result(state.q.size(), Real(0));
   for (const std::size_t i : value.directions(varied.level())) result[i] = value.slope(varied.level(), i).real();
-  return row_[constraint].emplace(std::move(result));
+  return gradient_[constraint].emplace(std::move(result));
 }
 
-const AffineResidualCache::Along& AffineResidualCache::along(std::size_t constraint) {
-  if (along_[constraint]) return *along_[constraint];
-  Interpreter& later = now_.along_time();
+const AffineResidualCache::PathValues& AffineResidualCache::path_values(std::size_t constraint) {
+  if (path_values_[constraint]) return *path_values_[constraint];
+  Interpreter& later = now_.with_time_slope();
   const Jet value = later.scalar(oracle_.constraints()[constraint]);
-  Along result;
-  if (oracle_.holonomic(constraint)) {
+  PathValues result;
+  if (oracle_.is_holonomic(constraint)) {
     result.psi = value.real();
     result.rate = value.slope(later.level(), 0).real();
   } else {
     result.rate = value.real();
   }
-  return along_[constraint].emplace(std::move(result));
+  return path_values_[constraint].emplace(std::move(result));
 }
 
-const Real& AffineResidualCache::second(std::size_t constraint) {
-  if (second_[constraint]) return *second_[constraint];
-  Interpreter& later = now_.along_time();
+const Real& AffineResidualCache::psi_ddot_offset(std::size_t constraint) {
+  if (psi_ddot_offset_[constraint]) return *psi_ddot_offset_[constraint];
+  Interpreter& later = now_.with_time_slope();
   const model::NodeId expression = oracle_.constraints()[constraint];
-  if (!oracle_.holonomic(constraint))
-    return second_[constraint].emplace(later.scalar(expression).slope(later.level(), 0).real());
-  Interpreter& twice = later.along_time();
-  return second_[constraint].emplace(twice.scalar(expression).slope(twice.level(), 0).slope(later.level(), 0).real());
+  if (!oracle_.is_holonomic(constraint))
+    return psi_ddot_offset_[constraint].emplace(later.scalar(expression).slope(later.level(), 0).real());
+  Interpreter& twice = later.with_time_slope();
+  return psi_ddot_offset_[constraint].emplace(twice.scalar(expression).slope(twice.level(), 0).slope(later.level(), 0).real());
 }
 
 }  // namespace eomgen::verify

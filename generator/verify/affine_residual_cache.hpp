@@ -22,7 +22,7 @@ class Inertia {
            const std::vector<Vector>& momentum);
   /// Adds an entry from an energy that the model states directly; the sum itself is its size.
   void add_energy(std::size_t i, std::size_t k, const Real& entry);
-  std::vector<Residual> at(const std::vector<Real>& qddot) const;
+  std::vector<Residual> multiply(const std::vector<Real>& qddot) const;
 
  private:
   struct Entry {
@@ -37,34 +37,34 @@ class AffineResidualCache {
   AffineResidualCache(const Oracle& oracle, const State& at);
 
   /// psi and psi_dot; psi is 0 for a constraint on velocities.
-  struct Along {
+  struct PathValues {
     Real psi = 0, rate = 0;
   };
 
   const State state;  // without accelerations
   Interpreter& now() { return now_; }
-  const Margin& margin() const { return margin_; }  // over all terms that were evaluated so far
+  const KinkMargin& margin() const { return margin_; }  // over all terms that were evaluated so far
   const Inertia& inertia();
-  const std::vector<Residual>& rest();  // at zero acceleration, without friction and constraint forces
-  const std::vector<Real>& row(std::size_t constraint);
-  const Along& along(std::size_t constraint);
-  const Real& second(std::size_t constraint);  // psi_ddot at zero acceleration
+  const std::vector<Residual>& offset();  // at zero acceleration, without friction and constraint forces
+  const std::vector<Real>& gradient(std::size_t constraint);
+  const PathValues& path_values(std::size_t constraint);
+  const Real& psi_ddot_offset(std::size_t constraint);  // psi_ddot at zero acceleration
 
  private:
-  void look();
+  void evaluate_residuals();
   void add_particles();
   void add_rotations();
   void add_energies();
 
   const Oracle& oracle_;
   const model::Model& model_;
-  Margin margin_;
+  KinkMargin margin_;
   Interpreter now_;
   std::optional<Inertia> inertia_;
-  std::vector<Residual> rest_;
-  std::vector<std::optional<std::vector<Real>>> row_;
-  std::vector<std::optional<Along>> along_;
-  std::vector<std::optional<Real>> second_;
+  std::vector<Residual> offset_;
+  std::vector<std::optional<std::vector<Real>>> gradient_;
+  std::vector<std::optional<PathValues>> path_values_;
+  std::vector<std::optional<Real>> psi_ddot_offset_;
 };
 
 }  // namespace eomgen::verify

@@ -10,7 +10,7 @@ const model::Argument* argument(const model::Force& force, std::string_view key)
   return nullptr;
 }
 
-model::NodeId given(const model::Force& force, std::string_view key) {
+model::NodeId argument_expression(const model::Force& force, std::string_view key) {
   const model::Argument* found = argument(force, key);
   return found == nullptr ? model::no_node : found->value;
 }

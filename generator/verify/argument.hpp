@@ -12,6 +12,6 @@ namespace eomgen::verify {
 const model::Argument* argument(const model::Force& force, std::string_view key);
 
 /// The expression of an argument; no_node if it is not given.
-model::NodeId given(const model::Force& force, std::string_view key);
+model::NodeId argument_expression(const model::Force& force, std::string_view key);
 
 }  // namespace eomgen::verify

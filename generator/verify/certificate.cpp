@@ -11,7 +11,7 @@
 
 #include "derive/formulations.hpp"
 #include "verify/comparisons.hpp"
-#include "verify/points.hpp"
+#include "verify/state_sampler.hpp"
 #include "verify/system_values.hpp"
 
 namespace eomgen::verify {
@@ -30,7 +30,7 @@ bool nearer_to_failing(const Comparison& a, const Comparison& b) {
   return a.max_relative_difference * b.tolerance < b.max_relative_difference * a.tolerance;
 }
 
-std::vector<std::size_t> leavable(const mechanics::Mechanics& mechanics) {
+std::vector<std::size_t> unilateral_constraints(const mechanics::Mechanics& mechanics) {
   std::vector<std::size_t> result;
   for (const mechanics::Contact& contact : mechanics.contacts) {
     if (contact.unilateral) result.push_back(contact.constraints[0]);
@@ -43,7 +43,7 @@ int mode_at(const mechanics::Mechanics& mechanics, const State& state) {
   int mode = 0;
   for (std::size_t j = 0; j < mechanics.contacts.size(); ++j) {
     const mechanics::Contact& contact = mechanics.contacts[j];
-    if (contact.unilateral && state.apart.contains(contact.constraints[0]))
+    if (contact.unilateral && state.open.contains(contact.constraints[0]))
       mode = eom::with_contact_digit(mode, j, eom::contact_states / 2);
   }
   return mode;
@@ -51,24 +51,24 @@ int mode_at(const mechanics::Mechanics& mechanics, const State& state) {
 
 /// Records a failure for code that is compared at no state, because it reports an undecided friction law at every
 /// state.
-void note_uncompared(const Subjects& subjects, Tally& tally) {
-  const auto note = [&](const std::string& name, Kind kind) {
+void note_uncompared(const Subjects& subjects, ComparisonTable& tally) {
+  const auto note = [&](const std::string& name, Arithmetic arithmetic) {
     const auto& rows = tally.comparisons();
     if (std::none_of(rows.begin(), rows.end(), [&](const Comparison& row) { return row.a == name; }))
-      tally.note(name, name_of(subjects.systems.front()), true, 1, kind);
+      tally.record(name, system_name(subjects.systems.front()), true, 1, arithmetic);
   };
   if (subjects.systems.empty()) return;
-  for (const ProgramForm& form : subjects.programs) note(form.name, Kind::precise);
-  for (const CompiledForm& form : subjects.compiled) note(form.name, Kind::binary64);
+  for (const ProgramForm& form : subjects.programs) note(form.name, Arithmetic::precise);
+  for (const CompiledForm& form : subjects.compiled) note(form.name, Arithmetic::binary64);
 }
 
 }  // namespace
 
-int digits_of_range(const mechanics::Mechanics& mechanics) {
+int required_extra_digits(const mechanics::Mechanics& mechanics) {
   constexpr int usual = 30, most = 1500;  // decades of binary64 numbers and their squares
   constexpr int coarse = 30;
   const Oracle oracle(*mechanics.model, coarse);
-  const double largest = Points(oracle, 0, 0).decades();
+  const double largest = StateSampler(oracle, 0, 0).max_decades_from_one();
   return largest < usual ? 0 : std::min(most, static_cast<int>(2 * largest));
 }
 
@@ -95,7 +95,7 @@ std::string Certificate::summary() const {
   return text + out;
 }
 
-std::vector<std::string> Certificate::agreeing() const {
+std::vector<std::string> Certificate::agreeing_forms() const {
   std::vector<std::string> names;
   for (const Comparison& c : comparisons) {
     if (c.b != oracle_name || c.a.find(" of ") != std::string::npos) continue;
@@ -130,19 +130,19 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
   if (options.digits < least_digits || options.digits > most_digits)
     throw Error("verify", SourceLocation{}, fmt::format("{} digits cannot be compared", options.digits),
                 fmt::format("ask for {} to {}", least_digits, most_digits));
-  const int range = options.range ? *options.range : digits_of_range(mechanics);
+  const int range = options.extra_digits ? *options.extra_digits : required_extra_digits(mechanics);
   Oracle oracle(*mechanics.model, options.digits + guard_digits + range);
   for (std::uint32_t k = 0; k < mechanics.constraints.size(); ++k) {
-    if (!mechanics.is_independent(k)) oracle.imply(k);
+    if (!mechanics.is_independent(k)) oracle.mark_implied(k);
   }
-  Points points(oracle, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed,
-                leavable(mechanics));
-  Tally tally(options.digits);
+  StateSampler points(oracle, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed,
+                unilateral_constraints(mechanics));
+  ComparisonTable tally(options.digits);
   bool interrupted = false;
   while (tally.points() < options.points) {
     State state = points.next();
     state.mode = mode_at(mechanics, state);
-    Tally with_this_point = tally;
+    ComparisonTable with_this_point = tally;
     try {
       compare_at(mechanics, subjects, oracle, state, with_this_point);
     } catch (const work::Interrupted&) {

@@ -27,7 +27,7 @@ struct Options {
   std::size_t points = 20;
   std::uint64_t seed = 1;
   std::map<std::uint32_t, cln::cl_RA> fixed = {};  // parameters that are constants of the program
-  std::optional<int> range = {};                   // digits_of_range, if it is known
+  std::optional<int> extra_digits = {};                   // required_extra_digits, if it is known
 };
 
 /// Expressions that vanish for the true motion, in t, q, qdot, qddot of all coordinates, functions of time, parameters,
@@ -39,13 +39,13 @@ struct DisplayForm {
 };
 
 /// Arguments of a function of the C ABI; `order` is that of `taylor`.
-struct At {
+struct AbiArguments {
   Real t;
   std::vector<Real> x, p, u;
   int mode = 0, order = 0;
 };
 /// The arrays that a function of the C ABI writes.
-using Arrays = std::vector<std::vector<Real>>;
+using AbiResults = std::vector<std::vector<Real>>;
 
 /// The optimised program in CLN arithmetic: dx = (qdot, qddot) of the free coordinates at (t, x, p, u) in a mode. The
 /// result is empty if the program reports that the law of friction has no solution there, or several.
@@ -56,9 +56,9 @@ struct ProgramForm {
       rhs;
   // Names of the ABI functions that the program has; none if they are not compared.
   std::vector<std::string> functions = {};
-  std::function<std::optional<Arrays>(const std::string& function, const At& at, int digits)> call = {};
+  std::function<std::optional<AbiResults>(const std::string& function, const AbiArguments& at, int digits)> call = {};
   /// First-order bounds of the rounding errors in binary64.
-  std::function<std::vector<std::vector<double>>(const std::string& function, const At& at)> bounds = {};
+  std::function<std::vector<std::vector<double>>(const std::string& function, const AbiArguments& at)> bounds = {};
   std::string formulation = {};  // the formulation of its equations
   system::Approach approach = system::Approach::two;
   std::vector<std::string> outputs = {};  // names of the values of its function `outputs`
@@ -71,7 +71,7 @@ struct CompiledForm {
   std::function<std::optional<std::vector<double>>(double t, const std::vector<double>& x, const std::vector<double>& p,
                                                    const std::vector<double>& u, int mode)>
       rhs;
-  std::function<std::optional<std::vector<std::vector<double>>>(const std::string& function, const At& at)> call = {};
+  std::function<std::optional<std::vector<std::vector<double>>>(const std::string& function, const AbiArguments& at)> call = {};
 };
 
 struct Subjects {
@@ -112,7 +112,7 @@ struct Certificate {
   /// "pass: 20 points, 50 digits, worst 3.1e-49 (jacobian II against d'Alembert)"
   std::string summary() const;
   /// The forms that agree with d'Alembert's principle in all their rows: "lagrange II", "display form I".
-  std::vector<std::string> agreeing() const;
+  std::vector<std::string> agreeing_forms() const;
 };
 
 /// Every formulation of derive::formulations(), by both approaches, that applies within its budget. The others are listed in
@@ -122,7 +122,7 @@ std::vector<system::EquationSystem> all_formulations(mechanics::Mechanics& mecha
 
 /// Extra digits for parameters, starts, rates and times far from 1: next to a mass of 1e300 kg all other terms would be
 /// lost. 0 for usual values.
-int digits_of_range(const mechanics::Mechanics& mechanics);
+int required_extra_digits(const mechanics::Mechanics& mechanics);
 
 /// Compares the subjects at random states. Throws Error{ErrorKind::check} if no states can be found. After an interruption
 /// the certificate covers the points that were compared.

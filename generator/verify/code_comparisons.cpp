@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "verify/friction_law.hpp"
-#include "verify/functions.hpp"
-#include "verify/plain_forces.hpp"
+#include "verify/function_comparisons.hpp"
+#include "verify/applied_forces.hpp"
 
 namespace eomgen::verify {
 namespace {
@@ -27,7 +27,7 @@ double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, co
   for (std::size_t i = 0; i < a.size(); ++i) {
     Real size = i < n || i >= 2 * n ? cln::abs(b[i]) : v.scale[s.free[i - n]];
     if (!rounding.empty()) size = size + rounding[i];
-    largest = std::max(largest, relative(a[i] - b[i], size));
+    largest = std::max(largest, relative_difference(a[i] - b[i], size));
   }
   return largest;
 }
@@ -56,19 +56,19 @@ State in_binary64(const State& state, const Oracle& oracle) {
 }
 
 /// Scales of dx at a state that correspond to its rounding errors; empty if these are unknown.
-std::vector<Real> rounding_of_rhs(const ProgramForm& program, const At& at, const Oracle& oracle) {
+std::vector<Real> rounding_of_rhs(const ProgramForm& program, const AbiArguments& at, const Oracle& oracle) {
   std::vector<Real> sizes;
   if (!program.bounds) return sizes;
   constexpr double least_number = 1e-290;  // smaller numbers have fewer digits
   const std::vector<std::vector<double>> bounds = program.bounds("rhs", at);
   for (const double bound : bounds[0]) {
     if (!std::isfinite(bound)) return {};
-    sizes.push_back(size_of_rounding(std::max(bound, least_number), oracle.precision()));
+    sizes.push_back(rounding_scale(std::max(bound, least_number), oracle.precision()));
   }
   return sizes;
 }
 
-bool overflows(const Subjects& subjects, const At& at) {
+bool overflows(const Subjects& subjects, const AbiArguments& at) {
   if (subjects.programs.empty() || !subjects.programs.front().bounds) return false;
   const std::vector<std::vector<double>> bounds = subjects.programs.front().bounds("rhs", at);
   return std::any_of(bounds[0].begin(), bounds[0].end(), [](double bound) { return !std::isfinite(bound); });
@@ -78,9 +78,9 @@ bool overflows(const Subjects& subjects, const At& at) {
 double compiled_difference(const CompiledForm& form, const Subjects& subjects, State at, const SystemValues& v,
                            const Oracle& oracle, int mode) {
   const EquationSystem& s = subjects.systems.front();
-  if (!s.contacts.empty()) at.phi = lawful_friction(s, oracle, at);
+  if (!s.contacts.empty()) at.phi = solve_friction_law(s, oracle, at);
   const std::vector<Real> reference = right_hand_side(s, oracle, at);
-  const At arguments = arguments_at(s, at, mode);
+  const AbiArguments arguments = arguments_at(s, at, mode);
   const auto dx =
       form.rhs(cln::double_approx(at.t), rounded(arguments.x), rounded(at.parameters), rounded(at.inputs), mode);
   const std::vector<Real> rounding =
@@ -102,15 +102,15 @@ double compiled_difference(const CompiledForm& form, const Subjects& subjects, S
 
 /// Compares compiled functions with those of the first program at the same binary64 numbers.
 void compare_compiled_functions(const Subjects& subjects, const State& rounded, const Oracle& oracle, int mode,
-                                Tally& tally) {
+                                ComparisonTable& tally) {
   if (subjects.programs.empty() || !subjects.programs.front().call) return;
   const ProgramForm& program = subjects.programs.front();
-  const At at = arguments_at(subjects.systems.front(), rounded, mode);
+  const AbiArguments at = arguments_at(subjects.systems.front(), rounded, mode);
   constexpr double largest_number = 1e300, least_number = 1e-290;
   for (const CompiledForm& form : subjects.compiled) {
     if (!form.call) continue;
     for (const std::string& function : program.functions) {
-      const std::optional<Arrays> expected = program.call(function, at, oracle.digits());
+      const std::optional<AbiResults> expected = program.call(function, at, oracle.digits());
       if (!expected) continue;
       const std::vector<std::vector<double>> bounds = program.bounds(function, at);
       const std::optional<std::vector<std::vector<double>>> got = form.call(function, at);
@@ -126,29 +126,29 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
             largest = 1;
             continue;
           }
-          const Real size = cln::abs(value) + size_of_rounding(std::max(bounds[r][i], least_number), oracle.precision());
-          largest = std::max(largest, relative(exact(entry) - value, size));
+          const Real size = cln::abs(value) + rounding_scale(std::max(bounds[r][i], least_number), oracle.precision());
+          largest = std::max(largest, relative_difference(exact(entry) - value, size));
         }
       }
       if (known)
-        tally.note(function + " of " + form.name, function + " of " + program.name, true, largest, Kind::binary64);
+        tally.record(function + " of " + form.name, function + " of " + program.name, true, largest, Arithmetic::binary64);
     }
   }
 }
 
 }  // namespace
 
-void compare_code(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode, Tally& tally) {
+void compare_code(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode, ComparisonTable& tally) {
   const EquationSystem& first = subjects.systems.front();
   bool undecided = false;  // the friction law has no solution here, or several
   for (const ProgramForm& form : subjects.programs) {
-    const At arguments = arguments_at(first, v.state, mode);
+    const AbiArguments arguments = arguments_at(first, v.state, mode);
     const std::vector<Real> dx = form.rhs(v.state.t, arguments.x, v.state.parameters, v.state.inputs, mode);
     undecided = undecided || (dx.empty() && !first.contacts.empty());
     if (undecided) continue;
     // An acceleration may be 0 because its terms cancel: it is compared relative to these terms.
     const std::vector<Real> rounding = rounding_of_rhs(form, arguments, oracle);
-    tally.note(form.name, name_of(first), true,
+    tally.record(form.name, system_name(first), true,
                rhs_difference(dx, right_hand_side(first, oracle, v.state), first, v, rounding));
   }
   if (undecided) return;
@@ -156,8 +156,8 @@ void compare_code(const Subjects& subjects, const SystemValues& v, const Oracle&
   if (subjects.compiled.empty()) return;
   const State at = in_binary64(v.state, oracle);
   for (const CompiledForm& form : subjects.compiled) {
-    tally.note(form.name, name_of(first), true, compiled_difference(form, subjects, at, v, oracle, mode),
-               Kind::binary64);
+    tally.record(form.name, system_name(first), true, compiled_difference(form, subjects, at, v, oracle, mode),
+               Arithmetic::binary64);
   }
   compare_compiled_functions(subjects, at, oracle, mode, tally);
 }

@@ -13,7 +13,7 @@
 #include "verify/code_comparisons.hpp"
 #include "verify/friction_law.hpp"
 #include "verify/motion.hpp"
-#include "verify/plain_forces.hpp"
+#include "verify/applied_forces.hpp"
 #include "verify/system_values.hpp"
 
 namespace eomgen::verify {
@@ -37,7 +37,7 @@ double difference(const SystemValues& a, const SystemValues& b) {
   double largest = 0;
   for (std::size_t i = 0; i < n + a.lambda.size(); ++i) {
     const Real d = i < n ? a.state.qddot[i] - b.state.qddot[i] : a.lambda[i - n] - b.lambda[i - n];
-    largest = std::max(largest, relative(d, cln::max(a.scale[i], b.scale[i])));
+    largest = std::max(largest, relative_difference(d, cln::max(a.scale[i], b.scale[i])));
   }
   return largest;
 }
@@ -59,7 +59,7 @@ double motion_residual(const SystemValues& v) {
   const Real nothing = absolute_tolerance(v.state);
   for (const Residual& row : v.rows) largest = std::max(largest, row.relative());
   for (std::size_t k = 0; k < v.constraints.psi_ddot.size(); ++k) {
-    if (v.state.apart.contains(k)) continue;
+    if (v.state.open.contains(k)) continue;
     Residual along;  // A qddot and the remaining terms of psi_ddot
     for (std::size_t i = 0; i < v.state.qddot.size(); ++i) {
       const Real& slope = v.constraints.gradient[k][i];
@@ -89,39 +89,39 @@ double constraint_residual(const EquationSystem& s, const SystemValues& v) {
     }
     for (std::size_t i = 0; i < n; ++i) {
       const Real slope = v.constraints.gradient[s.active[k]][s.free[i]];
-      largest = std::max(largest, relative(v.A[k * n + i] - slope, length));
+      largest = std::max(largest, relative_difference(v.A[k * n + i] - slope, length));
     }
     rate.add(v.b[k]);
     rate.add(Real(0),
              length * fastest);  // a rate that is 0 up to rounding of cancelled derivatives has no scale of its own
-    largest = std::max({largest, relative(v.psi[k] - v.constraints.psi[s.active[k]], size + length),
-                        relative(rate.value - v.constraints.psi_dot[s.active[k]], rate.scale)});
-    if (!v.state.apart.contains(s.active[k]))
-      largest = std::max({largest, rate.relative(), relative(v.psi[k], size + length)});
+    largest = std::max({largest, relative_difference(v.psi[k] - v.constraints.psi[s.active[k]], size + length),
+                        relative_difference(rate.value - v.constraints.psi_dot[s.active[k]], rate.scale)});
+    if (!v.state.open.contains(s.active[k]))
+      largest = std::max({largest, rate.relative(), relative_difference(v.psi[k], size + length)});
   }
   return largest;
 }
 
-void compare_energies(const EquationSystem& s, const SystemValues& v, const Oracle& oracle, Tally& tally) {
+void compare_energies(const EquationSystem& s, const SystemValues& v, const Oracle& oracle, ComparisonTable& tally) {
   const EnergyValues e = oracle.energy_values(v.state);
-  const std::string name = name_of(s);
-  tally.note("energies of " + name, oracle_name, false,
-             worst({relative(v.kinetic - e.kinetic, e.scale), relative(v.potential - e.potential, e.scale),
-                    relative(v.energy - e.kinetic - e.potential, e.scale)}));
+  const std::string name = system_name(s);
+  tally.record("energies of " + name, oracle_name, false,
+             worst({relative_difference(v.kinetic - e.kinetic, e.scale), relative_difference(v.potential - e.potential, e.scale),
+                    relative_difference(v.energy - e.kinetic - e.potential, e.scale)}));
   Real scale = e.rate_scale + cln::abs(v.power);  // plus the power of every term of the equations
   for (std::size_t i = 0; i < v.rows.size(); ++i) scale = scale + cln::abs(v.state.qdot[i]) * v.rows[i].scale;
-  tally.note("power of " + name, oracle_name, false, relative(v.power - e.kinetic_rate - e.potential_rate, scale));
+  tally.record("power of " + name, oracle_name, false, relative_difference(v.power - e.kinetic_rate - e.potential_rate, scale));
   const Real rate = energy_rate(s, oracle, v, oracle.digits() - guard_digits);
   // The difference of two energies has no more digits than these.
   const Real noise = e.scale * cln::expt(cln::cl_RA(1) / 10, cln::cl_I(tally.digits()));
-  tally.note("power of " + name, "its energy along the path", true, relative(v.power - rate, scale + noise));
+  tally.record("power of " + name, "its energy along the path", true, relative_difference(v.power - rate, scale + noise));
 }
 
 /// Outputs that the oracle can compute from the model: coordinates, positions, velocities, scalar definitions.
-void compare_outputs(const EquationSystem& s, const SystemValues& v, const Oracle& oracle, Tally& tally) {
+void compare_outputs(const EquationSystem& s, const SystemValues& v, const Oracle& oracle, ComparisonTable& tally) {
   const model::Model& m = oracle.model();
   Interpreter now = oracle.interpreter(v.state);
-  Interpreter& later = now.along_time();
+  Interpreter& later = now.with_time_slope();
   std::map<std::string, std::pair<Real, Real>> expected;  // value, scale
   const auto expect = [&](const std::string& name, const Real& value, const Real& scale) {
     expected[name] = {value, scale};
@@ -156,16 +156,16 @@ void compare_outputs(const EquationSystem& s, const SystemValues& v, const Oracl
   for (std::size_t i = 0; i < s.outputs.size(); ++i)
     if (const auto found = expected.find(s.outputs[i].name); found != expected.end())
       // eliminated coordinates come from a projection and may be 0 up to rounding
-      largest = std::max(largest, relative(v.outputs[i] - found->second.first, found->second.second + 1));
-  tally.note("outputs of " + name_of(s), oracle_name, false, largest);
+      largest = std::max(largest, relative_difference(v.outputs[i] - found->second.first, found->second.second + 1));
+  tally.record("outputs of " + system_name(s), oracle_name, false, largest);
 }
 
 /// Compares closed forms with quadrature, and the rates of integrals that are states with their integrands.
 void compare_integrals(const mechanics::Mechanics& mechanics, const EquationSystem& s, const SystemValues& v,
-                       const Oracle& oracle, Tally& tally) {
+                       const Oracle& oracle, ComparisonTable& tally) {
   const model::Model& m = oracle.model();
   if (m.integrals.empty()) return;
-  const Lookup lookup(oracle, v.state);
+  const SymbolValues lookup(oracle, v.state);
   symbolic::Substitution written = derive::time_function_substitution(mechanics);
   const Interpreter now = oracle.interpreter(v.state);
   double largest = 0;
@@ -174,14 +174,14 @@ void compare_integrals(const mechanics::Mechanics& mechanics, const EquationSyst
     const Real value = symbolic::evaluate(*mechanics.dag, {form}, lookup, oracle.digits())[0];
     const Real span = v.state.t - v.state.parameters[*m.start_time];
     const Real scale = cln::abs(span * now.environment().integrals[i][1].real());
-    largest = std::max(largest, relative(value - v.state.integrals[i], cln::abs(v.state.integrals[i]) + scale));
+    largest = std::max(largest, relative_difference(value - v.state.integrals[i], cln::abs(v.state.integrals[i]) + scale));
   }
   const std::vector<Real> rates = integral_rates(s, lookup, oracle.digits());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Real expected = now.environment().integrals[s.integrals[k].integral][1].real();
-    largest = std::max(largest, relative(rates[k] - expected, cln::abs(expected)));
+    largest = std::max(largest, relative_difference(rates[k] - expected, cln::abs(expected)));
   }
-  tally.note("integrals of time", oracle_name, false, largest);
+  tally.record("integrals of time", oracle_name, false, largest);
 }
 
 void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
@@ -203,9 +203,9 @@ void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
 
 /// The largest residual, each relative to the sum of the absolute values of its terms, with unknowns as large as their
 /// scales.
-double largest_residual(const DisplayForm& form, const symbolic::Dag& dag, const Lookup& at, const Motion& motion,
+double largest_residual(const DisplayForm& form, const symbolic::Dag& dag, const SymbolValues& at, const Motion& motion,
                         const Oracle& oracle) {
-  Lookup sized = at;
+  SymbolValues sized = at;
   for (std::size_t i = 0; i < sized.state.qddot.size(); ++i)
     sized.state.qddot[i] = cln::max(cln::abs(at.state.qddot[i]), motion.scale[i]);
   std::vector<Ref> roots;  // of each residual: itself, then its terms
@@ -223,7 +223,7 @@ double largest_residual(const DisplayForm& form, const symbolic::Dag& dag, const
     Real scale = 0;
     for (std::size_t i = first[r] + 1; i < first[r + 1]; ++i)
       scale = scale + cln::max(cln::abs(value[i]), cln::abs(size[i]));
-    largest = std::max(largest, relative(value[first[r]], scale));
+    largest = std::max(largest, relative_difference(value[first[r]], scale));
   }
   return largest;
 }
@@ -232,20 +232,20 @@ double largest_residual(const DisplayForm& form, const symbolic::Dag& dag, const
 /// the constraints alone.
 bool has_inertia(const Oracle& oracle, State at, const std::vector<Real>& lambda, std::uint32_t coordinate,
                  const Real& wrong) {
-  const std::vector<Residual> before = oracle.dalembert(at, lambda);
+  const std::vector<Residual> before = oracle.dalembert_residuals(at, lambda);
   at.qddot[coordinate] = wrong;
-  const std::vector<Residual> after = oracle.dalembert(at, lambda);
+  const std::vector<Residual> after = oracle.dalembert_residuals(at, lambda);
   for (std::size_t i = 0; i < before.size(); ++i) {
-    if (relative(after[i].value - before[i].value, before[i].scale) > 1e-9) return true;
+    if (relative_difference(after[i].value - before[i].value, before[i].scale) > 1e-9) return true;
   }
   return false;
 }
 
 /// Residuals of the display form for the motion by the oracle. The form also has to detect a wrong acceleration: 0 = 0
 /// holds for every motion.
-double reading_residual(const DisplayForm& form, const mechanics::Mechanics& mechanics, const Motion& motion,
+double display_form_residual(const DisplayForm& form, const mechanics::Mechanics& mechanics, const Motion& motion,
                         const Oracle& oracle, bool try_wrong_ones) {
-  Lookup lookup(oracle, motion.state);
+  SymbolValues lookup(oracle, motion.state);
   lookup.lambda = motion.lambda;
   const double largest = largest_residual(form, *mechanics.dag, lookup, motion, oracle);
   for (const std::uint32_t i : mechanics.free) {
@@ -298,7 +298,7 @@ std::vector<int> modes_of(const EquationSystem& s, const State& state) {
   std::vector<eom::ContactShape> shapes;
   for (const system::Contact& contact : s.contacts) shapes.push_back(contact.shape());
   constexpr std::size_t enough = 40;
-  std::vector<int> modes = eom::contact_modes(shapes, state.apart.empty() ? enough : 1000);
+  std::vector<int> modes = eom::contact_modes(shapes, state.open.empty() ? enough : 1000);
   std::erase_if(modes, [&](int mode) {
     for (std::size_t j = 0; j < shapes.size(); ++j) {
       if (shapes[j].unilateral && eom::contact_leaf(state.mode, 2 * j + 1) < 0 &&
@@ -313,13 +313,13 @@ std::vector<int> modes_of(const EquationSystem& s, const State& state) {
 
 }  // namespace
 
-void Tally::note(const std::string& a, const std::string& b, bool shares_code, double relative_difference, Kind kind) {
+void ComparisonTable::record(const std::string& a, const std::string& b, bool shares_code, double relative_difference, Arithmetic arithmetic) {
   const auto same = [&](const Comparison& row) { return row.a == a && row.b == b; };
   auto row = std::find_if(rows_.begin(), rows_.end(), same);
   if (row == rows_.end()) {
     rows_.push_back({a, b, shares_code, 0, 0, 0, true});
     row = rows_.end() - 1;
-    row->tolerance = kind == Kind::binary64 ? tolerance_binary64 : std::pow(10.0, digits_given_up - digits_);
+    row->tolerance = arithmetic == Arithmetic::binary64 ? tolerance_binary64 : std::pow(10.0, digits_given_up - digits_);
   }
   row->max_relative_difference = std::max(row->max_relative_difference, relative_difference);
   const double largest = row->max_relative_difference;
@@ -329,25 +329,25 @@ void Tally::note(const std::string& a, const std::string& b, bool shares_code, d
 }
 
 void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Oracle& oracle, const State& at,
-                Tally& tally) {
+                ComparisonTable& tally) {
   std::vector<SystemValues> values;
   const State state = with_any_friction(mechanics, oracle, at);
-  for (const EquationSystem& s : subjects.systems) values.push_back(values_of(s, mechanics, oracle, state));
+  for (const EquationSystem& s : subjects.systems) values.push_back(evaluate_system(s, mechanics, oracle, state));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const EquationSystem& s = subjects.systems[i];
-    tally.note(name_of(s), oracle_name, false, motion_residual(values[i]));
+    tally.record(system_name(s), oracle_name, false, motion_residual(values[i]));
     if (!s.active.empty())
-      tally.note("constraints of " + name_of(s), oracle_name, false, constraint_residual(s, values[i]));
+      tally.record("constraints of " + system_name(s), oracle_name, false, constraint_residual(s, values[i]));
     compare_energies(s, values[i], oracle, tally);
     compare_outputs(s, values[i], oracle, tally);
     for (std::size_t k = 0; k < i; ++k)
-      tally.note(name_of(subjects.systems[k]), name_of(s), true, difference(values[k], values[i]));
+      tally.record(system_name(subjects.systems[k]), system_name(s), true, difference(values[k], values[i]));
   }
   if (!subjects.reading.empty()) {
-    const Motion motion = motion_at(oracle, state);
+    const Motion motion = solve_motion(oracle, state);
     for (const DisplayForm& form : subjects.reading)
       if (!form.residuals.empty())
-        tally.note(form.name, oracle_name, false, reading_residual(form, mechanics, motion, oracle, tally.points() == 0));
+        tally.record(form.name, oracle_name, false, display_form_residual(form, mechanics, motion, oracle, tally.points() == 0));
   }
   if (values.empty()) return;
   const EquationSystem& first = subjects.systems.front();
@@ -355,11 +355,11 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
   if (first.contacts.empty()) return compare_code(subjects, values.front(), oracle, 0, tally);
   for (const int mode : modes_of(first, state)) {
     State lawful = in_mode(first, values.front(), state, mode);
-    set_friction(mechanics, oracle, lawful, lawful_friction(first, oracle, lawful));
-    const SystemValues in_mode = values_of(first, mechanics, oracle, lawful);
+    set_friction(mechanics, oracle, lawful, solve_friction_law(first, oracle, lawful));
+    const SystemValues in_mode = evaluate_system(first, mechanics, oracle, lawful);
     double largest = 0;
     for (const Residual& row : in_mode.rows) largest = std::max(largest, row.relative());
-    tally.note("contacts of " + name_of(first), oracle_name, false, largest);
+    tally.record("contacts of " + system_name(first), oracle_name, false, largest);
     compare_code(subjects, in_mode, oracle, mode, tally);
   }
 }

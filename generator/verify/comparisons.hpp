@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: the subjects and one state. Out: the difference of each pair there; a Tally collects the largest over all states.
+// In: the subjects and one state. Out: the difference of each pair there; a ComparisonTable collects the largest over all states.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace eomgen::verify {
 
-enum class Kind { precise, binary64 };
+enum class Arithmetic { precise, binary64 };
 
 inline constexpr const char* oracle_name = "d'Alembert";
 
@@ -18,11 +18,11 @@ inline constexpr const char* oracle_name = "d'Alembert";
 inline constexpr double tolerance_binary64 = 1e-11;
 
 /// The largest difference of each pair so far.
-class Tally {
+class ComparisonTable {
  public:
-  explicit Tally(int digits) : digits_(digits) {}
-  void note(const std::string& a, const std::string& b, bool shares_code, double relative_difference,
-            Kind kind = Kind::precise);
+  explicit ComparisonTable(int digits) : digits_(digits) {}
+  void record(const std::string& a, const std::string& b, bool shares_code, double relative_difference,
+            Arithmetic arithmetic = Arithmetic::precise);
   void count_point() { ++points_; }
   std::size_t points() const { return points_; }
   int digits() const { return digits_; }
@@ -37,6 +37,6 @@ class Tally {
 /// Compares all subjects at one state. Throws std::domain_error if one of them has no value or is nearly singular
 /// there.
 void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Oracle& oracle, const State& state,
-                Tally& tally);
+                ComparisonTable& tally);
 
 }  // namespace eomgen::verify

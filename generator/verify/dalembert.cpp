@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "verify/plain_forces.hpp"
+#include "verify/applied_forces.hpp"
 #include "verify/affine_residual_cache.hpp"
 #include "verify/uses.hpp"
 
@@ -35,7 +35,7 @@ void Residual::add(const Real& term, const Real& size) {
   scale = scale + size;
 }
 
-double relative(const Real& difference, const Real& scale) {
+double relative_difference(const Real& difference, const Real& scale) {
   if (cln::zerop(difference)) return 0;
   if (cln::zerop(scale)) return 1;
   const Real quotient = cln::abs(difference) / scale;
@@ -99,7 +99,7 @@ void Oracle::add_functions(Environment& environment, const std::vector<Real>& in
     Interpreter* at = &now;
     std::vector<Jet> found{now.scalar(expression)};
     for (unsigned k = 1; k <= orders; ++k) {
-      at = &at->along_time();
+      at = &at->with_time_slope();
       try {
         found.push_back(nested_slope(at->scalar(expression), k));
       } catch (const Error&) {
@@ -121,7 +121,7 @@ void Oracle::add_functions(Environment& environment, const std::vector<Real>& in
   }
 }
 
-Interpreter Oracle::interpreter(const State& state, Margin* margin) const {
+Interpreter Oracle::interpreter(const State& state, KinkMargin* margin) const {
   Environment environment;
   environment.t = Jet(state.t);
   for (const Real& value : state.parameters) environment.parameters.emplace_back(value);
@@ -180,17 +180,17 @@ std::vector<Real> Oracle::integrals(const State& state) const {
   return values;
 }
 
-Real Oracle::value(model::NodeId expression, const State& state) const {
+Real Oracle::evaluate(model::NodeId expression, const State& state) const {
   return interpreter(state).scalar(expression).real();
 }
 
-Real Oracle::constant(model::NodeId expression, const std::vector<Real>& parameters) const {
+Real Oracle::evaluate_constant(model::NodeId expression, const std::vector<Real>& parameters) const {
   Environment environment;
   for (const Real& value : parameters) environment.parameters.emplace_back(value);
   try {
     return Interpreter(model_, std::move(environment), precision_).scalar(expression).real();
   } catch (const std::domain_error& error) {
-    throw NoValue(error.what(), place_of(model_, model_.arena[expression]));
+    throw UndefinedValue(error.what(), place_of(model_, model_.arena[expression]));
   }
 }
 
@@ -216,10 +216,10 @@ AffineResidualCache& Oracle::residual_cache(const State& state) const {
   return *residual_cache_;
 }
 
-std::vector<Residual> Oracle::dalembert(const State& state, const std::vector<Real>& lambda, Margin* margin) const {
+std::vector<Residual> Oracle::dalembert_residuals(const State& state, const std::vector<Real>& lambda, KinkMargin* margin) const {
   AffineResidualCache& at = residual_cache(state);
-  std::vector<Residual> sums = at.inertia().at(state.qddot);
-  for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(at.rest()[i].value, at.rest()[i].scale);
+  std::vector<Residual> sums = at.inertia().multiply(state.qddot);
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(at.offset()[i].value, at.offset()[i].scale);
   subtract_friction(state, at.now(), sums);
   // A joint may prevent a rotation that no load drives. Every term of that equation is then rounding error; the least
   // force makes it count as 0 relative to the other equations.
@@ -227,7 +227,7 @@ std::vector<Residual> Oracle::dalembert(const State& state, const std::vector<Re
   if (!model_.joints.empty())
     for (const Real& force : lambda) least = cln::max(least, cln::abs(force) / 10000000000u);
   for (std::size_t k = 0; k < psi_.size(); ++k) {
-    const std::vector<Real>& f = at.row(k);
+    const std::vector<Real>& f = at.gradient(k);
     for (std::size_t i = 0; i < sums.size(); ++i) {
       if (cln::zerop(f[i])) continue;
       sums[i].add(-lambda[k] * f[i], cln::abs(lambda[k] * f[i]) + least * cln::abs(f[i]));
@@ -238,7 +238,7 @@ std::vector<Residual> Oracle::dalembert(const State& state, const std::vector<Re
 }
 
 void Oracle::subtract_friction(const State& state, Interpreter& now, std::vector<Residual>& sums) const {
-  Interpreter& by_q = now.by_coordinates(false);
+  Interpreter& by_q = now.with_coordinate_slopes(false);
   for (const FrictionForce& friction : state.friction) {
     if (friction.place == 0) {
       sums[friction.coordinate].add(-friction.force[0]);
@@ -259,7 +259,7 @@ void Oracle::subtract_friction(const State& state, Interpreter& now, std::vector
 // other body has the opposite force.
 void Oracle::subtract_contact(const model::BodyContact& contact, const std::array<Real, 3>& force, Interpreter& now,
                              std::vector<Residual>& sums) const {
-  Interpreter& by_q = now.by_coordinates(false);
+  Interpreter& by_q = now.with_coordinate_slopes(false);
   const auto act = [&](std::uint32_t place, std::uint32_t frame, model::NodeId arm, int sign) {
     const Vector F{Jet(sign * force[0]), Jet(sign * force[1]), Jet(sign * force[2])};
     const Vector r = by_q.place(place), moment = cross(now.vector(arm), F);
@@ -275,16 +275,16 @@ void Oracle::subtract_contact(const model::BodyContact& contact, const std::arra
   if (contact.other_frame > 0) act(contact.other_place, contact.other_frame, contact.other_arm, -1);
 }
 
-ConstraintValues Oracle::constraint_values(const State& state, Margin* margin) const {
+ConstraintValues Oracle::constraint_values(const State& state, KinkMargin* margin) const {
   AffineResidualCache& at = residual_cache(state);
   ConstraintValues values;
   for (std::size_t k = 0; k < psi_.size(); ++k) {
-    const AffineResidualCache::Along& along = at.along(k);
+    const AffineResidualCache::PathValues& along = at.path_values(k);
     values.psi.push_back(along.psi);
     values.psi_dot.push_back(along.rate);
-    values.gradient.push_back(at.row(k));
+    values.gradient.push_back(at.gradient(k));
     if (state.qddot.empty()) continue;
-    Real second = at.second(k);  // at zero acceleration
+    Real second = at.psi_ddot_offset(k);  // at zero acceleration
     for (std::size_t i = 0; i < state.qddot.size(); ++i) {
       const Real& slope = values.gradient.back()[i];
       if (!cln::zerop(slope)) second = second + slope * state.qddot[i];
@@ -297,7 +297,7 @@ ConstraintValues Oracle::constraint_values(const State& state, Margin* margin) c
 
 EnergyValues Oracle::energy_values(const State& state) const {
   Interpreter now = interpreter(state);
-  Interpreter& later = now.along_time();
+  Interpreter& later = now.with_time_slope();
   EnergyValues sum;
   const auto add = [&](const Jet& term, Real& value, Real& rate) {
     const Real slope = term.slope(later.level(), 0).real();
@@ -306,8 +306,8 @@ EnergyValues Oracle::energy_values(const State& state) const {
     sum.scale = sum.scale + cln::abs(term.real());
     sum.rate_scale = sum.rate_scale + cln::abs(slope);
   };
-  Interpreter& twice = later.along_time();
-  for (const Mass& mass : masses(model_)) {
+  Interpreter& twice = later.with_time_slope();
+  for (const Mass& mass : list_masses(model_)) {
     const Vector v = slope(twice.place(mass.place), twice.level(), 0);
     const Jet half_mass = later.scalar(mass.mass) / 2;
     for (const Jet& component : v) add(half_mass * component * component, sum.kinetic, sum.kinetic_rate);

@@ -40,7 +40,7 @@ struct State {
   std::vector<Real> phi;        // components of friction along the tangents
   std::vector<FrictionForce> friction;  // the forces that belong to phi
   int mode = 0;                         // of the contacts (eom/modes/contact_state.hpp)
-  std::set<std::size_t> apart;          // scalar constraints that are open in this state: inactive and without force
+  std::set<std::size_t> open;          // scalar constraints that are open in this state: inactive and without force
 };
 
 /// A sum that should vanish, and the sum of the absolute values of its terms, which determines its rounding error.
@@ -67,8 +67,8 @@ struct EnergyValues {
 };
 
 /// An undefined number of the model, such as log(0), with its position in the file.
-struct NoValue : Singular {
-  NoValue(const char* what, SourceLocation place) : Singular(what), where(std::move(place)) {}
+struct UndefinedValue : Singular {
+  UndefinedValue(const char* what, SourceLocation place) : Singular(what), where(std::move(place)) {}
   SourceLocation where;
 };
 
@@ -83,29 +83,29 @@ class Oracle {
   const Precision& precision() const { return precision_; }
   int digits() const { return digits_; }
   const std::vector<model::NodeId>& constraints() const { return psi_; }
-  bool holonomic(std::size_t constraint) const { return holonomic_[constraint]; }
+  bool is_holonomic(std::size_t constraint) const { return holonomic_[constraint]; }
   /// Marks a constraint as implied by the others: it has no force; it is checked, but not solved for.
-  void imply(std::size_t constraint) { implied_.insert(constraint); }
-  bool implied(std::size_t constraint) const { return implied_.contains(constraint); }
-  bool any_implied() const { return !implied_.empty(); }
+  void mark_implied(std::size_t constraint) { implied_.insert(constraint); }
+  bool is_implied(std::size_t constraint) const { return implied_.contains(constraint); }
+  bool has_implied() const { return !implied_.empty(); }
 
   std::vector<Real> default_parameters() const;
   /// All parameters. `given` holds the independent ones; the dependent ones are computed.
   std::vector<Real> parameters(std::vector<Real> given) const;
   bool is_independent_parameter(std::size_t index) const;
 
-  std::vector<Residual> dalembert(const State& state, const std::vector<Real>& lambda, Margin* margin = nullptr) const;
-  ConstraintValues constraint_values(const State& state, Margin* margin = nullptr) const;
+  std::vector<Residual> dalembert_residuals(const State& state, const std::vector<Real>& lambda, KinkMargin* margin = nullptr) const;
+  ConstraintValues constraint_values(const State& state, KinkMargin* margin = nullptr) const;
   EnergyValues energy_values(const State& state) const;
   /// Value of an expression of the model, such as an initial value of a scene.
-  Real value(model::NodeId expression, const State& state) const;
+  Real evaluate(model::NodeId expression, const State& state) const;
 
-  /// Value of an expression of parameters alone. Throws NoValue if it is undefined, such as log(0).
-  Real constant(model::NodeId expression, const std::vector<Real>& parameters) const;
+  /// Value of an expression of parameters alone. Throws UndefinedValue if it is undefined, such as log(0).
+  Real evaluate_constant(model::NodeId expression, const std::vector<Real>& parameters) const;
   /// Every integral of the model at the state's time and parameters, by quadrature of its integrand.
   std::vector<Real> integrals(const State& state) const;
 
-  Interpreter interpreter(const State& state, Margin* margin = nullptr) const;
+  Interpreter interpreter(const State& state, KinkMargin* margin = nullptr) const;
 
  private:
   /// Functions of time and integrals with `orders` derivatives; `integrals` holds the values of the latter.

@@ -36,8 +36,8 @@ class Law {
   std::vector<Real> residual(const std::vector<Real>& phi) const {
     State state = state_;
     state.phi = phi;
-    Lookup lookup(oracle_, state);
-    solve_into(s_, lookup, oracle_.digits());
+    SymbolValues lookup(oracle_, state);
+    solve_accelerations(s_, lookup, oracle_.digits());
     const std::vector<Real> value = symbolic::evaluate(*s_.dag, roots_, lookup, oracle_.digits());
     auto next = value.begin();
     const auto take = [&](std::size_t count) {
@@ -58,14 +58,14 @@ class Law {
         if (touches) held.push_back(std::move(along));
       }
       if (slip.empty()) continue;
-      const bool apart = c.unilateral && presses(j) < 0;
-      if (!held.empty() && !apart && !c.width && slides(j) == 0) {
+      const bool opens = c.unilateral && presses(j) < 0;
+      if (!held.empty() && !opens && !c.width && slides(j) == 0) {
         add_held(held, &phi[c.first], rate, result);
         continue;
       }
       const Real normal = normal_force(j, gram, given, lambda);
       for (std::size_t a = 0; a < slip.size(); ++a) {
-        if (apart)
+        if (opens)
           result.push_back(phi[c.first + a]);
         else if (c.width)
           result.push_back(phi[c.first + a] + mu * normal * slip[a] / length(slip, width));
@@ -123,7 +123,7 @@ class Law {
 void set_friction(const mechanics::Mechanics& m, const Oracle& oracle, State& state, std::vector<Real> phi) {
   state.phi = std::move(phi);
   state.friction.clear();
-  const Lookup lookup(oracle, state);
+  const SymbolValues lookup(oracle, state);
   for (const mechanics::Contact& contact : m.contacts) {
     if (contact.dimensions() == 0) continue;
     FrictionForce friction{contact.place, contact.coordinate, {Real(0), Real(0), Real(0)}, contact.body_contact};
@@ -138,7 +138,7 @@ void set_friction(const mechanics::Mechanics& m, const Oracle& oracle, State& st
   }
 }
 
-std::vector<Real> lawful_friction(const system::EquationSystem& s, const Oracle& oracle, const State& state) {
+std::vector<Real> solve_friction_law(const system::EquationSystem& s, const Oracle& oracle, const State& state) {
   const Law law(s, oracle, state);
   std::size_t n = 0;
   for (const system::Contact& contact : s.contacts) n += contact.slip.size();

@@ -11,6 +11,6 @@ namespace eomgen::verify {
 void set_friction(const mechanics::Mechanics& mechanics, const Oracle& oracle, State& state, std::vector<Real> phi);
 
 /// phi of the law in the mode of the state. Throws std::domain_error if the iteration does not converge.
-std::vector<Real> lawful_friction(const system::EquationSystem& system, const Oracle& oracle, const State& state);
+std::vector<Real> solve_friction_law(const system::EquationSystem& system, const Oracle& oracle, const State& state);
 
 }  // namespace eomgen::verify

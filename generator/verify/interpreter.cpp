@@ -23,7 +23,7 @@ Vector cross(const Vector& a, const Vector& b) {
 }
 Jet norm(const Vector& a, const Precision& p) { return sqrt(dot(a, a), p); }
 
-Interpreter::Interpreter(const model::Model& model, Environment environment, Precision precision, Margin* margin,
+Interpreter::Interpreter(const model::Model& model, Environment environment, Precision precision, KinkMargin* margin,
                          const model::Force* spring)
     : model_(model), environment_(std::move(environment)), precision_(precision), margin_(margin), spring_(spring) {}
 
@@ -31,13 +31,13 @@ std::unique_ptr<Interpreter> Interpreter::child(Environment environment) const {
   return std::make_unique<Interpreter>(model_, std::move(environment), precision_, margin_, spring_);
 }
 
-Interpreter Interpreter::for_spring(const model::Force& spring) const {
+Interpreter Interpreter::with_spring(const model::Force& spring) const {
   return Interpreter(model_, environment_, precision_, margin_, &spring);
 }
 
 // ---- environments with one variable on a new level
 
-Interpreter& Interpreter::along_time() {
+Interpreter& Interpreter::with_time_slope() {
   if (later_) return *later_;
   Environment later = environment_;
   const unsigned level = ++later.level;
@@ -51,7 +51,7 @@ Interpreter& Interpreter::along_time() {
   return *later_;
 }
 
-Interpreter& Interpreter::by_coordinates(bool rates) {
+Interpreter& Interpreter::with_coordinate_slopes(bool rates) {
   std::unique_ptr<Interpreter>& kept = rates ? by_q_and_rates_ : by_q_;
   if (kept) return *kept;
   Environment seeded = environment_;
@@ -66,7 +66,7 @@ Interpreter& Interpreter::by_coordinates(bool rates) {
   return *kept;
 }
 
-Interpreter& Interpreter::by_rates() {
+Interpreter& Interpreter::with_rate_slopes() {
   if (by_rates_) return *by_rates_;
   Environment seeded = environment_;
   const unsigned level = ++seeded.level;
@@ -162,7 +162,7 @@ Jet Interpreter::leaf(const Node& node) {
 
 Jet Interpreter::derivative(const Node& node) {
   const bool total = node.op == Op::total_derivative;
-  Interpreter& near = total ? along_time() : by_leaf(model_.arena[node.args[1]]);
+  Interpreter& near = total ? with_time_slope() : by_leaf(model_.arena[node.args[1]]);
   return near.scalar(node.args[0]).slope(near.level(), 0);
 }
 
@@ -208,7 +208,7 @@ Jet Interpreter::call(const Node& node) {
 }
 
 Jet Interpreter::extension(const model::Force& spring) {
-  return norm(vector(given(spring, "b")) - vector(given(spring, "a")), precision_) - scalar(given(spring, "length"));
+  return norm(vector(argument_expression(spring, "b")) - vector(argument_expression(spring, "a")), precision_) - scalar(argument_expression(spring, "length"));
 }
 
 void Interpreter::refuse(const Node& node, const char* what) const {

@@ -39,13 +39,13 @@ struct Environment {
 };
 
 /// The least relative distance of a state from a kink (abs, sign, min, max, if) so far.
-struct Margin {
+struct KinkMargin {
   double kink = 1;
 };
 
 class Interpreter {
  public:
-  Interpreter(const model::Model& model, Environment environment, Precision precision, Margin* margin = nullptr,
+  Interpreter(const model::Model& model, Environment environment, Precision precision, KinkMargin* margin = nullptr,
               const model::Force* spring = nullptr);
 
   Jet scalar(model::NodeId id);
@@ -53,7 +53,7 @@ class Interpreter {
   Vector place(std::uint32_t index);                // position of Model::places[index]
   Vector axis(std::uint32_t frame, std::size_t k);  // e_(k+1) of Model::frames[frame]
   /// Axial vector of dQ Q^T, eq. (5.26): the rotation of the axes of a frame along the path, or with a coordinate
-  /// (by_coordinates(false)).
+  /// (with_coordinate_slopes(false)).
   Vector angular_velocity(std::uint32_t frame);
   Vector virtual_rotation(std::uint32_t frame, std::size_t coordinate);
   /// |b - a| - length of the spring, the value of Op::extension.
@@ -63,14 +63,14 @@ class Interpreter {
   unsigned level() const { return environment_.level; }
 
   /// An interpreter with time on a new level: d/dt of its values is slope(level(), 0).
-  Interpreter& along_time();
+  Interpreter& with_time_slope();
   /// An interpreter with every coordinate (and, if `rates`, every velocity) on a new level: d/dq_i is
   /// slope(level(), i), d/dqdot_i is slope(level(), n + i).
-  Interpreter& by_coordinates(bool rates);
+  Interpreter& with_coordinate_slopes(bool rates);
   /// An interpreter with the velocities alone on a new level: d/dqdot_i is slope(level(), i).
-  Interpreter& by_rates();
+  Interpreter& with_rate_slopes();
   /// The same environment; Op::extension is the extension of `spring`.
-  Interpreter for_spring(const model::Force& spring) const;
+  Interpreter with_spring(const model::Force& spring) const;
 
  private:
   using Leaf = std::tuple<model::Op, std::uint32_t, std::uint8_t>;
@@ -81,7 +81,7 @@ class Interpreter {
   Jet call(const model::Node& node);
   Jet conditional(const model::Node& node);
   Vector read_vector(const model::Node& node);
-  Vector turning(std::uint32_t frame, Interpreter& varied, std::size_t direction);
+  Vector axial_vector(std::uint32_t frame, Interpreter& varied, std::size_t direction);
   Vector read_basis(const model::Node& node);
   bool names(std::uint32_t place, const model::Node& coordinate) const;
   Vector tangent(std::uint32_t place, const model::Node& coordinate, bool relative);  // dr/dq
@@ -93,7 +93,7 @@ class Interpreter {
   const model::Model& model_;
   Environment environment_;
   Precision precision_;
-  Margin* margin_;
+  KinkMargin* margin_;
   const model::Force* spring_;
   std::unordered_map<model::NodeId, Jet> scalars_;
   std::unordered_map<model::NodeId, Vector> vectors_;

@@ -34,7 +34,7 @@ Vector Interpreter::axis(std::uint32_t frame, std::size_t k) {
 }
 
 // The sum of e_k x de_k over the three axes is twice the axial vector of the skew part of dQ Q^T.
-Vector Interpreter::turning(std::uint32_t frame, Interpreter& varied, std::size_t direction) {
+Vector Interpreter::axial_vector(std::uint32_t frame, Interpreter& varied, std::size_t direction) {
   Vector sum;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vector e = axis(frame, k), moved = varied.axis(frame, k);
@@ -45,10 +45,10 @@ Vector Interpreter::turning(std::uint32_t frame, Interpreter& varied, std::size_
   return (Jet(1) / Jet(2)) * sum;
 }
 
-Vector Interpreter::angular_velocity(std::uint32_t frame) { return turning(frame, along_time(), 0); }
+Vector Interpreter::angular_velocity(std::uint32_t frame) { return axial_vector(frame, with_time_slope(), 0); }
 
 Vector Interpreter::virtual_rotation(std::uint32_t frame, std::size_t coordinate) {
-  return turning(frame, by_coordinates(false), coordinate);
+  return axial_vector(frame, with_coordinate_slopes(false), coordinate);
 }
 
 Vector Interpreter::read_vector(const Node& node) {
@@ -71,7 +71,7 @@ Vector Interpreter::read_vector(const Node& node) {
     case Op::cross: return cross(arg(0), arg(1));
     case Op::unit: return (Jet(1) / norm(arg(0), precision_)) * arg(0);
     case Op::conditional: return arg(less(scalar(node.args[0]), scalar(node.args[1])) ? 2 : 3);
-    case Op::total_derivative: return map_slope(along_time().vector(node.args[0]), along_time().level());
+    case Op::total_derivative: return map_slope(with_time_slope().vector(node.args[0]), with_time_slope().level());
     case Op::partial_derivative: {
       Interpreter& near = by_leaf(model_.arena[node.args[1]]);
       return map_slope(near.vector(node.args[0]), near.level());
@@ -79,10 +79,10 @@ Vector Interpreter::read_vector(const Node& node) {
     case Op::axis: return vector(model_.frames[node.index].stages[node.order / 3].e[node.order % 3]);
     case Op::angular_velocity: return angular_velocity(node.index);
     case Op::place: return place(node.index);
-    case Op::place_velocity: return map_slope(along_time().place(node.index), along_time().level());
+    case Op::place_velocity: return map_slope(with_time_slope().place(node.index), with_time_slope().level());
     case Op::place_acceleration: {
-      Interpreter& later = along_time();
-      const Vector twice = map_slope(later.along_time().place(node.index), later.along_time().level());
+      Interpreter& later = with_time_slope();
+      const Vector twice = map_slope(later.with_time_slope().place(node.index), later.with_time_slope().level());
       return map_slope(twice, later.level());
     }
     default: return read_basis(node);

@@ -57,7 +57,7 @@ Jet Jet::with(unsigned level, Jet value, Slopes slopes) {
 Jet Jet::on_level(unsigned level, Jet value, std::vector<Jet> slopes) {
   Slopes kept;
   for (std::size_t i = 0; i < slopes.size(); ++i) {
-    if (!slopes[i].exactly_zero()) kept.emplace_back(static_cast<std::uint32_t>(i), std::move(slopes[i]));
+    if (!slopes[i].is_exactly_zero()) kept.emplace_back(static_cast<std::uint32_t>(i), std::move(slopes[i]));
   }
   return with(level, std::move(value), std::move(kept));
 }
@@ -92,14 +92,14 @@ const Real& Jet::real() const {
   return jet->real_;
 }
 
-bool Jet::exactly_zero() const { return !dual_ && cln::zerop(real_) && cln:: instanceof (real_, cln::cl_RA_ring); }
+bool Jet::is_exactly_zero() const { return !dual_ && cln::zerop(real_) && cln:: instanceof (real_, cln::cl_RA_ring); }
 
 Jet::Slopes Jet::combine(const Jet& a, const Jet* ka, const Jet& b, const Jet* kb, unsigned level) {
   const Slopes &left = a.slopes(level), &right = b.slopes(level);
   Slopes result;
   result.reserve(left.size() + right.size());
   const auto keep = [&](std::uint32_t direction, Jet slope) {
-    if (!slope.exactly_zero()) result.emplace_back(direction, std::move(slope));
+    if (!slope.is_exactly_zero()) result.emplace_back(direction, std::move(slope));
   };
   const auto scaled = [](const Jet& slope, const Jet* by) { return by == nullptr ? slope : slope * *by; };
   auto i = left.begin();
@@ -120,15 +120,15 @@ Jet::Slopes Jet::combine(const Jet& a, const Jet* ka, const Jet& b, const Jet* k
 }
 
 Jet operator+(const Jet& a, const Jet& b) {
-  if (a.exactly_zero()) return b;
-  if (b.exactly_zero()) return a;
+  if (a.is_exactly_zero()) return b;
+  if (b.is_exactly_zero()) return a;
   if (!a.dual_ && !b.dual_) return a.real_ + b.real_;
   const unsigned level = std::max(a.level_, b.level_);
   return Jet::with(level, a.value(level) + b.value(level), Jet::combine(a, nullptr, b, nullptr, level));
 }
 
 Jet operator-(const Jet& a, const Jet& b) {
-  if (b.exactly_zero()) return a;
+  if (b.is_exactly_zero()) return a;
   if (!a.dual_ && !b.dual_) return a.real_ - b.real_;
   const unsigned level = std::max(a.level_, b.level_);
   const Jet minus(-1);
@@ -136,7 +136,7 @@ Jet operator-(const Jet& a, const Jet& b) {
 }
 
 Jet operator*(const Jet& a, const Jet& b) {
-  if (a.exactly_zero() || b.exactly_zero()) return Jet();
+  if (a.is_exactly_zero() || b.is_exactly_zero()) return Jet();
   if (!a.dual_ && !b.dual_) return a.real_ * b.real_;
   const unsigned level = std::max(a.level_, b.level_);
   const Jet& a0 = a.value(level);
@@ -147,7 +147,7 @@ Jet operator*(const Jet& a, const Jet& b) {
 Jet operator/(const Jet& a, const Jet& b) {
   if (!b.dual_) {
     require(!cln::zerop(b.real_), "division by zero");
-    if (a.exactly_zero()) return Jet();
+    if (a.is_exactly_zero()) return Jet();
     if (!a.dual_) return a.real_ / b.real_;
     return a * Jet(1 / b.real_);
   }
@@ -160,23 +160,23 @@ Jet operator/(const Jet& a, const Jet& b) {
   return Jet::with(level, quotient, std::move(slopes));
 }
 
-Jet chain(const Jet& x, Jet value, const Jet& derivative) {
+Jet apply_chain_rule(const Jet& x, Jet value, const Jet& derivative) {
   Jet::Slopes slopes;
   for (const auto& [direction, slope] : x.dual_->slopes) {
     Jet moved = slope * derivative;
-    if (!moved.exactly_zero()) slopes.emplace_back(direction, std::move(moved));
+    if (!moved.is_exactly_zero()) slopes.emplace_back(direction, std::move(moved));
   }
   return Jet::with(x.level_, std::move(value), std::move(slopes));
 }
 
 std::pair<Jet, Jet> sin_cos(const Jet& x, const Precision& p) {
   if (x.level() == 0) {
-    if (x.exactly_zero()) return {Jet(0), Jet(1)};
+    if (x.is_exactly_zero()) return {Jet(0), Jet(1)};
     const cln::cos_sin_t both = cln::cos_sin(p.round(x.real()));
     return {Jet(both.sin), Jet(both.cos)};
   }
   const auto [s, c] = sin_cos(x.value(x.level()), p);
-  return {chain(x, s, c), chain(x, c, -s)};
+  return {apply_chain_rule(x, s, c), apply_chain_rule(x, c, -s)};
 }
 
 std::pair<Jet, Jet> sinh_cosh(const Jet& x, const Precision& p) {
@@ -185,7 +185,7 @@ std::pair<Jet, Jet> sinh_cosh(const Jet& x, const Precision& p) {
     return {Jet(both.sinh), Jet(both.cosh)};
   }
   const auto [s, c] = sinh_cosh(x.value(x.level()), p);
-  return {chain(x, s, c), chain(x, c, s)};
+  return {apply_chain_rule(x, s, c), apply_chain_rule(x, c, s)};
 }
 
 Jet tan(const Jet& x, const Precision& p) {
@@ -203,7 +203,7 @@ Jet acos(const Jet& x, const Precision& p) { return atan2(sqrt((1 - x) * (1 + x)
 Jet atan(const Jet& x, const Precision& p) {
   if (x.level() == 0) return Jet(cln::atan(p.round(x.real())));
   const Jet& x0 = x.value(x.level());
-  return chain(x, atan(x0, p), 1 / (1 + x0 * x0));
+  return apply_chain_rule(x, atan(x0, p), 1 / (1 + x0 * x0));
 }
 
 Jet atan2(const Jet& y, const Jet& x, const Precision& p) {
@@ -228,24 +228,24 @@ Jet tanh(const Jet& x, const Precision& p) {
 Jet exp(const Jet& x, const Precision& p) {
   if (x.level() == 0) return is_faint(x.real()) ? Jet() : Jet(cln::exp(p.round(x.real())));
   const Jet e = exp(x.value(x.level()), p);
-  return chain(x, e, e);
+  return apply_chain_rule(x, e, e);
 }
 
 Jet log(const Jet& x, const Precision& p) {
   require(cln::plusp(x.real()), "log of a number that is not positive");
   if (x.level() == 0) return Jet(cln::ln(p.round(x.real())));
   const Jet& x0 = x.value(x.level());
-  return chain(x, log(x0, p), 1 / x0);
+  return apply_chain_rule(x, log(x0, p), 1 / x0);
 }
 
 Jet sqrt(const Jet& x, const Precision& p) {
   if (x.level() == 0) {
     require(!cln::minusp(x.real()), "sqrt of a negative number");
-    return x.exactly_zero() ? Jet() : Jet(cln::sqrt(p.round(x.real())));
+    return x.is_exactly_zero() ? Jet() : Jet(cln::sqrt(p.round(x.real())));
   }
   require(cln::plusp(x.real()), "sqrt at zero, where it has no derivative");
   const Jet root = sqrt(x.value(x.level()), p);
-  return chain(x, root, 1 / (2 * root));
+  return apply_chain_rule(x, root, 1 / (2 * root));
 }
 
 namespace {

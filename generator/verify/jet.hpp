@@ -56,7 +56,7 @@ class Jet {
   const Real& real() const;  // without any eps
   /// The directions of `level` along which the slope is not exactly 0, ascending.
   std::vector<std::size_t> directions(unsigned level) const;
-  bool exactly_zero() const;
+  bool is_exactly_zero() const;
 
  private:
   struct Dual;
@@ -64,7 +64,7 @@ class Jet {
   friend Jet operator-(const Jet& a, const Jet& b);
   friend Jet operator*(const Jet& a, const Jet& b);
   friend Jet operator/(const Jet& a, const Jet& b);
-  friend Jet chain(const Jet& x, Jet value, const Jet& derivative);
+  friend Jet apply_chain_rule(const Jet& x, Jet value, const Jet& derivative);
   using Slopes = std::vector<std::pair<std::uint32_t, Jet>>;  // ascending by direction, none exactly 0
   static Jet with(unsigned level, Jet value, Slopes slopes);
   const Slopes& slopes(unsigned level) const;
@@ -83,7 +83,7 @@ Jet operator/(const Jet& a, const Jet& b);  // throws Singular
 inline Jet operator-(const Jet& a) { return Jet(0) - a; }
 
 /// f(x) from f and f' at x.value: one step of the chain rule on the level of x.
-Jet chain(const Jet& x, Jet value, const Jet& derivative);
+Jet apply_chain_rule(const Jet& x, Jet value, const Jet& derivative);
 
 // Elementary functions; all throw Singular outside the open domain in which they are differentiable.
 std::pair<Jet, Jet> sin_cos(const Jet& x, const Precision& p);

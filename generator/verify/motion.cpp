@@ -10,17 +10,17 @@
 
 namespace eomgen::verify {
 
-Motion motion_at(const Oracle& oracle, const State& at) {
+Motion solve_motion(const Oracle& oracle, const State& at) {
   Motion motion{at, {}, {}};
   State& s = motion.state;
   std::vector<std::size_t> bound;  // constraints that are closed and not implied by others
   for (std::size_t k = 0; k < oracle.constraints().size(); ++k) {
-    if (!oracle.implied(k) && !at.apart.contains(k)) bound.push_back(k);
+    if (!oracle.is_implied(k) && !at.open.contains(k)) bound.push_back(k);
   }
   const std::size_t n = s.q.size(), m = bound.size(), size = n + m;
   const std::vector<Real> no_forces(oracle.constraints().size(), Real(0));
   s.qddot.assign(n, Real(0));
-  const std::vector<Residual> rest = oracle.dalembert(s, no_forces);
+  const std::vector<Residual> rest = oracle.dalembert_residuals(s, no_forces);
   const ConstraintValues c = oracle.constraint_values(s);
   std::vector<Real> matrix(size * size, Real(0)), right(size, Real(0));
   // The matrix entries are the changes for a test acceleration. It is as large as the forces, so that no digits are
@@ -30,7 +30,7 @@ Motion motion_at(const Oracle& oracle, const State& at) {
   const Real acceleration = power_of_two_near(forces, 1);
   for (std::size_t j = 0; j < n; ++j) {
     s.qddot[j] = acceleration;
-    const std::vector<Residual> column = oracle.dalembert(s, no_forces);
+    const std::vector<Residual> column = oracle.dalembert_residuals(s, no_forces);
     s.qddot[j] = 0;
     for (std::size_t i = 0; i < n; ++i) matrix[i * size + j] = (column[i].value - rest[i].value) / acceleration;
     right[j] = -rest[j].value;
@@ -63,7 +63,7 @@ Motion motion_at(const Oracle& oracle, const State& at) {
     motion.scale.push_back(scale);
   }
   if (m > 0) {  // as in system_values.cpp
-    const Real share = least_share(oracle.model());
+    const Real share = minimum_relative_scale(oracle.model());
     Real largest = 0;
     for (const Real& scale : motion.scale) largest = cln::max(largest, scale);
     for (Real& scale : motion.scale) scale = cln::max(scale, largest * share);
@@ -72,7 +72,7 @@ Motion motion_at(const Oracle& oracle, const State& at) {
 }
 
 // Below the compared digits and far above rounding. Joints have forces and moments, whose sizes differ.
-Real least_share(const model::Model& model) {
+Real minimum_relative_scale(const model::Model& model) {
   return cln::expt(cln::cl_RA(1) / 10, cln::cl_I(model.joints.empty() ? 20 : 4));
 }
 

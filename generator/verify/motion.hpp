@@ -15,10 +15,10 @@ struct Motion {
 
 /// Solves for qddot and lambda. The residuals are affine in them: N + 1 evaluations and one solve. Throws Singular if
 /// qddot and lambda are not determined.
-Motion motion_at(const Oracle& oracle, const State& state);
+Motion solve_motion(const Oracle& oracle, const State& state);
 
 /// Smallest scale of an acceleration, or multiplier, of a system with constraints, relative to the largest one: smaller
 /// values may be zero up to rounding.
-Real least_share(const model::Model& model);
+Real minimum_relative_scale(const model::Model& model);
 
 }  // namespace eomgen::verify

@@ -50,7 +50,7 @@ bool may_have_cancelled(const std::vector<Real>& values) {
 
 /// Sizes of cancelled terms in each row: a force whose terms cancel keeps their last digits, and an evaluation in more
 /// digits shows how large these are.
-std::vector<Real> lost_in_rows(const EquationSystem& s, const Lookup& lookup, int digits,
+std::vector<Real> lost_in_rows(const EquationSystem& s, const SymbolValues& lookup, int digits,
                                const std::vector<Real>& value, const Solved& out) {
   constexpr int more = 20;
   const std::size_t n = s.free.size(), m = s.active.size();
@@ -75,7 +75,7 @@ std::vector<Real> lost_in_rows(const EquationSystem& s, const Lookup& lookup, in
 }
 
 /// [M A^T; A 0][qddot; -lambda] = [f; -gamma]
-Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, bool with_inverse) {
+Solved solve_system(const EquationSystem& s, const SymbolValues& lookup, int digits, bool with_inverse) {
   const std::vector<Ref> roots = concatenate({&s.M, &s.f, &s.psi, &s.A, &s.b, &s.gamma});
   const std::vector<Real> value = symbolic::evaluate(*s.dag, roots, lookup, digits);
   auto next = value.begin();
@@ -208,12 +208,12 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
     v.scale[fixed.coordinate] = sum / slope;
     v.scale[all + fixed.constraint] = v.rows[fixed.coordinate].scale / slope;
   }
-  if (!s.active.empty()) raise_least(v.scale, all, least_share(*mechanics.model));
+  if (!s.active.empty()) raise_least(v.scale, all, minimum_relative_scale(*mechanics.model));
 }
 
 }  // namespace
 
-Lookup::Lookup(const Oracle& of, State at) : oracle(of), state(std::move(at)), lambda(of.constraints().size(), Real(0)) {
+SymbolValues::SymbolValues(const Oracle& of, State at) : oracle(of), state(std::move(at)), lambda(of.constraints().size(), Real(0)) {
   if (state.integrals.empty()) state.integrals = oracle.integrals(state);
   const Interpreter now = oracle.interpreter(state);
   for (const std::vector<Jet>& orders : now.environment().functions) {
@@ -222,7 +222,7 @@ Lookup::Lookup(const Oracle& of, State at) : oracle(of), state(std::move(at)), l
   }
 }
 
-Real Lookup::operator()(const symbolic::Symbol& symbol) const {
+Real SymbolValues::operator()(const symbolic::Symbol& symbol) const {
   switch (symbol.kind) {
     case SymbolKind::time: return state.t;
     case SymbolKind::coordinate:
@@ -240,15 +240,15 @@ Real Lookup::operator()(const symbolic::Symbol& symbol) const {
   throw std::logic_error("verify: a symbol without a value");
 }
 
-void solve_into(const EquationSystem& s, Lookup& lookup, int digits) {
+void solve_accelerations(const EquationSystem& s, SymbolValues& lookup, int digits) {
   const Solved solved = solve_system(s, lookup, digits, false);
   for (std::size_t i = 0; i < s.free.size(); ++i) lookup.state.qddot[s.free[i]] = solved.qddot[i];
   for (std::size_t k = 0; k < s.active.size(); ++k) lookup.lambda[s.active[k]] = solved.lambda[k];
 }
 
-SystemValues values_of(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Oracle& oracle,
+SystemValues evaluate_system(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Oracle& oracle,
                        const State& state) {
-  Lookup lookup(oracle, state);
+  SymbolValues lookup(oracle, state);
   const Solved solved = solve_system(s, lookup, oracle.digits(), true);
   for (std::size_t i = 0; i < s.free.size(); ++i) lookup.state.qddot[s.free[i]] = solved.qddot[i];
   for (std::size_t k = 0; k < s.active.size(); ++k) lookup.lambda[s.active[k]] = solved.lambda[k];
@@ -265,16 +265,16 @@ SystemValues values_of(const EquationSystem& s, const mechanics::Mechanics& mech
   v.outputs.assign(value.begin() + static_cast<std::ptrdiff_t>(4 + s.reactions.size()), value.end());
   v.psi = solved.psi, v.A = solved.A, v.b = solved.b;
   v.condition = solved.condition;
-  v.rows = oracle.dalembert(v.state, v.lambda);
+  v.rows = oracle.dalembert_residuals(v.state, v.lambda);
   v.constraints = oracle.constraint_values(v.state);
   add_scales(s, mechanics, solved, v);
   return v;
 }
 
-std::string name_of(const EquationSystem& s) { return s.formulation + " " + system::name(s.approach); }
+std::string system_name(const EquationSystem& s) { return s.formulation + " " + system::name(s.approach); }
 
 std::vector<Real> right_hand_side(const EquationSystem& s, const Oracle& oracle, const State& state) {
-  const Lookup lookup(oracle, state);
+  const SymbolValues lookup(oracle, state);
   const Solved solved = solve_system(s, lookup, oracle.digits(), false);
   std::vector<Real> dx;
   for (const std::uint32_t i : s.free) dx.push_back(state.qdot[i]);
@@ -283,7 +283,7 @@ std::vector<Real> right_hand_side(const EquationSystem& s, const Oracle& oracle,
   return dx;
 }
 
-std::vector<Real> integral_rates(const EquationSystem& s, const Lookup& lookup, int digits) {
+std::vector<Real> integral_rates(const EquationSystem& s, const SymbolValues& lookup, int digits) {
   std::vector<Ref> rates;
   for (const system::IntegralState& integral : s.integrals) rates.push_back(integral.rate);
   return symbolic::evaluate(*s.dag, rates, lookup, digits);
@@ -300,9 +300,9 @@ Real energy_rate(const EquationSystem& s, const Oracle& oracle, const SystemValu
   const Precision precision(more);
   const Real h =
       precision.round(cln::expt(cln::cl_RA(1) / 10, cln::cl_I(digits)) / cln::expt(cln::cl_RA(2), cln::cl_I(bits)));
-  const std::vector<Real> rates = integral_rates(s, Lookup(oracle, v.state), more);
+  const std::vector<Real> rates = integral_rates(s, SymbolValues(oracle, v.state), more);
   const auto energy_at = [&](const Real& step) {
-    Lookup lookup(oracle, v.state);
+    SymbolValues lookup(oracle, v.state);
     State& at = lookup.state;
     at.t = precision.round(at.t) + step;
     for (const std::uint32_t i : s.free) {

@@ -13,12 +13,12 @@
 namespace eomgen::verify {
 
 /// Values of the symbols at a state: all coordinates to second order, functions, parameters, inputs, multipliers.
-struct Lookup {
+struct SymbolValues {
   const Oracle& oracle;
   State state;
   std::vector<Real> lambda;                  // per Mechanics::constraints entry
   std::vector<std::vector<Real>> functions;  // [function][order]
-  Lookup(const Oracle& oracle, State state);
+  SymbolValues(const Oracle& oracle, State state);
   Real operator()(const symbolic::Symbol& symbol) const;
 };
 
@@ -36,18 +36,18 @@ struct SystemValues {
 };
 
 /// The name of a system, "lagrange II".
-std::string name_of(const system::EquationSystem& system);
+std::string system_name(const system::EquationSystem& system);
 
 /// Evaluates a system. Throws std::domain_error if a value is undefined, Singular if the system is ill-conditioned.
-SystemValues values_of(const system::EquationSystem& system, const mechanics::Mechanics& mechanics, const Oracle& oracle,
+SystemValues evaluate_system(const system::EquationSystem& system, const mechanics::Mechanics& mechanics, const Oracle& oracle,
                        const State& state);
 
 /// Solves for accelerations of the free coordinates and multipliers of the active constraints, and sets them in
 /// `lookup`.
-void solve_into(const system::EquationSystem& system, Lookup& lookup, int digits);
+void solve_accelerations(const system::EquationSystem& system, SymbolValues& lookup, int digits);
 
 /// Time derivatives of the integrals that are states.
-std::vector<Real> integral_rates(const system::EquationSystem& system, const Lookup& lookup, int digits);
+std::vector<Real> integral_rates(const system::EquationSystem& system, const SymbolValues& lookup, int digits);
 
 /// The right-hand side: qdot and qddot of the free coordinates, the rates of integrals.
 std::vector<Real> right_hand_side(const system::EquationSystem& system, const Oracle& oracle, const State& state);

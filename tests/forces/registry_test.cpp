@@ -8,7 +8,7 @@
 
 #include "forces/kind.hpp"
 #include "model/names.hpp"
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 using namespace eomgen;
 
@@ -34,9 +34,9 @@ TEST_CASE("every kind of force has a unique name and a statement of the oracle, 
     CHECK(names.insert(kind.name).second);
     CHECK(forces::find(kind.name) == &kind);
     CHECK_FALSE(kind.title.empty());
-    const verify::forces::Statement& statement = verify::forces::statement(kind.name);
-    CHECK((statement.act != nullptr));
-    CHECK((statement.potential != nullptr) == has_potential(kind));
+    const verify::forces::ForceLaw& force_law = verify::forces::force_law(kind.name);
+    CHECK((force_law.add_virtual_work != nullptr));
+    CHECK((force_law.potential != nullptr) == has_potential(kind));
   }
   CHECK(forces::find("no_such_force") == nullptr);
 }

@@ -36,7 +36,7 @@ std::string verdict(int status) {
   return WTERMSIG(status) == SIGXCPU ? "timeout" : "signal " + std::to_string(WTERMSIG(status));
 }
 
-int tried_apart(const std::vector<Words>& calls, const std::string& text) {
+int run_in_child(const std::vector<Words>& calls, const std::string& text) {
   std::fflush(nullptr);
   const pid_t child = fork();
   if (child < 0) std::abort();
@@ -74,7 +74,7 @@ class Trial {
 
  private:
   bool holds(const std::string& name, const std::string& text) {
-    const int status = tried_apart(calls_, text);
+    const int status = run_in_child(calls_, text);
     const std::string what = verdict(status);
     ++models_;
     if (has_exited(status, 0)) taken_.push_back(text);

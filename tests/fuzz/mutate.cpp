@@ -27,7 +27,7 @@ const auto& any(const List& list, Random& random) {
 }
 
 /// Whether the strings of a line are not expressions.
-bool is_spoken(const std::string& text, std::size_t line) {
+bool is_plain_text(const std::string& text, std::size_t line) {
   static constexpr std::array keys{"format", "title", "note",   "name",    "unit", "tex",
                                    "type",   "from",  "solver", "outputs", "#",    "["};
   return std::any_of(keys.begin(), keys.end(),
@@ -41,7 +41,7 @@ std::vector<Token> tokens(const std::string& text) {
   for (std::size_t i = 0; i < text.size();) {
     if (i == 0 || text[i - 1] == '\n') {
       value = quoted = false;
-      if (is_spoken(text, i)) {
+      if (is_plain_text(text, i)) {
         i = std::min(text.find('\n', i), text.size() - 1) + 1;
         continue;
       }

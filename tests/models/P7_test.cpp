@@ -8,7 +8,7 @@
 using namespace eomgen;
 
 TEST_CASE("P7: both approaches and the display form agree with the oracle to 45 digits at 20 random points") {
-  const std::unique_ptr<pipeline::Derived> derived =
+  const std::unique_ptr<pipeline::DerivedModel> derived =
       pipeline::derive_model(test::model_at(test::model_path("P7_moving_sphere")), pipeline::ApproachChoice::automatic);
   const program::Program program = pipeline::make_program(*derived, {});
   const verify::Certificate certificate = pipeline::certify(*derived, program, {50, 20, 1, nullptr});

@@ -60,13 +60,13 @@ TEST_CASE("S2: the start determines the dependent velocity") {
   const test::FinishedRun run = test::run_model(
       "S2_two_masses_pfaffian", [](pipeline::SimulationRequest& request) { request.overrides.t_end = 0.1; });
   CHECK(run.rows.at(0, "x1_dot") == doctest::Approx((0.3 - 0.5 * 0.1) / 0.64).epsilon(1e-15));
-  REQUIRE(run.simulation.scene.solved.size() == 1);
-  CHECK(run.simulation.scene.solved[0].starts_with("x1_dot = "));
+  REQUIRE(run.simulation.scene.solved_notes.size() == 1);
+  CHECK(run.simulation.scene.solved_notes[0].starts_with("x1_dot = "));
 }
 
 TEST_CASE(
     "S2: the multiplier, null space and Chaplygin forms agree to 45 digits at random points and to 1e-9 along a run") {
-  const std::unique_ptr<pipeline::Derived> derived =
+  const std::unique_ptr<pipeline::DerivedModel> derived =
       pipeline::derive_model(test::model_at(test::model_path("S2_two_masses_pfaffian")),
                              pipeline::ApproachChoice::automatic, system::Form::multipliers);
   const program::Program multipliers = pipeline::make_program(*derived, {});

@@ -28,7 +28,7 @@ void check_estimates(const std::string& model, const std::function<Values(const 
       run::Overrides overrides;
       overrides.solver = solver;
       overrides.rtol = overrides.atol = std::pow(10.0, -exponent);
-      const run::RunResult result = pipeline::run_again(base.simulation, overrides);
+      const run::RunResult result = pipeline::rerun(base.simulation, overrides);
       double error = 0;
       for (const auto& [name, value] : truth)
         error = std::max(error, std::abs(test::value_of(result.final, name) - value));
@@ -88,7 +88,7 @@ TEST_CASE("estimate: S5 against a run at 1e-14") {
       run::Overrides overrides;
       overrides.solver = "dop853";
       overrides.rtol = overrides.atol = 1e-14;
-      return of_states(run, pipeline::run_again(run.simulation, overrides, false));
+      return of_states(run, pipeline::rerun(run.simulation, overrides, false));
     });
   }
 }

@@ -15,7 +15,7 @@ constexpr int digits = 50;
 // A difference quotient with steps of 1e-12 in 50 digits is right to some 1e-24.
 constexpr double as_good_as_exact = 1e-18;
 
-program::Arguments<cln::cl_R> anywhere(const pipeline::Derived& derived, const program::Program& program) {
+program::Arguments<cln::cl_R> anywhere(const pipeline::DerivedModel& derived, const program::Program& program) {
   const cln::float_format_t precision = cln::float_format(digits);
   const auto value = [&](std::uint32_t k) {
     return cln::cl_float(symbolic::sample({symbolic::SymbolKind::auxiliary, k, 0}, 1), precision);

@@ -14,7 +14,7 @@
 
 #include "bench/bench.hpp"
 #include "program/interpret.hpp"
-#include "reference/consistent.hpp"
+#include "reference/consistent_start.hpp"
 #include "support/elliptic.hpp"
 #include "support/folders.hpp"
 #include "support/simulation.hpp"
@@ -201,11 +201,11 @@ TEST_CASE("published: bench reports explicit solvers as inefficient for the stif
     result.outcome = "done";
     return result;
   };
-  const std::string stiff = bench::advice({row("dop853", 40000), row("taylor", 69000), row("radau5", 128)});
+  const std::string stiff = bench::recommend_solvers({row("dop853", 40000), row("taylor", 69000), row("radau5", 128)});
   CHECK(stiff.ends_with(
       "The motion is stiff and explicit solvers are inefficient: stability requires at least 40000 steps of them "
       "(dop853), while radau5 takes 128."));
-  CHECK(bench::advice({row("dop853", 120), row("radau5", 128)}).find("stiff") == std::string::npos);
+  CHECK(bench::recommend_solvers({row("dop853", 120), row("radau5", 128)}).find("stiff") == std::string::npos);
 }
 
 TEST_CASE("published: the IFToMM pendulum follows its closed form") {
@@ -247,7 +247,7 @@ TEST_CASE(
     overrides.rtol = overrides.atol = tolerance;
     if (step > 0) overrides.step = step;
     overrides.t_end = t_end;
-    return pipeline::run_again(run.simulation, overrides, false);
+    return pipeline::rerun(run.simulation, overrides, false);
   };
   const auto holds = [](const run::RunResult& result, double bound) {
     CAPTURE(result.solver);
@@ -309,7 +309,7 @@ TEST_CASE("published: the reference solution starts at a state that satisfies th
     return largest;
   };
   const std::vector<cln::cl_F> moved =
-      reference::consistent(*constraints, 7, t, x, simulation.scene.parameters, digits);
+      reference::make_consistent(*constraints, 7, t, x, simulation.scene.parameters, digits);
   CHECK(off(x) > 1e-20);  // rounded
   CHECK(off(moved) < 1e-38);
   for (std::size_t i = 0; i < x.size(); ++i) CHECK(std::abs(cln::double_approx(moved[i] - x[i])) < 1e-14);

@@ -58,7 +58,7 @@ TEST_CASE("solvers: an implicit one on code that was compiled without df/dx take
   overrides.solver = "radau5";
   overrides.rtol = 1e-10;
   overrides.t_end = 1.5;
-  const run::RunResult again = pipeline::run_again(first.simulation, overrides, false);
+  const run::RunResult again = pipeline::rerun(first.simulation, overrides, false);
   CHECK(again.outcome == eom::Outcome::done);
   CHECK(run::to_text(again.reason) == "as asked for, df/dx by differences, since it was not compiled");
   CHECK(again.statistics.difference_evaluations > 0);
@@ -83,7 +83,7 @@ TEST_CASE("solvers: auto hands a stiff spring to radau5 and says when, why, and 
     REQUIRE(!changes.empty());
     CHECK(changes.back().to == std::string_view("radau5"));
     CHECK(changes.back().why == eom::ChangeReason::beyond_stability);
-    CHECK(result.reason.slopes_after_change == run::SolverReason::Slopes::differences);
+    CHECK(result.reason.jacobian_after_change == run::SolverReason::JacobianSource::differences);
     CHECK(run::to_text(result.reason)
               .ends_with("df/dx by differences, since it was not compiled (solver radau5 has it compiled)"));
     CHECK(result.statistics.steps < 4000);  // dop853: 40000 and more
@@ -104,7 +104,7 @@ TEST_CASE(
       const std::string of_model = model;
       CAPTURE(of_model);
       CAPTURE(std::string(solver));
-      const int order = run::method_named(solver).order;
+      const int order = run::get_method(solver).order;
       const auto error = [&](double step) {
         const test::FinishedRun found = test::run_model(model, [&](pipeline::SimulationRequest& request) {
           request.overrides.solver = solver;
@@ -113,7 +113,7 @@ TEST_CASE(
         });
         const run::RunResult& result = found.simulation.result;
         CHECK(result.outcome == eom::Outcome::done);
-        CHECK(result.reason.momenta);
+        CHECK(result.reason.uses_momenta);
         CHECK(result.constraint_drift < 1e-11);
         return difference(found, reference);
       };
@@ -206,7 +206,7 @@ TEST_CASE(
   const test::FinishedRun first = motion("cart_pendulum", "dop853", 0.5);
   run::Overrides overrides;
   overrides.solver = "taylor";
-  CHECK_THROWS_WITH_AS(pipeline::run_again(first.simulation, overrides, false),
+  CHECK_THROWS_WITH_AS(pipeline::rerun(first.simulation, overrides, false),
                        doctest::Contains("compiled without its Taylor series"), Error);
 }
 
@@ -224,7 +224,7 @@ TEST_CASE(
     overrides.rtol = 1e-10;
     overrides.atol = 1e-12;
     overrides.t_end = 1;
-    const run::RunResult found = pipeline::run_again(reference.simulation, overrides, false);
+    const run::RunResult found = pipeline::rerun(reference.simulation, overrides, false);
     CHECK(found.outcome == eom::Outcome::done);
     CHECK(found.reason.keeps_constraints);
     CHECK(found.projection_position == 0);
@@ -262,7 +262,7 @@ TEST_CASE("solvers: fixed implicit steps where components stay at rounding level
       overrides.solver = solver;
       overrides.step = 1e-3;
       overrides.t_end = t_end;
-      const run::RunResult found = pipeline::run_again(reference.simulation, overrides, false);
+      const run::RunResult found = pipeline::rerun(reference.simulation, overrides, false);
       CHECK(found.outcome == eom::Outcome::done);
       for (const auto& [name, value] : found.final) {
         const auto& shown = name;

@@ -9,19 +9,19 @@ namespace {
 std::string quoted(const std::string& text) { return "\"" + text + "\""; }
 
 /// One value, or three.
-std::string triple(Dice& dice, int low, int high) {
+std::string triple(RandomSource& dice, int low, int high) {
   if (dice.chance(40)) return quoted(dice.decimal(low, high));
   std::string list;
   for (int k = 0; k < 3; ++k) list += (k == 0 ? "" : ", ") + quoted(dice.decimal(low, high));
   return "[" + list + "]";
 }
 
-std::string on_body(Dice& dice, const std::string& body) {
+std::string on_body(RandomSource& dice, const std::string& body) {
   if (body == "ground") return "E1 - " + dice.decimal(20, 80) + "*E2";
   return dice.chance(30) ? body : body + " + " + dice.decimal(20, 80) + "*" + body + ".e1";
 }
 
-std::string bushing(Dice& dice, const std::string& a, const std::string& b) {
+std::string bushing(RandomSource& dice, const std::string& a, const std::string& b) {
   std::string line = "bushing = { bodies = [" + quoted(a) + ", " + quoted(b) + "], at = [" + quoted(on_body(dice, a)) +
                      ", " + quoted(on_body(dice, b)) + "], stiffness = " + triple(dice, 100, 900);
   if (dice.chance(70)) line += ", coefficient = " + triple(dice, 10, 90);
@@ -32,7 +32,7 @@ std::string bushing(Dice& dice, const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string forces_between(Dice& dice, const std::vector<std::string>& bodies, bool planar,
+std::string forces_between(RandomSource& dice, const std::vector<std::string>& bodies, bool planar,
                            std::set<std::string>& features) {
   std::string tables;
   const std::size_t count = bodies.empty() ? 0 : 1 + dice.below(2);

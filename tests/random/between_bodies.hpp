@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "random/dice.hpp"
+#include "random/random_source.hpp"
 
 namespace eomgen::random_models {
 
-std::string forces_between(Dice& dice, const std::vector<std::string>& bodies, bool planar,
+std::string forces_between(RandomSource& dice, const std::vector<std::string>& bodies, bool planar,
                            std::set<std::string>& features);
 
 }  // namespace eomgen::random_models

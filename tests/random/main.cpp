@@ -58,7 +58,7 @@ int try_seeds(const std::string& program, const std::string& folder, std::uint64
   return failed == 0 && 4 * refused <= tried ? 0 : 1;
 }
 
-int try_found(const std::string& program, const std::string& folder, const std::filesystem::path& found) {
+int replay_found(const std::string& program, const std::string& folder, const std::filesystem::path& found) {
   std::set<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(found)) files.insert(entry.path());
   std::size_t failed = 0;
@@ -98,7 +98,7 @@ int main(int count, char** words) {
   } else if (second == "--shrink") {
     std::fputs(shrink(program, folder, mechanism(number(words[3])).text, {}).c_str(), stdout);
   } else if (second == "--found") {
-    status = try_found(program, folder, words[3]);
+    status = replay_found(program, folder, words[3]);
   } else {
     status = try_seeds(program, folder, number(words[2]), number(words[3]),
                        count == 5 ? std::max<std::uint64_t>(1, number(words[4])) : 1);

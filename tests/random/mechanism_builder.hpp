@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "random/dice.hpp"
+#include "random/random_source.hpp"
 #include "random/mechanisms.hpp"
 
 namespace eomgen::random_models {
@@ -25,9 +25,9 @@ struct Place {
 };
 
 // Writes one model. Every member adds some lines and records the names that later ones may refer to.
-class Builder {
+class MechanismBuilder {
  public:
-  explicit Builder(std::uint64_t seed);
+  explicit MechanismBuilder(std::uint64_t seed);
 
   Mechanism build();
 
@@ -91,7 +91,7 @@ class Builder {
            (dice_.chance(30) ? " - " + value(10, 50) + "*" + body_axis(place) : "");
   }
 
-  std::string somewhere() { return dice_.chance(35) ? "origin" : point_of(places_[dice_.below(places_.size())]); }
+  std::string random_point() { return dice_.chance(35) ? "origin" : point_of(places_[dice_.below(places_.size())]); }
   std::string scalar_of_time() {
     if (dice_.chance(50)) return value(20, 300);
     if (dice_.chance(50)) {
@@ -140,7 +140,7 @@ class Builder {
 
   Mechanism finish();
 
-  Dice dice_;
+  RandomSource dice_;
   Mechanism result_;
   bool contacts_ = false, planar_ = false, equal_ = false, rolling_ = false;
   bool between_ = false;

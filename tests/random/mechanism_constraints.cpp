@@ -6,20 +6,20 @@
 
 namespace eomgen::random_models {
 
-void Builder::constraint(const std::string& kind, const std::string& line) {
+void MechanismBuilder::constraint(const std::string& kind, const std::string& line) {
   feature(kind);
   result_.constrained = true;
   constraint_lines_ += "[[constraint]]\nname = \"c" + std::to_string(++constraints_) + "\"\n" + line + "\n";
 }
 
-bool Builder::is_euler_parameter(const std::string& q) const {
+bool MechanismBuilder::is_euler_parameter(const std::string& q) const {
   for (const Place& p : places_) {
     if (p.euler_parameters && std::find(p.angles.begin(), p.angles.end(), q) != p.angles.end()) return true;
   }
   return false;
 }
 
-void Builder::add_constraints() {
+void MechanismBuilder::add_constraints() {
   std::size_t left = coordinates_.size();
   for (const Place& p : places_) left -= p.euler_parameters ? 1 : 0;
   const auto room = [&](std::size_t wanted) { return left > wanted && (left -= wanted, true); };
@@ -83,7 +83,7 @@ void Builder::add_constraints() {
 }
 
 // Two bodies with orthogonal axes, or rigidly connected in the configuration of the start.
-void Builder::add_joint_of_all_axes() {
+void MechanismBuilder::add_joint_of_all_axes() {
   const bool universal = !planar_ && dice_.chance(70);
   // The position of the first and one of its angles follow from a universal joint.
   const auto fits = [&](const Place& p) {

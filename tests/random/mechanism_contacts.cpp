@@ -4,7 +4,7 @@
 
 namespace eomgen::random_models {
 
-std::string Builder::coulomb() {
+std::string MechanismBuilder::coulomb() {
   if (dice_.chance(15)) {
     feature("smooth friction");
     return "friction = { dynamic = \"" + value(10, 60) + "\", law = \"smooth\", width = \"0.01\" }\n";
@@ -15,19 +15,19 @@ std::string Builder::coulomb() {
          dynamic + "\" }\n";
 }
 
-std::string Builder::one_sided() {
+std::string MechanismBuilder::one_sided() {
   feature("unilateral");
   return std::string("holds = \"unilateral\"\n") + (dice_.chance(60) ? "restitution = \"" + value(0, 90) + "\"\n" : "");
 }
 
-void Builder::contact(const std::string& kind, const std::string& lines) {
+void MechanismBuilder::contact(const std::string& kind, const std::string& lines) {
   feature(kind);
   constraint_lines_ += "[[constraint]]\nname = \"c" + std::to_string(++constraints_) + "\"\n" + lines;
 }
 
 // Adds at most three contacts, the limit of the program: a floor below the start of a place, a rough floor through it,
 // guides with dry friction, a ball on rough ground.
-void Builder::add_contacts() {
+void MechanismBuilder::add_contacts() {
   const std::string up = planar_ ? "E2" : "E3";
   const std::size_t count = 1 + dice_.below(3);
   for (std::size_t k = 0; k < count; ++k) {

@@ -4,7 +4,7 @@
 
 namespace eomgen::random_models {
 
-void Builder::add_forces() {
+void MechanismBuilder::add_forces() {
   if (dice_.chance(75)) force("gravity = \"-9.81*" + std::string(planar_ ? "E2" : "E3") + "\"");
   const std::size_t count = dice_.below(4);
   for (std::size_t k = 0; k < count; ++k) {
@@ -58,7 +58,7 @@ void Builder::add_forces() {
   }
 }
 
-void Builder::add_energies() {
+void MechanismBuilder::add_energies() {
   if (!dice_.chance(12)) return;
   feature("energy given");
   const std::string q = dice_.pick(coordinates_);

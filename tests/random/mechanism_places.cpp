@@ -4,7 +4,7 @@
 
 namespace eomgen::random_models {
 
-std::string Builder::chart(Place& place) {
+std::string MechanismBuilder::chart(Place& place) {
   const Place* from = earlier(40);
   if (from != nullptr) feature("from");
   const std::string tail = (from != nullptr ? ", from = \"" + from->name + "\"" : "") + std::string(" }");
@@ -59,7 +59,7 @@ std::string Builder::chart(Place& place) {
   }
 }
 
-void Builder::add_particle() {
+void MechanismBuilder::add_particle() {
   Place place;
   place.name = "P" + std::to_string(places_.size() + 1);
   feature("particle");
@@ -73,7 +73,7 @@ void Builder::add_particle() {
   places_.push_back(place);
 }
 
-std::string Builder::rotation(Place& body, const Place*& parent) {
+std::string MechanismBuilder::rotation(Place& body, const Place*& parent) {
   parent = nullptr;
   if (const Place* p = earlier(40); p != nullptr && p->body) parent = p;
   const auto turn = [&](std::vector<std::string> names) {
@@ -124,7 +124,7 @@ std::string Builder::rotation(Place& body, const Place*& parent) {
   }
 }
 
-std::string Builder::inertia(const Place& body) {
+std::string MechanismBuilder::inertia(const Place& body) {
   if (planar_ && dice_.chance(60)) return "\"" + value(5, 40) + "\"";
   switch (dice_.below(body.spatial_rotation || !planar_ ? 6 : 5)) {
     case 0: return "{ sphere = \"" + value(20, 60) + "\" }";
@@ -140,7 +140,7 @@ std::string Builder::inertia(const Place& body) {
   }
 }
 
-void Builder::add_body() {
+void MechanismBuilder::add_body() {
   Place body;
   body.name = "B" + std::to_string(places_.size() + 1);
   body.body = true;

@@ -14,13 +14,13 @@ constexpr std::uint64_t first_with_contacts = 1001, first_with_forces_between_bo
 
 }  // namespace
 
-Builder::Builder(std::uint64_t seed)
+MechanismBuilder::MechanismBuilder(std::uint64_t seed)
     : dice_(seed),
       contacts_(seed >= first_with_contacts),
       between_(seed >= first_with_forces_between_bodies),
       small_(seed >= first_small) {}
 
-Mechanism Builder::build() {
+Mechanism MechanismBuilder::build() {
   planar_ = dice_.chance(35);
   feature(planar_ ? "planar" : "spatial");
   named_parameters_ = static_cast<int>(dice_.below(3)) * 50;
@@ -50,7 +50,7 @@ Mechanism Builder::build() {
   return finish();
 }
 
-Mechanism Builder::finish() {
+Mechanism MechanismBuilder::finish() {
   std::string& t = result_.text;
   t = "format = 1\n";
   const auto section = [&](const char* name, const std::string& lines) {
@@ -84,6 +84,6 @@ Mechanism Builder::finish() {
   return result_;
 }
 
-Mechanism mechanism(std::uint64_t seed) { return Builder(seed).build(); }
+Mechanism mechanism(std::uint64_t seed) { return MechanismBuilder(seed).build(); }
 
 }  // namespace eomgen::random_models

@@ -98,7 +98,7 @@ class Attempt {
     const std::string said = message(result_);
     if (result_.status == 2 && (name != "derive") && among(said, refusals())) {
       trial_.refusal = said;
-    } else if (result_.status == 3 && name == "run" && told_outcome()) {
+    } else if (result_.status == 3 && name == "run" && reported_outcome()) {
       return false;
     } else if (result_.status == 2 && name == "linearize" && said.find("internal") == std::string::npos) {
       return false;  // a state without derivative, a start on a kink: reported
@@ -108,7 +108,7 @@ class Attempt {
     return false;
   }
 
-  bool told_outcome() const {
+  bool reported_outcome() const {
     const Json document = Json::parse(result_.out, nullptr, false);
     return !document.is_discarded() && document.contains("outcome") &&
            among(document["outcome"].get<std::string>(), outcomes());

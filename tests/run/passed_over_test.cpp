@@ -50,7 +50,7 @@ TEST_CASE(
       run::Overrides overrides;
       overrides.solver = method.name;
       if (!method.adaptive) overrides.step = 0.05;
-      const run::RunResult result = pipeline::run_again(finished.simulation, overrides);
+      const run::RunResult result = pipeline::rerun(finished.simulation, overrides);
       CHECK(result.outcome == eom::Outcome::done);
       const double error = std::abs(test::value_of(result.final, "x_dot") - c.impulse);
       CHECK(error < (method.adaptive ? c.allowed : c.smooth ? 0.02 * c.impulse : c.allowed));
@@ -136,7 +136,7 @@ TEST_CASE(
       CAPTURE(std::string(method.name));
       run::Overrides overrides;
       overrides.solver = method.name;
-      const run::RunResult result = pipeline::run_again(finished.simulation, overrides);
+      const run::RunResult result = pipeline::rerun(finished.simulation, overrides);
       CHECK(result.outcome == eom::Outcome::done);
       CHECK(std::abs(test::value_of(result.final, "x") - c.x) < 2e-3);
       CHECK(std::abs(test::value_of(result.final, "x_dot") - c.x_dot) < 1e-6);
@@ -144,7 +144,7 @@ TEST_CASE(
     run::Overrides fixed;
     fixed.solver = "rk4";
     fixed.step = 0.29;  // no step ends at 3
-    CHECK(pipeline::run_again(finished.simulation, fixed).estimate_note.find("narrow in the state") !=
+    CHECK(pipeline::rerun(finished.simulation, fixed).estimate_note.find("narrow in the state") !=
           std::string::npos);
   }
 }

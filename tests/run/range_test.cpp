@@ -15,7 +15,7 @@ using symbolic::Ref;
 
 namespace {
 
-run::Leaf time_is_variable(const symbolic::Symbol&) { return run::Leaf::of_variable(0); }
+run::SymbolMeaning time_is_variable(const symbolic::Symbol&) { return run::SymbolMeaning::of_variable(0); }
 
 /// A system whose force is a function of time.
 eom::hybrid::Clock clock_of(const std::function<Ref(Dag&, Ref)>& force, double t1 = 10) {
@@ -47,7 +47,7 @@ TEST_CASE("ranges: values and derivatives of every operation lie between its bou
   functions.push_back(dag.select(t, half, dag.power(t, 3), dag.neg(t)));
   functions.push_back(dag.div(dag.sub(t, half), dag.add(dag.power(t, 4), half)));
   functions.push_back(dag.pow(dag.add(dag.power(t, 2), half), dag.mul(t, half)));
-  std::optional<run::Table> table = run::table_of(dag, functions, time_is_variable);
+  std::optional<run::Table> table = run::make_table(dag, functions, time_is_variable);
   REQUIRE(table);
   const eom::expressions::Code code(std::move(*table), {});
   constexpr double rounding = 1e-9;

@@ -51,7 +51,7 @@ TEST_CASE("scene: positions and rates that are not given follow from the constra
   const run::Scene scene = resolve(rod + "initial = { x = 1.2, x_dot = 0.4 }\nguess = { y = -1 }\n");
   CHECK(scene.q[1] == doctest::Approx(-1.6).epsilon(rounding));
   CHECK(scene.qdot[1] == doctest::Approx(0.3).epsilon(rounding));  // x x_dot + y y_dot = 0
-  CHECK(scene.solved.size() == 2);
+  CHECK(scene.solved_notes.size() == 2);
 }
 
 TEST_CASE("scene: the guess selects one of several solutions of the constraints") {
@@ -66,7 +66,7 @@ TEST_CASE(
   const run::Scene scene = resolve(rod + guess);
   CHECK(scene.q[0] == 0.55);
   CHECK(scene.q[1] == doctest::Approx(-std::sqrt(4 - 0.55 * 0.55)).epsilon(rounding));
-  CHECK(std::count(scene.solved.begin(), scene.solved.end(),
+  CHECK(std::count(scene.solved_notes.begin(), scene.solved_notes.end(),
                    "x = 0.55 (chosen: the constraints can be met in several ways)") == 1);
   const run::Scene named = resolve(rod + guess + "solve = [\"x\"]\n");
   CHECK(named.q[0] == doctest::Approx(std::sqrt(4 - 1.35 * 1.35)).epsilon(rounding));
@@ -189,7 +189,7 @@ TEST_CASE(
   // This is also a start of a scene without initial values.
   run::Overrides alone;
   alone.values["x"] = 2;
-  for (const std::string& told : resolve(rod, alone).solved) CHECK(told.find("no initial values") == std::string::npos);
+  for (const std::string& told : resolve(rod, alone).solved_notes) CHECK(told.find("no initial values") == std::string::npos);
 }
 
 TEST_CASE("scene: a parameter that is declared positive stays positive") {

@@ -36,7 +36,7 @@ const test::FinishedRun& made() {
 run::RunResult with(std::map<std::string, Rational> parameters) {
   run::Overrides overrides;
   overrides.values = std::move(parameters);
-  return pipeline::run_again(made().simulation, overrides);
+  return pipeline::rerun(made().simulation, overrides);
 }
 
 }  // namespace

@@ -231,7 +231,7 @@ t = [0, 1]
 )toml";
   const test::FinishedRun end = run_text("backlash", wheels);
   const auto told = [&](const std::string& text) {
-    const std::vector<std::string>& all = end.simulation.scene.solved;
+    const std::vector<std::string>& all = end.simulation.scene.solved_notes;
     return std::any_of(all.begin(), all.end(), [&](const std::string& note) { return note.find(text) != note.npos; });
   };
   CHECK(told("'forth', 'back' are apart: the start cannot be met while all touch"));

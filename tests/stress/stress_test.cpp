@@ -89,7 +89,7 @@ TEST_CASE(
     "stress: if no motion exists an outcome other than done is reported, and done is undetected; a parameter that is "
     "not a number is reported") {
   Oscillator o;
-  const stress::Case test{.name = "p = nan", .without_value = true};
+  const stress::Case test{.name = "p = nan", .has_no_motion = true};
   const auto all = [&](stress::Verdict verdict) {
     const std::vector<stress::Row> rows = stress::assess(test, o.scene, o.request, o.why);
     CHECK(rows.size() == 4);
@@ -159,7 +159,7 @@ TEST_CASE("stress: variations match the constants of the model") {
   scene.qdot = {0, 1};
   scene.lower = {0, -std::numeric_limits<double>::infinity()};
   scene.upper = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  const std::vector<stress::Case> all = stress::cases(m, scene, false);
+  const std::vector<stress::Case> all = stress::make_cases(m, scene, false);
   const auto has = [&](const std::string& name) {
     return std::any_of(all.begin(), all.end(), [&](const stress::Case& c) { return c.name == name; });
   };
@@ -169,5 +169,5 @@ TEST_CASE("stress: variations match the constants of the model") {
     CHECK(has(name));
   }
   CHECK_FALSE(has("L x 1e+06"));  // a length is neither a stiffness nor a mass
-  CHECK(stress::cases(m, scene, true).size() < all.size() / 2);
+  CHECK(stress::make_cases(m, scene, true).size() < all.size() / 2);
 }

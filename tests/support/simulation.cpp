@@ -63,7 +63,7 @@ FinishedRun run_model(const std::string& name, const std::function<void(pipeline
   pipeline::SimulationRequest request;
   request.model = model_at(name.ends_with(".toml") ? name : model_path(name));
   Rows rows;
-  request.begin = [&rows](const pipeline::Derived&, const run::Scene&, const std::vector<std::string>& names) {
+  request.begin = [&rows](const pipeline::DerivedModel&, const run::Scene&, const std::vector<std::string>& names) {
     rows.names = names;
   };
   request.row = [&rows](double t, std::span<const double> y) {

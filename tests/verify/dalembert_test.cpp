@@ -68,7 +68,7 @@ TEST_CASE("oracle: the particle on a moving sphere obeys (2.109) in spherical co
                &tdd = s.qddot[2];
     const Real sp = cln::sin(s.q[1]), cp = cln::cos(s.q[1]);
     check_rows(
-        oracle.dalembert(s, {lambda}),
+        oracle.dalembert_residuals(s, {lambda}),
         {mass * (Rdd - R * pd * pd - R * sp * sp * td * td) + mass * g * cp - lambda,
          mass * (R * R * pdd + 2 * R * Rd * pd - R * R * sp * cp * td * td) - mass * g * R * sp,
          mass * (R * R * sp * sp * tdd + 2 * R * Rd * sp * sp * td + 2 * R * R * sp * cp * pd * td) - D * R * R * sp});
@@ -98,7 +98,7 @@ TEST_CASE("oracle: cart and pendulum from their energies give Lagrange's equatio
     const Real &M = s.parameters[0], &mass = s.parameters[1], &l = s.parameters[2], &g = s.parameters[3],
                &c = s.parameters[4], &F = s.inputs[0];
     const Real sn = cln::sin(s.q[1]), cs = cln::cos(s.q[1]);
-    check_rows(oracle.dalembert(s, {}),
+    check_rows(oracle.dalembert_residuals(s, {}),
                {(M + mass) * s.qddot[0] + mass * l * (s.qddot[1] * cs - s.qdot[1] * s.qdot[1] * sn) - F + c * s.qdot[0],
                 mass * l * cs * s.qddot[0] + mass * l * l * s.qddot[1] + mass * g * l * sn});
   }
@@ -113,7 +113,7 @@ TEST_CASE("oracle: the double pendulum in absolute angles") {
     const Real &m1 = s.parameters[0], &l1 = s.parameters[1], &m2 = s.parameters[2], &l2 = s.parameters[3],
                &g = s.parameters[4];
     const Real c12 = cln::cos(s.q[0] - s.q[1]), s12 = cln::sin(s.q[0] - s.q[1]);
-    check_rows(oracle.dalembert(s, {}),
+    check_rows(oracle.dalembert_residuals(s, {}),
                {(m1 + m2) * l1 * l1 * s.qddot[0] + m2 * l1 * l2 * (s.qddot[1] * c12 + s.qdot[1] * s.qdot[1] * s12) +
                     (m1 + m2) * g * l1 * cln::sin(s.q[0]),
                 m2 * l2 * l2 * s.qddot[1] + m2 * l1 * l2 * (s.qddot[0] * c12 - s.qdot[0] * s.qdot[0] * s12) +
@@ -132,7 +132,7 @@ TEST_CASE("oracle: spring, damper and rod of a pendulum in Cartesian coordinates
   const Real length = cln::sqrt(oracle.precision().round(dx * dx + dy * dy));
   const Real speed = (dx * s.qdot[0] + dy * s.qdot[1]) / length;
   const Real tension = k * (length - cln::cl_RA(3) / 2) + c * speed;
-  check_rows(oracle.dalembert(s, {lambda}),
+  check_rows(oracle.dalembert_residuals(s, {lambda}),
              {mass * s.qddot[0] + tension * dx / length - 2 * lambda * s.q[0],
               mass * s.qddot[1] + mass * g + tension * dy / length - 2 * lambda * s.q[1]});
 }
@@ -155,7 +155,7 @@ TEST_CASE("oracle: variable mass, drag, attraction, torsion, an energy of the ex
   const Real &K = s.parameters[0], &X = s.q[0], &V = s.qdot[0];
   const Real drag = -K * K * K / 2 * cln::abs(V) * V, pull = -K * (K * s.t) / ((X + K) * (X + K));
   const Real torsion = -(K * X * X + K * 2 * X * V) * 2 * X, spring = -4 * K * cln::expt(X - K, 3);
-  check_rows(oracle.dalembert(s, {}), {K * s.t * s.qddot[0] + K * V - drag - pull - torsion - spring - 3 * X * X});
+  check_rows(oracle.dalembert_residuals(s, {}), {K * s.t * s.qddot[0] + K * V - drag - pull - torsion - spring - 3 * X * X});
 }
 
 TEST_CASE("oracle: energies and their rates balance for the true motion") {
@@ -164,7 +164,7 @@ TEST_CASE("oracle: energies and their rates balance for the true motion") {
   Dice dice;
   State s = random_state(oracle, dice);
   const verify::EnergyValues e = oracle.energy_values(s);
-  const auto rows = oracle.dalembert(s, {});
+  const auto rows = oracle.dalembert_residuals(s, {});
   // dT/dt + dU/dt = sum (residual_i + Q_i) qdot_i for a scleronomic system
   const Real work = (rows[0].value + s.inputs[0] - s.parameters[4] * s.qdot[0]) * s.qdot[0] + rows[1].value * s.qdot[1];
   CHECK(near(e.kinetic_rate + e.potential_rate, work, agreement, e.rate_scale));
@@ -191,8 +191,8 @@ TEST_CASE("oracle: dependent parameters are computed, basis vectors are dual to 
     for (std::uint32_t k = 0; k < 3; ++k) {
       const Formula a = basis(Op::covariant_basis, P, leaf(m, Op::coordinate, i));
       const Formula g = basis(Op::contravariant_basis, P, leaf(m, Op::coordinate, k));
-      CHECK(near(oracle.value(dot(a, g).id, s), i == k ? 1 : 0, agreement, 1));
+      CHECK(near(oracle.evaluate(dot(a, g).id, s), i == k ? 1 : 0, agreement, 1));
     }
   const Formula e_phi = basis(Op::unit_basis, P, leaf(m, Op::coordinate, 1));
-  CHECK(near(oracle.value(dot(e_phi, E(m, 3)).id, s), -cln::sin(s.q[1]), agreement));
+  CHECK(near(oracle.evaluate(dot(e_phi, E(m, 3)).id, s), -cln::sin(s.q[1]), agreement));
 }

@@ -173,7 +173,7 @@ class Mutator {
 };
 
 struct Subject {
-  std::unique_ptr<pipeline::Derived> derived;
+  std::unique_ptr<pipeline::DerivedModel> derived;
   program::Program program;
   emit::EmissionContext context;
   std::string name, source, header;
@@ -235,7 +235,7 @@ bool differ(const verify::CompiledForm& a, const verify::CompiledForm& b, const 
   const std::vector<eom::ContactShape> shapes(s.program.contacts.begin(), s.program.contacts.end());
   const std::vector<int> modes = eom::contact_modes(shapes, 12);
   for (std::size_t point = 0; point < 3 * modes.size(); ++point) {
-    verify::At at{numeric::exact(s.context.start_time) + random(), {}, {}, {}, modes[point % modes.size()], 4};
+    verify::AbiArguments at{numeric::exact(s.context.start_time) + random(), {}, {}, {}, modes[point % modes.size()], 4};
     for (const double x : s.context.start) at.x.push_back(numeric::exact(x) + random() / 2);
     for (const emit::Quantity& p : s.context.parameters)
       at.p.push_back(numeric::exact(p.value) * (1 + random() / 4) + (p.value == 0 ? random() : cln::cl_RA(0)));

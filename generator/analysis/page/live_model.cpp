@@ -191,7 +191,7 @@ class Live {
       if (place != m_.free.end()) start.starts.emplace_back(i, static_cast<std::size_t>(place - m_.free.begin()));
     }
     for (std::size_t i = 0; i < model.events.size(); ++i)
-      start.events.push_back({model.events[i].name, bool(s_.scene.stops[i]), model::name(model.events[i].direction)});
+      start.events.push_back({model.events[i].name, bool(s_.scene.ends_run[i]), model::name(model.events[i].direction)});
     for (const std::uint32_t c : m_.free) {
       start.lower.push_back(s_.scene.lower[c]);
       start.upper.push_back(s_.scene.upper[c]);
@@ -204,7 +204,7 @@ class Live {
   }
 
   const pipeline::Simulation& s_;
-  pipeline::Derived& derived_;
+  pipeline::DerivedModel& derived_;
   mechanics::Mechanics& m_;
   symbolic::Dag& dag_;
   const Drawing& drawing_;

@@ -11,7 +11,7 @@ namespace eomgen::analysis {
 SurfaceCode surface_code(const pipeline::Simulation& simulation, const Drawing& drawing) {
   const std::vector<DrawnSurface>& surfaces = drawing.parts().surfaces;
   if (surfaces.empty()) return {};
-  pipeline::Derived& derived = *simulation.derived;
+  pipeline::DerivedModel& derived = *simulation.derived;
   const model::Model& model = derived.model;
   const symbolic::Dag& dag = *derived.mechanics.dag;
   program::Program program;

@@ -47,8 +47,8 @@ int execute(const Options& options, const Common& common) {
   request.model = load_model(options.model);
   request.scene = options.scene;
   request.overrides = overrides_of("bench", options);
-  request.approach = pipeline::approach_choice(options.approach);
-  request.form = pipeline::form_choice(options.form);
+  request.approach = pipeline::parse_approach(options.approach);
+  request.form = pipeline::parse_form(options.form);
   request.solvers = options.solvers;
   request.seconds = options.seconds;
   request.libraries = !options.no_libraries;
@@ -61,7 +61,7 @@ int execute(const Options& options, const Common& common) {
   const BenchReport report{found, "code compiled with -O2"};
   if (!options.csv.empty()) write_text(options.csv, report.csv());
   const model::Model& model = *request.model;
-  if (plot.wanted()) plot.write(bench::diagram(found.rows, model.title.empty() ? model.id : model.title));
+  if (plot.wanted()) plot.write(bench::work_precision_diagram(found.rows, model.title.empty() ? model.id : model.title));
   if (common.json) {
     print_document(report.json());
   } else {

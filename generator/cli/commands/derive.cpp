@@ -108,7 +108,7 @@ Json to_json(const std::vector<analysis::Multiplier>& multipliers) {
 
 int execute(const Options& options, const Common& common) {
   require_format(options.format);
-  const analysis::EquationsRequest request{pipeline::approach_choice(options.approach), options.show};
+  const analysis::EquationsRequest request{pipeline::parse_approach(options.approach), options.show};
   if (!options.document.empty())
     require_places({{"--document", options.document, ".tex"}}, locate_model(options.model), common.json);
   const auto model = load_model(options.model);

@@ -82,8 +82,8 @@ int execute(const Options& options, const Common& common) {
   require_folder(options.folder);
   pipeline::require_target(options.target, {analysis::document_target});
   const pipeline::EmissionRequest request{options.target,
-                                          pipeline::approach_choice(options.approach),
-                                          pipeline::form_choice(options.form),
+                                          pipeline::parse_approach(options.approach),
+                                          pipeline::parse_form(options.form),
                                           options.with,
                                           options.outputs,
                                           options.fix,

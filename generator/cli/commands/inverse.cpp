@@ -91,7 +91,7 @@ std::string readable(const Json& found) {
 int execute(const Options& options, const Common& common) {
   analysis::InverseRequest request;
   request.overrides = overrides_of("inverse", options);
-  request.overrides.at_start = true;
+  request.overrides.allow_empty_span = true;
   request.scene = options.scene;
   request.constraints = options.constraints;
   request.max_steps = options.max_steps;

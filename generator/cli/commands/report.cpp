@@ -236,7 +236,7 @@ int execute(const Options& options, const Common& common) {
   std::optional<analysis::DrawnForces> forces;
   std::vector<std::string> outputs;  // outputs for drawing and plots, without the state
   std::vector<Panel> curves;
-  request.prepare = [&](pipeline::Derived& derived) {
+  request.prepare = [&](pipeline::DerivedModel& derived) {
     drawing.emplace(derived.mechanics);
     forces.emplace(derived.mechanics, *drawing);
     for (system::EquationSystem& candidate : derived.candidates) {
@@ -255,7 +255,7 @@ int execute(const Options& options, const Common& common) {
     }
     return outputs;
   };
-  request.begin = [&](const pipeline::Derived&, const run::Scene&, const std::vector<std::string>& names) {
+  request.begin = [&](const pipeline::DerivedModel&, const run::Scene&, const std::vector<std::string>& names) {
     recorded.begin(names);
   };
   request.row = [&](double t, std::span<const double> y) { recorded.row(t, y); };

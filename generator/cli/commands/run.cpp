@@ -33,7 +33,7 @@ struct Options : SceneOptions {
 /// Passes rows to the CSV file and to the plot.
 class Rows {
  public:
-  Rows(const std::string& csv, const std::vector<Panel>& panels, bool yes, const pipeline::Derived& derived,
+  Rows(const std::string& csv, const std::vector<Panel>& panels, bool yes, const pipeline::DerivedModel& derived,
        const run::Scene& scene, const std::vector<std::string>& code) {
     if (!panels.empty()) plot_.emplace(panels, derived.candidates.front().outputs, code);
     for (const model::Coordinate& c : derived.model.coordinates) {
@@ -115,7 +115,7 @@ pipeline::Simulation simulate_until_interrupted(const pipeline::SimulationReques
 }
 
 /// Names of the plotted outputs other than coordinates, which are in every row.
-std::vector<std::string> plotted_outputs(const Options& options, pipeline::Derived& derived) {
+std::vector<std::string> plotted_outputs(const Options& options, pipeline::DerivedModel& derived) {
   std::vector<model::OutputReference> wanted;
   for (const std::string& item : options.plot_of) {
     const std::size_t comma = item.find(',');
@@ -136,9 +136,9 @@ int execute(const Options& options, const Common& common) {
   request.model = load_model(options.model);
   request.scene = options.scene;
   request.overrides = overrides_of("run", options);
-  request.overrides.at_start = true;
-  request.approach = pipeline::approach_choice(options.approach);
-  request.form = pipeline::form_choice(options.form);
+  request.overrides.allow_empty_span = true;
+  request.approach = pipeline::parse_approach(options.approach);
+  request.form = pipeline::parse_form(options.form);
   request.estimate = !options.no_error_estimate;
   request.charts =
       !options.no_charts && options.sensitivity.empty();  // derivatives refer to the model's own coordinates
@@ -156,9 +156,9 @@ int execute(const Options& options, const Common& common) {
     throw Error("run", {}, "--plot-of says what is plotted, and there is no plot",
                 "add --plot F.svg, or --plot - for characters");
   }
-  request.prepare = [&options](pipeline::Derived& derived) { return plotted_outputs(options, derived); };
+  request.prepare = [&options](pipeline::DerivedModel& derived) { return plotted_outputs(options, derived); };
   if (!options.out.empty() || plot.wanted()) {
-    request.begin = [&](const pipeline::Derived& derived, const run::Scene& scene,
+    request.begin = [&](const pipeline::DerivedModel& derived, const run::Scene& scene,
                         const std::vector<std::string>& names) {
       std::vector<Panel> panels;
       if (plot.wanted())

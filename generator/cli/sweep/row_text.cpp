@@ -38,7 +38,7 @@ std::string number(double value) {
 RowText::RowText(std::vector<std::string> varied, const model::Model& model, const run::Scene& scene)
     : varied_(std::move(varied)) {
   for (const std::string& name : varied_)
-    titles_.push_back(run::start_named(model, name) ? "initial(" + name + ")" : name);
+    titles_.push_back(run::find_start(model, name) ? "initial(" + name + ")" : name);
   for (const model::Coordinate& c : model.coordinates) {
     names_.push_back(c.name);
     names_.push_back(c.name + "_dot");

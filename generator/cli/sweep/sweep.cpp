@@ -14,8 +14,8 @@
 #include "cli/sweep/workers.hpp"
 #include "cli/usage.hpp"
 #include "model/names.hpp"
-#include "pipeline/beginnings.hpp"
-#include "pipeline/tidy_graph.hpp"
+#include "pipeline/start_checker.hpp"
+#include "pipeline/graph_trimmer.hpp"
 #include "run/eligibility.hpp"
 
 namespace eomgen::cli {
@@ -43,7 +43,7 @@ analysis::Shard shard_of(const SweepOptions& options, const analysis::Points& po
 void require_basins(const analysis::Points& points, const SweepOptions& options, const model::Model& model) {
   if (!options.basins) return;
   for (const std::string& name : points.names()) {
-    if (run::start_named(model, name)) continue;
+    if (run::find_start(model, name)) continue;
     throw Error("sweep", {}, fmt::format("--basins asks which equilibrium is reached, and these move with '{}'", name),
                 "vary starts alone, with --set for parameters, one sweep for each of their values");
   }
@@ -53,7 +53,7 @@ void require_names(const analysis::Points& points, const SweepOptions& options, 
   const std::map<std::string, symbolic::Rational> set = overrides_of("sweep", options).values;
   for (const std::string& name : points.names()) {
     const auto named = [&](const model::Parameter& p) { return p.name == name; };
-    if (std::none_of(model.parameters.begin(), model.parameters.end(), named) && !run::start_named(model, name)) {
+    if (std::none_of(model.parameters.begin(), model.parameters.end(), named) && !run::find_start(model, name)) {
       std::vector<std::string> known;
       for (const model::Parameter& p : model.parameters) known.push_back(p.name);
       for (const model::Coordinate& c : model.coordinates) known.insert(known.end(), {c.name, c.name + "_dot"});
@@ -185,7 +185,7 @@ void Sweep::each_row(const std::function<void(std::string_view row)>& take) cons
 
 run::Overrides Sweep::at(std::size_t run) const {
   run::Overrides o = overrides_of("sweep", options_);
-  o.at_start = true;
+  o.allow_empty_span = true;
   if (options_.ensemble) o.solver = solver_;
   o.values.merge(points_.point(run));
   return o;
@@ -217,19 +217,19 @@ bool Sweep::simulate_first(std::size_t run, bool integrate) {
 
 /// The first open run that can start. If there is none, any other run that can; it determines the columns.
 std::size_t Sweep::first_that_begins(const std::vector<Stretch>& open) {
-  pipeline::Beginnings beginnings(load_model(options_.model), options_.scene);
+  pipeline::StartChecker starts(load_model(options_.model), options_.scene);
   std::size_t tries = 0;
   for (const Stretch& stretch : open) {
     for (std::size_t i = 0; i < stretch.count && tries < most_runs; ++i, ++tries) {
       const std::size_t run = shard_.run(stretch.first + i);
-      if (beginnings.can_begin(at(run))) return run;
+      if (starts.can_start(at(run))) return run;
     }
   }
   for (std::size_t run = 0; run < points_.size() && tries < most_runs; ++run, ++tries) {
-    if (!is_open(open, run) && beginnings.can_begin(at(run))) return run;
+    if (!is_open(open, run) && starts.can_start(at(run))) return run;
   }
-  throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", beginnings.refusal()->message()),
-              "change the grid or the scene: " + beginnings.refusal()->remedy());
+  throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", starts.refusal()->message()),
+              "change the grid or the scene: " + starts.refusal()->remedy());
 }
 
 std::optional<std::size_t> Sweep::prepare(const std::vector<Stretch>& open) {
@@ -267,7 +267,7 @@ void Sweep::take_first(std::size_t run, std::vector<Stretch>& open) {
 
 std::string Sweep::made(std::size_t run) const {
   try {
-    const run::RunResult result = pipeline::run_again(*first_, at(run), !options_.no_error_estimate);
+    const run::RunResult result = pipeline::rerun(*first_, at(run), !options_.no_error_estimate);
     return Interrupt::flag() ? std::string() : text_.of(run, points_.point(run), result);
   } catch (const Error& error) {
     if (error.stage() != "scene") throw;
@@ -288,9 +288,9 @@ void Sweep::compute(const std::vector<std::size_t>& runs, std::size_t threads) {
                     &Interrupt::flag()});
     return;
   }
-  pipeline::TidyGraph graph(*first_);
+  pipeline::GraphTrimmer graph(*first_);
   const auto line = [&](std::size_t run) {
-    graph.tidy();
+    graph.trim();
     return made(run);
   };
   by_processes(
@@ -300,9 +300,9 @@ void Sweep::compute(const std::vector<std::size_t>& runs, std::size_t threads) {
 
 /// Computes runs in this process, because MPI processes must not fork.
 void Sweep::compute_here(const std::vector<std::size_t>& runs) {
-  pipeline::TidyGraph graph(*first_);
+  pipeline::GraphTrimmer graph(*first_);
   for (const std::size_t run : runs) {
-    graph.tidy();
+    graph.trim();
     const std::string line = made(run);
     if (line.empty()) return;
     checkpoint_.add(run, line);

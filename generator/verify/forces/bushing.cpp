@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify::forces {
 namespace {
 
 // By Newton and Euler: a force on B at its point, the opposite force on A at the same point, and moments.
-void act(const model::Force& force, VirtualWork& w) {
+void add_virtual_work(const model::Force& force, VirtualWork& w) {
   const std::uint32_t A = argument(force, "A")->index, B = argument(force, "B")->index;
-  const model::NodeId rA = given(force, "rA"), rB = given(force, "rB");
+  const model::NodeId rA = argument_expression(force, "rA"), rB = argument_expression(force, "rB");
   const auto number = [&](const char* key, std::size_t k) {
-    return w.now.scalar(given(force, key + std::to_string(k + 1)));
+    return w.now.scalar(argument_expression(force, key + std::to_string(k + 1)));
   };
   const Vector d = w.now.vector(rB) - w.now.vector(rA);
   const Vector turns = w.now.angular_velocity(B) - w.now.angular_velocity(A);
@@ -24,29 +24,29 @@ void act(const model::Force& force, VirtualWork& w) {
     moment = moment - (number("rotational_stiffness", i) * sine / 2) * (cross(b[j], a[k]) - cross(b[k], a[j]));
     moment = moment - (number("rotational_coefficient", i) * dot(turns, a[i])) * a[i];
   }
-  w.apply(push, w.by_q.vector(rB));
-  w.apply(Jet(-1) * push, w.by_q.vector(rA));
-  w.turn(Jet(-1) * cross(d, push), A);
-  w.turn(moment, B);
-  w.turn(Jet(-1) * moment, A);
+  w.apply_force(push, w.by_q.vector(rB));
+  w.apply_force(Jet(-1) * push, w.by_q.vector(rA));
+  w.apply_moment(Jet(-1) * cross(d, push), A);
+  w.apply_moment(moment, B);
+  w.apply_moment(Jet(-1) * moment, A);
 }
 
 void potential(const model::Force& force, Potentials& U) {
   const std::uint32_t A = argument(force, "A")->index, B = argument(force, "B")->index;
-  const Vector d = U.at.vector(given(force, "rB")) - U.at.vector(given(force, "rA"));
+  const Vector d = U.at.vector(argument_expression(force, "rB")) - U.at.vector(argument_expression(force, "rA"));
   Vector skew;  // twice sin(p) n
   for (std::size_t k = 0; k < 3; ++k) skew = skew + cross(U.at.axis(A, k), U.at.axis(B, k));
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector a = U.at.axis(A, i);
     const std::string k = std::to_string(i + 1);
     const Jet x = dot(d, a), sine = dot(skew, a) / 2;
-    U.add(U.at.scalar(given(force, "stiffness" + k)) * x * x / 2);
-    U.add(U.at.scalar(given(force, "rotational_stiffness" + k)) * sine * sine / 2);
+    U.add(U.at.scalar(argument_expression(force, "stiffness" + k)) * x * x / 2);
+    U.add(U.at.scalar(argument_expression(force, "rotational_stiffness" + k)) * sine * sine / 2);
   }
 }
 
 }  // namespace
 
-Statement bushing() { return {act, potential}; }
+ForceLaw bushing() { return {add_virtual_work, potential}; }
 
 }  // namespace eomgen::verify::forces

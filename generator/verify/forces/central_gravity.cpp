@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify::forces {
 namespace {
@@ -15,31 +15,31 @@ Jet trace(const model::Body& body, Interpreter& at) {
 
 // The contribution of a body's inertia to Newton's attraction, and the moment, eq. (7.72).
 void attract_extended(const model::Force& force, const model::Body& body, VirtualWork& w) {
-  const model::NodeId center = given(force, "center");
+  const model::NodeId center = argument_expression(force, "center");
   const Vector d = w.now.place(body.place) - w.now.vector(center);
-  const Jet R = norm(d, w.precision), GM = w.now.scalar(given(force, "GM"));
+  const Jet R = norm(d, w.precision), GM = w.now.scalar(argument_expression(force, "GM"));
   const Vector c = (Jet(1) / R) * d, Jc = inertia_times(body, w.now, c);
   const Jet along = trace(body, w.now) - Jet(5) * dot(c, Jc);
   const Vector pull = (Jet(-3) * GM / (Jet(2) * R * R * R * R)) * (Jet(2) * Jc + along * c);
-  w.apply(pull, w.by_q.place(body.place) - w.by_q.vector(center));
-  w.turn((Jet(3) * GM / (R * R * R)) * cross(c, Jc), body.frame);
+  w.apply_force(pull, w.by_q.place(body.place) - w.by_q.vector(center));
+  w.apply_moment((Jet(3) * GM / (R * R * R)) * cross(c, Jc), body.frame);
 }
 
-void act(const model::Force& force, VirtualWork& w) {
+void add_virtual_work(const model::Force& force, VirtualWork& w) {
   for (const model::Body& body : w.model.bodies) {
     if (extended(force)) attract_extended(force, body, w);
   }
-  const model::NodeId center = given(force, "center");
-  for (const Mass& p : masses(w.model)) {
-    const Jet strength = w.now.scalar(given(force, "GM")) * w.now.scalar(p.mass);
-    w.attract(strength, w.now.place(p.place) - w.now.vector(center), w.by_q.place(p.place) - w.by_q.vector(center));
+  const model::NodeId center = argument_expression(force, "center");
+  for (const Mass& p : list_masses(w.model)) {
+    const Jet strength = w.now.scalar(argument_expression(force, "GM")) * w.now.scalar(p.mass);
+    w.apply_attraction(strength, w.now.place(p.place) - w.now.vector(center), w.by_q.place(p.place) - w.by_q.vector(center));
   }
 }
 
 void potential(const model::Force& force, Potentials& U) {
-  const Jet GM = U.at.scalar(given(force, "GM"));
-  const Vector center = U.at.vector(given(force, "center"));
-  for (const Mass& p : masses(U.model))
+  const Jet GM = U.at.scalar(argument_expression(force, "GM"));
+  const Vector center = U.at.vector(argument_expression(force, "center"));
+  for (const Mass& p : list_masses(U.model))
     U.add(-(GM * U.at.scalar(p.mass)) / norm(U.at.place(p.place) - center, U.precision));
   for (const model::Body& body : U.model.bodies) {  // (7.71)
     if (!extended(force)) continue;
@@ -53,6 +53,6 @@ void potential(const model::Force& force, Potentials& U) {
 
 }  // namespace
 
-Statement central_gravity() { return {act, potential}; }
+ForceLaw central_gravity() { return {add_virtual_work, potential}; }
 
 }  // namespace eomgen::verify::forces

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify::forces {
 namespace {
 
-void act(const model::Force& force, VirtualWork& w) {  // (8.53)
-  const model::NodeId on = given(force, "on");
+void add_virtual_work(const model::Force& force, VirtualWork& w) {  // (8.53)
+  const model::NodeId on = argument_expression(force, "on");
   const Vector v = w.velocity(on);
-  const Jet factor = w.now.scalar(given(force, "density")) * w.now.scalar(given(force, "area")) *
-                     w.now.scalar(given(force, "coefficient")) / -2;
-  w.apply((factor * norm(v, w.precision)) * v, w.by_q.vector(on));
+  const Jet factor = w.now.scalar(argument_expression(force, "density")) * w.now.scalar(argument_expression(force, "area")) *
+                     w.now.scalar(argument_expression(force, "coefficient")) / -2;
+  w.apply_force((factor * norm(v, w.precision)) * v, w.by_q.vector(on));
 }
 
 }  // namespace
 
-Statement drag() { return {act}; }
+ForceLaw drag() { return {add_virtual_work}; }
 
 }  // namespace eomgen::verify::forces

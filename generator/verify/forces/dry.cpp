@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify::forces {
 namespace {
 
-void act(const model::Force&, VirtualWork&) {}  // computed with the contacts (State::friction)
+void add_virtual_work(const model::Force&, VirtualWork&) {}  // computed with the contacts (State::friction)
 
 }  // namespace
 
-Statement dry() { return {act}; }
+ForceLaw dry() { return {add_virtual_work}; }
 
 }  // namespace eomgen::verify::forces

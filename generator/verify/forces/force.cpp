@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify::forces {
 namespace {
 
-void act(const model::Force& force, VirtualWork& w) {
-  w.apply(w.now.vector(given(force, "force")), w.by_q.vector(given(force, "on")));
+void add_virtual_work(const model::Force& force, VirtualWork& w) {
+  w.apply_force(w.now.vector(argument_expression(force, "force")), w.by_q.vector(argument_expression(force, "on")));
 }
 
 }  // namespace
 
-Statement force() { return {act}; }
+ForceLaw force() { return {add_virtual_work}; }
 
 }  // namespace eomgen::verify::forces

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify::forces {
 namespace {
 
-void act(const model::Force& force, VirtualWork& w) {
-  for (const model::Argument& component : force.arguments) w.along(component.index, w.now.scalar(component.value));
+void add_virtual_work(const model::Force& force, VirtualWork& w) {
+  for (const model::Argument& component : force.arguments) w.apply_to_coordinate(component.index, w.now.scalar(component.value));
 }
 
 }  // namespace
 
-Statement generalized() { return {act}; }
+ForceLaw generalized() { return {add_virtual_work}; }
 
 }  // namespace eomgen::verify::forces

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify::forces {
 namespace {
 
-void act(const model::Force& force, VirtualWork& w) {
-  const Vector d = w.by_q.vector(given(force, "b")) - w.by_q.vector(given(force, "a"));
-  w.work(w.now.scalar(given(force, "force")), norm(d, w.precision));  // along the distance
+void add_virtual_work(const model::Force& force, VirtualWork& w) {
+  const Vector d = w.by_q.vector(argument_expression(force, "b")) - w.by_q.vector(argument_expression(force, "a"));
+  w.apply_generalized_force(w.now.scalar(argument_expression(force, "force")), norm(d, w.precision));  // along the distance
 }
 
 }  // namespace
 
-Statement linear_actuator() { return {act}; }
+ForceLaw linear_actuator() { return {add_virtual_work}; }
 
 }  // namespace eomgen::verify::forces

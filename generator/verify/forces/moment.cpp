@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify::forces {
 namespace {
 
-void act(const model::Force& force, VirtualWork& w) {
-  w.turn(w.now.vector(given(force, "moment")), argument(force, "on")->index);
+void add_virtual_work(const model::Force& force, VirtualWork& w) {
+  w.apply_moment(w.now.vector(argument_expression(force, "moment")), argument(force, "on")->index);
 }
 
 }  // namespace
 
-Statement moment() { return {act}; }
+ForceLaw moment() { return {add_virtual_work}; }
 
 }  // namespace eomgen::verify::forces

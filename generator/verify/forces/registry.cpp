@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <map>
 
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify::forces {
 
-const Statement& statement(std::string_view kind) {
+const ForceLaw& force_law(std::string_view kind) {
 #define FORCE(name) {#name, name()},
-  static const std::map<std::string_view, Statement> all{
+  static const std::map<std::string_view, ForceLaw> all{
 #include "forces/registry.inc"
   };
 #undef FORCE

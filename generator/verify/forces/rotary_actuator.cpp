@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify::forces {
 namespace {
 
-void act(const model::Force& force, VirtualWork& w) {
-  const Jet moment = w.now.scalar(given(force, "moment"));
-  if (given(force, "angle") != model::no_node) return w.work(moment, w.by_q.scalar(given(force, "angle")));
-  const Vector axis = w.now.vector(given(force, "axis"));
+void add_virtual_work(const model::Force& force, VirtualWork& w) {
+  const Jet moment = w.now.scalar(argument_expression(force, "moment"));
+  if (argument_expression(force, "angle") != model::no_node) return w.apply_generalized_force(moment, w.by_q.scalar(argument_expression(force, "angle")));
+  const Vector axis = w.now.vector(argument_expression(force, "axis"));
   const Vector on_b = (moment / norm(axis, w.precision)) * axis;
-  w.turn(on_b, argument(force, "B")->index);
-  w.turn(Jet(-1) * on_b, argument(force, "A")->index);
+  w.apply_moment(on_b, argument(force, "B")->index);
+  w.apply_moment(Jet(-1) * on_b, argument(force, "A")->index);
 }
 
 }  // namespace
 
-Statement rotary_actuator() { return {act}; }
+ForceLaw rotary_actuator() { return {add_virtual_work}; }
 
 }  // namespace eomgen::verify::forces

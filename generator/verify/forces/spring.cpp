@@ -1,34 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify::forces {
 namespace {
 
-void act(const model::Force& force, VirtualWork& w) {
-  if (given(force, "energy") != model::no_node) {
-    Interpreter own = w.by_q.for_spring(force);
-    return w.descend(own.scalar(given(force, "energy")));
+void add_virtual_work(const model::Force& force, VirtualWork& w) {
+  if (argument_expression(force, "energy") != model::no_node) {
+    Interpreter own = w.by_q.with_spring(force);
+    return w.apply_potential(own.scalar(argument_expression(force, "energy")));
   }
-  const Jet stiffness = w.by_q.scalar(given(force, "stiffness"));
+  const Jet stiffness = w.by_q.scalar(argument_expression(force, "stiffness"));
   // Without a free length the energy is smooth where the ends coincide.
-  if (w.by_q.scalar(given(force, "length")).exactly_zero())
-    return w.stretch(stiffness, w.by_q.vector(given(force, "b")) - w.by_q.vector(given(force, "a")));
-  w.stretch(stiffness, w.by_q.extension(force));
+  if (w.by_q.scalar(argument_expression(force, "length")).is_exactly_zero())
+    return w.apply_elastic_force(stiffness, w.by_q.vector(argument_expression(force, "b")) - w.by_q.vector(argument_expression(force, "a")));
+  w.apply_elastic_force(stiffness, w.by_q.extension(force));
 }
 
 void potential(const model::Force& force, Potentials& U) {
-  if (given(force, "energy") != model::no_node) {
-    Interpreter own = U.at.for_spring(force);
-    return U.add(own.scalar(given(force, "energy")));
+  if (argument_expression(force, "energy") != model::no_node) {
+    Interpreter own = U.at.with_spring(force);
+    return U.add(own.scalar(argument_expression(force, "energy")));
   }
-  const Vector d = U.at.vector(given(force, "b")) - U.at.vector(given(force, "a"));
-  const bool free_length = !U.at.scalar(given(force, "length")).exactly_zero();
+  const Vector d = U.at.vector(argument_expression(force, "b")) - U.at.vector(argument_expression(force, "a"));
+  const bool free_length = !U.at.scalar(argument_expression(force, "length")).is_exactly_zero();
   const Jet e = free_length ? U.at.extension(force) : Jet();
-  U.add(U.at.scalar(given(force, "stiffness")) * (free_length ? e * e : dot(d, d)) / 2);
+  U.add(U.at.scalar(argument_expression(force, "stiffness")) * (free_length ? e * e : dot(d, d)) / 2);
 }
 
 }  // namespace
 
-Statement spring() { return {act, potential}; }
+ForceLaw spring() { return {add_virtual_work, potential}; }
 
 }  // namespace eomgen::verify::forces

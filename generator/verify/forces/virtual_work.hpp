@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "verify/argument.hpp"
-#include "verify/plain_forces.hpp"
+#include "verify/applied_forces.hpp"
 
 namespace eomgen::verify {
 
 class VirtualWork {
  public:
   VirtualWork(const model::Model& given, const Precision& digits, Interpreter& at, std::vector<Residual>& residuals)
-      : model(given), precision(digits), now(at), by_q(at.by_coordinates(false)), sums_(residuals) {}
+      : model(given), precision(digits), now(at), by_q(at.with_coordinate_slopes(false)), sums_(residuals) {}
 
   const model::Model& model;
   const Precision& precision;
@@ -24,26 +24,26 @@ class VirtualWork {
   Interpreter& by_q;  // the same with the coordinates on a new level
 
   /// Values with time on a new level: the rate of a value is its slope on this level.
-  Interpreter& later() { return now.along_time(); }
-  Vector velocity(model::NodeId point) { return rate(later().vector(point)); }
-  Vector velocity_of_place(std::uint32_t place) { return rate(later().place(place)); }
+  Interpreter& with_time_slope() { return now.with_time_slope(); }
+  Vector velocity(model::NodeId point) { return rate(with_time_slope().vector(point)); }
+  Vector velocity_of_place(std::uint32_t place) { return rate(with_time_slope().place(place)); }
 
   /// Adds F at r: F . dr/dq_i; the size of the term is the product of the sizes of its factors.
-  void apply(const Vector& force, const Vector& r);
+  void apply_force(const Vector& force, const Vector& r);
   /// Adds a moment M on a frame: M . dw/dqdot_i; nothing for the ground.
-  void turn(const Vector& moment, std::uint32_t frame);
+  void apply_moment(const Vector& moment, std::uint32_t frame);
   /// Adds a generalised force on x: F dx/dq_i.
-  void work(const Jet& force, const Jet& x);
+  void apply_generalized_force(const Jet& force, const Jet& x);
   /// Adds a generalised force along a coordinate.
-  void along(std::uint32_t coordinate, const Jet& force) { sums_[coordinate].add(-force.real()); }
+  void apply_to_coordinate(std::uint32_t coordinate, const Jet& force) { sums_[coordinate].add(-force.real()); }
   /// Adds Newton's attraction along d, on both ends.
-  void attract(const Jet& strength, const Vector& d, const Vector& d_by_q);
+  void apply_attraction(const Jet& strength, const Vector& d, const Vector& d_by_q);
   /// Adds the tension K e along de, and the contribution of a stiffness that depends on the position.
-  void stretch(const Jet& stiffness, const Jet& extension);
+  void apply_elastic_force(const Jet& stiffness, const Jet& extension);
   /// The same along a vector: K d along dd.
-  void stretch(const Jet& stiffness, const Vector& d);
+  void apply_elastic_force(const Jet& stiffness, const Vector& d);
   /// Adds -dU of a potential energy U.
-  void descend(const Jet& energy) { work(Jet(-1), energy); }
+  void apply_potential(const Jet& energy) { apply_generalized_force(Jet(-1), energy); }
 
  private:
   Vector rate(const Vector& r) const;

@@ -5,7 +5,7 @@
 #include <cln/real.h>
 
 #include "verify/linear_solve.hpp"
-#include "verify/points.hpp"
+#include "verify/state_sampler.hpp"
 
 namespace eomgen::verify {
 namespace {
@@ -15,20 +15,20 @@ constexpr double singular_constraints = 1e10;
 }  // namespace
 
 /// Distance of a coordinate from the nearer end of its range, at most its scale.
-Real Points::room(const State& state, std::size_t i) const {
-  const Choice& c = choices_[i];
-  Real room = exact(c.scale);
-  if (c.has_lower) room = cln::min(room, state.q[i] - exact(c.lower));
-  if (c.has_upper) room = cln::min(room, exact(c.upper) - state.q[i]);
-  return room;
+Real StateSampler::distance_to_bound(const State& state, std::size_t i) const {
+  const SamplingRange& c = sampling_ranges_[i];
+  Real distance_to_bound = exact(c.scale);
+  if (c.has_lower) distance_to_bound = cln::min(distance_to_bound, state.q[i] - exact(c.lower));
+  if (c.has_upper) distance_to_bound = cln::min(distance_to_bound, exact(c.upper) - state.q[i]);
+  return distance_to_bound;
 }
 
 /// Takes the step, shortened if necessary to keep every coordinate inside its range. False: it was shortened.
-bool Points::move_inside(State& s, const std::vector<Real>& step) const {
+bool StateSampler::step_within_ranges(State& s, const std::vector<Real>& step) const {
   const Real most = cln::cl_RA(9) / 10;  // of the distance to the end of the range
   Real part = 1;
   for (std::size_t i = 0; i < step.size(); ++i) {
-    const Choice& c = choices_[i];
+    const SamplingRange& c = sampling_ranges_[i];
     const auto keep = [&](const Real& way) {  // with the sign of the step
       if (cln::abs(step[i]) > most * cln::abs(way)) part = cln::min(part, most * way / step[i]);
     };
@@ -41,16 +41,16 @@ bool Points::move_inside(State& s, const std::vector<Real>& step) const {
 
 /// The least change that removes the defect, weighted by the scales or by the distances to the ends of the ranges:
 /// W A^T (A W A^T)^-1 (-defect).
-std::vector<Real> Points::correction(const State& state, bool rates, const std::vector<bool>* held,
-                                     bool by_room) const {
+std::vector<Real> StateSampler::correction(const State& state, bool rates, const std::vector<bool>* held,
+                                     bool weighted_by_distance) const {
   State at = state;
   at.qddot.clear();  // psi_ddot is not needed
   ConstraintValues c = oracle_.constraint_values(at);
-  const std::size_t n = choices_.size();
+  const std::size_t n = sampling_ranges_.size();
   std::vector<Real> defect = rates ? c.psi_dot : c.psi;
   for (std::size_t k = c.gradient.size(); k-- > 0;) {
-    const bool follows = oracle_.implied(k) && (rates || !open_.contains(k));
-    if ((rates || oracle_.holonomic(k)) && !follows && !state.apart.contains(k))
+    const bool follows = oracle_.is_implied(k) && (rates || !open_.contains(k));
+    if ((rates || oracle_.is_holonomic(k)) && !follows && !state.open.contains(k))
       continue;  // otherwise: a velocity constraint, implied, or open
     c.gradient.erase(c.gradient.begin() + static_cast<std::ptrdiff_t>(k));
     defect.erase(defect.begin() + static_cast<std::ptrdiff_t>(k));
@@ -60,9 +60,9 @@ std::vector<Real> Points::correction(const State& state, bool rates, const std::
   std::vector<Real> weight;
   for (std::size_t i = 0; i < n; ++i) {
     const Real scale = held != nullptr && (*held)[i] ? Real(0)
-                       : rates                       ? exact(choices_[i].rate_scale)
-                       : by_room                     ? room(state, i)
-                                                     : exact(choices_[i].scale);
+                       : rates                       ? exact(sampling_ranges_[i].rate_scale)
+                       : weighted_by_distance                     ? distance_to_bound(state, i)
+                                                     : exact(sampling_ranges_[i].scale);
     weight.push_back(scale * scale);
   }
   std::vector<Real> gram(rows * rows, Real(0)), right;
@@ -77,7 +77,7 @@ std::vector<Real> Points::correction(const State& state, bool rates, const std::
     }
   }
   const Solution y = solve(std::move(gram), std::move(right));
-  if (!y.exists() || y.condition > singular_constraints) throw Unclosed("the constraints lose rank");
+  if (!y.exists() || y.condition > singular_constraints) throw UnsatisfiedConstraints("the constraints lose rank");
   std::vector<Real> change(n, Real(0));
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = 0; i < rows; ++i)
@@ -85,19 +85,19 @@ std::vector<Real> Points::correction(const State& state, bool rates, const std::
   return change;
 }
 
-void Points::project_positions(State& s, const std::vector<bool>* held) const {
+void StateSampler::project_positions(State& s, const std::vector<bool>* held) const {
   if (oracle_.constraints().empty()) return;
   // Convergence is quadratic: after a step of relative size 10^-h the error is of the order 10^-2h.
   const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(oracle_.digits() / 2 + 2));
   const Real own = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(oracle_.digits() / 2 - 8));
   constexpr int most_settling = 8;
   int settled = 0;
-  bool by_room = false;  // after a step would have left a range: coordinates near an end then change less
+  bool weighted_by_distance = false;  // after a step would have left a range: coordinates near an end then change less
   for (int iteration = 0; iteration < 40; ++iteration) {
-    const std::vector<Real> step = correction(s, false, held, by_room);
+    const std::vector<Real> step = correction(s, false, held, weighted_by_distance);
     Real size = 0;
-    for (std::size_t i = 0; i < step.size(); ++i) size = cln::max(size, cln::abs(step[i]) / exact(choices_[i].scale));
-    if (!move_inside(s, step)) by_room = true;
+    for (std::size_t i = 0; i < step.size(); ++i) size = cln::max(size, cln::abs(step[i]) / exact(sampling_ranges_[i].scale));
+    if (!step_within_ranges(s, step)) weighted_by_distance = true;
     // The first step may be as long as the distance of a prescribed motion: the radius of a planet, if no start gives a
     // scale.
     if (iteration > 0 && size > 1000) break;
@@ -109,16 +109,16 @@ void Points::project_positions(State& s, const std::vector<bool>* held) const {
     for (std::size_t i = 0; i < step.size(); ++i) any = any || coarse(i);
     if (!any) return;
   }
-  throw Unclosed("no configuration on the constraints was found");
+  throw UnsatisfiedConstraints("no configuration on the constraints was found");
 }
 
-void Points::project_velocities(State& s) const {
+void StateSampler::project_velocities(State& s) const {
   if (oracle_.constraints().empty()) return;
   // Linear; the second round gains digits for small velocities. A remainder where no motion is possible becomes 0.
   const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(oracle_.digits() - 6));
   std::vector<Real> size;
-  for (std::size_t i = 0; i < choices_.size(); ++i)
-    size.push_back(cln::max(cln::abs(s.qdot[i]), exact(choices_[i].rate_scale)) * small);
+  for (std::size_t i = 0; i < sampling_ranges_.size(); ++i)
+    size.push_back(cln::max(cln::abs(s.qdot[i]), exact(sampling_ranges_[i].rate_scale)) * small);
   for (int round = 0; round < 2; ++round) {
     const std::vector<Real> change = correction(s, true, nullptr, false);
     for (std::size_t i = 0; i < change.size(); ++i) s.qdot[i] = s.qdot[i] + change[i];
@@ -130,10 +130,10 @@ void Points::project_velocities(State& s) const {
 
 /// A constraint implied on the velocity level, as a joint of a body that velocity constraints hold, still constrains
 /// positions. Such constraints are closed one by one, as long as this closes more of them.
-void Points::close_implied(State& s) {
-  for (std::size_t round = 0; oracle_.any_implied() && round < oracle_.constraints().size(); ++round) {
+void StateSampler::close_implied(State& s) {
+  for (std::size_t round = 0; oracle_.has_implied() && round < oracle_.constraints().size(); ++round) {
     const std::optional<std::size_t> open = first_open(s, false);
-    if (!open || !oracle_.holonomic(*open) || open_.contains(*open)) break;
+    if (!open || !oracle_.is_holonomic(*open) || open_.contains(*open)) break;
     open_.insert(*open);
     project_positions(s);
   }
@@ -141,17 +141,17 @@ void Points::close_implied(State& s) {
 
 /// Rejects states that violate implied constraints, relative to the size of the terms and within the digits of a
 /// projection.
-void Points::require_implied(const State& s) const {
-  if (first_open(s, true)) throw Rejected("a joint closes in another way");
+void StateSampler::require_implied(const State& s) const {
+  if (first_open(s, true)) throw RejectedState("a joint closes in another way");
 }
 
 /// The first implied constraint that does not hold, in positions or also in rates.
-std::optional<std::size_t> Points::first_open(const State& s, bool rates) const {
-  if (!oracle_.any_implied()) return std::nullopt;
+std::optional<std::size_t> StateSampler::first_open(const State& s, bool rates) const {
+  if (!oracle_.has_implied()) return std::nullopt;
   const ConstraintValues c = oracle_.constraint_values(s);
   const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(oracle_.digits() - 15));
   for (std::size_t k = 0; k < c.psi.size(); ++k) {
-    if (!oracle_.implied(k)) continue;
+    if (!oracle_.is_implied(k)) continue;
     Real size = 1, rate = 1;
     for (std::size_t i = 0; i < s.q.size(); ++i) {
       size = size + cln::abs(c.gradient[k][i] * s.q[i]);

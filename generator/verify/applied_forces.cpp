@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/plain_forces.hpp"
+#include "verify/applied_forces.hpp"
 
-#include "verify/forces/statement.hpp"
+#include "verify/forces/force_law.hpp"
 
 namespace eomgen::verify {
-std::vector<Mass> masses(const model::Model& model) {
+std::vector<Mass> list_masses(const model::Model& model) {
   std::vector<Mass> result;
   for (const model::Particle& particle : model.particles) result.push_back({particle.place, particle.mass});
   for (const model::Body& body : model.bodies) result.push_back({body.place, body.mass});
@@ -25,7 +25,7 @@ Vector inertia_times(const model::Body& body, Interpreter& at, const Vector& v) 
 void subtract_forces(const model::Model& model, const Precision& precision, Interpreter& now,
                      std::vector<Residual>& sums) {
   VirtualWork work(model, precision, now, sums);
-  for (const model::Force& force : model.forces) forces::statement(force.kind).act(force, work);
+  for (const model::Force& force : model.forces) forces::force_law(force.kind).add_virtual_work(force, work);
 }
 
 std::vector<Jet> potentials(const model::Model& model, const Precision& precision, Interpreter& at) {
@@ -33,7 +33,7 @@ std::vector<Jet> potentials(const model::Model& model, const Precision& precisio
   if (model.energy.potential != model::no_node) terms.push_back(at.scalar(model.energy.potential));
   Potentials sum{model, precision, at, terms};
   for (const model::Force& force : model.forces) {
-    if (const auto potential = forces::statement(force.kind).potential) potential(force, sum);
+    if (const auto potential = forces::force_law(force.kind).potential) potential(force, sum);
   }
   return terms;
 }

@@ -9,9 +9,9 @@
 
 namespace eomgen::random_models {
 
-class Dice {
+class RandomSource {
  public:
-  explicit Dice(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15u + 0x632BE59BD9B4E019u) {}
+  explicit RandomSource(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15u + 0x632BE59BD9B4E019u) {}
 
   /// splitmix64 (Steele, Lea, Flood 2014).
   std::uint64_t next() {

@@ -9,16 +9,16 @@
 
 namespace eomgen::verify::forces {
 
-struct Statement {
-  void (*act)(const model::Force&, VirtualWork&) = nullptr;       // its virtual work
+struct ForceLaw {
+  void (*add_virtual_work)(const model::Force&, VirtualWork&) = nullptr;       // its virtual work
   void (*potential)(const model::Force&, Potentials&) = nullptr;  // its potential energy, if it has one
 };
 
-#define FORCE(name) Statement name();
+#define FORCE(name) ForceLaw name();
 #include "forces/registry.inc"
 #undef FORCE
 
 /// The force law of a kind. Throws std::out_of_range for an unknown kind.
-const Statement& statement(std::string_view kind);
+const ForceLaw& force_law(std::string_view kind);
 
 }  // namespace eomgen::verify::forces

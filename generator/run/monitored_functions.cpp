@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "run/looked_at.hpp"
+#include "run/monitored_functions.hpp"
 
 #include <algorithm>
 #include <string>
@@ -66,8 +66,8 @@ JumpFunctions jump_functions(const system::EquationSystem& s) {
   const Ref lagrangian = dag.sub(s.kinetic, s.potential);
   for (const std::uint32_t q : s.free)
     add(symbolic::partial_derivative(dag, {SymbolKind::coordinate, q, 1})(lagrangian), What::momentum);
-  const Lookup variables = variables_of(s);
-  std::optional<Table> values = table_of(dag, roots, variables), mass = table_of(dag, s.M, variables);
+  const SymbolResolver variables = run_variables(s);
+  std::optional<Table> values = make_table(dag, roots, variables), mass = make_table(dag, s.M, variables);
   if (!values || !mass) return {};
   result.values = std::move(*values);
   result.mass = std::move(*mass);
@@ -82,23 +82,23 @@ std::vector<Table> narrow_functions(const system::EquationSystem& s) {
     return std::any_of(symbols.begin(), symbols.end(),
                        [](const symbolic::Symbol& symbol) { return symbol.kind == SymbolKind::coordinate; });
   };
-  const Lookup variables = variables_of(s);
+  const SymbolResolver variables = run_variables(s);
   std::vector<Table> result;
   for (const Ref r : s.dag->reachable(roots)) {
     const std::vector<Ref> found = bumps(*s.dag, r);
     if (found.empty() || !of_state(r)) continue;
     for (const Ref bump : found) {
-      if (std::optional<Table> table = table_of(*s.dag, {bump}, variables)) result.push_back(std::move(*table));
+      if (std::optional<Table> table = make_table(*s.dag, {bump}, variables)) result.push_back(std::move(*table));
     }
   }
   return result;
 }
 
 std::vector<Table> bounded_events(const system::EquationSystem& s, const std::vector<std::optional<Ref>>& functions) {
-  const Lookup variables = variables_of(s);
+  const SymbolResolver variables = run_variables(s);
   std::vector<Table> result;
   for (const std::optional<Ref>& function : functions) {
-    std::optional<Table> table = function ? table_of(*s.dag, {*function}, variables) : std::nullopt;
+    std::optional<Table> table = function ? make_table(*s.dag, {*function}, variables) : std::nullopt;
     result.push_back(table ? std::move(*table) : Table{});
   }
   if (std::all_of(result.begin(), result.end(), [](const Table& table) { return table.empty(); })) return {};

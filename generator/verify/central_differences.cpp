@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/differences.hpp"
+#include "verify/central_differences.hpp"
 
 #include <cln/integer.h>
 #include <cln/rational.h>
@@ -9,10 +9,10 @@
 
 namespace eomgen::verify {
 
-Real ten_to(int exponent) { return cln::expt(cln::cl_RA(10), cln::cl_I(exponent)); }
+Real power_of_ten(int exponent) { return cln::expt(cln::cl_RA(10), cln::cl_I(exponent)); }
 
-At with_digits(const At& at, const Precision& precision) {
-  At result = at;
+AbiArguments with_digits(const AbiArguments& at, const Precision& precision) {
+  AbiArguments result = at;
   result.t = precision.round(at.t);
   for (auto* part : {&result.x, &result.p, &result.u})
     for (Real& value : *part) value = precision.round(value);
@@ -20,7 +20,7 @@ At with_digits(const At& at, const Precision& precision) {
 }
 
 // A number as small as exp(-1e11) is not converted to a fraction; it gets enough digits instead.
-Real exactly(const Real& value) {
+Real to_exact(const Real& value) {
   constexpr std::intptr_t faint = 1 << 20;
   constexpr int plenty = 1500;  // digits, more than any sum here has
   if (cln::zerop(value)) return 0;
@@ -29,22 +29,22 @@ Real exactly(const Real& value) {
                                     : Real(cln::cl_float(value, cln::float_format(plenty)));
 }
 
-Real component(std::size_t j) { return cln::cl_RA(static_cast<long>(16 + (7 * j + 3) % 11)) / (j % 2 == 0 ? 16 : -16); }
+Real direction_component(std::size_t j) { return cln::cl_RA(static_cast<long>(16 + (7 * j + 3) % 11)) / (j % 2 == 0 ? 16 : -16); }
 
-std::optional<Slope> slope(const ProgramForm& program, const std::string& function, const At& at, const Shift& shift,
+std::optional<CentralDifference> central_difference(const ProgramForm& program, const std::string& function, const AbiArguments& at, const Shift& shift,
                            int digits) {
   const int more = 3 * digits + 10;
   const Precision precision(more);
-  const Real h = precision.round(ten_to(-digits));
-  const At here = with_digits(at, precision);
-  At above = here, below = here;
+  const Real h = precision.round(power_of_ten(-digits));
+  const AbiArguments here = with_digits(at, precision);
+  AbiArguments above = here, below = here;
   shift(above, h);
   shift(below, -h);
-  const std::optional<Arrays> high = program.call(function, above, more), low = program.call(function, below, more),
+  const std::optional<AbiResults> high = program.call(function, above, more), low = program.call(function, below, more),
                               middle = program.call(function, here, more);
   if (!high || !low || !middle) return std::nullopt;
-  Slope result{*high, *high};
-  const Real small = ten_to(-digits / 2);
+  CentralDifference result{*high, *high};
+  const Real small = power_of_ten(-digits / 2);
   bool any_small = false;
   for (std::size_t r = 0; r < high->size(); ++r) {
     for (std::size_t i = 0; i < (*high)[r].size(); ++i) {
@@ -58,10 +58,10 @@ std::optional<Slope> slope(const ProgramForm& program, const std::string& functi
   // Such a small difference may be the third-order remainder of a zero derivative, as of x^3 at 0; the second
   // difference is 0 there too.
   if (!any_small) return result;
-  At beyond = here, before = here;
+  AbiArguments beyond = here, before = here;
   shift(beyond, 2 * h);
   shift(before, -2 * h);
-  const std::optional<Arrays> far = program.call(function, beyond, more), back = program.call(function, before, more);
+  const std::optional<AbiResults> far = program.call(function, beyond, more), back = program.call(function, before, more);
   if (!far || !back) return std::nullopt;
   for (std::size_t r = 0; r < high->size(); ++r) {
     for (std::size_t i = 0; i < (*high)[r].size(); ++i) {

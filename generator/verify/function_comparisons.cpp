@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/functions.hpp"
+#include "verify/function_comparisons.hpp"
 
 #include <cln/integer.h>
 #include <cln/rational.h>
@@ -12,8 +12,8 @@
 #include <string_view>
 
 #include "symbolic/evaluate.hpp"
-#include "verify/differences.hpp"
-#include "verify/plain_forces.hpp"
+#include "verify/central_differences.hpp"
+#include "verify/applied_forces.hpp"
 
 namespace eomgen::verify {
 namespace {
@@ -21,9 +21,9 @@ namespace {
 using symbolic::Ref;
 using system::EquationSystem;
 
-class Functions {
+class FunctionComparisons {
  public:
-  Functions(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode, Tally& tally)
+  FunctionComparisons(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode, ComparisonTable& tally)
       : program_(subjects.programs.front()),
         v_(v),
         oracle_(oracle),
@@ -37,25 +37,25 @@ class Functions {
   void operator()() {
     for (const std::string& function : program_.functions) {
       if (function == "rhs" || function == "prepare") continue;  // compared elsewhere, or through other functions
-      const std::optional<Arrays> values = program_.call(function, at_, oracle_.digits());
+      const std::optional<AbiResults> values = program_.call(function, at_, oracle_.digits());
       if (!values) continue;
       sizes_ = sizes(function, *values);
       if (sizes_.empty()) continue;  // too close to another branch
-      (this->*statement_of(function))(*values);
+      (this->*check_of(function))(*values);
     }
   }
 
  private:
-  using Statement = void (Functions::*)(const Arrays&);
+  using CheckFunction = void (FunctionComparisons::*)(const AbiResults&);
 
   /// The comparison for a function.
-  static Statement statement_of(const std::string& function) {
-    static const std::map<std::string_view, Statement> statements{
-        {"rhs_prepared", &Functions::prepared}, {"jac", &Functions::jacobian},
-        {"jac_p", &Functions::parameters},      {"mass", &Functions::mass},
-        {"momenta", &Functions::momenta},       {"constraints", &Functions::constraints},
-        {"reactions", &Functions::reactions},   {"outputs", &Functions::outputs},
-        {"events", &Functions::events},         {"taylor", &Functions::taylor}};
+  static CheckFunction check_of(const std::string& function) {
+    static const std::map<std::string_view, CheckFunction> statements{
+        {"rhs_prepared", &FunctionComparisons::prepared}, {"jac", &FunctionComparisons::jacobian},
+        {"jac_p", &FunctionComparisons::parameters},      {"mass", &FunctionComparisons::mass},
+        {"momenta", &FunctionComparisons::momenta},       {"constraints", &FunctionComparisons::constraints},
+        {"reactions", &FunctionComparisons::reactions},   {"outputs", &FunctionComparisons::outputs},
+        {"events", &FunctionComparisons::events},         {"taylor", &FunctionComparisons::taylor}};
     const auto found = statements.find(function);
     if (found == statements.end()) throw std::logic_error("nothing is said of the function '" + function + "'");
     return found->second;
@@ -69,26 +69,26 @@ class Functions {
     return subjects.systems.front();
   }
 
-  Arrays sizes(const std::string& function, const Arrays& values) const {
+  AbiResults sizes(const std::string& function, const AbiResults& values) const {
     constexpr double least_number = 1e-290;  // bounds are binary64, and smaller numbers have fewer digits there
     const std::vector<std::vector<double>> bounds = program_.bounds(function, at_);
-    Arrays result;
+    AbiResults result;
     for (std::size_t r = 0; r < values.size(); ++r) {
       result.emplace_back();
       for (std::size_t i = 0; i < values[r].size(); ++i) {
         if (!std::isfinite(bounds[r][i])) return {};
         result.back().push_back(cln::abs(values[r][i]) +
-                                size_of_rounding(std::max(bounds[r][i], least_number), oracle_.precision()));
+                                rounding_scale(std::max(bounds[r][i], least_number), oracle_.precision()));
       }
     }
     return result;
   }
 
   void note(const std::string& function, const std::string& against, double difference) {
-    tally_.note(function + " of " + program_.name, against, true, difference);
+    tally_.record(function + " of " + program_.name, against, true, difference);
   }
 
-  std::vector<Real> evaluate(const std::vector<Ref>& roots, const Lookup& lookup) const {
+  std::vector<Real> evaluate(const std::vector<Ref>& roots, const SymbolValues& lookup) const {
     return symbolic::evaluate(*s_.dag, roots, lookup, oracle_.digits());
   }
 
@@ -98,9 +98,9 @@ class Functions {
   struct Sized {
     std::vector<Real> values, sizes;
   };
-  Sized sized(const std::vector<Ref>& roots, const Lookup& lookup) const {
+  Sized sized(const std::vector<Ref>& roots, const SymbolValues& lookup) const {
     constexpr int more = 20, caution = 3;  // digits
-    Lookup large = lookup;
+    SymbolValues large = lookup;
     for (std::size_t i = 0; i < large.state.qddot.size(); ++i)
       large.state.qddot[i] = cln::abs(large.state.qddot[i]) + v_.scale[i];
     for (std::size_t k = 0; k < large.lambda.size(); ++k)
@@ -114,52 +114,52 @@ class Functions {
     for (std::size_t i = 0; i < roots.size(); ++i) {
       const Real& value = result.values[i];
       result.sizes.push_back(cln::abs(value) + cln::abs(largest[i]) +
-                             cln::abs(value - precise[i]) * ten_to(oracle_.digits() + caution));
+                             cln::abs(value - precise[i]) * power_of_ten(oracle_.digits() + caution));
     }
     return result;
   }
 
   /// Difference of array `r` from these expressions of the system.
-  double against(const Arrays& values, std::size_t r, const std::vector<Ref>& roots, const Lookup& lookup) const {
+  double against(const AbiResults& values, std::size_t r, const std::vector<Ref>& roots, const SymbolValues& lookup) const {
     const Sized expected = sized(roots, lookup);
     double largest = 0;
     for (std::size_t i = 0; i < roots.size(); ++i) {
-      largest = std::max(largest, relative(values[r].at(i) - expected.values[i], sizes_[r].at(i) + expected.sizes[i]));
+      largest = std::max(largest, relative_difference(values[r].at(i) - expected.values[i], sizes_[r].at(i) + expected.sizes[i]));
     }
     return largest;
   }
 
   /// Steps of differences are small relative to 1/range: with rates of 1e300 a time of 1e-50 is long.
   int step_digits() const { return oracle_.digits() - guard_digits; }
-  std::optional<Slope> slope(const std::string& function, const Shift& shift) const {
-    return verify::slope(program_, function, at_, shift, step_digits());
+  std::optional<CentralDifference> slope(const std::string& function, const Shift& shift) const {
+    return verify::central_difference(program_, function, at_, shift, step_digits());
   }
   /// The rounding error of differences of the right-hand side.
   std::vector<Real> noise(const std::string& function) const {
-    const std::optional<Arrays> values = program_.call(function, at_, oracle_.digits());
+    const std::optional<AbiResults> values = program_.call(function, at_, oracle_.digits());
     if (!values) return {};
-    const Arrays size = sizes(function, *values);
+    const AbiResults size = sizes(function, *values);
     if (size.empty()) return {};
     std::vector<Real> result;
-    for (const Real& one : size[0]) result.push_back(one * ten_to(-tally_.digits()));
+    for (const Real& one : size[0]) result.push_back(one * power_of_ten(-tally_.digits()));
     return result;
   }
 
-  void prepared(const Arrays& values) {
-    const std::optional<Arrays> rhs = program_.call("rhs", at_, oracle_.digits());
+  void prepared(const AbiResults& values) {
+    const std::optional<AbiResults> rhs = program_.call("rhs", at_, oracle_.digits());
     if (!rhs) return;
     // An exact 0 in one of them may be a rounded sum in the other.
-    const Arrays own = sizes("rhs", *rhs);
+    const AbiResults own = sizes("rhs", *rhs);
     if (own.empty()) return;
     double largest = 0;
     for (std::size_t i = 0; i < values[0].size(); ++i)
-      largest = std::max(largest, relative(values[0][i] - (*rhs)[0][i], sizes_[0][i] + own[0][i]));
+      largest = std::max(largest, relative_difference(values[0][i] - (*rhs)[0][i], sizes_[0][i] + own[0][i]));
     note("rhs_prepared", "its rhs", largest);
   }
 
   /// Compares the columns of array `r`, times the components of a direction, with the central difference along it.
-  void along(const std::string& function, const Arrays& values, std::size_t r, const std::vector<Real>& direction,
-             const std::optional<Slope>& slope) {
+  void along(const std::string& function, const AbiResults& values, std::size_t r, const std::vector<Real>& direction,
+             const std::optional<CentralDifference>& slope) {
     const std::vector<Real> lost = noise("rhs");
     if (!slope || lost.empty()) return;
     const std::size_t rows = lost.size();
@@ -170,67 +170,67 @@ class Functions {
         sum = sum + values[r][i + rows * j] * direction[j];
         size = size + sizes_[r][i + rows * j] * cln::abs(direction[j]);
       }
-      largest = std::max(largest, relative(sum - slope->values[0][i], size));
+      largest = std::max(largest, relative_difference(sum - slope->values[0][i], size));
     }
     note(function, "differences of dx", largest);
   }
 
-  void jacobian(const Arrays& values) {
+  void jacobian(const AbiResults& values) {
     std::vector<Real> direction;
-    for (std::size_t j = 0; j < at_.x.size(); ++j) direction.push_back(component(j));
-    along("jac", values, 0, direction, slope("rhs", [&](At& at, const Real& h) {
+    for (std::size_t j = 0; j < at_.x.size(); ++j) direction.push_back(direction_component(j));
+    along("jac", values, 0, direction, slope("rhs", [&](AbiArguments& at, const Real& h) {
             for (std::size_t j = 0; j < direction.size(); ++j) at.x[j] = at.x[j] + h * direction[j];
           }));
-    along("df/dt", values, 1, {Real(1)}, slope("rhs", [](At& at, const Real& h) { at.t = at.t + h; }));
+    along("df/dt", values, 1, {Real(1)}, slope("rhs", [](AbiArguments& at, const Real& h) { at.t = at.t + h; }));
   }
 
-  void parameters(const Arrays& values) {
+  void parameters(const AbiResults& values) {
     std::vector<Real> direction;
     for (std::size_t j = 0; j < at_.p.size(); ++j)
-      direction.push_back(cln::zerop(at_.p[j]) ? component(j) : component(j) * cln::rational(at_.p[j]));
-    along("jac_p", values, 0, direction, slope("rhs", [&](At& at, const Real& h) {
+      direction.push_back(cln::zerop(at_.p[j]) ? direction_component(j) : direction_component(j) * cln::rational(at_.p[j]));
+    along("jac_p", values, 0, direction, slope("rhs", [&](AbiArguments& at, const Real& h) {
             for (std::size_t j = 0; j < direction.size(); ++j) at.p[j] = at.p[j] + h * direction[j];
           }));
   }
 
   /// Symbol values without friction and with inputs at their defaults, as in the functions without a mode.
-  Lookup without_mode() const {
-    Lookup lookup = lookup_;
+  SymbolValues without_mode() const {
+    SymbolValues lookup = lookup_;
     std::fill(lookup.state.phi.begin(), lookup.state.phi.end(), Real(0));
     lookup.state.inputs = program_.default_inputs;
     return lookup;
   }
 
-  void mass(const Arrays& values) {
+  void mass(const AbiResults& values) {
     const std::size_t n = s_.free.size();
     std::vector<Ref> M;
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t i = 0; i < n; ++i) M.push_back(s_.M[i * n + j]);
     std::vector<Ref> h;
     for (const Ref f : s_.f) h.push_back(s_.dag->neg(f));
-    const Lookup lookup = without_mode();
-    note("mass", name_of(s_), std::max(against(values, 0, M, lookup), against(values, 1, h, lookup)));
+    const SymbolValues lookup = without_mode();
+    note("mass", system_name(s_), std::max(against(values, 0, M, lookup), against(values, 1, h, lookup)));
   }
 
-  void constraints(const Arrays& values) {
+  void constraints(const AbiResults& values) {
     const std::size_t n = s_.free.size(), m = s_.active.size();
     std::vector<Ref> A;
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t k = 0; k < m; ++k) A.push_back(s_.A[k * n + j]);
-    const Lookup lookup = without_mode();
-    note("constraints", name_of(s_),
+    const SymbolValues lookup = without_mode();
+    note("constraints", system_name(s_),
          std::max(
              {against(values, 0, s_.psi, lookup), against(values, 1, A, lookup), against(values, 2, s_.b, lookup)}));
   }
 
-  void reactions(const Arrays& values) {
+  void reactions(const AbiResults& values) {
     std::vector<Ref> roots;
     for (const system::Reaction& reaction : s_.reactions) roots.push_back(reaction.value);
-    note("reactions", name_of(s_), against(values, 0, roots, lookup_));
+    note("reactions", system_name(s_), against(values, 0, roots, lookup_));
   }
 
   /// Compares the outputs that the system has; only the program's own system has conserved quantities.
-  void outputs(const Arrays& values) {
+  void outputs(const AbiResults& values) {
     std::vector<Ref> roots;
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < program_.outputs.size(); ++i) {
@@ -244,50 +244,50 @@ class Functions {
     double largest = 0;
     for (std::size_t i = 0; i < roots.size(); ++i) {
       largest = std::max(
-          largest, relative(values[0].at(places[i]) - expected.values[i], sizes_[0].at(places[i]) + expected.sizes[i]));
+          largest, relative_difference(values[0].at(places[i]) - expected.values[i], sizes_[0].at(places[i]) + expected.sizes[i]));
     }
-    if (!roots.empty()) note("outputs", name_of(s_), largest);
+    if (!roots.empty()) note("outputs", system_name(s_), largest);
   }
 
-  void events(const Arrays& values) {
+  void events(const AbiResults& values) {
     std::vector<Ref> roots;
     for (const system::Event& event : s_.events) roots.push_back(event.value);
-    if (!roots.empty()) note("events", name_of(s_), against(values, 0, roots, lookup_));
+    if (!roots.empty()) note("events", system_name(s_), against(values, 0, roots, lookup_));
   }
 
   /// Compares dL/dqdot along a direction of the rates, and the rates of the momenta along the path, which include
   /// constraint forces and friction.
-  void momenta(const Arrays& values) {
+  void momenta(const AbiResults& values) {
     const std::size_t n = s_.free.size();
     const int digits = step_digits(), more = 3 * digits + 10;
     const Precision precision(more);
-    const Real h = precision.round(ten_to(-digits));
+    const Real h = precision.round(power_of_ten(-digits));
     const auto lagrangian = [&](const Real& step) {
-      Lookup lookup = lookup_;
+      SymbolValues lookup = lookup_;
       for (std::size_t i = 0; i < n; ++i) {
         Real& rate = lookup.state.qdot[s_.free[i]];
-        rate = precision.round(rate) + step * component(i);
+        rate = precision.round(rate) + step * direction_component(i);
       }
       const std::vector<Real> energies = symbolic::evaluate(*s_.dag, {s_.kinetic, s_.potential}, lookup, more);
       return Real(energies[0] - energies[1]);
     };
-    Real sum = 0, size = (cln::abs(v_.kinetic) + cln::abs(v_.potential)) * ten_to(-tally_.digits());
+    Real sum = 0, size = (cln::abs(v_.kinetic) + cln::abs(v_.potential)) * power_of_ten(-tally_.digits());
     for (std::size_t i = 0; i < n; ++i) {
-      sum = sum + values[0][i] * component(i);
-      size = size + sizes_[0][i] * cln::abs(component(i));
+      sum = sum + values[0][i] * direction_component(i);
+      size = size + sizes_[0][i] * cln::abs(direction_component(i));
     }
-    note("momenta", "the Lagrangian of " + name_of(s_),
-         relative(sum - (lagrangian(h) - lagrangian(-h)) / (2 * h), size));
+    note("momenta", "the Lagrangian of " + system_name(s_),
+         relative_difference(sum - (lagrangian(h) - lagrangian(-h)) / (2 * h), size));
 
-    const std::optional<Arrays> rhs = program_.call("rhs", at_, oracle_.digits());
+    const std::optional<AbiResults> rhs = program_.call("rhs", at_, oracle_.digits());
     if (!rhs) return;
-    const std::optional<Slope> slopes = slope("momenta", [&](At& at, const Real& step) {
+    const std::optional<CentralDifference> slopes = slope("momenta", [&](AbiArguments& at, const Real& step) {
       at.t = at.t + step;
-      for (std::size_t i = 0; i < at.x.size(); ++i) at.x[i] = at.x[i] + step * exactly((*rhs)[0][i]);
+      for (std::size_t i = 0; i < at.x.size(); ++i) at.x[i] = at.x[i] + step * to_exact((*rhs)[0][i]);
     });
     const std::vector<Real> lost = noise("momenta");
     if (!slopes || lost.empty()) return;
-    Lookup frictionless = lookup_;
+    SymbolValues frictionless = lookup_;
     std::fill(frictionless.state.phi.begin(), frictionless.state.phi.end(), Real(0));
     const std::vector<Real> with = evaluate(s_.f, lookup_), without = evaluate(s_.f, frictionless),
                             A = evaluate(s_.A, lookup_), M = evaluate(s_.M, lookup_);
@@ -310,22 +310,22 @@ class Functions {
     constexpr int digits_of_none = 20;
     double largest = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      largest = std::max(largest, relative(slopes->values[0][i] - expected[i].value,
-                                           expected[i].scale + most * ten_to(-digits_of_none)));
+      largest = std::max(largest, relative_difference(slopes->values[0][i] - expected[i].value,
+                                           expected[i].scale + most * power_of_ten(-digits_of_none)));
     }
     note("rates of momenta", "momenta along the path", largest);
   }
 
   /// The polynomial X of order K satisfies X' = f(X) except for terms of h^K: h is so small that they are below the
   /// compared digits.
-  void taylor(const Arrays&) {
+  void taylor(const AbiResults&) {
     constexpr int order = 4, beyond = 20;
     const int exponent = step_digits() + beyond, more = order * exponent + 60;
     const Precision precision(more);
-    const Real h = precision.round(ten_to(-exponent));
-    At at = with_digits(at_, precision);
+    const Real h = precision.round(power_of_ten(-exponent));
+    AbiArguments at = with_digits(at_, precision);
     at.order = order;
-    const std::optional<Arrays> c = program_.call("taylor", at, more);
+    const std::optional<AbiResults> c = program_.call("taylor", at, more);
     if (!c) return;
     const std::size_t n = at_.x.size();
     std::vector<Real> x(n, Real(0)), rate(n, Real(0));
@@ -341,36 +341,36 @@ class Functions {
     }
     at.x = x;
     at.t = at.t + h;
-    const std::optional<Arrays> rhs = program_.call("rhs", at, more);
+    const std::optional<AbiResults> rhs = program_.call("rhs", at, more);
     if (!rhs) return;
     // If the last coefficients vanish, the rounding errors of the others and of the sums in dx remain.
-    const Arrays summed = sizes("rhs", *rhs);
+    const AbiResults summed = sizes("rhs", *rhs);
     if (summed.empty()) return;
-    const Real size = last * order * cln::expt(h, order - 1) + most * ten_to(exponent - more);
+    const Real size = last * order * cln::expt(h, order - 1) + most * power_of_ten(exponent - more);
     double largest = 0;
     for (std::size_t i = 0; i < n; ++i)
-      largest = std::max(largest, relative(rate[i] - (*rhs)[0][i], size + summed[0][i] * ten_to(exponent - more)));
+      largest = std::max(largest, relative_difference(rate[i] - (*rhs)[0][i], size + summed[0][i] * power_of_ten(exponent - more)));
     note("taylor", "dx along the series", largest);
   }
 
   const ProgramForm& program_;
   const SystemValues& v_;
   const Oracle& oracle_;
-  Tally& tally_;
+  ComparisonTable& tally_;
   const EquationSystem& s_;
-  At at_;
-  Lookup lookup_;
-  Arrays sizes_;
+  AbiArguments at_;
+  SymbolValues lookup_;
+  AbiResults sizes_;
 };
 
 }  // namespace
 
-Real size_of_rounding(double bound, const Precision& precision) {
+Real rounding_scale(double bound, const Precision& precision) {
   return precision.round(exact(bound) * cln::expt(cln::cl_RA(2), cln::cl_I(53)));
 }
 
-At arguments_at(const EquationSystem& s, const State& state, int mode) {
-  At at{state.t, {}, state.parameters, state.inputs, mode, 4};
+AbiArguments arguments_at(const EquationSystem& s, const State& state, int mode) {
+  AbiArguments at{state.t, {}, state.parameters, state.inputs, mode, 4};
   for (const std::uint32_t i : s.free) at.x.push_back(state.q[i]);
   for (const std::uint32_t i : s.free) at.x.push_back(state.qdot[i]);
   for (const system::IntegralState& integral : s.integrals) at.x.push_back(state.integrals[integral.integral]);
@@ -378,9 +378,9 @@ At arguments_at(const EquationSystem& s, const State& state, int mode) {
 }
 
 void compare_functions(const Subjects& subjects, const SystemValues& values, const Oracle& oracle, int mode,
-                       Tally& tally) {
+                       ComparisonTable& tally) {
   if (subjects.programs.empty() || !subjects.programs.front().call) return;
-  Functions(subjects, values, oracle, mode, tally)();
+  FunctionComparisons(subjects, values, oracle, mode, tally)();
 }
 
 }  // namespace eomgen::verify

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verify/points.hpp"
+#include "verify/state_sampler.hpp"
 
 #include <doctest/doctest.h>
 
@@ -21,7 +21,7 @@ constexpr std::size_t many = 100;
 TEST_CASE("points: states satisfy the constraints and their rates to all digits") {
   for (const model::Model& m : {moving_sphere(), rod_pendulum()}) {
     const Oracle oracle(m, 60);
-    Points points(oracle, 7, many);
+    StateSampler points(oracle, 7, many);
     for (int i = 0; i < 10; ++i) {
       const State s = points.next();
       const ConstraintValues c = oracle.constraint_values(s);
@@ -34,7 +34,7 @@ TEST_CASE("points: states satisfy the constraints and their rates to all digits"
 TEST_CASE("points: the same seed gives the same states, another seed others") {
   const model::Model m = moving_sphere();
   const Oracle oracle(m, 60);
-  Points a(oracle, 3, many), b(oracle, 3, many), c(oracle, 4, many);
+  StateSampler a(oracle, 3, many), b(oracle, 3, many), c(oracle, 4, many);
   for (int i = 0; i < 3; ++i) {
     const State x = a.next(), y = b.next(), z = c.next();
     CHECK(x.q == y.q);
@@ -47,7 +47,7 @@ TEST_CASE("points: the same seed gives the same states, another seed others") {
 TEST_CASE("points: coordinates stay inside their ranges, away from the ends, and parameters keep their signs") {
   const model::Model m = moving_sphere();
   const Oracle oracle(m, 60);
-  Points points(oracle, 11, many);
+  StateSampler points(oracle, 11, many);
   for (int i = 0; i < 50; ++i) {
     const State s = points.next();
     CHECK(cln::double_approx(s.q[1]) > 0.07);
@@ -61,7 +61,7 @@ TEST_CASE("points: undefined states are rejected and counted; too many rejection
   const Formula th = leaf(m, Op::coordinate, 0);
   generalized(m, 0, call(Fn::log, th));  // undefined for negative angles
   const Oracle oracle(m, 60);
-  Points points(oracle, 5, many);
+  StateSampler points(oracle, 5, many);
   for (int i = 0; i < 20; ++i) CHECK(cln::plusp(points.next().q[0]));
   REQUIRE(points.rejected().size() == 1);
   CHECK(points.rejected().begin()->first == "log of a number that is not positive");
@@ -70,7 +70,7 @@ TEST_CASE("points: undefined states are rejected and counted; too many rejection
   model::Model never = chain(1);
   generalized(never, 0, call(Fn::log, number(never, -1)));
   const Oracle of_never(never, 60);
-  Points none(of_never, 5, many);
+  StateSampler none(of_never, 5, many);
   try {
     none.next();
     FAIL("a state was found");
@@ -85,7 +85,7 @@ TEST_CASE("points: undefined numbers of a scene, an input or a parameter are rep
     model::Model m = cart_pendulum();
     spoil(m, call(Fn::log, number(m, 0)).id);
     try {
-      Points(Oracle(m, 60), 5, many);
+      StateSampler(Oracle(m, 60), 5, many);
     } catch (const Error& error) {
       CHECK(error.fault() == ErrorKind::input);
       return error.message();
@@ -109,7 +109,7 @@ TEST_CASE("points: states keep a distance from kinks, contradictory constraints 
   const Formula th = leaf(m, Op::coordinate, 0);
   generalized(m, 0, call(Fn::abs, th - th));  // always at the kink
   const Oracle oracle(m, 60);
-  Points points(oracle, 5, many);
+  StateSampler points(oracle, 5, many);
   CHECK_THROWS_AS(points.next(), Error);
   CHECK(points.rejected().count("too near a kink") == 1);
 
@@ -117,7 +117,7 @@ TEST_CASE("points: states keep a distance from kinks, contradictory constraints 
   const Formula x = leaf(twice, Op::coordinate, 0), y = leaf(twice, Op::coordinate, 1);
   holonomic(twice, "again", {2 * ((x ^ 2) + (y ^ 2)) - 2 * (leaf(twice, Op::parameter, 2) ^ 2)});
   const Oracle of_twice(twice, 60);
-  Points none(of_twice, 5, many);
+  StateSampler none(of_twice, 5, many);
   CHECK_THROWS_AS(none.next(), Error);
   CHECK(none.rejected().count("the constraints lose rank") == 1);
 }
@@ -125,9 +125,9 @@ TEST_CASE("points: states keep a distance from kinks, contradictory constraints 
 TEST_CASE("oracle: the solved motion of P7 satisfies (2.109), and its reaction is (2.111)") {
   const model::Model m = moving_sphere();
   const Oracle oracle(m, 60);
-  Points points(oracle, 9, many);
+  StateSampler points(oracle, 9, many);
   for (int i = 0; i < 5; ++i) {
-    const Motion motion = motion_at(oracle, points.next());
+    const Motion motion = solve_motion(oracle, points.next());
     const State& s = motion.state;
     const Real &mass = s.parameters[0], &g = s.parameters[1], &D = s.parameters[2];
     const Real d = s.q[0], d1 = s.qdot[0], &pd = s.qdot[1], &td = s.qdot[2];

@@ -20,12 +20,12 @@ struct Mass {
   std::uint32_t place;
   model::NodeId mass;
 };
-std::vector<Mass> masses(const model::Model& model);
+std::vector<Mass> list_masses(const model::Model& model);
 
 /// J v, with the inertia tensor of a body along its current axes.
 Vector inertia_times(const model::Body& body, Interpreter& at, const Vector& v);
 
 /// |difference| / scale as a binary64; 0 if both vanish, 1 if only the scale does.
-double relative(const Real& difference, const Real& scale);
+double relative_difference(const Real& difference, const Real& scale);
 
 }  // namespace eomgen::verify

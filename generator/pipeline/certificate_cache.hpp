@@ -14,9 +14,9 @@ namespace eomgen::pipeline {
 std::string program_identity();
 
 /// The cached certificate; nothing if there is none, or it cannot be read.
-std::optional<verify::Certificate> kept_certificate(const std::string& key);
+std::optional<verify::Certificate> load_certificate(const std::string& key);
 
 /// Stores a certificate if it is positive and complete. A failure to write is no error.
-void keep_certificate(const std::string& key, const verify::Certificate& certificate);
+void store_certificate(const std::string& key, const verify::Certificate& certificate);
 
 }  // namespace eomgen::pipeline

@@ -8,16 +8,16 @@ namespace eomgen::pipeline {
 /// Every run adds the values of its parameters to the graph of the model, and the graph never shrinks. The results of a
 /// run do not refer to them. The graph is therefore reset from time to time, so that the memory of a sweep does not
 /// grow with its runs.
-class TidyGraph {
+class GraphTrimmer {
  public:
   /// If charts may change, second charts stay in the graph, and it is not reset.
-  explicit TidyGraph(const Simulation& first)
+  explicit GraphTrimmer(const Simulation& first)
       : graph_(*first.derived->mechanics.dag),
         was_(graph_),
         most_(2 * graph_.size() + room),
         kept_(first.charts != nullptr) {}
   /// Resets a large graph; to be called between runs.
-  void tidy() {
+  void trim() {
     if (!kept_ && graph_.size() > most_) graph_ = was_;
   }
 

@@ -10,17 +10,17 @@
 
 namespace eomgen::pipeline {
 
-class Beginnings {
+class StartChecker {
  public:
-  Beginnings(std::shared_ptr<const model::Model> model, std::string scene);
+  StartChecker(std::shared_ptr<const model::Model> model, std::string scene);
 
   /// Whether the start can be computed with these values. Throws Error if no start at all is possible.
-  bool can_begin(run::Overrides overrides);
+  bool can_start(run::Overrides overrides);
   /// The error of the first run without a valid start.
   const std::optional<Error>& refusal() const { return refusal_; }
 
  private:
-  std::unique_ptr<Derived> derived_;
+  std::unique_ptr<DerivedModel> derived_;
   std::string scene_;
   symbolic::Dag was_;  // the initial graph of the model: every start adds its values to the graph
   bool charts_;

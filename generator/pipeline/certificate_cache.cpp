@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/kept_certificates.hpp"
+#include "pipeline/certificate_cache.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -75,7 +75,7 @@ std::string program_identity() {
   return program + (known ? " " + of_file(library.dli_fname) : "");
 }
 
-std::optional<verify::Certificate> kept_certificate(const std::string& key) {
+std::optional<verify::Certificate> load_certificate(const std::string& key) {
   const std::optional<std::filesystem::path> folder = folder_of_certificates();
   if (!folder) return std::nullopt;
   try {
@@ -93,7 +93,7 @@ std::optional<verify::Certificate> kept_certificate(const std::string& key) {
   }
 }
 
-void keep_certificate(const std::string& key, const verify::Certificate& certificate) {
+void store_certificate(const std::string& key, const verify::Certificate& certificate) {
   if (!certificate.pass || certificate.interrupted) return;
   const std::optional<std::filesystem::path> folder = folder_of_certificates();
   if (!folder) return;

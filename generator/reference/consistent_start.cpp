@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "reference/consistent.hpp"
+#include "reference/consistent_start.hpp"
 
 #include <cln/dfloat.h>
 #include <cln/real.h>
@@ -106,7 +106,7 @@ class Start {
 
 }  // namespace
 
-std::vector<Number> consistent(const program::Function& constraints, std::size_t n, const Number& t,
+std::vector<Number> make_consistent(const program::Function& constraints, std::size_t n, const Number& t,
                                std::vector<Number> x, const std::vector<double>& p, int digits) {
   return Start(constraints, n, p, digits).moved(t, std::move(x));
 }
