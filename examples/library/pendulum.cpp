@@ -20,9 +20,9 @@ int main() {
     std::fputs(model.equations().latex().c_str(), stdout);
     for (const eomgen::SourceFile& file : model.emit({.target = "c"}).files) std::ofstream(file.name) << file.text;
     const eomgen::Motion motion = model.run();
-    std::printf("%s at t = %g: phi = %.12f +- %.0e\n", motion.outcome.c_str(), motion.t, motion.at_end("phi"),
+    std::printf("%s at t = %g: phi = %.12f +- %.0e\n", motion.outcome.c_str(), motion.t, motion.final_value("phi"),
                 motion.error_estimate.back().second);
-    return motion.ended() ? 0 : 3;
+    return motion.is_complete() ? 0 : 3;
   } catch (const eomgen::Error& error) {
     std::fputs(error.what(), stderr);
     return error.exit_code();

@@ -138,13 +138,13 @@ Benchmark benchmark(const BenchmarkRequest& asked) {
   problem.progress = [&show](double fraction) { show(fmt::format("reference: {:.0f} %", 100 * fraction)); };
   const Clock::time_point start = Clock::now();
   result.reference = reference::solve(problem);
-  result.seconds_reference = std::chrono::duration<double>(Clock::now() - start).count();
+  result.reference_seconds = std::chrono::duration<double>(Clock::now() - start).count();
 
   bench::Request measured{request, result.reference, times, solvers_for(asked, scene, request.code, result.left_out)};
-  measured.seconds_limit = asked.seconds;
-  if (asked.libraries && asked.solvers.empty()) {
+  measured.seconds_limit = asked.max_seconds;
+  if (asked.other_libraries && asked.solvers.empty()) {
     show("compiling what calls other libraries");
-    bench::FoundLibraries found = bench::find_libraries(request, problem.x, asked.seconds);
+    bench::FoundLibraries found = bench::find_libraries(request, problem.x, asked.max_seconds);
     measured.external_solvers = std::move(found.external_solvers);
     result.left_out.insert(result.left_out.end(), found.left_out.begin(), found.left_out.end());
   }

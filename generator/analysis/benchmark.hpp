@@ -19,8 +19,8 @@ struct BenchmarkRequest {
   pipeline::ApproachChoice approach = pipeline::ApproachChoice::automatic;
   pipeline::FormChoice form = std::nullopt;
   std::vector<std::string> solvers;  // empty: all eligible solvers
-  double seconds = 10;               // time limit of a run, s
-  bool libraries = true;             // also measure solvers of other libraries
+  double max_seconds = 10;             // time limit of a run, s
+  bool other_libraries = true;             // also measure solvers of other libraries
   std::uint64_t seed = 1;
   std::function<void(const std::string& what)> progress;
   const std::atomic<bool>* interrupt = nullptr;
@@ -32,7 +32,7 @@ struct Benchmark {
   std::vector<std::string> states;  // names of the states that the errors of rows refer to
   std::vector<bench::Row> rows;
   std::vector<std::pair<std::string, std::string>> left_out;  // solver, why
-  double seconds_reference = 0;
+  double reference_seconds = 0;
 
   /// Whether a solver finished and the reference solution is accurate enough.
   bool conclusive() const;

@@ -42,7 +42,7 @@ std::string name_of(const print::PrintedFormula& item) {
 }
 
 /// Items that exceeded their budget, and equations that are shown in parts.
-std::vector<work::LeftOut> left_out_of(const std::vector<print::PrintedFormula>& items, const reading::DisplayForm& form) {
+std::vector<work::LeftOut> omissions_of(const std::vector<print::PrintedFormula>& items, const reading::DisplayForm& form) {
   std::vector<work::LeftOut> result;
   if (form.is_unexpanded) result.push_back({"equations written out", form.unexpanded_reason});
   if (!form.rotations_skip_reason.empty()) result.push_back({"angular velocities", form.rotations_skip_reason});
@@ -79,7 +79,7 @@ void add_conserved(mechanics::Mechanics& mechanics, reading::DisplayForms& forms
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const reading::DisplayForm& form = forms(system::Approach::two, reading::Extent::equations);
   for (const conservation::ConservedQuantity& c : conservation::conserved_quantities(mechanics, system)) {
-    const auto named = in_named_functions(mechanics, form, c);
+    const auto named = express_in_named_functions(mechanics, form, c);
     print::PrintedFormula item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
                              : print::render_expression(mechanics, "conserved", c.name, c.expression);
     item.role = c.title;
@@ -108,15 +108,15 @@ void add_linear(const mechanics::Mechanics& mechanics, reading::DisplayForms& fo
   for (print::PrintedFormula& item : print::render_linear(mechanics, forms.linear())) items.push_back(std::move(item));
 }
 
-system::Approach approach_to_show(const mechanics::Mechanics& m) {
+system::Approach displayed_approach(const mechanics::Mechanics& m) {
   const bool one = !mechanics::eliminate_dependent_coordinates(m).fixed.empty() || !m.contacts.empty();
   return one ? system::Approach::one : system::Approach::two;
 }
 
 }  // namespace
 
-reading::DisplayForm form_to_show(const mechanics::Mechanics& m) {
-  return reading::derive_display_form(m, approach_to_show(m));
+reading::DisplayForm displayed_form(const mechanics::Mechanics& m) {
+  return reading::derive_display_form(m, displayed_approach(m));
 }
 
 Equations equations(std::shared_ptr<const model::Model> model, const EquationsRequest& request) {
@@ -125,7 +125,7 @@ Equations equations(std::shared_ptr<const model::Model> model, const EquationsRe
   const work::Stage stage("deriving the equations");
   mechanics::Mechanics mechanics = mechanics::build_mechanics(std::move(model));
   reading::DisplayForms forms(mechanics);
-  const reading::DisplayForm& form = forms(request.approach == ApproachChoice::automatic ? approach_to_show(mechanics)
+  const reading::DisplayForm& form = forms(request.approach == ApproachChoice::automatic ? displayed_approach(mechanics)
                                            : request.approach == ApproachChoice::one     ? system::Approach::one
                                                                                          : system::Approach::two);
   Equations result;
@@ -141,7 +141,7 @@ Equations equations(std::shared_ptr<const model::Model> model, const EquationsRe
     result.interrupted = true;
   }
   const work::DeferInterrupt kept;
-  result.left_out = left_out_of(result.items, form);
+  result.left_out = omissions_of(result.items, form);
   const bool about_forces = std::any_of(request.show.begin(), request.show.end(), [](const auto& key) {
     return key == "equations" || key == "reactions" || key == "all";
   });

@@ -23,7 +23,7 @@ const std::vector<std::string>& equation_keys();
 
 struct Multiplier {
   std::string name, latex;
-  std::string of;       // label of the constraint
+  std::string constraint;  // label of the constraint
   std::string meaning;  // a phrase
 };
 
@@ -38,7 +38,7 @@ struct Equations {
 
 /// Derives the display form by the default approach. Approach I also yields constraint forces; it is chosen if a
 /// constraint eliminates something or a contact has a force.
-reading::DisplayForm form_to_show(const mechanics::Mechanics& mechanics);
+reading::DisplayForm displayed_form(const mechanics::Mechanics& mechanics);
 
 /// Throws Error{stage "derive"} for an unknown key. On interruption returns a partial result with `interrupted` set.
 Equations equations(std::shared_ptr<const model::Model> model, const EquationsRequest& request);

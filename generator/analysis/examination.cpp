@@ -22,7 +22,7 @@ print::PrintedFormula item_of(const mechanics::Mechanics& m, symbolic::Ref expre
 }
 std::string shown(const mechanics::Mechanics& m, symbolic::Ref expression) { return item_of(m, expression).text; }
 
-std::string use_of(const mechanics::Mechanics& m, const mechanics::Constraint& c, bool joint) {
+std::string treatment_of(const mechanics::Mechanics& m, const mechanics::Constraint& c, bool joint) {
   std::string use = "keeps a multiplier";
   for (const mechanics::FixedCoordinate& fixed : m.fixed) {
     if (m.constraints[fixed.constraint].label == c.label) use = "fixes " + m.model->coordinates[fixed.coordinate].name;
@@ -50,7 +50,7 @@ void add_constraints(const mechanics::Mechanics& m, Examination& found) {
     }
     one.redundant = !m.is_independent(static_cast<std::uint32_t>(k));
     if (!joint) one.determined = c.determined;
-    one.use = use_of(m, c, joint);
+    one.treatment = treatment_of(m, c, joint);
     one.reason = m.classification[k].reason;
     found.constraints.push_back(std::move(one));
   }
@@ -137,9 +137,9 @@ std::string value_of(const mechanics::Mechanics& m, symbolic::Ref value, const s
 void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
   const model::Model& model = *read;
   mechanics::Mechanics m = mechanics::build_mechanics(std::move(read));
-  bool every_unit = true;
-  const auto unit_of = [&every_unit](const auto& quantity) {
-    every_unit = every_unit && quantity.unit.dimension.has_value();
+  bool has_all_units = true;
+  const auto unit_of = [&has_all_units](const auto& quantity) {
+    has_all_units = has_all_units && quantity.unit.dimension.has_value();
     return quantity.unit.text;
   };
   for (std::uint32_t i = 0; i < model.coordinates.size(); ++i)
@@ -159,7 +159,7 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
                                   : "0",
                             ""});
   }
-  found.every_unit = every_unit;
+  found.has_all_units = has_all_units;
   add_constraints(m, found);
   add_joints(m, found);
   add_contacts(m, found);

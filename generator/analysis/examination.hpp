@@ -33,7 +33,7 @@ struct ExaminedConstraint {
   std::optional<std::string> integral;   // the integrated equation
   bool redundant = false;                // follows from others and has no multiplier
   std::optional<bool> determined;        // whether the motion determines its force; not set for joints
-  std::string use, reason;               // treatment in the equations; reason for `integrable`
+  std::string treatment, reason;               // treatment in the equations; reason for `integrable`
   std::vector<std::string> integral_of;  // the constraints that together have this integral
 };
 
@@ -86,7 +86,7 @@ struct Examination {
   std::vector<ExaminedConserved> conserved;
   std::vector<ExaminedSet> singular;
   std::vector<ExaminedChart> charts;
-  bool every_unit = false;  // all units are given and were checked
+  bool has_all_units = false;  // all units are given and were checked
   std::vector<work::LeftOut> left_out;
   bool interrupted = false;  // the result is partial
 };

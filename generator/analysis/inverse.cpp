@@ -72,8 +72,8 @@ class Prescribed {
  public:
   explicit Prescribed(mechanics::Mechanics mechanics) : model_(*mechanics.model), m_(std::move(mechanics)) {}
 
-  InverseAnswer answer(const InverseRequest& request) {
-    InverseAnswer result;
+  InverseDynamicsResult answer(const InverseRequest& request) {
+    InverseDynamicsResult result;
     verify::Subjects subjects;
     subjects.systems = verify::all_formulations(m_);
     const verify::Certificate certificate =
@@ -105,7 +105,7 @@ class Prescribed {
         result.detail = fmt::format("at t = {}", t_);
       }
     }
-    if (result.outcome == eom::Outcome::done) tell_jumps(result);
+    if (result.outcome == eom::Outcome::done) warn_of_jumps(result);
     return result;
   }
 
@@ -128,7 +128,7 @@ class Prescribed {
   }
 
   /// Integrals over time without closed form.
-  void advance(double t, InverseAnswer& result) {
+  void advance(double t, InverseDynamicsResult& result) {
     const double from = std::exchange(t_, t);
     if (integrals_.empty()) return;
     std::vector<symbolic::Ref> rates;
@@ -149,7 +149,7 @@ class Prescribed {
   }
 
   /// Warns of jumps of velocities: there the forces are impulses, which no row shows.
-  void tell_jumps(InverseAnswer& result) const {
+  void warn_of_jumps(InverseDynamicsResult& result) const {
     const eom::hybrid::Jumps jumps(scene_.jumps, system_.free.size(), integrals_.size(), scene_.inputs.size(),
                                    scene_.parameters, !scene_.clock.breaks.empty());
     if (!jumps.by_time()) return;
@@ -170,7 +170,7 @@ class Prescribed {
     }
   }
 
-  void write_row(const InverseRequest& request, InverseAnswer& result) const {
+  void write_row(const InverseRequest& request, InverseDynamicsResult& result) const {
     const std::vector<double> row = values_at(t_, integrals_.data(), values_);
     if (request.row) request.row(t_, row);
     if (std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); })) return;
@@ -188,8 +188,8 @@ class Prescribed {
 };
 
 /// Case that some coordinates are free: integrates the equations of motion.
-InverseAnswer along_a_run(const InverseRequest& asked) {
-  InverseAnswer result;
+InverseDynamicsResult along_a_run(const InverseRequest& asked) {
+  InverseDynamicsResult result;
   pipeline::SimulationRequest request;
   request.model = asked.model;
   request.scene = asked.scene;
@@ -226,7 +226,7 @@ InverseAnswer along_a_run(const InverseRequest& asked) {
 
 }  // namespace
 
-InverseAnswer inverse_dynamics(const InverseRequest& request) {
+InverseDynamicsResult inverse_dynamics(const InverseRequest& request) {
   mechanics::Mechanics mechanics = mechanics::build_mechanics(request.model);
   return mechanics.free.empty() ? Prescribed(std::move(mechanics)).answer(request) : along_a_run(request);
 }

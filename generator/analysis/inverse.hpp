@@ -23,13 +23,13 @@ struct InverseRequest {
   const std::atomic<bool>* interrupt = nullptr;
 };
 
-struct InverseAnswer {
+struct InverseDynamicsResult {
   std::vector<std::string> columns, forces;  // `forces`: the columns that are requested forces
   eom::Outcome outcome = eom::Outcome::done;
   std::string detail, certificate;
 };
 
 /// Throws Error{stage "inverse"} if no constraint prescribes a motion, or for an unknown name.
-InverseAnswer inverse_dynamics(const InverseRequest& request);
+InverseDynamicsResult inverse_dynamics(const InverseRequest& request);
 
 }  // namespace eomgen::analysis

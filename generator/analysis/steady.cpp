@@ -159,7 +159,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
   return p;
 }
 
-Source without_slope(const SteadyProblem& p, const linear::State<Precise>& z) {
+NonsmoothTerm find_nonsmooth_term(const SteadyProblem& p, const linear::State<Precise>& z) {
   DerivedModel& d = *p.derived;
   const model::Model& model = d.model;
   symbolic::Dag& dag = *d.mechanics.dag;
@@ -194,12 +194,12 @@ Source without_slope(const SteadyProblem& p, const linear::State<Precise>& z) {
   return {model.where(model.scene(p.scene.name).span), "the equations of motion have"};
 }
 
-linear::Linearisation linearised(const SteadyProblem& p, std::uint64_t seed) {
+linear::Linearisation linearise_at_state(const SteadyProblem& p, std::uint64_t seed) {
   const work::Stage stage("linearising");
   try {
     return linear::linearise(*p.flow, p.z, p.setting, p.neighbours, seed);
   } catch (const std::domain_error& error) {
-    const Source source = without_slope(p, p.z);
+    const NonsmoothTerm source = find_nonsmooth_term(p, p.z);
     throw Error("linearize", source.where, fmt::format("{} no slope at this state: {}", source.what, error.what()),
                 "linearise at another state, or put a smooth law in place of the one that has a kink or a root there");
   }

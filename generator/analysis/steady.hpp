@@ -33,16 +33,16 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
 
 /// A term that is not differentiable at a state: a force, an energy or a constraint of the model. `what`: start of a
 /// sentence, "'F' has" or, if no single term is found, "the equations of motion have".
-struct Source {
+struct NonsmoothTerm {
   SourceLocation where;
   std::string what;
 };
-Source without_slope(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
+NonsmoothTerm find_nonsmooth_term(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
 
 /// Linearises at the state of the problem. Throws Error{stage "linearize"} if a term is not differentiable there.
-linear::Linearisation linearised(const SteadyProblem& problem, std::uint64_t seed);
+linear::Linearisation linearise_at_state(const SteadyProblem& problem, std::uint64_t seed);
 
 /// Rounds to binary64 for display. Values that vanish within the multiple-precision arithmetic become +0.
-double shown(const linear::Precise& x);
+double display_value(const linear::Precise& x);
 
 }  // namespace eomgen::analysis

@@ -233,7 +233,7 @@ void require_ends(const SteadyMotions& result) {
   const SteadyProblem& p = result.problem;
   linear::State<Precise> z;
   for (const double x : search.failure_point) z.push_back(linear::number<Precise>(numeric::exact(x)));
-  const Source source = without_slope(p, z);
+  const NonsmoothTerm source = find_nonsmooth_term(p, z);
   throw Error(
       command, source.where,
       fmt::format("no equilibrium and no steady motion found: {} of the starts end where {} no slope ({})",
@@ -297,7 +297,7 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
     classify_stability(result, request, quantities);
     if (result.points.empty()) require_ends(result);
   } catch (const std::domain_error& error) {
-    const Source source = without_slope(p, p.z);
+    const NonsmoothTerm source = find_nonsmooth_term(p, p.z);
     throw Error(command, source.where,
                 fmt::format("{} no slope at the start of this scene: {}", source.what, error.what()),
                 "begin the search at another start");

@@ -27,7 +27,7 @@ struct HeldValue {
 
 struct SteadyMotion {
   linear::Linearisation l;
-  std::size_t family = 0;
+  std::size_t family_dimension = 0;
   linear::StabilityVerdict verdict;
 };
 

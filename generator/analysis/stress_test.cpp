@@ -141,8 +141,8 @@ StressFindings stress_test(const StressRequest& asked) {
   stress::Request request;
   request.run = [&](const run::Scene& scene) { return pipeline::make_run_request(*simulation.derived, scene, code, true); };
   request.solvers = found.solvers;
-  request.seconds_limit = asked.seconds;
-  request.steps_limit = asked.steps;
+  request.seconds_limit = asked.max_seconds;
+  request.steps_limit = asked.max_steps;
   request.interrupt = asked.interrupt;
   request.progress = asked.progress;
   stress::Auditor auditor(simulation.derived->mechanics, simulation.program);

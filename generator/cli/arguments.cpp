@@ -13,7 +13,7 @@ namespace eomgen::cli {
 namespace {
 
 template <typename Accept>
-Check number(const char* what, Accept accept) {
+ValueCheck number(const char* what, Accept accept) {
   return [what, accept](const std::string& text) {
     double value = 0;
     const bool fine = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && accept(value);
@@ -23,17 +23,17 @@ Check number(const char* what, Accept accept) {
 
 }  // namespace
 
-Check finite_number() {
+ValueCheck finite_number() {
   return number("a number", [](double) { return true; });
 }
-Check positive_number() {
+ValueCheck positive_number() {
   return number("a number greater than 0", [](double value) { return value > 0; });
 }
-Check number_not_negative() {
+ValueCheck nonnegative_number() {
   return number("a number, 0 or greater", [](double value) { return value >= 0; });
 }
 
-Check whole_number(unsigned long long least, unsigned long long most) {
+ValueCheck whole_number(unsigned long long least, unsigned long long most) {
   return [least, most](const std::string& text) {
     const bool digits = !text.empty() && text.size() <= 19 && text.find_first_not_of("0123456789") == std::string::npos;
     const unsigned long long value = digits ? std::stoull(text) : 0;
@@ -47,12 +47,12 @@ Option Option::required() const {
   return *this;
 }
 
-Option Option::check(Check complaint) const {
+Option Option::check(ValueCheck complaint) const {
   option_->check(CLI::Validator([complaint = std::move(complaint)](std::string& text) { return complaint(text); }, ""));
   return *this;
 }
 
-Option Option::show_preset() const {
+Option Option::show_default() const {
   option_->capture_default_str();
   return *this;
 }
@@ -62,7 +62,7 @@ Option Option::repeated() const {
   return *this;
 }
 
-Option Option::one_of(std::vector<std::string> words) const {
+Option Option::suggest_values(std::vector<std::string> words) const {
   words_[option_] = std::move(words);
   return *this;
 }
@@ -92,7 +92,7 @@ Option Arguments::add_flag(const std::string& flags, bool& target, const std::st
   return {app_.add_flag(flags, target, help), words_};
 }
 
-Option Arguments::add_place(const std::string& flags, std::string& target, const std::string& help) {
+Option Arguments::add_output_path(const std::string& flags, std::string& target, const std::string& help) {
   return add_option(flags, target, help).check([](const std::string& path) {
     return path.empty() ? std::string("'' names no file; - is standard output") : std::string();
   });

@@ -18,37 +18,37 @@ class Option;
 namespace eomgen::cli {
 
 /// Validates a value as typed. Returns the error, or an empty string.
-using Check = std::function<std::string(const std::string&)>;
+using ValueCheck = std::function<std::string(const std::string&)>;
 
 /// Validators of numbers. All of them reject infinities and NaN.
-Check finite_number();
-Check positive_number();
-Check number_not_negative();
-Check whole_number(unsigned long long least, unsigned long long most);
+ValueCheck finite_number();
+ValueCheck positive_number();
+ValueCheck nonnegative_number();
+ValueCheck whole_number(unsigned long long least, unsigned long long most);
 
 /// Suggested values of options, for shell completion.
-using Words = std::map<const CLI::Option*, std::vector<std::string>>;
+using SuggestedValues = std::map<const CLI::Option*, std::vector<std::string>>;
 
 class Option {
  public:
-  Option(CLI::Option* option, Words& words) : option_(option), words_(words) {}
+  Option(CLI::Option* option, SuggestedValues& words) : option_(option), words_(words) {}
   Option required() const;
-  Option check(Check complaint) const;
+  Option check(ValueCheck complaint) const;
   /// Shows the default value in the help.
-  Option show_preset() const;
+  Option show_default() const;
   /// Allows repetition, with one value each time.
   Option repeated() const;
   /// Sets the values for shell completion. Does not validate: the command reports other values.
-  Option one_of(std::vector<std::string> words) const;
+  Option suggest_values(std::vector<std::string> words) const;
 
  private:
   CLI::Option* option_;
-  Words& words_;
+  SuggestedValues& words_;
 };
 
 class Arguments {
  public:
-  Arguments(CLI::App& app, Words& words) : app_(app), words_(words) {}
+  Arguments(CLI::App& app, SuggestedValues& words) : app_(app), words_(words) {}
 
   /// Flags without hyphens declare a positional argument.
   Option add_option(const std::string& flags, std::string& target, const std::string& help);
@@ -61,7 +61,7 @@ class Arguments {
   Option add_flag(const std::string& flags, bool& target, const std::string& help);
 
   /// Adds an option for an output file or folder, the same in all commands. An empty path is an error.
-  Option add_place(const std::string& flags, std::string& target, const std::string& help);
+  Option add_output_path(const std::string& flags, std::string& target, const std::string& help);
   /// Adds a list option: it may be repeated, takes one word each time, and splits it at `delimiter`. A CLI11 list would
   /// also take MODEL.
   Option add_list(const std::string& flag, std::vector<std::string>& target, const std::string& help,
@@ -69,7 +69,7 @@ class Arguments {
 
  private:
   CLI::App& app_;
-  Words& words_;
+  SuggestedValues& words_;
 };
 
 }  // namespace eomgen::cli

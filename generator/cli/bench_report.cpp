@@ -49,7 +49,7 @@ Json BenchReport::json() const {
             {"digits", found.reference.digits},
             {"digits_at_end", found.reference.digits_at_end},
             {"steps", found.reference.steps},
-            {"seconds", found.seconds_reference},
+            {"seconds", found.reference_seconds},
             {"end", end}}},
           {"rows", list},
           {"left_out", missing},
@@ -63,7 +63,7 @@ std::string BenchReport::text() const {
   std::string out = fmt::format("model       {}, scene {}, t = {} to {}\n", found.simulation.derived->model.id,
                                 scene.name, scene.t0, scene.t1);
   out += fmt::format("reference   {}: they agree in {} digits, at the end in {} ({:.1f} s)\n", found.reference.method,
-                     found.reference.digits, found.reference.digits_at_end, found.seconds_reference);
+                     found.reference.digits, found.reference.digits_at_end, found.reference_seconds);
   out += fmt::format("machine     {}, {} cores, {}; medians\n\n", machine.processor, machine.cores, compiler);
   out += fmt::format("{:<20} {:>13} {:>10} {:>10} {:>12} {:>9} {:>11}  {}\n", "solver", "rtol, or step", "error",
                      "along", "ms", "steps", "evaluations", "outcome");

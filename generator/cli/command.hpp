@@ -11,13 +11,13 @@
 
 namespace eomgen::cli {
 
-class Team;
+class ProcessGroup;
 
 /// Options common to all commands, and the group of processes that shares the work (nullptr: a single process).
-struct Common {
+struct CommonOptions {
   bool json = false;
   std::uint64_t seed = 1;
-  Team* team = nullptr;
+  ProcessGroup* group = nullptr;
 };
 
 /// A command. `declare` adds its options to the parser and returns the function that executes the command and returns
@@ -25,7 +25,7 @@ struct Common {
 struct Command {
   const char* name;
   const char* summary;
-  std::function<int(const Common&)> (*declare)(Arguments&);
+  std::function<int(const CommonOptions&)> (*declare)(Arguments&);
 };
 
 std::span<const Command> commands();

@@ -65,15 +65,15 @@ class HelpPage : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
     const std::string page = CLI::Formatter::make_help(app, std::move(name), mode);
-    if (app->get_parent() != nullptr) return page + fmt::format("\nMore: {}\n", documentation("commands.md"));
+    if (app->get_parent() != nullptr) return page + fmt::format("\nMore: {}\n", documentation_path("commands.md"));
     constexpr const char* examples =
         "Examples:\n"
         "  eomgen new pendulum                               a commented model to start from: pendulum.toml\n"
         "  eomgen derive pendulum.toml                       its equations of motion\n"
         "  eomgen run pendulum.toml --out pendulum.csv       its motion, as a table\n\n";
     return examples + page +
-           fmt::format("\nDocumentation: {}; the format of models: {}\n", documentation("commands.md"),
-                       documentation("model-format.md"));
+           fmt::format("\nDocumentation: {}; the format of models: {}\n", documentation_path("commands.md"),
+                       documentation_path("model-format.md"));
   }
 };
 
@@ -93,8 +93,8 @@ struct Declaration::Parser {
   Parser(const char* name) : app("eomgen: equations of motion of mechanical systems, from a text model", name) {}
 
   CLI::App app;
-  std::map<const CLI::App*, std::function<int(const Common&)>> actions;
-  Words words;
+  std::map<const CLI::App*, std::function<int(const CommonOptions&)>> actions;
+  SuggestedValues words;
 };
 
 std::vector<std::string> DeclaredCommand::flags() const {
@@ -115,7 +115,7 @@ Declaration::Declaration(const char* name, std::span<const Command> commands)
     arguments.add_flag("--json", common.json, "one JSON document instead of readable output");
     arguments.add_option("--seed", common.seed, "fixes every random choice")
         .check(whole_number(0, 999'999'999'999'999))
-        .show_preset();
+        .show_default();
     parser_->actions[sub] = command.declare(arguments);
   }
 }
@@ -142,9 +142,9 @@ std::vector<DeclaredCommand> Declaration::commands() const {
         one.argument = option->get_type_name();
       }
       one.help = option->get_description();
-      one.preset = option->get_default_str();
+      one.default_value = option->get_default_str();
       one.takes_list = option->get_delimiter() != '\0';
-      if (const auto words = parser_->words.find(option); words != parser_->words.end()) one.words = words->second;
+      if (const auto words = parser_->words.find(option); words != parser_->words.end()) one.allowed_values = words->second;
       command.options.push_back(std::move(one));
     }
     result.push_back(std::move(command));
@@ -153,7 +153,7 @@ std::vector<DeclaredCommand> Declaration::commands() const {
 }
 
 std::optional<int> Declaration::read(std::span<char* const> typed) {
-  std::vector<std::string> words = with_help(typed);
+  std::vector<std::string> words = expand_help(typed);
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   require_command(pointers, names());

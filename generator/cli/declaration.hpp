@@ -15,9 +15,9 @@ namespace eomgen::cli {
 struct DeclaredOption {
   std::vector<std::string> flags;  // "-o", "--out"; empty for a positional argument
   std::string argument;            // "MODEL" for a positional argument; value type of an option ("TEXT"); "" for a flag
-  std::string help, preset;        // preset: the default value; may be empty
+  std::string help, default_value;        // preset: the default value; may be empty
   bool takes_list = false;         // several values separated by commas
-  std::vector<std::string> words;  // possible values; empty: any
+  std::vector<std::string> allowed_values;  // possible values; empty: any
 };
 
 struct DeclaredCommand {
@@ -34,7 +34,7 @@ class Declaration {
   Declaration(const Declaration&) = delete;
   Declaration& operator=(const Declaration&) = delete;
 
-  Common common;
+  CommonOptions common;
 
   std::vector<DeclaredCommand> commands() const;
   std::vector<std::string> names() const;

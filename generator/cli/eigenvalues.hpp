@@ -9,7 +9,7 @@
 
 namespace eomgen::cli {
 
-using analysis::shown;
+using analysis::display_value;
 
 /// Format: "-1.5 +- 2i" or "0.3", with the number of reliable digits if it is lower than usual.
 Json eigenvalue_json(const linear::Eigenvalue& eigenvalue);

@@ -33,7 +33,7 @@ Json constraints(const analysis::Examination& found) {
                       {"integral", or_null(c.integral)},
                       {"redundant", c.redundant},
                       {"determined", or_null(c.determined)},
-                      {"use", c.use},
+                      {"use", c.treatment},
                       {"reason", c.reason},
                       {"integral_of", list(c.integral_of)}});
   }
@@ -108,7 +108,7 @@ Json to_json(const model::Model& model, const analysis::Examination& found) {
   result["conserved"] = conserved;
   result["singular"] = singular;
   result["charts"] = charts;
-  result["units"] = found.every_unit ? "checked" : "checked where they are given";
+  result["units"] = found.has_all_units ? "checked" : "checked where they are given";
   result["warnings"] = warnings;
   result["left_out"] = left_out;
   return result;

@@ -22,11 +22,11 @@ extern "C" void on_signal(int signal) {
 
 }  // namespace
 
-void heed_signals() {
+void install_signal_handlers() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
 }
 
-const std::atomic<bool>& Interrupt::flag() { return work::stop_flag(); }
+const std::atomic<bool>& InterruptGuard::flag() { return work::stop_flag(); }
 
 }  // namespace eomgen::cli

@@ -8,11 +8,11 @@
 namespace eomgen::cli {
 
 /// Turns the first SIGINT or SIGTERM into a stop request (work.hpp). A second one terminates the program.
-void heed_signals();
+void install_signal_handlers();
 
 /// While an instance exists, the command handles stop requests itself and keeps partial results. Otherwise the
 /// program is terminated wherever it is.
-class Interrupt {
+class InterruptGuard {
  public:
   static const std::atomic<bool>& flag();
 

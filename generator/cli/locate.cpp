@@ -99,7 +99,7 @@ std::string locate_model(const std::string& name) {
               hint.empty() ? "eomgen new NAME writes a starter model" : fmt::format("did you mean {}?", hint));
 }
 
-std::string documentation(const std::string& page) {
+std::string documentation_path(const std::string& page) {
   std::error_code none;
   const fs::path program = fs::read_symlink("/proc/self/exe", none);
   for (fs::path folder = program.parent_path(); folder != folder.parent_path(); folder = folder.parent_path()) {
@@ -110,14 +110,14 @@ std::string documentation(const std::string& page) {
   return "docs/" + page;
 }
 
-void tell_warnings(const model::Model& model) {
-  for (const Warning& warning : model.warnings) tell(format_warning(warning));
+void print_warnings(const model::Model& model) {
+  for (const Warning& warning : model.warnings) print_message(format_warning(warning));
 }
 
 std::shared_ptr<const model::Model> load_model(const std::string& name, double* seconds) {
   const auto start = std::chrono::steady_clock::now();
   auto model = std::make_shared<const model::Model>(model::read_model(locate_model(name)));
-  tell_warnings(*model);
+  print_warnings(*model);
   if (seconds != nullptr) *seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return model;
 }

@@ -14,13 +14,13 @@ namespace eomgen::cli {
 std::string locate_model(const std::string& name);
 
 /// Prints the warnings of the model reader to standard error.
-void tell_warnings(const model::Model& model);
+void print_warnings(const model::Model& model);
 
 /// Reads a model and prints its warnings. `seconds`, if not nullptr, receives the time taken.
 std::shared_ptr<const model::Model> load_model(const std::string& name, double* seconds = nullptr);
 
 /// Returns the path of a page of the documentation: beside the installed program, in the source tree of the build, or
 /// otherwise the path relative to a source tree.
-std::string documentation(const std::string& page);
+std::string documentation_path(const std::string& page);
 
 }  // namespace eomgen::cli

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// File extensions that denote a format; others (.out, .2026, none) do not.
-constexpr std::array telling_endings{
+constexpr std::array known_extensions{
     ".csv", ".tsv",  ".svg",  ".png",  ".jpg", ".jpeg", ".gif", ".bmp", ".pdf", ".ps",  ".eps",  ".html", ".htm",
     ".xml", ".json", ".toml", ".yaml", ".md",  ".tex",  ".c",   ".h",   ".cpp", ".hpp", ".py",   ".m",    ".mat",
     ".npy", ".npz",  ".h5",   ".hdf5", ".xls", ".xlsx", ".ods", ".zip", ".gz",  ".doc", ".docx", ".webp", ".mp4"};
@@ -60,25 +60,25 @@ std::string final_path(const std::string& path) {
   return (resolved.empty() ? absolute : resolved).string();
 }
 
-[[noreturn]] void refuse(const Place& place, const std::string& what, const std::string& remedy) {
+[[noreturn]] void refuse(const OutputTarget& place, const std::string& what, const std::string& remedy) {
   throw Error("cli", {}, fmt::format("{} {}: {}", place.option, place.path.empty() ? "''" : place.path, what), remedy);
 }
 
-void require_ending(const Place& place) {
-  if (place.ending.empty()) return;
-  const std::string ending = lowered(fs::path(place.path).extension().string());
-  if (ending == place.ending || (place.ending == ".html" && ending == ".htm")) return;
-  const bool chooses = !place.or_ending.empty();
-  const bool tells = std::find(telling_endings.begin(), telling_endings.end(), ending) != telling_endings.end();
-  if (chooses ? ending.size() < 2 || ending == place.or_ending : !tells) return;
+void require_extension(const OutputTarget& place) {
+  if (place.extension.empty()) return;
+  const std::string extension = lowered(fs::path(place.path).extension().string());
+  if (extension == place.extension || (place.extension == ".html" && extension == ".htm")) return;
+  const bool chooses = !place.alternative_extension.empty();
+  const bool tells = std::find(known_extensions.begin(), known_extensions.end(), extension) != known_extensions.end();
+  if (chooses ? extension.size() < 2 || extension == place.alternative_extension : !tells) return;
   const auto named = [&](const std::string& other) { return fs::path(place.path).replace_extension(other).string(); };
   refuse(place,
-         fmt::format("this option writes {}{}, and the name says {}", place.ending.substr(1),
-                     chooses ? " or " + place.or_ending.substr(1) : "", ending.substr(1)),
-         "name it " + named(place.ending) + (chooses ? " or " + named(place.or_ending) : ""));
+         fmt::format("this option writes {}{}, and the name says {}", place.extension.substr(1),
+                     chooses ? " or " + place.alternative_extension.substr(1) : "", extension.substr(1)),
+         "name it " + named(place.extension) + (chooses ? " or " + named(place.alternative_extension) : ""));
 }
 
-void require_writable(const Place& place, const std::string& model_file) {
+void require_writable(const OutputTarget& place, const std::string& model_file) {
   // Compare the opened file: the target of a link such as /dev/stdout need not have a path.
   const Identity opened = identity(place.path);
   if (opened.there && !S_ISREG(opened.mode) && !S_ISDIR(opened.mode)) {
@@ -129,7 +129,7 @@ eom::WholeFile open(const std::string& path) {
 
 void print_document(const Json& document) { fmt::print("{}\n", document.dump(2, false)); }
 
-void tell(std::string_view text) noexcept {
+void print_message(std::string_view text) noexcept {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
@@ -143,15 +143,15 @@ bool is_standard_output(const std::string& path) {
          standard.st_ino == place.inode && path != "/dev/null";
 }
 
-void require_places(const std::vector<Place>& places, const std::string& model_file, bool json) {
+void require_writable_targets(const std::vector<OutputTarget>& places, const std::string& model_file, bool json) {
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const Place& place = places[i];
+    const OutputTarget& place = places[i];
     if (place.path.empty()) refuse(place, "names no file", "name one, or - for standard output");
     const bool standard = is_standard_output(place.path);
     if (standard && json)
       refuse(place, "standard output has the JSON document already", "name a file, or leave --json out");
     for (std::size_t j = 0; j < i; ++j) {
-      const Place& other = places[j];
+      const OutputTarget& other = places[j];
       const Identity here = identity(place.path);
       const bool same = (standard && is_standard_output(other.path)) ||
                         (!is_device(here) && same_file(here, identity(other.path))) ||
@@ -159,21 +159,21 @@ void require_places(const std::vector<Place>& places, const std::string& model_f
       if (same) refuse(place, fmt::format("{} writes to the same place", other.option), "give each a file of its own");
     }
     if (place.path == "-") continue;
-    require_ending(place);
+    require_extension(place);
     if (!standard || same_file(identity(place.path), identity(model_file))) require_writable(place, model_file);
   }
 }
 
 void require_folder(const std::string& folder) {
   std::error_code none;
-  const std::string ending = lowered(fs::path(folder).extension().string());
-  const bool of_a_file = std::find(telling_endings.begin(), telling_endings.end(), ending) != telling_endings.end();
-  const Place place{"--out", folder, ""};
+  const std::string extension = lowered(fs::path(folder).extension().string());
+  const bool of_a_file = std::find(known_extensions.begin(), known_extensions.end(), extension) != known_extensions.end();
+  const OutputTarget place{"--out", folder, ""};
   if (folder == "-") refuse(place, "several files do not fit into standard output", "name a folder for them");
   if (fs::exists(folder, none) && !fs::is_directory(folder, none))
     refuse(place, "this is a file, and a folder is asked", "name a folder; the files have their own names");
   if (of_a_file && !fs::is_directory(folder, none))
-    refuse(place, fmt::format("a folder is asked, and the name says {}", ending.substr(1)),
+    refuse(place, fmt::format("a folder is asked, and the name says {}", extension.substr(1)),
            "name a folder; the files have their own names");
 }
 
@@ -214,7 +214,7 @@ std::vector<std::string> write_results(const std::string& folder, const std::vec
 
 void print_readable(std::string_view text, bool output_taken) {
   if (output_taken) {
-    tell(text);
+    print_message(text);
   } else {
     fmt::print("{}", text);
   }

@@ -21,17 +21,17 @@ inline double unsigned_zero(double value) { return value == 0 ? 0 : value; }
 void print_document(const Json& document);
 
 /// Prints to standard error. If that fails, only this message is lost.
-void tell(std::string_view text) noexcept;
+void print_message(std::string_view text) noexcept;
 
 /// Destination of results given by an option; `-` is standard output.
-struct Place {
-  std::string option, path, ending;  // "--out", "a.csv", ".csv"; empty extension: any
-  std::string or_ending = {};        // if the extension selects the format: the second one allowed
+struct OutputTarget {
+  std::string option, path, extension;  // "--out", "a.csv", ".csv"; empty extension: any
+  std::string alternative_extension = {};        // if the extension selects the format: the second one allowed
 };
 
 /// Throws Error unless all `places` can be written, are distinct, differ from the model file, and have no extension of
 /// another format. `json`: the document already goes to standard output. Call it before the computation.
-void require_places(const std::vector<Place>& places, const std::string& model_file, bool json);
+void require_writable_targets(const std::vector<OutputTarget>& places, const std::string& model_file, bool json);
 
 /// Throws Error if the name of an output `folder` has the extension of a file.
 void require_folder(const std::string& folder);

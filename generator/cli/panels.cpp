@@ -12,7 +12,7 @@ bool is_plain(const std::string& unit) { return unit.empty() || unit == "1"; }
 
 void add(std::vector<Panel>& panels, const std::string& title, const std::string& name) {
   const auto found = std::find_if(panels.begin(), panels.end(),
-                                  [&](const Panel& panel) { return panel.title == title && panel.over.empty(); });
+                                  [&](const Panel& panel) { return panel.title == title && panel.x_name.empty(); });
   if (found == panels.end())
     panels.push_back({title, {name}, {}});
   else
@@ -26,7 +26,7 @@ std::string titled(const std::string& what, const std::string& unit) {
 // A panel with a single curve has no legend, so its title names the curve.
 void name_single_curves(const std::vector<system::Output>& outputs, std::vector<Panel>& panels) {
   for (Panel& panel : panels) {
-    if (panel.over.empty() && panel.names.size() == 1)
+    if (panel.x_name.empty() && panel.names.size() == 1)
       panel.title = titled(panel.names[0], unit_of(outputs, panel.names[0]));
   }
 }
@@ -71,12 +71,12 @@ std::vector<Panel> chosen_panels(const std::vector<system::Output>& outputs, con
       add(result, is_plain(unit) ? "pure numbers, and what has no known unit" : "in " + unit, item);
       continue;
     }
-    const std::string over = item.substr(0, comma), name = item.substr(comma + 1);
-    if (over.empty() || name.empty() || name.find(',') != std::string::npos) {
+    const std::string x_name = item.substr(0, comma), name = item.substr(comma + 1);
+    if (x_name.empty() || name.empty() || name.find(',') != std::string::npos) {
       throw Error("run", {}, "--plot-of " + item + " is no phase plane",
                   "write one as x,x_dot: first what is along the horizontal axis");
     }
-    result.push_back({titled(name, unit_of(outputs, name)), {name}, over});
+    result.push_back({titled(name, unit_of(outputs, name)), {name}, x_name});
   }
   name_single_curves(outputs, result);
   return result;

@@ -13,7 +13,7 @@ namespace eomgen::cli {
 struct Panel {
   std::string title;
   std::vector<std::string> names;
-  std::string over;  // phase plane: quantity on the horizontal axis; empty: time
+  std::string x_name;  // phase plane: quantity on the horizontal axis; empty: time
 };
 
 /// Unit such as "m/s^2"; empty if it is unknown or the quantity is dimensionless.

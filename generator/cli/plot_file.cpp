@@ -25,10 +25,10 @@ std::size_t terminal_columns() {
 }
 
 bool is_png(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".png";
+  return extension == ".png";
 }
 
 }  // namespace
@@ -37,12 +37,12 @@ std::uint64_t PlotFile::write(const std::function<std::string()>& svg,
                               const std::function<std::string(std::size_t columns)>& characters) const {
   if (path_ == "-") return write_text(path_, characters(terminal_columns()));
   const std::string drawing = svg();
-  return write_text(path_, is_png(path_) ? png(drawn(drawing, pixels_of_a_unit)) : drawing);
+  return write_text(path_, is_png(path_) ? encode_png(rasterise(drawing, pixels_of_a_unit)) : drawing);
 }
 
 std::uint64_t PlotFile::write(const eom::Plot& plot) const {
   return write([&] { return eom::svg(plot); },
-               [&](std::size_t columns) { return plot.title + "\n\n" + in_characters(text_plot(plot), columns); });
+               [&](std::size_t columns) { return plot.title + "\n\n" + render_text_plot(text_plot(plot), columns); });
 }
 
 }  // namespace eomgen::cli

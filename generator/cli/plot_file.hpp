@@ -16,7 +16,7 @@ class PlotFile {
   explicit PlotFile(std::string path) : path_(std::move(path)) {}
 
   bool wanted() const { return !path_.empty(); }
-  Place place() const { return {"--plot", path_, ".svg", ".png"}; }
+  OutputTarget target() const { return {"--plot", path_, ".svg", ".png"}; }
 
   /// Writes the plot and returns the number of bytes. `characters` receives the width of the terminal.
   std::uint64_t write(const std::function<std::string()>& svg,

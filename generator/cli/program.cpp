@@ -19,7 +19,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
-#include "cli/watch.hpp"
+#include "cli/stage_monitor.hpp"
 #include "work.hpp"
 
 namespace eomgen::cli {
@@ -28,16 +28,16 @@ namespace {
 constexpr int exit_internal = 4;
 
 int report(const Error& error) {
-  tell(error.what());
+  print_message(error.what());
   // Messages name a page by its path in the source tree.
   if (std::string_view(error.what()).find("docs/model-format.md") != std::string_view::npos) {
-    tell(fmt::format("  docs/model-format.md is {}\n", documentation("model-format.md")));
+    print_message(fmt::format("  docs/model-format.md is {}\n", documentation_path("model-format.md")));
   }
   return error.exit_code();
 }
 
 int output_lost() {
-  tell(
+  print_message(
       "error: standard output could not be written\n  remedy: see to space on that disk, or to the program that reads "
       "it\n");
   return exit_internal;
@@ -46,7 +46,7 @@ int output_lost() {
 /// Reopens closed standard streams. Otherwise the first opened file would get the descriptor, and messages would go
 /// into results. Writing to a closed standard output then fails and is reported; messages to a closed standard error
 /// are lost.
-void take_closed_streams() {
+void open_closed_streams() {
   for (const auto& [stream, way] :
        {std::pair{STDIN_FILENO, O_WRONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}}) {
     if (fcntl(stream, F_GETFD) >= 0) continue;
@@ -60,21 +60,21 @@ void take_closed_streams() {
 }
 
 /// Prints warnings of the stages to standard error.
-class Teller : public work::Listener {
+class MessagePrinter : public work::Listener {
  public:
-  void on_warning(const std::string& text) override { tell(text); }
+  void on_warning(const std::string& text) override { print_message(text); }
 };
 
 }  // namespace
 
-int run_program(std::span<char* const> typed, const char* name, std::span<const Command> commands, Team* team) try {
-  take_closed_streams();
+int run_program(std::span<char* const> typed, const char* name, std::span<const Command> commands, ProcessGroup* group) try {
+  open_closed_streams();
   Declaration declared(name, commands);
-  declared.common.team = team;
+  declared.common.group = group;
   if (const std::optional<int> code = declared.read(typed)) return *code;
-  heed_signals();
-  const Watch watch;
-  const Teller teller;
+  install_signal_handlers();
+  const StageMonitor watch;
+  const MessagePrinter teller;
   const work::Stage stage("reading the model");
   const int code = declared.execute();
   // A full disk or a closed pipe loses results, which is an error.
@@ -83,17 +83,17 @@ int run_program(std::span<char* const> typed, const char* name, std::span<const 
 } catch (const Error& error) {
   return report(error);
 } catch (const work::Interrupted&) {
-  tell_interrupted(nullptr);
+  print_interrupted(nullptr);
   return exit_interrupted;
 } catch (const cln::floating_point_exception&) {
   return report(Error("numbers", SourceLocation{}, "a value of this model is beyond what binary64 holds (1e308 in size)",
                       "use units in which its masses, lengths and times are nearer to 1"));
 } catch (const std::bad_alloc&) {
-  tell("error: out of memory\n  remedy: make the model smaller\n");
+  print_message("error: out of memory\n  remedy: make the model smaller\n");
   return exit_internal;
 } catch (const std::exception& error) {
   if (std::ferror(stdout) != 0) return output_lost();  // printing throws
-  tell(fmt::format("error: internal: {}\n  remedy: please report this, with the model\n", error.what()));
+  print_message(fmt::format("error: internal: {}\n  remedy: please report this, with the model\n", error.what()));
   return exit_internal;
 }
 

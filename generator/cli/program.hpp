@@ -9,6 +9,6 @@ namespace eomgen::cli {
 
 /// Runs the program: parses the command line, executes the command, reports errors. Returns the exit code. `team`: the
 /// group of processes that shares the work, or nullptr.
-int run_program(std::span<char* const> words, const char* name, std::span<const Command> commands, Team* team);
+int run_program(std::span<char* const> words, const char* name, std::span<const Command> commands, ProcessGroup* group);
 
 }  // namespace eomgen::cli

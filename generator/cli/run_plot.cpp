@@ -36,8 +36,8 @@ RunPlot::RunPlot(std::vector<Panel> panels, const std::vector<system::Output>& o
   };
   for (const Panel& panel : panels_) {
     std::for_each(panel.names.begin(), panel.names.end(), keep);
-    over_.push_back(panel.over.empty() ? "t in s" : with_unit(outputs, panel.over));
-    if (!panel.over.empty()) keep(panel.over);
+    x_labels_.push_back(panel.x_name.empty() ? "t in s" : with_unit(outputs, panel.x_name));
+    if (!panel.x_name.empty()) keep(panel.x_name);
   }
   columns_.resize(names_.size());
 }
@@ -58,21 +58,21 @@ std::string RunPlot::svg(const std::string& title, const run::RunResult& result)
     const Panel& panel = panels_[k];
     eom::Plot plot;
     plot.title = k == 0 ? title : "";
-    plot.x_label = over_[k];
+    plot.x_label = x_labels_[k];
     plot.y_label = panel.title;
     plot.width = width;
     plot.height = panel_height + (k == 0 ? 28 : 0);
     for (const std::string& name : panel.names) {
       eom::PlotSeries series;
       series.name = panel.names.size() > 1 ? name : "";
-      series.x = panel.over.empty() ? t_ : curve(panel.over);
+      series.x = panel.x_name.empty() ? t_ : curve(panel.x_name);
       series.y = curve(name);
       const auto estimate = std::find_if(result.error_estimate.begin(), result.error_estimate.end(),
                                          [&](const auto& e) { return e.first == name; });
-      if (panel.over.empty() && estimate != result.error_estimate.end()) series.error_at_end = estimate->second;
+      if (panel.x_name.empty() && estimate != result.error_estimate.end()) series.error_at_end = estimate->second;
       plot.series.push_back(std::move(series));
     }
-    if (panel.over.empty()) {
+    if (panel.x_name.empty()) {
       for (const run::RunEvent& event : result.events) plot.marks.push_back({event.t, event.name});
     }
     std::string drawn = eom::svg(plot);
@@ -88,18 +88,18 @@ std::string RunPlot::svg(const std::string& title, const run::RunResult& result)
       width, top, body);
 }
 
-std::string RunPlot::characters(const std::string& title, const run::RunResult& result, std::size_t columns) const {
+std::string RunPlot::text_plot(const std::string& title, const run::RunResult& result, std::size_t columns) const {
   std::string text = title + "\n";
   for (std::size_t k = 0; k < panels_.size(); ++k) {
     const Panel& panel = panels_[k];
-    TextPlot plot{panel.title, over_[k], {}, {}};
+    TextPlot plot{panel.title, x_labels_[k], {}, {}};
     for (const std::string& name : panel.names)
       plot.curves.push_back(
-          {panel.names.size() > 1 ? name : "", panel.over.empty() ? &t_ : &curve(panel.over), &curve(name)});
-    if (panel.over.empty()) {
+          {panel.names.size() > 1 ? name : "", panel.x_name.empty() ? &t_ : &curve(panel.x_name), &curve(name)});
+    if (panel.x_name.empty()) {
       for (const run::RunEvent& event : result.events) plot.marks.push_back(event.t);
     }
-    text += "\n" + in_characters(plot, columns);
+    text += "\n" + render_text_plot(plot, columns);
   }
   return text;
 }

@@ -20,13 +20,13 @@ class RunPlot {
 
   std::string svg(const std::string& title, const run::RunResult& result) const;
   /// Plot as text, at most `columns` wide.
-  std::string characters(const std::string& title, const run::RunResult& result, std::size_t columns) const;
+  std::string text_plot(const std::string& title, const run::RunResult& result, std::size_t columns) const;
 
  private:
   const std::vector<double>& curve(const std::string& name) const;
 
   std::vector<Panel> panels_;
-  std::vector<std::string> names_, over_;  // stored columns; horizontal axis labels, per panel
+  std::vector<std::string> names_, x_labels_;  // stored columns; horizontal axis labels, per panel
   std::vector<std::size_t> index_;
   std::vector<double> t_;
   std::vector<std::vector<double>> columns_;

@@ -173,7 +173,7 @@ Json RunReport::json() const {
   }
   document["files"] = written;
   if (sensitivities) document["sensitivities"] = json_of(*sensitivities, pipeline::state_names(derived));
-  if (!estimate_wanted) return document;
+  if (!has_error_estimate) return document;
   Json estimate = nullptr;
   for (const auto& [name, value] : result.error_estimate) estimate[name] = std::isfinite(value) ? value : unbounded;
   document["error_estimate"] = estimate;

@@ -24,7 +24,7 @@ run::Overrides overrides_of(const std::string& command, const SceneOptions& opti
 }
 
 void add_scene(Arguments& app, SceneOptions& options) {
-  app.add_option("--scene", options.scene, "a scene of the model").show_preset();
+  app.add_option("--scene", options.scene, "a scene of the model").show_default();
 }
 
 void add_values(Arguments& app, SceneOptions& options) {
@@ -33,9 +33,9 @@ void add_values(Arguments& app, SceneOptions& options) {
 }
 
 void add_solver(Arguments& app, SceneOptions& options) {
-  app.add_option("--solver", options.solver, "a solver that eomgen list shows, or auto").one_of(run::solver_names());
-  app.add_option("--rtol", options.rtol, "relative tolerance").check(number_not_negative());
-  app.add_option("--atol", options.atol, "absolute tolerance").check(number_not_negative());
+  app.add_option("--solver", options.solver, "a solver that eomgen list shows, or auto").suggest_values(run::solver_names());
+  app.add_option("--rtol", options.rtol, "relative tolerance").check(nonnegative_number());
+  app.add_option("--atol", options.atol, "absolute tolerance").check(nonnegative_number());
 }
 
 void add_fixed_step(Arguments& app, SceneOptions& options) {
@@ -48,14 +48,14 @@ void add_outputs(Arguments& app, SceneOptions& options) {
 
 void add_approach(Arguments& app, std::string& approach) {
   const std::vector<std::string> words = pipeline::approach_names();
-  app.add_option("--approach", approach, fmt::format("{}", fmt::join(words, ", "))).show_preset().one_of(words);
+  app.add_option("--approach", approach, fmt::format("{}", fmt::join(words, ", "))).show_default().suggest_values(words);
 }
 
 void add_form(Arguments& app, std::string& form) {
   const std::vector<std::string> words = pipeline::form_names();
   app.add_option("--form", form, fmt::format("{}: how constraints that stay are solved", fmt::join(words, ", ")))
-      .show_preset()
-      .one_of(words);
+      .show_default()
+      .suggest_values(words);
 }
 
 }  // namespace eomgen::cli

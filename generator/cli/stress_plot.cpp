@@ -119,7 +119,7 @@ std::string StressPlot::svg() const {
   return out + "</svg>\n";
 }
 
-std::string StressPlot::characters(std::size_t columns) const {
+std::string StressPlot::text_plot(std::size_t columns) const {
   const std::vector<Line> lines = lines_of(found);
   const std::size_t wanted = longest(lines, [](const Line& l) { return std::string_view(l.name); });
   const std::size_t taken = 2 * found.solvers.size();

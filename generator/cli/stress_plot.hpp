@@ -14,7 +14,7 @@ struct StressPlot {
 
   std::string svg() const;
   /// Plot as text, at most `columns` wide.
-  std::string characters(std::size_t columns) const;
+  std::string text_plot(std::size_t columns) const;
 };
 
 }  // namespace eomgen::cli

@@ -12,7 +12,7 @@ namespace eomgen::cli {
 namespace {
 
 constexpr double bytes_of_number = 20;  // 17 digits, decimal point, comma, sometimes a sign or exponent
-constexpr double told_rows = 1e6, most_rows = 1e8, most_bytes = 1e10;
+constexpr double reported_rows = 1e6, most_rows = 1e8, most_bytes = 1e10;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void require_size(double t0, double t1, double every, std::size_t columns, bool 
     throw Error("run", {}, fmt::format("the interval of rows, {}, asks for {}", every, size),
                 "take a longer --every; with --yes they are written");
   }
-  if (rows > told_rows) tell(fmt::format("note: the interval of rows, {}, asks for {}\n", every, size));
+  if (rows > reported_rows) print_message(fmt::format("note: the interval of rows, {}, asks for {}\n", every, size));
 }
 
 }  // namespace eomgen::cli

@@ -15,7 +15,7 @@ constexpr const char* letters = "*+ox#@%&=~abcdefghijklmnpqrstuvwyz";
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  void see(double value) {
+  void include(double value) {
     low = std::min(low, value);
     high = std::max(high, value);
   }
@@ -44,20 +44,20 @@ TextPlot text_plot(const eom::Plot& plot) {
   return result;
 }
 
-std::string in_characters(const TextPlot& plot, std::size_t columns) {
+std::string render_text_plot(const TextPlot& plot, std::size_t columns) {
   const auto place_of = [](double value, bool logarithmic) { return logarithmic ? std::log10(value) : value; };
   const auto label = [](double place, bool logarithmic) {
     return fmt::format("{:.{}g}", logarithmic ? std::pow(10, place) : place, logarithmic ? 2 : 4);
   };
   const std::size_t wide = std::max<std::size_t>(columns, margin + 24) - margin - 2;
   Range x, y;
-  const auto see = [&](const TextCurve& curve, auto&& take) {
+  const auto for_each_point = [&](const TextCurve& curve, auto&& take) {
     for (std::size_t i = 0; i < curve.x->size(); ++i) {
       const double a = place_of((*curve.x)[i], plot.log_x), b = place_of((*curve.y)[i], plot.log_y);
       if (std::isfinite(a) && std::isfinite(b)) take(a, b);
     }
   };
-  for (const TextCurve& curve : plot.curves) see(curve, [&](double a, double b) { x.see(a), y.see(b); });
+  for (const TextCurve& curve : plot.curves) for_each_point(curve, [&](double a, double b) { x.include(a), y.include(b); });
   x.close();
   y.close();
   std::vector<std::string> field(rows, std::string(wide, ' '));
@@ -76,7 +76,7 @@ std::string in_characters(const TextPlot& plot, std::size_t columns) {
       else
         legend.back() += "   " + entry;
     }
-    see(plot.curves[k], [&](double a, double b) { field[rows - 1 - y.cell(b, rows)][x.cell(a, wide)] = letter; });
+    for_each_point(plot.curves[k], [&](double a, double b) { field[rows - 1 - y.cell(b, rows)][x.cell(a, wide)] = letter; });
   }
   std::string text = plot.y_label + "\n";
   for (const std::string& line : legend) text += line + "\n";

@@ -24,6 +24,6 @@ TextPlot text_plot(const eom::Plot& plot);
 
 /// Returns lines of at most `columns` characters. Skips values that are not finite or have no logarithm on a
 /// logarithmic axis.
-std::string in_characters(const TextPlot& plot, std::size_t columns);
+std::string render_text_plot(const TextPlot& plot, std::size_t columns);
 
 }  // namespace eomgen::cli

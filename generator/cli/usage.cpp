@@ -69,7 +69,7 @@ void require_command(std::span<char* const> words, const std::vector<std::string
   throw Error("usage", {}, fmt::format("there is no command {}", model::quote(word)), hint);
 }
 
-std::vector<std::string> with_help(std::span<char* const> words) {
+std::vector<std::string> expand_help(std::span<char* const> words) {
   std::vector<std::string> result(words.begin(), words.end());
   if (result.size() < 2 || result[1] != "help") return result;
   result.erase(result.begin() + 1);

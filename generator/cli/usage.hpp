@@ -17,6 +17,6 @@ using model::suggest_choice;
 void require_command(std::span<char* const> words, const std::vector<std::string>& commands);
 
 /// Replaces `eomgen help` and `eomgen help COMMAND` by the equivalent --help.
-std::vector<std::string> with_help(std::span<char* const> words);
+std::vector<std::string> expand_help(std::span<char* const> words);
 
 }  // namespace eomgen::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Context of a library call: takes the lock, forwards stop requests and callbacks of the Task. Not installed.
+// Context of a library call: takes the lock, forwards stop requests and callbacks of the CallControl. Not installed.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "eomgen/formulas.hpp"
-#include "eomgen/task.hpp"
+#include "eomgen/call_control.hpp"
 #include "pipeline/pipeline.hpp"
 #include "print/render.hpp"
 #include "run/scene.hpp"
@@ -19,37 +19,37 @@ namespace eomgen {
 
 /// The lock of the whole process. CLN and GiNaC count references without atomics and share constants. Recursive,
 /// because callbacks may call the library again.
-std::recursive_mutex& one_at_a_time();
+std::recursive_mutex& library_mutex();
 
-/// Forwards progress and warnings of one call to its Task, and its stop request to the stages.
-class Call : public work::Listener {
+/// Forwards progress and warnings of one call to its CallControl, and its stop request to the stages.
+class CallListener : public work::Listener {
  public:
-  explicit Call(const Task& task) : Listener(&stopped_), task_(task), asked_(task.stop, Raise{&stopped_}) {}
+  explicit CallListener(const CallControl& control) : Listener(&stopped_), control_(control), stop_callback_(control.stop, SetFlag{&stopped_}) {}
 
   const std::atomic<bool>* stopped() const { return &stopped_; }
-  std::function<void(double)> progress() const { return task_.progress; }
+  std::function<void(double)> progress() const { return control_.on_progress; }
   void on_stage(const char* stage) override {
-    if (task_.begins) task_.begins(stage);
+    if (control_.on_stage) control_.on_stage(stage);
   }
   void on_warning(const std::string& text) override {
-    if (task_.warns) task_.warns(text);
+    if (control_.on_warning) control_.on_warning(text);
   }
 
  private:
-  struct Raise {
+  struct SetFlag {
     std::atomic<bool>* flag;
     void operator()() const { flag->store(true); }
   };
   std::atomic<bool> stopped_{false};
-  const Task& task_;
-  std::stop_callback<Raise> asked_;
+  const CallControl& control_;
+  std::stop_callback<SetFlag> stop_callback_;
 };
 
 /// Runs `work(call)` under the lock and returns its result. Throws Interrupted if the call was stopped.
 template <class Work>
-auto with_lock(const Task& task, Work&& work) {
-  const std::scoped_lock lock(one_at_a_time());
-  Call call(task);
+auto with_lock(const CallControl& control, Work&& work) {
+  const std::scoped_lock lock(library_mutex());
+  CallListener call(control);
   try {
     return work(call);
   } catch (const work::Interrupted&) {
@@ -57,11 +57,11 @@ auto with_lock(const Task& task, Work&& work) {
   }
 }
 
-pipeline::ApproachChoice choice_of(Approach approach);
+pipeline::ApproachChoice approach_choice(Approach approach);
 /// Converts each value to the exact shortest decimal that denotes it, as on the command line. Throws Error for values
 /// that are not finite.
-std::map<std::string, symbolic::Rational> exact(const std::map<std::string, double>& values);
+std::map<std::string, symbolic::Rational> exact_rationals(const std::map<std::string, double>& values);
 Formula formula_of(const print::PrintedFormula& item);
-std::vector<LeftOut> left_out_of(const std::vector<work::LeftOut>& list);
+std::vector<LeftOut> omissions_of(const std::vector<work::LeftOut>& list);
 
 }  // namespace eomgen

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "analysis/article.hpp"
+#include "analysis/latex_document.hpp"
 #include "analysis/equations.hpp"
 #include "analysis/examination.hpp"
 #include "derive/formulations/lagrange.hpp"
@@ -69,8 +69,8 @@ class Writer {
 
 }  // namespace
 
-Examination Model::examine(const Task& task) const {
-  return with_lock(task, [&](Call&) {
+Examination Model::examine(const CallControl& control) const {
+  return with_lock(control, [&](CallListener&) {
     const analysis::Examination found = analysis::examine(read_);
     Examination result;
     for (const auto& c : found.coordinates) {
@@ -79,7 +79,7 @@ Examination Model::examine(const Task& task) const {
     }
     result.degrees_of_freedom = found.degrees_of_freedom;
     for (const auto& c : found.constraints)
-      result.constraints.push_back({c.name, c.kind, c.integrable, c.integral, c.redundant, c.use, c.reason});
+      result.constraints.push_back({c.name, c.kind, c.integrable, c.integral, c.redundant, c.treatment, c.reason});
     for (const auto& f : found.forces) {
       result.forces.push_back({f.name, f.conservative, std::nullopt, f.reason});
       if (f.potential) result.forces.back().potential = formula_of(*f.potential);
@@ -87,29 +87,29 @@ Examination Model::examine(const Task& task) const {
     for (const auto& c : found.conserved)
       result.conserved.push_back({c.name, c.title, formula_of(c.expression), c.certainty != "numerical"});
     for (const auto& s : found.singular) result.singular.push_back(formula_of(s.set));
-    result.left_out = left_out_of(found.left_out);
+    result.left_out = omissions_of(found.left_out);
     return result;
   });
 }
 
-Equations Model::equations(const EquationsOptions& options, const Task& task) const {
-  return with_lock(task, [&](Call& call) {
-    const analysis::Equations found = analysis::equations(read_, {choice_of(options.approach), options.show});
+Equations Model::equations(const EquationsOptions& options, const CallControl& control) const {
+  return with_lock(control, [&](CallListener& call) {
+    const analysis::Equations found = analysis::equations(read_, {approach_choice(options.approach), options.show});
     for (const std::string& note : found.notes) call.on_warning(note);
     Equations result;
     result.approach = system::name(found.approach);
     for (const print::PrintedFormula& item : found.items) {
       if (item.left_out.empty()) result.formulas.push_back(formula_of(item));
     }
-    result.left_out = left_out_of(found.left_out);
-    for (const auto& m : found.multipliers) result.multipliers.push_back({m.name, m.latex, m.of, m.meaning});
+    result.left_out = omissions_of(found.left_out);
+    for (const auto& m : found.multipliers) result.multipliers.push_back({m.name, m.latex, m.constraint, m.meaning});
     result.interrupted = found.interrupted;
     return result;
   });
 }
 
-Derivation Model::derivation(Approach approach, const Task& task) const {
-  return with_lock(task, [&](Call&) {
+Derivation Model::derivation(Approach approach, const CallControl& control) const {
+  return with_lock(control, [&](CallListener&) {
     const work::Stage stage("deriving the equations");
     mechanics::Mechanics mechanics = mechanics::build_mechanics(read_);
     const system::EquationSystem system =
@@ -134,8 +134,8 @@ Derivation Model::derivation(Approach approach, const Task& task) const {
   });
 }
 
-std::string Model::article(const Task& task, std::uint64_t seed) const {
-  return with_lock(task, [&](Call&) { return analysis::article(read_, seed); });
+std::string Model::latex_document(const CallControl& control, std::uint64_t seed) const {
+  return with_lock(control, [&](CallListener&) { return analysis::latex_document(read_, seed); });
 }
 
 }  // namespace eomgen

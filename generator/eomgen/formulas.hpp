@@ -28,7 +28,7 @@ struct Formula {
 
 /// A Lagrange multiplier: its name, its constraint and its mechanical meaning.
 struct Multiplier {
-  std::string name, latex, of, meaning;  // "lambda", "\lambda", label of the constraint, a phrase
+  std::string name, latex, constraint, meaning;  // "lambda", "\lambda", label of the constraint, a phrase
 };
 
 struct EquationsOptions {

@@ -21,12 +21,12 @@ std::vector<std::string> names_of(const std::vector<T>& list) {
 
 }  // namespace
 
-std::recursive_mutex& one_at_a_time() {
+std::recursive_mutex& library_mutex() {
   static std::recursive_mutex mutex;
   return mutex;
 }
 
-pipeline::ApproachChoice choice_of(Approach approach) {
+pipeline::ApproachChoice approach_choice(Approach approach) {
   switch (approach) {
     case Approach::one: return pipeline::ApproachChoice::one;
     case Approach::two: return pipeline::ApproachChoice::two;
@@ -35,7 +35,7 @@ pipeline::ApproachChoice choice_of(Approach approach) {
   return pipeline::ApproachChoice::automatic;
 }
 
-std::map<std::string, symbolic::Rational> exact(const std::map<std::string, double>& values) {
+std::map<std::string, symbolic::Rational> exact_rationals(const std::map<std::string, double>& values) {
   std::map<std::string, symbolic::Rational> result;
   for (const auto& [name, value] : values) {
     if (!std::isfinite(value))
@@ -49,19 +49,19 @@ Formula formula_of(const print::PrintedFormula& item) {
   return {item.key, item.name, item.coordinate, item.role, item.text, item.latex, item.mathml};
 }
 
-std::vector<LeftOut> left_out_of(const std::vector<work::LeftOut>& list) {
+std::vector<LeftOut> omissions_of(const std::vector<work::LeftOut>& list) {
   std::vector<LeftOut> result;
   for (const work::LeftOut& l : list) result.push_back({l.what, l.why});
   return result;
 }
 
 Model Model::from_file(const std::string& path) {
-  const std::scoped_lock lock(one_at_a_time());
+  const std::scoped_lock lock(library_mutex());
   return Model(std::make_shared<const model::Model>(model::read_model(path)));
 }
 
 Model Model::from_text(const std::string& text, const std::string& name) {
-  const std::scoped_lock lock(one_at_a_time());
+  const std::scoped_lock lock(library_mutex());
   return Model(std::make_shared<const model::Model>(model::read_model_text(text, name + ".toml")));
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The mechanical system and all analyses of it. In: a model file, its text or a Definition. Out: plain structures.
 //
-// Calls that derive equations or compile code take seconds; a Task can stop them. All functions throw Error
+// Calls that derive equations or compile code take seconds; a CallControl can stop them. All functions throw Error
 // (eomgen/error.hpp) if the model, an option or an external tool is wrong. Error has the line and column of the model
 // if the cause has a position there.
 //
@@ -18,11 +18,11 @@
 #include "eomgen/error.hpp"
 #include "eomgen/examination.hpp"
 #include "eomgen/formulas.hpp"
-#include "eomgen/measures.hpp"
+#include "eomgen/benchmark.hpp"
 #include "eomgen/motion.hpp"
 #include "eomgen/sources.hpp"
 #include "eomgen/steady.hpp"
-#include "eomgen/task.hpp"
+#include "eomgen/call_control.hpp"
 
 namespace eomgen {
 
@@ -50,36 +50,36 @@ class Model {
   std::vector<std::string> warnings() const;
 
   /// Classifies the model: degrees of freedom, constraints, forces, conserved quantities, singular sets.
-  Examination examine(const Task& task = {}) const;
+  Examination examine(const CallControl& control = {}) const;
   /// Derives the equations of motion in display form. Throws Error{stage "derive"} for an unknown key.
-  Equations equations(const EquationsOptions& options = {}, const Task& task = {}) const;
+  Equations equations(const EquationsOptions& options = {}, const CallControl& control = {}) const;
   /// Derives the equations of motion in compiled form by Lagrange's equations. `automatic` means approach II here.
-  Derivation derivation(Approach approach = Approach::two, const Task& task = {}) const;
+  Derivation derivation(Approach approach = Approach::two, const CallControl& control = {}) const;
   /// Returns the whole derivation as a LaTeX document. Throws Error{ErrorKind::check} if the check against the independent
   /// oracle fails. `seed`: of the random states of that check.
-  std::string article(const Task& task = {}, std::uint64_t seed = 1) const;
+  std::string latex_document(const CallControl& control = {}, std::uint64_t seed = 1) const;
   /// Checks all formulations against the independent oracle in multiple precision. A failed check is a result
   /// (Certificate::pass is false), not an error.
-  Certificate verify(const VerifyOptions& options = {}, const Task& task = {}) const;
+  Certificate verify(const VerifyOptions& options = {}, const CallControl& control = {}) const;
   /// Generates verified source code. Throws Error{ErrorKind::check} if the formulations disagree.
-  Sources emit(const EmitOptions& options = {}, const Task& task = {}) const;
+  Sources emit(const EmitOptions& options = {}, const CallControl& control = {}) const;
   /// Derives, verifies, compiles and integrates a scene. Needs a C compiler; compiled code is cached by content.
   /// A run that fails numerically returns its outcome and throws nothing.
-  Motion run(const RunOptions& options = {}, const Task& task = {}) const;
+  Motion run(const RunOptions& options = {}, const CallControl& control = {}) const;
   /// Computes the forces that prescribed motions require. Throws Error{stage "inverse"} if no constraint prescribes a
   /// motion or a name is unknown.
-  InverseDynamics inverse_dynamics(const InverseOptions& options = {}, const Task& task = {}) const;
+  InverseDynamics inverse_dynamics(const InverseOptions& options = {}, const CallControl& control = {}) const;
   /// Linearises the equations about a state of a scene. Throws Error{stage "linearize"} if a term has no derivative
   /// there.
-  Linearisation linearise(const LineariseOptions& options = {}, const Task& task = {}) const;
+  Linearisation linearise(const LineariseOptions& options = {}, const CallControl& control = {}) const;
   /// Searches equilibria and steady motions and classifies their stability. Throws Error{stage "equilibria"} if the
   /// equations depend on t or a quantity cannot be held.
-  SteadyMotions steady_motions(const SteadyOptions& options = {}, const Task& task = {}) const;
+  SteadyMotions steady_motions(const SteadyOptions& options = {}, const CallControl& control = {}) const;
   /// Measures the error and run time of solvers against a reference solution. Throws Error{stage "bench"} for scenes
   /// without a reference solution: contacts, moving inputs, kinks.
-  Benchmark benchmark(const BenchmarkOptions& options = {}, const Task& task = {}) const;
+  Benchmark benchmark(const BenchmarkOptions& options = {}, const CallControl& control = {}) const;
   /// Runs solvers on stiff and extreme variations of a scene. Throws Error{stage "stress"} for an unknown solver.
-  StressTest stress_test(const StressOptions& options = {}, const Task& task = {}) const;
+  StressTest stress_test(const StressOptions& options = {}, const CallControl& control = {}) const;
 
  private:
   explicit Model(std::shared_ptr<const model::Model> read) : read_(std::move(read)) {}

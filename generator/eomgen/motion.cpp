@@ -16,7 +16,7 @@ namespace {
 template <class Options>
 run::Overrides overrides_of(const Options& options) {
   run::Overrides overrides;
-  overrides.values = exact(options.parameters);
+  overrides.values = exact_rationals(options.parameters);
   overrides.t_end = options.t_end;
   overrides.every = options.every;
   overrides.rtol = options.rtol;
@@ -34,7 +34,7 @@ pipeline::SimulationRequest request_of(std::shared_ptr<const model::Model> model
   request.overrides.max_step = options.max_step;
   request.overrides.solver = options.solver;
   request.overrides.outputs = options.outputs;
-  request.approach = choice_of(options.approach);
+  request.approach = approach_choice(options.approach);
   request.form = pipeline::parse_form(options.form);
   request.estimate = options.error_estimate;
   request.charts = options.charts;
@@ -58,7 +58,7 @@ void take_result(const run::RunResult& from, Motion& to) {
   to.outcome = eom::name(from.outcome);
   to.detail = from.detail;
   to.solver = from.solver;
-  to.reason = run::to_text(from.reason);
+  to.solver_reason = run::to_text(from.reason);
   to.t = from.t;
   to.final = from.final;
   to.error_estimate = from.error_estimate;
@@ -73,15 +73,15 @@ void take_result(const run::RunResult& from, Motion& to) {
 
 }  // namespace
 
-double Motion::at_end(const std::string& name) const {
+double Motion::final_value(const std::string& name) const {
   for (const auto& [key, value] : final) {
     if (key == name) return value;
   }
   throw std::out_of_range("there is no output '" + name + "' of this motion");
 }
 
-Motion Model::run(const RunOptions& options, const Task& task) const {
-  return with_lock(task, [&](Call& call) {
+Motion Model::run(const RunOptions& options, const CallControl& control) const {
+  return with_lock(control, [&](CallListener& call) {
     Motion motion;
     std::vector<std::size_t> index;
     std::vector<double> values;
@@ -110,8 +110,8 @@ Motion Model::run(const RunOptions& options, const Task& task) const {
   });
 }
 
-InverseDynamics Model::inverse_dynamics(const InverseOptions& options, const Task& task) const {
-  return with_lock(task, [&](Call& call) {
+InverseDynamics Model::inverse_dynamics(const InverseOptions& options, const CallControl& control) const {
+  return with_lock(control, [&](CallListener& call) {
     InverseDynamics result;
     analysis::InverseRequest request;
     request.model = read_;
@@ -124,7 +124,7 @@ InverseDynamics Model::inverse_dynamics(const InverseOptions& options, const Tas
       result.times.push_back(t);
       result.rows.emplace_back(values.begin(), values.end());
     };
-    const analysis::InverseAnswer answer = analysis::inverse_dynamics(request);
+    const analysis::InverseDynamicsResult answer = analysis::inverse_dynamics(request);
     result.outcome = eom::name(answer.outcome);
     result.detail = answer.detail;
     result.certificate = answer.certificate;

@@ -50,7 +50,7 @@ struct Invariant {
 struct Motion {
   std::string outcome;                                // "done", "stopped_by_event", or a failure (docs/runtime.md)
   std::string detail, solver;                         // solver: the last one used
-  std::string reason;                                 // why this solver was chosen
+  std::string solver_reason;                                 // why this solver was chosen
   double t = 0;                                       // final time, s
   std::vector<std::string> columns;                   // every coordinate and its rate, then the outputs
   std::vector<double> times;                          // of the rows, s
@@ -67,9 +67,9 @@ struct Motion {
   std::string certificate;  // summary of the verification
 
   /// Whether the run reached its end time or a terminal event.
-  bool ended() const { return outcome == "done" || outcome == "stopped_by_event"; }
+  bool is_complete() const { return outcome == "done" || outcome == "stopped_by_event"; }
   /// Returns the value of `name` in `final`. Throws std::out_of_range if there is no such name.
-  double at_end(const std::string& name) const;
+  double final_value(const std::string& name) const;
 };
 
 /// Names of all solvers, for RunOptions::solver.

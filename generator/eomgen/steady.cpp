@@ -11,7 +11,7 @@ namespace {
 std::vector<double> entries(const linear::Matrix<linear::Precise>& A) {
   std::vector<double> result;
   for (std::size_t i = 0; i < A.rows; ++i) {
-    for (std::size_t j = 0; j < A.cols; ++j) result.push_back(analysis::shown(A(i, j)));
+    for (std::size_t j = 0; j < A.cols; ++j) result.push_back(analysis::display_value(A(i, j)));
   }
   return result;
 }
@@ -24,14 +24,14 @@ std::vector<std::complex<double>> eigenvalues(const linear::Spectrum& spectrum) 
 
 }  // namespace
 
-Linearisation Model::linearise(const LineariseOptions& options, const Task& task) const {
-  return with_lock(task, [&](Call&) {
+Linearisation Model::linearise(const LineariseOptions& options, const CallControl& control) const {
+  return with_lock(control, [&](CallListener&) {
     run::Overrides overrides;
-    overrides.values = exact(options.parameters);
+    overrides.values = exact_rationals(options.parameters);
     const analysis::SteadyProblem problem =
-        analysis::steady_problem("linearize", read_, options.scene, overrides, options.at, options.seed);
+        analysis::steady_problem("linearize", read_, options.scene, overrides, options.time, options.seed);
     Linearisation result;
-    const linear::Linearisation l = analysis::linearised(problem, options.seed);
+    const linear::Linearisation l = analysis::linearise_at_state(problem, options.seed);
     result.kind = linear::name(l.kind);
     for (const std::size_t i : l.symmetry.chart.independent) result.states.push_back(problem.flow->names()[i]);
     result.A = entries(l.A);
@@ -44,13 +44,13 @@ Linearisation Model::linearise(const LineariseOptions& options, const Task& task
   });
 }
 
-SteadyMotions Model::steady_motions(const SteadyOptions& options, const Task& task) const {
-  return with_lock(task, [&](Call& call) {
+SteadyMotions Model::steady_motions(const SteadyOptions& options, const CallControl& control) const {
+  return with_lock(control, [&](CallListener& call) {
     analysis::SteadyRequest request;
     request.model = read_;
     request.scene = options.scene;
-    request.overrides.values = exact(options.parameters);
-    request.hold = exact(options.hold);
+    request.overrides.values = exact_rationals(options.parameters);
+    request.hold = exact_rationals(options.hold);
     request.starts = options.starts;
     request.seed = options.seed;
     request.progress = call.progress();
@@ -60,11 +60,11 @@ SteadyMotions Model::steady_motions(const SteadyOptions& options, const Task& ta
       SteadyMotion motion;
       motion.kind = linear::name(from.l.kind);
       const std::vector<std::string>& names = found.problem.flow->names();
-      for (std::size_t i = 0; i + 1 < from.l.z.size(); ++i) motion.state[names[i]] = analysis::shown(from.l.z[i]);
+      for (std::size_t i = 0; i + 1 < from.l.z.size(); ++i) motion.state[names[i]] = analysis::display_value(from.l.z[i]);
       motion.stability = linear::name(from.verdict.stability);
       motion.reason = from.verdict.reason;
       motion.eigenvalues = eigenvalues(from.l.spectrum);
-      motion.family = from.family;
+      motion.family_dimension = from.family_dimension;
       result.motions.push_back(std::move(motion));
     }
     for (const analysis::HeldValue& h : found.held) result.held[h.name] = h.value;

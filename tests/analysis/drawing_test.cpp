@@ -134,7 +134,7 @@ TEST_CASE("solids: the convex hull of points has each face once, oriented outwar
   points.emplace_back(0.5, 0.5, 3);
   points.emplace_back(1, 2, 0);
   points.emplace_back(1, 2, 3);
-  const std::vector<std::vector<Point>> faces = analysis::hull(points);
+  const std::vector<std::vector<Point>> faces = analysis::convex_hull(points);
   REQUIRE(faces.size() == 6);
   double surface = 0;
   for (const std::vector<Point>& face : faces) {
@@ -144,8 +144,8 @@ TEST_CASE("solids: the convex hull of points has each face once, oriented outwar
     surface += across.norm();
   }
   CHECK(surface == doctest::Approx(2 * (2 * 4 + 4 * 6 + 2 * 6)));
-  CHECK(analysis::hull({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0}}).size() == 1);
-  CHECK(analysis::hull({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).empty());
+  CHECK(analysis::convex_hull({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0}}).size() == 1);
+  CHECK(analysis::convex_hull({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).empty());
 }
 
 TEST_CASE("figure: rods have the angles of the start, with arcs and lengths") {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <string_view>
 
-#include "at_start.hpp"
+#include "initial_state.hpp"
 
 using namespace eomgen;
-using test::AtStart;
+using test::InitialState;
 using test::Ref;
 using test::rounding;
 using test::shipped;
@@ -17,7 +17,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-std::vector<Ref> vector_of(const AtStart& start, std::size_t at) {
+std::vector<Ref> vector_of(const InitialState& start, std::size_t at) {
   const std::size_t places = start.drawing.outputs().size();
   std::vector<Ref> result;
   for (std::size_t k = 0; k < 3; ++k)
@@ -25,13 +25,13 @@ std::vector<Ref> vector_of(const AtStart& start, std::size_t at) {
                                  : system::find(start.system.outputs, start.forces.outputs()[at - places + k])->value);
   return result;
 }
-Vector value_of(const AtStart& start, std::size_t at) {
+Vector value_of(const InitialState& start, std::size_t at) {
   const std::vector<double> v = start.values(vector_of(start, at));
   return Vector(v.data());
 }
 
 /// 1 if an arrow acts on the body, -1 if its opposite does, otherwise 0.
-double sense(const AtStart& start, const analysis::DrawnForce& force, const model::Body& body) {
+double sense(const InitialState& start, const analysis::DrawnForce& force, const model::Body& body) {
   const analysis::DrawnParts& parts = start.drawing.parts();
   const std::size_t place = body.place - 1;
   if (force.at == parts.places[place].at) return 1;
@@ -48,7 +48,7 @@ double sense(const AtStart& start, const analysis::DrawnForce& force, const mode
 
 /// Balance of moments of a body about its centre: relative difference of the drawn moments from dH/dt, and their
 /// magnitude.
-std::pair<double, double> off(AtStart& start, std::size_t b) {
+std::pair<double, double> off(InitialState& start, std::size_t b) {
   symbolic::Dag& dag = *start.m.dag;
   symbolic::Derivation ddt = symbolic::total_time_derivative(dag, start.m.q.size(), start.model.functions.size());
   symbolic::Substitution imposed = mechanics::constraint_substitution(start.m), written = mechanics::time_function_substitution(start.m);
@@ -67,14 +67,14 @@ std::pair<double, double> off(AtStart& start, std::size_t b) {
     const double s = sense(start, force, start.model.bodies[b]);
     if (s == 0) continue;
     const Vector value = value_of(start, force.value);
-    const Vector moment = force.turns ? value : Vector((value_of(start, force.at) - centre).cross(value));
+    const Vector moment = force.is_moment ? value : Vector((value_of(start, force.at) - centre).cross(value));
     sum += s * moment;
     size += moment.norm();
   }
   return {(sum - wanted).norm(), size};
 }
 
-AtStart of_text(const std::string& text) { return AtStart(model::read_model_text("format = 1\n" + text, "m.toml")); }
+InitialState of_text(const std::string& text) { return InitialState(model::read_model_text("format = 1\n" + text, "m.toml")); }
 
 // Two bars in a row, each with its own angle, a torsion spring between them and a motor at the first.
 const char* const bars = R"([parameters]
@@ -121,7 +121,7 @@ TEST_CASE("drawing: the drawn forces satisfy Newton's law for the masses") {
         "R4_turntable", "R3_sphere_on_incline", "P13_force_fields"}) {
     const std::string model = name;
     CAPTURE(model);
-    AtStart start = shipped(name);
+    InitialState start = shipped(name);
     start.solve();
     symbolic::Dag& dag = *start.m.dag;
     symbolic::Derivation ddt = symbolic::total_time_derivative(dag, start.m.q.size(), start.model.functions.size());
@@ -135,7 +135,7 @@ TEST_CASE("drawing: the drawn forces satisfy Newton's law for the masses") {
       wanted += v[0] * Vector(v[1], v[2], v[3]);
     }
     for (const analysis::DrawnForce& force : start.forces.list()) {
-      if (force.turns || force.at >= start.drawing.outputs().size()) continue;  // spring force on the ground
+      if (force.is_moment || force.at >= start.drawing.outputs().size()) continue;  // spring force on the ground
       const Vector value = value_of(start, force.value);
       sum += value;
       size += value.norm();
@@ -153,7 +153,7 @@ TEST_CASE("drawing: the drawn moments and forces satisfy Euler's law for the bod
         "R4_turntable", "geared_hoist", "engine_mount", "R13_sleigh", "R16_sphere_on_sphere"}) {
     const std::string model = name;
     CAPTURE(model);
-    AtStart start = shipped(name);
+    InitialState start = shipped(name);
     start.solve();
     for (std::size_t b = 0; b < start.m.body_rotations.size(); ++b) {
       CAPTURE(b);
@@ -168,7 +168,7 @@ TEST_CASE("drawing: a force along an angle is a moment on the rotated body, and 
   for (const auto& [angle, twist] : {std::pair{"v", "v - u"}, std::pair{"u + v", "v"}}) {
     const std::string of = twist;
     CAPTURE(of);
-    AtStart start = of_text(replaced(replaced(bars, "ANGLE", angle), "TWIST", twist));
+    InitialState start = of_text(replaced(replaced(bars, "ANGLE", angle), "TWIST", twist));
     const double turned = of == "v" ? 0.8 : 0.5, rate = of == "v" ? -2 : -3;
     REQUIRE(start.forces.list().size() == 3);
     CHECK(start.forces.without_vector().empty());
@@ -177,7 +177,7 @@ TEST_CASE("drawing: a force along an angle is a moment on the rotated body, and 
     for (std::size_t k = 0; k < 3; ++k) {
       const analysis::DrawnForce& force = start.forces.list()[k];
       CHECK(force.name == wanted[k].first);
-      CHECK(force.turns);
+      CHECK(force.is_moment);
       CHECK(force.at == start.drawing.parts().places[k == 0 ? 1 : 0].at);
       CHECK((value_of(start, force.value) - Vector(0, 0, wanted[k].second)).norm() < 10 * rounding);
     }
@@ -185,7 +185,7 @@ TEST_CASE("drawing: a force along an angle is a moment on the rotated body, and 
 }
 
 TEST_CASE("drawing: a constraint on an angle is a moment on the body that does no work along the other angles") {
-  AtStart start = shipped("R8_pendulum_body");
+  InitialState start = shipped("R8_pendulum_body");
   CHECK(start.forces.without_vector().empty());
   const auto& list = start.forces.list();
   const auto found = std::find_if(list.begin(), list.end(), [](const auto& force) { return force.name == "no_spin"; });
@@ -195,7 +195,7 @@ TEST_CASE("drawing: a constraint on an angle is a moment on the body that does n
 }
 
 TEST_CASE("drawing: a generalised force on a mass fixed by its coordinate is not part of the constraint forces") {
-  AtStart start = of_text(
+  InitialState start = of_text(
       "[parameters]\nm = \"1 kg\"\nL = \"2 m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = "
       "[\"L\", "
       "\"u\"] }\n[[force]]\nname = \"drive\"\ngeneralized = { u = \"4 N*m\" }\n[scene.default]\ninitial = { u_dot = 3 "
@@ -207,7 +207,7 @@ TEST_CASE("drawing: a generalised force on a mass fixed by its coordinate is not
 }
 
 TEST_CASE("drawing: forces without arrow are named, and surplus arrows are counted") {
-  const AtStart pushed = of_text(
+  const InitialState pushed = of_text(
       "[parameters]\nm = \"1 kg\"\nL = \"2 m\"\n[coordinates]\nX = \"m\"\nu = \"rad\"\n[[particle]]\nname = "
       "\"A\"\nmass = \"m\"\n"
       "position = \"X*E1\"\n[[particle]]\nname = \"B\"\nmass = \"m\"\nposition = \"X*E1 + L*cos(u)*E1 + "
@@ -222,7 +222,7 @@ TEST_CASE("drawing: forces without arrow are named, and surplus arrows are count
     many += "[[particle]]\nname = \"P" + n + "\"\nmass = \"m\"\nposition = { cartesian = [\"x" + n + "\", \"y" + n +
             "\"] }\n";
   }
-  const AtStart all = of_text(replaced(many, "E3", "E2") + "[scene.default]\ninitial = { x0 = 1 }\n");
+  const InitialState all = of_text(replaced(many, "E3", "E2") + "[scene.default]\ninitial = { x0 = 1 }\n");
   CHECK(all.forces.list().size() == 60);
-  CHECK(all.forces.beyond() == 3);
+  CHECK(all.forces.omitted_count() == 3);
 }

@@ -62,7 +62,7 @@ struct Shipped {
   bool prescribed;  // nothing to integrate, so no code: compares the printed equations instead
 };
 
-const std::vector<Shipped>& all_shipped() {
+const std::vector<Shipped>& shipped_examples() {
   static const std::vector<Shipped> all = [] {
     const Folder folder;
     std::vector<Shipped> result;
@@ -74,7 +74,7 @@ const std::vector<Shipped>& all_shipped() {
 }
 
 /// Returns the files of the first process.
-Files same_everywhere(const std::string& model, const Words& words, std::size_t files) {
+Files require_same_everywhere(const std::string& model, const Words& words, std::size_t files) {
   CAPTURE(model);
   const std::vector<Files> all = emit_repeatedly(words);
   CHECK(all.front().size() == files + 1);
@@ -109,20 +109,20 @@ class Pages {
 }  // namespace
 
 TEST_CASE("every shipped model emits equal bytes in fresh processes") {
-  for (const auto& [model, prescribed] : all_shipped()) {
+  for (const auto& [model, prescribed] : shipped_examples()) {
     if (prescribed) {
-      same_everywhere(model, {"derive", model, "--show", "all", "--json"}, 0);
+      require_same_everywhere(model, {"derive", model, "--show", "all", "--json"}, 0);
       continue;
     }
-    same_everywhere(model, {"emit", model, "-o", "out", "--with", "jac,reactions,outputs", "--output", "energy"}, 3);
+    require_same_everywhere(model, {"emit", model, "-o", "out", "--with", "jac,reactions,outputs", "--output", "energy"}, 3);
   }
 }
 
 TEST_CASE("the document of every shipped model has equal bytes in fresh processes, and fits on its pages") {
   Pages pages;
-  for (const auto& [model, prescribed] : all_shipped()) {
+  for (const auto& [model, prescribed] : shipped_examples()) {
     if (prescribed) continue;
-    const Files files = same_everywhere(model, {"emit", model, "-o", "out", "--target", "latex"}, 1);
+    const Files files = require_same_everywhere(model, {"emit", model, "-o", "out", "--target", "latex"}, 1);
     pages.add(model, files.at(model + ".tex"));
   }
   if (is_pdflatex_installed()) check_fits(typeset(pages.text(), "documents"));

@@ -23,7 +23,7 @@ std::string pendulum(const std::string& solver) {
 struct Case {
   const char* what;
   std::string text;
-  std::vector<std::string> told;
+  std::vector<std::string> expected_parts;
 };
 
 /// The run is refused with these words and nothing is written. Without the run, the model is emitted.
@@ -32,7 +32,7 @@ void check_refusal(const Case& c) {
   const Folder folder;
   folder.write("model.toml", c.text);
   const ChildResult refused = expect(2, folder, {"emit", "model.toml", "-o", "code", "--with", "run"});
-  for (const std::string& part : c.told) {
+  for (const std::string& part : c.expected_parts) {
     CAPTURE(part);
     CHECK(contains(refused.err, part));
   }

@@ -131,7 +131,7 @@ ChildResult browse(const Folder& folder, const std::string& program, Words words
 }
 
 /// Results of page_checks.js for the cases.
-Json looked_at(const Folder& folder, const std::string& program, const Json& cases) {
+Json inspect_pages(const Folder& folder, const std::string& program, const Json& cases) {
   folder.write("checks.html", "<!DOCTYPE html><html><body><pre id=\"found\"></pre><script id=\"cases\">const cases = " +
                                   in_script(cases) + ";</script><script>" + source("tests/cli/page_checks.js") +
                                   "</script></body></html>");
@@ -285,7 +285,7 @@ TEST_CASE("page: reports show complete equations, replay the run, and integrate 
     if (c.model == "S5_double_pendulum" || c.model == "six_bar_spatial") keep_picture(folder, *program, c.model);
     cases.push_back(std::move(entry));
   }
-  const Json found = looked_at(folder, *program, cases);
+  const Json found = inspect_pages(folder, *program, cases);
   for (std::size_t k = 0; k < list.size(); ++k) check(found[k], list[k], wanted[k]);
 }
 
@@ -318,7 +318,7 @@ TEST_CASE("page: the formulas of all shipped models fit their column, with gaps 
     cases.push_back({{"name", model}, {"page", head + body + foot}});
   }
   std::size_t count = 0;
-  for (const Json& found : looked_at(folder, *program, cases)) {
+  for (const Json& found : inspect_pages(folder, *program, cases)) {
     CAPTURE(found.dump());
     REQUIRE_FALSE(found.contains("failed"));
     for (const std::string width : {"1280", "390"}) {

@@ -15,7 +15,7 @@ using namespace eomgen::test;
 namespace {
 
 /// Offset of the end of the first `lines` lines.
-std::size_t behind(const std::string& text, int lines) {
+std::size_t offset_after_lines(const std::string& text, int lines) {
   std::size_t at = 0;
   for (int i = 0; i < lines; ++i) at = text.find('\n', at) + 1;
   return at;
@@ -60,7 +60,7 @@ TEST_CASE("sweep: rows truncated by a full disk, and runs that do not belong to 
   const std::string whole = folder.read("all.csv");
   folder.write("all.csv", "something else");
   std::string damaged = whole;
-  damaged.erase(behind(whole, 4) - 20, 19);  // the end of the second row
+  damaged.erase(offset_after_lines(whole, 4) - 20, 19);  // the end of the second row
   folder.write("all.csv.partial", damaged + "9,9,done,1,6,74,0,0,0,0,\n77,9,done,1,6,74,0,0,0,0,\n");
   CHECK(document(folder, words)["resumed"] == 8);
   CHECK(folder.read("all.csv") == whole);
@@ -112,7 +112,7 @@ TEST_CASE("merge: a table that ends in the middle of a line lacks that run; a si
   CHECK(contains(told, "run 5 is missing, and 1 of 7 in all"));
   folder.write("2.csv", second.substr(0, second.size() - 5) + "\n");
   CHECK(contains(expect(2, folder, merge).err, "a line that is no run of that shard"));
-  folder.write("2.csv", second + second.substr(behind(second, 3)));
+  folder.write("2.csv", second + second.substr(offset_after_lines(second, 3)));
   CHECK(contains(expect(2, folder, merge).err, "2 lines are of runs that another line has"));
   folder.write("2.csv", "");
   CHECK(contains(expect(2, folder, merge).err, "is not the table of a shard"));

@@ -24,7 +24,7 @@ TEST_CASE("sweep: without MPI there is no eomgen-mpi, and its tests are skipped"
 
 namespace {
 
-ChildCommand by_ranks(const char* ranks, const Folder& folder, const Words& words) {
+ChildCommand mpirun_command(const char* ranks, const Folder& folder, const Words& words) {
   ChildCommand result = command(folder, words);
   result.arguments =
       with({EOMGEN_MPIRUN, "--oversubscribe", "--allow-run-as-root", "-n", ranks, EOMGEN_MPI_PROGRAM}, words);
@@ -70,14 +70,14 @@ TEST_CASE("sweep by ranks: same bytes, counts and statistics as a single process
     CHECK(alone["done"] == 1400);
     for (const char* ranks : {"1", "2", "5"}) {
       CAPTURE(std::string(ranks));
-      const ChildResult result = run_child(by_ranks(ranks, folder, with(words, {"--out", "ranks.csv"})));
+      const ChildResult result = run_child(mpirun_command(ranks, folder, with(words, {"--out", "ranks.csv"})));
       CAPTURE(result.err);
       CHECK(result.status == 3);
       CHECK(folder.read("ranks.csv") == folder.read("alone.csv"));
       const Json found = Json::parse(result.out);
       for (const char* key : {"runs", "done", "failed", "statistics"}) CHECK(found[key] == alone[key]);
       CHECK(folder.names() == Words{"alone.csv", "oscillator.toml", "ranks.csv"});
-      CHECK(Json::parse(run_child(by_ranks(ranks, folder, with(words, {"--out", "ranks.csv"}))).out)["resumed"] ==
+      CHECK(Json::parse(run_child(mpirun_command(ranks, folder, with(words, {"--out", "ranks.csv"}))).out)["resumed"] ==
             2100);
       std::filesystem::remove(folder / "ranks.csv");
     }
@@ -85,7 +85,7 @@ TEST_CASE("sweep by ranks: same bytes, counts and statistics as a single process
   // A shard by ranks.
   const Words words{"sweep", "oscillator.toml", "--grid", "k=1:9:100", "--shard", "2/3", "--ensemble"};
   expect(0, folder, with(words, {"--out", "alone.csv"}));
-  CHECK(run_child(by_ranks("3", folder, with(words, {"--out", "ranks.csv"}))).status == 0);
+  CHECK(run_child(mpirun_command("3", folder, with(words, {"--out", "ranks.csv"}))).status == 0);
   CHECK(folder.read("ranks.csv") == folder.read("alone.csv"));
 }
 
@@ -95,14 +95,14 @@ TEST_CASE("sweep by ranks: after one or all ranks are killed, other ranks contin
   const Words words{"sweep", "oscillator.toml",     "--sample", "k=1:9", "--samples",
                     "20000", "--no-error-estimate", "--out"};
   expect(0, folder, with(words, {"whole.csv"}));
-  const ChildResult once = run_child(by_ranks("3", folder, with(words, {"once.csv"})));
+  const ChildResult once = run_child(mpirun_command("3", folder, with(words, {"once.csv"})));
   REQUIRE(once.status == 0);
   std::mt19937 random(7);
   int killed = 0, ended = 0;
   bool resumed = false;
   const char* const counts[] = {"3", "5", "2"};
   for (int i = 0; i < 8; ++i) {
-    Child child(by_ranks(counts[i % 3], folder, with(words, {"killed.csv"})));
+    Child child(mpirun_command(counts[i % 3], folder, with(words, {"killed.csv"})));
     std::this_thread::sleep_for(
         std::chrono::duration<double>(std::uniform_real_distribution<>(0.3, 0.7)(random) * once.seconds));
     const std::vector<pid_t> ranks = ranks_in(folder);
@@ -137,7 +137,7 @@ TEST_CASE("sweep by ranks: an error is reported once") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
   const auto told = [&](const Words& words, int status, const std::string& what) {
-    const ChildResult result = run_child(by_ranks("3", folder, words));
+    const ChildResult result = run_child(mpirun_command("3", folder, words));
     CAPTURE(result.err);
     CHECK(result.status == status);
     CHECK(times(result.err, what) == 1);

@@ -284,7 +284,7 @@ std::vector<double> column(const std::string& table, const std::string& name) {
 }
 
 /// Number of parts out of `parts` equal parts of [0, 1) that contain exactly one value.
-std::size_t held_once(const std::vector<double>& values, std::size_t parts) {
+std::size_t count_parts_with_one_value(const std::vector<double>& values, std::size_t parts) {
   std::vector<int> held(parts);
   for (const double value : values) ++held[static_cast<std::size_t>(value * static_cast<double>(parts))];
   return static_cast<std::size_t>(std::count(held.begin(), held.end(), 1));
@@ -312,12 +312,12 @@ TEST_CASE("sweep: samples follow their design and the seed, and are combined wit
     REQUIRE(m.size() == 64);
     for (double& value : m) value -= 1;
     const bool even = std::string(design) != "random";
-    CHECK((held_once(m, 64) == 64) == even);
-    CHECK((held_once(k, 64) == 64) == even);
+    CHECK((count_parts_with_one_value(m, 64) == 64) == even);
+    CHECK((count_parts_with_one_value(k, 64) == 64) == even);
     if (std::string(design) != "sobol") continue;
     std::vector<double> squares;  // 8 by 8 squares: a net has one point in each
     for (std::size_t i = 0; i < 64; ++i) squares.push_back((std::floor(8 * m[i]) + std::floor(8 * k[i]) / 8) / 8);
-    CHECK(held_once(squares, 64) == 64);
+    CHECK(count_parts_with_one_value(squares, 64) == 64);
   }
   expect(0, folder,
          {"sweep", "oscillator.toml", "--grid", "m=1,2,3", "--sample", "k=1:100:log", "--samples", "5", "--out",
@@ -351,7 +351,7 @@ TEST_CASE("sweep: Sobol' points fill every axis of ten evenly") {
   std::vector<std::vector<double>> axes;
   for (int i = 0; i < 10; ++i) {
     axes.push_back(column(text, "a" + std::to_string(i)));
-    CHECK(held_once(axes.back(), 128) == 128);
+    CHECK(count_parts_with_one_value(axes.back(), 128) == 128);
     for (int j = 0; j < i; ++j) CHECK(axes[static_cast<std::size_t>(j)] != axes.back());
   }
   words.insert(words.end(), {"--sample", "b=0:1"});

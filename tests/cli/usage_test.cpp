@@ -12,19 +12,19 @@ using namespace eomgen::test;
 
 namespace {
 
-struct Wrong {
+struct UsageError {
   Words words;
-  std::string says, remedy;
+  std::string expected_message, remedy;
 };
 
-void refuse(const std::vector<Wrong>& table) {
+void refuse(const std::vector<UsageError>& table) {
   const Folder folder;
-  for (const Wrong& wrong : table) {
+  for (const UsageError& wrong : table) {
     const ChildResult result = expect(2, folder, wrong.words);
-    CAPTURE(wrong.says);
+    CAPTURE(wrong.expected_message);
     CAPTURE(result.err);
     CHECK(result.out.empty());
-    CHECK(contains(result.err, wrong.says));
+    CHECK(contains(result.err, wrong.expected_message));
     CHECK(contains(result.err, "remedy: " + wrong.remedy));
     CHECK(result.seconds < 1.0);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
-#include "library/made.hpp"
+#include "library/example_definitions.hpp"
 
 using namespace eomgen;
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "library/made.hpp"
+#include "library/example_definitions.hpp"
 
 using namespace eomgen;
 
@@ -48,7 +48,7 @@ TEST_CASE("library: the spherical pendulum: examination, equations, compiled for
   CHECK(equations.latex().find("\\dot{\\theta}") != std::string::npos);
   CHECK(equations.text("reactions").find("lambda") != std::string::npos);
 
-  const std::string article = model.article();
+  const std::string article = model.latex_document();
   CHECK(article.starts_with("\\documentclass"));
   CHECK(article.find("\\dot{\\theta}") != std::string::npos);
 
@@ -73,26 +73,26 @@ TEST_CASE("library: verification, code generation and run, with stored rows and 
   CHECK(certificate.points == 3);
   CHECK(certificate.comparisons.size() > 3);
 
-  const Sources sources = model.emit({.target = "c", .with = {"jac"}});
+  const Sources sources = model.emit({.target = "c", .extra_functions = {"jac"}});
   CHECK(std::any_of(sources.files.begin(), sources.files.end(), [](const SourceFile& f) {
     return f.name == "pendulum.c" && f.text.find("pendulum_jac(") != std::string::npos;
   }));
-  CHECK(sources.single_error == 0);
+  CHECK(sources.single_precision_error == 0);
   CHECK_THROWS_AS(model.emit({.target = "fortran77"}), Error);
-  const Sources single = model.emit({.target = "c", .real = "float"});
+  const Sources single = model.emit({.target = "c", .real_type = "float"});
   CHECK(single.files.front().text.find("double ") == std::string::npos);
-  CHECK(single.single_error > 0);
-  CHECK(single.single_error < 1e-5);
-  CHECK_THROWS_AS(model.emit({.real = "half"}), Error);
+  CHECK(single.single_precision_error > 0);
+  CHECK(single.single_precision_error < 1e-5);
+  CHECK_THROWS_AS(model.emit({.real_type = "half"}), Error);
 
   const Motion motion = model.run({.every = 0.5});
   CHECK(motion.outcome == "done");
-  CHECK(motion.ended());
+  CHECK(motion.is_complete());
   CHECK(motion.times == std::vector<double>{0, 0.5, 1, 1.5, 2});
   REQUIRE(motion.columns.size() == 7);
   CHECK(motion.columns.back() == "energy");
-  CHECK(motion.rows.back()[2] == motion.at_end("phi"));
-  CHECK_THROWS_AS((void)motion.at_end("no such"), std::out_of_range);
+  CHECK(motion.rows.back()[2] == motion.final_value("phi"));
+  CHECK_THROWS_AS((void)motion.final_value("no such"), std::out_of_range);
   for (const Invariant& i : motion.invariants) CHECK(i.max_relative_drift < 1e-8);
   CHECK(motion.error_estimate.back().second < 1e-6);
 
@@ -105,7 +105,7 @@ TEST_CASE("library: verification, code generation and run, with stored rows and 
   CHECK(other.rows.empty());
   // Without gravity: a great circle at the initial speed.
   const double speed = 2 * 2 * std::sin(1.0);
-  CHECK(other.at_end("energy") == doctest::Approx(speed * speed / 2).epsilon(1e-9));
+  CHECK(other.final_value("energy") == doctest::Approx(speed * speed / 2).epsilon(1e-9));
   CHECK_THROWS_AS(model.run({.solver = "euler1768"}), Error);
   CHECK_THROWS_AS(model.run({.parameters = {{"g", NAN}}}), Error);
 }
@@ -128,7 +128,7 @@ TEST_CASE("library: linearisation, steady motions, inverse dynamics, benchmark, 
   CHECK(std::any_of(steady.motions.begin(), steady.motions.end(),
                     [](const auto& s) { return s.stability == "unstable"; }));
 
-  const Benchmark measured = model.benchmark({.solvers = {"dop853", "rk4"}, .seconds = 2});
+  const Benchmark measured = model.benchmark({.solvers = {"dop853", "rk4"}, .max_seconds = 2});
   CHECK(measured.conclusive);
   CHECK(measured.reference_digits >= 20);
   const StressTest stressed = model.stress_test({.solvers = {"dop853"}, .quick = true});

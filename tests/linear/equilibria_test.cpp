@@ -45,7 +45,7 @@ TEST_CASE("double pendulum: four equilibria; the hanging one is stable by its en
     same(a, a > 1 ? pi : 0);
     same(b, b > 1 ? pi : 0);
     CHECK(all.points[i].verdict.stability == (a + b > 1 ? Stability::unstable : Stability::stable));
-    CHECK(all.points[i].family == 0);
+    CHECK(all.points[i].family_dimension == 0);
     CHECK(all.points[i].l.kind == linear::MotionKind::equilibrium);
   }
 }
@@ -103,7 +103,7 @@ TEST_CASE(
 TEST_CASE("rolling disk: a circle at the start's tilt and rate of turning, one of a family of two dimensions") {
   const analysis::SteadyMotions all = found("R6_rolling_disk");
   REQUIRE(all.points.size() == 1);
-  CHECK(all.points[0].family == 2);
+  CHECK(all.points[0].family_dimension == 2);
   const double m = 0.5, R = 0.2, g = 9.81, A = m * R * R / 4, K = 3 * m * R * R / 2, s = std::sin(1.2),
                c = std::cos(1.2), p = 0.5;
   same(value(all, 0, "psi_dot"), (A * p * p * s * c - m * g * R * c) / (K * p * s) - p * c);
@@ -117,7 +117,7 @@ TEST_CASE("sleigh: straight ahead is stable, astern is not") {
   for (const char* scene : {"ahead", "astern"}) {
     const analysis::SteadyMotions all = found("R13_sleigh", {}, scene, scenes);
     REQUIRE(all.points.size() == 1);
-    CHECK(all.points[0].family == 2);  // direction, speed
+    CHECK(all.points[0].family_dimension == 2);  // direction, speed
     CHECK(all.points[0].verdict.stability == (scene == std::string("ahead") ? Stability::stable : Stability::unstable));
   }
 }

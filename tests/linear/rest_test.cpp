@@ -225,7 +225,7 @@ TEST_CASE("equilibria that are multiple roots are found once each and are no fam
             c.potential + "\"\n[scene.default]\ninitial = { x = 0.3 }\n"));
     REQUIRE(all.points.size() == 1);
     CHECK(all.held.empty());
-    CHECK(all.points[0].family == 0);
+    CHECK(all.points[0].family_dimension == 0);
     CHECK(all.points[0].l.spectrum.zeros == c.zeros);
     same(value(all, 0, "x"), c.x);
     same(value(all, 0, "y"), c.y);

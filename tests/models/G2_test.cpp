@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/projectile.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE("G2: the bases are (2.167) and (2.168), the metric is diagonal, T is half m times the line element") {
-  Read g2("G2_parabolic");
+  DisplayedModel g2("G2_parabolic");
   const reading::Geometry g = reading::geometry(g2.s.mechanics).at(0);
   const Sum u = g2("u"), v = g2("v"), c = cos(g2("theta")), s = sin(g2("theta")), m = g2("m"),
             w = square(u) + square(v);
@@ -28,7 +28,7 @@ TEST_CASE("G2: the bases are (2.167) and (2.168), the metric is diagonal, T is h
 }
 
 TEST_CASE("G2: the equations are (2.169)") {
-  Read g2("G2_parabolic");
+  DisplayedModel g2("G2_parabolic");
   const reading::DisplayForm form = g2.form(system::Approach::two);
   const Sum u = g2("u"), v = g2("v"), m = g2("m"), w = square(u) + square(v);
   const Sum du = g2("u_dot"), dv = g2("v_dot"), dth = g2("theta_dot"), mg = m * g2("g");

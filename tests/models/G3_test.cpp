@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/projectile.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE("G3: the basis is (1.71), which is not orthogonal, with its dual basis") {
-  Read g3("G3_helical");
+  DisplayedModel g3("G3_helical");
   const reading::Geometry g = reading::geometry(g3.s.mechanics).at(0);
   const Sum r = g3("r"), th = g3("theta"), al = g3("alpha"), c = cos(th), s = sin(th);
   CHECK(same(g.covariant[0], -r * s, r * c, al * r));
@@ -24,7 +24,7 @@ TEST_CASE("G3: the basis is (1.71), which is not orthogonal, with its dual basis
 }
 
 TEST_CASE("G3: the kinetic energy is (1.72)") {
-  Read g3("G3_helical");
+  DisplayedModel g3("G3_helical");
   const Sum r = g3("r"), th = g3("theta"), al = g3("alpha"), dr = g3("r_dot"), dth = g3("theta_dot"),
             dnu = g3("nu_dot");
   const Sum two(2);

@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/projectile.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE("G4: the bases are (1.74) and (1.75)") {
-  Read g4("G4_oblique");
+  DisplayedModel g4("G4_oblique");
   const reading::Geometry g = reading::geometry(g4.s.mechanics).at(0);
   const Sum c = cos(g4("alpha")), s = sin(g4("alpha")), o, one(1);
   CHECK(same(g.covariant[0], c, s, o));
@@ -39,7 +39,7 @@ TEST_CASE("G4: components of a given vector in both bases, and the throw") {
 }
 
 TEST_CASE("G4: the singularity at a right angle is reported by check and by a run") {
-  Read g4("G4_oblique");
+  DisplayedModel g4("G4_oblique");
   const auto sets = reading::singular_sets(g4.s.mechanics);
   REQUIRE(sets.size() == 1);
   CHECK(sets[0].approach == "both");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/projectile.hpp"
 
 using namespace eomgen;
@@ -10,7 +10,7 @@ using namespace eomgen::test;
 TEST_CASE("G5: coordinates by x(q) and by q(x) have the same basis, metric and kinetic energy") {
   for (const char* name : {"G5_custom_by_x", "G5_custom_by_q"}) {
     CAPTURE(name);
-    Read g5(name);
+    DisplayedModel g5(name);
     const reading::Geometry g = reading::geometry(g5.s.mechanics).at(0);
     const Sum a = g5("a"), k = g5("k"), slope = Sum(2) * k * a, o, one(1);
     CHECK(same(g.covariant[0], one, slope, o));

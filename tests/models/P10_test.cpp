@@ -6,7 +6,7 @@
 
 #include "analysis/prescribed_forces.hpp"
 #include "derive/formulations.hpp"
-#include "reading_of.hpp"
+#include "displayed_model.hpp"
 #include "support/simulation.hpp"
 #include "symbolic/evaluate.hpp"
 

@@ -36,15 +36,15 @@ TEST_CASE("P11: the particle sticks until the tangential force reaches mu_s m f'
   const Wall wall(run);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "slip");
-  CHECK(std::abs(events_of(run)[0].t - wall.slips_at()) < by_hand);
+  CHECK(std::abs(events_of(run)[0].t - wall.slips_at()) < integration_tolerance);
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const double t = run.rows.t[i];
     const bool slides = t > wall.slips_at();
     CHECK(run.rows.at(i, "reaction.floor") ==
           doctest::Approx(wall.m * wall.g).epsilon(rounding));  // the floor is smooth
     CHECK(run.rows.at(i, "reaction.wall") == doctest::Approx(wall.m * wall.b).epsilon(rounding));
-    CHECK(std::abs(run.rows.at(i, "y") - (slides ? wall.y(t) : 0)) < by_hand);
-    CHECK(std::abs(run.rows.at(i, "y_dot") - (slides ? wall.y_dot(t) : 0)) < by_hand);
+    CHECK(std::abs(run.rows.at(i, "y") - (slides ? wall.y(t) : 0)) < integration_tolerance);
+    CHECK(std::abs(run.rows.at(i, "y_dot") - (slides ? wall.y_dot(t) : 0)) < integration_tolerance);
     const double friction = slides ? -wall.mu_d * wall.m * wall.b : -wall.F0 * t;
     if (std::abs(t - wall.slips_at()) > 1e-6)
       CHECK(run.rows.at(i, "friction.wall.2") == doctest::Approx(friction).epsilon(1e-11).scale(1));
@@ -61,10 +61,10 @@ TEST_CASE("P11: thrown against the tangential force it slides, sticks, and slide
   const double p = wall.mu_d * wall.b, q = wall.F0 / (2 * wall.m), stops = (-p + std::sqrt(p * p + 8 * q)) / (2 * q);
   REQUIRE(events_of(run).size() == 2);
   CHECK(events_of(run)[0].kind == "stick");
-  CHECK(std::abs(events_of(run)[0].t - stops) < by_hand);
-  CHECK(std::abs(events_of(run)[1].t - wall.slips_at()) < by_hand);
+  CHECK(std::abs(events_of(run)[0].t - stops) < integration_tolerance);
+  CHECK(std::abs(events_of(run)[1].t - wall.slips_at()) < integration_tolerance);
   const double y = -2 * stops + p * stops * stops / 2 + q * stops * stops * stops / 3;
-  CHECK(std::abs(run.final("y") - (y + wall.y(run.simulation.result.t))) < by_hand);
+  CHECK(std::abs(run.final("y") - (y + wall.y(run.simulation.result.t))) < integration_tolerance);
 }
 
 TEST_CASE("P11: with the smooth law it creeps before it slides, as in the hand-written equation") {
@@ -77,16 +77,16 @@ TEST_CASE("P11: with the smooth law it creeps before it slides, as in the hand-w
   write_text(path, text);
   const FinishedRun run = run_rough(path);
   const double m = run.parameter("m"), b = run.parameter("b"), F0 = run.parameter("F0"), mu = run.parameter("mu_d");
-  Hand hand(
+  HandWrittenMotion hand(
       [=](double t, const double* x, double* dx) {
         dx[0] = x[1];
         dx[1] = F0 * t / m - mu * b * x[1] / std::hypot(x[1], 0.02);
       },
       0, {0, 0});
   for (std::size_t i = 1; i < run.rows.size(); ++i) {
-    hand.to(run.rows.t[i]);
-    CHECK(std::abs(run.rows.at(i, "y") - hand.x[0]) < by_hand);
-    CHECK(std::abs(run.rows.at(i, "y_dot") - hand.x[1]) < by_hand);
+    hand.advance_to(run.rows.t[i]);
+    CHECK(std::abs(run.rows.at(i, "y") - hand.x[0]) < integration_tolerance);
+    CHECK(std::abs(run.rows.at(i, "y_dot") - hand.x[1]) < integration_tolerance);
   }
   CHECK(run.simulation.result.power_balance < 1e-9);
 }

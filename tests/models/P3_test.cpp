@@ -50,7 +50,7 @@ TEST_CASE("P3: height and reaction have their closed forms, for any start time")
 }
 
 TEST_CASE("P3: in the display form the integral remains an integral, and its rate is v") {
-  test::Read read("P3_moving_plane");
+  test::DisplayedModel read("P3_moving_plane");
   const reading::DisplayForm form = read.form(system::Approach::one);
   REQUIRE(form.reactions.size() == 1);
   REQUIRE(form.reactions[0].value);

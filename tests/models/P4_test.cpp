@@ -50,18 +50,18 @@ void follows_newton(const std::string& model, bool moves) {
   const Cone cone(run, moves);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "stick");
-  Hand hand([&](double t, const double* x, double* dx) { cone.rates(t, x, dx); }, 0,
+  HandWrittenMotion hand([&](double t, const double* x, double* dx) { cone.rates(t, x, dx); }, 0,
             {0.8, 0, 0, run.rows.at(0, "theta_dot")});
   std::size_t compared = 0;
   for (std::size_t i = 1; i < run.rows.size() && run.rows.t[i] < events_of(run)[0].t - 0.01; ++i, ++compared) {
-    hand.to(run.rows.t[i]);
-    CHECK(std::abs(run.rows.at(i, "R") - hand.x[0]) < by_hand);
-    CHECK(std::abs(run.rows.at(i, "theta") - hand.x[1]) < by_hand);
-    CHECK(std::abs(run.rows.at(i, "R_dot") - hand.x[2]) < 10 * by_hand);
-    CHECK(std::abs(run.rows.at(i, "theta_dot") - hand.x[3]) < 10 * by_hand);
+    hand.advance_to(run.rows.t[i]);
+    CHECK(std::abs(run.rows.at(i, "R") - hand.x[0]) < integration_tolerance);
+    CHECK(std::abs(run.rows.at(i, "theta") - hand.x[1]) < integration_tolerance);
+    CHECK(std::abs(run.rows.at(i, "R_dot") - hand.x[2]) < 10 * integration_tolerance);
+    CHECK(std::abs(run.rows.at(i, "theta_dot") - hand.x[3]) < 10 * integration_tolerance);
     // lambda grad psi = lambda/R e_phi
     CHECK(std::abs(run.rows.at(i, "reaction.cone") / hand.x[0] - cone.normal(run.rows.t[i], hand.x.data())) <
-          100 * by_hand);
+          100 * integration_tolerance);
     CHECK(run.rows.at(i, "mode.cone") == 1);
   }
   CHECK(compared > 60);
@@ -78,8 +78,8 @@ TEST_CASE("P4: on the fixed and on the moving cone the particle slides by Newton
 TEST_CASE("P4: at random states the derived accelerations are those of Newton's law") {
   const FinishedRun run = run_rough("P4_moving_cone");
   const Cone cone(run, true);
-  AtState derived(run, "P4_moving_cone");
-  Draw draw;
+  StateEvaluation derived(run, "P4_moving_cone");
+  UniformSampler draw;
   for (int i = 0; i < 50; ++i) {
     const double t = draw(0, 3);
     const double R = draw(0.2, 2), theta = draw(0, 6), R_dot = draw(-3, 3), theta_dot = draw(-8, 8);
@@ -119,8 +119,8 @@ TEST_CASE("P4: released along its meridian it stops at the point of the closed f
   const double centre = cone.L0 - (cone.m * cone.g * std::cos(cone.phi(0)) + cone.mu_d * N) / cone.K;
   REQUIRE(events_of(run).size() == 2);
   CHECK(events_of(run)[1].kind == "stick");
-  CHECK(std::abs(events_of(run)[1].t - std::acos(-1.0) * std::sqrt(cone.m / cone.K)) < by_hand);
-  CHECK(std::abs(run.final("R") - (2 * centre - 0.3)) < by_hand);
+  CHECK(std::abs(events_of(run)[1].t - std::acos(-1.0) * std::sqrt(cone.m / cone.K)) < integration_tolerance);
+  CHECK(std::abs(run.final("R") - (2 * centre - 0.3)) < integration_tolerance);
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
@@ -132,7 +132,7 @@ TEST_CASE("P4: carried by the cone it slips when the required force first exceed
   const auto spare = [&](double t) { return cone.mu_s * std::abs(cone.normal(t, still)) - std::abs(cone.pull(t, R)); };
   const double first = root_between(spare, 0, 1);
   REQUIRE(events_of(run).size() >= 8);
-  CHECK(std::abs(events_of(run)[0].t - first) < by_hand);
+  CHECK(std::abs(events_of(run)[0].t - first) < integration_tolerance);
   for (std::size_t i = 0; i < events_of(run).size(); ++i)
     CHECK(events_of(run)[i].kind == (i % 2 == 0 ? "slip" : "stick"));
   CHECK(run.simulation.result.power_balance < 1e-9);

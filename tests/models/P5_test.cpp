@@ -3,7 +3,7 @@
 // unilateral).
 #include <doctest/doctest.h>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "models/rough.hpp"
 
 using namespace eomgen;
@@ -51,8 +51,8 @@ struct Sphere {
 void sliding_is_2_157(const std::string& model, bool leaves) {
   const FinishedRun run = run_rough(model);
   const Sphere sphere(run);
-  AtState derived(run, model);
-  Draw draw;
+  StateEvaluation derived(run, model);
+  UniformSampler draw;
   int tried = 0;
   for (int i = 0; i < 80; ++i) {
     const double phi = draw(0.2, 2.9), theta = draw(-3, 3), dphi = draw(-4, 4), dtheta = draw(-4, 4);
@@ -76,7 +76,7 @@ void sliding_is_2_157(const std::string& model, bool leaves) {
 }  // namespace
 
 TEST_CASE("P5: the display form equals (2.157) and (2.158) without friction, symbolically") {
-  Read p5("P5_inside_rough_sphere");
+  DisplayedModel p5("P5_inside_rough_sphere");
   const Sum m = p5("m"), g = p5("g"), R0 = p5("R0"), K = p5("K"), L0 = p5("L0"), a = p5("a"), b = p5("b");
   const Sum s = sin(p5("phi")), c = cos(p5("phi")), st = sin(p5("theta")), ct = cos(p5("theta"));
   const Sum dphi = p5("phi_dot"), dtheta = p5("theta_dot");
@@ -106,13 +106,13 @@ TEST_CASE("P5: inside it slides by (2.157) until it sticks, with the friction of
   const Sphere sphere(run);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "stick");
-  Hand hand([&](double, const double* x, double* dx) { sphere.rates(x, dx); }, 0, {2.2, 0.3, 0.5, 4});
+  HandWrittenMotion hand([&](double, const double* x, double* dx) { sphere.rates(x, dx); }, 0, {2.2, 0.3, 0.5, 4});
   double before = run.rows.at(0, "energy");
   std::size_t compared = 0;
   for (std::size_t i = 1; i < run.rows.size() && run.rows.t[i] < events_of(run)[0].t - 0.01; ++i, ++compared) {
-    hand.to(run.rows.t[i]);
-    CHECK(std::abs(run.rows.at(i, "phi") - hand.x[0]) < by_hand);
-    CHECK(std::abs(run.rows.at(i, "theta") - hand.x[1]) < 10 * by_hand);  // some 8 rad
+    hand.advance_to(run.rows.t[i]);
+    CHECK(std::abs(run.rows.at(i, "phi") - hand.x[0]) < integration_tolerance);
+    CHECK(std::abs(run.rows.at(i, "theta") - hand.x[1]) < 10 * integration_tolerance);  // some 8 rad
     CHECK(run.rows.at(i, "energy") < before);                             // decreases while it moves
     before = run.rows.at(i, "energy");
   }
@@ -157,18 +157,18 @@ TEST_CASE(
   CHECK(events_of(run)[0].kind == "lose_contact");
   const auto rates = [&](double, const double* x, double* dx) { sphere.rates(x, dx); };
   const auto normal_at = [&](double t) {
-    Hand hand(rates, 0, {0.2, 0.3, 0.1, 0.5});
-    hand.to(t);
+    HandWrittenMotion hand(rates, 0, {0.2, 0.3, 0.1, 0.5});
+    hand.advance_to(t);
     return sphere.normal(hand.x[0], hand.x[1], hand.x[2], hand.x[3]);
   };
-  CHECK(std::abs(events_of(run)[0].t - root_between(normal_at, 0.5, 0.8)) < by_hand);
+  CHECK(std::abs(events_of(run)[0].t - root_between(normal_at, 0.5, 0.8)) < integration_tolerance);
   std::size_t flying = 0;
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     if (run.rows.t[i] <= events_of(run)[0].t) continue;
     CHECK(run.rows.at(i, "R") > sphere.R0);
     CHECK(run.rows.at(i, "reaction.sphere") == 0);
     CHECK(run.rows.at(i, "mode.sphere") == 2);
-    CHECK(std::abs(run.rows.at(i, "energy") - run.final("energy")) < by_hand);  // includes the energy of the spring
+    CHECK(std::abs(run.rows.at(i, "energy") - run.final("energy")) < integration_tolerance);  // includes the energy of the spring
     ++flying;
   }
   CHECK(flying > 10);
@@ -181,21 +181,21 @@ TEST_CASE("P5: smooth and without spring it leaves at cos(phi) = 2/3, and inside
   const double g = outside.parameter("g"), R0 = outside.parameter("R0"), leaves = std::acos(2.0 / 3);
   // phi_dot = 2 sqrt(g/R0) sin(phi/2): t = sqrt(R0/g) log tan(phi/4)
   const double time = std::sqrt(R0 / g) * std::log(std::tan(leaves / 4) / std::tan(0.1 / 4));
-  CHECK(std::abs(events_of(outside)[0].t - time) < by_hand);
+  CHECK(std::abs(events_of(outside)[0].t - time) < integration_tolerance);
 
   const FinishedRun inside = run_rough("P5_inside_rough_sphere", "smooth");
   const double h = std::pow(std::sin(2.2), 2) * 4;  // of unit m R0^2
-  Hand hand(
+  HandWrittenMotion hand(
       [=](double, const double* x, double* dx) {
         dx[0] = x[1];
         dx[1] = std::cos(x[0]) / std::pow(std::sin(x[0]), 3) * h * h + g / R0 * std::sin(x[0]);
       },
       0, {2.2, 0.5});
   for (std::size_t i = 1; i < inside.rows.size(); ++i) {
-    hand.to(inside.rows.t[i]);
+    hand.advance_to(inside.rows.t[i]);
     const double phi = inside.rows.at(i, "phi");
-    CHECK(std::abs(std::pow(std::sin(phi), 2) * inside.rows.at(i, "theta_dot") - h) < 10 * by_hand);
-    CHECK(std::abs(phi - hand.x[0]) < 10 * by_hand);
+    CHECK(std::abs(std::pow(std::sin(phi), 2) * inside.rows.at(i, "theta_dot") - h) < 10 * integration_tolerance);
+    CHECK(std::abs(phi - hand.x[0]) < 10 * integration_tolerance);
   }
   CHECK(inside.simulation.result.power_balance < 1e-9);
 }

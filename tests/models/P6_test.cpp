@@ -39,8 +39,8 @@ TEST_CASE(
     "P6: at random states both multipliers, the friction of (2.44) and the acceleration are those of Newton's law") {
   const FinishedRun run = run_rough("P6_rough_circle");
   const Circle c(run);
-  AtState derived(run, "P6_rough_circle");
-  Draw draw;
+  StateEvaluation derived(run, "P6_rough_circle");
+  UniformSampler draw;
   for (int i = 0; i < 50; ++i) {
     const double t = draw(0, 6), theta = draw(-4, 4), rate = draw(-8, 8), sign = rate > 0 ? 1 : -1;
     REQUIRE(derived.slide(t, {theta, rate}));
@@ -60,15 +60,15 @@ TEST_CASE("P6: between events the particle follows the hand-written equation, un
   const std::vector<run::RunEvent> events = events_of(run);
   REQUIRE(events.size() == 4);
   double sign = 1;
-  Hand hand([&](double t, const double* x, double* dx) { dx[0] = x[1], dx[1] = c.acceleration(t, x[0], x[1], sign); },
+  HandWrittenMotion hand([&](double t, const double* x, double* dx) { dx[0] = x[1], dx[1] = c.acceleration(t, x[0], x[1], sign); },
             0, {-std::acos(-1.0) / 2, 8});
   for (std::size_t k = 0; k < events.size(); ++k) {
     CHECK(events[k].kind == (k + 1 < events.size() ? "reverse" : "stick"));
-    hand.to(events[k].t);
-    CHECK(std::abs(hand.x[1]) < 100 * by_hand);  // at rest: about 10 rad/s^2 times the error of the time
+    hand.advance_to(events[k].t);
+    CHECK(std::abs(hand.x[1]) < 100 * integration_tolerance);  // at rest: about 10 rad/s^2 times the error of the time
     sign = -sign;
   }
-  CHECK(std::abs(run.final("theta") - hand.x[0]) < by_hand);
+  CHECK(std::abs(run.final("theta") - hand.x[0]) < integration_tolerance);
   CHECK(run.simulation.result.power_balance < 1e-9);
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     if (run.rows.t[i] <= events.back().t) continue;
@@ -81,9 +81,9 @@ TEST_CASE("P6: on a level circle of constant radius it stops after asinh(L w^2/g
   const FinishedRun run = run_rough("P6_rough_circle", "flat");
   const Circle c(run);
   REQUIRE(events_of(run).size() == 1);
-  CHECK(std::abs(run.final("theta") - std::asinh(c.l0 * 25 / c.g) / (2 * c.mu_d)) < by_hand);
+  CHECK(std::abs(run.final("theta") - std::asinh(c.l0 * 25 / c.g) / (2 * c.mu_d)) < integration_tolerance);
   const double time = simpson([&](double rate) { return 1 / (c.mu_d * std::hypot(c.g / c.l0, rate * rate)); }, 0, 5);
-  CHECK(std::abs(events_of(run)[0].t - time) < by_hand);
+  CHECK(std::abs(events_of(run)[0].t - time) < integration_tolerance);
 }
 
 TEST_CASE("P6: an oscillating circle carries a sticking particle, and its power is the rate of the energy") {
@@ -92,7 +92,7 @@ TEST_CASE("P6: an oscillating circle carries a sticking particle, and its power 
   const Circle c(run);
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const double t = run.rows.t[i], theta = -std::acos(-1.0) / 2 + 0.1;
-    CHECK(std::abs(run.rows.at(i, "theta") - theta) < by_hand);
+    CHECK(std::abs(run.rows.at(i, "theta") - theta) < integration_tolerance);
     const double friction =
         run.rows.at(i, "friction.circle.2") * std::cos(theta) - run.rows.at(i, "friction.circle.1") * std::sin(theta);
     CHECK(friction == doctest::Approx(c.m * c.g * std::cos(c.beta) * std::cos(theta)).epsilon(1e-11));

@@ -31,8 +31,8 @@ struct Helix {
 TEST_CASE("P8: at random states the derived equations are (2.143), the normal force that of both constraints") {
   const FinishedRun run = run_rough("P8_rough_helix");
   const Helix h(run);
-  AtState derived(run, "P8_rough_helix");
-  Draw draw;
+  StateEvaluation derived(run, "P8_rough_helix");
+  UniformSampler draw;
   for (int i = 0; i < 50; ++i) {
     const double theta = draw(-9, 9), rate = draw(-6, 6);
     REQUIRE(derived.slide(0, {theta, rate}));
@@ -60,9 +60,9 @@ TEST_CASE("P8: thrown up it stops at the place and time of the quadrature of (2.
   CHECK(events_of(run)[0].kind == "stick");
   const double time = simpson([&](double w) { return -1 / h.acceleration(w + 1e-300); }, 0, 4);
   const double angle = simpson([&](double w) { return -w / h.acceleration(w + 1e-300); }, 0, 4);
-  CHECK(std::abs(events_of(run)[0].t - time) < by_hand);
+  CHECK(std::abs(events_of(run)[0].t - time) < integration_tolerance);
   const double theta = run.final("theta");
-  CHECK(std::abs(theta - 0.5 - angle) < by_hand);
+  CHECK(std::abs(theta - 0.5 - angle) < integration_tolerance);
   // The components of the total force of the wire along a_1, a_2, a_3 are those of -Fa.
   const double l1 = run.final("reaction.wire.1"), l2 = run.final("reaction.wire.2");
   const double f1 = run.final("friction.wire.1"), f2 = run.final("friction.wire.2"), f3 = run.final("friction.wire.3");
@@ -81,10 +81,10 @@ TEST_CASE("P8: on a wire with too little friction it reverses and slides down by
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "reverse");
   const double up = simpson([&](double w) { return -1 / h.acceleration(w + 1e-300); }, 0, 4);
-  CHECK(std::abs(events_of(run)[0].t - up) < by_hand);
+  CHECK(std::abs(events_of(run)[0].t - up) < integration_tolerance);
   const double rate = run.final("theta_dot"),
                down = simpson([&](double w) { return 1 / h.acceleration(w - 1e-300); }, 0, rate);
-  CHECK(std::abs(up + down - run.simulation.result.t) < by_hand);
+  CHECK(std::abs(up + down - run.simulation.result.t) < integration_tolerance);
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
@@ -101,6 +101,6 @@ TEST_CASE("P8: from rest it sticks if mu_s is at least alpha, and slides otherwi
     const double rate = run.final("theta_dot");
     CHECK(rate < -1);
     CHECK(std::abs(simpson([&](double w) { return 1 / h.acceleration(w - 1e-300); }, 0, rate) -
-                   run.simulation.result.t) < by_hand);
+                   run.simulation.result.t) < integration_tolerance);
   }
 }

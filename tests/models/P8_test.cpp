@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE("P8: theta remains, with (2.150); both constraint forces are those of (2.149)") {
-  Read p8("P8_smooth_helix");
+  DisplayedModel p8("P8_smooth_helix");
   const Sum m = p8("m"), g = p8("g"), R = p8("R"), al = p8("alpha"), th = p8("theta"), dth = p8("theta_dot"),
             ddth = p8("theta_ddot");
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {

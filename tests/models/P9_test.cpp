@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE("P9: the normal force is (2.171), h is conserved, and with it the motion is (2.172), its energy (2.173)") {
-  Read p9("P9_paraboloid");
+  DisplayedModel p9("P9_paraboloid");
   const Sum m = p9("m"), g = p9("g"), c = p9("c"), u = p9("u"), du = p9("u_dot"), ddu = p9("u_ddot"),
             dth = p9("theta_dot");
   const Sum h = m * square(c * u) * dth;

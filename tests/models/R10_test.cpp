@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "conservation/conservative.hpp"
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -41,7 +41,7 @@ double momentum(const FinishedRun& run, std::size_t i) {
 }  // namespace
 
 TEST_CASE("R10: T is (7.111), U (7.112), and the moment along E3 has the components G, 0, G cos(theta)") {
-  Read r10("R10_lagrange_top");
+  DisplayedModel r10("R10_lagrange_top");
   const reading::DisplayForm form = r10.form(system::Approach::two);
   const Sum n = r10("theta"), psi = r10("psi_dot"), theta = r10("theta_dot"), phi = r10("phi_dot");
   const Sum across = r10("Jt") + r10("m") * square(r10("L"));
@@ -54,7 +54,7 @@ TEST_CASE("R10: T is (7.111), U (7.112), and the moment along E3 has the compone
 }
 
 TEST_CASE("R10: the moment along E3 is not conservative, spring and weight are") {
-  Read r10("R10_lagrange_top");
+  DisplayedModel r10("R10_lagrange_top");
   const std::vector<conservation::ForceClassification> found = conservation::classify_forces(r10.s.mechanics);
   REQUIRE(found.size() == 3);
   CHECK(found[0].conservative == conservation::ConservativeVerdict::yes);

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "conservation/conservative.hpp"
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE("R11: a constant moment is conservative only if the body rotates about its direction") {
-  Read r11("R11_constant_moment"), axis("R11_constant_moment_fixed_axis");
+  DisplayedModel r11("R11_constant_moment"), axis("R11_constant_moment_fixed_axis");
   CHECK(conservation::classify_forces(r11.s.mechanics).at(0).conservative == conservation::ConservativeVerdict::no);
   const conservation::ForceClassification fixed = conservation::classify_forces(axis.s.mechanics).at(0);
   CHECK(fixed.conservative == conservation::ConservativeVerdict::yes);
@@ -36,7 +36,7 @@ TEST_CASE("R11: two paths to the same attitude with different work") {
   CHECK(product(rotation(1), rotation(0)) == rotation(2));
   // In the model: with 1-2-3 angles the moment's components along n1, n2 vanish on the second way, and not along n3 at
   // n1 = n2 = 0.
-  Read r11("R11_constant_moment");
+  DisplayedModel r11("R11_constant_moment");
   const reading::DisplayForm form = r11.form(system::Approach::two);
   const Sum M0 = r11("M0"), n1 = r11("n1"), n2 = r11("n2");
   CHECK(r11.equation(form, "n1").force.is_zero());

@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE("R13: the constraint and the equations are (9.102), and it is not integrable") {
-  Read r13("R13_sleigh");
+  DisplayedModel r13("R13_sleigh");
   const mechanics::Mechanics& m = r13.s.mechanics;
   REQUIRE(m.constraints.size() == 1);
   CHECK(m.classification[0].integrable == mechanics::Integrability::no);

@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE("R14: T is (9.104), the motion (9.106), the constraint force and moment (9.107)") {
-  Read r14("R14_sliding_cylinder");
+  DisplayedModel r14("R14_sliding_cylinder");
   const reading::DisplayForm one = r14.form(system::Approach::one);
   const Sum n = r14("theta"), psi = r14("psi"), dphi = r14("phi_dot"), dn = r14("theta_dot"), dpsi = r14("psi_dot");
   const Sum v2 = square(r14("x1_dot")) + square(r14("x2_dot")) + square(r14("x3_dot"));
@@ -27,7 +27,7 @@ TEST_CASE("R14: T is (9.104), the motion (9.106), the constraint force and momen
 }
 
 TEST_CASE("R14: theta = 0, pi is singular in approach I and regular in approach II, which passes through it") {
-  Read r14("R14_sliding_cylinder");
+  DisplayedModel r14("R14_sliding_cylinder");
   const std::vector<reading::SingularSet> sets = reading::singular_sets(r14.s.mechanics);
   REQUIRE(sets.size() == 1);
   CHECK(sets[0].approach == "I");

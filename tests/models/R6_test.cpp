@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "print/render.hpp"
 #include "support/simulation.hpp"
 
@@ -16,7 +16,7 @@ using namespace eomgen::test;
 
 namespace {
 
-std::string shown(const Read& read, const reading::DisplayForm& form, const std::string& role) {
+std::string shown(const DisplayedModel& read, const reading::DisplayForm& form, const std::string& role) {
   for (const print::PrintedFormula& item : print::render(read.s.mechanics, form, {"reactions"})) {
     if (item.role == role) return item.text;
   }
@@ -34,7 +34,7 @@ Sum slope(const reading::Equation& equation, std::uint32_t constraint) {
 }  // namespace
 
 TEST_CASE("R6: the plane exerts the force and, on the dual Euler basis, the moment of (9.84)") {
-  const Read r6("R6_rolling_disk");
+  const DisplayedModel r6("R6_rolling_disk");
   const reading::DisplayForm one = reading::derive_display_form(r6.s.mechanics, system::Approach::one);
   CHECK(shown(r6, one, "constraint force") == "F = lambda_1 E_1 + lambda_2 E_2 + lambda_3 E_3");
   CHECK(shown(r6, one, "constraint moment") ==
@@ -45,7 +45,7 @@ TEST_CASE("R6: the plane exerts the force and, on the dual Euler basis, the mome
 
 // (9.88) without a fifth line's term that is missing in print: -lambda phi_dot^2 sin(theta) cos(theta).
 TEST_CASE("R6: approach I gives the six equations (9.87), written out as the corrected (9.88)") {
-  Read r6("R6_rolling_disk");
+  DisplayedModel r6("R6_rolling_disk");
   const reading::DisplayForm one = r6.form(system::Approach::one);
   const Sum n = r6("theta"), phi = r6("phi"), J = r6("J"), J3 = r6("J3"), R = r6("R"), m = r6("m");
   const Sum dphi = r6("phi_dot"), dn = r6("theta_dot"), ddphi = r6("phi_ddot"), ddpsi = r6("psi_ddot"),
@@ -72,7 +72,7 @@ TEST_CASE("R6: approach I gives the six equations (9.87), written out as the cor
 // With x3 = R sin(theta) imposed; the fourth line as docs/theory.md has it, which print garbles.
 TEST_CASE(
     "R6: approach II has five equations: of the sliding disk the corrected (9.93), no force of the plane in them") {
-  Read r6("R6_sliding_disk");
+  DisplayedModel r6("R6_sliding_disk");
   const reading::DisplayForm two = r6.form(system::Approach::two);
   REQUIRE(two.equations.size() == 5);
   for (const reading::Equation& equation : two.equations) CHECK(equation.multipliers.empty());

@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
 
 TEST_CASE("R8: the constrained energies are (9.99)") {
-  Read r8("R8_pendulum_body");
+  DisplayedModel r8("R8_pendulum_body");
   const reading::DisplayForm two = r8.form(system::Approach::two);
   const Sum phi = r8("phi_dot"), theta = r8("theta_dot"), n = r8("theta");
   CHECK(same(two.kinetic, half(r8("J1") * square(phi * cos(n)) + r8("J") * (square(theta) + square(phi * sin(n))))));

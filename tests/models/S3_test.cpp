@@ -34,8 +34,8 @@ TEST_CASE(
   const FinishedRun pulled = run_rough("S3_rough_line");
   for (const FinishedRun* of : {&run, &pulled}) {
     const Line line(*of);
-    AtState derived(*of, "S3_rough_line");
-    Draw draw;
+    StateEvaluation derived(*of, "S3_rough_line");
+    UniformSampler draw;
     for (int i = 0; i < 30; ++i) {
       const double t = draw(0, 9);
       const double x[4] = {draw(-2, 2), draw(-2, 2), draw(-3, 3), draw(-3, 3)};
@@ -58,9 +58,9 @@ TEST_CASE("S3: released, the second mass makes one half oscillation while the fi
   CHECK(events_of(run)[0].t == 0);
   CHECK(events_of(run)[0].name == "line2");
   CHECK(events_of(run)[1].kind == "stick");
-  CHECK(std::abs(events_of(run)[1].t - std::acos(-1.0) * std::sqrt(line.m2 / line.k2)) < by_hand);
+  CHECK(std::abs(events_of(run)[1].t - std::acos(-1.0) * std::sqrt(line.m2 / line.k2)) < integration_tolerance);
   const double centre = 0.3 + line.mu_d * line.m2 * line.g / line.k2;
-  CHECK(std::abs(run.final("x2") - (2 * centre - 1)) < by_hand);
+  CHECK(std::abs(run.final("x2") - (2 * centre - 1)) < integration_tolerance);
   CHECK(run.final("x1") == doctest::Approx(0.3).epsilon(rounding));
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
@@ -71,16 +71,16 @@ TEST_CASE("S3: under the applied force each mass sticks and slides by hand-writt
   const std::vector<run::RunEvent> events = events_of(run);
   REQUIRE(events.size() > 20);
   // At rest until P0 sin(w t) is what friction holds.
-  CHECK(std::abs(events[0].t - std::asin(line.mu_s * line.m2 * line.g / line.P0) / line.w) < by_hand);
+  CHECK(std::abs(events[0].t - std::asin(line.mu_s * line.m2 * line.g / line.P0) / line.w) < integration_tolerance);
   int way[2] = {0, 0};
   const auto rates = [&](double t, const double* x, double* dx) {
     dx[0] = way[0] == 0 ? 0 : x[2], dx[1] = way[1] == 0 ? 0 : x[3];
     dx[2] = way[0] == 0 ? 0 : line.on1(t, x) / line.m1 - line.mu_d * line.g * way[0];
     dx[3] = way[1] == 0 ? 0 : line.on2(t, x) / line.m2 - line.mu_d * line.g * way[1];
   };
-  Hand hand(rates, 0, {0, 0, 0, 0});
+  HandWrittenMotion hand(rates, 0, {0, 0, 0, 0});
   for (const run::RunEvent& event : events) {
-    hand.to(event.t);
+    hand.advance_to(event.t);
     const std::size_t j = event.name == "line1" ? 0 : 1;
     const double pull = j == 0 ? line.on1(event.t, hand.x.data()) : line.on2(event.t, hand.x.data());
     const double limit = line.mu_s * (j == 0 ? line.m1 : line.m2) * line.g;
@@ -96,7 +96,7 @@ TEST_CASE("S3: under the applied force each mass sticks and slides by hand-writt
       hand.x[2 + j] = 0;
     }
   }
-  hand.to(run.simulation.result.t);
+  hand.advance_to(run.simulation.result.t);
   CHECK(std::abs(run.final("x1") - hand.x[0]) < 1e-9);
   CHECK(std::abs(run.final("x2") - hand.x[1]) < 1e-9);
   CHECK(run.simulation.result.power_balance < 1e-9);

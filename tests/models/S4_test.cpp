@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "reading/ginac_bridge.hpp"
 #include "support/simulation.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 
 using Six = std::array<Sum, 6>;  // along e1 .. e6: E1..E3 of P1, then of P2
 
-Six covariant(Read& s4, const std::string& q) {
+Six covariant(DisplayedModel& s4, const std::string& q) {
   reading::GinacBridge bridge(s4.s.mechanics);
   const reading::Symbol by = s4(q).terms().begin()->first[0].atom->symbol;
   Six a;
@@ -26,7 +26,7 @@ Six covariant(Read& s4, const std::string& q) {
 }  // namespace
 
 TEST_CASE("S4: the six covariant basis vectors are (3.71), and (3.72) is dual to them") {
-  Read s4("S4_two_particles");
+  DisplayedModel s4("S4_two_particles");
   const Sum r = s4("r1"), R = s4("R2"), o, one(1);
   const Sum c1 = cos(s4("theta1")), s1 = sin(s4("theta1")), c2 = cos(s4("theta2")), s2 = sin(s4("theta2"));
   const Sum cp = cos(s4("phi2")), sp = sin(s4("phi2"));
@@ -58,7 +58,7 @@ TEST_CASE("S4: the six covariant basis vectors are (3.71), and (3.72) is dual to
 }
 
 TEST_CASE("S4: the kinetic energy is (3.73), and there are six equations") {
-  Read s4("S4_two_particles");
+  DisplayedModel s4("S4_two_particles");
   const reading::DisplayForm form = s4.form(system::Approach::two);
   CHECK(form.equations.size() == 6);
   const Sum m1 = s4("m1"), m2 = s4("m2"), r = s4("r1"), R = s4("R2"), cp = cos(s4("phi2")), sp = sin(s4("phi2"));

@@ -37,12 +37,12 @@ TEST_CASE(
   const Dumbbell d(run);
   CHECK(run.simulation.result.outcome == eom::Outcome::friction_many_solutions);
   const double tangent = (d.mu + std::sqrt(d.mu * d.mu - 8)) / 2;
-  CHECK(std::abs(std::tan(run.final("theta")) - tangent) < by_hand);
-  Hand hand([&](double, const double* x, double* dx) { d.rates(x, dx); }, 0, {0, 1.5, 5, -0.1});
-  hand.to(run.simulation.result.t);
-  CHECK(std::abs(run.final("x") - hand.x[0]) < by_hand);
-  CHECK(std::abs(run.final("theta") - hand.x[1]) < by_hand);
-  CHECK(std::abs(run.final("x_dot") - hand.x[2]) < 10 * by_hand);
+  CHECK(std::abs(std::tan(run.final("theta")) - tangent) < integration_tolerance);
+  HandWrittenMotion hand([&](double, const double* x, double* dx) { d.rates(x, dx); }, 0, {0, 1.5, 5, -0.1});
+  hand.advance_to(run.simulation.result.t);
+  CHECK(std::abs(run.final("x") - hand.x[0]) < integration_tolerance);
+  CHECK(std::abs(run.final("theta") - hand.x[1]) < integration_tolerance);
+  CHECK(std::abs(run.final("x_dot") - hand.x[2]) < 10 * integration_tolerance);
   CHECK(run.final("reaction.floor") == doctest::Approx(d.normal(hand.x[1], hand.x[3], 1)).epsilon(1e-9));
 }
 
@@ -52,11 +52,11 @@ TEST_CASE("painleve_dumbbell: below it, the run follows the hand-written balance
   CHECK(d.mu < 2 * std::sqrt(2.0));
   CHECK(run.simulation.result.outcome == eom::Outcome::done);
   REQUIRE(events_of(run).size() >= 1);
-  Hand hand([&](double, const double* x, double* dx) { d.rates(x, dx); }, 0, {0, 1.5, 5, -0.1});
+  HandWrittenMotion hand([&](double, const double* x, double* dx) { d.rates(x, dx); }, 0, {0, 1.5, 5, -0.1});
   for (std::size_t i = 1; i < run.rows.size() && run.rows.t[i] < events_of(run)[0].t - 1e-3; ++i) {
-    hand.to(run.rows.t[i]);
-    CHECK(std::abs(run.rows.at(i, "x") - hand.x[0]) < by_hand);
-    CHECK(std::abs(run.rows.at(i, "theta") - hand.x[1]) < by_hand);
+    hand.advance_to(run.rows.t[i]);
+    CHECK(std::abs(run.rows.at(i, "x") - hand.x[0]) < integration_tolerance);
+    CHECK(std::abs(run.rows.at(i, "theta") - hand.x[1]) < integration_tolerance);
     CHECK(run.rows.at(i, "reaction.floor") == doctest::Approx(d.normal(hand.x[1], hand.x[3], 1)).epsilon(1e-9));
   }
   CHECK(run.simulation.result.power_balance < 1e-9);

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -68,7 +68,7 @@ TEST_CASE("rolling: R5: Chaplygin's sphere conserves energy and the angular mome
 }
 
 TEST_CASE("rolling: R6: the constraints are (9.79), two not integrable and one that is") {
-  Read r6("R6_rolling_disk");
+  DisplayedModel r6("R6_rolling_disk");
   const mechanics::Mechanics& m = r6.s.mechanics;
   REQUIRE(m.constraints.size() == 3);
   CHECK(m.constraints[0].kind == mechanics::ConstraintKind::velocity);

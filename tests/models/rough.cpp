@@ -29,16 +29,16 @@ std::function<void(pipeline::SimulationRequest&)> with(std::map<std::string, dou
 
 std::vector<run::RunEvent> events_of(const FinishedRun& run) { return run.simulation.result.events; }
 
-void Hand::to(double t) {
+void HandWrittenMotion::advance_to(double t) {
   const auto f = [this](double at, const double* state, double* dx) { return rates_(at, state, dx), 0; };
   x = integrate_reference(f, t_, x, t, 1e-12, 1e-14);
   t_ = t;
 }
 
-AtState::AtState(const FinishedRun& run, const std::string& model)
+StateEvaluation::StateEvaluation(const FinishedRun& run, const std::string& model)
     : rough_(read_text(model_path(model)), run.simulation.scene.parameters) {}
 
-bool AtState::slide(double t, std::vector<double> x) {
+bool StateEvaluation::slide(double t, std::vector<double> x) {
   t_ = t, x_ = std::move(x);
   dx.assign(x_.size(), 0);
   const std::vector<eom::Contact> contacts = rough_.contact_list();

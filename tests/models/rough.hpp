@@ -16,7 +16,7 @@
 namespace eomgen::test {
 
 /// Tolerance between a run and hand-written equations: a few seconds at rtol 1e-12 on both sides.
-constexpr double by_hand = 1e-10;
+constexpr double integration_tolerance = 1e-10;
 /// Tolerance for about a hundred operations in binary64.
 constexpr double rounding = 1e-12;
 
@@ -30,12 +30,12 @@ std::function<void(pipeline::SimulationRequest&)> with(std::map<std::string, dou
 std::vector<run::RunEvent> events_of(const FinishedRun& run);
 
 /// Integrates hand-written equations.
-class Hand {
+class HandWrittenMotion {
  public:
   using RightHandSide = std::function<void(double t, const double* x, double* dx)>;
-  Hand(RightHandSide rates, double t, std::vector<double> start) : x(std::move(start)), t_(t), rates_(std::move(rates)) {}
+  HandWrittenMotion(RightHandSide rates, double t, std::vector<double> start) : x(std::move(start)), t_(t), rates_(std::move(rates)) {}
 
-  void to(double t);
+  void advance_to(double t);
   std::vector<double> x;
 
  private:
@@ -45,9 +45,9 @@ class Hand {
 
 /// Evaluates the derived equations of a shipped model at chosen states. Contacts slide in the direction of the
 /// velocity.
-class AtState {
+class StateEvaluation {
  public:
-  explicit AtState(const FinishedRun& run, const std::string& model);
+  explicit StateEvaluation(const FinishedRun& run, const std::string& model);
 
   /// Returns false unless the friction law has exactly one solution with the normal force of a mode.
   bool slide(double t, std::vector<double> x);
@@ -63,7 +63,7 @@ class AtState {
 };
 
 /// Uniform random values between two bounds, with a fixed seed.
-class Draw {
+class UniformSampler {
  public:
   double operator()(double lower, double upper) {
     return lower + (upper - lower) * std::uniform_real_distribution<>()(engine_);

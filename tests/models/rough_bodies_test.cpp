@@ -35,8 +35,8 @@ TEST_CASE("rough_bodies: R3: thrown down without spin the sphere slides until fr
   const double t = 3 / (3.5 * k.drag - k.down), x = 3 * t + (k.down - k.drag) * t * t / 2,
                v = 3 + (k.down - k.drag) * t, left = 2 - t;
   CHECK(std::abs(events_of(run)[0].t - t) < 1e-12);
-  CHECK(std::abs(run.final("x_dot") - (v + 5 * k.down / 7 * left)) < by_hand);
-  CHECK(std::abs(run.final("x") - (x + v * left + 5 * k.down / 14 * left * left)) < by_hand);
+  CHECK(std::abs(run.final("x_dot") - (v + 5 * k.down / 7 * left)) < integration_tolerance);
+  CHECK(std::abs(run.final("x") - (x + v * left + 5 * k.down / 14 * left * left)) < integration_tolerance);
   CHECK(std::abs(run.final("theta_dot") * k.R - run.final("x_dot")) < 1e-13);
   CHECK(run.final("reaction.contact.1") == doctest::Approx(-2 * run.parameter("m") * k.down / 7).epsilon(rounding));
   CHECK(run.final("reaction.contact.2") == 0);
@@ -52,7 +52,7 @@ TEST_CASE("rough_bodies: R3: with forward spin up the incline friction drives th
   CHECK(events_of(run)[0].kind == "roll");
   const double t = 5 / (3.5 * k.drag + k.down), v = -1 + (k.down + k.drag) * t;
   CHECK(std::abs(events_of(run)[0].t - t) < 1e-12);
-  CHECK(std::abs(run.final("x_dot") - (v + 5 * k.down / 7 * (2 - t))) < by_hand);
+  CHECK(std::abs(run.final("x_dot") - (v + 5 * k.down / 7 * (2 - t))) < integration_tolerance);
   CHECK(run.rows.at(1, "mode.contact") == -1);
 }
 
@@ -61,7 +61,7 @@ TEST_CASE("rough_bodies: R3: rolling persists if and only if mu_s >= (2/7) tan(b
   const Incline k(rolling);
   CHECK(rolling.rows.at(0, "x_dot") == doctest::Approx(5 * k.R).epsilon(rounding));  // follows from rolling
   CHECK(events_of(rolling).empty());
-  CHECK(std::abs(rolling.final("x_dot") - (0.5 + 10 * k.down / 7)) < by_hand);
+  CHECK(std::abs(rolling.final("x_dot") - (0.5 + 10 * k.down / 7)) < integration_tolerance);
   const double limit = 2 * std::tan(k.b) / 7;
   CHECK(events_of(run_rough("R3_rough_incline", "default", with({{"mu_s", limit * (1 + 1e-12)}, {"mu_d", 0.05}})))
             .empty());
@@ -69,7 +69,7 @@ TEST_CASE("rough_bodies: R3: rolling persists if and only if mu_s >= (2/7) tan(b
   REQUIRE(events_of(over).size() == 1);
   CHECK(events_of(over)[0].kind == "slip");
   CHECK(events_of(over)[0].t == 0);
-  CHECK(std::abs(over.final("x_dot") - (0.5 + 2 * k.down * (1 - 0.05 / std::tan(k.b)))) < by_hand);
+  CHECK(std::abs(over.final("x_dot") - (0.5 + 2 * k.down * (1 - 0.05 / std::tan(k.b)))) < integration_tolerance);
 }
 
 TEST_CASE("rough_bodies: R3: rolling at the start of an incline that is too steep it slips at once, by (8.74)") {
@@ -79,8 +79,8 @@ TEST_CASE("rough_bodies: R3: rolling at the start of an incline that is too stee
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "slip");
   CHECK(events_of(run)[0].t == 0);
-  CHECK(std::abs(run.final("x") - (1 + 2 * (k.down - k.drag))) < by_hand);
-  CHECK(std::abs(run.final("slip.contact") - 2 * (k.down - 3.5 * k.drag)) < by_hand);
+  CHECK(std::abs(run.final("x") - (1 + 2 * (k.down - k.drag))) < integration_tolerance);
+  CHECK(std::abs(run.final("slip.contact") - 2 * (k.down - 3.5 * k.drag)) < integration_tolerance);
   CHECK(std::abs(run.final("theta_dot") - (5 + 5 * k.drag / k.R)) < 1e-9);  // of some 70 rad/s
 }
 
@@ -95,12 +95,12 @@ TEST_CASE("rough_bodies: R3: thrown across the incline the sphere starts to roll
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "roll");
   const double t = w0 * (ratio + std::cos(psi)) / (k.down * (ratio * ratio - 1));
-  CHECK(std::abs(events_of(run)[0].t - t) < by_hand);
+  CHECK(std::abs(events_of(run)[0].t - t) < integration_tolerance);
   const double v1 = -0.5 + 5 * k.down * t / 7 - 2 * w1 / 7, v2 = 1.5 - 2 * w2 / 7;
-  CHECK(std::abs(run.final("x1_dot") - (v1 + 5 * k.down / 7 * (2 - t))) < by_hand);
-  CHECK(std::abs(run.final("x2_dot") - v2) < by_hand);
+  CHECK(std::abs(run.final("x1_dot") - (v1 + 5 * k.down / 7 * (2 - t))) < integration_tolerance);
+  CHECK(std::abs(run.final("x2_dot") - v2) < integration_tolerance);
   CHECK(std::abs(run.final("W1") + v2 / k.R) < 1e-9);  // of some 10 rad/s
-  CHECK(std::abs(run.final("W3") - 2) < by_hand);
+  CHECK(std::abs(run.final("W3") - 2) < integration_tolerance);
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
@@ -109,14 +109,14 @@ TEST_CASE(
     "down") {
   const FinishedRun rolling = run_rough("R3_rough_sphere", "rolling");
   CHECK(events_of(rolling).empty());
-  CHECK(std::abs(rolling.final("x2_dot") + 0.1) < by_hand);
-  CHECK(std::abs(rolling.final("x1_dot") - (0.3 + 10 * Incline(rolling).down / 7)) < by_hand);
+  CHECK(std::abs(rolling.final("x2_dot") + 0.1) < integration_tolerance);
+  CHECK(std::abs(rolling.final("x1_dot") - (0.3 + 10 * Incline(rolling).down / 7)) < integration_tolerance);
   const FinishedRun steep = run_rough("R3_rough_sphere", "steep");
   const Incline k(steep);
   REQUIRE(!events_of(steep).empty());
   CHECK(events_of(steep)[0].kind == "slip");
-  CHECK(std::abs(steep.final("x1_dot") - 2 * (k.down - k.drag)) < by_hand);
-  CHECK(std::abs(steep.final("slip.contact.1") - 2 * (k.down - 3.5 * k.drag)) < by_hand);
+  CHECK(std::abs(steep.final("x1_dot") - 2 * (k.down - k.drag)) < integration_tolerance);
+  CHECK(std::abs(steep.final("slip.contact.1") - 2 * (k.down - 3.5 * k.drag)) < integration_tolerance);
 }
 
 // Of the centre v_dot = F/m, of the slip w_dot = (7/2) F/m - W E3 x v, F = -mu_d m g w/|w|.
@@ -128,7 +128,7 @@ TEST_CASE(
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "roll");
   const double stop = events_of(run)[0].t;
-  Hand hand(
+  HandWrittenMotion hand(
       [&](double, const double* x, double* dx) {
         const double s = std::hypot(x[4], x[5]), a1 = -drag * x[4] / s, a2 = -drag * x[5] / s;
         dx[0] = x[2], dx[1] = x[3], dx[2] = a1, dx[3] = a2;
@@ -137,10 +137,10 @@ TEST_CASE(
       0, {0.3, -0.1, 0, 0, -W * 0.1, -W * 0.3});
   std::size_t i = 1;
   for (; run.rows.t[i] < stop - 1e-3; ++i) {
-    hand.to(run.rows.t[i]);
+    hand.advance_to(run.rows.t[i]);
     for (const auto& [k, name] :
          {std::pair{0, "x1"}, {1, "x2"}, {2, "x1_dot"}, {3, "x2_dot"}, {4, "slip.contact.1"}, {5, "slip.contact.2"}}) {
-      CHECK(std::abs(run.rows.at(i, name) - hand.x[static_cast<std::size_t>(k)]) < by_hand);
+      CHECK(std::abs(run.rows.at(i, name) - hand.x[static_cast<std::size_t>(k)]) < integration_tolerance);
     }
   }
   REQUIRE(i > 5);
@@ -151,8 +151,8 @@ TEST_CASE(
   for (std::size_t k = first; k < run.rows.size(); ++k) {
     const double s = std::sin(rate * (run.rows.t[k] - run.rows.t[first])) / rate,
                  c = (1 - std::cos(rate * (run.rows.t[k] - run.rows.t[first]))) / rate;
-    CHECK(std::abs(run.rows.at(k, "x1") - (run.rows.at(first, "x1") + v1 * s - v2 * c)) < by_hand);
-    CHECK(std::abs(run.rows.at(k, "x2") - (run.rows.at(first, "x2") + v2 * s + v1 * c)) < by_hand);
+    CHECK(std::abs(run.rows.at(k, "x1") - (run.rows.at(first, "x1") + v1 * s - v2 * c)) < integration_tolerance);
+    CHECK(std::abs(run.rows.at(k, "x2") - (run.rows.at(first, "x2") + v2 * s + v1 * c)) < integration_tolerance);
   }
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
@@ -200,14 +200,14 @@ TEST_CASE(
   REQUIRE(!events_of(run).empty());
   CHECK(events_of(run)[0].kind == "roll");
   const double stop = events_of(run)[0].t;
-  Hand hand([&](double, const double* x, double* dx) { disk.rates(x, dx); }, 0, {0, 0, 2, 0, 0, 1.2, 0, 0, 0});
+  HandWrittenMotion hand([&](double, const double* x, double* dx) { disk.rates(x, dx); }, 0, {0, 0, 2, 0, 0, 1.2, 0, 0, 0});
   std::size_t i = 1;
   for (; run.rows.t[i] < stop - 1e-3; ++i) {
-    hand.to(run.rows.t[i]);
+    hand.advance_to(run.rows.t[i]);
     const auto [u1, u2] = disk.slip(hand.x.data());
-    CHECK(std::abs(run.rows.at(i, "x1") - hand.x[0]) < by_hand);
-    CHECK(std::abs(run.rows.at(i, "x2_dot") - hand.x[3]) < by_hand);
-    CHECK(std::abs(run.rows.at(i, "theta") - hand.x[5]) < by_hand);
+    CHECK(std::abs(run.rows.at(i, "x1") - hand.x[0]) < integration_tolerance);
+    CHECK(std::abs(run.rows.at(i, "x2_dot") - hand.x[3]) < integration_tolerance);
+    CHECK(std::abs(run.rows.at(i, "theta") - hand.x[5]) < integration_tolerance);
     CHECK(std::abs(run.rows.at(i, "disk.omega3") - hand.x[8]) < 1e-9);  // of some 10 rad/s
     CHECK(std::abs(run.rows.at(i, "slip.contact.1") - u1) < 1e-9);
     CHECK(std::abs(run.rows.at(i, "slip.contact.2") - u2) < 1e-9);
@@ -236,8 +236,8 @@ TEST_CASE("rough_bodies: R6: the disk rolls as without friction until the plane 
     }
     CHECK(holds);
     REQUIRE(std::abs(run.rows.t[i] - held.rows.t[i]) < 1e-12);
-    CHECK(std::abs(run.rows.at(i, "theta") - held.rows.at(i, "theta")) < by_hand);
-    CHECK(std::abs(run.rows.at(i, "x1") - held.rows.at(i, "x1")) < by_hand);
+    CHECK(std::abs(run.rows.at(i, "theta") - held.rows.at(i, "theta")) < integration_tolerance);
+    CHECK(std::abs(run.rows.at(i, "x1") - held.rows.at(i, "x1")) < integration_tolerance);
     for (const char* k : {"1", "2", "3"}) CHECK(std::abs(force(run, i, k) - force(held, i, k)) < 1e-9);
   }
   CHECK(passed);

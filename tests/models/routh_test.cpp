@@ -8,7 +8,7 @@
 
 #include "conservation/conserved.hpp"
 #include "derive/formulations/lagrange.hpp"
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 #include "support/reference_integration.hpp"
 #include "support/simulation.hpp"
 #include "support/sum_values.hpp"
@@ -41,7 +41,7 @@ bool routh_agrees(const verify::Certificate& c) {
 }  // namespace
 
 TEST_CASE("routh: of P9 with h is the single equation (2.172), with the energy (2.173)") {
-  Read p9("P9_paraboloid");
+  DisplayedModel p9("P9_paraboloid");
   const reading::RouthForm form = reduced(p9.s.mechanics);
   REQUIRE(form.cyclic.size() == 1);
   REQUIRE(form.equations.size() == 1);
@@ -76,7 +76,7 @@ TEST_CASE("routh: the reduced equations vanish for the motion that the oracle al
 }
 
 TEST_CASE("routh: a wrong sign in a reduced equation is noticed") {
-  Read p9("P9_paraboloid");
+  DisplayedModel p9("P9_paraboloid");
   reading::RouthForm form = reduced(p9.s.mechanics);
   form.equations[0].expanded += Sum(2) * p9("m") * p9("g") * p9("u");
   CHECK_FALSE(routh_agrees(certificate(p9.s.mechanics, reading::residuals_on_dag(form, p9.s.mechanics))));
@@ -88,7 +88,7 @@ TEST_CASE("routh: integrated by itself P9's single equation moves as the full sy
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });
-  Read p9("P9_paraboloid");
+  DisplayedModel p9("P9_paraboloid");
   const reading::RouthForm form = reduced(p9.s.mechanics);
   using symbolic::SymbolKind;
   const std::uint32_t u = form.equations[0].coordinate;

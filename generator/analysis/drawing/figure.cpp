@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "analysis/drawing/parts.hpp"
-#include "analysis/drawing/placed.hpp"
+#include "analysis/drawing/placed_solids.hpp"
 #include "analysis/drawing/sketch.hpp"
 #include "analysis/drawing/surfaces_at_start.hpp"
 #include "analysis/drawing/wheels.hpp"
@@ -52,21 +52,21 @@ class Drawer {
     look_elsewhere();
     solids_ = placed_solids(parts_, sizes_, at_start_);
     std::optional<Point> down;
-    if (const auto g = falling(m_, scene_.parameters)) down = Point(g->data());
+    if (const auto g = gravity_direction(m_, scene_.parameters)) down = Point(g->data());
     const View view(points_of_view(), down);
     std::vector<Point> all = extent();
-    const std::vector<BoundLine> bound = surfaces_at_start(m_, parts_, scene_, at_start_, view, size(all));
-    for (const BoundLine& line : bound) all.insert(all.end(), line.points.begin(), line.points.end());
+    const std::vector<SurfaceLine> bound = surfaces_at_start(m_, parts_, scene_, at_start_, view, size(all));
+    for (const SurfaceLine& line : bound) all.insert(all.end(), line.points.begin(), line.points.end());
     Sketch sketch(view, all);
     axes(sketch);
-    for (const BoundLine& line : bound) sketch.curve(line.points, line.edge ? Weight::plain : Weight::fine);
+    for (const SurfaceLine& line : bound) sketch.curve(line.points, line.edge ? Weight::plain : Weight::fine);
     for (const DrawnContact& contact : parts_.contacts) ground(sketch, contact);
     for (const Rod& rod : links()) link(sketch, rod);
-    for (const Placed& placed : solids_) {
+    for (const PlacedSolids& placed : solids_) {
       for (const Solid& solid : placed.solids) sketch.solid(solid, placed.world);
     }
     for (const DrawnCoupling& coupling : parts_.couplings) analysis::draw(sketch, wheels(coupling));
-    for (const DrawnLine& spring : parts_.springs) sketch.coil(point(spring.a), point(spring.b));
+    for (const DrawnLine& spring : parts_.springs) sketch.spring(point(spring.a), point(spring.b));
     for (const DrawnLine& damper : parts_.dampers) sketch.damper(point(damper.a), point(damper.b));
     for (const DrawnJoint& joint : parts_.joints) {
       for (const auto& of : joint.of) {
@@ -146,7 +146,7 @@ class Drawer {
     std::vector<Point> result;
     for (const std::size_t i : spots()) result.push_back(point(i));
     if (has_origin()) result.push_back(Point::Zero());
-    for (const Placed& placed : solids_) {
+    for (const PlacedSolids& placed : solids_) {
       const auto& world = placed.world;
       for (const Solid& solid : placed.solids) {
         for (const std::vector<Point>& face : solid.faces) {
@@ -224,7 +224,7 @@ class Drawer {
     if (sprung) return;
     const double length = (here - from).norm();
     bool rigid = std::none_of(parts_.surfaces.begin(), parts_.surfaces.end(), [&](const DrawnSurface& surface) {
-      return (surface.touched || surface.moves) && static_cast<long>(surface.place) == rod.to;
+      return (surface.has_contact || surface.is_moving) && static_cast<long>(surface.place) == rod.to;
     });
     for (const std::vector<double>& there : elsewhere_) {
       const double other = (at_place(there, rod.to) - at_place(there, rod.from)).norm();
@@ -259,7 +259,7 @@ class Drawer {
     const PlanePoint at = sketch.on_paper(point(place.at));
     if (place.from == -1) sketch.dot(sketch.on_paper(Point::Zero()), 1.2, false);
     const bool is_solid =
-        std::any_of(solids_.begin(), solids_.end(), [i](const Placed& p) { return p.place == i && !p.solids.empty(); });
+        std::any_of(solids_.begin(), solids_.end(), [i](const PlacedSolids& p) { return p.place == i && !p.solids.empty(); });
     if (std::string_view(place.kind) == "particle") return sketch.dot(at, is_solid ? 0.8 : 2.4, true);
     sketch.dot(at, std::string_view(place.kind) == "body" && !is_solid ? 2.4 : 0.8, true);
   }
@@ -326,7 +326,7 @@ class Drawer {
   const DrawnParts& parts_;
   std::vector<double> at_start_, sizes_;
   std::vector<std::vector<double>> elsewhere_;
-  std::vector<Placed> solids_;
+  std::vector<PlacedSolids> solids_;
 };
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "analysis/drawing/components.hpp"
+#include "analysis/drawing/force_decomposition.hpp"
 #include "mechanics/particle_force.hpp"
 #include "mechanics/vanishes.hpp"
 
@@ -183,19 +183,19 @@ class Collection {
   /// Draws a force that is given by its generalised components. Returns whether the arrows represent all of it.
   bool generalised(std::size_t i) {
     const model::Force& force = model_.forces[i];
-    Components Q(m_, moments(), m_.force_components[i]);
+    ForceDecomposition Q(m_, moments(), m_.force_components[i]);
     Q.add_potential(m_.potential_by_force[i]);
-    for (const Act& act : acts_) Q.take(act.force, act.at);
-    for (const BodyMoment& turn : turns_) Q.take(turn);
+    for (const Act& act : acts_) Q.subtract(act.force, act.at);
+    for (const BodyMoment& turn : turns_) Q.subtract(turn);
     for (const Ref angle : angles(force)) {
-      for (const BodyMoment& turn : Q.along_angle(angle)) put_moment(force.name, applied, turn);
+      for (const BodyMoment& turn : Q.moments_about_angle(angle)) put_moment(force.name, applied, turn);
     }
-    for (const auto& [p, value] : Q.on_masses()) {
+    for (const auto& [p, value] : Q.forces_on_masses()) {
       put(force.name, applied, place(m_.masses[p].place), value);
       on_mass_[p] = symbolic::add(dag_, on_mass_[p], value);
     }
-    for (const BodyMoment& turn : Q.on_attitudes()) put_moment(force.name, applied, turn);
-    return mechanics::vanishes(dag_, Q.rest());
+    for (const BodyMoment& turn : Q.moments_on_attitudes()) put_moment(force.name, applied, turn);
+    return mechanics::vanishes(dag_, Q.remainder());
   }
   /// Angle along which the force acts: its own, or coordinates.
   std::vector<Ref> angles(const model::Force& force) {
@@ -285,29 +285,29 @@ class Collection {
     if (lambda == nullptr) return leave_out(c.label);
     std::vector<Ref> along;
     for (const Ref f : c.gradient) along.push_back(dag_.mul(lambda->value, f));
-    Components Q(m_, moments(), along);
+    ForceDecomposition Q(m_, moments(), along);
     if (of.coupled) coupling(c.label, *of.coupled, lambda->value, Q);
     if (!of.coupled && c.holonomic()) {  // psi may be an angle
-      for (const BodyMoment& turn : Q.along_angle(c.psi)) put_moment(c.label, constraint, turn);
+      for (const BodyMoment& turn : Q.moments_about_angle(c.psi)) put_moment(c.label, constraint, turn);
     }
-    for (const auto& [p, value] : Q.on_masses()) {
+    for (const auto& [p, value] : Q.forces_on_masses()) {
       if (!is_particle(m_.masses[p])) put(c.label, constraint, place(m_.masses[p].place), value);
     }
-    for (const BodyMoment& turn : Q.on_attitudes()) put_moment(c.label, constraint, turn);
+    for (const BodyMoment& turn : Q.moments_on_attitudes()) put_moment(c.label, constraint, turn);
     for (const std::uint32_t i : concerned) {
-      if (!mechanics::vanishes(dag_, {Q.rest()[i]})) return leave_out(c.label);
+      if (!mechanics::vanishes(dag_, {Q.remainder()[i]})) return leave_out(c.label);
     }
   }
   bool moves_bodies(std::uint32_t c) {
     symbolic::Derivation by = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, c, 0});
     for (std::size_t b = 0; b < m_.body_rotations.size(); ++b) {
       const Vec3& r = *m_.place_position[model_.bodies[b].place];
-      if (moments().turns(b, c) || !symbolic::is_zero(dag_, {by(r[0]), by(r[1]), by(r[2])})) return true;
+      if (moments().rotates(b, c) || !symbolic::is_zero(dag_, {by(r[0]), by(r[1]), by(r[2])})) return true;
     }
     return false;
   }
   /// The multiplier of a coupling is the moment on the first body about its axis.
-  void coupling(const std::string& name, const model::RotationCoupling& coupled, Ref lambda, Components& Q) {
+  void coupling(const std::string& name, const model::RotationCoupling& coupled, Ref lambda, ForceDecomposition& Q) {
     const Vec3 a = symbolic::scale(dag_, lambda, mechanics::lower_vector(m_, coupled.axes[0])),
                b = symbolic::scale(dag_, dag_.neg(dag_.mul(lambda, mechanics::lower_scalar(m_, coupled.ratio))),
                                    mechanics::lower_vector(m_, coupled.axes[1])),
@@ -317,7 +317,7 @@ class Collection {
       const auto body = coupled.frames[k] > 0 ? moments().body_of(coupled.frames[k]) : std::nullopt;
       if (!body) continue;
       put_moment(name, constraint, {*body, values[k]});
-      Q.take({*body, values[k]});
+      Q.subtract({*body, values[k]});
     }
   }
   void rubbing(std::uint32_t j) {
@@ -356,7 +356,7 @@ void DrawnForces::add_outputs(system::EquationSystem& system) {
   collection.run();
   names_ = std::move(collection.names);
   list_ = std::move(collection.list);
-  beyond_ = collection.beyond;
+  omitted_count_ = collection.beyond;
   unknown_ = std::move(collection.unknown);
 }
 

@@ -18,7 +18,7 @@ struct DrawnForce {
   const char* kind;  // "applied", "constraint", "friction"
   std::size_t at;    // index of the point of application among the outputs: first the drawing's, then these
   std::size_t value;   // index of the vector, likewise
-  bool turns = false;  // a moment
+  bool is_moment = false;  // a moment
 };
 
 class DrawnForces {
@@ -30,7 +30,7 @@ class DrawnForces {
   const std::vector<std::string>& outputs() const { return names_; }
   const std::vector<DrawnForce>& list() const { return list_; }
   /// Number of arrows omitted because the drawing would have too many.
-  std::size_t beyond() const { return beyond_; }
+  std::size_t omitted_count() const { return omitted_count_; }
   /// Names of forces and constraints that have no vector, or only for a part.
   const std::vector<std::string>& without_vector() const { return unknown_; }
 
@@ -39,7 +39,7 @@ class DrawnForces {
   const Drawing& drawing_;
   std::vector<std::string> names_;
   std::vector<DrawnForce> list_;
-  std::size_t beyond_ = 0;
+  std::size_t omitted_count_ = 0;
   std::vector<std::string> unknown_;
 };
 

@@ -70,7 +70,7 @@ std::optional<std::size_t> BodyMoments::body_of(std::uint32_t frame) const {
   return found == bodies.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - bodies.begin()));
 }
 
-Ref BodyMoments::along(const BodyMoment& moment, std::uint32_t c) {
+Ref BodyMoments::generalised_force(const BodyMoment& moment, std::uint32_t c) {
   return symbolic::dot(*m_.dag, moment.value, turns_[moment.body][c]);
 }
 
@@ -150,7 +150,7 @@ std::optional<Vec3> BodyMoments::about_axis(std::size_t body, std::optional<std:
   return least(directions, along);
 }
 
-std::vector<BodyMoment> BodyMoments::along_angle(const std::vector<Ref>& Q, Ref angle) {
+std::vector<BodyMoment> BodyMoments::moments_about_angle(const std::vector<Ref>& Q, Ref angle) {
   symbolic::Dag& dag = *m_.dag;
   std::vector<Ref> slopes;
   for (std::uint32_t c = 0; c < m_.q.size(); ++c)
@@ -177,13 +177,13 @@ std::vector<BodyMoment> BodyMoments::along_angle(const std::vector<Ref>& Q, Ref 
 }
 
 // Three directions span all rotations. Fewer directions that have other effects too determine nothing.
-std::optional<Vec3> BodyMoments::of_attitude(std::size_t body, const std::vector<Ref>& Q) {
+std::optional<Vec3> BodyMoments::moment_on_attitude(std::size_t body, const std::vector<Ref>& Q) {
   std::vector<Vec3> directions;
   std::vector<Ref> along;
   bool alone = true;
   for (std::uint32_t c = 0; c < m_.q.size(); ++c) {
-    if (!turns(body, c)) continue;
-    if (!turns_alone(body, c)) {
+    if (!rotates(body, c)) continue;
+    if (!rotates_only(body, c)) {
       alone = false;
       continue;
     }
@@ -194,11 +194,11 @@ std::optional<Vec3> BodyMoments::of_attitude(std::size_t body, const std::vector
   return least(directions, along);
 }
 
-bool BodyMoments::turns_alone(std::size_t body, std::uint32_t c) const {
+bool BodyMoments::rotates_only(std::size_t body, std::uint32_t c) const {
   for (std::size_t other = 0; other < m_.body_rotations.size(); ++other) {
-    if (other != body && turns(other, c)) return false;
+    if (other != body && rotates(other, c)) return false;
   }
-  return turns(body, c) && !moves_[c];
+  return rotates(body, c) && !moves_[c];
 }
 
 }  // namespace eomgen::analysis

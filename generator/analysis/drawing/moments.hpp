@@ -24,17 +24,17 @@ class BodyMoments {
   /// Returns the body of a frame; nullopt if the frame is not fixed to a body.
   std::optional<std::size_t> body_of(std::uint32_t frame) const;
   /// Whether coordinate c rotates the body.
-  bool turns(std::size_t body, std::uint32_t c) const { return !symbolic::is_zero(*m_.dag, turns_[body][c]); }
+  bool rotates(std::size_t body, std::uint32_t c) const { return !symbolic::is_zero(*m_.dag, turns_[body][c]); }
   /// Whether coordinate c rotates this body and has no other effect.
-  bool turns_alone(std::size_t body, std::uint32_t c) const;
+  bool rotates_only(std::size_t body, std::uint32_t c) const;
   /// Generalised force of a moment on coordinate c: M . dw/dqdot_c
-  symbolic::Ref along(const BodyMoment& moment, std::uint32_t c);
+  symbolic::Ref generalised_force(const BodyMoment& moment, std::uint32_t c);
   /// Moments equivalent to Q_c = tau d(angle)/dq_c: one on the rotated body, the opposite one on the body of reference.
   /// Returns an empty list if `angle` is not the angle of such a rotation.
-  std::vector<BodyMoment> along_angle(const std::vector<symbolic::Ref>& Q, symbolic::Ref angle);
+  std::vector<BodyMoment> moments_about_angle(const std::vector<symbolic::Ref>& Q, symbolic::Ref angle);
   /// Moment equivalent to Q along the coordinates that rotate only this body. Requires that these are three, or all
   /// coordinates that rotate it; otherwise returns nullopt.
-  std::optional<symbolic::Vec3> of_attitude(std::size_t body, const std::vector<symbolic::Ref>& Q);
+  std::optional<symbolic::Vec3> moment_on_attitude(std::size_t body, const std::vector<symbolic::Ref>& Q);
 
  private:
   using Numbers = std::array<std::array<double, 3>, 2>;  // components of a vector at two states

@@ -30,7 +30,7 @@ std::optional<std::size_t> place_of(const model::Model& model, std::uint32_t fra
 
 }  // namespace
 
-bool is_of_parameters(const symbolic::Dag& dag, Ref expression) {
+bool depends_on_parameters_only(const symbolic::Dag& dag, Ref expression) {
   const std::vector<symbolic::Symbol> symbols = dag.symbols({expression});
   return std::all_of(symbols.begin(), symbols.end(),
                      [](const symbolic::Symbol& s) { return s.kind == SymbolKind::parameter; });
@@ -82,7 +82,7 @@ std::size_t Drawing::vector(model::NodeId value) { return vector(mechanics::lowe
 std::size_t Drawing::size(model::NodeId value) {
   symbolic::Dag& dag = *mechanics_.dag;
   Ref lowered = value == model::no_node ? dag.integer(-1) : mechanics::lower_scalar(mechanics_, value);
-  if (!is_of_parameters(dag, lowered)) lowered = dag.integer(-1);
+  if (!depends_on_parameters_only(dag, lowered)) lowered = dag.integer(-1);
   sizes_.push_back(lowered);
   return sizes_.size() - 1;
 }
@@ -166,7 +166,7 @@ void Drawing::couplings() {
     const model::RotationCoupling& coupled = *constraint.coupled;
     const auto a = place_of(model_, coupled.frames[0]), b = place_of(model_, coupled.frames[1]);
     const Ref ratio = mechanics::lower_scalar(mechanics_, coupled.ratio);
-    if (!a || !b || !is_of_parameters(*mechanics_.dag, ratio)) continue;
+    if (!a || !b || !depends_on_parameters_only(*mechanics_.dag, ratio)) continue;
     const std::size_t n = vector(coupled.axes[0]), m = vector(coupled.axes[1]);
     parts_.couplings.push_back({constraint.name, {*a, *b}, {n, m}, size(coupled.ratio), coupled.frames[2] > 0});
   }
@@ -194,7 +194,7 @@ std::vector<double> sizes_of(const Drawing& drawing, const symbolic::Dag& dag, c
   return result;
 }
 
-std::optional<std::array<double, 3>> falling(mechanics::Mechanics& mechanics, const std::vector<double>& parameters) {
+std::optional<std::array<double, 3>> gravity_direction(mechanics::Mechanics& mechanics, const std::vector<double>& parameters) {
   for (const model::Force& force : mechanics.model->forces) {
     const model::NodeId gravity = force.acceleration();
     if (gravity == model::no_node) continue;
@@ -202,7 +202,7 @@ std::optional<std::array<double, 3>> falling(mechanics::Mechanics& mechanics, co
     std::array<double, 3> down{};
     double length = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!is_of_parameters(*mechanics.dag, g[k])) return std::nullopt;
+      if (!depends_on_parameters_only(*mechanics.dag, g[k])) return std::nullopt;
       const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R { return numeric::exact(parameters[s.index]); };
       try {
         down[k] = cln::double_approx(symbolic::evaluate(*mechanics.dag, {g[k]}, lookup, digits)[0]);

@@ -53,9 +53,9 @@ struct DrawnSurface {
   std::vector<std::uint32_t> others;       // indices in the model of coordinates that move or reshape the surface
   std::vector<std::size_t> others_at;      // indices of these among the outputs
   std::optional<std::size_t> integrals;    // a vector: the first integrals over time
-  bool touched = false;                    // a contact: with friction, or unilateral
-  bool reshapes = false;                   // psi changes with time or with the other coordinates
-  bool moves = false;                      // reshapes, or moves as a whole
+  bool has_contact = false;                    // a contact: with friction, or unilateral
+  bool changes_shape = false;                   // psi changes with time or with the other coordinates
+  bool is_moving = false;                      // reshapes, or moves as a whole
   std::vector<symbolic::Ref> psi;          // functions of all these coordinates, time and parameters
   symbolic::Vec3 position;
 };
@@ -89,7 +89,7 @@ struct DrawnParts {
   std::vector<DrawnShape> shapes;
   std::vector<DrawnSurface> surfaces;
   std::vector<DrawnRod> rods;
-  bool untried_rods = false;  // rods were not searched for because there are too many places
+  bool rods_incomplete = false;  // rods were not searched for because there are too many places
 };
 
 class Drawing {
@@ -149,9 +149,9 @@ class Drawing {
 std::vector<double> sizes_of(const Drawing& drawing, const symbolic::Dag& dag, const std::vector<double>& parameters);
 
 /// Returns the direction of uniform gravity; nullopt if there is none.
-std::optional<std::array<double, 3>> falling(mechanics::Mechanics& mechanics, const std::vector<double>& parameters);
+std::optional<std::array<double, 3>> gravity_direction(mechanics::Mechanics& mechanics, const std::vector<double>& parameters);
 
 /// Whether an expression depends on parameters only.
-bool is_of_parameters(const symbolic::Dag& dag, symbolic::Ref expression);
+bool depends_on_parameters_only(const symbolic::Dag& dag, symbolic::Ref expression);
 
 }  // namespace eomgen::analysis

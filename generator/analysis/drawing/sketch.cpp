@@ -131,7 +131,7 @@ void Sketch::dot(const PlanePoint& at, double diameter, bool filled) {
   cover(at + PlanePoint::Constant(diameter / 2));
 }
 
-void Sketch::coil(const Point& a, const Point& b) {
+void Sketch::spring(const Point& a, const Point& b) {
   constexpr int turns = 9;
   const PlanePoint p = on_paper(a), q = on_paper(b), along = q - p;
   if (along.norm() < 1) return;

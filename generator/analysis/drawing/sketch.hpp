@@ -30,7 +30,7 @@ class Sketch {
   void curve(const std::vector<Point>& points, Weight weight);
   void arrow(const PlanePoint& from, const PlanePoint& to, Weight weight);
   void dot(const PlanePoint& at, double diameter, bool filled);
-  void coil(const Point& a, const Point& b);
+  void spring(const Point& a, const Point& b);
   void damper(const Point& a, const Point& b);
   /// `world`: transformation from body axes to space. Edges that the solid itself hides are not drawn.
   void solid(const Solid& solid, const std::function<Point(const Point&)>& world);

@@ -114,7 +114,7 @@ std::optional<Solid> solid_of_shape(const DrawnShape& shape, const std::vector<d
       for (const std::uint32_t i : face) solid.faces.back().push_back(points[i]);
     }
     solid.open = !shape.faces.empty();
-    if (!solid.open) solid.faces = hull(points);
+    if (!solid.open) solid.faces = convex_hull(points);
     return solid;
   }
   if (std::any_of(l.begin(), l.end(), [](double length) { return !(length > 0); })) return std::nullopt;
@@ -131,7 +131,7 @@ std::optional<Solid> solid_of_shape(const DrawnShape& shape, const std::vector<d
   return solid;
 }
 
-std::vector<std::vector<Point>> hull(const std::vector<Point>& points) {
+std::vector<std::vector<Point>> convex_hull(const std::vector<Point>& points) {
   double size = 0;
   for (const Point& p : points) size = std::max(size, (p - points[0]).norm());
   const double least = 1e-9 * size;

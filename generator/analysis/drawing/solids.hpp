@@ -21,7 +21,7 @@ struct Solid {
 };
 
 /// Convex hull: the faces, counterclockwise from outside. Coplanar points give one polygon, collinear points no face.
-std::vector<std::vector<Point>> hull(const std::vector<Point>& points);
+std::vector<std::vector<Point>> convex_hull(const std::vector<Point>& points);
 
 /// Returns nullopt if a length is unknown.
 std::optional<Solid> solid_of_shape(const DrawnShape& shape, const std::vector<double>& sizes);

@@ -13,15 +13,15 @@ using Eigen::Index;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-std::vector<BoundLine> surfaces_at_start(const mechanics::Mechanics& m, const DrawnParts& parts,
+std::vector<SurfaceLine> surfaces_at_start(const mechanics::Mechanics& m, const DrawnParts& parts,
                                          const run::Scene& scene, const std::vector<double>& values, const View& view,
                                          double size) {
-  std::vector<BoundLine> result;
+  std::vector<SurfaceLine> result;
   for (const DrawnSurface& surface : parts.surfaces) {
     const auto n = static_cast<Index>(surface.coordinates.size()), bound = static_cast<Index>(surface.psi.size());
     std::map<std::uint32_t, double> at;  // of coordinates
     for (std::size_t k = 0; k < surface.others.size(); ++k) at[surface.others[k]] = values[surface.others_at[k]];
-    BoundPlace place;
+    SurfaceSetting place;
     place.q.resize(n);
     place.low.resize(n);
     place.high.resize(n);
@@ -38,7 +38,7 @@ std::vector<BoundLine> surfaces_at_start(const mechanics::Mechanics& m, const Dr
     std::vector<symbolic::Ref> roots = surface.psi;
     roots.insert(roots.end(), surface.position.begin(), surface.position.end());
     const linear::Tape tape(*m.dag, roots, directions);
-    const BoundFunction function = [&](const Eigen::VectorXd& q) -> std::optional<BoundPoint> {
+    const SurfaceFunction function = [&](const Eigen::VectorXd& q) -> std::optional<SurfacePoint> {
       for (Index k = 0; k < n; ++k) at[surface.coordinates[static_cast<std::size_t>(k)]] = q[k];
       try {
         const auto found = tape.at<double>([&](const Symbol& s) -> double {
@@ -52,7 +52,7 @@ std::vector<BoundLine> surfaces_at_start(const mechanics::Mechanics& m, const Dr
             default: return s.kind == SymbolKind::integral ? 0 : std::nan("");  // integrals are 0 at the start
           }
         });
-        BoundPoint point{Eigen::VectorXd(bound), Eigen::MatrixXd(bound, n), Point::Zero(), Eigen::Matrix3Xd(3, n)};
+        SurfacePoint point{Eigen::VectorXd(bound), Eigen::MatrixXd(bound, n), Point::Zero(), Eigen::Matrix3Xd(3, n)};
         for (Index i = 0; i < bound + 3; ++i) {
           (i < bound ? point.psi[i] : point.x[i - bound]) = found.value[static_cast<std::size_t>(i)];
           for (Index k = 0; k < n; ++k)
@@ -64,7 +64,7 @@ std::vector<BoundLine> surfaces_at_start(const mechanics::Mechanics& m, const Dr
         return std::nullopt;
       }
     };
-    for (BoundLine& line : bound_lines(function, place, view)) result.push_back(std::move(line));
+    for (SurfaceLine& line : surface_lines(function, place, view)) result.push_back(std::move(line));
   }
   return result;
 }

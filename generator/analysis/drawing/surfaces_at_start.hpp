@@ -5,14 +5,14 @@
 
 #include <vector>
 
-#include "analysis/drawing/bound_lines.hpp"
+#include "analysis/drawing/surface_lines.hpp"
 #include "analysis/drawing/parts.hpp"
 #include "run/scene.hpp"
 
 namespace eomgen::analysis {
 
 /// `values`: of the drawing's expressions. `size`: of the rest of the figure, in the unit of positions.
-std::vector<BoundLine> surfaces_at_start(const mechanics::Mechanics& mechanics, const DrawnParts& parts,
+std::vector<SurfaceLine> surfaces_at_start(const mechanics::Mechanics& mechanics, const DrawnParts& parts,
                                          const run::Scene& scene, const std::vector<double>& values, const View& view,
                                          double size);
 

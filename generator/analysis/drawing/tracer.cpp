@@ -21,15 +21,15 @@ constexpr double standing = 1e-12;  // relative: the coordinates change but the 
 
 }  // namespace
 
-double Tracer::span(Index k) const { return place_.angle[static_cast<std::size_t>(k)] ? 1 : place_.size; }
+double CurveTracer::span(Index k) const { return place_.angle[static_cast<std::size_t>(k)] ? 1 : place_.size; }
 
-double Tracer::step() const { return share * place_.size; }
+double CurveTracer::step() const { return share * place_.size; }
 
-bool Tracer::is_inside(const VectorXd& q, const VectorXd& low, const VectorXd& high) const {
+bool CurveTracer::is_inside(const VectorXd& q, const VectorXd& low, const VectorXd& high) const {
   return ((q - low).array() >= -inside).all() && ((high - q).array() >= -inside).all();
 }
 
-std::optional<VectorXd> Tracer::onto(const Equations& equations, VectorXd q, int tries) const {
+std::optional<VectorXd> CurveTracer::project_onto(const CurveEquations& equations, VectorXd q, int tries) const {
   VectorXd S(n_);
   for (Index k = 0; k < n_; ++k) S[k] = span(k);
   for (; tries > 0; --tries) {
@@ -45,7 +45,7 @@ std::optional<VectorXd> Tracer::onto(const Equations& equations, VectorXd q, int
   return q;
 }
 
-std::optional<VectorXd> Tracer::along(const Equations& equations, const VectorXd& q) const {
+std::optional<VectorXd> CurveTracer::tangent(const CurveEquations& equations, const VectorXd& q) const {
   const auto now = equations(q);
   const auto at = f_(q);
   if (!now || !at) return std::nullopt;
@@ -60,7 +60,7 @@ std::optional<VectorXd> Tracer::along(const Equations& equations, const VectorXd
   return VectorXd(t / speed);
 }
 
-std::vector<Point> Tracer::trace(const Equations& equations, const VectorXd& start, const VectorXd& low,
+std::vector<Point> CurveTracer::trace(const CurveEquations& equations, const VectorXd& start, const VectorXd& low,
                                  const VectorXd& high) const {
   const auto first = f_(start);
   if (!first || !first->x.allFinite()) return {};
@@ -71,12 +71,12 @@ std::vector<Point> Tracer::trace(const Equations& equations, const VectorXd& sta
     std::optional<VectorXd> before;
     points->push_back(begin);
     for (int k = 0; k < static_cast<int>(longest / share); ++k) {
-      auto d = along(equations, q);
+      auto d = tangent(equations, q);
       if (!d) break;
       const bool turned = before ? before->dot(*d) < 0 : points == &back;
       if (turned) *d = -*d;
       before = d;
-      const auto next = onto(equations, q + step() * *d, 2);
+      const auto next = project_onto(equations, q + step() * *d, 2);
       const auto at = next ? f_(*next) : std::nullopt;
       if (!at || !at->x.allFinite() || !is_inside(*next, low, high)) break;
       q = *next;

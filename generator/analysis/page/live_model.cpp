@@ -144,7 +144,7 @@ class Live {
       for (const model::InitialValue& initial : model_scene().initial) {
         if (initial.coordinate != c || initial.order != (k < n ? 0 : 1) || set_.contains(state_name(k))) continue;
         const Ref formula = written(mechanics::lower_scalar(m_, initial.value));
-        if (is_of_parameters(dag_, formula) && !dag_.symbols({formula}).empty()) value = expanded(formula);
+        if (depends_on_parameters_only(dag_, formula) && !dag_.symbols({formula}).empty()) value = expanded(formula);
       }
       x.push_back(value);
     }

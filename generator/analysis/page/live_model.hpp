@@ -21,11 +21,11 @@ struct LiveParameter {
   std::string name, unit, note;
   double value = 0;
   bool positive = false;
-  bool moved = false;  // has a slider; dependent parameters have none
+  bool is_adjustable = false;  // has a slider; dependent parameters have none
 };
 struct LiveEvent {
   std::string name;
-  bool stops = false;
+  bool is_terminal = false;
   const char* direction = "";
 };
 

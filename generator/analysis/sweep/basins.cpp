@@ -7,7 +7,7 @@
 
 namespace eomgen::analysis {
 
-Basins::Basins(const SteadyMotions& found, double within) : within_(within) {
+BasinStatistics::BasinStatistics(const SteadyMotions& found, double within) : tolerance_(within) {
   const std::vector<std::string>& names = found.problem.flow->names();
   const std::vector<std::size_t> ignored = linear::ignorable_positions(found.search.symmetry);
   std::vector<std::size_t> places;
@@ -18,23 +18,23 @@ Basins::Basins(const SteadyMotions& found, double within) : within_(within) {
     turns_.push_back(i < found.search.is_angle.size() && found.search.is_angle[i]);
   }
   for (const SteadyMotion& point : found.points) {
-    Goal goal;
-    for (std::size_t k = 0; k < places.size(); ++k) goal.values.emplace_back(names_[k], shown(point.l.z[places[k]]));
+    Attractor goal;
+    for (std::size_t k = 0; k < places.size(); ++k) goal.values.emplace_back(names_[k], display_value(point.l.z[places[k]]));
     goal.stability = point.verdict.stability;
-    goals_.push_back(std::move(goal));
+    attractors_.push_back(std::move(goal));
   }
 }
 
-void Basins::see(const std::vector<double>& state) {
-  const auto goal = std::find_if(goals_.begin(), goals_.end(), [&](const Goal& g) { return is_at(g, state); });
-  ++(goal == goals_.end() ? elsewhere_ : goal->runs);
+void BasinStatistics::classify(const std::vector<double>& state) {
+  const auto goal = std::find_if(attractors_.begin(), attractors_.end(), [&](const Attractor& g) { return is_at(g, state); });
+  ++(goal == attractors_.end() ? unclassified_ : goal->runs);
 }
 
-bool Basins::is_at(const Goal& goal, const std::vector<double>& state) const {
+bool BasinStatistics::is_at(const Attractor& goal, const std::vector<double>& state) const {
   for (std::size_t k = 0; k < state.size(); ++k) {
     const double difference = state[k] - goal.values[k].second;
     const double distance = turns_[k] ? std::remainder(difference, 2 * std::numbers::pi) : difference;
-    if (!(std::abs(distance) <= within_)) return false;
+    if (!(std::abs(distance) <= tolerance_)) return false;
   }
   return true;
 }

@@ -12,34 +12,34 @@
 
 namespace eomgen::analysis {
 
-class Basins {
+class BasinStatistics {
  public:
-  struct Goal {
+  struct Attractor {
     std::vector<std::pair<std::string, double>> values;  // non-ignorable coordinates, then their rates
     linear::Stability stability = linear::Stability::unknown;
     std::size_t runs = 0;
   };
 
   /// `within`: tolerance of each coordinate and rate, in SI units. Angles are compared modulo full turns.
-  Basins(const SteadyMotions& found, double within);
+  BasinStatistics(const SteadyMotions& found, double within);
 
   /// Names of the entries of a final state, in the order that see() expects.
   const std::vector<std::string>& names() const { return names_; }
   /// Counts a run with this final state.
-  void see(const std::vector<double>& state);
+  void classify(const std::vector<double>& state);
 
-  const std::vector<Goal>& goals() const { return goals_; }
-  std::size_t elsewhere() const { return elsewhere_; }
-  double within() const { return within_; }
+  const std::vector<Attractor>& attractors() const { return attractors_; }
+  std::size_t unclassified() const { return unclassified_; }
+  double tolerance() const { return tolerance_; }
 
  private:
-  bool is_at(const Goal& goal, const std::vector<double>& state) const;
+  bool is_at(const Attractor& goal, const std::vector<double>& state) const;
 
-  double within_;
+  double tolerance_;
   std::vector<std::string> names_;
   std::vector<bool> turns_;  // per name
-  std::vector<Goal> goals_;
-  std::size_t elsewhere_ = 0;
+  std::vector<Attractor> attractors_;
+  std::size_t unclassified_ = 0;
 };
 
 }  // namespace eomgen::analysis

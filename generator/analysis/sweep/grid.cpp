@@ -14,8 +14,8 @@ namespace eomgen::analysis {
 
 using symbolic::Rational;
 
-Rational Axis::value(std::size_t i) const {
-  if (!listed.empty()) return listed[i];
+Rational GridAxis::value(std::size_t i) const {
+  if (!values.empty()) return values[i];
   if (i == 0 || i + 1 == count) return i == 0 ? from : to;
   const auto step = static_cast<long>(i), steps = static_cast<long>(count - 1);
   if (!logarithmic) return from + (to - from) * step / steps;
@@ -24,7 +24,7 @@ Rational Axis::value(std::size_t i) const {
                           parameter);
 }
 
-std::string Axis::obstacle() const {
+std::string GridAxis::domain_error() const {
   if (!logarithmic) return "";
   if (cln::minusp(from * to) || cln::zerop(from * to)) return "goes through 0 or changes its sign, which log cannot";
   for (const Rational& value : {from, to, to / from}) {
@@ -34,10 +34,10 @@ std::string Axis::obstacle() const {
   return "";
 }
 
-Grid::Grid(std::vector<Axis> axes) : axes_(std::move(axes)) {
-  for (const Axis& axis : axes_) {
-    if (axis.count > most_points / size_)
-      throw Error("sweep", {}, fmt::format("the grid has more than {} points", most_points), "take fewer");
+Grid::Grid(std::vector<GridAxis> axes) : axes_(std::move(axes)) {
+  for (const GridAxis& axis : axes_) {
+    if (axis.count > max_points / size_)
+      throw Error("sweep", {}, fmt::format("the grid has more than {} points", max_points), "take fewer");
     size_ *= axis.count;
   }
 }

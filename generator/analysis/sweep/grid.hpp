@@ -12,33 +12,33 @@
 namespace eomgen::analysis {
 
 /// Upper limit of the size of a sweep. Products of two such numbers stay exact.
-inline constexpr std::size_t most_points = 1'000'000'000'000;
+inline constexpr std::size_t max_points = 1'000'000'000'000;
 
 /// Values of one parameter: explicit values, or a range whose values are computed on demand.
-struct Axis {
+struct GridAxis {
   std::string parameter;
-  std::vector<symbolic::Rational> listed;
+  std::vector<symbolic::Rational> values;
   symbolic::Rational from, to;  // ends of a range
   bool logarithmic = false;
   std::size_t count = 0;  // at least 2 for a range
 
   symbolic::Rational value(std::size_t i) const;
   /// Returns why some values of the range would be undefined; empty if all are defined.
-  std::string obstacle() const;
+  std::string domain_error() const;
 };
 
 class Grid {
  public:
-  /// Requires axes with distinct parameters. Throws Error{stage "sweep"} for more than most_points points.
-  explicit Grid(std::vector<Axis> axes);
+  /// Requires axes with distinct parameters. Throws Error{stage "sweep"} for more than max_points points.
+  explicit Grid(std::vector<GridAxis> axes);
 
-  const std::vector<Axis>& axes() const { return axes_; }
+  const std::vector<GridAxis>& axes() const { return axes_; }
   std::size_t size() const { return size_; }
   /// Values of one grid point by name. The last axis changes fastest.
   std::map<std::string, symbolic::Rational> point(std::size_t index) const;
 
  private:
-  std::vector<Axis> axes_;
+  std::vector<GridAxis> axes_;
   std::size_t size_ = 1;
 };
 

@@ -13,24 +13,24 @@ std::vector<symbolic::Rational> ListedPoints::point(std::size_t index) const {
   return result;
 }
 
-Points::Points(std::optional<Grid> grid, std::optional<Sampling> samples, std::optional<ListedPoints> listed)
+SweepPoints::SweepPoints(std::optional<Grid> grid, std::optional<Sampling> samples, std::optional<ListedPoints> listed)
     : grid_(std::move(grid)), samples_(std::move(samples)), listed_(std::move(listed)) {
   if (grid_) {
     size_ = grid_->size();
-    for (const Axis& axis : grid_->axes()) names_.push_back(axis.parameter);
+    for (const GridAxis& axis : grid_->axes()) names_.push_back(axis.parameter);
   }
   if (!samples_ && !listed_) return;
   const std::vector<std::string> more = samples_ ? samples_->names() : listed_->names;
   names_.insert(names_.end(), more.begin(), more.end());
   const std::size_t each = samples_ ? samples_->size() : listed_->size();
-  if (each > most_points / size_) {
-    throw Error("sweep", {}, fmt::format("the grid with its samples has more than {} points", most_points),
+  if (each > max_points / size_) {
+    throw Error("sweep", {}, fmt::format("the grid with its samples has more than {} points", max_points),
                 "take fewer");
   }
   size_ *= each;
 }
 
-std::map<std::string, symbolic::Rational> Points::point(std::size_t index) const {
+std::map<std::string, symbolic::Rational> SweepPoints::point(std::size_t index) const {
   std::map<std::string, symbolic::Rational> result;
   const std::size_t each = samples_ ? samples_->size() : listed_ ? listed_->size() : 1;
   if (grid_) result = grid_->point(index / each);

@@ -23,11 +23,11 @@ struct ListedPoints {
   std::vector<symbolic::Rational> point(std::size_t index) const;
 };
 
-class Points {
+class SweepPoints {
  public:
   /// Requires distinct parameters, and at most one of samples and list. Throws Error{stage "sweep"} for more than
-  /// most_points.
-  Points(std::optional<Grid> grid, std::optional<Sampling> samples, std::optional<ListedPoints> listed);
+  /// max_points.
+  SweepPoints(std::optional<Grid> grid, std::optional<Sampling> samples, std::optional<ListedPoints> listed);
 
   const std::vector<std::string>& names() const { return names_; }
   std::size_t size() const { return size_; }
@@ -46,7 +46,7 @@ class Points {
 /// same time.
 struct Shard {
   std::size_t number = 1, count = 1;
-  bool has(std::size_t run) const { return run % count == number - 1; }
+  bool contains(std::size_t run) const { return run % count == number - 1; }
   /// Number of its runs out of `all`.
   std::size_t size(std::size_t all) const { return all < number ? 0 : (all - number) / count + 1; }
   /// Index of its i-th run among all runs; both from 0.

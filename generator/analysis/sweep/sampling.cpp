@@ -96,11 +96,11 @@ const char* name(Design design) {
   return "sobol";
 }
 
-std::string SampledAxis::obstacle() const {
+std::string SampledAxis::domain_error() const {
   constexpr double farthest = 9;  // deviations from the mean: normal_quantile of any binary64 is nearer to 0
   double reach = b - a;
   switch (kind) {
-    case Kind::even: break;
+    case Kind::uniform: break;
     case Kind::logarithmic:
       if (a == 0 || b == 0 || (a < 0) != (b < 0)) return "goes through 0 or changes its sign, which log cannot";
       reach = std::max(a / b, b / a);

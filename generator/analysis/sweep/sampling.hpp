@@ -19,13 +19,13 @@ const char* name(Design design);
 /// Distribution of one parameter: uniform or log-uniform between a and b, or normal with mean a and standard
 /// deviation b.
 struct SampledAxis {
-  enum class Kind : std::uint8_t { even, logarithmic, normal };
+  enum class Kind : std::uint8_t { uniform, logarithmic, normal };
   std::string parameter;
   double a = 0, b = 0;
-  Kind kind = Kind::even;
+  Kind kind = Kind::uniform;
 
   /// Returns why some samples would be undefined or infinite; empty if all are finite.
-  std::string obstacle() const;
+  std::string domain_error() const;
 };
 
 class Sampling {

@@ -37,14 +37,14 @@ ColumnStatistics statistics_of(const std::string& name, std::vector<double>& val
   result.deviation = values.size() > 1 ? std::sqrt(squares.value() / (count - 1)) : 0;
   result.least = values.front();
   result.greatest = values.back();
-  result.histogram.resize(result.least < result.greatest ? histogram_parts : 1);
+  result.histogram.resize(result.least < result.greatest ? histogram_bins : 1);
   for (const double value : values) {
     const double place = value / 2 - result.least / 2,
                  width = result.greatest / 2 - result.least / 2;  // halves, so the range does not overflow
-    const std::size_t part = width > 0 ? static_cast<std::size_t>(place / width * histogram_parts) : 0;
+    const std::size_t part = width > 0 ? static_cast<std::size_t>(place / width * histogram_bins) : 0;
     ++result.histogram[std::min(part, result.histogram.size() - 1)];
   }
-  for (const double part : quantile_parts) {
+  for (const double part : quantile_levels) {
     const double place = part * (count - 1);
     const auto below = static_cast<std::size_t>(place);
     const std::size_t above = std::min(below + 1, values.size() - 1);

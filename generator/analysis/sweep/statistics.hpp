@@ -12,12 +12,12 @@ struct ColumnStatistics {
   std::string name;
   std::size_t count = 0;  // of finite values
   double mean = 0, deviation = 0, least = 0, greatest = 0;
-  std::vector<double> quantiles;  // at quantile_parts
+  std::vector<double> quantiles;  // at quantile_levels
   // Counts in equal bins from `least` to `greatest`; a single bin if these are equal.
   std::vector<std::size_t> histogram;
 };
-inline constexpr std::size_t histogram_parts = 20;
-inline constexpr double quantile_parts[] = {0.05, 0.25, 0.5, 0.75, 0.95};
+inline constexpr std::size_t histogram_bins = 20;
+inline constexpr double quantile_levels[] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
 /// Uses compensated summation, so a million values of one sign lose no digits. Quantiles are interpolated linearly.
 /// Sorts `values`.

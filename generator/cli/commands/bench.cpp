@@ -32,16 +32,16 @@ class Status {
   Status& operator=(const Status&) = delete;
   ~Status() { show(""); }
   void show(const std::string& text) {
-    if (isatty(STDERR_FILENO) != 0) tell(fmt::format("\r{:60}\r{}", "", text));
+    if (isatty(STDERR_FILENO) != 0) print_message(fmt::format("\r{:60}\r{}", "", text));
   }
 };
 
-int execute(const Options& options, const Common& common) {
-  std::vector<Place> places;
+int execute(const Options& options, const CommonOptions& common) {
+  std::vector<OutputTarget> places;
   if (!options.csv.empty()) places.push_back({"--out", options.csv, ".csv"});
   const PlotFile plot(options.plot);
-  if (plot.wanted()) places.push_back(plot.place());
-  require_places(places, locate_model(options.model), common.json);
+  if (plot.wanted()) places.push_back(plot.target());
+  require_writable_targets(places, locate_model(options.model), common.json);
   Status status;
   analysis::BenchmarkRequest request;
   request.model = load_model(options.model);
@@ -50,13 +50,13 @@ int execute(const Options& options, const Common& common) {
   request.approach = pipeline::parse_approach(options.approach);
   request.form = pipeline::parse_form(options.form);
   request.solvers = options.solvers;
-  request.seconds = options.seconds;
-  request.libraries = !options.no_libraries;
+  request.max_seconds = options.seconds;
+  request.other_libraries = !options.no_libraries;
   request.seed = common.seed;
   request.progress = [&status](const std::string& what) { status.show(what); };
-  request.interrupt = &Interrupt::flag();
+  request.interrupt = &InterruptGuard::flag();
   const analysis::Benchmark found = analysis::benchmark(request);
-  const Interrupt interrupt;
+  const InterruptGuard interrupt;
   status.show("");
   const BenchReport report{found, "code compiled with -O2"};
   if (!options.csv.empty()) write_text(options.csv, report.csv());
@@ -67,7 +67,7 @@ int execute(const Options& options, const Common& common) {
   } else {
     print_readable(report.text(), is_standard_output(options.csv) || is_standard_output(options.plot));
   }
-  if (Interrupt::flag()) return 3;
+  if (InterruptGuard::flag()) return 3;
   return found.conclusive() ? 0 : 1;
 }
 
@@ -79,17 +79,17 @@ Execute declare_bench(Arguments& app) {
   add_scene(app, *options);
   add_values(app, *options);
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
-  app.add_list("--solver", options->solvers, "only these solvers").one_of(run::solver_names());
+  app.add_list("--solver", options->solvers, "only these solvers").suggest_values(run::solver_names());
   app.add_option("--seconds", options->seconds, "what takes longer is interrupted")
       .check(positive_number())
-      .show_preset();
+      .show_default();
   app.add_flag("--no-libraries", options->no_libraries, "without the solvers of other libraries");
-  app.add_place("-o,--out,--csv", options->csv, "the table as a CSV file");
-  app.add_place("--plot,--svg", options->plot,
+  app.add_output_path("-o,--out,--csv", options->csv, "the table as a CSV file");
+  app.add_output_path("--plot,--svg", options->plot,
                 "error over run time, SVG or PNG by its ending; - draws it with characters");
   add_approach(app, options->approach);
   add_form(app, options->form);
-  return [options](const Common& common) { return execute(*options, common); };
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

@@ -5,7 +5,7 @@
 #include "cli/examination.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
-#include "cli/watch.hpp"
+#include "cli/stage_monitor.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -106,7 +106,7 @@ void print_readable(const Json& found) {
 Execute declare_check(Arguments& app) {
   auto name = std::make_shared<std::string>();
   app.add_option("MODEL", *name, "a model file, or the name of one in models/").required();
-  return [name](const Common& common) {
+  return [name](const CommonOptions& common) {
     const auto model = load_model(*name);
     const analysis::Examination examination = analysis::examine(model, true);
     const work::DeferInterrupt kept;
@@ -117,7 +117,7 @@ Execute declare_check(Arguments& app) {
     } else {
       print_readable(found);
     }
-    if (examination.interrupted) tell_interrupted(nullptr);
+    if (examination.interrupted) print_interrupted(nullptr);
     return examination.interrupted ? exit_interrupted : 0;
   };
 }

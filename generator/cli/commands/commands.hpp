@@ -5,7 +5,7 @@
 
 namespace eomgen::cli {
 
-using Execute = std::function<int(const Common&)>;
+using Execute = std::function<int(const CommonOptions&)>;
 
 Execute declare_new(Arguments& app);
 Execute declare_list(Arguments& app);

@@ -21,8 +21,8 @@ std::string bash(const Declaration& declared) {
     const std::string name = sub.name;
     flags += fmt::format("    {}) flags=\"{}\" ;;\n", name, joined(sub.flags()));
     for (const DeclaredOption& option : sub.options) {
-      for (const std::string& flag : option.words.empty() ? std::vector<std::string>{} : option.flags)
-        words += fmt::format("    \"{} {}\") words=\"{}\" ;;\n", name, flag, joined(option.words));
+      for (const std::string& flag : option.allowed_values.empty() ? std::vector<std::string>{} : option.flags)
+        words += fmt::format("    \"{} {}\") words=\"{}\" ;;\n", name, flag, joined(option.allowed_values));
     }
   }
   return fmt::format(
@@ -82,10 +82,10 @@ std::string zsh(const Declaration& declared) {
     for (const DeclaredOption& option : sub.options) {
       for (const std::string& flag : option.flags) {
         std::string value;
-        if (option.takes_list && !option.words.empty()) {
-          value = fmt::format(":value:_values -s , value {}", joined(option.words));
-        } else if (!option.words.empty()) {
-          value = fmt::format(":value:({})", joined(option.words));
+        if (option.takes_list && !option.allowed_values.empty()) {
+          value = fmt::format(":value:_values -s , value {}", joined(option.allowed_values));
+        } else if (!option.allowed_values.empty()) {
+          value = fmt::format(":value:({})", joined(option.allowed_values));
         } else if (!option.argument.empty()) {
           value = ":value:_files";
         }
@@ -113,8 +113,8 @@ std::string fish(const Declaration& declared) {
       text += fmt::format("complete -c eomgen -n '__fish_seen_subcommand_from {}'", sub.name);
       for (const std::string& flag : option.flags)
         text += flag.starts_with("--") ? " -l " + flag.substr(2) : " -s " + flag.substr(1);
-      if (!option.words.empty()) {
-        text += fmt::format(" -x -a '{}'", joined(option.words));
+      if (!option.allowed_values.empty()) {
+        text += fmt::format(" -x -a '{}'", joined(option.allowed_values));
       } else if (!option.argument.empty()) {
         text += " -r";
       }
@@ -130,7 +130,7 @@ struct Shell {
 };
 constexpr Shell shells[] = {{"bash", bash}, {"zsh", zsh}, {"fish", fish}};
 
-int execute(const std::string& name, const Common& common) {
+int execute(const std::string& name, const CommonOptions& common) {
   std::vector<std::string> known;
   for (const Shell& shell : shells) {
     known.emplace_back(shell.name);
@@ -151,7 +151,7 @@ int execute(const std::string& name, const Common& common) {
 Execute declare_completion(Arguments& app) {
   auto name = std::make_shared<std::string>();
   app.add_option("SHELL", *name, "bash, zsh or fish").required();
-  return [name](const Common& common) { return execute(*name, common); };
+  return [name](const CommonOptions& common) { return execute(*name, common); };
 }
 
 }  // namespace eomgen::cli

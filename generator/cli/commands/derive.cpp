@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "analysis/article.hpp"
+#include "analysis/latex_document.hpp"
 #include "analysis/equations.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
-#include "cli/watch.hpp"
+#include "cli/stage_monitor.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -102,22 +102,22 @@ std::string readable(const std::vector<print::PrintedFormula>& items, const std:
 Json to_json(const std::vector<analysis::Multiplier>& multipliers) {
   Json result = Json::array();
   for (const analysis::Multiplier& m : multipliers)
-    result.push_back({{"name", m.name}, {"of", m.of}, {"meaning", m.meaning}, {"latex", m.latex}});
+    result.push_back({{"name", m.name}, {"of", m.constraint}, {"meaning", m.meaning}, {"latex", m.latex}});
   return result;
 }
 
-int execute(const Options& options, const Common& common) {
+int execute(const Options& options, const CommonOptions& common) {
   require_format(options.format);
   const analysis::EquationsRequest request{pipeline::parse_approach(options.approach), options.show};
   if (!options.document.empty())
-    require_places({{"--document", options.document, ".tex"}}, locate_model(options.model), common.json);
+    require_writable_targets({{"--document", options.document, ".tex"}}, locate_model(options.model), common.json);
   const auto model = load_model(options.model);
   analysis::Equations found = analysis::equations(model, request);
-  for (const std::string& note : found.notes) tell(note + "\n");
+  for (const std::string& note : found.notes) print_message(note + "\n");
   bool written = false;
   try {
     if (!found.interrupted && !options.document.empty()) {
-      const std::string document = analysis::article(model, common.seed);
+      const std::string document = analysis::latex_document(model, common.seed);
       const work::DeferInterrupt whole;
       write_text(options.document, document);
       written = true;
@@ -138,7 +138,7 @@ int execute(const Options& options, const Common& common) {
     print_readable(readable(found.items, approach, options.format, found.left_out, found.multipliers), taken);
     if (written && !taken) print_readable(fmt::format("\nwrote {}\n", options.document), taken);
   }
-  if (found.interrupted) tell_interrupted(nullptr);
+  if (found.interrupted) print_interrupted(nullptr);
   return found.interrupted ? exit_interrupted : 0;
 }
 
@@ -150,12 +150,12 @@ Execute declare_derive(Arguments& app) {
   add_approach(app, options->approach);
   app.add_list("--show", options->show,
                fmt::format("what to show; a list of {}", fmt::join(analysis::equation_keys(), ", ")))
-      .one_of(analysis::equation_keys());
+      .suggest_values(analysis::equation_keys());
   app.add_option("--format", options->format, "text, latex or mathml")
-      .show_preset()
-      .one_of({"text", "latex", "mathml"});
-  app.add_place("--document", options->document, "the whole derivation as a LaTeX document, F.tex");
-  return [options](const Common& common) { return execute(*options, common); };
+      .show_default()
+      .suggest_values({"text", "latex", "mathml"});
+  app.add_output_path("--document", options->document, "the whole derivation as a LaTeX document, F.tex");
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "abi/functions.hpp"
-#include "analysis/article.hpp"
+#include "analysis/latex_document.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
 #include "cli/operations.hpp"
@@ -26,7 +26,7 @@ struct Options {
 /// Names of the targets of code, and of the document.
 std::vector<std::string> target_names() {
   std::vector<std::string> names = emit::target_names();
-  names.emplace_back(analysis::document_target);
+  names.emplace_back(analysis::latex_document_target);
   return names;
 }
 
@@ -37,12 +37,12 @@ std::string name_for(const std::string& target, const std::string& id) {
   return emit::mangled_id(id);
 }
 
-int emit_document(const Options& options, const Common& common) {
+int emit_document(const Options& options, const CommonOptions& common) {
   if (!options.with.empty() || !options.outputs.empty() || !options.fix.empty() || options.real != "double") {
-    tell("warning: a document has no functions: --with, --output, --fix and --real change nothing\n");
+    print_message("warning: a document has no functions: --with, --output, --fix and --real change nothing\n");
   }
   const auto model = load_model(options.model);
-  const std::string text = analysis::article(model, common.seed);
+  const std::string text = analysis::latex_document(model, common.seed);
   const work::DeferInterrupt kept;  // writes all files or none
   const std::vector<std::string> files =
       write_results(options.folder, {{emit::mangled_id(model->id) + ".tex", text}}, model->file);
@@ -55,12 +55,12 @@ int emit_document(const Options& options, const Common& common) {
 }
 
 /// Warns if --with run was requested but the target has no C++ header of a run.
-void tell_run_left_out(const Options& options, const std::vector<emit::EmittedFile>& files) {
+void warn_of_missing_run(const Options& options, const std::vector<emit::EmittedFile>& files) {
   const auto is_header = [](const emit::EmittedFile& file) { return file.name.ends_with("_run.hpp"); };
   if (std::find(options.with.begin(), options.with.end(), "run") == options.with.end() ||
       std::any_of(files.begin(), files.end(), is_header))
     return;
-  tell(fmt::format("warning: the target {} has no header of a run: --with run adds the functions that a run calls\n",
+  print_message(fmt::format("warning: the target {} has no header of a run: --with run adds the functions that a run calls\n",
                    options.target));
 }
 
@@ -71,16 +71,16 @@ Json hoisted(const program::Program& program) {
           {"rhs_prepared", to_json(program.functions.back().operations)}};
 }
 
-int execute(const Options& options, const Common& common) {
+int execute(const Options& options, const CommonOptions& common) {
   if (options.print_name) {
-    pipeline::require_target(options.target, {analysis::document_target});
+    pipeline::require_target(options.target, {analysis::latex_document_target});
     fmt::print("{}\n", name_for(options.target, std::filesystem::path(options.model).stem().string()));
     return 0;
   }
   if (options.folder.empty())
     throw Error("usage", {}, "-o is required: the folder for the sources", "eomgen emit --help tells how it is used");
   require_folder(options.folder);
-  pipeline::require_target(options.target, {analysis::document_target});
+  pipeline::require_target(options.target, {analysis::latex_document_target});
   const pipeline::EmissionRequest request{options.target,
                                           pipeline::parse_approach(options.approach),
                                           pipeline::parse_form(options.form),
@@ -89,13 +89,13 @@ int execute(const Options& options, const Common& common) {
                                           options.fix,
                                           common.seed,
                                           options.real == "float"};
-  if (options.target == analysis::document_target) return emit_document(options, common);
+  if (options.target == analysis::latex_document_target) return emit_document(options, common);
   double reading = 0;
   const auto model = load_model(options.model, &reading);
   const pipeline::Emission emission = pipeline::emit_model(model, request);
   const program::Program& program = emission.program;
   const verify::Certificate& certificate = emission.certificate;
-  tell_run_left_out(options, emission.files);
+  warn_of_missing_run(options, emission.files);
   const std::vector<std::string> files = write_results(options.folder, emission.files, model->file);
   const pipeline::Timings& seconds = emission.seconds;
   if (common.json) {
@@ -151,27 +151,27 @@ int execute(const Options& options, const Common& common) {
 Execute declare_emit(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
-  app.add_place("-o,--out", options->folder, "the folder for the sources; it is made if need be");
+  app.add_output_path("-o,--out", options->folder, "the folder for the sources; it is made if need be");
   app.add_option("--target", options->target,
-                 fmt::format("{}; {} is a document", fmt::join(target_names(), ", "), analysis::document_target))
-      .show_preset()
-      .one_of(target_names());
+                 fmt::format("{}; {} is a document", fmt::join(target_names(), ", "), analysis::latex_document_target))
+      .show_default()
+      .suggest_values(target_names());
   app.add_list(
          "--with", options->with,
          fmt::format("functions beside rhs: {} (outputs: the scene's), energy; charts: second ones; run: all that a "
                      "run calls",
                      fmt::join(abi::optional_functions(), ", ")))
-      .one_of(pipeline::emitted_functions());
+      .suggest_values(pipeline::emitted_functions());
   app.add_list("--output", options->outputs, "names for the function outputs");
   app.add_option("--real", options->real, "double, or float: single precision")
-      .show_preset()
-      .one_of({"double", "float"});
+      .show_default()
+      .suggest_values({"double", "float"});
   add_approach(app, options->approach);
   add_form(app, options->form);
   app.add_flag("--print-name", options->print_name,
                "only prints NAME, which the model's file gives to files and symbols");
   app.add_list("--fix", options->fix, "parameters that become numbers");
-  return [options](const Common& common) { return execute(*options, common); };
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

@@ -11,7 +11,7 @@
 #include "cli/output.hpp"
 #include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
-#include "cli/watch.hpp"
+#include "cli/stage_monitor.hpp"
 #include "work.hpp"
 
 namespace eomgen::cli {
@@ -33,7 +33,7 @@ Json to_json(const analysis::SteadyMotions& found, const Options& options) {
   Json points = Json::array(), held = Json::array();
   for (const analysis::SteadyMotion& point : found.points) {
     Json values = Json::object(), eigenvalues = Json::array();
-    for (std::size_t i = 0; i + 1 < point.l.z.size(); ++i) values[names[i]] = shown(point.l.z[i]);
+    for (std::size_t i = 0; i + 1 < point.l.z.size(); ++i) values[names[i]] = display_value(point.l.z[i]);
     for (const linear::Eigenvalue& e : point.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
     points.push_back({{"kind", linear::name(point.l.kind)},
                       {"values", values},
@@ -41,7 +41,7 @@ Json to_json(const analysis::SteadyMotions& found, const Options& options) {
                       {"structural_zeros", point.l.structural_zeros},
                       {"stable", to_json(point.verdict)},
                       {"reason", point.verdict.reason},
-                      {"family", point.family},
+                      {"family", point.family_dimension},
                       {"off", point.l.parameter_change}});
   }
   for (const analysis::HeldValue& h : found.held)
@@ -61,15 +61,15 @@ Json to_json(const analysis::SteadyMotions& found, const Options& options) {
 std::string text(const analysis::SteadyMotion& point, const std::vector<std::string>& names) {
   std::string out = fmt::format("\n{}, {}: {}\n", linear::name(point.l.kind), linear::in_words(point.verdict.stability),
                                 point.verdict.reason);
-  if (point.family > 0)
-    out += fmt::format("  one of a family of {} dimension{}\n", point.family, point.family == 1 ? "" : "s");
+  if (point.family_dimension > 0)
+    out += fmt::format("  one of a family of {} dimension{}\n", point.family_dimension, point.family_dimension == 1 ? "" : "s");
   if (point.l.parameter_change > 0)
     out += fmt::format(
         "  but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one\n",
         point.l.parameter_change);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const bool rest = point.l.kind == linear::MotionKind::equilibrium && 2 * i >= names.size();  // rates, all 0
-    if (!rest) out += fmt::format("  {:<24} {:>24}\n", names[i], shown(point.l.z[i]));
+    if (!rest) out += fmt::format("  {:<24} {:>24}\n", names[i], display_value(point.l.z[i]));
   }
   out += "  eigenvalues";
   for (std::size_t i = 0; i < point.l.spectrum.values.size(); ++i) {
@@ -102,7 +102,7 @@ std::string text(const analysis::SteadyMotions& found, const Options& options) {
                    options.starts, found.search.converged, found.problem.certificate);
 }
 
-int execute(const Options& options, const Common& common) {
+int execute(const Options& options, const CommonOptions& common) {
   analysis::SteadyRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
@@ -114,19 +114,19 @@ int execute(const Options& options, const Common& common) {
   if (isatty(STDERR_FILENO) != 0) {
     request.progress = [&shown](double fraction) {
       shown = true;
-      tell(fmt::format("\r{:5.1f} % of the starts ", 100 * fraction));
+      print_message(fmt::format("\r{:5.1f} % of the starts ", 100 * fraction));
     };
   }
   const analysis::SteadyMotions found = analysis::steady_motions(request);
   const work::DeferInterrupt kept;
-  if (shown) tell(fmt::format("\r{:40}\r", ""));
+  if (shown) print_message(fmt::format("\r{:40}\r", ""));
   if (common.json) {
     print_document(to_json(found, options));
   } else {
     fmt::print("{}", text(found, options));
   }
   if (found.search.interrupted) {
-    tell_interrupted(nullptr);
+    print_interrupted(nullptr);
     return exit_interrupted;
   }
   return 0;
@@ -138,13 +138,13 @@ Execute declare_equilibria(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_option("--scene", options->scene, "a scene: its parameters, and the start whose momenta are held")
-      .show_preset();
+      .show_default();
   add_values(app, *options);
   app.add_list("--hold", options->hold, "OUTPUT=VALUE in place of the conserved momenta; may be repeated");
   app.add_option("--starts", options->starts, "how many starts the search has")
       .check(whole_number(1, 100000))
-      .show_preset();
-  return [options](const Common& common) { return execute(*options, common); };
+      .show_default();
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

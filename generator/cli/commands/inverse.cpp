@@ -52,7 +52,7 @@ class Table {
   std::size_t rows_ = 0;
 };
 
-Json to_json(const analysis::InverseAnswer& answer, const Table& table, const std::string& file,
+Json to_json(const analysis::InverseDynamicsResult& answer, const Table& table, const std::string& file,
              const model::Model& model, const std::string& scene) {
   Json columns = Json::array({"t"}), extremes = Json::object();
   for (const std::string& name : answer.columns) columns.push_back(name);
@@ -88,7 +88,7 @@ std::string readable(const Json& found) {
          fmt::format("\nwrote {} ({} rows)\n", found["file"].get<std::string>(), found["rows"].get<std::size_t>());
 }
 
-int execute(const Options& options, const Common& common) {
+int execute(const Options& options, const CommonOptions& common) {
   analysis::InverseRequest request;
   request.overrides = overrides_of("inverse", options);
   request.overrides.allow_empty_span = true;
@@ -96,19 +96,19 @@ int execute(const Options& options, const Common& common) {
   request.constraints = options.constraints;
   request.max_steps = options.max_steps;
   request.seed = common.seed;
-  const Interrupt interrupt;
-  request.interrupt = &Interrupt::flag();
+  const InterruptGuard interrupt;
+  request.interrupt = &InterruptGuard::flag();
   request.model = load_model(options.model);
   const model::Model& model = *request.model;
   const std::string file = options.out.empty() ? model.id + "_inverse.csv" : options.out;
-  require_places({{"--out", file, ".csv"}}, model.file, common.json);
+  require_writable_targets({{"--out", file, ".csv"}}, model.file, common.json);
   std::optional<Table> table;
   request.begin = [&](const run::Scene& scene, const std::vector<std::string>& columns) {
     require_size(scene.t0, scene.t1, pipeline::row_interval(scene), columns.size(), options.yes);
     table.emplace(file, columns);
   };
   request.row = [&](double t, std::span<const double> values) { table->row(t, values); };
-  const analysis::InverseAnswer answer = analysis::inverse_dynamics(request);
+  const analysis::InverseDynamicsResult answer = analysis::inverse_dynamics(request);
   table->finish(answer.outcome);
   const Json found = to_json(answer, *table, file, model, options.scene);
   if (common.json) {
@@ -131,14 +131,14 @@ Execute declare_inverse(Arguments& app) {
   app.add_option("--t-end", options->t_end, "the end of the motion").check(finite_number());
   app.add_option("--every", options->every, "interval of the rows").check(positive_number());
   app.add_option("--rtol", options->rtol, "relative tolerance where something is free to move")
-      .check(number_not_negative());
+      .check(nonnegative_number());
   app.add_option("--atol", options->atol, "absolute tolerance where something is free to move")
-      .check(number_not_negative());
+      .check(nonnegative_number());
   app.add_option("--max-steps", options->max_steps, "the most steps, where something is free to move")
       .check(whole_number(1, 1'000'000'000'000'000));
-  app.add_place("-o,--out", options->out, "the table, a CSV file; without it MODEL_inverse.csv in this folder");
+  app.add_output_path("-o,--out", options->out, "the table, a CSV file; without it MODEL_inverse.csv in this folder");
   app.add_flag("--yes", options->yes, "writes a table however large it is");
-  return [options](const Common& common) { return execute(*options, common); };
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

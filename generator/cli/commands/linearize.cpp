@@ -65,7 +65,7 @@ Json rows(const linear::Matrix<linear::Precise>& A) {
   Json result = Json::array();
   for (std::size_t i = 0; i < A.rows; ++i) {
     Json row = Json::array();
-    for (std::size_t j = 0; j < A.cols; ++j) row.push_back(shown(A(i, j)));
+    for (std::size_t j = 0; j < A.cols; ++j) row.push_back(display_value(A(i, j)));
     result.push_back(row);
   }
   return result;
@@ -74,7 +74,7 @@ Json rows(const linear::Matrix<linear::Precise>& A) {
 Json to_json(const Answer& a) {
   Json eigenvalues = Json::array(), point = Json::object();
   for (const linear::Eigenvalue& e : a.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
-  for (std::size_t i = 0; i + 1 < a.l.z.size(); ++i) point[a.problem.flow->names()[i]] = shown(a.l.z[i]);
+  for (std::size_t i = 0; i + 1 < a.l.z.size(); ++i) point[a.problem.flow->names()[i]] = display_value(a.l.z[i]);
   return {{"format", 1},
           {"kind", linear::name(a.l.kind)},
           {"autonomous", a.l.symmetry.autonomous},
@@ -103,7 +103,7 @@ std::string matrix_text(const char* title, const linear::Matrix<linear::Precise>
   out += "\n";
   for (std::size_t i = 0; i < A.rows; ++i) {
     out += fmt::format("  {:<{}}", rows[i], width);
-    for (std::size_t j = 0; j < A.cols; ++j) out += fmt::format(" {:>14.7g}", shown(A(i, j)));
+    for (std::size_t j = 0; j < A.cols; ++j) out += fmt::format(" {:>14.7g}", display_value(A(i, j)));
     out += "\n";
   }
   return out;
@@ -114,9 +114,9 @@ std::string text(const Answer& a) {
   std::string out = fmt::format("{}, scene {}, t = {}: {}\n\n", a.problem.derived->model.id, a.problem.scene.name,
                                 a.problem.t, a.what());
   for (const std::size_t i : chart.independent)
-    out += fmt::format("  {:<24} {:>24}\n", a.problem.flow->names()[i], shown(a.l.z[i]));
+    out += fmt::format("  {:<24} {:>24}\n", a.problem.flow->names()[i], display_value(a.l.z[i]));
   for (const std::size_t i : chart.dependent) {
-    out += fmt::format("  {:<24} {:>24}   follows from the constraints\n", a.problem.flow->names()[i], shown(a.l.z[i]));
+    out += fmt::format("  {:<24} {:>24}   follows from the constraints\n", a.problem.flow->names()[i], display_value(a.l.z[i]));
   }
   out += matrix_text("A", a.l.A, a.states(), a.states());
   if (!a.inputs().empty()) out += matrix_text("B", a.l.B, a.states(), a.inputs());
@@ -129,11 +129,11 @@ std::string text(const Answer& a) {
   return out + fmt::format("certificate       {}\n", a.problem.certificate);
 }
 
-int execute(const Options& options, const Common& common) {
+int execute(const Options& options, const CommonOptions& common) {
   const analysis::SteadyProblem problem =
       analysis::steady_problem("linearize", load_model(options.model), options.scene,
                                overrides_of("linearize", options), options.at, common.seed);
-  const linear::Linearisation l = analysis::linearised(problem, common.seed);
+  const linear::Linearisation l = analysis::linearise_at_state(problem, common.seed);
   const Answer answer{problem, l};
   if (common.json) {
     print_document(to_json(answer));
@@ -152,7 +152,7 @@ Execute declare_linearize(Arguments& app) {
   app.add_option("--at", options->at, "a time: the state that the scene's run has reached then; without it the start")
       .check(finite_number());
   add_values(app, *options);
-  return [options](const Common& common) { return execute(*options, common); };
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

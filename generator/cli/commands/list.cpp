@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include "analysis/article.hpp"
+#include "analysis/latex_document.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/output.hpp"
 #include "coordinates/coordinate_system.hpp"
@@ -47,7 +47,7 @@ Json registries() {
   for (const emit::TargetEntry& target : emit::targets())
     targets.push_back({{"name", target.name}, {"title", target.title}});
   // The document uses the display form instead of a program, so it is not in that registry.
-  targets.push_back({{"name", analysis::document_target},
+  targets.push_back({{"name", analysis::latex_document_target},
                      {"title", "a LaTeX document: both approaches side by side, constraint forces"}});
   result["coordinates"] = coordinates;
   Json rotations = Json::array();
@@ -80,7 +80,7 @@ Json registries() {
   return result;
 }
 
-int execute(const Common& common) {
+int execute(const CommonOptions& common) {
   const Json all = registries();
   if (common.json) {
     print_document(all);

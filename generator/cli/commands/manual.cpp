@@ -67,11 +67,11 @@ std::string option_text(const DeclaredOption& option) {
   if (option.flags.empty()) flags = fmt::format("\\fI{}\\fR", roff(option.argument));
   if (!option.flags.empty() && !option.argument.empty()) flags += fmt::format(" \\fI{}\\fR", roff(option.argument));
   std::string text = fmt::format(".TP\n{}\n{}\n", flags, roff(option.help));
-  if (!option.preset.empty()) text += fmt::format("(without it: {})\n", roff(option.preset));
+  if (!option.default_value.empty()) text += fmt::format("(without it: {})\n", roff(option.default_value));
   return text;
 }
 
-std::string page_of(const DeclaredCommand& command, const std::string& documentation) {
+std::string page_of(const DeclaredCommand& command, const std::string& documentation_path) {
   const std::string page = "eomgen-" + command.name;
   std::string arguments, options;
   for (const DeclaredOption& option : command.options) {
@@ -81,10 +81,10 @@ std::string page_of(const DeclaredCommand& command, const std::string& documenta
   return head(page, command.summary) +
          fmt::format(".SH SYNOPSIS\n\\fBeomgen {}\\fR{} [\\fIoptions\\fR]\n.SH OPTIONS\n{}", roff(command.name),
                      arguments, options) +
-         tail() + fmt::format(".SH SEE ALSO\n.BR eomgen (1)\n.PP\nThe whole documentation: {}\n", roff(documentation));
+         tail() + fmt::format(".SH SEE ALSO\n.BR eomgen (1)\n.PP\nThe whole documentation: {}\n", roff(documentation_path));
 }
 
-std::string page_of_all(const Declaration& declared, const std::string& documentation) {
+std::string page_of_all(const Declaration& declared, const std::string& documentation_path) {
   std::string text = head("eomgen", "equations of motion of mechanical systems, from a text model");
   text += ".SH SYNOPSIS\n\\fBeomgen\\fR \\fICOMMAND\\fR \\fIMODEL\\fR [\\fIoptions\\fR]\n.SH DESCRIPTION\n";
   text +=
@@ -96,10 +96,10 @@ std::string page_of_all(const Declaration& declared, const std::string& document
     text += fmt::format(".TP\n.B {}\n{}\n", roff(sub.name), roff(sub.summary));
     also += fmt::format("{}.BR eomgen\\-{} (1)", also.empty() ? "" : ",\n", roff(sub.name));
   }
-  return text + tail() + fmt::format(".SH SEE ALSO\n{}\n.PP\nThe whole documentation: {}\n", also, roff(documentation));
+  return text + tail() + fmt::format(".SH SEE ALSO\n{}\n.PP\nThe whole documentation: {}\n", also, roff(documentation_path));
 }
 
-int execute(const Options& options, const Common& common) {
+int execute(const Options& options, const CommonOptions& common) {
   const Declaration declared("eomgen", commands());
   const std::string where = "commands.md and model-format.md among the installed documents; eomgen --help tells where";
   std::vector<emit::EmittedFile> pages;
@@ -138,8 +138,8 @@ int execute(const Options& options, const Common& common) {
 Execute declare_manual(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("COMMAND", options->command, "a command; without it the page of the whole program");
-  app.add_place("-o,--out", options->folder, "a folder for the pages, all of them without COMMAND");
-  return [options](const Common& common) { return execute(*options, common); };
+  app.add_output_path("-o,--out", options->folder, "a folder for the pages, all of them without COMMAND");
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

@@ -43,7 +43,7 @@ OpenFile readable(const std::string& path) {
   }
   OpenFile file(descriptor);
   if (S_ISREG(found.st_mode)) return file;
-  OpenFile copy = OpenFile::unnamed();
+  OpenFile copy = OpenFile::temporary();
   std::string text(1 << 18, '\0');
   for (ssize_t n; (n = ::read(file.descriptor(), text.data(), text.size())) != 0;) {
     if (n < 0 && errno == EINTR) continue;
@@ -60,9 +60,9 @@ class Tables {
   void add(const std::string& path) {
     const OpenFile file = readable(path);
     const std::uint32_t number = rows_.add(file);
-    std::optional<ShardNote> note;
+    std::optional<ShardHeader> note;
     std::size_t lines = 0;
-    each_line(file, [&](std::string_view line, std::uint64_t offset) {
+    for_each_line(file, [&](std::string_view line, std::uint64_t offset) {
       if (++lines == 1) {
         note = begun(path, std::string(line));
       } else if (lines == 2) {
@@ -82,7 +82,7 @@ class Tables {
     try {
       constexpr std::size_t enough = 1 << 20;
       std::string text = note_.key + "\n" + header_ + "\n";
-      rows_.each(0, rows_.size(), [&](std::size_t, std::string_view line) {
+      rows_.for_each(0, rows_.size(), [&](std::size_t, std::string_view line) {
         text.append(line);
         text += '\n';
         if (text.size() < enough) return;
@@ -119,13 +119,13 @@ class Tables {
   std::size_t shards() const { return tables_.size(); }
   std::vector<analysis::ColumnStatistics> statistics() const {
     return statistics_of_table(header_, rows_.size(), [this](const auto& take) {
-      rows_.each(0, rows_.size(), [&take](std::size_t, std::string_view line) { take(line); });
+      rows_.for_each(0, rows_.size(), [&take](std::size_t, std::string_view line) { take(line); });
     });
   }
 
  private:
-  ShardNote begun(const std::string& path, const std::string& line) {
-    const std::optional<ShardNote> note = read_shard_note(line);
+  ShardHeader begun(const std::string& path, const std::string& line) {
+    const std::optional<ShardHeader> note = parse_shard_header(line);
     if (!note)
       fail(fmt::format("{} is not the table of a shard", model::quote(path)),
            "name the tables that sweep --shard wrote");
@@ -143,7 +143,7 @@ class Tables {
   void take(const std::string& path, std::string_view line, const analysis::Shard& shard, std::uint32_t file,
             std::uint64_t offset) {
     std::size_t run = 0;
-    if (!reads_as_row(line, header_, run) || run >= note_.runs || !shard.has(run)) {
+    if (!is_row_of_table(line, header_, run) || run >= note_.runs || !shard.contains(run)) {
       fail(fmt::format("{} has a line that is no run of that shard: {}", model::quote(path),
                        model::quote(std::string(line.substr(0, 60)))),
            "make that shard again");
@@ -151,14 +151,14 @@ class Tables {
     rows_.add(run, file, offset, line.size());
   }
 
-  ShardNote note_;
+  ShardHeader note_;
   std::string header_;
   std::map<std::size_t, std::string> tables_;
   Rows rows_;
 };
 
-int execute(const Options& options, const Common& common) {
-  require_places({{"--out", options.out, is_npz(options.out) ? ".npz" : ".csv"}}, "", common.json);
+int execute(const Options& options, const CommonOptions& common) {
+  require_writable_targets({{"--out", options.out, is_npz(options.out) ? ".npz" : ".csv"}}, "", common.json);
   Tables tables;
   try {
     for (const std::string& path : options.tables) tables.add(path);
@@ -185,9 +185,9 @@ int execute(const Options& options, const Common& common) {
 Execute declare_merge(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("TABLES", options->tables, "what sweep --shard wrote, every shard of one sweep").required();
-  app.add_place("-o,--out", options->out, "the whole table: F.csv, or F.npz for arrays of columns").required();
+  app.add_output_path("-o,--out", options->out, "the whole table: F.csv, or F.npz for arrays of columns").required();
   app.add_flag("--statistics", options->statistics, "mean, deviation, extremes and quantiles of every column");
-  return [options](const Common& common) { return execute(*options, common); };
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

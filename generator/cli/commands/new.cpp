@@ -24,7 +24,7 @@ void require_name(const std::string& name) {
               "eomgen new my_pendulum");
 }
 
-int execute(const Options& options, const Common& common) {
+int execute(const Options& options, const CommonOptions& common) {
   require_name(options.name);
   const std::string file = options.name + ".toml";
   std::error_code none;
@@ -47,7 +47,7 @@ int execute(const Options& options, const Common& common) {
 Execute declare_new(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("NAME", options->name, "name of the model; NAME.toml is written here").required();
-  return [options](const Common& common) { return execute(*options, common); };
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

@@ -109,7 +109,7 @@ class Formulas {
 /// `taken`: bytes of the rest of the page.
 void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<conservation::ConservedQuantity>& conserved,
                    std::size_t taken) {
-  const reading::DisplayForm form = analysis::form_to_show(m);
+  const reading::DisplayForm form = analysis::displayed_form(m);
   html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(form.approach)));
   Formulas formulas(html, taken);
   const std::vector<std::pair<std::string, std::string>> sections{{"constraints", "Constraints and functions of time"},
@@ -221,9 +221,9 @@ void add_run(Html& html, const pipeline::Simulation& simulation, const Json& run
   }
 }
 
-int execute(const Options& options, const Common& common) {
+int execute(const Options& options, const CommonOptions& common) {
   const std::string file = options.out.empty() ? "report.html" : options.out;
-  require_places({{"--out", file, ".html"}}, locate_model(options.model), common.json);
+  require_writable_targets({{"--out", file, ".html"}}, locate_model(options.model), common.json);
   RecordedMotion recorded;
   pipeline::SimulationRequest request;
   request.model = load_model(options.model);
@@ -277,14 +277,14 @@ int execute(const Options& options, const Common& common) {
     motion = moving.is_null() ? "" : moving.dump();
     plots = Html();
     add_run(plots, simulation, run, recorded, curves, coarser);
-    taken = page({title, plots.text() + rest.text(), motion, live.script, live.name, surfaces.script, surfaces.name})
+    taken = render_page({title, plots.text() + rest.text(), motion, live.script, live.name, surfaces.script, surfaces.name})
                 .size();
     if (taken <= largest_motion || recorded.size() <= fewest_rows) break;
-    recorded.thin();
+    recorded.drop_every_second_row();
   }
   add_head(html, model, !motion.empty());
   add_equations(html, simulation.derived->mechanics, simulation.derived->conserved, taken);
-  write_text(file, page({title, html.text() + plots.text() + rest.text(), motion, live.script, live.name,
+  write_text(file, render_page({title, html.text() + plots.text() + rest.text(), motion, live.script, live.name,
                          surfaces.script, surfaces.name}));
   const eom::Outcome outcome = simulation.result.outcome;
   if (common.json) {
@@ -305,12 +305,12 @@ int execute(const Options& options, const Common& common) {
 Execute declare_report(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
-  app.add_place("-o,--out", options->out, "the page; without it report.html in this folder");
+  app.add_output_path("-o,--out", options->out, "the page; without it report.html in this folder");
   add_scene(app, *options);
   add_solver(app, *options);
   add_values(app, *options);
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
-  return [options](const Common& common) { return execute(*options, common); };
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

@@ -49,7 +49,7 @@ class Rows {
     require_size(scene.t0, scene.t1, every, csv.empty() ? 0 : columns_.size(), yes);
     // The plot stores its points in memory, so it gets no more than it can show.
     stride_ =
-        std::max<std::uint64_t>(1, static_cast<std::uint64_t>(expected_rows(scene.t0, scene.t1, every) / most_points));
+        std::max<std::uint64_t>(1, static_cast<std::uint64_t>(expected_rows(scene.t0, scene.t1, every) / max_points));
     if (!csv.empty()) csv_.emplace(csv, columns_);
   }
 
@@ -68,7 +68,7 @@ class Rows {
   const RunPlot& plot() const { return *plot_; }
 
  private:
-  static constexpr double most_points = 1e5;
+  static constexpr double max_points = 1e5;
 
   std::vector<std::string> columns_;
   std::vector<std::size_t> index_;
@@ -91,10 +91,10 @@ class Progress {
     if (now - start_ < std::chrono::seconds(2) || now - last_ < std::chrono::milliseconds(200)) return;
     last_ = now;
     shown_ = true;
-    tell(fmt::format("\r{:5.1f} % of the time span ", 100 * fraction));
+    print_message(fmt::format("\r{:5.1f} % of the time span ", 100 * fraction));
   }
   void wipe() {
-    if (std::exchange(shown_, false)) tell(fmt::format("\r{:40}\r", ""));
+    if (std::exchange(shown_, false)) print_message(fmt::format("\r{:40}\r", ""));
   }
 
  private:
@@ -108,7 +108,7 @@ pipeline::Simulation simulate_until_interrupted(const pipeline::SimulationReques
   try {
     return pipeline::simulate(request);
   } catch (const Error&) {
-    if (!Interrupt::flag()) throw;
+    if (!InterruptGuard::flag()) throw;
     throw Error("run", {}, "interrupted before the run began", "nothing was computed that could be kept",
                 ErrorKind::numerical);
   }
@@ -126,12 +126,12 @@ std::vector<std::string> plotted_outputs(const Options& options, pipeline::Deriv
                         : run::expand_outputs(derived.mechanics, derived.candidates.front(), wanted);
 }
 
-int execute(const Options& options, const Common& common) {
-  std::vector<Place> places;
+int execute(const Options& options, const CommonOptions& common) {
+  std::vector<OutputTarget> places;
   if (!options.out.empty()) places.push_back({"--out", options.out, ".csv"});
   const PlotFile plot(options.plot);
-  if (plot.wanted()) places.push_back(plot.place());
-  require_places(places, locate_model(options.model), common.json);
+  if (plot.wanted()) places.push_back(plot.target());
+  require_writable_targets(places, locate_model(options.model), common.json);
   pipeline::SimulationRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
@@ -147,9 +147,9 @@ int execute(const Options& options, const Common& common) {
   request.seed = common.seed;
   Progress progress;
   if (isatty(STDERR_FILENO) != 0) request.progress = [&progress](double fraction) { progress(fraction); };
-  std::optional<Interrupt> interrupt;
+  std::optional<InterruptGuard> interrupt;
   request.ready = [&interrupt] { interrupt.emplace(); };
-  request.interrupt = &Interrupt::flag();
+  request.interrupt = &InterruptGuard::flag();
   request.max_steps = options.max_steps;
   std::optional<Rows> rows;
   if (!options.plot_of.empty() && !plot.wanted()) {
@@ -178,7 +178,7 @@ int execute(const Options& options, const Common& common) {
     const std::string title = model.title.empty() ? model.id : model.title;
     const std::uint64_t bytes =
         plot.write([&] { return rows->plot().svg(title, simulation.result); },
-                   [&](std::size_t columns) { return rows->plot().characters(title, simulation.result, columns); });
+                   [&](std::size_t columns) { return rows->plot().text_plot(title, simulation.result, columns); });
     files.push_back({options.plot, std::nullopt, bytes});
   }
   const eom::Outcome outcome = simulation.result.outcome;
@@ -215,8 +215,8 @@ Execute declare_run(Arguments& app) {
       .check(whole_number(1, 1'000'000'000'000'000));
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
   app.add_option("--every", options->every, "interval of the rows of the CSV file").check(positive_number());
-  app.add_place("-o,--out", options->out, "the table, a CSV file");
-  app.add_place("--plot", options->plot,
+  app.add_output_path("-o,--out", options->out, "the table, a CSV file");
+  app.add_output_path("--plot", options->plot,
                 "a plot of the coordinates over time, SVG or PNG by its ending; - draws it with characters");
   app.add_option("--plot-of", options->plot_of,
                  "what is plotted: a name, or x,x_dot for a phase plane; may be repeated")
@@ -229,7 +229,7 @@ Execute declare_run(Arguments& app) {
   add_form(app, options->form);
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second run out");
   app.add_flag("--no-charts", options->no_charts, "keep to the model's angles where they fail");
-  return [options](const Common& common) { return execute(*options, common); };
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

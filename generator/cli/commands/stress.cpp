@@ -144,35 +144,35 @@ std::string readable(const Json& found, const std::vector<std::string>& solvers)
   return out;
 }
 
-int execute(const Options& options, const Common& common) {
+int execute(const Options& options, const CommonOptions& common) {
   const PlotFile plot(options.plot);
-  if (plot.wanted()) require_places({plot.place()}, locate_model(options.model), common.json);
+  if (plot.wanted()) require_writable_targets({plot.target()}, locate_model(options.model), common.json);
   analysis::StressRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
   request.overrides = overrides_of("stress", options);
   request.solvers = options.solvers;
-  request.seconds = options.seconds;
-  request.steps = options.steps;
+  request.max_seconds = options.seconds;
+  request.max_steps = options.steps;
   request.quick = options.quick;
   request.seed = common.seed;
-  request.interrupt = &Interrupt::flag();
+  request.interrupt = &InterruptGuard::flag();
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  if (terminal) request.progress = [](const std::string& what) { tell(fmt::format("\r{:60}\r{}", "", what)); };
+  if (terminal) request.progress = [](const std::string& what) { print_message(fmt::format("\r{:60}\r{}", "", what)); };
   const analysis::StressFindings findings = analysis::stress_test(request);
-  const Interrupt interrupt;
-  if (terminal) tell(fmt::format("\r{:60}\r", ""));
+  const InterruptGuard interrupt;
+  if (terminal) print_message(fmt::format("\r{:60}\r", ""));
   const Json found = document(*request.model, findings);
   const model::Model& model = *request.model;
   const StressPlot verdicts{findings, model.title.empty() ? model.id : model.title};
   if (plot.wanted())
-    plot.write([&] { return verdicts.svg(); }, [&](std::size_t columns) { return verdicts.characters(columns); });
+    plot.write([&] { return verdicts.svg(); }, [&](std::size_t columns) { return verdicts.text_plot(columns); });
   if (common.json) {
     print_document(found);
   } else {
     print_readable(readable(found, findings.solvers), is_standard_output(options.plot));
   }
-  return Interrupt::flag() ? 3 : found["verdict"] == "pass" ? 0 : 1;
+  return InterruptGuard::flag() ? 3 : found["verdict"] == "pass" ? 0 : 1;
 }
 
 }  // namespace
@@ -183,16 +183,16 @@ Execute declare_stress(Arguments& app) {
   add_scene(app, *options);
   add_values(app, *options);
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
-  app.add_list("--solver", options->solvers, "only these solvers").one_of(run::solver_names());
+  app.add_list("--solver", options->solvers, "only these solvers").suggest_values(run::solver_names());
   app.add_option("--steps", options->steps, "what takes more is ended, and told")
       .check(whole_number(100, 1'000'000'000))
-      .show_preset();
+      .show_default();
   app.add_option("--seconds", options->seconds, "a guard: what takes longer is interrupted, and told")
       .check(positive_number())
-      .show_preset();
-  app.add_place("--plot", options->plot, "the verdicts, SVG or PNG by its ending; - draws them with characters");
+      .show_default();
+  app.add_output_path("--plot", options->plot, "the verdicts, SVG or PNG by its ending; - draws them with characters");
   app.add_flag("--quick", options->quick, "a few variations of each kind");
-  return [options](const Common& common) { return execute(*options, common); };
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

@@ -19,18 +19,18 @@ Json document(const SweepOptions& options, const model::Model& model, const Swee
   const Sweep::Counts counts = sweep.counts();
   Json found = {
       {"format", 1},         {"model", model.id},       {"scene", options.scene},     {"runs", sweep.runs()},
-      {"done", counts.done}, {"failed", counts.failed}, {"resumed", sweep.resumed()}, {"file", sweep.place()}};
+      {"done", counts.done}, {"failed", counts.failed}, {"resumed", sweep.resumed()}, {"file", sweep.path()}};
   if (options.shard) found["shard"] = *options.shard;
   return found;
 }
 
-int execute(const SweepOptions& options, const Common& common) {
+int execute(const SweepOptions& options, const CommonOptions& common) {
   const model::Model model = model::read_model(locate_model(options.model));
   Sweep sweep(options, common, model);
   const bool whole = sweep.run();
-  if (common.team != nullptr && !common.team->leads()) return 0;  // the leader reports
+  if (common.group != nullptr && !common.group->is_leader()) return 0;  // the leader reports
   Json found = document(options, model, sweep);
-  const std::optional<analysis::Basins> basins = options.basins ? sweep.basins() : std::nullopt;
+  const std::optional<analysis::BasinStatistics> basins = options.basins ? sweep.basins() : std::nullopt;
   if (common.json) {
     if (options.statistics) found["statistics"] = to_json(sweep.statistics());
     if (basins) found["basins"] = to_json(*basins);
@@ -45,7 +45,7 @@ int execute(const SweepOptions& options, const Common& common) {
     if (basins) text += "\n" + to_text(*basins);
     print_readable(text, is_standard_output(options.out));
   }
-  if (!whole) tell("interrupted: the same command goes on from the rows that are there\n");
+  if (!whole) print_message("interrupted: the same command goes on from the rows that are there\n");
   return whole && found["failed"] == 0 ? 0 : 3;
 }
 
@@ -59,7 +59,7 @@ Execute declare_sweep(Arguments& app) {
   app.add_list("--sample", options->sample,
                "PARAMETER=FROM:TO, PARAMETER=FROM:TO:log or PARAMETER=MEAN:DEVIATION:normal; may be repeated", '\0');
   app.add_option("--samples", options->samples, "how many, at every point of the grid")
-      .check(whole_number(1, analysis::most_points));
+      .check(whole_number(1, analysis::max_points));
   app.add_option("--design", options->design,
                  "of samples: random, latin (hypercube) or sobol; without it random. All follow from --seed");
   app.add_option("--points", options->points,
@@ -75,7 +75,7 @@ Execute declare_sweep(Arguments& app) {
   add_fixed_step(app, *options);
   add_values(app, *options);
   app.add_option("--t-end", options->t_end, "the end of the runs").check(finite_number());
-  app.add_place("-o,--out", options->out,
+  app.add_output_path("-o,--out", options->out,
                 "the table: F.csv, or F.npz for arrays of columns; without it MODEL_sweep.csv in this folder");
   add_outputs(app, *options);
   app.add_option("--jobs", options->jobs, "processes, or threads of an ensemble; without it one for each processor")
@@ -83,7 +83,7 @@ Execute declare_sweep(Arguments& app) {
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second runs out");
   app.add_flag("--ensemble", options->ensemble,
                "many runs side by side in the lanes of vector registers, without error estimates");
-  return [options](const Common& common) { return execute(*options, common); };
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

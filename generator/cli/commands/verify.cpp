@@ -7,7 +7,7 @@
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/usage.hpp"
-#include "cli/watch.hpp"
+#include "cli/stage_monitor.hpp"
 #include "pipeline/verification.hpp"
 
 namespace eomgen::cli {
@@ -59,7 +59,7 @@ void print_readable(const verify::Certificate& certificate) {
   fmt::print("\n{}\n", certificate.summary());
 }
 
-int show(const verify::Certificate& certificate, const Common& common) {
+int show(const verify::Certificate& certificate, const CommonOptions& common) {
   const work::DeferInterrupt kept;
   if (common.json) {
     print_document(to_json(certificate));
@@ -67,13 +67,13 @@ int show(const verify::Certificate& certificate, const Common& common) {
     print_readable(certificate);
   }
   if (certificate.interrupted) {
-    tell_interrupted(nullptr);
+    print_interrupted(nullptr);
     return exit_interrupted;
   }
   return certificate.pass ? 0 : 1;
 }
 
-int execute(const Options& options, const Common& common) {
+int execute(const Options& options, const CommonOptions& common) {
   const pipeline::VerificationRequest request{options.digits, static_cast<std::size_t>(options.points), common.seed,
                                               !options.no_compile};
   return show(pipeline::verify_model(load_model(options.model), request), common);
@@ -86,10 +86,10 @@ Execute declare_verify(Arguments& app) {
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_option("--digits", options->digits, "decimal digits of the arithmetic")
       .check(whole_number(20, 300))
-      .show_preset();
-  app.add_option("--points", options->points, "random states").check(whole_number(1, 10000)).show_preset();
+      .show_default();
+  app.add_option("--points", options->points, "random states").check(whole_number(1, 10000)).show_default();
   app.add_flag("--no-compile", options->no_compile, "leave the emitted code out, which needs a C compiler");
-  return [options](const Common& common) { return execute(*options, common); };
+  return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 
 }  // namespace eomgen::cli

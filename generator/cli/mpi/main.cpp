@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <string_view>
 
-#include "cli/mpi/team.hpp"
+#include "cli/mpi/process_group.hpp"
 #include "cli/program.hpp"
 
 int main(int argc, char** argv) {
-  eomgen::cli::MpiTeam team(argc, argv);
-  if (!team.leads() && !team.await_go()) return 0;
+  eomgen::cli::MpiProcessGroup group(argc, argv);
+  if (!group.is_leader() && !group.await_start()) return 0;
   const auto commands = eomgen::cli::commands();
   const auto sweep = std::find_if(commands.begin(), commands.end(),
                                   [](const auto& command) { return std::string_view(command.name) == "sweep"; });
-  const int code = eomgen::cli::run_program({argv, static_cast<std::size_t>(argc)}, "eomgen-mpi", {sweep, 1}, &team);
-  team.leave(code);
-  return team.leads() ? code : 0;
+  const int code = eomgen::cli::run_program({argv, static_cast<std::size_t>(argc)}, "eomgen-mpi", {sweep, 1}, &group);
+  group.leave(code);
+  return group.is_leader() ? code : 0;
 }

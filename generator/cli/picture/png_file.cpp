@@ -104,7 +104,7 @@ std::uint32_t adler(const std::string& bytes) {
 
 }  // namespace
 
-std::string png(const Picture& picture) {
+std::string encode_png(const Picture& picture) {
   constexpr char above = 2;  // the filter: differences to the row above
   const std::size_t row = 3 * picture.width;
   std::string filtered;

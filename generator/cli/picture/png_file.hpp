@@ -14,6 +14,6 @@ struct Picture {
 };
 
 /// Returns the bytes of the file. Uses the filter "up" and run-length matches only, which suits plots.
-std::string png(const Picture& picture);
+std::string encode_png(const Picture& picture);
 
 }  // namespace eomgen::cli

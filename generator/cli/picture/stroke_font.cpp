@@ -128,8 +128,8 @@ std::string_view strokes_of(std::string_view character) {
 
 }  // namespace
 
-WrittenText written(const std::string& text, double size) {
-  WrittenText result;
+StrokedText stroke_text(const std::string& text, double size) {
+  StrokedText result;
   for (std::size_t i = 0; i < text.size();) {
     std::size_t length = 1;
     while (i + length < text.size() && (static_cast<unsigned char>(text[i + length]) & 0xc0) == 0x80) ++length;

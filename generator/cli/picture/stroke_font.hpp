@@ -10,12 +10,12 @@ namespace eomgen::cli {
 
 using Stroke = std::vector<std::pair<double, double>>;  // x to the right, y up from the baseline
 
-struct WrittenText {
+struct StrokedText {
   std::vector<Stroke> strokes;
   double width = 0;
 };
 
 /// Returns the strokes of a UTF-8 text in font size `size`. Characters missing in the font become boxes.
-WrittenText written(const std::string& text, double size);
+StrokedText stroke_text(const std::string& text, double size);
 
 }  // namespace eomgen::cli

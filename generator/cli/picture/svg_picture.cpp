@@ -266,10 +266,10 @@ class Reader {
   void text(const Tag& tag, const std::string& content) {
     const double size = tag.number("font-size", usual);
     const std::vector<Run> all = runs(content, size);
-    std::vector<WrittenText> parts;
+    std::vector<StrokedText> parts;
     double width = 0;
     for (const Run& run : all) {
-      parts.push_back(written(run.text, run.size));
+      parts.push_back(stroke_text(run.text, run.size));
       width += parts.back().width + 0.1 * run.size;
     }
     const std::string anchor = tag.get("text-anchor"), transform = tag.get("transform");
@@ -301,6 +301,6 @@ class Reader {
 
 }  // namespace
 
-Picture drawn(const std::string& svg, double scale) { return Reader(svg, scale).run(); }
+Picture rasterise(const std::string& svg, double scale) { return Reader(svg, scale).run(); }
 
 }  // namespace eomgen::cli

@@ -10,6 +10,6 @@
 namespace eomgen::cli {
 
 /// `scale`: pixels per unit of the drawing. Throws std::logic_error if the drawing has no size.
-Picture drawn(const std::string& svg, double scale);
+Picture rasterise(const std::string& svg, double scale);
 
 }  // namespace eomgen::cli

@@ -70,7 +70,7 @@ void Html::table(const std::vector<std::string>& head, const std::vector<std::ve
   text_ += "</table>\n";
 }
 
-std::string page(const PageParts& parts) {
+std::string render_page(const PageParts& parts) {
   kainjow::mustache::mustache skeleton{std::string(report::page_html)};
   if (!skeleton.is_valid()) throw std::logic_error(skeleton.error_message());
   kainjow::mustache::data all{kainjow::mustache::data::type::object};

@@ -34,6 +34,6 @@ struct PageParts {
 };
 
 /// Returns the whole page: the skeleton of templates/report with its style and scripts.
-std::string page(const PageParts& parts);
+std::string render_page(const PageParts& parts);
 
 }  // namespace eomgen::cli

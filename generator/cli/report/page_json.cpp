@@ -73,21 +73,21 @@ Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const
             {"lower", bounds(lower)},
             {"upper", bounds(upper)},
             {"integrals", or_null(s.integrals)},
-            {"touched", s.touched},
-            {"reshapes", s.reshapes},
-            {"moves", s.moves},
+            {"touched", s.has_contact},
+            {"reshapes", s.changes_shape},
+            {"moves", s.is_moving},
             {"equations", "surface_" + std::to_string(++count)}};
   });
-  result["untried"] = parts.untried_rods;
+  result["untried"] = parts.rods_incomplete;
   result["rods"] = list_of(parts.rods, [](const analysis::DrawnRod& r) { return Json::array({r.a, r.b}); });
   return result;
 }
 
 void add_forces(Json& parts, const analysis::DrawnForces& forces) {
   parts["arrows"] = list_of(forces.list(), [](const analysis::DrawnForce& f) -> Json {
-    return {{"name", f.name}, {"kind", f.kind}, {"at", f.at}, {"value", f.value}, {"turns", f.turns}};
+    return {{"name", f.name}, {"kind", f.kind}, {"at", f.at}, {"value", f.value}, {"turns", f.is_moment}};
   });
-  parts["beyond"] = forces.beyond();
+  parts["beyond"] = forces.omitted_count();
   parts["without_vector"] = forces.without_vector();
 }
 
@@ -103,7 +103,7 @@ Json to_json(const analysis::LiveStart& start) {
           {"parameters", list_of(start.parameters,
                                  [](const analysis::LiveParameter& p) -> Json {
                                    return {{"name", p.name},   {"unit", p.unit},         {"note", p.note},
-                                           {"value", p.value}, {"positive", p.positive}, {"moved", p.moved}};
+                                           {"value", p.value}, {"positive", p.positive}, {"moved", p.is_adjustable}};
                                  })},
           {"starts", list_of(start.starts,
                              [](const auto& s) {
@@ -112,7 +112,7 @@ Json to_json(const analysis::LiveStart& start) {
           {"inputs", start.inputs},
           {"events", list_of(start.events,
                              [](const analysis::LiveEvent& e) -> Json {
-                               return {{"name", e.name}, {"stop", e.stops}, {"direction", e.direction}};
+                               return {{"name", e.name}, {"stop", e.is_terminal}, {"direction", e.direction}};
                              })},
           {"constraints", start.constraints},
           {"event_count", start.event_functions},

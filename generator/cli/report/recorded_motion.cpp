@@ -28,7 +28,7 @@ void RecordedMotion::row(double t, std::span<const double> values) {
   rows_.emplace_back(values.begin(), values.end());
 }
 
-void RecordedMotion::thin() {
+void RecordedMotion::drop_every_second_row() {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < t_.size(); ++k) {
     if (k % 2 == 1 && k + 1 < t_.size()) continue;
@@ -98,7 +98,7 @@ Json RecordedMotion::json(const pipeline::Simulation& simulation, const analysis
   for (const double size : analysis::sizes_of(drawing, dag, simulation.scene.parameters))
     sizes.push_back(shortened(size, digits_of_states));
   const double span = t_.back() - t_.front();
-  const auto down = analysis::falling(simulation.derived->mechanics, simulation.scene.parameters);
+  const auto down = analysis::gravity_direction(simulation.derived->mechanics, simulation.scene.parameters);
   const bool is_live = !live.script.empty();
   Json parts = to_json(drawing.parts(), model, simulation.scene);
   add_forces(parts, forces);

@@ -20,7 +20,7 @@ class RecordedMotion {
 
   std::size_t size() const { return t_.size(); }
   /// Drops every second row and keeps the last one.
-  void thin();
+  void drop_every_second_row();
 
   /// Panels as SVG, for pages without scripts and for print.
   std::string plots(const std::vector<Panel>& panels) const;

@@ -14,7 +14,7 @@
 namespace eomgen::cli {
 namespace {
 
-using analysis::Axis;
+using analysis::GridAxis;
 using analysis::Design;
 using analysis::SampledAxis;
 using symbolic::Rational;
@@ -51,18 +51,18 @@ std::size_t count_of(const std::string& text, const std::string& axis) {
   const Rational value = parse_decimal(text, axis);
   if (cln::denominator(value) != 1 || value < 2)
     wrong_grid(fmt::format("the number of values in {} is not a whole number of at least 2", model::quote(axis)));
-  if (value > Rational(static_cast<long>(analysis::most_points)))
-    wrong_grid(fmt::format("{} asks for more than {} values", model::quote(axis), analysis::most_points));
+  if (value > Rational(static_cast<long>(analysis::max_points)))
+    wrong_grid(fmt::format("{} asks for more than {} values", model::quote(axis), analysis::max_points));
   return static_cast<std::size_t>(cln::double_approx(value));
 }
 
-Axis axis_of(const std::string& text) {
+GridAxis axis_of(const std::string& text) {
   const auto [parameter, values] = assignment(text, wrong_grid);
-  Axis axis{parameter, {}, 0, 0};
+  GridAxis axis{parameter, {}, 0, 0};
   const std::vector<std::string> fields = parts(values, ':');
   if (fields.size() == 1) {
-    for (const std::string& value : parts(values, ',')) axis.listed.push_back(parse_decimal(value, text));
-    axis.count = axis.listed.size();
+    for (const std::string& value : parts(values, ',')) axis.values.push_back(parse_decimal(value, text));
+    axis.count = axis.values.size();
     return axis;
   }
   if (fields.size() > 4 || fields.size() == 2) wrong_grid(fmt::format("{} is no range of values", model::quote(text)));
@@ -73,7 +73,7 @@ Axis axis_of(const std::string& text) {
   axis.to = parse_decimal(fields[1], text);
   axis.logarithmic = kind == "log";
   axis.count = count_of(fields.back(), text);
-  if (const std::string why = axis.obstacle(); !why.empty()) wrong_grid(model::quote(text) + " " + why);
+  if (const std::string why = axis.domain_error(); !why.empty()) wrong_grid(model::quote(text) + " " + why);
   return axis;
 }
 
@@ -96,7 +96,7 @@ SampledAxis sampled_axis_of(const std::string& text) {
     axis.kind = SampledAxis::Kind::normal;
   else if (kind != "lin")
     wrong_sample(fmt::format("{} has {} where lin, log or normal is asked", model::quote(text), model::quote(kind)));
-  if (const std::string why = axis.obstacle(); !why.empty()) wrong_sample(model::quote(text) + " " + why);
+  if (const std::string why = axis.domain_error(); !why.empty()) wrong_sample(model::quote(text) + " " + why);
   return axis;
 }
 
@@ -109,9 +109,9 @@ bool has(const Axes& axes, const std::string& parameter) {
 
 analysis::Grid parse_grid(const std::vector<std::string>& texts) {
   if (texts.empty()) wrong_grid("nothing is to be varied");
-  std::vector<Axis> axes;
+  std::vector<GridAxis> axes;
   for (const std::string& text : texts) {
-    Axis axis = axis_of(text);
+    GridAxis axis = axis_of(text);
     if (has(axes, axis.parameter)) wrong_grid(fmt::format("{} has two grids", model::quote(axis.parameter)));
     axes.push_back(std::move(axis));
   }

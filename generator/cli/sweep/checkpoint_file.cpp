@@ -46,11 +46,11 @@ OpenFile open_own(const std::string& path) {
 
 }  // namespace
 
-CheckpointFile::CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t)> belongs, Part part)
-    : file_(std::move(file)), place_(file_), key_(std::move(key)), belongs_(std::move(belongs)) {
+CheckpointFile::CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t)> contains_run, Role part)
+    : file_(std::move(file)), place_(file_), key_(std::move(key)), contains_run_(std::move(contains_run)) {
   std::error_code none;
   kept_ = !is_standard_output(file_) && (!fs::exists(file_, none) || fs::is_regular_file(file_, none));
-  if (!kept_ || part == Part::member) return;
+  if (!kept_ || part == Role::member) return;
   try {
     for (const Unfinished& table : unfinished()) {
       if (!table.same) {
@@ -83,7 +83,7 @@ std::vector<CheckpointFile::Unfinished> CheckpointFile::unfinished() const {
     OpenFile file = open_own(path);
     if (!file) continue;  // another process is writing it
     std::string first;
-    each_line(file, [&](std::string_view line, std::uint64_t) { return first = line, false; });
+    for_each_line(file, [&](std::string_view line, std::uint64_t) { return first = line, false; });
     if (first.starts_with(mark)) found.push_back({path, std::move(file), first == mark + key_});  // else of `run`
   }
   std::sort(found.begin(), found.end(), [](const Unfinished& a, const Unfinished& b) { return a.path < b.path; });
@@ -93,24 +93,24 @@ std::vector<CheckpointFile::Unfinished> CheckpointFile::unfinished() const {
 void CheckpointFile::read(const OpenFile& file) {
   const std::uint32_t from = rows_.add(file);
   std::size_t number = 0;
-  each_line(file, [&](std::string_view line, std::uint64_t offset) {
+  for_each_line(file, [&](std::string_view line, std::uint64_t offset) {
     if (number == 0 && line != mark + key_) return false;
     if (number == 1 && header_.empty()) header_ = line;
     if (number == 1 && header_ != line) return false;
     if (number++ < 2) return true;
     std::size_t run = 0;
-    if (reads_as_row(line, header_, run) && belongs_(run)) rows_.add(run, from, offset, line.size());
+    if (is_row_of_table(line, header_, run) && contains_run_(run)) rows_.add(run, from, offset, line.size());
     return true;
   });
 }
 
-std::string CheckpointFile::beginning() const { return mark + key_ + "\n" + header_ + "\n"; }
+std::string CheckpointFile::file_header() const { return mark + key_ + "\n" + header_ + "\n"; }
 
 void CheckpointFile::write(const std::function<void(std::string_view)>& to) const {
   constexpr std::size_t enough = 1 << 20;
-  to(beginning());  // immediately, because a partial file without header cannot be recognised
+  to(file_header());  // immediately, because a partial file without header cannot be recognised
   std::string text;
-  rows_.each(0, rows_.size(), [&](std::size_t, std::string_view line) {
+  rows_.for_each(0, rows_.size(), [&](std::size_t, std::string_view line) {
     text.append(line);
     text += '\n';
     if (text.size() < enough) return;
@@ -131,7 +131,7 @@ void CheckpointFile::set_header(const std::string& header) try {
     }
   }
   if (!kept_) {
-    own_ = OpenFile::unnamed();
+    own_ = OpenFile::temporary();
     number_ = rows_.add(own_);
     return;
   }
@@ -140,7 +140,7 @@ void CheckpointFile::set_header(const std::string& header) try {
   own_ = OpenFile(::fcntl(out_->descriptor(), F_DUPFD_CLOEXEC, 3));
   Rows copied;
   number_ = copied.add(own_);
-  end_ = beginning().size();
+  end_ = file_header().size();
   write([this](std::string_view text) { out_->write(text); });
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     copied.add(rows_.run(i), number_, end_, rows_.length(i));
@@ -192,10 +192,10 @@ void CheckpointFile::finish() {
   if (kept_ && !open()) return;  // the table was complete
   rows_.sort();
   whole();
-  finish_elsewhere();
+  remove_partial_files();
 }
 
-void CheckpointFile::finish_elsewhere() {
+void CheckpointFile::remove_partial_files() {
   place_ = file_;
   if (out_) out_->discard();
   remove_others();

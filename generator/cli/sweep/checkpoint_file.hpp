@@ -20,20 +20,20 @@ namespace eomgen::cli {
 /// written directly.
 class CheckpointFile {
  public:
-  enum class Part {
+  enum class Role {
     whole,
     member
   };  // member: a process of a group other than its leader; it takes nothing over
 
   /// `key` identifies the sweep; it is in the first line of the file. `belongs`: whether the table has this run. Throws
   /// Error if there is an unfinished table of another sweep.
-  CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t run)> belongs, Part part = Part::whole);
+  CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t run)> contains_run, Role part = Role::whole);
 
   const Rows& rows() const { return rows_; }  // sorted before the first add() and after finish()
   void sort() { rows_.sort(); }
   const std::string& header() const { return header_; }
   /// First lines of the file.
-  std::string beginning() const;
+  std::string file_header() const;
   /// Sets the column names and starts the file. Not needed if all rows exist.
   void set_header(const std::string& header);
   void add(std::size_t run, const std::string& line);
@@ -43,11 +43,11 @@ class CheckpointFile {
   /// Whether rows are in files other than FILE.
   bool open() const { return out_ || !taken_over_.empty(); }
   /// Removes the partial files after another process wrote FILE.
-  void finish_elsewhere();
+  void remove_partial_files();
   /// Writes the rows so far if no partial file stores them.
   void interrupt();
   /// Path of the file that contains the rows.
-  const std::string& place() const { return place_; }
+  const std::string& path() const { return place_; }
 
  private:
   struct Unfinished {
@@ -62,7 +62,7 @@ class CheckpointFile {
   void remove_others();
 
   std::string file_, place_, key_, header_;
-  std::function<bool(std::size_t)> belongs_;
+  std::function<bool(std::size_t)> contains_run_;
   bool kept_ = true;  // rows go to a partial file
   std::vector<std::string> taken_over_;
   Rows rows_;

@@ -73,7 +73,7 @@ class Table {
     const auto commas = static_cast<std::size_t>(std::count(header.begin(), header.end(), ','));
     for (const std::string_view name : fields_of(header, commas + 1)) names_.emplace_back(name);
     outcome_ = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), "outcome") - names_.begin());
-    rows_.each(0, rows_.size(), [this](std::size_t, std::string_view line) {
+    rows_.for_each(0, rows_.size(), [this](std::size_t, std::string_view line) {
       const std::vector<std::string_view> fields = fields_of(line, names_.size());
       if (outcome_ < fields.size()) outcome_width_ = std::max(outcome_width_, fields[outcome_].size());
       if (fields.back().empty()) return;
@@ -118,7 +118,7 @@ class Table {
     constexpr std::size_t enough = 4096;  // rows at a time
     std::vector<std::string> columns(members_.size());
     for (std::size_t first = 0; first < rows_.size(); first += enough) {
-      rows_.each(first, std::min(first + enough, rows_.size()), [&](std::size_t run, std::string_view line) {
+      rows_.for_each(first, std::min(first + enough, rows_.size()), [&](std::size_t run, std::string_view line) {
         const std::vector<std::string_view> fields = fields_of(line, names_.size());
         for (std::size_t k = 0; k + 1 < names_.size(); ++k) {
           if (k == 0)

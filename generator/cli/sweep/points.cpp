@@ -35,7 +35,7 @@ std::optional<Shard> shard_of(const std::string& text) {
 
 }  // namespace
 
-analysis::Points points_of(const SweepOptions& options, std::uint64_t seed, std::string& file_hash) {
+analysis::SweepPoints points_of(const SweepOptions& options, std::uint64_t seed, std::string& file_hash) {
   const bool sampled = !options.sample.empty() || options.samples > 0, listed = !options.points.empty();
   if (options.design && !sampled)
     throw Error("sweep", {}, "--design is of samples, and there are none",
@@ -53,7 +53,7 @@ analysis::Points points_of(const SweepOptions& options, std::uint64_t seed, std:
     throw Error("sweep", {}, "--sample and --points both say what changes fastest", "leave one of them out");
   if (!options.grid.empty() || (!sampled && !listed)) grid = parse_grid(options.grid);
   for (const std::string& name : samples ? samples->names() : list ? list->names : std::vector<std::string>{}) {
-    const auto named = [&name](const analysis::Axis& axis) { return axis.parameter == name; };
+    const auto named = [&name](const analysis::GridAxis& axis) { return axis.parameter == name; };
     if (!grid || std::none_of(grid->axes().begin(), grid->axes().end(), named)) continue;
     throw Error(
         "sweep", {},
@@ -69,11 +69,11 @@ analysis::Shard parse_shard(const std::string& text) {
               "write --shard NUMBER/COUNT, such as 2/8; numbers begin with 1");
 }
 
-std::string shard_note(const analysis::Shard& shard, std::size_t runs) {
+std::string shard_header(const analysis::Shard& shard, std::size_t runs) {
   return fmt::format("{}{}/{} of {}", note, shard.number, shard.count, runs);
 }
 
-std::optional<ShardNote> read_shard_note(const std::string& line) {
+std::optional<ShardHeader> parse_shard_header(const std::string& line) {
   const std::size_t at = line.find(note);
   if (at == std::string::npos) return std::nullopt;
   const std::string rest = line.substr(at + std::string(note).size());
@@ -82,7 +82,7 @@ std::optional<ShardNote> read_shard_note(const std::string& line) {
   const auto shard = shard_of(rest.substr(0, of));
   const auto runs = whole(rest.substr(of + 4));
   if (!shard || !runs) return std::nullopt;
-  return ShardNote{line.substr(0, at), *shard, *runs};
+  return ShardHeader{line.substr(0, at), *shard, *runs};
 }
 
 }  // namespace eomgen::cli

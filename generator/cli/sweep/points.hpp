@@ -12,18 +12,18 @@ namespace eomgen::cli {
 
 /// `file_hash` receives the hash of the file of --points. Throws Error if nothing is varied, if a parameter is varied
 /// twice, or if both samples and a file are given.
-analysis::Points points_of(const SweepOptions& options, std::uint64_t seed, std::string& file_hash);
+analysis::SweepPoints points_of(const SweepOptions& options, std::uint64_t seed, std::string& file_hash);
 
 /// Parses "2/8". Throws Error for anything else.
 analysis::Shard parse_shard(const std::string& text);
 
 /// Returns the part of the first line of a shard's table that follows the key of its sweep.
-std::string shard_note(const analysis::Shard& shard, std::size_t runs);
-struct ShardNote {
+std::string shard_header(const analysis::Shard& shard, std::size_t runs);
+struct ShardHeader {
   std::string key;  // of the sweep
   analysis::Shard shard;
   std::size_t runs = 0;
 };
-std::optional<ShardNote> read_shard_note(const std::string& line);
+std::optional<ShardHeader> parse_shard_header(const std::string& line);
 
 }  // namespace eomgen::cli

@@ -48,7 +48,7 @@ OpenFile::OpenFile(int descriptor)
         delete held;
       }) {}
 
-OpenFile OpenFile::unnamed() {
+OpenFile OpenFile::temporary() {
   std::string path = (std::filesystem::temp_directory_path() / "eomgen-XXXXXX").string();
   const int file = ::mkostemp(path.data(), O_CLOEXEC);
   if (file < 0) fail(("cannot open " + path).c_str(), errno);
@@ -71,7 +71,7 @@ std::uint64_t OpenFile::bytes() const {
   return static_cast<std::uint64_t>(found.st_size);
 }
 
-void each_line(const OpenFile& file, const std::function<bool(std::string_view, std::uint64_t)>& take) {
+void for_each_line(const OpenFile& file, const std::function<bool(std::string_view, std::uint64_t)>& take) {
   constexpr std::size_t piece = 1 << 18;
   std::string text;
   std::uint64_t at = 0;  // file offset of the start of `text`
@@ -90,7 +90,7 @@ void each_line(const OpenFile& file, const std::function<bool(std::string_view, 
   }
 }
 
-bool reads_as_row(std::string_view line, std::string_view header, std::size_t& run) {
+bool is_row_of_table(std::string_view line, std::string_view header, std::size_t& run) {
   const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), run);
   return error == std::errc() && stop != line.data() + line.size() && *stop == ',' && fields(line) == fields(header);
 }
@@ -111,7 +111,7 @@ void Rows::sort() {
   places_.erase(places_.begin(), first.base());
 }
 
-void Rows::each(std::size_t first, std::size_t last,
+void Rows::for_each(std::size_t first, std::size_t last,
                 const std::function<void(std::size_t, std::string_view)>& take) const {
   constexpr std::size_t piece = 1 << 14;
   std::string held;  // a block of one file, since neighbouring rows are mostly adjacent

@@ -18,7 +18,7 @@ class OpenFile {
   OpenFile() = default;
   explicit OpenFile(int descriptor);
   /// Opens a temporary file without a name, which ends with the process. Throws std::system_error.
-  static OpenFile unnamed();
+  static OpenFile temporary();
 
   explicit operator bool() const { return descriptor_ != nullptr; }
   int descriptor() const { return *descriptor_; }
@@ -31,11 +31,11 @@ class OpenFile {
 
 /// Calls `take` with the lines of a file from the start until it returns false. A last line without line break is
 /// skipped.
-void each_line(const OpenFile& file, const std::function<bool(std::string_view line, std::uint64_t offset)>& take);
+void for_each_line(const OpenFile& file, const std::function<bool(std::string_view line, std::uint64_t offset)>& take);
 
 /// Whether a line has as many fields as `header`; if so, sets `run` to its first field. Lines written while the disk
 /// was full are incomplete.
-bool reads_as_row(std::string_view line, std::string_view header, std::size_t& run);
+bool is_row_of_table(std::string_view line, std::string_view header, std::size_t& run);
 
 class Rows {
  public:
@@ -49,7 +49,7 @@ class Rows {
   std::size_t run(std::size_t i) const { return places_[i].run; }
   std::size_t length(std::size_t i) const { return places_[i].length; }
   /// Calls `take` with the rows in [first, last). Throws std::system_error.
-  void each(std::size_t first, std::size_t last,
+  void for_each(std::size_t first, std::size_t last,
             const std::function<void(std::size_t run, std::string_view line)>& take) const;
 
  private:

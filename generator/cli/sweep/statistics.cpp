@@ -11,7 +11,7 @@
 namespace eomgen::cli {
 
 using analysis::ColumnStatistics;
-using analysis::quantile_parts;
+using analysis::quantile_levels;
 
 namespace {
 
@@ -30,12 +30,12 @@ void each_field(std::string_view line, std::size_t most, Take&& take) {
 
 }  // namespace
 
-bool ended_well(std::string_view outcome) {
+bool is_successful(std::string_view outcome) {
   return outcome == eom::name(eom::Outcome::done) || outcome == eom::name(eom::Outcome::stopped_by_event);
 }
 
 std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std::size_t rows,
-                                                  const EachRow& each_row) {
+                                                  const RowSource& for_each_row) {
   std::vector<std::string> names;
   each_field(header, std::string::npos, [&](std::size_t, std::string_view name) { names.emplace_back(name); });
   const auto outcome = static_cast<std::size_t>(std::find(names.begin(), names.end(), "outcome") - names.begin());
@@ -45,10 +45,10 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
   for (std::size_t first = outcome + 1; first < end; first += at_once) {
     const std::size_t last = std::min(first + at_once, end);
     std::vector<std::vector<double>> values(last - first);
-    each_row([&](std::string_view row) {
+    for_each_row([&](std::string_view row) {
       bool well = false;
       each_field(row, last, [&](std::size_t k, std::string_view text) {
-        if (k == outcome) well = ended_well(text);
+        if (k == outcome) well = is_successful(text);
         if (k < first || !well) return;
         double value = 0;
         const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -63,7 +63,7 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
   return result;
 }
 
-void read_basins(analysis::Basins& basins, const std::string& header, const EachRow& each_row) {
+void classify_runs(analysis::BasinStatistics& basins, const std::string& header, const RowSource& for_each_row) {
   std::vector<std::string> names;
   each_field(header, std::string::npos, [&](std::size_t, std::string_view name) { names.emplace_back(name); });
   const auto place_of = [&](const std::string& name) {
@@ -73,40 +73,40 @@ void read_basins(analysis::Basins& basins, const std::string& header, const Each
   std::vector<std::size_t> places;
   for (const std::string& name : basins.names()) places.push_back(place_of(name));
   std::vector<double> state(places.size());
-  each_row([&](std::string_view row) {
+  for_each_row([&](std::string_view row) {
     bool well = false;
     each_field(row, names.size() - 1, [&](std::size_t k, std::string_view text) {
-      if (k == outcome) well = ended_well(text);
+      if (k == outcome) well = is_successful(text);
       const auto place = std::find(places.begin(), places.end(), k);
       if (place == places.end()) return;
       double& value = state[static_cast<std::size_t>(place - places.begin())];
       const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
       if (error != std::errc() || stop != text.data() + text.size()) value = std::nan("");
     });
-    if (well) basins.see(state);
+    if (well) basins.classify(state);
   });
 }
 
-Json to_json(const analysis::Basins& basins) {
-  Json goals = Json::array();
-  for (const analysis::Basins::Goal& goal : basins.goals()) {
+Json to_json(const analysis::BasinStatistics& basins) {
+  Json attractors = Json::array();
+  for (const analysis::BasinStatistics::Attractor& goal : basins.attractors()) {
     Json values = Json::object();
     for (const auto& [name, value] : goal.values) values[name] = value;
-    goals.push_back({{"values", values}, {"stability", linear::name(goal.stability)}, {"runs", goal.runs}});
+    attractors.push_back({{"values", values}, {"stability", linear::name(goal.stability)}, {"runs", goal.runs}});
   }
-  return {{"within", basins.within()}, {"reached", goals}, {"elsewhere", basins.elsewhere()}};
+  return {{"within", basins.tolerance()}, {"reached", attractors}, {"elsewhere", basins.unclassified()}};
 }
 
-std::string to_text(const analysis::Basins& basins) {
-  std::string text = fmt::format("reached, within {:g}\n", basins.within());
-  for (const analysis::Basins::Goal& goal : basins.goals()) {
+std::string to_text(const analysis::BasinStatistics& basins) {
+  std::string text = fmt::format("reached, within {:g}\n", basins.tolerance());
+  for (const analysis::BasinStatistics::Attractor& goal : basins.attractors()) {
     text += fmt::format("{:>9} runs at", goal.runs);
     for (const auto& [name, value] : goal.values) {
       if (value != 0 || !name.ends_with("_dot")) text += fmt::format(" {} = {:.6g}", name, value);
     }
     text += fmt::format(" ({})\n", linear::name(goal.stability));
   }
-  return text + fmt::format("{:>9} runs elsewhere\n", basins.elsewhere());
+  return text + fmt::format("{:>9} runs elsewhere\n", basins.unclassified());
 }
 
 Json to_json(const std::vector<ColumnStatistics>& columns) {
@@ -121,7 +121,7 @@ Json to_json(const std::vector<ColumnStatistics>& columns) {
                     {"histogram", c.histogram}});
     Json& quantiles = list.back()["quantiles"] = Json::array();
     for (std::size_t i = 0; i < c.quantiles.size(); ++i)
-      quantiles.push_back({{"part", quantile_parts[i]}, {"value", c.quantiles[i]}});
+      quantiles.push_back({{"part", quantile_levels[i]}, {"value", c.quantiles[i]}});
   }
   return list;
 }
@@ -131,7 +131,7 @@ std::string to_text(const std::vector<ColumnStatistics>& columns) {
   for (const ColumnStatistics& c : columns) width = std::max(width, c.name.size());
   std::string text =
       fmt::format("{:<{}} {:>9} {:>13} {:>13} {:>13}", "column", width, "runs", "mean", "deviation", "min");
-  for (const double part : quantile_parts) text += fmt::format(" {:>13}", fmt::format("{:g} %", 100 * part));
+  for (const double part : quantile_levels) text += fmt::format(" {:>13}", fmt::format("{:g} %", 100 * part));
   text += fmt::format(" {:>13}\n", "max");
   for (const ColumnStatistics& c : columns) {
     text +=

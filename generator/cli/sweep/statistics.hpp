@@ -14,21 +14,21 @@
 namespace eomgen::cli {
 
 /// Whether the outcome is done or stopped_by_event.
-bool ended_well(std::string_view outcome);
+bool is_successful(std::string_view outcome);
 
 /// A function that calls its argument with each row.
-using EachRow = std::function<void(const std::function<void(std::string_view row)>& take)>;
+using RowSource = std::function<void(const std::function<void(std::string_view row)>& take)>;
 
 /// Statistics of every numeric column after the outcome, over the rows whose outcome is done or stopped_by_event. Reads
 /// the rows several times if not all columns fit into memory.
 std::vector<analysis::ColumnStatistics> statistics_of_table(const std::string& header, std::size_t rows,
-                                                            const EachRow& each_row);
+                                                            const RowSource& for_each_row);
 
 /// Counts the final states of the same rows.
-void read_basins(analysis::Basins& basins, const std::string& header, const EachRow& each_row);
+void classify_runs(analysis::BasinStatistics& basins, const std::string& header, const RowSource& for_each_row);
 
-Json to_json(const analysis::Basins& basins);
-std::string to_text(const analysis::Basins& basins);
+Json to_json(const analysis::BasinStatistics& basins);
+std::string to_text(const analysis::BasinStatistics& basins);
 Json to_json(const std::vector<analysis::ColumnStatistics>& columns);
 std::string to_text(const std::vector<analysis::ColumnStatistics>& columns);
 

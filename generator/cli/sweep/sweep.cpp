@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t most_runs = 10'000'000;  // limit of a process; each run takes about 40 bytes of memory
 
-analysis::Shard shard_of(const SweepOptions& options, const analysis::Points& points, std::size_t processes) {
+analysis::Shard shard_of(const SweepOptions& options, const analysis::SweepPoints& points, std::size_t processes) {
   const analysis::Shard shard = options.shard ? parse_shard(*options.shard) : analysis::Shard{};
   if (shard.size(points.size()) == 0) {
     throw Error("sweep", {},
@@ -40,7 +40,7 @@ analysis::Shard shard_of(const SweepOptions& options, const analysis::Points& po
 }
 
 /// Checks the options of --basins: equilibria depend on parameters, so only initial values may vary.
-void require_basins(const analysis::Points& points, const SweepOptions& options, const model::Model& model) {
+void require_basins(const analysis::SweepPoints& points, const SweepOptions& options, const model::Model& model) {
   if (!options.basins) return;
   for (const std::string& name : points.names()) {
     if (run::find_start(model, name)) continue;
@@ -49,7 +49,7 @@ void require_basins(const analysis::Points& points, const SweepOptions& options,
   }
 }
 
-void require_names(const analysis::Points& points, const SweepOptions& options, const model::Model& model) {
+void require_names(const analysis::SweepPoints& points, const SweepOptions& options, const model::Model& model) {
   const std::map<std::string, symbolic::Rational> set = overrides_of("sweep", options).values;
   for (const std::string& name : points.names()) {
     const auto named = [&](const model::Parameter& p) { return p.name == name; };
@@ -67,8 +67,8 @@ void require_names(const analysis::Points& points, const SweepOptions& options, 
 }
 
 std::string key_of_table(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
-                         const std::string& points_hash, const analysis::Shard& shard, const analysis::Points& points) {
-  return key_of(options, model, seed, points_hash) + (options.shard ? shard_note(shard, points.size()) : "");
+                         const std::string& points_hash, const analysis::Shard& shard, const analysis::SweepPoints& points) {
+  return sweep_key(options, model, seed, points_hash) + (options.shard ? shard_header(shard, points.size()) : "");
 }
 
 void require_side_by_side(const pipeline::Simulation& first) {
@@ -83,20 +83,20 @@ std::size_t threads_of(const SweepOptions& options) {
 
 }  // namespace
 
-Sweep::Sweep(const SweepOptions& options, const Common& common, const model::Model& model)
+Sweep::Sweep(const SweepOptions& options, const CommonOptions& common, const model::Model& model)
     : options_(options),
       seed_(common.seed),
       points_(points_of(options, common.seed, points_hash_)),
-      shard_(shard_of(options, points_, common.team != nullptr ? common.team->workers() : 1)),
+      shard_(shard_of(options, points_, common.group != nullptr ? common.group->workers() : 1)),
       file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
       checkpoint_((require_names(points_, options, model),
-               require_places({{"--out", file_, is_npz(file_) ? ".npz" : ".csv"}}, model.file, common.json), file_),
+               require_writable_targets({{"--out", file_, is_npz(file_) ? ".npz" : ".csv"}}, model.file, common.json), file_),
               key_of_table(options, model, common.seed, points_hash_, shard_, points_),
-              [this](std::size_t run) { return run < points_.size() && shard_.has(run); },
-              common.team == nullptr || common.team->leads() ? CheckpointFile::Part::whole : CheckpointFile::Part::member),
+              [this](std::size_t run) { return run < points_.size() && shard_.contains(run); },
+              common.group == nullptr || common.group->is_leader() ? CheckpointFile::Role::whole : CheckpointFile::Role::member),
       resumed_(checkpoint_.rows().size()),
-      team_(common.team) {
-  if (is_npz(file_) && (options.shard || team_ != nullptr)) {
+      group_(common.group) {
+  if (is_npz(file_) && (options.shard || group_ != nullptr)) {
     throw Error("sweep", {},
                 fmt::format("{} is written by one process that makes the whole sweep", model::quote(file_)),
                 "write tables as .csv with --shard (1/1 for all), and join them by eomgen merge TABLES -o " + file_);
@@ -117,7 +117,7 @@ bool Sweep::run_alone() {
 }
 
 void Sweep::make_open_runs() {
-  std::vector<Stretch> open = open_runs();
+  std::vector<RunRange> open = open_runs();
   if (open.empty()) return;
   const std::optional<std::size_t> first = prepare(open);
   if (!first) return;
@@ -125,8 +125,8 @@ void Sweep::make_open_runs() {
   if (first_->result.outcome != eom::Outcome::interrupted) compute(runs_of(open), threads_of(options_));
 }
 
-std::vector<Stretch> Sweep::open_runs() const {
-  std::vector<Stretch> open;
+std::vector<RunRange> Sweep::open_runs() const {
+  std::vector<RunRange> open;
   std::size_t next = 0;  // first run of the shard that is not accounted for
   for (std::size_t i = 0; i <= checkpoint_.rows().size(); ++i) {
     const std::size_t there = i < checkpoint_.rows().size() ? shard_.place(checkpoint_.rows().run(i)) : runs();
@@ -136,9 +136,9 @@ std::vector<Stretch> Sweep::open_runs() const {
   return open;
 }
 
-std::vector<std::size_t> Sweep::runs_of(const std::vector<Stretch>& stretches) const {
+std::vector<std::size_t> Sweep::runs_of(const std::vector<RunRange>& stretches) const {
   std::vector<std::size_t> result;
-  for (const Stretch& stretch : stretches) {
+  for (const RunRange& stretch : stretches) {
     for (std::size_t i = 0; i < stretch.count; ++i) result.push_back(shard_.run(stretch.first + i));
   }
   return result;
@@ -147,43 +147,43 @@ std::vector<std::size_t> Sweep::runs_of(const std::vector<Stretch>& stretches) c
 void Sweep::count() {
   counts_ = {};
   const std::size_t fields = points_.names().size() + 1;
-  checkpoint_.rows().each(0, checkpoint_.rows().size(), [&](std::size_t, std::string_view line) {
+  checkpoint_.rows().for_each(0, checkpoint_.rows().size(), [&](std::size_t, std::string_view line) {
     for (std::size_t k = 0; k < fields; ++k) line.remove_prefix(line.find(',') + 1);
-    ++(ended_well(line.substr(0, line.find(','))) ? counts_.done : counts_.failed);
+    ++(is_successful(line.substr(0, line.find(','))) ? counts_.done : counts_.failed);
   });
 }
 
 std::vector<analysis::ColumnStatistics> Sweep::statistics() const {
-  if (team_ != nullptr && counts_.done + counts_.failed < runs()) return {};
+  if (group_ != nullptr && counts_.done + counts_.failed < runs()) return {};
   return statistics_of_table(checkpoint_.header(), counts_.done + counts_.failed,
-                             [this](const auto& take) { each_row(take); });
+                             [this](const auto& take) { for_each_row(take); });
 }
 
-std::optional<analysis::Basins> Sweep::basins() const {
+std::optional<analysis::BasinStatistics> Sweep::basins() const {
   if (counts_.done + counts_.failed < runs()) return std::nullopt;
   analysis::SteadyRequest request;
   request.model = load_model(options_.model);
   request.scene = options_.scene;
   request.overrides = overrides_of("sweep", options_);
   request.seed = seed_;
-  analysis::Basins basins(analysis::steady_motions(request), *options_.basins);
-  read_basins(basins, checkpoint_.header(), [this](const auto& take) { each_row(take); });
+  analysis::BasinStatistics basins(analysis::steady_motions(request), *options_.basins);
+  classify_runs(basins, checkpoint_.header(), [this](const auto& take) { for_each_row(take); });
   return basins;
 }
 
 /// In a group of processes the rows are read from the table, because other processes have rows too.
-void Sweep::each_row(const std::function<void(std::string_view row)>& take) const {
-  if (team_ == nullptr)
-    return checkpoint_.rows().each(0, checkpoint_.rows().size(), [&take](std::size_t, std::string_view line) { take(line); });
-  const OpenFile table(::open(checkpoint_.place().c_str(), O_RDONLY | O_CLOEXEC));
+void Sweep::for_each_row(const std::function<void(std::string_view row)>& take) const {
+  if (group_ == nullptr)
+    return checkpoint_.rows().for_each(0, checkpoint_.rows().size(), [&take](std::size_t, std::string_view line) { take(line); });
+  const OpenFile table(::open(checkpoint_.path().c_str(), O_RDONLY | O_CLOEXEC));
   std::size_t number = 0;
-  each_line(table, [&](std::string_view line, std::uint64_t) {
+  for_each_line(table, [&](std::string_view line, std::uint64_t) {
     if (++number > 2) take(line);
     return true;
   });
 }
 
-run::Overrides Sweep::at(std::size_t run) const {
+run::Overrides Sweep::overrides_of_run(std::size_t run) const {
   run::Overrides o = overrides_of("sweep", options_);
   o.allow_empty_span = true;
   if (options_.ensemble) o.solver = solver_;
@@ -199,16 +199,16 @@ bool Sweep::simulate_first(std::size_t run, bool integrate) {
   request.integrate = integrate;
   request.seed = seed_;
   request.ready = [this] { interrupt_.emplace(); };
-  request.interrupt = &Interrupt::flag();
-  request.overrides = at(run);
+  request.interrupt = &InterruptGuard::flag();
+  request.overrides = overrides_of_run(run);
   try {
     first_.emplace(pipeline::simulate(request));
   } catch (const Error& error) {
-    if (Interrupt::flag()) return false;
+    if (InterruptGuard::flag()) return false;
     throw;
   }
   if (options_.ensemble) require_side_by_side(*first_);
-  text_ = RowText(points_.names(), first_->derived->model, first_->scene);
+  text_ = RowFormatter(points_.names(), first_->derived->model, first_->scene);
   const std::size_t there = checkpoint_.rows().size();
   checkpoint_.set_header(text_.header());
   if (checkpoint_.rows().size() < there) resumed_ = 0;
@@ -216,23 +216,23 @@ bool Sweep::simulate_first(std::size_t run, bool integrate) {
 }
 
 /// The first open run that can start. If there is none, any other run that can; it determines the columns.
-std::size_t Sweep::first_that_begins(const std::vector<Stretch>& open) {
+std::size_t Sweep::first_that_begins(const std::vector<RunRange>& open) {
   pipeline::StartChecker starts(load_model(options_.model), options_.scene);
   std::size_t tries = 0;
-  for (const Stretch& stretch : open) {
+  for (const RunRange& stretch : open) {
     for (std::size_t i = 0; i < stretch.count && tries < most_runs; ++i, ++tries) {
       const std::size_t run = shard_.run(stretch.first + i);
-      if (starts.can_start(at(run))) return run;
+      if (starts.can_start(overrides_of_run(run))) return run;
     }
   }
   for (std::size_t run = 0; run < points_.size() && tries < most_runs; ++run, ++tries) {
-    if (!is_open(open, run) && starts.can_start(at(run))) return run;
+    if (!is_open(open, run) && starts.can_start(overrides_of_run(run))) return run;
   }
   throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", starts.refusal()->message()),
               "change the grid or the scene: " + starts.refusal()->remedy());
 }
 
-std::optional<std::size_t> Sweep::prepare(const std::vector<Stretch>& open) {
+std::optional<std::size_t> Sweep::prepare(const std::vector<RunRange>& open) {
   std::size_t run = shard_.run(open.front().first);
   try {
     if (simulate_first(run, true)) return run;
@@ -245,57 +245,57 @@ std::optional<std::size_t> Sweep::prepare(const std::vector<Stretch>& open) {
   return std::nullopt;
 }
 
-bool Sweep::is_open(const std::vector<Stretch>& open, std::size_t run) const {
-  if (!shard_.has(run)) return false;
+bool Sweep::is_open(const std::vector<RunRange>& open, std::size_t run) const {
+  if (!shard_.contains(run)) return false;
   const std::size_t place = shard_.place(run);
   const auto after = std::upper_bound(open.begin(), open.end(), place,
-                                      [](std::size_t p, const Stretch& stretch) { return p < stretch.first; });
+                                      [](std::size_t p, const RunRange& stretch) { return p < stretch.first; });
   return after != open.begin() && place - std::prev(after)->first < std::prev(after)->count;
 }
 
-void Sweep::take_first(std::size_t run, std::vector<Stretch>& open) {
+void Sweep::take_first(std::size_t run, std::vector<RunRange>& open) {
   if (!is_open(open, run) || first_->result.outcome == eom::Outcome::interrupted) return;
-  checkpoint_.add(run, text_.of(run, points_.point(run), first_->result));
+  checkpoint_.add(run, text_.format_row(run, points_.point(run), first_->result));
   const std::size_t place = shard_.place(run);
   const auto holds = std::find_if(open.begin(), open.end(),
-                                  [place](const Stretch& stretch) { return place - stretch.first < stretch.count; });
-  const Stretch behind{place + 1, holds->first + holds->count - place - 1};
+                                  [place](const RunRange& stretch) { return place - stretch.first < stretch.count; });
+  const RunRange behind{place + 1, holds->first + holds->count - place - 1};
   holds->count = place - holds->first;
   const auto next = holds->count == 0 ? open.erase(holds) : std::next(holds);
   if (behind.count > 0) open.insert(next, behind);
 }
 
-std::string Sweep::made(std::size_t run) const {
+std::string Sweep::compute_row(std::size_t run) const {
   try {
-    const run::RunResult result = pipeline::rerun(*first_, at(run), !options_.no_error_estimate);
-    return Interrupt::flag() ? std::string() : text_.of(run, points_.point(run), result);
+    const run::RunResult result = pipeline::rerun(*first_, overrides_of_run(run), !options_.no_error_estimate);
+    return InterruptGuard::flag() ? std::string() : text_.format_row(run, points_.point(run), result);
   } catch (const Error& error) {
     if (error.stage() != "scene") throw;
-    return text_.refused(run, points_.point(run), error.message());
+    return text_.format_refused(run, points_.point(run), error.message());
   }
 }
 
 void Sweep::compute(const std::vector<std::size_t>& runs, std::size_t threads) {
   if (options_.ensemble) {
     if (!ensemble_) ensemble_.emplace(*first_);
-    ensemble_->run({runs, threads, [this](std::size_t run) { return at(run); },
+    ensemble_->run({runs, threads, [this](std::size_t run) { return overrides_of_run(run); },
                     [this](std::size_t run, const run::RunResult& result) {
-                      checkpoint_.add(run, text_.of(run, points_.point(run), result));
+                      checkpoint_.add(run, text_.format_row(run, points_.point(run), result));
                     },
                     [this](std::size_t run, const std::string& why) {
-                      checkpoint_.add(run, text_.refused(run, points_.point(run), why));
+                      checkpoint_.add(run, text_.format_refused(run, points_.point(run), why));
                     },
-                    &Interrupt::flag()});
+                    &InterruptGuard::flag()});
     return;
   }
   pipeline::GraphTrimmer graph(*first_);
   const auto line = [&](std::size_t run) {
     graph.trim();
-    return made(run);
+    return compute_row(run);
   };
-  by_processes(
+  run_in_processes(
       runs, threads, line, [this](std::size_t run, const std::string& text) { checkpoint_.add(run, text); },
-      Interrupt::flag());
+      InterruptGuard::flag());
 }
 
 /// Computes runs in this process, because MPI processes must not fork.
@@ -303,7 +303,7 @@ void Sweep::compute_here(const std::vector<std::size_t>& runs) {
   pipeline::GraphTrimmer graph(*first_);
   for (const std::size_t run : runs) {
     graph.trim();
-    const std::string line = made(run);
+    const std::string line = compute_row(run);
     if (line.empty()) return;
     checkpoint_.add(run, line);
   }

@@ -84,7 +84,7 @@ bool write_all(int pipe, const std::string& text) {
       if (!write_all(pipe, fmt::format("{} {}\n", jobs[i], text))) break;
     }
   } catch (const std::exception& error) {
-    tell(fmt::format("{}\n", error.what()));
+    print_message(fmt::format("{}\n", error.what()));
     status = 1;
   }
   std::fflush(stderr);
@@ -116,7 +116,7 @@ Child start(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t
 
 }  // namespace
 
-void by_processes(const std::vector<std::size_t>& jobs, std::size_t processes,
+void run_in_processes(const std::vector<std::size_t>& jobs, std::size_t processes,
                   const std::function<std::string(std::size_t)>& line,
                   const std::function<void(std::size_t, const std::string&)>& done,
                   const std::atomic<bool>& interrupt) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/mpi/team.hpp"
+#include "cli/mpi/process_group.hpp"
 
 #include <fmt/format.h>
 
@@ -36,7 +36,7 @@ int whole(std::size_t count) {
 
 }  // namespace
 
-MpiTeam::MpiTeam(int& argc, char**& argv) {
+MpiProcessGroup::MpiProcessGroup(int& argc, char**& argv) {
   int level = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
@@ -44,12 +44,12 @@ MpiTeam::MpiTeam(int& argc, char**& argv) {
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine_);
 }
 
-MpiTeam::~MpiTeam() {
+MpiProcessGroup::~MpiProcessGroup() {
   MPI_Comm_free(&machine_);
   MPI_Finalize();
 }
 
-void MpiTeam::tell(Phase phase, std::uint64_t run) {
+void MpiProcessGroup::broadcast(Phase phase, std::uint64_t run) {
   std::uint64_t words[2] = {static_cast<std::uint64_t>(phase), run};
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Ibcast(words, 2, MPI_UINT64_T, 0, MPI_COMM_WORLD, &request);
@@ -58,23 +58,23 @@ void MpiTeam::tell(Phase phase, std::uint64_t run) {
   run_ = words[1];
 }
 
-bool MpiTeam::await_go() {
-  tell(Phase::waiting, 0);
+bool MpiProcessGroup::await_start() {
+  broadcast(Phase::waiting, 0);
   return phase_ != Phase::stop;
 }
 
-void MpiTeam::go(std::optional<std::uint64_t> run) { tell(run ? Phase::work : Phase::nothing, run.value_or(0)); }
+void MpiProcessGroup::start_workers(std::optional<std::uint64_t> run) { broadcast(run ? Phase::work : Phase::nothing, run.value_or(0)); }
 
-std::optional<std::uint64_t> MpiTeam::gone() const {
+std::optional<std::uint64_t> MpiProcessGroup::first_run() const {
   return phase_ == Phase::work ? std::optional(run_) : std::nullopt;
 }
 
-void MpiTeam::leave(int code) {
-  if (leads() && phase_ == Phase::waiting) return tell(Phase::stop, 0);
-  if (phase_ != Phase::stop && !parted_) MPI_Abort(MPI_COMM_WORLD, code == 0 ? 1 : code);
+void MpiProcessGroup::leave(int code) {
+  if (is_leader() && phase_ == Phase::waiting) return broadcast(Phase::stop, 0);
+  if (phase_ != Phase::stop && !released_) MPI_Abort(MPI_COMM_WORLD, code == 0 ? 1 : code);
 }
 
-void MpiTeam::one_by_machine(const std::function<void()>& work) {
+void MpiProcessGroup::run_once_per_host(const std::function<void()>& work) {
   int place = 0;
   MPI_Comm_rank(machine_, &place);
   if (place == 0) work();
@@ -84,9 +84,9 @@ void MpiTeam::one_by_machine(const std::function<void()>& work) {
   if (place != 0) work();
 }
 
-void MpiTeam::hand_out(std::vector<Stretch> open, std::uint64_t least, const std::atomic<bool>& stop) {
+void MpiProcessGroup::distribute(std::vector<RunRange> open, std::uint64_t least, const std::atomic<bool>& stop) {
   std::uint64_t left = 0;
-  for (const Stretch& stretch : open) left += stretch.count;
+  for (const RunRange& stretch : open) left += stretch.count;
   std::reverse(open.begin(), open.end());
   for (int waiting = size_ - 1; waiting > 0;) {
     int there = 0;
@@ -114,17 +114,17 @@ void MpiTeam::hand_out(std::vector<Stretch> open, std::uint64_t least, const std
   }
 }
 
-std::optional<Stretch> MpiTeam::next() {
+std::optional<RunRange> MpiProcessGroup::next_block() {
   MPI_Send(nullptr, 0, MPI_UINT64_T, 0, asks, MPI_COMM_WORLD);
   std::uint64_t words[2] = {0, 0};
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Irecv(words, 2, MPI_UINT64_T, 0, answers, MPI_COMM_WORLD, &request);
   await(request);
   if (words[1] == 0) return std::nullopt;
-  return Stretch{words[0], words[1]};
+  return RunRange{words[0], words[1]};
 }
 
-std::uint64_t MpiTeam::sum(std::uint64_t of_this_one) {
+std::uint64_t MpiProcessGroup::sum(std::uint64_t of_this_one) {
   std::uint64_t all = 0;
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Iallreduce(&of_this_one, &all, 1, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD, &request);
@@ -133,13 +133,13 @@ std::uint64_t MpiTeam::sum(std::uint64_t of_this_one) {
 }
 
 /// File offsets of the pieces of this process. The leader sorts the pieces of all processes.
-std::vector<std::uint64_t> MpiTeam::offsets(std::uint64_t begin, const std::vector<Piece>& pieces) {
+std::vector<std::uint64_t> MpiProcessGroup::offsets(std::uint64_t begin, const std::vector<TableSegment>& pieces) {
   std::vector<std::uint64_t> mine, all;  // pairs: first run, bytes
-  for (const Piece& piece : pieces) mine.insert(mine.end(), {piece.where.first, piece.bytes});
+  for (const TableSegment& piece : pieces) mine.insert(mine.end(), {piece.where.first, piece.bytes});
   std::vector<int> counts(size()), places(size()), halves(size()), half_places(size());
   const int count = whole(mine.size());
   MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, MPI_COMM_WORLD);
-  if (leads()) {
+  if (is_leader()) {
     whole(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
     std::exclusive_scan(counts.begin(), counts.end(), places.begin(), 0);
     std::transform(counts.begin(), counts.end(), halves.begin(), [](int n) { return n / 2; });
@@ -162,7 +162,7 @@ std::vector<std::uint64_t> MpiTeam::offsets(std::uint64_t begin, const std::vect
 }
 
 /// Returns in all processes the error of any process, or "".
-std::string MpiTeam::agreed(const std::string& why) {
+std::string MpiProcessGroup::agreed(const std::string& why) {
   int first = why.empty() ? size_ : rank_, least = size_;
   MPI_Allreduce(&first, &least, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
   if (least == size_) return "";
@@ -174,7 +174,7 @@ std::string MpiTeam::agreed(const std::string& why) {
   return told;
 }
 
-std::string MpiTeam::write(const std::string& path, std::uint64_t begin, const std::vector<Piece>& pieces,
+std::string MpiProcessGroup::write(const std::string& path, std::uint64_t begin, const std::vector<TableSegment>& pieces,
                            const std::function<std::string(std::size_t)>& text) {
   std::string place = path, why;
   int length = static_cast<int>(place.size());
@@ -213,9 +213,9 @@ std::string MpiTeam::write(const std::string& path, std::uint64_t begin, const s
   return agreed(why);
 }
 
-void MpiTeam::part() {
+void MpiProcessGroup::release() {
   sum(0);
-  parted_ = true;
+  released_ = true;
 }
 
 }  // namespace eomgen::cli

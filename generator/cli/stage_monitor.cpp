@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/watch.hpp"
+#include "cli/stage_monitor.hpp"
 
 #include <pthread.h>
 #include <signal.h>
@@ -26,14 +26,14 @@ void write_error(const char* text) {
 
 }  // namespace
 
-void tell_interrupted(const char* stage) {
+void print_interrupted(const char* stage) {
   char text[160];
   std::snprintf(text, sizeof text, "interrupted%s%s\n", stage != nullptr ? " while " : "",
                 stage != nullptr ? stage : "");
   write_error(text);
 }
 
-Watch::Watch() {
+StageMonitor::StageMonitor() {
   // Signals are delivered to the main thread.
   sigset_t all, before;
   sigfillset(&all);
@@ -42,7 +42,7 @@ Watch::Watch() {
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-Watch::~Watch() {
+StageMonitor::~StageMonitor() {
   {
     const std::lock_guard lock(mutex_);
     end_ = true;
@@ -51,7 +51,7 @@ Watch::~Watch() {
   thread_.join();
 }
 
-void Watch::look() {
+void StageMonitor::look() {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const Clock::time_point start = Clock::now();
   Clock::time_point asked{}, shown = start;
@@ -65,7 +65,7 @@ void Watch::look() {
       asked = now;
     else if (now - asked > patience) {
       work::clear_line();
-      tell_interrupted(stage);
+      print_interrupted(stage);
       _exit(exit_interrupted);
     }
     if (terminal && stage != nullptr && now - start > quiet && now - shown > std::chrono::milliseconds(200)) {

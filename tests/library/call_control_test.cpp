@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "library/made.hpp"
+#include "library/example_definitions.hpp"
 
 using namespace eomgen;
 
@@ -15,9 +15,9 @@ TEST_CASE("library: stages are reported, and a stop request ends a derivation so
   std::vector<std::string> stages;
   std::chrono::steady_clock::time_point asked;
   std::jthread asking;
-  Task task;
-  task.stop = source.get_token();
-  task.begins = [&](const std::string& stage) {
+  CallControl control;
+  control.stop = source.get_token();
+  control.on_stage = [&](const std::string& stage) {
     stages.push_back(stage);
     if (stages.size() > 1) return;
     asking = std::jthread([&] {
@@ -26,7 +26,7 @@ TEST_CASE("library: stages are reported, and a stop request ends a derivation so
       source.request_stop();
     });
   };
-  CHECK_THROWS_AS(model.verify({.points = 1000, .compile = false}, task), Interrupted);
+  CHECK_THROWS_AS(model.verify({.points = 1000, .compile = false}, control), Interrupted);
   // The contract is 0.2 s; machines under load are slower.
   CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(2));
   REQUIRE_FALSE(stages.empty());

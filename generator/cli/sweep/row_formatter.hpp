@@ -11,21 +11,21 @@
 
 namespace eomgen::cli {
 
-class RowText {
+class RowFormatter {
  public:
   using Point = std::map<std::string, symbolic::Rational>;
 
-  RowText() = default;
+  RowFormatter() = default;
   /// `varied`: the names of the points.
-  RowText(std::vector<std::string> varied, const model::Model& model, const run::Scene& scene);
+  RowFormatter(std::vector<std::string> varied, const model::Model& model, const run::Scene& scene);
 
   std::string header() const;
-  std::string of(std::size_t run, const Point& point, const run::RunResult& result) const;
+  std::string format_row(std::size_t run, const Point& point, const run::RunResult& result) const;
   /// Line of a run that could not start.
-  std::string refused(std::size_t run, const Point& point, const std::string& why) const;
+  std::string format_refused(std::size_t run, const Point& point, const std::string& why) const;
 
  private:
-  std::string beginning(std::size_t run, const Point& point) const;
+  std::string format_point(std::size_t run, const Point& point) const;
 
   std::vector<std::string> varied_, titles_, names_;
 };

@@ -13,28 +13,28 @@
 
 namespace eomgen::analysis {
 
-struct BoundPoint {
+struct SurfacePoint {
   Eigen::VectorXd psi;
   Eigen::MatrixXd slope;  // dpsi/dq: one row per entry of psi, one column per coordinate
   Point x;
   Eigen::Matrix3Xd turn;  // dx/dq: 3 x n
 };
 /// Returns nullopt where psi or x is undefined.
-using BoundFunction = std::function<std::optional<BoundPoint>(const Eigen::VectorXd& q)>;
+using SurfaceFunction = std::function<std::optional<SurfacePoint>(const Eigen::VectorXd& q)>;
 
-struct BoundPlace {
+struct SurfaceSetting {
   Eigen::VectorXd q;
   Eigen::VectorXd low, high;  // bounds of the coordinates; infinite: no bound
   std::vector<bool> angle;    // whether each coordinate is an angle
   double size;  // of the figure, in the unit of x
 };
 
-struct BoundLine {
+struct SurfaceLine {
   std::vector<Point> points;
   bool edge;  // a border, a silhouette or a curve; false: a line of the net
 };
 
 /// Requires one or two coordinates more than psi has entries.
-std::vector<BoundLine> bound_lines(const BoundFunction& function, const BoundPlace& place, const View& view);
+std::vector<SurfaceLine> surface_lines(const SurfaceFunction& function, const SurfaceSetting& place, const View& view);
 
 }  // namespace eomgen::analysis

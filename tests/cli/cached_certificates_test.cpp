@@ -11,7 +11,7 @@ using namespace eomgen::test;
 
 namespace {
 
-std::vector<std::filesystem::path> kept(const Folder& folder) {
+std::vector<std::filesystem::path> cached_files(const Folder& folder) {
   std::vector<std::filesystem::path> result;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "cache")) {
     if (entry.path().filename().string().starts_with("certificate-")) result.push_back(entry.path());
@@ -26,7 +26,7 @@ ChildResult with_cache(const Folder& folder, const Words& words) {
 }
 
 /// Changes a formulation and a difference in a cached certificate.
-void change(const std::filesystem::path& path) {
+void overwrite_verdict(const std::filesystem::path& path) {
   std::ifstream in(path);
   Json document = Json::parse(in);
   document["comparisons"][0][0] = "another formulation";
@@ -43,21 +43,21 @@ TEST_CASE(
   const Words emit{"emit", "p.toml", "-o", "out"};
   const ChildResult first = with_cache(folder, emit);
   REQUIRE(first.status == 0);
-  REQUIRE(kept(folder).size() == 1);
+  REQUIRE(cached_files(folder).size() == 1);
   CHECK(with_cache(folder, emit).out == first.out);
-  CHECK(kept(folder).size() == 1);
-  change(kept(folder).front());
+  CHECK(cached_files(folder).size() == 1);
+  overwrite_verdict(cached_files(folder).front());
   CHECK(contains(with_cache(folder, emit).out, "worst 1.2e-50 (another formulation"));
   // Another seed, function, byte of the model or other code: each is verified again.
   for (const Words& other :
        {Words{"emit", "p.toml", "-o", "out", "--seed", "2"}, Words{"emit", "p.toml", "-o", "out", "--with", "jac"},
         Words{"emit", "p.toml", "-o", "out", "--fix", "g"},
         Words{"emit", "p.toml", "-o", "out", "--form", "nullspace"}}) {
-    const std::size_t before = kept(folder).size();
+    const std::size_t before = cached_files(folder).size();
     const ChildResult result = with_cache(folder, other);
     CHECK(result.status == 0);
     CHECK_FALSE(contains(result.out, "another formulation"));
-    CHECK(kept(folder).size() == before + 1);
+    CHECK(cached_files(folder).size() == before + 1);
   }
   folder.write("p.toml", folder.read("p.toml") + "# the same\n");
   CHECK_FALSE(contains(with_cache(folder, emit).out, "another formulation"));
@@ -67,14 +67,14 @@ TEST_CASE("cached certificates: verify ignores the cache, and damaged entries ar
   const Folder folder;
   folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }"));
   REQUIRE(with_cache(folder, {"run", "p.toml"}).status == 0);
-  REQUIRE(kept(folder).size() == 1);
+  REQUIRE(cached_files(folder).size() == 1);
   CHECK(contains(with_cache(folder, {"run", "p.toml"}).out, "(kept)"));
-  change(kept(folder).front());
+  overwrite_verdict(cached_files(folder).front());
   CHECK_FALSE(contains(with_cache(folder, {"verify", "p.toml", "--points", "5"}).out, "another formulation"));
   for (const char* damaged :
        {"", "{", "[]", "{\"key\": 1}",
         "{\"key\": \"x\", \"points\": -1, \"rejected\": {}, \"comparisons\": [[1]], \"left_out\": []}"}) {
-    std::ofstream(kept(folder).front()) << damaged;
+    std::ofstream(cached_files(folder).front()) << damaged;
     const ChildResult result = with_cache(folder, {"run", "p.toml"});
     CHECK(result.status == 0);
     CHECK_FALSE(contains(result.out, "(kept)"));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Constraint curves and surfaces as lines of a figure: all lines are on the surface, and the silhouette is where the
 // normal is perpendicular to the view.
-#include "analysis/drawing/bound_lines.hpp"
+#include "analysis/drawing/surface_lines.hpp"
 
 #include <doctest/doctest.h>
 
@@ -26,10 +26,10 @@ constexpr double sideways = 1e-5;    // of a silhouette, whose derivatives are d
 View from_above() { return View({Point(0, 0, 0), Point(1, 1, 1)}, Point(0, 0, -1)); }
 
 /// Jacobians by differences of exact functions.
-BoundFunction function(const std::function<VectorXd(const VectorXd&)>& psi,
+SurfaceFunction function(const std::function<VectorXd(const VectorXd&)>& psi,
                        const std::function<Point(const VectorXd&)>& x) {
-  return [psi, x](const VectorXd& q) -> std::optional<BoundPoint> {
-    BoundPoint p{psi(q), MatrixXd(psi(q).size(), q.size()), x(q), Eigen::Matrix3Xd(3, q.size())};
+  return [psi, x](const VectorXd& q) -> std::optional<SurfacePoint> {
+    SurfacePoint p{psi(q), MatrixXd(psi(q).size(), q.size()), x(q), Eigen::Matrix3Xd(3, q.size())};
     for (Eigen::Index k = 0; k < q.size(); ++k) {
       VectorXd up = q, down = q;
       up[k] += 1e-6;
@@ -53,7 +53,7 @@ Point spherical(const VectorXd& q) {
 }
 Point cylindrical(const VectorXd& q) { return {q[0] * std::cos(q[1]), q[0] * std::sin(q[1]), q[2]}; }
 
-BoundPlace place(const VectorXd& q, std::vector<bool> angle, double size) {
+SurfaceSetting place(const VectorXd& q, std::vector<bool> angle, double size) {
   return {q, VectorXd::Constant(q.size(), -infinite), VectorXd::Constant(q.size(), infinite), std::move(angle), size};
 }
 
@@ -61,34 +61,34 @@ BoundPlace place(const VectorXd& q, std::vector<bool> angle, double size) {
 
 TEST_CASE("surface lines: a sphere has meridians, circles and its silhouette, in any coordinates") {
   const View view = from_above();
-  BoundPlace in_angles = place(numbers({2, 1, 0.5}), {false, true, true}, 2);
+  SurfaceSetting in_angles = place(numbers({2, 1, 0.5}), {false, true, true}, 2);
   in_angles.low = numbers({0, 0, -infinite});
   in_angles.high = numbers({infinite, std::numbers::pi, infinite});
-  const std::vector<std::vector<BoundLine>> both{
-      bound_lines(function([](const VectorXd& q) { return one(q[0] - 2); }, spherical), in_angles, view),
-      bound_lines(function([](const VectorXd& q) { return one(q.squaredNorm() - 4); }, plain),
+  const std::vector<std::vector<SurfaceLine>> both{
+      surface_lines(function([](const VectorXd& q) { return one(q[0] - 2); }, spherical), in_angles, view),
+      surface_lines(function([](const VectorXd& q) { return one(q.squaredNorm() - 4); }, plain),
                   place(spherical(numbers({2, 1, 0.5})), {false, false, false}, 2), view)};
-  for (const std::vector<BoundLine>& lines : both) {
+  for (const std::vector<SurfaceLine>& lines : both) {
     CHECK(lines.size() > 8);
     double widest = 0;
-    for (const BoundLine& line : lines) {
+    for (const SurfaceLine& line : lines) {
       for (const Point& r : line.points) {
         CHECK(std::abs(r.norm() - 2) < on_surface);
         if (line.edge) CHECK(std::abs(r.dot(view.toward())) < sideways);
         widest = std::max(widest, view(r).norm());
       }
     }
-    const auto outlines = std::count_if(lines.begin(), lines.end(), [](const BoundLine& line) { return line.edge; });
+    const auto outlines = std::count_if(lines.begin(), lines.end(), [](const SurfaceLine& line) { return line.edge; });
     CHECK(outlines == 1);
     CHECK(widest > 2 * (1 - sideways));
-    const auto outline = std::find_if(lines.begin(), lines.end(), [](const BoundLine& line) { return line.edge; });
+    const auto outline = std::find_if(lines.begin(), lines.end(), [](const SurfaceLine& line) { return line.edge; });
     CHECK((outline->points.front() - outline->points.back()).norm() < on_surface);
   }
 }
 
 TEST_CASE("surface lines: a plane is a parallelogram around its particle") {
   const Point n = Point(1, 2, 2) / 3;
-  const auto lines = bound_lines(function([&](const VectorXd& q) { return one(n.dot(plain(q)) - 0.2); }, plain),
+  const auto lines = surface_lines(function([&](const VectorXd& q) { return one(n.dot(plain(q)) - 0.2); }, plain),
                                  place(numbers({1, 0, 0}), {false, false, false}, 1.5), from_above());
   REQUIRE(lines.size() == 1);
   REQUIRE(lines[0].points.size() == 5);
@@ -98,20 +98,20 @@ TEST_CASE("surface lines: a plane is a parallelogram around its particle") {
   CHECK(a.norm() > 1);
   CHECK(b.norm() > 1);
   // The same plane in other coordinates.
-  BoundPlace round = place(numbers({1, 0.3, 0}), {false, true, false}, 1);
+  SurfaceSetting round = place(numbers({1, 0.3, 0}), {false, true, false}, 1);
   round.low[0] = 0;
-  CHECK(bound_lines(function([](const VectorXd& q) { return one(q[2]); }, cylindrical), round, from_above()).size() ==
+  CHECK(surface_lines(function([](const VectorXd& q) { return one(q[2]); }, cylindrical), round, from_above()).size() ==
         1);
 }
 
 TEST_CASE("surface lines: a bowl has circles and spokes from its lowest point to above the particle") {
-  BoundPlace in = place(numbers({1, 0.3, 0.5}), {false, true, false}, 1.2);
+  SurfaceSetting in = place(numbers({1, 0.3, 0.5}), {false, true, false}, 1.2);
   in.low[0] = 0;
-  const auto lines = bound_lines(function([](const VectorXd& q) { return one(q[2] - q[0] * q[0] / 2); }, cylindrical),
+  const auto lines = surface_lines(function([](const VectorXd& q) { return one(q[2] - q[0] * q[0] / 2); }, cylindrical),
                                  in, from_above());
   CHECK(lines.size() >= 12 + 4);
   double lowest = infinite, highest = -infinite;
-  for (const BoundLine& line : lines) {
+  for (const SurfaceLine& line : lines) {
     for (const Point& r : line.points) {
       CHECK(std::abs(r.z() - (r.x() * r.x() + r.y() * r.y()) / 2) < 1e-6);
       lowest = std::min(lowest, r.z());
@@ -123,21 +123,21 @@ TEST_CASE("surface lines: a bowl has circles and spokes from its lowest point to
 }
 
 TEST_CASE("surface lines: curves close or end near their particle, and start on the curve from a nearby point") {
-  const auto circle = bound_lines(function([](const VectorXd& q) { return one(q.squaredNorm() - 1); }, plain),
+  const auto circle = surface_lines(function([](const VectorXd& q) { return one(q.squaredNorm() - 1); }, plain),
                                   place(numbers({0.2, 1.4}), {false, false}, 1), from_above());
   REQUIRE(circle.size() == 1);
   CHECK(circle[0].points.size() > 200);
   CHECK(circle[0].points.front() == circle[0].points.back());
   for (const Point& r : circle[0].points) CHECK(std::abs(r.norm() - 1) < on_surface);
   // A ball above the floor: a line on the floor.
-  const auto floor = bound_lines(function([](const VectorXd& q) { return one(q[1]); }, plain),
+  const auto floor = surface_lines(function([](const VectorXd& q) { return one(q[1]); }, plain),
                                  place(numbers({0, 1}), {false, false}, 1), from_above());
   REQUIRE(floor.size() == 1);
   for (const Point& r : floor[0].points) {
     CHECK(std::abs(r.y()) < on_surface);
     CHECK(std::abs(r.x()) < 1.3);
   }
-  const auto helix = bound_lines(function(
+  const auto helix = surface_lines(function(
                                      [](const VectorXd& q) {
                                        return numbers({q[0] - 1, q[2] - 0.1 * q[1]});
                                      },
@@ -154,8 +154,8 @@ TEST_CASE("surface lines: curves close or end near their particle, and start on 
 }
 
 TEST_CASE("surface lines: none where the constraint is undefined") {
-  const BoundFunction none = [](const VectorXd&) -> std::optional<BoundPoint> { return std::nullopt; };
-  CHECK(bound_lines(none, place(numbers({1, 0}), {false, false}, 1), from_above()).empty());
+  const SurfaceFunction none = [](const VectorXd&) -> std::optional<SurfacePoint> { return std::nullopt; };
+  CHECK(surface_lines(none, place(numbers({1, 0}), {false, false}, 1), from_above()).empty());
 }
 
 TEST_CASE("level lines: rings are closed, and the bounding box of a surface inside the given box is found") {

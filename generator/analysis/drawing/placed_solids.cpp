@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/drawing/placed.hpp"
+#include "analysis/drawing/placed_solids.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,8 +12,8 @@ class Placing {
   Placing(const DrawnParts& parts, const std::vector<double>& sizes, const std::vector<double>& values)
       : parts_(parts), sizes_(sizes), values_(values) {}
 
-  std::vector<Placed> run() const {
-    std::vector<Placed> result;
+  std::vector<PlacedSolids> run() const {
+    std::vector<PlacedSolids> result;
     for (const DrawnBody& body : parts_.bodies) {
       result.push_back({body.place, shapes_of(body.place), world_of(body)});
       if (!result.back().solids.empty() || is_drawn(body.place)) continue;
@@ -81,7 +81,7 @@ class Placing {
 
 }  // namespace
 
-std::vector<Placed> placed_solids(const DrawnParts& parts, const std::vector<double>& sizes,
+std::vector<PlacedSolids> placed_solids(const DrawnParts& parts, const std::vector<double>& sizes,
                                   const std::vector<double>& values) {
   return Placing(parts, sizes, values).run();
 }

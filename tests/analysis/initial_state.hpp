@@ -22,8 +22,8 @@ using symbolic::SymbolKind;
 
 inline constexpr double rounding = 1e-12;  // relative, for values at the start
 
-struct AtStart {
-  explicit AtStart(model::Model given)
+struct InitialState {
+  explicit InitialState(model::Model given)
       : model(std::move(given)),
         m(mechanics::build_mechanics(model)),
         drawing(m),
@@ -89,8 +89,8 @@ struct AtStart {
   Eigen::VectorXd solved;
 };
 
-inline AtStart shipped(const std::string& name) {
-  return AtStart(model::read_model(test::source_folder() + "/models/" + name + ".toml"));
+inline InitialState shipped(const std::string& name) {
+  return InitialState(model::read_model(test::source_folder() + "/models/" + name + ".toml"));
 }
 
 }  // namespace eomgen::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "eomgen/measures.hpp"
+#include "eomgen/benchmark.hpp"
 
 #include "analysis/benchmark.hpp"
 #include "analysis/stress_test.hpp"
@@ -11,27 +11,27 @@ namespace {
 
 /// Options that benchmark and stress test have in common: scene, solvers, limits, callbacks and stop request.
 template <class Request, class Options>
-Request request_of(const std::shared_ptr<const model::Model>& model, const Options& options, const Task& task,
-                   const Call& call) {
+Request request_of(const std::shared_ptr<const model::Model>& model, const Options& options, const CallControl& control,
+                   const CallListener& call) {
   Request request;
   request.model = model;
   request.scene = options.scene;
-  request.overrides.values = exact(options.parameters);
+  request.overrides.values = exact_rationals(options.parameters);
   request.overrides.t_end = options.t_end;
   request.solvers = options.solvers;
-  request.seconds = options.seconds;
+  request.max_seconds = options.max_seconds;
   request.seed = options.seed;
-  request.progress = task.begins;
+  request.progress = control.on_stage;
   request.interrupt = call.stopped();
   return request;
 }
 
 }  // namespace
 
-Benchmark Model::benchmark(const BenchmarkOptions& options, const Task& task) const {
-  return with_lock(task, [&](Call& call) {
-    auto request = request_of<analysis::BenchmarkRequest>(read_, options, task, call);
-    request.libraries = options.libraries;
+Benchmark Model::benchmark(const BenchmarkOptions& options, const CallControl& control) const {
+  return with_lock(control, [&](CallListener& call) {
+    auto request = request_of<analysis::BenchmarkRequest>(read_, options, control, call);
+    request.other_libraries = options.other_libraries;
     const analysis::Benchmark found = analysis::benchmark(request);
     Benchmark result;
     for (const bench::Row& row : found.rows)
@@ -45,10 +45,10 @@ Benchmark Model::benchmark(const BenchmarkOptions& options, const Task& task) co
   });
 }
 
-StressTest Model::stress_test(const StressOptions& options, const Task& task) const {
-  return with_lock(task, [&](Call& call) {
-    auto request = request_of<analysis::StressRequest>(read_, options, task, call);
-    request.steps = options.steps;
+StressTest Model::stress_test(const StressOptions& options, const CallControl& control) const {
+  return with_lock(control, [&](CallListener& call) {
+    auto request = request_of<analysis::StressRequest>(read_, options, control, call);
+    request.max_steps = options.max_steps;
     request.quick = options.quick;
     const analysis::StressFindings found = analysis::stress_test(request);
     StressTest result;

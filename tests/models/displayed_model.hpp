@@ -8,8 +8,8 @@
 
 namespace eomgen::test {
 
-struct Read {
-  explicit Read(const std::string& name);
+struct DisplayedModel {
+  explicit DisplayedModel(const std::string& name);
 
   Sum operator()(const std::string& name) { return s.symbol(name); }
   reading::DisplayForm form(system::Approach approach);

@@ -10,24 +10,24 @@
 
 namespace eomgen::analysis {
 
-class Components {
+class ForceDecomposition {
  public:
   /// `Q`: generalised forces of all coordinates.
-  Components(mechanics::Mechanics& mechanics, BodyMoments& moments, std::vector<symbolic::Ref> Q)
+  ForceDecomposition(mechanics::Mechanics& mechanics, BodyMoments& moments, std::vector<symbolic::Ref> Q)
       : m_(mechanics), moments_(moments), Q_(std::move(Q)) {}
 
   /// Adds -dU/dq_c.
   void add_potential(symbolic::Ref U);
   /// Subtracts a force at a point, or a moment, that is drawn already.
-  void take(const symbolic::Vec3& force, const symbolic::Vec3& at);
-  void take(const BodyMoment& moment);
+  void subtract(const symbolic::Vec3& force, const symbolic::Vec3& at);
+  void subtract(const BodyMoment& moment);
 
   // Each of these returns the vectors it finds and subtracts them.
-  std::vector<BodyMoment> along_angle(symbolic::Ref angle);
-  std::vector<std::pair<std::size_t, symbolic::Vec3>> on_masses();  // index into Mechanics::masses, force
-  std::vector<BodyMoment> on_attitudes();
+  std::vector<BodyMoment> moments_about_angle(symbolic::Ref angle);
+  std::vector<std::pair<std::size_t, symbolic::Vec3>> forces_on_masses();  // index into Mechanics::masses, force
+  std::vector<BodyMoment> moments_on_attitudes();
 
-  const std::vector<symbolic::Ref>& rest() const { return Q_; }
+  const std::vector<symbolic::Ref>& remainder() const { return Q_; }
 
  private:
   mechanics::Mechanics& m_;

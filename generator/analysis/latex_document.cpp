@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/article.hpp"
+#include "analysis/latex_document.hpp"
 
 #include <fmt/format.h>
 
@@ -36,7 +36,7 @@ std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const Disp
                                                   const std::vector<conservation::ConservedQuantity>& conserved) {
   std::vector<print::ConservedFinding> result;
   for (const conservation::ConservedQuantity& c : conserved) {
-    result.push_back({c.kind, c.index, c.part, c.title, c.expression, in_named_functions(m, two, c),
+    result.push_back({c.kind, c.index, c.part, c.title, c.expression, express_in_named_functions(m, two, c),
                       c.certainty == conservation::Certainty::proven});
   }
   return result;
@@ -79,7 +79,7 @@ print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion)
   const std::vector<std::uint32_t>& free = p.system().free;
   for (std::size_t i = 0; i < 2 * free.size(); ++i) {
     const bool rate = i >= free.size();
-    const double value = shown(motion.l.z[i]);
+    const double value = display_value(motion.l.z[i]);
     if (rate && value == 0) continue;  // all rates of an equilibrium
     result.values.emplace_back(
         symbolic::Symbol{symbolic::SymbolKind::coordinate, free[i % free.size()], static_cast<std::uint8_t>(rate)},
@@ -90,7 +90,7 @@ print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion)
     result.eigenvalues.emplace_back(e.re, e.im);
   }
   result.zero_eigenvalues = motion.l.spectrum.zeros;
-  result.family_dimension = motion.family;
+  result.family_dimension = motion.family_dimension;
   result.stability = linear::in_words(motion.verdict.stability);
   result.reason = motion.verdict.reason;
   return result;
@@ -123,7 +123,7 @@ void look_for_steady_motions(const Mechanics& m, const DisplayForm& two, std::ui
 
 }  // namespace
 
-std::string article(std::shared_ptr<const model::Model> model, std::uint64_t seed) {
+std::string latex_document(std::shared_ptr<const model::Model> model, std::uint64_t seed) {
   const work::Stage stage("deriving the equations");
   Mechanics m = mechanics::build_mechanics(std::move(model));
   reading::DisplayForms forms(m);

@@ -9,12 +9,12 @@ namespace eomgen::cli {
 
 /// Monitors the stages (work.hpp) of a command in a separate thread. After two seconds it shows the current stage on a
 /// terminal. If a stage does not end soon after Ctrl-C, it exits with code 3, unless the command defers interrupts.
-class Watch {
+class StageMonitor {
  public:
-  Watch();
-  ~Watch();
-  Watch(const Watch&) = delete;
-  Watch& operator=(const Watch&) = delete;
+  StageMonitor();
+  ~StageMonitor();
+  StageMonitor(const StageMonitor&) = delete;
+  StageMonitor& operator=(const StageMonitor&) = delete;
 
  private:
   void look();
@@ -25,7 +25,7 @@ class Watch {
 };
 
 /// Prints on standard error that the command was interrupted. `stage`: during which stage; may be nullptr.
-void tell_interrupted(const char* stage);
+void print_interrupted(const char* stage);
 inline constexpr int exit_interrupted = 3;
 
 }  // namespace eomgen::cli

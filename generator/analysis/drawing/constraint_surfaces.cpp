@@ -67,9 +67,9 @@ bool are_parallel(const symbolic::Dag& dag, const std::vector<Ref>& slopes) {
 }
 
 /// Distances of places at sample states. They exclude a rod for most pairs of places without any derivative.
-class DistancesAnywhere {
+class SampledDistances {
  public:
-  explicit DistancesAnywhere(const mechanics::Mechanics& m) {
+  explicit SampledDistances(const mechanics::Mechanics& m) {
     std::vector<Ref> all;
     for (const auto& r : m.place_position) {
       all.insert(all.end(), r->begin(), r->end());
@@ -174,22 +174,22 @@ void Drawing::surface(const Bound& one, const std::vector<Bound>& all_places) {
     if (!binds_places(mechanics_, constraint, of) || !is_bound(one, all_places, c)) continue;
     surface.name += (surface.name.empty() ? "" : ", ") + constraint.label;
     surface.psi.push_back(written_(constraint.psi));
-    surface.touched = surface.touched || of.friction || of.unilateral;
+    surface.has_contact = surface.has_contact || of.friction || of.unilateral;
     radial = radial && is_rod(c, from, i);
   }
   if (surface.psi.empty() || surface.psi.size() >= one.own.size()) return;
   std::vector<Ref> seen = surface.psi;
   for (const Ref& part : relative) seen.push_back(written_(part));
   const bool changes = is_moving(dag, seen);
-  if (radial && !surface.touched && !changes) return;
+  if (radial && !surface.has_contact && !changes) return;
   seen.insert(seen.end(), surface.position.begin(), surface.position.end());
   surface.place = i - 1;
   surface.coordinates.assign(one.own.begin(), one.own.end());
   const std::set<std::uint32_t> of_shape = coordinates_of(dag, surface.psi), of_all = coordinates_of(dag, seen);
   std::set_difference(of_all.begin(), of_all.end(), one.own.begin(), one.own.end(), std::back_inserter(surface.others));
-  surface.reshapes =
+  surface.changes_shape =
       is_moving(dag, surface.psi) || !std::includes(one.own.begin(), one.own.end(), of_shape.begin(), of_shape.end());
-  surface.moves = surface.reshapes || !surface.others.empty() || is_moving(dag, seen);
+  surface.is_moving = surface.changes_shape || !surface.others.empty() || is_moving(dag, seen);
   surface.at = values_of(surface.coordinates).front();
   for (const std::size_t at : values_of(surface.others)) surface.others_at.push_back(at);
   const std::vector<Symbol> symbols = dag.symbols(seen);
@@ -260,7 +260,7 @@ void Drawing::pivots() {
     symbolic::Derivation slope = symbolic::partial_derivative(dag, {SymbolKind::coordinate, *of.begin(), 0}),
                          rate = symbolic::partial_derivative(dag, {SymbolKind::coordinate, *of.begin(), 1});
     const Ref turn = slope(angle);  // n is the axis times this
-    if (!is_of_parameters(dag, turn)) continue;
+    if (!depends_on_parameters_only(dag, turn)) continue;
     std::array<Vec3, 3> e;
     Vec3 n = symbolic::zero_vector(dag), turned;
     const Vec3& r = *mechanics_.place_position[body.place];
@@ -283,9 +283,9 @@ void Drawing::pivots() {
 }
 
 void Drawing::rods() {
-  parts_.untried_rods = model_.places.size() > most_places;
-  if (parts_.untried_rods) return;
-  const DistancesAnywhere distances(mechanics_);
+  parts_.rods_incomplete = model_.places.size() > most_places;
+  if (parts_.rods_incomplete) return;
+  const SampledDistances distances(mechanics_);
   for (const model::Particle& particle : model_.particles) {
     if (model_.places[particle.place].chart) continue;
     // The closest earlier place in the model, as for the links of a chain.

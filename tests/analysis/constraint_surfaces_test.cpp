@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "at_start.hpp"
+#include "initial_state.hpp"
 
 using namespace eomgen;
-using test::AtStart;
+using test::InitialState;
 using test::shipped;
 
 namespace {
@@ -17,7 +17,7 @@ constexpr double rounding = 1e-12;  // relative, for values at the start
 
 std::vector<std::pair<long, long>> rods(const std::string& name) {
   std::vector<std::pair<long, long>> result;
-  const AtStart found = shipped(name);
+  const InitialState found = shipped(name);
   for (const analysis::DrawnRod& rod : found.drawing.parts().rods) result.emplace_back(rod.a, rod.b);
   return result;
 }
@@ -43,11 +43,11 @@ TEST_CASE("drawing: all rods of a long chain are found") {
       "chain.toml"));
   const analysis::Drawing drawing(m);
   CHECK(drawing.parts().rods.size() == 40);
-  CHECK_FALSE(drawing.parts().untried_rods);
+  CHECK_FALSE(drawing.parts().rods_incomplete);
 }
 
 TEST_CASE("drawing: a body that rotates about a fixed point has a joint there") {
-  const AtStart found = shipped("n_four_bar_2");
+  const InitialState found = shipped("n_four_bar_2");
   std::vector<Eigen::Vector3d> wanted{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {1, 1, 0}};
   REQUIRE(found.drawing.parts().joints.size() == wanted.size());
   for (std::size_t k = 0; k < wanted.size(); ++k)
@@ -61,15 +61,15 @@ TEST_CASE("drawing: a constrained particle has a surface or curve, unless a rod 
   REQUIRE(sphere.size() == 1);
   CHECK(sphere[0].coordinates.size() == 3);
   CHECK(sphere[0].psi.size() == 1);
-  CHECK(sphere[0].moves);
-  CHECK_FALSE(sphere[0].touched);
+  CHECK(sphere[0].is_moving);
+  CHECK_FALSE(sphere[0].has_contact);
   const auto helix = surfaces("P8_smooth_helix");
   REQUIRE(helix.size() == 1);
   CHECK(helix[0].psi.size() == 2);
-  CHECK_FALSE(helix[0].moves);
-  CHECK(surfaces("P5_rough_sphere")[0].touched);
+  CHECK_FALSE(helix[0].is_moving);
+  CHECK(surfaces("P5_rough_sphere")[0].has_contact);
   CHECK(surfaces("bouncing_ball")[0].coordinates.size() == 2);
-  CHECK(surfaces("P3_moving_plane")[0].moves);
+  CHECK(surfaces("P3_moving_plane")[0].is_moving);
   CHECK(surfaces("S3_rough_line").size() == 2);
   for (const char* none : {"P1_spherical_pendulum", "S5_double_pendulum_cartesian", "G1_spherical", "R8_pendulum_body"})
     CHECK(surfaces(none).empty());
@@ -77,7 +77,7 @@ TEST_CASE("drawing: a constrained particle has a surface or curve, unless a rod 
 
 TEST_CASE("drawing: a surface moves with its reference place, and centres of bodies have surfaces too") {
   const auto surfaces = [](const std::string& text) {
-    return AtStart(model::read_model_text("format = 1\n[parameters]\nm = \"1 kg\"\nL = \"2 m\"\n" + text, "m.toml"))
+    return InitialState(model::read_model_text("format = 1\n[parameters]\nm = \"1 kg\"\nL = \"2 m\"\n" + text, "m.toml"))
         .drawing.parts()
         .surfaces;
   };
@@ -92,8 +92,8 @@ TEST_CASE("drawing: a surface moves with its reference place, and centres of bod
   REQUIRE(bowl.size() == 1);
   CHECK(bowl[0].coordinates.size() == 3);
   CHECK(bowl[0].others == std::vector<std::uint32_t>{0});
-  CHECK(bowl[0].moves);
-  CHECK_FALSE(bowl[0].reshapes);
+  CHECK(bowl[0].is_moving);
+  CHECK_FALSE(bowl[0].changes_shape);
   // On a sliding wedge, relative to the origin: psi depends on its coordinate.
   const auto wedge = surfaces(
       "[coordinates]\nX = \"m\"\n" + cart + bead +
@@ -101,7 +101,7 @@ TEST_CASE("drawing: a surface moves with its reference place, and centres of bod
       moving);
   REQUIRE(wedge.size() == 1);
   CHECK(wedge[0].place == 1);
-  CHECK(wedge[0].reshapes);
+  CHECK(wedge[0].changes_shape);
   // A rod to the cart is a rod. A thread over the origin to the cart is no surface of the bead.
   CHECK(surfaces(
             "[coordinates]\nX = \"m\"\n" + cart + bead +
@@ -126,7 +126,7 @@ TEST_CASE("drawing: a surface moves with its reference place, and centres of bod
 }
 
 TEST_CASE("drawing: the plane of an open contact is below the body") {
-  const AtStart found = shipped("bouncing_sphere");
+  const InitialState found = shipped("bouncing_sphere");
   const analysis::DrawnContact& floor = found.drawing.parts().contacts.at(0);
   CHECK((found.vector(floor.at) - Eigen::Vector3d(0, 0, 1)).norm() < rounding);
   CHECK(found.vector(floor.foot).norm() < rounding);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/sweep/row_text.hpp"
+#include "cli/sweep/row_formatter.hpp"
 
 #include <cln/float.h>
 #include <cln/real.h>
@@ -35,7 +35,7 @@ std::string number(double value) {
 
 }  // namespace
 
-RowText::RowText(std::vector<std::string> varied, const model::Model& model, const run::Scene& scene)
+RowFormatter::RowFormatter(std::vector<std::string> varied, const model::Model& model, const run::Scene& scene)
     : varied_(std::move(varied)) {
   for (const std::string& name : varied_)
     titles_.push_back(run::find_start(model, name) ? "initial(" + name + ")" : name);
@@ -48,7 +48,7 @@ RowText::RowText(std::vector<std::string> varied, const model::Model& model, con
   names_.insert(names_.end(), scene.outputs.begin(), scene.outputs.end());
 }
 
-std::string RowText::header() const {
+std::string RowFormatter::header() const {
   std::string text = "run";
   for (const std::string& title : titles_) text += "," + title;
   text += ",outcome,t,steps,rhs_evaluations";
@@ -56,18 +56,18 @@ std::string RowText::header() const {
   return text + ",error_estimate,detail";
 }
 
-std::string RowText::beginning(std::size_t run, const Point& point) const {
+std::string RowFormatter::format_point(std::size_t run, const Point& point) const {
   std::string text = std::to_string(run);
   for (const std::string& name : varied_) text += "," + number(cln::double_approx(point.at(name)));
   return text;
 }
 
-std::string RowText::refused(std::size_t run, const Point& point, const std::string& why) const {
-  return beginning(run, point) + "," + refused_outcome + ",,," + std::string(names_.size() + 1, ',') + "," + field(why);
+std::string RowFormatter::format_refused(std::size_t run, const Point& point, const std::string& why) const {
+  return format_point(run, point) + "," + refused_outcome + ",,," + std::string(names_.size() + 1, ',') + "," + field(why);
 }
 
-std::string RowText::of(std::size_t run, const Point& point, const run::RunResult& result) const {
-  std::string text = beginning(run, point) + fmt::format(",{},{},{},{}", eom::name(result.outcome), number(result.t),
+std::string RowFormatter::format_row(std::size_t run, const Point& point, const run::RunResult& result) const {
+  std::string text = format_point(run, point) + fmt::format(",{},{},{},{}", eom::name(result.outcome), number(result.t),
                                                          result.statistics.steps, result.statistics.rhs_evaluations);
   for (const std::string& name : names_) {
     const auto found =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/drawing/bound_lines.hpp"
+#include "analysis/drawing/surface_lines.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -28,11 +28,11 @@ constexpr int spokes = 12, rings = 4;  // of a net: around, and across
 
 class Lines {
  public:
-  Lines(const BoundFunction& function, const BoundPlace& place, const View& view)
+  Lines(const SurfaceFunction& function, const SurfaceSetting& place, const View& view)
       : f_(function), place_(place), view_(view), tracer_(function, place), n_(place.q.size()) {}
 
-  std::vector<BoundLine> draw() {
-    const auto begin = tracer_.onto(psi(), place_.q, 20);
+  std::vector<SurfaceLine> draw() {
+    const auto begin = tracer_.project_onto(psi(), place_.q, 20);
     if (!begin) return {};
     here_ = *begin;
     const auto at = f_(here_);
@@ -46,7 +46,7 @@ class Lines {
   }
 
  private:
-  Equations psi() const {
+  CurveEquations psi() const {
     return [this](const VectorXd& q) -> std::optional<std::pair<VectorXd, MatrixXd>> {
       const auto p = f_(q);
       if (!p || !p->psi.allFinite() || !p->slope.allFinite()) return std::nullopt;
@@ -69,7 +69,7 @@ class Lines {
     if (points.size() > 2) lines_.push_back({points, true});
   }
 
-  static Point normal(const BoundPoint& p) {
+  static Point normal(const SurfacePoint& p) {
     const Point a = p.turn.col(0), b = p.turn.col(1), c = p.turn.col(2);
     const Point n = b.cross(c) * p.slope(0, 0) + c.cross(a) * p.slope(0, 1) + a.cross(b) * p.slope(0, 2);
     return n.norm() > 0 ? Point(n / n.norm()) : Point(Point::Zero());
@@ -103,7 +103,7 @@ class Lines {
     return best;
   }
 
-  void surface(const BoundPoint& at) {
+  void surface(const SurfacePoint& at) {
     const auto k = solved_for();
     if (k)
       graph(*k, at);
@@ -116,7 +116,7 @@ class Lines {
     outline();
   }
 
-  bool is_plane(const BoundPoint& at) const {
+  bool is_plane(const SurfacePoint& at) const {
     const Point n = normal(at);
     return std::all_of(net_.begin(), net_.end(), [&](const std::vector<VectorXd>& line) {
       return std::all_of(line.begin(), line.end(),
@@ -125,7 +125,7 @@ class Lines {
   }
 
   /// One side is horizontal if possible.
-  void parallelogram(const BoundPoint& at) {
+  void parallelogram(const SurfacePoint& at) {
     const Point n = normal(at);
     Point u = Point::Unit(2).cross(n);
     if (u.norm() < 0.1) u = Point::Unit(1).cross(n);
@@ -141,7 +141,7 @@ class Lines {
   }
 
   /// Range of a coordinate of the net, and the values at which it has lines.
-  void range(Index k, const BoundPoint& at) {
+  void range(Index k, const SurfacePoint& at) {
     const bool angle = place_.angle[static_cast<std::size_t>(k)];
     const bool bounded = std::isfinite(place_.low[k]) && std::isfinite(place_.high[k]);
     const double speed = at.turn.col(k).norm(), reach = around * place_.size / std::max(speed, 1e-3);
@@ -154,7 +154,7 @@ class Lines {
     high_[k] = std::min(high_[k], place_.high[k]);
   }
 
-  void graph(Index k, const BoundPoint& at) {
+  void graph(Index k, const SurfacePoint& at) {
     const Index i = (k + 1) % 3, j = (k + 2) % 3;
     low_ = VectorXd::Constant(3, -std::numeric_limits<double>::infinity());
     high_ = -low_;
@@ -227,7 +227,7 @@ class Lines {
     const Point n = normal(*p);
     return n.norm() > 0 ? std::optional(n.dot(view_.toward())) : std::nullopt;
   }
-  Equations seen_sideways() const {
+  CurveEquations seen_sideways() const {
     return [this](const VectorXd& q) -> std::optional<std::pair<VectorXd, MatrixXd>> {
       const auto p = f_(q);
       const auto g = facing(q);
@@ -251,7 +251,7 @@ class Lines {
 
   /// Silhouette, traced from points where lines of the net turn away from the viewer.
   void outline() {
-    const Equations equations = seen_sideways();
+    const CurveEquations equations = seen_sideways();
     std::vector<std::vector<Point>> found;
     VectorXd low = low_, high = high_;
     for (Index k = 0; k < 3; ++k) {
@@ -261,7 +261,7 @@ class Lines {
       for (std::size_t i = 1; i < line.size(); ++i) {
         const auto a = facing(line[i - 1]), b = facing(line[i]);
         if (!a || !b || (*a < 0) == (*b < 0)) continue;
-        const auto start = tracer_.onto(equations, (line[i - 1] + line[i]) / 2, 12);
+        const auto start = tracer_.project_onto(equations, (line[i - 1] + line[i]) / 2, 12);
         if (!start || !tracer_.is_inside(*start, low, high)) continue;
         const Point here = f_(*start)->x;
         const auto near = [&](const Point& p) { return (p - here).norm() < 2 * tracer_.step(); };
@@ -276,20 +276,20 @@ class Lines {
     }
   }
 
-  const BoundFunction& f_;
-  const BoundPlace& place_;
+  const SurfaceFunction& f_;
+  const SurfaceSetting& place_;
   const View& view_;
-  Tracer tracer_;
+  CurveTracer tracer_;
   Index n_;
   VectorXd here_, low_, high_;
   Point x_;
-  std::vector<BoundLine> lines_;
+  std::vector<SurfaceLine> lines_;
   std::vector<std::vector<VectorXd>> net_;
 };
 
 }  // namespace
 
-std::vector<BoundLine> bound_lines(const BoundFunction& function, const BoundPlace& place, const View& view) {
+std::vector<SurfaceLine> surface_lines(const SurfaceFunction& function, const SurfaceSetting& place, const View& view) {
   return Lines(function, place, view).draw();
 }
 

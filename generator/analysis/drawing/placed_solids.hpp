@@ -10,13 +10,13 @@
 
 namespace eomgen::analysis {
 
-struct Placed {
+struct PlacedSolids {
   std::size_t place;
   std::vector<Solid> solids;
   std::function<Point(const Point&)> world;  // transformation from body axes to space
 };
 
-std::vector<Placed> placed_solids(const DrawnParts& parts, const std::vector<double>& sizes,
+std::vector<PlacedSolids> placed_solids(const DrawnParts& parts, const std::vector<double>& sizes,
                                   const std::vector<double>& values);
 
 }  // namespace eomgen::analysis

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "models/reading_of.hpp"
+#include "models/displayed_model.hpp"
 
 #include <stdexcept>
 
 namespace eomgen::test {
 
-Read::Read(const std::string& name) : s(model::read_model(shipped(name))) {}
+DisplayedModel::DisplayedModel(const std::string& name) : s(model::read_model(shipped(name))) {}
 
-reading::DisplayForm Read::form(system::Approach approach) { return reading::derive_display_form(s.mechanics, approach); }
+reading::DisplayForm DisplayedModel::form(system::Approach approach) { return reading::derive_display_form(s.mechanics, approach); }
 
-const reading::Equation& Read::equation(const reading::DisplayForm& form, const std::string& coordinate) const {
+const reading::Equation& DisplayedModel::equation(const reading::DisplayForm& form, const std::string& coordinate) const {
   for (const reading::Equation& e : form.equations) {
     if (s.model.coordinates[e.coordinate].name == coordinate) return e;
   }
   throw std::logic_error("no equation of " + coordinate);
 }
 
-Sum Read::motion(const reading::DisplayForm& form, const std::string& coordinate) const {
+Sum DisplayedModel::motion(const reading::DisplayForm& form, const std::string& coordinate) const {
   const reading::Equation& e = equation(form, coordinate);
   return e.expanded - e.force;
 }

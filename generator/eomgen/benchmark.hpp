@@ -16,8 +16,8 @@ struct BenchmarkOptions {
   std::map<std::string, double> parameters = {};  // replace the scene's values; SI units
   std::optional<double> t_end = {};               // s; replaces the scene's
   std::vector<std::string> solvers = {};          // empty: all eligible solvers
-  double seconds = 10;                            // time limit of a run, s
-  bool libraries = false;                         // also measure solvers of other libraries
+  double max_seconds = 10;                          // time limit of a run, s
+  bool other_libraries = false;                         // also measure solvers of other libraries
   std::uint64_t seed = 1;
 };
 
@@ -45,8 +45,8 @@ struct StressOptions {
   std::map<std::string, double> parameters = {};
   std::optional<double> t_end = {};
   std::vector<std::string> solvers = {};  // empty: all
-  double seconds = 60;                    // time limit of a run, s
-  std::size_t steps = 20000;              // step limit of a run
+  double max_seconds = 60;                    // time limit of a run, s
+  std::size_t max_steps = 20000;              // step limit of a run
   bool quick = false;                     // few variations of each kind
   std::uint64_t seed = 1;
 };

@@ -15,14 +15,14 @@ constexpr std::size_t most_rows = 1 << 16;        // written in one request
 
 }  // namespace
 
-bool Sweep::run_by_team() {
+bool Sweep::run_in_group() {
   const std::size_t threads = options_.jobs > 0 ? options_.jobs : 1;
-  if (team_->leads()) {
+  if (group_->is_leader()) {
     checkpoint_.require_file();
     if (!options_.ensemble && options_.jobs > 1)
       throw Error("sweep", {}, "--jobs are threads of an ensemble here, and there is none",
                   "start more processes, or add --ensemble");
-    std::vector<Stretch> open = open_runs();
+    std::vector<RunRange> open = open_runs();
     std::optional<std::size_t> first;
     if (!open.empty()) {
       first = prepare(open);
@@ -30,31 +30,31 @@ bool Sweep::run_by_team() {
       take_first(*first, open);
       if (options_.ensemble && !open.empty()) ensemble_.emplace(*first_);
     }
-    team_->go(first);
+    group_->start_workers(first);
     if (first) {
-      team_->one_by_machine([] {});
-      if (team_->size() == 1)
+      group_->run_once_per_host([] {});
+      if (group_->size() == 1)
         make_here(open, threads);
       else
-        team_->hand_out(open, options_.ensemble ? least_of_ensemble * threads : 1, Interrupt::flag());
+        group_->distribute(open, options_.ensemble ? least_of_ensemble * threads : 1, InterruptGuard::flag());
     }
-  } else if (const std::optional<std::uint64_t> first = team_->gone()) {
-    team_->one_by_machine([&] {
+  } else if (const std::optional<std::uint64_t> first = group_->first_run()) {
+    group_->run_once_per_host([&] {
       simulate_first(*first, false);
       if (options_.ensemble) ensemble_.emplace(*first_);
     });
-    while (const std::optional<Stretch> block = team_->next()) make_here({*block}, threads);
+    while (const std::optional<RunRange> block = group_->next_block()) make_here({*block}, threads);
   }
   checkpoint_.sort();
-  const bool all = team_->sum(checkpoint_.rows().size()) == runs();
+  const bool all = group_->sum(checkpoint_.rows().size()) == runs();
   count();
-  counts_ = {team_->sum(counts_.done), team_->sum(counts_.failed)};
-  if (all) write_by_team();
-  team_->part();
+  counts_ = {group_->sum(counts_.done), group_->sum(counts_.failed)};
+  if (all) write_table_in_group();
+  group_->release();
   return all;
 }
 
-void Sweep::make_here(const std::vector<Stretch>& stretches, std::size_t threads) {
+void Sweep::make_here(const std::vector<RunRange>& stretches, std::size_t threads) {
   const std::vector<std::size_t> runs = runs_of(stretches);
   if (options_.ensemble)
     compute(runs, threads);
@@ -62,14 +62,14 @@ void Sweep::make_here(const std::vector<Stretch>& stretches, std::size_t threads
     compute_here(runs);
 }
 
-void Sweep::write_by_team() {
-  if (team_->sum(checkpoint_.open() ? 1 : 0) == 0) return;  // the table is complete
+void Sweep::write_table_in_group() {
+  if (group_->sum(checkpoint_.open() ? 1 : 0) == 0) return;  // the table is complete
   const Rows& rows = checkpoint_.rows();
   struct Part {
     std::size_t first, last;
   };
   std::vector<Part> parts;
-  std::vector<Team::Piece> pieces;
+  std::vector<ProcessGroup::TableSegment> pieces;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool follows = i > 0 && rows.run(i) == rows.run(i - 1) + shard_.count && i - parts.back().first < most_rows;
     if (!follows) {
@@ -82,12 +82,12 @@ void Sweep::write_by_team() {
   }
   const auto text = [&](std::size_t piece) {
     std::string lines;
-    rows.each(parts[piece].first, parts[piece].last,
+    rows.for_each(parts[piece].first, parts[piece].last,
               [&lines](std::size_t, std::string_view line) { lines.append(line) += '\n'; });
     return lines;
   };
   std::optional<eom::WholeFile> table;
-  const std::string beginning = checkpoint_.beginning();
+  const std::string beginning = checkpoint_.file_header();
   const auto lost = [&table](const std::string& why) {
     if (table) table->discard();
     throw Error("sweep", {}, why,
@@ -95,18 +95,18 @@ void Sweep::write_by_team() {
                 ErrorKind::tool);
   };
   try {
-    if (team_->leads()) {
+    if (group_->is_leader()) {
       table.emplace(file_);
       table->write(beginning);
     }
-    const std::string why = team_->write(table ? table->partial() : "", beginning.size(), pieces, text);
+    const std::string why = group_->write(table ? table->partial() : "", beginning.size(), pieces, text);
     if (table && !why.empty()) lost(why);  // the others wait below until this one aborts them
     if (table) table->finish();
   } catch (const std::system_error& error) {
     lost(error.what());
   }
-  team_->sum(0);  // the table is renamed before any worker continues
-  checkpoint_.finish_elsewhere();
+  group_->sum(0);  // the table is renamed before any worker continues
+  checkpoint_.remove_partial_files();
 }
 
 }  // namespace eomgen::cli

@@ -7,11 +7,11 @@
 
 namespace eomgen {
 
-Certificate Model::verify(const VerifyOptions& options, const Task& task) const {
+Certificate Model::verify(const VerifyOptions& options, const CallControl& control) const {
   if (options.digits < 20 || options.digits > 300 || options.points < 1)
     throw Error("library", {}, "a verification needs 20 to 300 digits and at least one point",
                 "set VerifyOptions::digits and VerifyOptions::points accordingly");
-  return with_lock(task, [&](Call&) {
+  return with_lock(control, [&](CallListener&) {
     const verify::Certificate found =
         pipeline::verify_model(read_, {options.digits, options.points, options.seed, options.compile});
     Certificate result;
@@ -20,26 +20,26 @@ Certificate Model::verify(const VerifyOptions& options, const Task& task) const 
     result.digits = found.options.digits;
     for (const verify::Comparison& c : found.comparisons)
       result.comparisons.push_back({c.a, c.b, c.shares_code, c.max_relative_difference, c.tolerance, c.pass});
-    result.left_out = left_out_of(found.left_out);
+    result.left_out = omissions_of(found.left_out);
     result.summary = found.summary();
     result.interrupted = found.interrupted;
     return result;
   });
 }
 
-Sources Model::emit(const EmitOptions& options, const Task& task) const {
-  if (options.real != "double" && options.real != "float")
+Sources Model::emit(const EmitOptions& options, const CallControl& control) const {
+  if (options.real_type != "double" && options.real_type != "float")
     throw Error("library", {}, "code computes in `double` or in `float`",
-                "leave EmitOptions::real as it is, or set one");
-  return with_lock(task, [&](Call&) {
+                "leave EmitOptions::real_type as it is, or set one");
+  return with_lock(control, [&](CallListener&) {
     pipeline::EmissionRequest request{options.target,
-                                      choice_of(options.approach),
+                                      approach_choice(options.approach),
                                       pipeline::parse_form(options.form),
-                                      options.with,
+                                      options.extra_functions,
                                       options.outputs,
-                                      options.fix,
+                                      options.fixed_parameters,
                                       options.seed,
-                                      options.real == "float"};
+                                      options.real_type == "float"};
     const pipeline::Emission emission = pipeline::emit_model(read_, request);
     Sources result;
     for (const emit::EmittedFile& file : emission.files) result.files.push_back({file.name, file.text});
@@ -48,7 +48,7 @@ Sources Model::emit(const EmitOptions& options, const Task& task) const {
     result.form = system::name(emission.program.form);
     result.flops = emission.program.functions.front().operations.flops();
     result.certificate = emission.certificate.summary();
-    result.single_error = emission.single_error.value_or(0);
+    result.single_precision_error = emission.single_error.value_or(0);
     return result;
   });
 }
