@@ -52,7 +52,7 @@ int main() {
       csv.row(0.05 * row, s);
     }
     const double kinetic = 0.5 * (step.x1[2] * step.x1[2] + step.x1[3] * step.x1[3]);
-    energy.see(kinetic + g * step.x1[1], kinetic + g);
+    energy.observe(kinetic + g * step.x1[1], kinetic + g);
     return true;  // false would stop the run
   };
 

@@ -151,14 +151,14 @@ class Prescribed {
   /// Warns of jumps of velocities: there the forces are impulses, which no row shows.
   void warn_of_jumps(InverseDynamicsResult& result) const {
     const eom::hybrid::Jumps jumps(scene_.jumps, system_.free.size(), integrals_.size(), scene_.inputs.size(),
-                                   scene_.parameters, !scene_.clock.breaks.empty());
-    if (!jumps.by_time()) return;
-    for (const eom::hybrid::Break& at : scene_.clock.breaks) {
+                                   scene_.parameters, !scene_.clock.breakpoints.empty());
+    if (!jumps.has_time_kinks()) return;
+    for (const eom::hybrid::Breakpoint& at : scene_.clock.breakpoints) {
       std::vector<double> before, after, x = integrals_;
       const double side = (at.before + at.after) / 2;
       for (const run::Signal& input : scene_.inputs)
         before.push_back(input(at.before, side)), after.push_back(input(at.after, side));
-      const eom::hybrid::Impulse told = jumps.cross({at.before, x, before.data()}, at.after, after.data(), x);
+      const eom::hybrid::Impulse told = jumps.cross_time_kink({at.before, x, before.data()}, at.after, after.data(), x);
       if (!told.undetermined && !told.velocities) continue;
       result.outcome = eom::Outcome::jump_undetermined;
       result.detail = told.undetermined ? sentence(told.undetermined)

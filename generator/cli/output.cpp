@@ -9,7 +9,7 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
-#include <eom/output/whole_file.hpp>
+#include <eom/output/atomic_file.hpp>
 #include <filesystem>
 #include <system_error>
 
@@ -87,7 +87,7 @@ void require_writable(const OutputTarget& place, const std::string& model_file) 
   }
   std::string path = place.path;
   try {
-    path = eom::WholeFile::followed(place.path).string();
+    path = eom::AtomicFile::resolve_links(place.path).string();
   } catch (const std::system_error&) {
     refuse(place, "the links lead in a circle", "choose another name");
   }
@@ -121,8 +121,8 @@ auto writing(Write write) {
   }
 }
 
-eom::WholeFile open(const std::string& path) {
-  return writing([&] { return path == "-" ? eom::WholeFile::standard_output() : eom::WholeFile(path); });
+eom::AtomicFile open(const std::string& path) {
+  return writing([&] { return path == "-" ? eom::AtomicFile::standard_output() : eom::AtomicFile(path); });
 }
 
 }  // namespace
@@ -178,7 +178,7 @@ void require_folder(const std::string& folder) {
 }
 
 std::uint64_t write_text(const std::string& path, const std::string& text) {
-  eom::WholeFile file = open(path);
+  eom::AtomicFile file = open(path);
   return writing([&] {
     try {
       file.write(text);

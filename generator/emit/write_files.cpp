@@ -2,7 +2,7 @@
 #include "emit/write_files.hpp"
 
 #include <cerrno>
-#include <eom/output/whole_file.hpp>
+#include <eom/output/atomic_file.hpp>
 #include <filesystem>
 #include <system_error>
 
@@ -31,16 +31,16 @@ std::vector<std::string> write_files(const std::string& folder, const std::vecto
   std::filesystem::create_directories(folder, failed);
   if (failed) fail("cannot make the folder " + folder + ": " + failed.message(), failed);
   std::vector<std::string> paths;
-  std::vector<eom::WholeFile> beside;
+  std::vector<eom::AtomicFile> beside;
   try {
     for (const EmittedFile& file : files) {
       paths.push_back((std::filesystem::path(folder) / file.name).string());
       beside.emplace_back(paths.back());
       beside.back().write(file.text);
     }
-    for (eom::WholeFile& file : beside) file.finish();
+    for (eom::AtomicFile& file : beside) file.finish();
   } catch (const std::system_error& error) {
-    for (eom::WholeFile& file : beside) file.discard();
+    for (eom::AtomicFile& file : beside) file.discard();
     fail(error.what(), error.code());
   }
   return paths;

@@ -41,7 +41,7 @@ emit::LoadedBatch compile_batch(const Simulation& first) {
 bool stands_still(const run::Scene& scene) {
   const auto still = [](const run::Signal& signal) { return !signal.is_varying() && signal.jumps().empty(); };
   return std::all_of(scene.inputs.begin(), scene.inputs.end(), still) && scene.jumps.functions.empty() &&
-         scene.clock.bounds.empty() && scene.clock.breaks.empty();
+         scene.clock.bounds.empty() && scene.clock.breakpoints.empty();
 }
 
 /// Whether a coordinate has a range and varies; an eliminated coordinate with equal values at unrelated states is
@@ -166,7 +166,7 @@ class Runs {
     int taylor_order() const { return of.code_.taylor_order; }
     std::size_t taylor_states() const { return of.states_; }
     int events(double t, const double* x, double* values) const { return of.code_.events(t, x, p, u, 0, values); }
-    std::optional<std::pair<double, double>> hidden(const eom::StepView& step, std::size_t i, int side, double from,
+    std::optional<std::pair<double, double>> hidden_crossing(const eom::StepView& step, std::size_t i, int side, double from,
                                                     double to) const {
       if (ranges == nullptr) return std::nullopt;
       const eom::hybrid::Sampling sampling{[this](double) { return u; }, {}};
@@ -198,7 +198,7 @@ class Runs {
                                coefficients, codes);
     }
     int taylor_order() const { return of.code_.taylor_order; }
-    One alone(std::size_t member, const double* p) const {
+    One member_rhs(std::size_t member, const double* p) const {
       const double* const w = p + of.p_;
       return {of, of.ranges_[member].get(), p, of.w_ > 0 ? w : nullptr, of.u_ > 0 ? w + of.w_ : nullptr};
     }
@@ -220,7 +220,7 @@ class Runs {
 
   /// For methods without lanes: each thread makes one run after the other.
   void one_by_one() {
-    eom::ensemble::in_threads(asked_.threads, how_.size(), [this](const auto& next) {
+    eom::ensemble::run_in_threads(asked_.threads, how_.size(), [this](const auto& next) {
       for (std::size_t member = 0; next(member);) {
         if (stopped()) return;
         std::optional<run::Scene> scene;

@@ -45,7 +45,7 @@ std::shared_ptr<const emit::RunDescription> run_text(const DerivedModel& derived
   described->problem = run::make_problem(request, run::choose_solver(scene.solver, scene).first);
   described->problem.beyond_range = {};
   described->problem.time = scene.time;  // a run evaluates it with its own numbers
-  described->problem.breaks = {};
+  described->problem.breakpoints = {};
   described->problem.bounds = {};
   // As in `eomgen run`: if something jumps, the run does not change its coordinates.
   if (scene.jumps.functions.empty()) described->problem.charts = exchanged(program);

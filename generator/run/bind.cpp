@@ -60,12 +60,12 @@ void bind_start(const RunRequest& request, Problem& problem) {
   for (const std::uint32_t i : request.code.free) problem.start.push_back(scene.q[i]);
   for (const std::uint32_t i : request.code.free) problem.start.push_back(scene.qdot[i]);
   for (std::size_t i = 0; i < scene.lower.size(); ++i) problem.ranges.push_back({scene.lower[i], scene.upper[i]});
-  problem.apart = scene.open;
+  problem.starts_open = scene.open;
 }
 
 void bind_time(const Scene& scene, Problem& problem) {
   problem.inputs = input_signals(scene);
-  problem.breaks = scene.clock.breaks;
+  problem.breakpoints = scene.clock.breakpoints;
   problem.bounds = scene.clock.bounds;
 }
 
@@ -87,7 +87,7 @@ Problem make_problem(const RunRequest& request, const std::string& solver) {
   problem.solver = solver;
   problem.rtol = scene.rtol;
   problem.atol = scene.atol;
-  problem.step = scene.step;
+  problem.fixed_step = scene.step;
   problem.max_step = scene.max_step;
   problem.max_steps = request.steps_allowed(scene.step > 0);
   problem.events = request.events;
@@ -97,7 +97,7 @@ Problem make_problem(const RunRequest& request, const std::string& solver) {
   problem.state_names = request.state_names;
   problem.constraint_names = request.constraint_names;
   problem.estimate = request.estimate;
-  problem.every = request.every;
+  problem.output_interval = request.every;
   problem.row = request.row;
   problem.progress = request.progress;
   problem.interrupt = request.interrupt;

@@ -96,7 +96,7 @@ void require_eligible(const std::string& solver, eom::Features features) {
   const eom::Eligibility found = eom::eligible(method, features);
   if (found) return;
   const bool compiled = found.reason == eom::Eligibility::Reason::refused || found.feature == Feature::constraints;
-  const std::string instead = *method.needs.instead == '\0' ? "" : fmt::format("{}, ", method.needs.instead);
+  const std::string instead = *method.needs.alternative == '\0' ? "" : fmt::format("{}, ", method.needs.alternative);
   const char* const what = found.feature == Feature::moving_inputs ? "scene" : "model";
   throw Error("run", {}, fmt::format("solver '{}' cannot integrate this {}: {}", solver, what, ineligibility_reason(found)),
               compiled ? fmt::format("take {}dop853 or auto", instead)

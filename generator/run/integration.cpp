@@ -22,15 +22,15 @@ eom::Result Integration::run(const eom::Options& options, const eom::hybrid::Obs
   return bound_->integration.run(options, observer);
 }
 
-const std::vector<double>& Integration::initial_state() const { return bound_->integration.parts().start; }
-int Integration::contact_mode() const { return bound_->integration.parts().model.contact_mode(); }
+const std::vector<double>& Integration::initial_state() const { return bound_->integration.context().start; }
+int Integration::contact_mode() const { return bound_->integration.context().model.contact_mode(); }
 const std::vector<std::size_t>& Integration::kink_crossings() const {
-  return bound_->integration.parts().kinks.crossings();
+  return bound_->integration.context().kinks.crossings();
 }
 double Integration::constraint_defect(double t, const double* x) {
-  return bound_->integration.parts().constraint_defect(t, x);
+  return bound_->integration.context().constraint_defect(t, x);
 }
-int Integration::derivative(double t, const double* x, double* dx) { return bound_->integration.parts().rhs(t, x, dx); }
+int Integration::derivative(double t, const double* x, double* dx) { return bound_->integration.context().rhs(t, x, dx); }
 
 eom::hybrid::RunResult run_problem(const eom::hybrid::Problem& problem) { return eom::hybrid::run(problem); }
 

@@ -42,30 +42,30 @@ std::vector<Ref> bumps(symbolic::Dag& dag, Ref r) {
 }  // namespace
 
 JumpFunctions jump_functions(const system::EquationSystem& s) {
-  using What = JumpFunctions::What;
+  using Quantity = JumpFunctions::Quantity;
   symbolic::Dag& dag = *s.dag;
   JumpFunctions result;
   std::vector<Ref> roots;
-  const auto add = [&](Ref r, What what, const std::string& name = "") {
+  const auto add = [&](Ref r, Quantity what, const std::string& name = "") {
     roots.push_back(r);
     result.functions.push_back({what, name});
   };
-  add(s.potential, What::potential);
-  for (const Ref psi : s.psi) add(psi, What::psi);
-  for (const Ref r : s.A) add(r, What::row);
-  for (const Ref r : s.b) add(r, What::rate);
+  add(s.potential, Quantity::potential);
+  for (const Ref psi : s.psi) add(psi, Quantity::psi);
+  for (const Ref r : s.A) add(r, Quantity::row);
+  for (const Ref r : s.b) add(r, Quantity::rate);
   for (const system::Output& output : s.outputs) {
     using system::OutputKind;
     if (output.kind == OutputKind::coordinate || output.kind == OutputKind::position)
-      add(output.value, What::place, output.name);
-    if (output.kind == OutputKind::velocity) add(output.value, What::velocity, output.name);
+      add(output.value, Quantity::place, output.name);
+    if (output.kind == OutputKind::velocity) add(output.value, Quantity::velocity, output.name);
   }
   std::vector<Ref> energies{s.kinetic};
   energies.insert(energies.end(), roots.begin(), roots.end());
   if (!dag.has_kinks(energies)) return {};
   const Ref lagrangian = dag.sub(s.kinetic, s.potential);
   for (const std::uint32_t q : s.free)
-    add(symbolic::partial_derivative(dag, {SymbolKind::coordinate, q, 1})(lagrangian), What::momentum);
+    add(symbolic::partial_derivative(dag, {SymbolKind::coordinate, q, 1})(lagrangian), Quantity::momentum);
   const SymbolResolver variables = run_variables(s);
   std::optional<Table> values = make_table(dag, roots, variables), mass = make_table(dag, s.M, variables);
   if (!values || !mass) return {};

@@ -28,12 +28,12 @@ SolverReason solver_reason(const RunRequest& request, const std::string& solver,
   reason.keeps_constraints = method.needs.required.has(eom::Feature::constraints);
   reason.uses_momenta = method.needs.required.has(eom::Feature::momenta);
   reason.uses_discrete_forces = reason.uses_momenta && request.watch_power;
-  reason.time_unresolved_from = request.scene.clock.unfollowed_from;
+  reason.time_unresolved_from = request.scene.clock.unresolved_from;
   return reason;
 }
 
 /// Records the choices of `auto`: the final method, the changes, the source of df/dx.
-void take_choice(const RunRequest& request, const eom::Choice& choice, RunResult& result) {
+void take_choice(const RunRequest& request, const eom::MethodChoice& choice, RunResult& result) {
   if (choice.method != nullptr) result.solver = choice.method;
   result.reason.changes = choice.changes;
   if (!choice.changes.empty() && result.statistics.jacobians > 0)
@@ -62,13 +62,13 @@ std::string describe_end(const eom::hybrid::RunResult& run) {
 
 /// The error estimate by names; warnings about it in terms of the command line.
 void report_error(const RunRequest& request, const eom::hybrid::RunResult& run, RunResult& result) {
-  const eom::hybrid::EndError& error = run.error;
+  const eom::hybrid::EndErrorEstimate& error = run.error;
   result.estimate_note = error.note;
-  if (error.doubt.kind == eom::hybrid::Doubt::Kind::passed_over) {
+  if (error.warning.kind == eom::hybrid::EstimateWarning::Kind::missed_narrow_force) {
     result.estimate_note = fmt::format(
         "a step after t = {:.6g} goes over a force that is narrow in the state, and sees nothing of it: the estimate "
         "says nothing; give a shorter --step, or leave it out",
-        error.doubt.t);
+        error.warning.t);
   }
   result.estimate_rhs_evaluations = error.rhs_evaluations;
   if (error.states.empty()) return;
@@ -109,7 +109,7 @@ RunResult integrate_scene(const RunRequest& request) {
     result.reason = {SolverReason::Basis::empty_span};
   }
   result.outcome = run.outcome;
-  result.estimate_warning = run.error.doubt;
+  result.estimate_warning = run.error.warning;
   result.detail = describe_end(run);
   result.t = run.t;
   result.statistics = run.statistics;
@@ -135,7 +135,7 @@ RunResult integrate_scene(const RunRequest& request) {
     if (!size) result.final.emplace_back(name, run.outputs[i]);
   }
   result.state = run.state;
-  result.reason.narrow_unsure_from = run.unsure_from;
+  result.reason.narrow_forces_unresolved_from = run.narrow_forces_unresolved_from;
   report_error(request, run, result);
   return result;
 }

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <atomic>
-#include <eom/hybrid/doubt.hpp>
+#include <eom/hybrid/estimate_warning.hpp>
 #include <eom/hybrid/problem.hpp>
 #include <eom/ode.hpp>
 #include <functional>
@@ -53,7 +53,7 @@ struct RunResult {
   SolverReason reason;  // why it was chosen
   eom::Outcome outcome = eom::Outcome::done;
   std::string detail;        // the cause, in terms of the command line, or ""
-  eom::hybrid::Doubt estimate_warning;  // of the estimate
+  eom::hybrid::EstimateWarning estimate_warning;  // of the estimate
   double t = 0;
   eom::Statistics statistics;
   double seconds_integrate = 0, seconds_estimate = 0;

@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <eom/hybrid/clock.hpp>
+#include <eom/hybrid/time_analysis.hpp>
 #include <eom/hybrid/jumps.hpp>
 #include <limits>
 
@@ -123,10 +123,10 @@ void resolve_clock(const Mechanics& m, const system::EquationSystem& system,
                    const std::vector<std::optional<Ref>>& expressions, Scene& result) {
   for (Signal& input : result.inputs) input.set_parameters(result.parameters);
   result.time = time_functions(system, expressions);
-  result.clock = eom::hybrid::look_at_time(result.time, result.parameters, input_signals(result), result.t0, result.t1);
+  result.clock = eom::hybrid::analyse_time_functions(result.time, result.parameters, input_signals(result), result.t0, result.t1);
   eom::hybrid::JumpFunctions jumps = jump_functions(system);
   const eom::hybrid::Jumps found(jumps, system.free.size(), system.integrals.size(), m.model->inputs.size(),
-                                 result.parameters, !result.clock.breaks.empty());
+                                 result.parameters, !result.clock.breakpoints.empty());
   if (!found.none()) result.jumps = std::move(jumps);
 }
 

@@ -5,7 +5,7 @@
 
 #include <cln/real.h>
 
-#include <eom/hybrid/clock.hpp>
+#include <eom/hybrid/time_analysis.hpp>
 #include <map>
 #include <memory>
 #include <optional>
@@ -49,7 +49,7 @@ struct Scene {
   double max_step = 0;               // of adaptive steps; 0: not bounded
   std::vector<Signal> inputs;        // one per input of the model
   eom::hybrid::TimeFunctions time;   // functions of time alone
-  eom::hybrid::Clock clock;          // their properties in the span of the run
+  eom::hybrid::TimeAnalysis clock;          // their properties in the span of the run
   eom::hybrid::JumpFunctions jumps;  // functions that may jump; empty: none
   std::vector<std::string> outputs;  // expanded, without the coordinates, each once
   std::vector<bool> ends_run;           // per event of the model: whether it ends the run

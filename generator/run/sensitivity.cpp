@@ -75,22 +75,22 @@ class Variational {
 };
 
 /// Ends of the segments between jumps of inputs and kinks in time, and the beginnings of the next ones.
-std::vector<eom::hybrid::Break> segments(const Scene& scene, double t_end) {
-  using eom::hybrid::Break;
-  std::vector<Break> ends;
+std::vector<eom::hybrid::Breakpoint> segments(const Scene& scene, double t_end) {
+  using eom::hybrid::Breakpoint;
+  std::vector<Breakpoint> ends;
   const double direction = t_end < scene.t0 ? -1 : 1;
   for (const Signal& signal : scene.inputs) {
     for (const double t : signal.jumps()) {
       if ((t - scene.t0) * direction > 0 && (t_end - t) * direction > 0) ends.push_back({t, t});
     }
   }
-  for (const Break& b : scene.clock.breaks) {
+  for (const Breakpoint& b : scene.clock.breakpoints) {
     if ((b.before - scene.t0) * direction > 0 && (t_end - b.after) * direction > 0)
-      ends.push_back(direction > 0 ? b : Break{b.after, b.before});
+      ends.push_back(direction > 0 ? b : Breakpoint{b.after, b.before});
   }
   std::sort(ends.begin(), ends.end(),
-            [direction](const Break& a, const Break& b) { return a.before * direction < b.before * direction; });
-  ends.erase(std::unique(ends.begin(), ends.end(), [](const Break& a, const Break& b) { return a.before == b.before; }),
+            [direction](const Breakpoint& a, const Breakpoint& b) { return a.before * direction < b.before * direction; });
+  ends.erase(std::unique(ends.begin(), ends.end(), [](const Breakpoint& a, const Breakpoint& b) { return a.before == b.before; }),
              ends.end());
   ends.push_back({t_end, t_end});
   return ends;

@@ -23,9 +23,9 @@ void Signal::set_parameters(const std::vector<double>& values) {
 }
 
 double Signal::operator()(double t, double side_of) const {
-  return signal_.expression.empty() ? eom::hybrid::in_segment(signal_, side_of) : code_.value({&t, 1});
+  return signal_.expression.empty() ? eom::hybrid::segment_value(signal_, side_of) : code_.value({&t, 1});
 }
 
-bool Signal::is_varying() const { return eom::hybrid::moves(signal_); }
+bool Signal::is_varying() const { return eom::hybrid::is_time_dependent(signal_); }
 
 }  // namespace eomgen::run

@@ -53,10 +53,10 @@ std::string to_text(const SolverReason& reason) {
     if (reason.jacobian_after_change == JacobianSource::differences)
       text += "; df/dx by differences, since it was not compiled (solver radau5 has it compiled)";
   }
-  if (reason.narrow_unsure_from)
+  if (reason.narrow_forces_unresolved_from)
     text += fmt::format(
         "; from t = {:.6g} on a step may miss a force that is narrow in the state (--max-step makes steps shorter)",
-        *reason.narrow_unsure_from);
+        *reason.narrow_forces_unresolved_from);
   if (reason.charts_refused != nullptr || reason.charts_kept_for_jumps)
     text += fmt::format(
         "; the model's own coordinates are kept near their singularities, since {}",

@@ -28,10 +28,10 @@ struct SolverReason {
   bool uses_momenta = false;                             // from the equations
   bool uses_discrete_forces = false;                     // forces that change the energy, in discrete form
   std::optional<double> shorter_steps_from = {};    // shorter fixed steps, for functions of time
-  std::optional<double> time_unresolved_from = {};  // Clock::unfollowed_from
+  std::optional<double> time_unresolved_from = {};  // TimeAnalysis::unresolved_from
   std::vector<eom::MethodChange> changes = {};      // of auto
   JacobianSource jacobian_after_change = JacobianSource::unused;      // of the solvers after a change
-  std::optional<double> narrow_unsure_from = {};    // later steps may miss a narrow force
+  std::optional<double> narrow_forces_unresolved_from = {};    // later steps may miss a narrow force
   const eom::Refusal* charts_refused = nullptr;     // the solver cannot change charts: the model's own are kept
   bool charts_kept_for_jumps = false;               // the model's own charts are kept, since a value may jump
 };

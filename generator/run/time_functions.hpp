@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of time alone in a scene, also through inputs. In: a system, its inputs as expressions. Out: the functions
-// that eom/hybrid/clock.hpp examines before a run.
+// that eom/hybrid/time_analysis.hpp examines before a run.
 #pragma once
 
 #include <eom/hybrid/problem.hpp>

@@ -32,7 +32,7 @@ class Start {
       const auto found = std::find(run_.code.free.begin(), run_.code.free.end(), q);
       if (found != run_.code.free.end()) still.push_back(static_cast<std::size_t>(found - run_.code.free.begin()));
     }
-    eom::Projection projection(n_, rows_.size(), rows_.on_positions());
+    eom::Projection projection(n_, rows_.size(), rows_.position_row_count());
     const auto constraints = [&](double t, const double* x, double* psi, double* A, double* b) {
       return bound(still, t, x, psi, A, b);
     };

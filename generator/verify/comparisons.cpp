@@ -281,7 +281,7 @@ State in_mode(const EquationSystem& s, const SystemValues& at, const State& stat
   result.mode = mode;
   for (std::size_t j = 0; j < s.contacts.size(); ++j) {
     const std::optional<std::uint32_t> k = s.contacts[j].unilateral;
-    if (!k || eom::contact_leaf(mode, 2 * j + 1) > 0 || eom::contact_leaf(state.mode, 2 * j + 1) < 0) continue;
+    if (!k || eom::contact_sign(mode, 2 * j + 1) > 0 || eom::contact_sign(state.mode, 2 * j + 1) < 0) continue;
     std::size_t steepest = 0;
     const auto slope = [&](std::size_t i) { return at.A[*k * s.free.size() + i]; };
     for (std::size_t i = 1; i < s.free.size(); ++i) {
@@ -301,8 +301,8 @@ std::vector<int> modes_of(const EquationSystem& s, const State& state) {
   std::vector<int> modes = eom::contact_modes(shapes, state.open.empty() ? enough : 1000);
   std::erase_if(modes, [&](int mode) {
     for (std::size_t j = 0; j < shapes.size(); ++j) {
-      if (shapes[j].unilateral && eom::contact_leaf(state.mode, 2 * j + 1) < 0 &&
-          eom::contact_leaf(mode, 2 * j + 1) > 0)
+      if (shapes[j].unilateral && eom::contact_sign(state.mode, 2 * j + 1) < 0 &&
+          eom::contact_sign(mode, 2 * j + 1) > 0)
         return true;
     }
     return false;

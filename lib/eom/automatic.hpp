@@ -31,7 +31,7 @@ class Automatic {
   using Dop853 = explicit_rk::Method<explicit_rk::Dop853, System>;
 
   template <class Do>
-  decltype(auto) with(Do&& act) {
+  decltype(auto) with_active(Do&& act) {
     switch (active_) {
       case Active::dopri5: return act(*dopri5_);
       case Active::dop853: return act(*dop853_);
@@ -59,55 +59,55 @@ class Automatic {
 
   std::size_t size() const { return direction_.size(); }
   double* x0() {
-    return with([](auto& m) { return m.x0(); });
+    return with_active([](auto& m) { return m.x0(); });
   }
   double* x1() {
-    return with([](auto& m) { return m.x1(); });
+    return with_active([](auto& m) { return m.x1(); });
   }
   const double* derivative0() {
-    return with([](auto& m) { return m.derivative0(); });
+    return with_active([](auto& m) { return m.derivative0(); });
   }
   const double* derivative1() {
-    return with([](auto& m) { return m.derivative1(); });
+    return with_active([](auto& m) { return m.derivative1(); });
   }
   double* scratch() {
-    return with([](auto& m) { return m.scratch(); });
+    return with_active([](auto& m) { return m.scratch(); });
   }
   int evaluate(double t, const double* x, double* dx) {
-    return with([&](auto& m) { return m.evaluate(t, x, dx); });
+    return with_active([&](auto& m) { return m.evaluate(t, x, dx); });
   }
   int evaluate_start(double t) {
-    return with([&](auto& m) { return m.evaluate_start(t); });
+    return with_active([&](auto& m) { return m.evaluate_start(t); });
   }
   int evaluate_end() {
-    return with([](auto& m) { return m.evaluate_end(); });
+    return with_active([](auto& m) { return m.evaluate_end(); });
   }
   bool end_known() const { return active_ == Active::dopri5; }
   int starting_order() const { return active_ == Active::dop853 ? explicit_rk::Dop853::order : order; }
 
   int attempt(double t0, double t1) {
     t1_ = t1;
-    return with([&](auto& m) { return m.attempt(t0, t1); });
+    return with_active([&](auto& m) { return m.attempt(t0, t1); });
   }
   double error_norm(double rtol, double atol) {
-    return with([&](auto& m) { return m.error_norm(rtol, atol); });
+    return with_active([&](auto& m) { return m.error_norm(rtol, atol); });
   }
   double after_rejected(double h, double error) {
-    return with([&](auto& m) { return m.after_rejected(h, error); });
+    return with_active([&](auto& m) { return m.after_rejected(h, error); });
   }
   double after_failed(double h) {
-    return with([&](auto& m) { return m.after_failed(h); });
+    return with_active([&](auto& m) { return m.after_failed(h); });
   }
 
   double after_accepted(double h, double error) {
-    const double next = with([&](auto& m) { return m.after_accepted(h, error); });
+    const double next = with_active([&](auto& m) { return m.after_accepted(h, error); });
     h_ = h;
-    active_ == Active::radau5 ? look_back() : look_for_stiffness();
+    active_ == Active::radau5 ? detect_end_of_stiffness() : detect_stiffness();
     return next_.has_value() ? std::min(h, next) : next;
   }
 
   void accept(bool moved) {
-    with([&](auto& m) { m.accept(moved); });
+    with_active([&](auto& m) { m.accept(moved); });
     if (next_.has_value()) change();
   }
 
@@ -122,25 +122,25 @@ class Automatic {
 
   Statistics statistics() {
     Statistics sum = past_;
-    return sum += with([](auto& m) -> Statistics { return m.statistics(); });
+    return sum += with_active([](auto& m) -> Statistics { return m.statistics(); });
   }
 
  private:
   static constexpr double rtol_of_dopri5 = 1e-6;  // above this value of rtol
   static constexpr double limit_of_dopri5 = 3.25, limit_of_dop853 = 5.7;
-  static constexpr double vibration_from = 0.75;  // of dopri5
-  static constexpr int in_a_row = 50;
+  static constexpr double vibration_start = 0.75;  // of dopri5
+  static constexpr int confirming_steps = 50;
   static constexpr double smoothing =
       0.2;                        // of the logarithm: in a vibration the estimate varies like the tangent of its phase
-  static constexpr int calm = 6;  // this many steps in a row that are not stiff reset the count
-  static constexpr int patience = Choice::least_patience;
-  static constexpr int soon = 4 * patience;
+  static constexpr int nonstiff_run = 6;  // this many steps in a row that are not stiff reset the count
+  static constexpr int required_stiff_steps = MethodChoice::min_stiff_steps;
+  static constexpr int short_implicit_phase = 4 * required_stiff_steps;
 
   const char* explicit_name() const {
     return options_.rtol > rtol_of_dopri5 ? explicit_rk::Dopri5::name : explicit_rk::Dop853::name;
   }
   /// A change back pays below this |h lambda|. It is well below the value that leads to radau5.
-  double explicit_limit() const { return options_.rtol > rtol_of_dopri5 ? vibration_from : 0.5 * far_beyond(); }
+  double explicit_limit() const { return options_.rtol > rtol_of_dopri5 ? vibration_start : 0.5 * accuracy_limit(); }
 
   void make(std::span<const double> x) {
     switch (active_) {
@@ -153,38 +153,38 @@ class Automatic {
   double tolerance() const { return std::max(options_.rtol, options_.atol); }
   /// The same for dopri5: about 4 tol^(1/5). At 1.5 times this value dop853 pays, whose limit along vibrations is
   /// wider.
-  double vibrates_beyond() const { return std::max(vibration_from, 1.5 * 4 * std::pow(tolerance(), 0.2)); }
+  double vibration_limit() const { return std::max(vibration_start, 1.5 * 4 * std::pow(tolerance(), 0.2)); }
   /// dop853 follows a motion of rate lambda and of the size of the state with |h lambda| about 6 tol^(1/8).
-  double far_beyond() const { return std::min(limit_of_dop853, 3 * 6 * std::pow(tolerance(), 0.125)); }
+  double accuracy_limit() const { return std::min(limit_of_dop853, 3 * 6 * std::pow(tolerance(), 0.125)); }
 
-  void look_for_stiffness() {
+  void detect_stiffness() {
     const bool fifth = active_ == Active::dopri5;
     const double seen = fifth ? dopri5_->stiffness() : dop853_->stiffness();
     if (seen > 0 && std::isfinite(seen)) level_ += (std::log(seen) - level_) * (level_ == 0 ? 1 : smoothing);
     const double value = std::exp(level_);
     const double limit = fifth ? limit_of_dopri5 : limit_of_dop853;
     if (value > limit) {
-      calm_ = 0;
-      if (++stiff_ >= choice_.patience) plan(Active::radau5, ChangeReason::beyond_stability, limit, stiff_);
-    } else if (++calm_ == calm) {
-      stiff_ = 0;
+      nonstiff_steps_ = 0;
+      if (++stiff_steps_ >= choice_.required_stiff_steps) plan(Active::radau5, ChangeReason::beyond_stability, limit, stiff_steps_);
+    } else if (++nonstiff_steps_ == nonstiff_run) {
+      stiff_steps_ = 0;
     }
-    far_ = !fifth && value > far_beyond() ? far_ + 1 : 0;
-    if (far_ >= in_a_row * choice_.patience / patience && !next_.has_value())
-      plan(Active::radau5, ChangeReason::beyond_accuracy, far_beyond(), far_);
-    vibrates_ = fifth && value > vibrates_beyond() ? vibrates_ + 1 : 0;
-    if (vibrates_ >= in_a_row && !next_.has_value())
-      plan(Active::dop853, ChangeReason::vibrations, vibrates_beyond(), vibrates_);
+    inaccurate_steps_ = !fifth && value > accuracy_limit() ? inaccurate_steps_ + 1 : 0;
+    if (inaccurate_steps_ >= confirming_steps * choice_.required_stiff_steps / required_stiff_steps && !next_.has_value())
+      plan(Active::radau5, ChangeReason::beyond_accuracy, accuracy_limit(), inaccurate_steps_);
+    vibration_steps_ = fifth && value > vibration_limit() ? vibration_steps_ + 1 : 0;
+    if (vibration_steps_ >= confirming_steps && !next_.has_value())
+      plan(Active::dop853, ChangeReason::vibrations, vibration_limit(), vibration_steps_);
   }
 
-  void look_back() {
+  void detect_end_of_stiffness() {
     ++implicit_steps_;
     const double value = h_ * spectral_radius();
-    calm_ = value < explicit_limit() ? calm_ + 1 : 0;
-    if (calm_ < patience) return;
-    choice_.patience = implicit_steps_ < soon ? 2 * choice_.patience : patience;
+    nonstiff_steps_ = value < explicit_limit() ? nonstiff_steps_ + 1 : 0;
+    if (nonstiff_steps_ < required_stiff_steps) return;
+    choice_.required_stiff_steps = implicit_steps_ < short_implicit_phase ? 2 * choice_.required_stiff_steps : required_stiff_steps;
     plan(options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853, ChangeReason::no_longer_stiff,
-         explicit_limit(), calm_);
+         explicit_limit(), nonstiff_steps_);
   }
 
   /// sqrt(|J J v| / |v|): exact at once if J J v = -omega^2 v. v turns towards the fastest motion from step to step.
@@ -233,19 +233,19 @@ class Automatic {
                      : active_ == Active::dopri5 ? explicit_rk::Dopri5::name
                                                  : explicit_rk::Dop853::name;
     make(x);
-    with([&](auto& m) { m.start_with_derivative(f.data()); });
+    with_active([&](auto& m) { m.start_with_derivative(f.data()); });
     planned_.t = t1_;
     planned_.to = choice_.method;
     choice_.changes.push_back(planned_);
-    stiff_ = far_ = calm_ = vibrates_ = implicit_steps_ = 0;
+    stiff_steps_ = inaccurate_steps_ = nonstiff_steps_ = vibration_steps_ = implicit_steps_ = 0;
     level_ = 0;
     start_direction();
   }
 
   System& system_;
   const Options& options_;
-  Choice own_;
-  Choice& choice_;
+  MethodChoice own_;
+  MethodChoice& choice_;
   std::vector<double> direction_;
   Active active_;
   std::optional<Dopri5> dopri5_;
@@ -255,7 +255,7 @@ class Automatic {
   MethodChange planned_{};
   Statistics past_;
   double t1_ = 0, h_ = 0, level_ = 0;
-  int stiff_ = 0, far_ = 0, calm_ = 0, vibrates_ = 0, implicit_steps_ = 0;
+  int stiff_steps_ = 0, inaccurate_steps_ = 0, nonstiff_steps_ = 0, vibration_steps_ = 0, implicit_steps_ = 0;
 };
 
 }  // namespace eom

@@ -25,24 +25,24 @@ F& at_address(void* self) {
     return *static_cast<F*>(self);
 }
 
-struct ObserverOf {
+struct ObserverRef {
   void* self;
-  bool (*see)(void* self, const StepView& step);
-  bool operator()(const StepView& step) const { return see(self, step); }
+  bool (*call)(void* self, const StepView& step);
+  bool operator()(const StepView& step) const { return call(self, step); }
 };
 template <class Observer>
-ObserverOf observer_of(Observer& observer) {
+ObserverRef observer_ref(Observer& observer) {
   return {address_of(observer),
           [](void* self, const StepView& step) -> bool { return at_address<Observer>(self)(step); }};
 }
 
-struct AfterStepOf {
+struct AfterStepRef {
   void* self;
-  int (*move)(void* self, double t, double* x);
-  int operator()(double t, double* x) const { return move(self, t, x); }
+  int (*call)(void* self, double t, double* x);
+  int operator()(double t, double* x) const { return call(self, t, x); }
 };
 template <class AfterStep>
-AfterStepOf after_step_of(AfterStep& after_step) {
+AfterStepRef after_step_ref(AfterStep& after_step) {
   return {address_of(after_step),
           [](void* self, double t, double* x) -> int { return at_address<AfterStep>(self)(t, x); }};
 }

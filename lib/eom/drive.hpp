@@ -90,7 +90,7 @@ class Run {
     if (error > 1) return reject(t_next - t_, error);
     const int end_code = complete(t_next, moved);
     if (end_code != 0) return retry(end_code);
-    if (options_.admit && !admitted(t_next)) return true;
+    if (options_.step_limit && !is_within_step_limit(t_next)) return true;
     return accept(t_next, error, moved);
   }
 
@@ -103,9 +103,9 @@ class Run {
             &Method::interpolate};
   }
 
-  /// Applies Options::admit. The smallest step is always accepted.
-  bool admitted(double t_next) {
-    const double h = std::abs(t_next - t_), longest = options_.admit(view(t_next));
+  /// Applies Options::step_limit. The smallest step is always accepted.
+  bool is_within_step_limit(double t_next) {
+    const double h = std::abs(t_next - t_), longest = options_.step_limit(view(t_next));
     if (!adaptive() || !(longest < h) || h <= smallest_step(t_)) return true;
     ++rejected_;
     h_ = std::max(longest, smallest_step(t_));
@@ -170,12 +170,12 @@ class Run {
   }
 
   bool accept(double t_next, double error, bool moved) {
-    const bool go_on = observer_(view(t_next));
+    const bool continues = observer_(view(t_next));
     if (adaptive()) h_ = std::min(stepper_.after_accepted(std::abs(t_next - t_), error), longest_step());
     t_ = t_next;
     stepper_.accept(moved);
     ++steps_;
-    if (!go_on) return end(Outcome::stopped_by_event, "stopped by the observer at t = " + printed(t_));
+    if (!continues) return end(Outcome::stopped_by_event, "stopped by the observer at t = " + printed(t_));
     const double* x = stepper_.x0();
     if (std::any_of(x, x + stepper_.size(), [](double value) { return std::abs(value) > divergence_bound; }))
       return end(Outcome::diverged, "a component of the state exceeds 1e150 at t = " + printed(t_));

@@ -53,7 +53,7 @@ inline void check_problem(double t0, std::span<const double> x0, double t1, cons
   const bool missing = found.reason == Eligibility::Reason::missing;
   std::string text = std::string(caller) + ": " + method.name + (missing ? " needs a " : " takes no ") + whose +
                      " with " + name(found.feature) + (missing ? std::string(" (") + header + ")" : found.why);
-  if (*method.needs.instead != '\0') text += std::string("; take ") + method.needs.instead;
+  if (*method.needs.alternative != '\0') text += std::string("; take ") + method.needs.alternative;
   throw std::invalid_argument(text);
 }
 
@@ -88,17 +88,17 @@ bool any_method(By by) {
   }(static_cast<Registry*>(nullptr));
 }
 
-/// AfterStep: NoProjection or AfterStepOf, here and below.
+/// AfterStep: NoProjection or AfterStepRef, here and below.
 template <class Method, class Problem, class AfterStep>
-Result run(Problem& problem, const InitialValues& values, ObserverOf observer, AfterStep after_step) {
-  return Run<Method, ObserverOf, AfterStep>(problem, values.t0, values.x0, values.t1, values.options, observer,
+Result run(Problem& problem, const InitialValues& values, ObserverRef observer, AfterStep after_step) {
+  return Run<Method, ObserverRef, AfterStep>(problem, values.t0, values.x0, values.t1, values.options, observer,
                                             after_step)
       .run();
 }
 
 /// Uses the methods that are compiled once for all right-hand sides.
 template <class AfterStep>
-Result integrate_system(std::string_view method, System system, const InitialValues& values, ObserverOf observer,
+Result integrate_system(std::string_view method, System system, const InitialValues& values, ObserverRef observer,
                         AfterStep after_step) {
   Result result;
   const auto by = [&]<class T>(T*) {
@@ -119,7 +119,7 @@ Result integrate_system(std::string_view method, System system, const InitialVal
 
 /// Explicit methods are compiled for each right-hand side, so that it can be inlined into the stages.
 template <class F, class AfterStep>
-Result integrate_by_name(std::string_view method, F& rhs, const InitialValues& values, ObserverOf observer,
+Result integrate_by_name(std::string_view method, F& rhs, const InitialValues& values, ObserverRef observer,
                          AfterStep after_step) {
   Result result;
   const auto by = [&]<class T>(T*) {
@@ -146,11 +146,11 @@ Result integrate(std::string_view method, F&& rhs, double t0, std::span<const do
                  const Options& options = {}, Observer&& observer = {}, AfterStep&& after_step = {}) {
   detail::check_problem(t0, x0, t1, options);
   const detail::InitialValues values{t0, x0, t1, options};
-  const detail::ObserverOf see = detail::observer_of(observer);
+  const detail::ObserverRef see = detail::observer_ref(observer);
   if constexpr (std::is_same_v<std::remove_cvref_t<AfterStep>, NoProjection>)
     return detail::integrate_by_name(method, rhs, values, see, NoProjection{});
   else
-    return detail::integrate_by_name(method, rhs, values, see, detail::after_step_of(after_step));
+    return detail::integrate_by_name(method, rhs, values, see, detail::after_step_ref(after_step));
 }
 
 }  // namespace eom

@@ -64,10 +64,10 @@ inline std::string to_text(const MethodChange& change) {
 }
 
 /// The method that `auto` (automatic.hpp) uses, and the history of its changes.
-struct Choice {
-  static constexpr int least_patience = 15;
+struct MethodChoice {
+  static constexpr int min_stiff_steps = 15;
   const char* method = nullptr;   // null: not chosen yet
-  int patience = least_patience;  // stiff steps required before the next change
+  int required_stiff_steps = min_stiff_steps;  // stiff steps required before the next change
   std::vector<MethodChange> changes;
 };
 
@@ -97,14 +97,14 @@ struct Options {
   /// Called for each step whose error is within the tolerances. Returns the longest step that may replace it, infinity
   /// if the step may be taken as it is. It covers features between the points at which a method evaluates the
   /// equations. For fixed steps the result is ignored.
-  std::function<double(const StepView&)> admit = {};
+  std::function<double(const StepView&)> step_limit = {};
   double fixed_step = 0;        // > 0: steps of this size without error control, for any method; required by rk4
   std::size_t event_parts = 1;  // number of equal steps up to a breaking event that ends a step
   int series_order = 0;         // of `taylor`, and of `radau` (5, 9, 13); 0: chosen and adapted from step to step
   std::size_t max_steps = 50'000'000;            // accepted and rejected together
   std::size_t quadratures = 0;                   // trailing components of x that are excluded from the error norm
   const std::atomic<bool>* interrupt = nullptr;  // polled once per step
-  Choice* choice = nullptr;                      // of `auto`: output, and the initial value for the next run
+  MethodChoice* choice = nullptr;                      // of `auto`: output, and the initial value for the next run
 };
 
 struct Statistics {

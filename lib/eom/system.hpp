@@ -39,7 +39,7 @@ struct System {
   int (*constrain)(void* self, double t, const double* x, double* psi, double* A, double* b) = nullptr;
   int taylor_order = 0;
   std::size_t taylor_states = 0, coordinates = 0, constraints = 0, position_constraints = 0;
-  Features further = {};  // those declared by the callable itself
+  Features extra_features = {};  // those declared by the callable itself
 
   int operator()(double t, const double* x, double* dx) const { return f(self, t, x, dx); }
 
@@ -47,12 +47,12 @@ struct System {
   constexpr Features features(std::size_t states) const {
     const bool binds_velocities = coordinates > 0 && constraints > position_constraints;
     const bool has_others = coordinates > 0 && states > 2 * coordinates;
-    return further.set(Feature::jacobian, jacobian != nullptr)
+    return extra_features.set(Feature::jacobian, jacobian != nullptr)
         .set(Feature::series, taylor != nullptr && taylor_order >= 2 && taylor_states > 0)
         .set(Feature::momenta, momenta != nullptr && mass != nullptr && coordinates > 0)
         .set(Feature::constraints, constrain != nullptr && mass != nullptr && coordinates > 0 && constraints > 0)
-        .set(Feature::velocity_constraints, further.has(Feature::velocity_constraints) || binds_velocities)
-        .set(Feature::other_states, further.has(Feature::other_states) || has_others);
+        .set(Feature::velocity_constraints, extra_features.has(Feature::velocity_constraints) || binds_velocities)
+        .set(Feature::other_states, extra_features.has(Feature::other_states) || has_others);
   }
 };
 
@@ -91,7 +91,7 @@ System system_of(F& rhs) {
     system.constraints = system.position_constraints = rhs.constraints();
     if constexpr (requires { rhs.position_constraints(); }) system.position_constraints = rhs.position_constraints();
   }
-  if constexpr (requires { rhs.features(); }) system.further = rhs.features();
+  if constexpr (requires { rhs.features(); }) system.extra_features = rhs.features();
   return system;
 }
 

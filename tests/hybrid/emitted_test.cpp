@@ -77,7 +77,7 @@ TEST_CASE("emitted runs: a potential that jumps ends the run with its reason") {
   const eom::hybrid::Code code = step_code();
   const eom::hybrid::RunResult result = same_bytes("step", step_problem(code), step_columns());
   CHECK(result.outcome == eom::Outcome::jump_undetermined);
-  CHECK(result.reason.kind == eom::hybrid::Reason::Kind::branch_jumps);
+  CHECK(result.reason.kind == eom::hybrid::Reason::Kind::branch_jump);
   CHECK(result.reason.amount == -3);
   CHECK(result.detail.find("the potential energy jumps by -3") != std::string::npos);
 }

@@ -18,9 +18,9 @@ constexpr double gravity = 10;
 /// restitution.
 namespace ball {
 
-bool apart(int mode) { return eom::contact_digit(mode, 0) >= 3; }
+bool is_open(int mode) { return eom::contact_digit(mode, 0) >= 3; }
 int rhs(double, const double* x, const double*, const double*, int mode, double* dx) {
-  const double acceleration = apart(mode) ? -gravity : 0;
+  const double acceleration = is_open(mode) ? -gravity : 0;
   dx[0] = x[1];
   dx[1] = acceleration;
   return 0;
@@ -32,7 +32,7 @@ int outputs(double, const double* x, const double* p, const double*, int, double
 }
 int events(double, const double* x, const double*, const double*, int mode, double* g) {
   g[0] = g[1] = g[2] = 0;
-  g[3] = apart(mode) ? x[0] : gravity;  // the gap; the normal force
+  g[3] = is_open(mode) ? x[0] : gravity;  // the gap; the normal force
   g[4] = 1;
   return 0;
 }
@@ -65,7 +65,7 @@ Problem problem(const Code& code, double restitution) {
   problem.solver = "dop853";
   problem.kinetic = 2, problem.potential = 3, problem.energy = 4;
   problem.contacts = {{{}, {}, {}, 0, 5}};
-  problem.apart = {true};
+  problem.starts_open = {true};
   problem.state_names = {"z", "z_dot"};
   return problem;
 }
@@ -168,7 +168,7 @@ TEST_CASE("hybrid: a ball without restitution does not bounce") {
 TEST_CASE("hybrid: a kink is crossed at its surface and counted; recorded events have their own rows") {
   const Code code = corner::code();
   Problem problem = corner::problem(code);
-  problem.every = 0.7;
+  problem.output_interval = 0.7;
   std::vector<double> times;
   problem.row = [&](double t, std::span<const double>) { times.push_back(t); };
   const RunResult result = run(problem);
@@ -266,7 +266,7 @@ TEST_CASE("hybrid: an unknown solver, and one whose functions the code lacks, ar
   CHECK_THROWS_AS(run(problem), std::invalid_argument);
   for (const char* solver : {"taylor", "variational4", "ggl"}) {
     problem.solver = solver;
-    problem.step = 0.1;
+    problem.fixed_step = 0.1;
     CHECK_THROWS_WITH_AS(run(problem), doctest::Contains(solver), std::invalid_argument);
   }
   CHECK_THROWS_WITH_AS(run(problem), doctest::Contains("a model with constraints"), std::invalid_argument);

@@ -20,7 +20,7 @@ double largest_impulse(double h, int steps, const std::function<void(double, dou
     const eom::StepView step{t0, t1, x0, x1, &motion, [](const void* of, double t, double* x) {
                                (*static_cast<const std::function<void(double, double*)>*>(of))(t, x);
                              }};
-    impulses.see(step, [&](double, const double* x, double* dx) {
+    impulses.observe_step(step, [&](double, const double* x, double* dx) {
       dx[0] = x[1];
       dx[1] = f(x[0]);
       return 0;

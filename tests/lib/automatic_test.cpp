@@ -12,7 +12,7 @@
 
 namespace {
 
-using eom::Choice;
+using eom::MethodChoice;
 using eom::Options;
 using eom::Result;
 using problems::State;
@@ -47,7 +47,7 @@ int van_der_pol(double, const double* x, double* dx) {
   return 0;
 }
 
-Options options_for(double tolerance, Choice& choice) {
+Options options_for(double tolerance, MethodChoice& choice) {
   Options options;
   options.rtol = options.atol = tolerance;
   options.choice = &choice;
@@ -62,7 +62,7 @@ TEST_CASE(
   for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13})
     for (const double end : {40.0, -40.0}) {
       CAPTURE(tolerance);
-      Choice choice;
+      MethodChoice choice;
       const Result found = eom::integrate("auto", kepler, 0, kepler.start, end, options_for(tolerance, choice));
       const char* name = tolerance > 1e-6 ? "dopri5" : "dop853";
       const Result plain = eom::integrate(name, kepler, 0, kepler.start, end, options_for(tolerance, choice));
@@ -77,7 +77,7 @@ TEST_CASE(
 TEST_CASE("auto: a decay a hundred thousand times faster than the motion leads to radau5, with the reason") {
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
     CAPTURE(tolerance);
-    Choice choice, backwards;
+    MethodChoice choice, backwards;
     const Result found = eom::integrate("auto", Decay{}, 0, State{1}, 5, options_for(tolerance, choice));
     const auto mirrored = [](double t, const double* x, double* dx) {
       const int code = Decay{}(-t, x, dx);
@@ -105,7 +105,7 @@ TEST_CASE("auto: a decay a hundred thousand times faster than the motion leads t
 TEST_CASE("auto: vibrations that are not part of the motion count as stiff") {
   for (const double tolerance : {1e-5, 1e-8}) {
     CAPTURE(tolerance);
-    Choice choice, of_reference;
+    MethodChoice choice, of_reference;
     const Result found = eom::integrate("auto", elastic_pendulum, 0, hanging, 2, options_for(tolerance, choice));
     const Result reference =
         eom::integrate("dop853", elastic_pendulum, 0, hanging, 2, options_for(1e-11, of_reference));
@@ -118,7 +118,7 @@ TEST_CASE("auto: vibrations that are not part of the motion count as stiff") {
 TEST_CASE("auto: it changes back while the motion itself is fast, repeatedly") {
   for (const double tolerance : {1e-5, 1e-8}) {
     CAPTURE(tolerance);
-    Choice choice;
+    MethodChoice choice;
     const Options options = options_for(tolerance, choice);
     const Result found = eom::integrate("auto", van_der_pol, 0, State{2, 0}, 2, options);
     CHECK(choice.changes.size() >= 5);
@@ -132,7 +132,7 @@ TEST_CASE("auto: it changes back while the motion itself is fast, repeatedly") {
 }
 
 TEST_CASE("auto: dense output and events work across changes; the method is kept after an event") {
-  Choice choice;
+  MethodChoice choice;
   double worst = 0;
   State x(1);
   std::vector<double> times;
@@ -145,7 +145,7 @@ TEST_CASE("auto: dense output and events work across changes; the method is kept
     return true;
   };
   const auto g = [](double, const double* at, double* values) { return values[0] = at[0], 0; };
-  const auto handler = [&](const eom::EventPoint& point) { return times.push_back(point.t), eom::AtEvent::restart; };
+  const auto handler = [&](const eom::EventPoint& point) { return times.push_back(point.t), eom::EventAction::restart; };
   Options options = options_for(1e-9, choice);
   options.max_step = 0.1;  // radau5 interpolates stiff components by a cubic
   const Result found = eom::integrate_events("auto", Decay{}, 0, State{1}, 10, options, g,

@@ -3,9 +3,9 @@
 
 namespace eom::detail {
 
-template Result integrate_system(std::string_view, System, const InitialValues&, ObserverOf, NoProjection);
-template Result integrate_system(std::string_view, System, const InitialValues&, ObserverOf, AfterStepOf);
-template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverOf, NoProjection);
-template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverOf, AfterStepOf);
+template Result integrate_system(std::string_view, System, const InitialValues&, ObserverRef, NoProjection);
+template Result integrate_system(std::string_view, System, const InitialValues&, ObserverRef, AfterStepRef);
+template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverRef, NoProjection);
+template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverRef, AfterStepRef);
 
 }  // namespace eom::detail

@@ -6,9 +6,9 @@
 
 namespace eom::detail {
 
-extern template Result integrate_system(std::string_view, System, const InitialValues&, ObserverOf, NoProjection);
-extern template Result integrate_system(std::string_view, System, const InitialValues&, ObserverOf, AfterStepOf);
-extern template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverOf, NoProjection);
-extern template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverOf, AfterStepOf);
+extern template Result integrate_system(std::string_view, System, const InitialValues&, ObserverRef, NoProjection);
+extern template Result integrate_system(std::string_view, System, const InitialValues&, ObserverRef, AfterStepRef);
+extern template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverRef, NoProjection);
+extern template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverRef, AfterStepRef);
 
 }  // namespace eom::detail

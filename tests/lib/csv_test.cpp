@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "eom/output/whole_file.hpp"
+#include "eom/output/atomic_file.hpp"
 
 namespace {
 
@@ -161,7 +161,7 @@ TEST_CASE("atomic file: links are followed, pipes and devices are written to dir
   std::ofstream(target) << "older\n";
   fs::permissions(target, fs::perms::owner_read | fs::perms::owner_write);
   fs::create_symlink(fs::path("elsewhere") / "run.csv", link);
-  eom::WholeFile file(link);
+  eom::AtomicFile file(link);
   CHECK(file.partial().starts_with(target.string() + ".partial-"));
   file.write("new\n");
   CHECK(text_of(target) == "older\n");
@@ -171,24 +171,24 @@ TEST_CASE("atomic file: links are followed, pipes and devices are written to dir
   CHECK(fs::status(target).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
   // A link to a file that does not exist yet.
   fs::create_symlink(fs::path("elsewhere") / "later.csv", folder.path / "later");
-  eom::WholeFile later(folder.path / "later");
+  eom::AtomicFile later(folder.path / "later");
   later.write("x");
   later.finish();
   CHECK(text_of(folder.path / "elsewhere" / "later.csv") == "x");
   fs::create_symlink("circle", folder.path / "circle");
-  CHECK_THROWS_AS(eom::WholeFile(folder.path / "circle"), std::system_error);
+  CHECK_THROWS_AS(eom::AtomicFile(folder.path / "circle"), std::system_error);
   // A device is not replaced.
-  eom::WholeFile null("/dev/null");
+  eom::AtomicFile null("/dev/null");
   CHECK(null.partial().empty());
   null.write("away");
   null.finish();
   CHECK(fs::is_character_file("/dev/null"));
   // The longest possible file name leaves room for the partial name.
-  eom::WholeFile longest(folder.path / std::string(255, 'n'));
+  eom::AtomicFile longest(folder.path / std::string(255, 'n'));
   longest.write("x");
   longest.finish();
   CHECK(text_of(folder.path / std::string(255, 'n')) == "x");
-  eom::WholeFile gone(folder.path / "gone");
+  eom::AtomicFile gone(folder.path / "gone");
   gone.discard();
   CHECK_FALSE(fs::exists(folder.path / "gone"));
 }

@@ -12,7 +12,7 @@
 
 TEST_CASE("drift: the largest distance from the initial value, relative to it") {
   eom::Drift drift("energy");
-  for (const double value : {4.0, 4.1, 3.5, 4.0}) drift.see(value);
+  for (const double value : {4.0, 4.1, 3.5, 4.0}) drift.observe(value);
   CHECK(drift.name() == "energy");
   CHECK(drift.initial() == 4);
   CHECK(drift.max_abs_drift() == 0.5);
@@ -21,18 +21,18 @@ TEST_CASE("drift: the largest distance from the initial value, relative to it") 
 
 TEST_CASE("drift: an initial value that is zero by cancellation is compared with the magnitude of its terms") {
   eom::Drift drift("energy");
-  drift.see(0, 100);
-  drift.see(1e-12, 200);
+  drift.observe(0, 100);
+  drift.observe(1e-12, 200);
   CHECK(std::abs(drift.max_relative_drift() - 5e-15) < 1e-29);
   eom::Drift without("momentum");
-  without.see(0);
-  without.see(1e-12);
+  without.observe(0);
+  without.observe(1e-12);
   CHECK(without.max_relative_drift() == 1e-12);  // no scale: absolute
 }
 
 TEST_CASE("drift: a value that is not finite makes it permanently infinite") {
   eom::Drift drift("energy");
-  for (const double value : {1.0, std::numeric_limits<double>::quiet_NaN(), 1.0}) drift.see(value);
+  for (const double value : {1.0, std::numeric_limits<double>::quiet_NaN(), 1.0}) drift.observe(value);
   CHECK(std::isinf(drift.max_abs_drift()));
   CHECK(std::isinf(drift.max_relative_drift()));
 }
@@ -43,7 +43,7 @@ TEST_CASE("drift: dop853 keeps the energy of Kepler's problem to 1e-10 over 20 p
   const auto watch = [&](std::span<const double> x) {
     const double kinetic = 0.5 * (x[2] * x[2] + x[3] * x[3]);
     const double potential = -1 / std::hypot(x[0], x[1]);
-    energy.see(kinetic + potential, kinetic - potential);
+    energy.observe(kinetic + potential, kinetic - potential);
   };
   watch(kepler.start);
   eom::Options options;
@@ -70,13 +70,13 @@ TEST_CASE("power balance: energy lost to damping is the work done, as a quadratu
   eom::PowerBalance honest;
   eom::PowerBalance without_work;
   const problems::State start{1, 0, 0};
-  honest.see(energy(start), 0);
-  without_work.see(energy(start), 0);
+  honest.observe(energy(start), 0);
+  without_work.observe(energy(start), 0);
   eom::Options options;
   options.quadratures = 1;
   eom::integrate("dop853", rhs, 0, start, 10, options, [&](const eom::StepView& view) {
-    honest.see(energy(view.x1), view.x1[2]);
-    without_work.see(energy(view.x1), 0);
+    honest.observe(energy(view.x1), view.x1[2]);
+    without_work.observe(energy(view.x1), 0);
     return true;
   });
   CHECK(honest.max_relative_defect() < tolerances::closed_form);
@@ -85,9 +85,9 @@ TEST_CASE("power balance: energy lost to damping is the work done, as a quadratu
 
 TEST_CASE("power balance: relative to the largest energy or work exchanged, also where the energy starts at zero") {
   eom::PowerBalance balance;
-  balance.see(0, 0);
-  balance.see(-3, -3);
-  balance.see(1, 1.5);
+  balance.observe(0, 0);
+  balance.observe(-3, -3);
+  balance.observe(1, 1.5);
   CHECK(balance.max_abs_defect() == 0.5);
   CHECK(std::abs(balance.max_relative_defect() - 0.5 / 3) < tolerances::rounding);
 }

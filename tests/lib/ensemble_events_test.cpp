@@ -47,12 +47,12 @@ std::vector<Watched> watched(const char* method, const Rhs& rhs, std::size_t mem
 template <class Rhs>
 WatchedAlone watched_alone(const char* method, const Rhs& rhs, std::size_t i, const eom::EnsembleOptions& options) {
   Member member(i);
-  auto one = rhs.alone(i, member.p.data());
+  auto one = rhs.member_rhs(i, member.p.data());
   WatchedAlone result;
   const auto g = [&](double t, const double* at, double* values) { return one.events(t, at, values); };
   const auto handler = [&](const eom::EventPoint& point) {
     result.seen.push_back(seen(point));
-    return point.crossing.function == 1 ? eom::AtEvent::stop : eom::AtEvent::go_on;
+    return point.crossing.function == 1 ? eom::EventAction::stop : eom::EventAction::resume;
   };
   result.end =
       eom::integrate_events(method, one, member.start.t0, member.x, member.start.t1, eom::ensemble::options_of(options),

@@ -93,7 +93,7 @@ struct Plain {
                                       return code;
                                     });
   }
-  One alone(std::size_t, const double* p) const { return {p}; }
+  One member_rhs(std::size_t, const double* p) const { return {p}; }
 };
 
 /// With Jacobians; m components are not quadratures.
@@ -118,7 +118,7 @@ struct WithJacobians : Plain {
                                       return 0;
                                     });
   }
-  One alone(std::size_t, const double* p) const { return {{p}, m}; }
+  One member_rhs(std::size_t, const double* p) const { return {{p}, m}; }
 };
 
 /// Kepler's problem with its series; a region without a value, a region that no step skips, and a jump of the slopes at
@@ -165,7 +165,7 @@ struct WithSeries {
                                     });
   }
   int taylor_order() const { return One{}.taylor_order(); }
-  One alone(std::size_t, const double* p) const { return {p}; }
+  One member_rhs(std::size_t, const double* p) const { return {p}; }
 };
 
 /// Ellipses of many shapes, circles of many sizes, some that fail, some with equal start and end, in both directions of
@@ -238,7 +238,7 @@ std::size_t check_as_alone(const char* method, const Rhs& rhs, const eom::Ensemb
     CAPTURE(std::string(method));
     CAPTURE(i);
     Member member(i);
-    auto one = rhs.alone(i, member.p.data());
+    auto one = rhs.member_rhs(i, member.p.data());
     const eom::Result alone =
         eom::integrate(method, one, member.start.t0, member.x, member.start.t1, eom::ensemble::options_of(options));
     check_same(ends[i], alone);

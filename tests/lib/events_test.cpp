@@ -14,7 +14,7 @@
 
 namespace {
 
-using eom::AtEvent;
+using eom::EventAction;
 using eom::Direction;
 using eom::EventFunction;
 using eom::EventPoint;
@@ -44,7 +44,7 @@ std::vector<Seen> crossings(const eom::MethodInfo& method, double t1, G g, std::
   const problems::Oscillator oscillator{{1, 0}};
   const auto handler = [&](const EventPoint& point) {
     seen.push_back({point.t, point.crossing.function, point.crossing.up, {point.x.begin(), point.x.end()}});
-    return AtEvent::go_on;
+    return EventAction::resume;
   };
   const eom::Result result = eom::integrate_events(method.name, eom::system_of(oscillator), 0, oscillator.start, t1,
                                                    options, g, std::move(functions), handler);
@@ -105,7 +105,7 @@ TEST_CASE("all methods: several functions in one step come in the order of the r
         order.push_back(point.crossing.function);
         CHECK(std::abs(point.t - (0.5 - 0.1 * static_cast<double>(point.crossing.function))) <
               problems::coarser(method) * tolerances::event_time);
-        return AtEvent::go_on;
+        return EventAction::resume;
       };
       const std::vector<double> start{0};
       const eom::Result r = eom::integrate_events(method.name, eom::system_of(f), 0, start, 1, options, levels,
@@ -153,7 +153,7 @@ TEST_CASE("a passing event does not change a bit of the run") {
   for (const eom::MethodInfo& method : problems::methods()) {
     const eom::Options options = tight(method);
     const eom::Result plain = eom::integrate(method.name, pendulum, 0, pendulum.start, 12, options);
-    const auto handler = [](const EventPoint&) { return AtEvent::stop; };  // not asked
+    const auto handler = [](const EventPoint&) { return EventAction::stop; };  // not asked
     const eom::Result watched = eom::integrate_events(method.name, pendulum, 0, pendulum.start, 12, options, position,
                                                       {{Direction::any, Watch::passing}}, handler);
     CHECK(plain.x == watched.x);
@@ -169,7 +169,7 @@ TEST_CASE("events are as accurate as the steps: the time of a stop has the order
     const auto error = [&](double step) {
       eom::Options options;
       options.fixed_step = step;
-      const auto handler = [](const EventPoint&) { return AtEvent::stop; };
+      const auto handler = [](const EventPoint&) { return EventAction::stop; };
       const eom::Result r = eom::integrate_events(method.name, pendulum, 0, pendulum.start, 12, options, position,
                                                   {EventFunction{}}, handler);
       CHECK(r.outcome == eom::Outcome::stopped_by_event);
@@ -202,7 +202,7 @@ TEST_CASE("the observer receives adjacent steps, the last one ending at the even
     const auto handler = [&](const EventPoint& point) {
       CHECK(point.t == reached);
       CHECK(point.x[1] == doctest::Approx(-1));
-      return AtEvent::stop;
+      return EventAction::stop;
     };
     const eom::Result r = eom::integrate_events(method.name, eom::system_of(oscillator), 0, oscillator.start, 7,
                                                 tight(method), position, {EventFunction{}}, handler, observer);
@@ -218,7 +218,7 @@ TEST_CASE("a motion that would slide along the surface ends with a report, not i
   const auto f = [&side](double, const double*, double* dx) { return dx[0] = -side, 0; };
   const auto handler = [&side](const EventPoint& point) {
     side = point.crossing.up ? 1 : -1;
-    return AtEvent::go_on;
+    return EventAction::resume;
   };
   const std::vector<double> start{1};
   const eom::Result r = eom::integrate_events("dopri5", eom::system_of(f), 0, start, 7, eom::Options{}, position,
@@ -233,7 +233,7 @@ TEST_CASE("an event function without a value gives no event; one that fails at t
   const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
   const std::vector<double> start{0};
   std::vector<double> times;
-  const auto handler = [&](const EventPoint& point) { return times.push_back(point.t), AtEvent::go_on; };
+  const auto handler = [&](const EventPoint& point) { return times.push_back(point.t), EventAction::resume; };
   eom::Options options;
   options.fixed_step = 0.25;
   const eom::Result r =
@@ -256,7 +256,7 @@ TEST_CASE(
   const auto met = [&](auto g) {
     std::vector<std::pair<std::size_t, double>> events;
     const auto handler = [&](const EventPoint& point) {
-      return events.emplace_back(point.crossing.function, point.t), AtEvent::go_on;
+      return events.emplace_back(point.crossing.function, point.t), EventAction::resume;
     };
     CHECK(
         eom::integrate_events("rk4", eom::system_of(f), 0, start, 1, options, g, std::vector<EventFunction>(2), handler)
@@ -287,7 +287,7 @@ TEST_CASE("a function with another meaning after an event is monitored from its 
   const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
   const auto g = [&part](double t, const double*, double* value) { return value[0] = (part == 0 ? 1 : 3) - t, 0; };
   std::vector<double> times;
-  const auto handler = [&](const EventPoint& point) { return times.push_back(point.t), ++part, AtEvent::restart; };
+  const auto handler = [&](const EventPoint& point) { return times.push_back(point.t), ++part, EventAction::restart; };
   const std::vector<double> start{0};
   eom::Options options;
   options.fixed_step = 0.3;
@@ -312,7 +312,7 @@ TEST_CASE("estimate: includes the error of a path to an event that is shorter th
         return dx[0] = stands ? 0 : x[1], dx[1] = stands ? 0 : -1 - x[1], 0;
       };
       const auto speed = [](double, const double* x, double* g) { return g[0] = x[1], 0; };
-      const auto handler = [&](const EventPoint& point) { return stands = true, point.x[1] = 0, AtEvent::restart; };
+      const auto handler = [&](const EventPoint& point) { return stands = true, point.x[1] = 0, EventAction::restart; };
       std::vector<double> ends{0};
       bool joined = true;
       const auto observer = [&](const eom::StepView& view) {

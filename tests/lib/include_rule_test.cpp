@@ -14,11 +14,11 @@ namespace {
 bool allowed(const std::string& included, const std::string& header) {
   if (included.starts_with("\"eom/")) return true;
   if (included.starts_with("<Eigen/"))
-    return header == "projection.hpp" || header == "singular_passage.hpp" || header == "rounding.hpp" ||
+    return header == "projection.hpp" || header == "singularity_detector.hpp" || header == "rounding.hpp" ||
            header == "jumps.hpp";  // least-norm steps and momenta for singular M
   // Only POSIX can create a file exclusively and without following links; the standard library cannot.
   const std::set<std::string> posix{"<fcntl.h>", "<stdlib.h>", "<sys/stat.h>", "<unistd.h>"};
-  if (posix.contains(included)) return header == "whole_file.hpp";
+  if (posix.contains(included)) return header == "atomic_file.hpp";
   if (!included.starts_with("<")) return false;
   for (const char c : included.substr(1, included.size() - 2))
     if (std::islower(static_cast<unsigned char>(c)) == 0 && c != '_')

@@ -224,7 +224,7 @@ TEST_CASE(
     if (!info.adaptive) options.fixed_step = 0.1;
     std::size_t asked = 0, refused = 0;
     double off = 0;
-    options.admit = [&](const eom::StepView& step) {
+    options.step_limit = [&](const eom::StepView& step) {
       ++asked;
       double x[2];
       step.interpolate((step.t0 + step.t1) / 2, x);

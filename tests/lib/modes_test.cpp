@@ -156,7 +156,7 @@ struct Bounce {
   }
 };
 struct BounceAndRest : Bounce {
-  Transition settle(const ModePoint& point) const {
+  Transition settle_chattering(const ModePoint& point) const {
     point.x[0] = point.x[1] = 0;
     return {1, "contact", "rest"};
   }

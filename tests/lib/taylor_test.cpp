@@ -112,7 +112,7 @@ TEST_CASE("taylor: events agree with the closed form") {
   const auto at = [&](const eom::EventPoint& point) {
     CHECK(std::abs(point.t - quarter * (2 * passed + 1)) < tolerances::event_time);
     ++passed;
-    return passed == 5 ? eom::AtEvent::stop : eom::AtEvent::restart;
+    return passed == 5 ? eom::EventAction::stop : eom::EventAction::restart;
   };
   const auto result = eom::integrate_events("taylor", pendulum, 0, pendulum.start, 100, options, g,
                                             {{eom::Direction::any, eom::Watch::breaking}}, at);

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <eom/hybrid/clock.hpp>
+#include <eom/hybrid/time_analysis.hpp>
 
 #include "run/expression_tables.hpp"
 #include "run/time_functions.hpp"
@@ -18,13 +18,13 @@ namespace {
 run::SymbolMeaning time_is_variable(const symbolic::Symbol&) { return run::SymbolMeaning::of_variable(0); }
 
 /// A system whose force is a function of time.
-eom::hybrid::Clock clock_of(const std::function<Ref(Dag&, Ref)>& force, double t1 = 10) {
+eom::hybrid::TimeAnalysis clock_of(const std::function<Ref(Dag&, Ref)>& force, double t1 = 10) {
   system::EquationSystem system;
   system.dag = std::make_shared<Dag>();
   Dag& dag = *system.dag;
   system.kinetic = system.potential = system.energy = system.power = dag.zero();
   system.f = {force(dag, dag.symbol({symbolic::SymbolKind::time, 0, 0}))};
-  return eom::hybrid::look_at_time(run::time_functions(system, {}), {}, {}, 0, t1);
+  return eom::hybrid::analyse_time_functions(run::time_functions(system, {}), {}, {}, 0, t1);
 }
 
 Ref number(Dag& dag, long numerator, long denominator = 1) {
@@ -53,12 +53,12 @@ TEST_CASE("ranges: values and derivatives of every operation lie between its bou
   constexpr double rounding = 1e-9;
   for (const double from : {-2.9, -1.3, -0.2, 0.0, 0.31, 1.4}) {
     for (const double width : {1.4, 0.3, 0.01}) {
-      const std::vector<eom::expressions::Sloped> box{{{from, from + width}, {1, 1}}};
+      const std::vector<eom::expressions::SlopedInterval> box{{{from, from + width}, {1, 1}}};
       for (std::size_t i = 0; i < functions.size(); ++i) {
         CAPTURE(i);
         CAPTURE(from);
         CAPTURE(width);
-        const eom::expressions::Sloped range = code.range(box, i);
+        const eom::expressions::SlopedInterval range = code.range(box, i);
         for (int k = 0; k <= 20; ++k) {
           const double at = from + width * k / 20, h = 1e-6 * width;
           const double v = code.value(std::vector<double>{at}, i);
@@ -75,33 +75,33 @@ TEST_CASE("ranges: values and derivatives of every operation lie between its bou
 }
 
 TEST_CASE("clock: kinks in time are found at any distance, each to the last digit and none twice") {
-  const eom::hybrid::Clock pulse = clock_of([](Dag& dag, Ref t) {  // if(|t - 5.123| < 1e-7, 1, 0), and |t - 2|
+  const eom::hybrid::TimeAnalysis pulse = clock_of([](Dag& dag, Ref t) {  // if(|t - 5.123| < 1e-7, 1, 0), and |t - 2|
     const Ref inside = dag.select(dag.call(Op::abs, dag.sub(t, number(dag, 5123, 1000))), number(dag, 1, 10'000'000),
                                   dag.one(), dag.zero());
     return dag.add(inside, dag.call(Op::abs, dag.sub(t, number(dag, 2))));
   });
-  REQUIRE(pulse.breaks.size() == 4);  // also the middle of the pulse, where |t - 5.123| has its kink
+  REQUIRE(pulse.breakpoints.size() == 4);  // also the middle of the pulse, where |t - 5.123| has its kink
   const double expected[] = {2, 5.123 - 1e-7, 5.123, 5.123 + 1e-7};
   for (std::size_t i = 0; i < 4; ++i) {
-    CHECK(std::abs(pulse.breaks[i].before - expected[i]) < 4e-15);
-    CHECK(pulse.breaks[i].after > pulse.breaks[i].before);
-    CHECK(pulse.breaks[i].after - pulse.breaks[i].before < 4e-15);
+    CHECK(std::abs(pulse.breakpoints[i].before - expected[i]) < 4e-15);
+    CHECK(pulse.breakpoints[i].after > pulse.breakpoints[i].before);
+    CHECK(pulse.breakpoints[i].after - pulse.breakpoints[i].before < 4e-15);
   }
-  const eom::hybrid::Clock periodic = clock_of([](Dag& dag, Ref t) {
+  const eom::hybrid::TimeAnalysis periodic = clock_of([](Dag& dag, Ref t) {
     return dag.select(number(dag, 9999, 10000), dag.call(Op::sin, dag.mul(number(dag, 20), t)), dag.one(), dag.zero());
   });
-  CHECK(periodic.breaks.size() == 64);  // 32 maxima in 200 rad
-  CHECK(!periodic.unfollowed_from);
-  const eom::hybrid::Clock touches =
+  CHECK(periodic.breakpoints.size() == 64);  // 32 maxima in 200 rad
+  CHECK(!periodic.unresolved_from);
+  const eom::hybrid::TimeAnalysis touches =
       clock_of([](Dag& dag, Ref t) { return dag.call(Op::abs, dag.power(dag.sub(t, number(dag, 3)), 2)); });
-  CHECK(touches.breaks.empty());
+  CHECK(touches.breakpoints.empty());
   CHECK(touches.bounds.empty());
 }
 
 TEST_CASE("clock: steps are limited where a smooth function of time is narrow, and nowhere else") {
   for (const double w : {1e-1, 1e-3, 1e-6}) {
     CAPTURE(w);
-    const eom::hybrid::Clock gauss = clock_of([&](Dag& dag, Ref t) {
+    const eom::hybrid::TimeAnalysis gauss = clock_of([&](Dag& dag, Ref t) {
       const Ref width = number(dag, static_cast<long>(std::lround(w * 1e6)), 1'000'000);
       return dag.call(Op::exp, dag.neg(dag.power(dag.div(dag.sub(t, number(dag, 5123, 1000)), width), 2)));
     });

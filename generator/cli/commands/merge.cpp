@@ -7,7 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
-#include <eom/output/whole_file.hpp>
+#include <eom/output/atomic_file.hpp>
 #include <map>
 #include <optional>
 #include <system_error>
@@ -78,7 +78,7 @@ class Tables {
 
   void write(const std::string& out) {
     if (is_npz(out)) return write_npz(out, note_.key, header_, rows_);
-    eom::WholeFile file = is_standard_output(out) ? eom::WholeFile::standard_output() : eom::WholeFile(out);
+    eom::AtomicFile file = is_standard_output(out) ? eom::AtomicFile::standard_output() : eom::AtomicFile(out);
     try {
       constexpr std::size_t enough = 1 << 20;
       std::string text = note_.key + "\n" + header_ + "\n";

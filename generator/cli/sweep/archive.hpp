@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <eom/output/whole_file.hpp>
+#include <eom/output/atomic_file.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,7 +35,7 @@ class Archive {
   std::string central_header(std::size_t member) const;
   void write_at(std::uint64_t offset, std::string_view bytes);
 
-  eom::WholeFile file_;
+  eom::AtomicFile file_;
   std::vector<Member> members_;
   std::vector<Place> places_;
   std::uint64_t end_ = 0;  // of the members

@@ -62,7 +62,7 @@ CheckpointFile::CheckpointFile(std::string file, std::string key, std::function<
       place_ = table.path;
     }
     if (taken_over_.empty()) {
-      if (const OpenFile done = open_own(eom::WholeFile::followed(file_).string())) read(done);
+      if (const OpenFile done = open_own(eom::AtomicFile::resolve_links(file_).string())) read(done);
     }
   } catch (const std::system_error& error) {
     lost(error);
@@ -71,8 +71,8 @@ CheckpointFile::CheckpointFile(std::string file, std::string key, std::function<
 }
 
 std::vector<CheckpointFile::Unfinished> CheckpointFile::unfinished() const {
-  const fs::path target = eom::WholeFile::followed(file_);
-  const std::string name = eom::WholeFile::shortened(target.filename().string()) + ".partial";
+  const fs::path target = eom::AtomicFile::resolve_links(file_);
+  const std::string name = eom::AtomicFile::shorten_name(target.filename().string()) + ".partial";
   std::vector<Unfinished> found;
   std::error_code none;
   for (const fs::directory_entry& entry :
@@ -165,7 +165,7 @@ void CheckpointFile::add(std::size_t run, const std::string& line) try {
 
 void CheckpointFile::whole() const try {
   if (is_npz(file_)) return write_npz(file_, mark + key_, header_, rows_);
-  eom::WholeFile file = is_standard_output(file_) ? eom::WholeFile::standard_output() : eom::WholeFile(file_);
+  eom::AtomicFile file = is_standard_output(file_) ? eom::AtomicFile::standard_output() : eom::AtomicFile(file_);
   try {
     write([&file](std::string_view piece) { file.write(piece); });
     file.finish();

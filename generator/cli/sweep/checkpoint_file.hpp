@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <eom/output/whole_file.hpp>
+#include <eom/output/atomic_file.hpp>
 #include <functional>
 #include <optional>
 #include <string>
@@ -66,7 +66,7 @@ class CheckpointFile {
   bool kept_ = true;  // rows go to a partial file
   std::vector<std::string> taken_over_;
   Rows rows_;
-  std::optional<eom::WholeFile> out_;
+  std::optional<eom::AtomicFile> out_;
   OpenFile own_;  // the partial file of this process
   std::uint32_t number_ = 0;
   std::uint64_t end_ = 0;

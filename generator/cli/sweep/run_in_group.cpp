@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A sweep by several processes: the leader takes over existing rows, prepares and distributes the runs. The workers
 // compute rows. All processes write the table.
-#include <eom/output/whole_file.hpp>
+#include <eom/output/atomic_file.hpp>
 #include <system_error>
 
 #include "cli/output.hpp"
@@ -86,7 +86,7 @@ void Sweep::write_table_in_group() {
               [&lines](std::size_t, std::string_view line) { lines.append(line) += '\n'; });
     return lines;
   };
-  std::optional<eom::WholeFile> table;
+  std::optional<eom::AtomicFile> table;
   const std::string beginning = checkpoint_.file_header();
   const auto lost = [&table](const std::string& why) {
     if (table) table->discard();

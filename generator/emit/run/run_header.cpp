@@ -51,7 +51,7 @@ std::string text(const eom::hybrid::Signal& signal) {
 }
 std::string text(const eom::hybrid::JumpFunctions::Function& function) {
   static constexpr std::array<const char*, 7> kinds{"potential", "momentum", "psi", "row", "rate", "place", "velocity"};
-  return fmt::format("{{What::{}, {}}}", kinds.at(static_cast<std::size_t>(function.what)), text(function.name));
+  return fmt::format("{{Quantity::{}, {}}}", kinds.at(static_cast<std::size_t>(function.what)), text(function.name));
 }
 std::string text(const eom::hybrid::Range& r) { return fmt::format("{{{}, {}}}", number(r.lower), number(r.upper)); }
 std::string text(const eom::hybrid::OwnOutputs& own) {
@@ -183,7 +183,7 @@ std::string problem_text(const RunDescription& run) {
   s.set("solver", p.solver);
   s.set("rtol", p.rtol);
   s.set("atol", p.atol);
-  if (p.step > 0) s.set("step", p.step);
+  if (p.fixed_step > 0) s.set("fixed_step", p.fixed_step);
   s.set("kinetic", p.kinetic);
   s.set("potential", p.potential);
   s.set("energy", p.energy);
@@ -192,7 +192,7 @@ std::string problem_text(const RunDescription& run) {
   s.list("invariants", p.invariants);
   s.list("integrals", p.integrals);
   s.list("contacts", p.contacts);
-  s.list("apart", p.apart);
+  s.list("starts_open", p.starts_open);
   s.list("events", p.events);
   s.list("time.surfaces", p.time.surfaces);
   s.list("time.terms", p.time.terms);
@@ -207,7 +207,7 @@ std::string problem_text(const RunDescription& run) {
   if (!run.beyond_range.empty()) s.line(beyond_text(run.beyond_range));
   s.list("state_names", p.state_names);
   s.list("constraint_names", p.constraint_names);
-  s.set("every", p.every);
+  s.set("output_interval", p.output_interval);
   return s.done();
 }
 
@@ -219,7 +219,7 @@ std::string used_names(const Problem& p) {
   if (signals || !p.time.empty() || !p.bounded.events.empty() || !p.bounded.narrow.empty() ||
       !p.jumps.functions.empty())
     result += "  using eom::expressions::Op;\n";
-  if (!p.jumps.functions.empty()) result += "  using What = eom::hybrid::JumpFunctions::What;\n";
+  if (!p.jumps.functions.empty()) result += "  using Quantity = eom::hybrid::JumpFunctions::Quantity;\n";
   return result;
 }
 

@@ -51,15 +51,15 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
   static constexpr Needs needs{.required = {Feature::constraints},
                                .used = {Feature::jacobian},
                                .refuses = refusals,
-                               .instead = "radau5, which projects where there is something to keep",
+                               .alternative = "radau5, which projects where there is something to keep",
                                .keeps_constraints = true};
 
   /// Throws std::invalid_argument if the state does not match the system or violates its constraints.
   static void check(const System& system, double t0, std::span<const double> x0, const Options& options) {
     if (2 * system.coordinates + options.quadratures > x0.size())
       throw std::invalid_argument("eom::integrate: ggl needs a state that begins with coordinates and velocities");
-    Rows rows(system);
-    if (rows.evaluate(t0, x0.data()) == 0 && (rows.select(), !rows.met(x0.data(), allowed_at_start)))
+    ConstraintEquations rows(system);
+    if (rows.evaluate(t0, x0.data()) == 0 && (rows.select_independent(), !rows.are_satisfied(x0.data(), start_tolerance)))
       throw std::invalid_argument(
           "eom::integrate: the start of ggl does not meet the constraints; eom::Projection "
           "(eom/constraints/projection.hpp) moves it there");
@@ -92,8 +92,8 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
   /// Evaluates C and D and selects the rows at the start of the step.
   int linearise() {
     if (const int code = rows_.evaluate(t0_, x0_); code != 0) return code;
-    rows_.select();
-    if (const int code = directions(); code != 0) return code;
+    rows_.select_independent();
+    if (const int code = compute_directions(); code != 0) return code;
     std::fill(C_.begin(), C_.end(), 0.0);
     for (std::size_t a = 0; a < extra_; ++a)
       for (std::size_t i = 0; i < c_; ++i) C_[a + extra_ * (velocity(a) + i)] = rows_.slope(a, i);
@@ -103,21 +103,21 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
   template <class Matrix>
   void border(Matrix& matrix) const {
     for (std::size_t a = 0; a < extra_; ++a) {
-      const bool chosen = rows_.chosen(a);
+      const bool is_selected = rows_.is_selected(a);
       for (std::size_t i = 0; i < m_; ++i) {
         matrix(i, m_ + a) = {0};
-        matrix(m_ + a, i) = {chosen ? -C_[a + extra_ * i] : 0};
+        matrix(m_ + a, i) = {is_selected ? -C_[a + extra_ * i] : 0};
       }
-      for (std::size_t i = 0; i < c_ && chosen; ++i) matrix(velocity(a) + i, m_ + a) = {D_[a + extra_ * i]};
+      for (std::size_t i = 0; i < c_ && is_selected; ++i) matrix(velocity(a) + i, m_ + a) = {D_[a + extra_ * i]};
       for (std::size_t other = 0; other < extra_; ++other)
-        matrix(m_ + other, m_ + a) = {a == other && !chosen ? 1.0 : 0.0};
+        matrix(m_ + other, m_ + a) = {a == other && !is_selected ? 1.0 : 0.0};
     }
   }
 
   int add_algebraic(double t, const double* x, const double* u, double* f) {
     if (const int code = rows_.evaluate(t, x); code != 0) return code;
     for (std::size_t a = 0; a < extra_; ++a) {
-      f[n_ + a] = rows_.chosen(a) ? rows_.value(a, x) : 0;
+      f[n_ + a] = rows_.is_selected(a) ? rows_.value(a, x) : 0;
       for (std::size_t i = 0; i < c_; ++i) f[velocity(a) + i] -= D_[a + extra_ * i] * u[a];
     }
     return 0;
@@ -126,41 +126,41 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
   template <class Size>
   void border_units(double* w, const Size& size) const {
     for (std::size_t a = 0; a < extra_; ++a)
-      for (std::size_t i = 0; i < m_ && rows_.chosen(a); ++i) w[m_ + a] += std::abs(C_[a + extra_ * i]) * size(i);
+      for (std::size_t i = 0; i < m_ && rows_.is_selected(a); ++i) w[m_ + a] += std::abs(C_[a + extra_ * i]) * size(i);
   }
 
   /// Moves the last stage onto its constraints, to rounding. Computes the part of the start slope across them.
-  int settle() {
+  int correct_last_stage() {
     double* z = z_ + 2 * length_;
     double before = std::numeric_limits<double>::infinity();
     for (int round = 0; round < most_rounds; ++round) {
       for (std::size_t i = 0; i < n_; ++i) scratch_[i] = x0_[i] + z[i];
       if (const int code = rows_.evaluate(t1_, scratch_); code != 0) return code;
       const double worst = residual();
-      if (!(worst > at_rounding) || worst > resting * before) break;
+      if (!(worst > rounding_level) || worst > stagnation_ratio * before) break;
       before = worst;
       real_.solve(right_.data());
       for (std::size_t i = 0; i < m_; ++i) z[i] += right_[i];
     }
-    if (!rows_.met(scratch_, allowed)) return fail(0.25), code_no_convergence;
+    if (!rows_.are_satisfied(scratch_, tolerance)) return fail(0.25), code_no_convergence;
     slope_across();
     return 0;
   }
 
  private:
   static constexpr int most_rounds = 40;
-  static constexpr double allowed_at_start = 1e-6;    // of the coordinates or rates
-  static constexpr double resting = 0.9;              // of a residual: above this ratio it no longer decreases
-  static constexpr double at_rounding = 4 * epsilon;  // of the terms of a constraint
-  static constexpr double allowed =
+  static constexpr double start_tolerance = 1e-6;    // of the coordinates or rates
+  static constexpr double stagnation_ratio = 0.9;              // of a residual: above this ratio it no longer decreases
+  static constexpr double rounding_level = 4 * epsilon;  // of the terms of a constraint
+  static constexpr double tolerance =
       1e-10;  // of the coordinates or rates: a larger residual of a row that is not selected is a contradiction
-  static constexpr double shift = 1.5e-8;  // of a coordinate, for differences
+  static constexpr double difference_step = 1.5e-8;  // of a coordinate, for differences
 
   /// First of the components that receive the multiplier of g_a and belong to its row of A.
-  std::size_t velocity(std::size_t a) const { return a < rows_.on_positions() ? 0 : c_; }
+  std::size_t velocity(std::size_t a) const { return a < rows_.position_row_count() ? 0 : c_; }
 
   /// D by columns: (M + A^T S A)^-1 A^T S, S the mean of the masses.
-  int directions() {
+  int compute_directions() {
     if (const int code = of_.mass(of_.self, t0_, x0_, M_.data()); code != 0) return code;
     double mean = 0;
     for (std::size_t i = 0; i < c_; ++i) mean += std::abs(M_[i + c_ * i]) / static_cast<double>(c_);
@@ -168,12 +168,12 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
     for (std::size_t j = 0; j < c_; ++j)
       for (std::size_t i = 0; i < c_; ++i) {
         double sum = M_[i + c_ * j];
-        for (std::size_t a = rows_.on_positions(); a < extra_; ++a) sum += mean * rows_.slope(a, i) * rows_.slope(a, j);
+        for (std::size_t a = rows_.position_row_count(); a < extra_; ++a) sum += mean * rows_.slope(a, i) * rows_.slope(a, j);
         mass_(i, j) = sum;
       }
     if (!mass_.factor()) return code_no_convergence;
     for (std::size_t a = 0; a < extra_; ++a) {
-      for (std::size_t i = 0; i < c_; ++i) across_[i] = rows_.chosen(a) ? mean * rows_.slope(a, i) : 0;
+      for (std::size_t i = 0; i < c_; ++i) across_[i] = rows_.is_selected(a) ? mean * rows_.slope(a, i) : 0;
       mass_.solve(across_.data());
       for (std::size_t i = 0; i < c_; ++i) D_[a + extra_ * i] = across_[i];
     }
@@ -185,12 +185,12 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
     double largest = 0;
     for (std::size_t i = 0; i < c_; ++i) largest = std::max(largest, std::abs(x0_[i]));
     std::copy_n(x0_, n_, at_.data());
-    for (std::size_t a = rows_.on_positions(); a < extra_; ++a) across_[a] = rows_.value(a, x0_);
+    for (std::size_t a = rows_.position_row_count(); a < extra_; ++a) across_[a] = rows_.value(a, x0_);
     for (std::size_t j = 0; j < c_; ++j) {
       const double size = std::max({std::abs(x0_[j]), std::abs(h_ * x0_[c_ + j]), 1e-3 * largest});
-      at_[j] = x0_[j] + shift * (size > 0 ? size : 1);
+      at_[j] = x0_[j] + difference_step * (size > 0 ? size : 1);
       if (const int code = rows_.evaluate(t0_, at_.data()); code != 0) return code;
-      for (std::size_t a = rows_.on_positions(); a < extra_; ++a)
+      for (std::size_t a = rows_.position_row_count(); a < extra_; ++a)
         C_[a + extra_ * j] = (rows_.value(a, at_.data()) - across_[a]) / (at_[j] - x0_[j]);
       at_[j] = x0_[j];
     }
@@ -202,7 +202,7 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
     double worst = 0;
     std::fill(right_.begin(), right_.end(), 0.0);
     for (std::size_t a = 0; a < extra_; ++a) {
-      if (!rows_.chosen(a)) continue;
+      if (!rows_.is_selected(a)) continue;
       right_[m_ + a] = rows_.value(a, scratch_);
       if (right_[m_ + a] != 0) worst = std::max(worst, std::abs(right_[m_ + a]) / rows_.terms(a, scratch_));
     }
@@ -215,14 +215,14 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
     for (std::size_t i = 0; i < m_; ++i) {
       const double r = h_ * f0_[i] + defect(i);
       for (std::size_t a = 0; a < extra_; ++a)
-        if (rows_.chosen(a)) across_[m_ + a] -= C_[a + extra_ * i] * r;
+        if (rows_.is_selected(a)) across_[m_ + a] -= C_[a + extra_ * i] * r;
     }
     real_.solve(across_.data());
   }
 
   System& of_;
   std::size_t c_;
-  Rows rows_;
+  ConstraintEquations rows_;
   Lu<double> mass_;
   std::vector<double> C_, D_, M_, at_, across_;
 };

@@ -12,9 +12,9 @@
 
 namespace eom::constrained {
 
-class Rows {
+class ConstraintEquations {
  public:
-  explicit Rows(const System& system)
+  explicit ConstraintEquations(const System& system)
       : of_(system),
         c_(system.coordinates),
         k_(system.constraints),
@@ -23,15 +23,15 @@ class Rows {
         A_(k_ * c_),
         b_(k_),
         length_(k_, 1.0),
-        rest_(k_ * c_),
-        chosen_(k_) {}
+        remainder_(k_ * c_),
+        selected_(k_) {}
 
   /// Number of equations.
   std::size_t size() const { return positions_ + k_; }
-  std::size_t on_positions() const { return positions_; }
+  std::size_t position_row_count() const { return positions_; }
   /// The row of A that belongs to g_a.
   std::size_t row(std::size_t a) const { return a < positions_ ? a : a - positions_; }
-  bool chosen(std::size_t a) const { return chosen_[row(a)]; }
+  bool is_selected(std::size_t a) const { return selected_[row(a)]; }
   /// Entries of that row, scaled.
   double slope(std::size_t a, std::size_t i) const { return A_[row(a) + k_ * i] / length_[row(a)]; }
 
@@ -48,17 +48,17 @@ class Rows {
 
   /// Computes the lengths and selects a maximal independent set of rows, position constraints first: Gram-Schmidt, with
   /// the largest remaining row as pivot.
-  void select() {
+  void select_independent() {
     for (std::size_t r = 0; r < k_; ++r) {
       double sum = 0;
       for (std::size_t i = 0; i < c_; ++i) sum += A_[r + k_ * i] * A_[r + k_ * i];
       length_[r] = sum > 0 ? std::sqrt(sum) : 1;
-      for (std::size_t i = 0; i < c_; ++i) rest_[r + k_ * i] = A_[r + k_ * i] / length_[r];
+      for (std::size_t i = 0; i < c_; ++i) remainder_[r + k_ * i] = A_[r + k_ * i] / length_[r];
     }
-    std::fill(chosen_.begin(), chosen_.end(), false);
-    while (choose_among(0, positions_)) {
+    std::fill(selected_.begin(), selected_.end(), false);
+    while (select_largest_row(0, positions_)) {
     }
-    while (choose_among(positions_, k_)) {
+    while (select_largest_row(positions_, k_)) {
     }
   }
 
@@ -81,7 +81,7 @@ class Rows {
 
   /// Whether all of g, including rows that are not selected, is 0 up to the fraction `part` of the coordinates or
   /// rates.
-  bool met(const double* x, double part) const {
+  bool are_satisfied(const double* x, double part) const {
     double sizes[2]{1, 1};
     for (std::size_t i = 0; i < 2 * c_; ++i) sizes[i / c_] = std::max(sizes[i / c_], std::abs(x[i]));
     for (std::size_t a = 0; a < size(); ++a)
@@ -92,31 +92,31 @@ class Rows {
  private:
   static constexpr double independent = 1e-10;  // of a row's length: a smaller remainder is rounding of a dependent row
 
-  bool choose_among(std::size_t begin, std::size_t end) {
+  bool select_largest_row(std::size_t begin, std::size_t end) {
     std::size_t best = end;
     double largest = independent * independent;
     for (std::size_t r = begin; r < end; ++r) {
       double sum = 0;
-      for (std::size_t i = 0; i < c_; ++i) sum += rest_[r + k_ * i] * rest_[r + k_ * i];
-      if (!chosen_[r] && sum > largest) best = r, largest = sum;
+      for (std::size_t i = 0; i < c_; ++i) sum += remainder_[r + k_ * i] * remainder_[r + k_ * i];
+      if (!selected_[r] && sum > largest) best = r, largest = sum;
     }
     if (best == end) return false;
-    chosen_[best] = true;
+    selected_[best] = true;
     const double length = std::sqrt(largest);
-    for (std::size_t i = 0; i < c_; ++i) rest_[best + k_ * i] /= length;
+    for (std::size_t i = 0; i < c_; ++i) remainder_[best + k_ * i] /= length;
     for (std::size_t r = 0; r < k_; ++r) {
-      if (chosen_[r]) continue;
+      if (selected_[r]) continue;
       double along = 0;
-      for (std::size_t i = 0; i < c_; ++i) along += rest_[r + k_ * i] * rest_[best + k_ * i];
-      for (std::size_t i = 0; i < c_; ++i) rest_[r + k_ * i] -= along * rest_[best + k_ * i];
+      for (std::size_t i = 0; i < c_; ++i) along += remainder_[r + k_ * i] * remainder_[best + k_ * i];
+      for (std::size_t i = 0; i < c_; ++i) remainder_[r + k_ * i] -= along * remainder_[best + k_ * i];
     }
     return true;
   }
 
   const System& of_;
   std::size_t c_, k_, positions_;
-  std::vector<double> psi_, A_, b_, length_, rest_;
-  std::vector<bool> chosen_;
+  std::vector<double> psi_, A_, b_, length_, remainder_;
+  std::vector<bool> selected_;
 };
 
 }  // namespace eom::constrained

@@ -40,7 +40,7 @@ class Block : Lanes {
         start_(start),
         done_(done),
         watch_(watch),
-        goes_on_(stride_),
+        continues_(stride_),
         view_x0_(watched ? states : 0),
         view_x1_(watched ? states : 0) {
     slot_.reserve(lanes_);
@@ -221,7 +221,7 @@ class Block : Lanes {
 
   void plan() {
     for (std::size_t l = lane_.size(); l-- > 0;) {
-      if (!lane_[l].go_on(options_)) leave(l);
+      if (!lane_[l].has_steps_left(options_)) leave(l);
     }
     for (std::size_t l = 0; l < lane_.size(); ++l) {
       t_[l] = lane_[l].next_time(options_);
@@ -238,19 +238,19 @@ class Block : Lanes {
       const int code = failed_[l] != 0 ? failed_[l] : !std::isfinite(error) || state_[l] != 0 ? code_not_finite : 0;
       accepted_[l] = 0;
       if (code != 0)
-        goes_on_[l] = lane_[l].retry(code);
+        continues_[l] = lane_[l].retry(code);
       else if (error > 1)
-        goes_on_[l] = lane_[l].reject(h_[l], error);
+        continues_[l] = lane_[l].reject(h_[l], error);
       else
         complete(l);
     }
     this->prepare_accepted();
     for (std::size_t l = 0; l < lane_.size(); ++l) {
-      if (accepted_[l] != 0) goes_on_[l] = accept(l, adaptive() ? error_[l] : 0);
+      if (accepted_[l] != 0) continues_[l] = accept(l, adaptive() ? error_[l] : 0);
     }
     Lanes::accept();
     for (std::size_t l = lane_.size(); l-- > 0;) {
-      if (!goes_on_[l]) leave(l);
+      if (!continues_[l]) leave(l);
     }
   }
   void complete(std::size_t l) {
@@ -261,16 +261,16 @@ class Block : Lanes {
     }
     if (code == 0 && slope_[l] != 0) code = code_not_finite;
     if (code != 0)
-      goes_on_[l] = lane_[l].retry(code);
+      continues_[l] = lane_[l].retry(code);
     else
       accepted_[l] = 1;
   }
   bool accept(std::size_t l, double error) {
     bool wanted = true;
-    if constexpr (watched) wanted = see(l);
-    const bool goes_on = lane_[l].accept(t_[l], error, options_);
+    if constexpr (watched) wanted = observe_step(l);
+    const bool continues = lane_[l].accept(t_[l], error, options_);
     if (!wanted) return lane_[l].end(Outcome::stopped_by_event);
-    return size_[l] > divergence_bound ? lane_[l].end(Outcome::diverged) : goes_on;
+    return size_[l] > divergence_bound ? lane_[l].end(Outcome::diverged) : continues;
   }
 
   struct LaneView {
@@ -281,7 +281,7 @@ class Block : Lanes {
       of->lanes->interpolate(of->lane, t, x);
     }
   };
-  bool see(std::size_t l) {
+  bool observe_step(std::size_t l) {
     for (std::size_t i = 0; i < n_; ++i) {
       view_x0_[i] = x0_[i * stride_ + l];
       view_x1_[i] = x1_[i * stride_ + l];
@@ -294,7 +294,7 @@ class Block : Lanes {
   Start& start_;
   Done& done_;
   Watch& watch_;
-  std::vector<char> goes_on_;
+  std::vector<char> continues_;
   std::vector<std::size_t> slot_, free_;   // of observed members: slots of the lanes; free slots
   std::vector<double> view_x0_, view_x1_;  // of an observed step
 };

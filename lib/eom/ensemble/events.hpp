@@ -18,18 +18,18 @@
 namespace eom::ensemble {
 
 /// The first parameter: (size_t member, const double* p) -> an object with operator()(t, x, dx), events(t, x, values)
-/// and optionally hidden() of EventLocator. The second: (size_t member, const EventPoint&).
-template <class Alone, class Told>
-class EventWatch {
+/// and optionally hidden_crossing() of EventLocator. The second: (size_t member, const EventPoint&).
+template <class MemberRhs, class OnCrossing>
+class EventMonitor {
  public:
   static constexpr bool dense = true;
 
-  EventWatch(std::string_view method, Alone& alone, std::span<const EventFunction> functions, Told& told,
+  EventMonitor(std::string_view method, MemberRhs& member_rhs, std::span<const EventFunction> functions, OnCrossing& on_crossing,
              const EnsembleOptions& options, std::size_t slots)
       : method_(method),
-        alone_(alone),
+        member_rhs_(member_rhs),
         functions_(functions.begin(), functions.end()),
-        told_(told),
+        on_crossing_(on_crossing),
         options_(options_of(options)),
         slots_(slots) {}
 
@@ -41,7 +41,7 @@ class EventWatch {
   /// x: the storage of end.x.
   void end(std::size_t slot, EnsembleEnd& end, std::span<double> x) {
     Options piece;
-    slots_[slot]->run.go_on({end.outcome, end.t, {x.begin(), x.end()}, end.statistics, ""}, piece);
+    slots_[slot]->run.continue_after_piece({end.outcome, end.t, {x.begin(), x.end()}, end.statistics, ""}, piece);
     const Result& total = slots_[slot]->run.total();
     end.outcome = total.outcome;
     end.t = total.t;
@@ -51,30 +51,30 @@ class EventWatch {
   }
 
  private:
-  using One = decltype(std::declval<Alone&>()(std::size_t{}, static_cast<const double*>(nullptr)));
+  using One = decltype(std::declval<MemberRhs&>()(std::size_t{}, static_cast<const double*>(nullptr)));
   struct Functions {
     One& one;
     int operator()(double t, const double* x, double* values) const { return one.events(t, x, values); }
-    auto hidden(const StepView& view, std::size_t i, int side, double from, double to) const requires requires {
-      one.hidden(view, i, side, from, to);
+    auto hidden_crossing(const StepView& view, std::size_t i, int side, double from, double to) const requires requires {
+      one.hidden_crossing(view, i, side, from, to);
     }
-    { return one.hidden(view, i, side, from, to); }
+    { return one.hidden_crossing(view, i, side, from, to); }
   };
   struct Handler {
-    Told& told;
+    OnCrossing& on_crossing;
     std::size_t member;
-    AtEvent operator()(const EventPoint& point) const {
+    EventAction operator()(const EventPoint& point) const {
       const bool ends = point.functions[point.crossing.function].watch == Watch::breaking;
-      told(member, point);
-      return ends ? AtEvent::stop : AtEvent::go_on;
+      on_crossing(member, point);
+      return ends ? EventAction::stop : EventAction::resume;
     }
   };
   struct Slot {
-    Slot(EventWatch& of, std::size_t member, const EnsembleStart& start)
+    Slot(EventMonitor& of, std::size_t member, const EnsembleStart& start)
         : p(start.p.begin(), start.p.end()),
-          one(of.alone_(member, p.data())),
+          one(of.member_rhs_(member, p.data())),
           functions{one},
-          handler{of.told_, member},
+          handler{of.on_crossing_, member},
           run(of.method_, one, functions, of.functions_, start.t0, start.x, start.t1, of.options_, handler, observer,
               after_step) {}
     std::vector<double> p;
@@ -87,9 +87,9 @@ class EventWatch {
   };
 
   std::string_view method_;
-  Alone& alone_;
+  MemberRhs& member_rhs_;
   std::vector<EventFunction> functions_;
-  Told& told_;
+  OnCrossing& on_crossing_;
   Options options_;
   std::vector<std::unique_ptr<Slot>> slots_;
 };

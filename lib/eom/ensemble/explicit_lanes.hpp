@@ -173,7 +173,7 @@ class ExplicitLanes : public LaneRows<Rhs, explicit_rk::Controller, width> {
 template <explicit_rk::Tableau T, class Rhs, bool dense>
 struct LanesOf<T, Rhs, dense> {
   using type = ExplicitLanes<T, Rhs, dense, pack_width>;
-  static bool takes(const EnsembleOptions&) { return true; }
+  static bool supports(const EnsembleOptions&) { return true; }
 };
 
 }  // namespace eom::ensemble

@@ -47,7 +47,7 @@ class Lane {
   }
 
   /// Whether another step is allowed.
-  bool go_on(const EnsembleOptions& options) {
+  bool has_steps_left(const EnsembleOptions& options) {
     return statistics_.steps + statistics_.rejected < options.max_steps || end(Outcome::max_steps);
   }
 

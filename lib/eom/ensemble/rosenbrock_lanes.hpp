@@ -244,7 +244,7 @@ requires requires(Rhs& rhs, const double* a, double* b, int* codes) {
 }
 struct LanesOf<implicit::Rodas, Rhs, dense> {
   using type = RosenbrockLanes<Rhs, pack_width>;
-  static bool takes(const EnsembleOptions&) { return true; }
+  static bool supports(const EnsembleOptions&) { return true; }
 };
 
 }  // namespace eom::ensemble

@@ -18,7 +18,7 @@ namespace eom::ensemble {
 
 /// The series of one lane at the start and at the end of the trial step.
 struct SeriesSteps {
-  taylor::Measured here, there;
+  taylor::SeriesMeasure here, there;
   int trend = 0;  // change of the order
 
   double after_accepted(double, double) const { return taylor::length(there); }
@@ -89,7 +89,7 @@ class SeriesLanes : public LaneRows<Rhs, SeriesSteps, width> {
                 codes_.data() + first);
     for (std::size_t l = first; l < first + count; ++l) {
       for (std::size_t i = 0; i < n_; ++i) f0_[i * stride_ + l] = here_[row(i, 1) + l];
-      taylor::Measured& here = lane_[l].steps().here;
+      taylor::SeriesMeasure& here = lane_[l].steps().here;
       here.order = orders_[l];
       if (codes_[l] == 0) measure(l, here_, here, x0_, 0);
     }
@@ -99,7 +99,7 @@ class SeriesLanes : public LaneRows<Rhs, SeriesSteps, width> {
   void attempt() {
     int highest = 0;
     for (std::size_t l = 0; l < lane_.size(); ++l) {
-      const taylor::Measured& here = lane_[l].steps().here;
+      const taylor::SeriesMeasure& here = lane_[l].steps().here;
       highest = std::max(highest, here.order);
       stage_t_[l] = here.order;
       error_[l] = taylor::error_of(here, h_[l]);
@@ -126,9 +126,9 @@ class SeriesLanes : public LaneRows<Rhs, SeriesSteps, width> {
     rhs_.taylor(lane_.size(), stride_, t_, x1_, p_, orders_.data(), there_, codes_.data());
     for (std::size_t i = 0; i < n_; ++i) std::copy_n(there_ + row(i, 1), stride_, f1_ + i * stride_);
     for (std::size_t l = 0; l < lane_.size(); ++l) {
-      const bool goes_on = codes_[l] != 0 || control_.goes_on(lane_[l].steps().here.order, h_[l], terms(here_, l),
+      const bool matches_derivative = codes_[l] != 0 || control_.matches_derivative(lane_[l].steps().here.order, h_[l], terms(here_, l),
                                                               weights(l), [&](std::size_t i) { return of(f1_, i, l); });
-      if (!goes_on) codes_[l] = code_jump;
+      if (!matches_derivative) codes_[l] = code_jump;
     }
   }
 
@@ -180,14 +180,14 @@ class SeriesLanes : public LaneRows<Rhs, SeriesSteps, width> {
   }
 
   /// Series::measure of one lane.
-  void measure(std::size_t l, const double* series, taylor::Measured& at, const double* x, double move) {
+  void measure(std::size_t l, const double* series, taylor::SeriesMeasure& at, const double* x, double move) {
     for (std::size_t i = 0; i < n_; ++i)
       weight_[i * stride_ + l] = control_.weight(of(x, i, l), series[row(i, 1) + l], move);
     control_.measure(at, terms(series, l), weights(l));
     lane_[l].steps().trend = control_.trend(at, terms(series, l), weights(l));
   }
 
-  taylor::Order control_;
+  taylor::OrderControl control_;
   std::vector<int> orders_;
   double *weight_, *here_,
       *there_;  // 1 over the tolerance of each component; coefficients at both ends of a step
@@ -202,7 +202,7 @@ requires requires(Rhs& rhs, const double* a, double* b, const int* orders, int* 
 }
 struct LanesOf<taylor::Series, Rhs, dense> {
   using type = SeriesLanes<Rhs, pack_width>;
-  static bool takes(const EnsembleOptions& options) { return !(options.fixed_step > 0) && options.quadratures == 0; }
+  static bool supports(const EnsembleOptions& options) { return !(options.fixed_step > 0) && options.quadratures == 0; }
 };
 
 }  // namespace eom::ensemble

@@ -15,7 +15,7 @@ namespace eom::ensemble {
 
 /// Runs work(next) in each of `threads` threads (0: one per processor). next(member&) -> bool returns the next member.
 template <class Work>
-void in_threads(std::size_t threads, std::size_t members, const Work& work) {
+void run_in_threads(std::size_t threads, std::size_t members, const Work& work) {
   std::atomic<std::size_t> counter{0};
   std::exception_ptr thrown;
   std::mutex lock;

@@ -25,8 +25,8 @@
 
 namespace eom {
 
-enum class AtEvent {
-  go_on,    // the state is unchanged: functions keep their sides, the step size is kept
+enum class EventAction {
+  resume,   // the state is unchanged: functions keep their sides, the step size is kept
   restart,  // the state, the right-hand side or the monitored functions changed: new sides and step size
   stop,     // the run ends here: stopped_by_event
 };
@@ -75,7 +75,7 @@ class Run {
       const Result part = integrate(
           method_, rhs_, total_.t, total_.x, t1_, piece, [this](const StepView& view) { return observe(view); },
           after_step_);
-      if (!go_on(part, piece)) return total_;
+      if (!continue_after_piece(part, piece)) return total_;
     }
   }
 
@@ -93,8 +93,8 @@ class Run {
   /// To be called after each accepted step. Passing events are reported; a breaking one ends the piece.
   bool observe(const StepView& view) {
     if (values_.empty()) return observer_(view);
-    locator_.open(view, g_);
-    while (const std::optional<Crossing> crossing = locator_.next(view, g_)) {
+    locator_.begin_step(view, g_);
+    while (const std::optional<Crossing> crossing = locator_.next_crossing(view, g_)) {
       if (locator_.functions()[crossing->function].watch == Watch::breaking) {
         cut_ = crossing;
         cut_t_ = view.t0;
@@ -111,13 +111,13 @@ class Run {
       total_.statistics.steps = before.steps;
       handler_(EventPoint{exact.t, x, exact, locator_.functions()});
     }
-    locator_.close();
+    locator_.end_step();
     return observer_(view);
   }
 
   /// To be called after a piece has ended. False: the run has ended, with total(). Else the next piece begins there,
   /// with the options `piece`.
-  bool go_on(const Result& part, Options& piece) {
+  bool continue_after_piece(const Result& part, Options& piece) {
     total_.statistics += part.statistics;
     if (!cut_) {
       total_.outcome = part.outcome;
@@ -127,7 +127,7 @@ class Run {
       return false;
     }
     --total_.statistics.steps;  // the truncated step
-    const bool goes_on = take_event(piece);
+    const bool goes_on = handle_breaking_event(piece);
     cut_.reset();
     return goes_on;
   }
@@ -151,10 +151,10 @@ class Run {
     const double limit =
         std::max(1e-12 * std::abs(h), 4 * std::numeric_limits<double>::epsilon() * std::abs(crossing.t));
     double t = crossing.t, before = 0, value_before = 0;
-    bool go_on = true;
+    bool continues = true;
     for (int trial = 0; trial < most_corrections; ++trial) {
       one.fixed_step = std::abs(t - t0) / static_cast<double>(parts);
-      if (one.fixed_step == 0) return go_on;
+      if (one.fixed_step == 0) return continues;
       bool final = false;
       double next = t;
       const auto look = [&](const StepView& view) {
@@ -168,29 +168,29 @@ class Run {
           if (!final) next = t + move;
           if ((next - t0) * h <= 0) final = true;
         }
-        if (final && parts == 1) go_on = last(view);
+        if (final && parts == 1) continues = last(view);
         return true;
       };
       const Result step = integrate(method_, rhs_, t0, x0, t, one, look, after_step_);
       total_.statistics += step.statistics;
-      if (step.outcome != Outcome::done) return go_on;  // the state of the dense output is used
+      if (step.outcome != Outcome::done) return continues;  // the state of the dense output is used
       total_.statistics.steps -= final ? 0 : step.statistics.steps;
       crossing.t = t;
       x = step.x;
       if (final && parts > 1) {  // repeats the parts, now that the end of the last one is known
         const auto show = [&](const StepView& view) {
-          go_on = last(view) && go_on;
+          continues = last(view) && continues;
           return true;
         };
         total_.statistics.rhs_evaluations +=
             integrate(method_, rhs_, t0, x0, t, one, show, after_step_).statistics.rhs_evaluations;
       }
-      if (final) return go_on;
+      if (final) return continues;
       before = t;
       value_before = values_[i];
       t = next;
     }
-    return go_on;
+    return continues;
   }
 
   /// dg_i/dt at the end of a step, on its dense output.
@@ -205,23 +205,23 @@ class Run {
   }
 
   /// Handles the breaking event that ended a piece. False: the run ends with it.
-  bool take_event(Options& piece) {
+  bool handle_breaking_event(Options& piece) {
     Crossing crossing = *cut_;
     const double h = cut_h_;
-    const bool go_on = refine(cut_t_, cut_x_, h, options_.event_parts, crossing, total_.x,
+    const bool continues = refine(cut_t_, cut_x_, h, options_.event_parts, crossing, total_.x,
                               [this](const StepView& view) { return observer_(view); });
     const double progress = std::abs(crossing.t - total_.t);
     total_.t = crossing.t;
     const bool known = g_(total_.t, total_.x.data(), values_.data()) == 0 && std::isfinite(values_[crossing.function]);
     if (known) crossing.value = values_[crossing.function];
-    crowded_ = progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : crowded_ + 1;
-    const AtEvent answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions()});
-    if (!go_on) return end(Outcome::stopped_by_event, answer == AtEvent::stop ? "" : "stopped by the observer");
-    if (answer == AtEvent::stop) return end(Outcome::stopped_by_event, "");
-    if (crowded_ >= events_without_progress)
+    events_without_progress_ = progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : events_without_progress_ + 1;
+    const EventAction answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions()});
+    if (!continues) return end(Outcome::stopped_by_event, answer == EventAction::stop ? "" : "stopped by the observer");
+    if (answer == EventAction::stop) return end(Outcome::stopped_by_event, "");
+    if (events_without_progress_ >= events_without_progress)
       return end(Outcome::step_too_small, "events follow one another without progress in time");
-    piece.initial_step = answer == AtEvent::go_on ? std::abs(h) : options_.initial_step;
-    if (answer == AtEvent::go_on) return true;
+    piece.initial_step = answer == EventAction::resume ? std::abs(h) : options_.initial_step;
+    if (answer == EventAction::resume) return true;
     const int code = locator_.start(total_.t, total_.x.data(), g_, h > 0, {&crossing, 1});
     return code == 0 || end(outcome_of_abi_code(code), "an event function returned code " + std::to_string(code));
   }
@@ -254,13 +254,13 @@ class Run {
   std::optional<Crossing> cut_;
   double cut_t_ = 0, cut_h_ = 0;
   std::vector<double> cut_x_;
-  int crowded_ = 0;
+  int events_without_progress_ = 0;
 };
 
 }  // namespace events
 
 /// integrate() with event functions. g(t, x, values) -> int writes as many values as there are `functions`;
-/// handler(EventPoint) -> AtEvent. Passing events are reported before the observer receives the step that contains
+/// handler(EventPoint) -> EventAction. Passing events are reported before the observer receives the step that contains
 /// them. A breaking event is reported after the observer received the step that ends there, also if it ends the run.
 /// Throws what integrate() throws.
 template <class F, class G, class Handler, class Observer = NoObserver, class AfterStep = NoProjection>
@@ -268,7 +268,7 @@ Result integrate_events(std::string_view method, F&& rhs, double t0, std::span<c
                         const Options& options, G&& g, std::vector<EventFunction> functions, Handler&& handler,
                         Observer&& observer = {}, AfterStep&& after_step = {}) {
   detail::check_problem(t0, x0, t1, options);
-  Choice choice;  // state of `auto`, which continues after an event
+  MethodChoice choice;  // state of `auto`, which continues after an event
   Options kept = options;
   if (kept.choice == nullptr) kept.choice = &choice;
   return events::Run<std::remove_reference_t<F>, std::remove_reference_t<G>, std::remove_reference_t<Handler>,

@@ -5,7 +5,7 @@
 // Each event function has a side: its last sign. A crossing flips it, so that the residual of a root does not give the
 // same root again. The side may be unknown, at the start of a run on the surface or after a change of the state there.
 // Then it is the sign of the first value beyond rounding on a geometric sequence of points. g may have a member
-// hidden(view, i, side, from, to), which returns an interval of the step in which function i first leaves its side,
+// hidden_crossing(view, i, side, from, to), which returns an interval of the step in which function i first leaves its side,
 // whatever the samples show. Each step is sampled at nine points. Between samples of one sign a double root is searched
 // for if they indicate a dip that may reach zero: three samples by the parabola through them, four by the lines through
 // the two outer samples on each side, which bound a convex function, with or without a kink, from below. At each
@@ -62,7 +62,7 @@ class EventLocator {
         size_(functions_.size(), 0),
         residual_(functions_.size(), 0),
         values_(functions_.size()),
-        there_(functions_.size()),
+        crossing_values_(functions_.size()),
         samples_(places.size() * functions_.size()),
         x_(n) {}
 
@@ -79,7 +79,7 @@ class EventLocator {
     const int code = g(t, x, values_.data());
     if (code != 0) return code;
     std::fill(residual_.begin(), residual_.end(), 0.0);
-    for (std::size_t i = 0; i < functions_.size(); ++i) side_[i] = beyond(i, values_[i]) ? sign(values_[i]) : 0;
+    for (std::size_t i = 0; i < functions_.size(); ++i) side_[i] = exceeds_rounding(i, values_[i]) ? sign(values_[i]) : 0;
     for (const Crossing& c : crossed) {
       const double near = std::max(4 * std::abs(c.value), crossed_rounding * size_[c.function]);
       if (!(std::abs(values_[c.function]) > near)) side_[c.function] = 0;
@@ -91,9 +91,9 @@ class EventLocator {
     return 0;
   }
 
-  /// Samples a new step. The results of next() refer to it until close().
+  /// Samples a new step. The results of next_crossing() refer to it until end_step().
   template <class G>
-  void open(const StepView& view, G& g) {
+  void begin_step(const StepView& view, G& g) {
     for (std::size_t k = 0; k < places.size(); ++k) {
       evaluate(view, places[k], g);
       for (std::size_t i = 0; i < functions_.size(); ++i) {
@@ -108,7 +108,7 @@ class EventLocator {
 
   /// The next monitored crossing of the step, in the order of the run; none if there are no more.
   template <class G>
-  std::optional<Crossing> next(const StepView& view, G& g) {
+  std::optional<Crossing> next_crossing(const StepView& view, G& g) {
     while (true) {
       std::optional<Candidate> first;
       for (std::size_t i = 0; i < functions_.size(); ++i) {
@@ -118,7 +118,7 @@ class EventLocator {
       }
       if (!first) return std::nullopt;
       for (std::size_t k = 0; k < 2 * functions_.size(); ++k) {
-        const std::optional<Candidate> before = crossed_before(view, *first, g);
+        const std::optional<Candidate> before = find_earlier_crossing(view, *first, g);
         if (!before) break;
         first = before;
       }
@@ -133,12 +133,12 @@ class EventLocator {
 
   /// To be called after the step was accepted in full: determines the sides of functions that had none, or had no value
   /// somewhere in the step.
-  void close() {
+  void end_step() {
     for (std::size_t i = 0; i < functions_.size(); ++i) {
       bool known = functions_[i].watch != Watch::off && side_[i] != 0;
       for (std::size_t k = 0; k < places.size(); ++k) known = known && std::isfinite(sample(k, i));
       const double last = sample(places.size() - 1, i);
-      if (!known) side_[i] = beyond(i, last) ? sign(last) : 0;
+      if (!known) side_[i] = exceeds_rounding(i, last) ? sign(last) : 0;
     }
   }
 
@@ -159,14 +159,14 @@ class EventLocator {
   static constexpr double crossed_rounding =
       1e-10;  // the same for a function that has just crossed: its root is corrected, not exact
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  static constexpr double dip_worth_a_look = 0.5;  // of the smallest sample: a parabola with a lower vertex is examined
+  static constexpr double dip_threshold = 0.5;  // of the smallest sample: a parabola with a lower vertex is examined
 
   /// The side from which a function with a direction may be crossed.
   static int inner_side(const EventFunction& f, bool forward) {
     return (f.direction == Direction::up) == forward ? -1 : 1;
   }
   static int sign(double value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
-  bool beyond(std::size_t i, double value) const {
+  bool exceeds_rounding(std::size_t i, double value) const {
     return std::isfinite(value) && std::abs(value) > std::max(4 * residual_[i], rounding * size_[i]);
   }
   static double at(const StepView& view, double s) {
@@ -208,15 +208,15 @@ class EventLocator {
     s = tolerance;
     for (std::size_t k = 0; k < decades; ++k, s *= 10) {
       if (!(std::abs(v[k]) > 4 * residual_[i])) continue;
-      if (beyond(i, v[k]) || (k + 2 < decades && grows(k) && grows(k + 1))) return arm(view, i, sign(v[k]), s);
+      if (exceeds_rounding(i, v[k]) || (k + 2 < decades && grows(k) && grows(k + 1))) return set_side(view, i, sign(v[k]), s);
     }
     for (std::size_t k = 1; k < places.size(); ++k) {
-      if (beyond(i, sample(k, i))) return arm(view, i, sign(sample(k, i)), places[k]);
+      if (exceeds_rounding(i, sample(k, i))) return set_side(view, i, sign(sample(k, i)), places[k]);
     }
     position_[i] = 1;
   }
 
-  void arm(const StepView& view, std::size_t i, int side, double s) {
+  void set_side(const StepView& view, std::size_t i, int side, double s) {
     const int inner = inner_side(functions_[i], view.t1 > view.t0);
     const bool beyond_guard = functions_[i].guard && side != inner;
     side_[i] = beyond_guard ? inner : side;
@@ -228,10 +228,10 @@ class EventLocator {
   template <class G>
   std::optional<Candidate> crossing(const StepView& view, std::size_t i, G& g) {
     const std::optional<Candidate> sampled = between_samples(view, i, g);
-    if constexpr (requires { g.hidden(view, i, 1, 0.0, 1.0); }) {
+    if constexpr (requires { g.hidden_crossing(view, i, 1, 0.0, 1.0); }) {
       const int side = side_[i];
       if (side == 0) return sampled;
-      const auto found = g.hidden(view, i, side, position_[i], sampled ? sampled->s : 1.0);
+      const auto found = g.hidden_crossing(view, i, side, position_[i], sampled ? sampled->s : 1.0);
       if (!found) return sampled;
       const auto inward = [&](double s) { return side * value(view, s, i, g); };
       const double at_right = inward(found->second);
@@ -259,9 +259,9 @@ class EventLocator {
       if (k + 1 < places.size()) {
         const Point b{left, at_left}, c{places[k], here}, d{places[k + 1], side * sample(k + 1, i)};
         double dip = k > 1 && places[k - 2] >= position_[i]
-                         ? dipped({places[k - 2], side * sample(k - 2, i)}, b, c, d, inward)
+                         ? find_dip({places[k - 2], side * sample(k - 2, i)}, b, c, d, inward)
                          : none;
-        if (!std::isfinite(dip)) dip = dipped(inward, left, at_left, places[k], here, d.s, d.value);
+        if (!std::isfinite(dip)) dip = find_dip(inward, left, at_left, places[k], here, d.s, d.value);
         if (std::isfinite(dip)) return Candidate{i, root(inward, left, at_left, dip, inward(dip)), side};
       }
       left = places[k];
@@ -272,14 +272,14 @@ class EventLocator {
 
   /// The first of the other functions that has crossed before the given crossing: it is beyond zero there.
   template <class G>
-  std::optional<Candidate> crossed_before(const StepView& view, const Candidate& found, G& g) {
+  std::optional<Candidate> find_earlier_crossing(const StepView& view, const Candidate& found, G& g) {
     evaluate(view, found.s, g);
-    there_ = values_;
+    crossing_values_ = values_;
     std::optional<Candidate> first;
     for (std::size_t i = 0; i < functions_.size(); ++i) {
       const int side = side_[i];
-      const double there = side * there_[i];
-      if (i == found.function || functions_[i].watch == Watch::off || !(there < 0) || !beyond(i, there) ||
+      const double there = side * crossing_values_[i];
+      if (i == found.function || functions_[i].watch == Watch::off || !(there < 0) || !exceeds_rounding(i, there) ||
           position_[i] >= found.s)
         continue;
       double left = position_[i], at_left = left == 0 ? side * sample(0, i) : none;
@@ -296,7 +296,7 @@ class EventLocator {
   /// A point between b and c at which the function is negative although the four samples are not; NaN if the lines
   /// through the outer samples meet above zero, or if there is no such point.
   template <class F>
-  double dipped(Point a, Point b, Point c, Point d, F& inward) {
+  double find_dip(Point a, Point b, Point c, Point d, F& inward) {
     if (!(a.value > 0 && b.value > 0 && c.value > 0 && d.value > 0)) return none;
     const double falls = (b.value - a.value) / (b.s - a.s), rises = (d.value - c.value) / (d.s - c.s);
     if (!(falls < 0 && rises > 0)) return none;
@@ -311,14 +311,14 @@ class EventLocator {
 
   /// A point at which the function is negative between three samples that are not, the middle one the lowest; else NaN.
   template <class F>
-  double dipped(F& inward, double a, double fa, double b, double fb, double c, double fc) {
+  double find_dip(F& inward, double a, double fa, double b, double fb, double c, double fc) {
     if (!std::isfinite(fa)) fa = inward(a);
     if (!(fb > 0 && fb <= fa && fb < fc)) return none;
     const double left = (fb - fa) / (b - a), right = (fc - fb) / (c - b);
     const double bend = (right - left) / (c - a);  // second divided difference, positive at a dip
     const double slope = left + bend * (b - a);    // of the parabola at b
     const double vertex = fb - slope * slope / (4 * bend);
-    if (!(vertex < dip_worth_a_look * fb)) return none;
+    if (!(vertex < dip_threshold * fb)) return none;
     return events::find_negative(inward, a, b, fb, c, 1e-9);
   }
 
@@ -346,7 +346,7 @@ class EventLocator {
   std::vector<double> size_;      // largest value so far
   std::vector<double> residual_;  // value at the start, for a function that starts on its surface
   std::vector<double> values_;
-  std::vector<double> there_;  // values at a crossing
+  std::vector<double> crossing_values_;  // values at a crossing
   std::vector<double> samples_;
   std::vector<double> x_;
 };

@@ -43,16 +43,16 @@ class Code {
   Code(Table table, std::span<const double> parameters)
       : steps_(std::move(table.steps)), numbers_(std::move(table.numbers)), roots_(std::move(table.roots)) {
     for (Step& step : steps_) {
-      bool moves = step.op == Op::variable && step.a[0] > 0;
-      for (std::size_t k = 0; k < operands(step.op); ++k) moves = moves || moves_[place(step.a[k])];
-      moves_.push_back(moves);
+      bool depends_on_state = step.op == Op::variable && step.a[0] > 0;
+      for (std::size_t k = 0; k < operands(step.op); ++k) depends_on_state = depends_on_state || depends_on_state_[place(step.a[k])];
+      depends_on_state_.push_back(depends_on_state);
       kink_of_.push_back(kinks_.size());
-      if (is_kink(step.op)) kinks_.push_back(moves_.size() - 1);
+      if (is_kink(step.op)) kinks_.push_back(depends_on_state_.size() - 1);
       if (step.op != Op::parameter) continue;
       numbers_.push_back(parameters[place(step.a[0])]);
       step = {Op::number, {static_cast<std::int32_t>(numbers_.size()) - 1}};
     }
-    held_.assign(kinks_.size(), 0);
+    frozen_.assign(kinks_.size(), 0);
     work_.resize(steps_.size());
   }
 
@@ -62,12 +62,12 @@ class Code {
   /// Whether the function itself jumps there (sign, if), not only its slope.
   bool jumps(std::size_t kink) const { return expressions::jumps(at(kink).op); }
   /// Whether the surface depends on a variable other than the first.
-  bool moves(std::size_t kink) const {
+  bool depends_on_state(std::size_t kink) const {
     const Step& step = at(kink);
-    return moves_[place(step.a[0])] || (!of_one(step.op) && moves_[place(step.a[1])]);
+    return depends_on_state_[place(step.a[0])] || (!of_one(step.op) && depends_on_state_[place(step.a[1])]);
   }
   /// Whether two kinks have the same surface.
-  bool same_surface(std::size_t kink, std::size_t other) const {
+  bool have_same_surface(std::size_t kink, std::size_t other) const {
     const Step &one = at(kink), &two = at(other);
     return one.a[0] == two.a[0] && of_one(one.op) == of_one(two.op) && (of_one(one.op) || one.a[1] == two.a[1]);
   }
@@ -87,17 +87,17 @@ class Code {
     return work_[place(step.a[0])] - (of_one(step.op) ? 0 : work_[place(step.a[1])]);
   }
   /// Freezes every branch as at this point, or releases all branches.
-  void hold(std::span<const double> variables) {
+  void freeze(std::span<const double> variables) {
     release();
     values(variables, {});
-    for (std::size_t k = 0; k < kinks_.size(); ++k) held_[k] = sign(surface(k));
+    for (std::size_t k = 0; k < kinks_.size(); ++k) frozen_[k] = sign(surface(k));
   }
-  void release() { held_.assign(held_.size(), 0); }
+  void release() { frozen_.assign(frozen_.size(), 0); }
   /// Freezes one kink above (1) or below (-1) its surface.
-  void hold(std::size_t kink, int side) { held_[kink] = side; }
+  void freeze(std::size_t kink, int side) { frozen_[kink] = side; }
 
   /// Bounds of a root and of its slope for variables between bounds.
-  Sloped range(std::span<const Sloped> variables, std::size_t root = 0) const {
+  SlopedInterval range(std::span<const SlopedInterval> variables, std::size_t root = 0) const {
     ranges_.resize(steps_.size());
     const std::size_t last = place(roots_[root]);
     for (std::size_t i = 0; i <= last; ++i) ranges_[i] = range_of(i, variables);
@@ -109,11 +109,11 @@ class Code {
   static int sign(double above) { return above > 0 ? 1 : above < 0 ? -1 : 0; }
   const Step& at(std::size_t kink) const { return steps_[kinks_[kink]]; }
   int side(std::size_t i, double above) const {
-    const int held = held_[kink_of_[i]];
+    const int held = frozen_[kink_of_[i]];
     return held != 0 ? held : sign(above);
   }
   int side(std::size_t i, Interval above) const {
-    const int held = held_[kink_of_[i]];
+    const int held = frozen_[kink_of_[i]];
     return held != 0 ? held : above.low > 0 ? 1 : above.high < 0 ? -1 : 0;
   }
 
@@ -140,9 +140,9 @@ class Code {
     }
   }
 
-  Sloped range_of(std::size_t i, std::span<const Sloped> variables) const {
+  SlopedInterval range_of(std::size_t i, std::span<const SlopedInterval> variables) const {
     const Step& step = steps_[i];
-    const auto arg = [&](std::size_t k) -> const Sloped& { return ranges_[place(step.a[k])]; };
+    const auto arg = [&](std::size_t k) -> const SlopedInterval& { return ranges_[place(step.a[k])]; };
     switch (step.op) {
       case Op::number: {
         const double c = numbers_[place(step.a[0])];
@@ -161,32 +161,32 @@ class Code {
     }
   }
 
-  Sloped range_of_kink(std::size_t i) const {
+  SlopedInterval range_of_kink(std::size_t i) const {
     const Step& step = steps_[i];
-    const auto arg = [&](std::size_t k) -> const Sloped& { return ranges_[place(step.a[k])]; };
+    const auto arg = [&](std::size_t k) -> const SlopedInterval& { return ranges_[place(step.a[k])]; };
     const int of = side(i, of_one(step.op) ? arg(0).value : arg(0).value - arg(1).value);
-    const auto either = [](const Sloped& a, const Sloped& b) -> Sloped {
+    const auto either = [](const SlopedInterval& a, const SlopedInterval& b) -> SlopedInterval {
       return {hull(a.value, b.value), hull(a.slope, b.slope)};
     };
     switch (step.op) {
       case Op::abs: {
-        const Sloped negative{-arg(0).value, -arg(0).slope};
+        const SlopedInterval negative{-arg(0).value, -arg(0).slope};
         if (of != 0) return of > 0 ? arg(0) : negative;
         return {{0, std::max(-arg(0).value.low, arg(0).value.high)}, hull(arg(0).slope, negative.slope)};
       }
       case Op::sign: {
         const double value = of;
-        return of != 0 ? Sloped{{value, value}, {0, 0}} : Sloped{{-1, 1}, Interval::all()};
+        return of != 0 ? SlopedInterval{{value, value}, {0, 0}} : SlopedInterval{{-1, 1}, Interval::all()};
       }
       case Op::min: {
         if (of != 0) return of > 0 ? arg(1) : arg(0);
-        Sloped result = either(arg(0), arg(1));
+        SlopedInterval result = either(arg(0), arg(1));
         result.value.high = std::min(arg(0).value.high, arg(1).value.high);
         return result;
       }
       case Op::max: {
         if (of != 0) return of > 0 ? arg(0) : arg(1);
-        Sloped result = either(arg(0), arg(1));
+        SlopedInterval result = either(arg(0), arg(1));
         result.value.low = std::max(arg(0).value.low, arg(1).value.low);
         return result;
       }
@@ -199,11 +199,11 @@ class Code {
   std::vector<Step> steps_;
   std::vector<double> numbers_;
   std::vector<std::int32_t> roots_;
-  std::vector<bool> moves_;                   // on a variable other than the first
+  std::vector<bool> depends_on_state_;                   // on a variable other than the first
   std::vector<std::size_t> kink_of_, kinks_;  // per step: its index among the kinks; the steps of kinks
-  std::vector<int> held_;                     // per kink
+  std::vector<int> frozen_;                     // per kink
   mutable std::vector<double> work_;
-  mutable std::vector<Sloped> ranges_;
+  mutable std::vector<SlopedInterval> ranges_;
 };
 
 }  // namespace eom::expressions

@@ -27,19 +27,19 @@ struct Interval {
 namespace detail {
 
 // 0 times an unbounded value is 0: the slope of a constant factor.
-inline double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+inline double product_of_bounds(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
-inline Interval valid(Interval a) { return std::isnan(a.low) || std::isnan(a.high) ? Interval::all() : a; }
+inline Interval without_nan(Interval a) { return std::isnan(a.low) || std::isnan(a.high) ? Interval::all() : a; }
 
 }  // namespace detail
 
-inline Interval operator+(Interval a, Interval b) { return detail::valid({a.low + b.low, a.high + b.high}); }
-inline Interval operator-(Interval a, Interval b) { return detail::valid({a.low - b.high, a.high - b.low}); }
+inline Interval operator+(Interval a, Interval b) { return detail::without_nan({a.low + b.low, a.high + b.high}); }
+inline Interval operator-(Interval a, Interval b) { return detail::without_nan({a.low - b.high, a.high - b.low}); }
 inline Interval operator-(Interval a) { return {-a.high, -a.low}; }
 inline Interval operator*(Interval a, Interval b) {
-  const double p = detail::times(a.low, b.low), q = detail::times(a.low, b.high), r = detail::times(a.high, b.low),
-               s = detail::times(a.high, b.high);
-  return detail::valid({std::min({p, q, r, s}), std::max({p, q, r, s})});
+  const double p = detail::product_of_bounds(a.low, b.low), q = detail::product_of_bounds(a.low, b.high), r = detail::product_of_bounds(a.high, b.low),
+               s = detail::product_of_bounds(a.high, b.high);
+  return detail::without_nan({std::min({p, q, r, s}), std::max({p, q, r, s})});
 }
 inline Interval operator/(Interval a, Interval b) {
   if (b.has(0)) return Interval::all();
@@ -47,7 +47,7 @@ inline Interval operator/(Interval a, Interval b) {
 }
 inline Interval hull(Interval a, Interval b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }
 /// The intersection; a if it is empty, which is due to rounding.
-inline Interval common(Interval a, Interval b) {
+inline Interval intersection(Interval a, Interval b) {
   const Interval both{std::max(a.low, b.low), std::min(a.high, b.high)};
   return both.low <= both.high ? both : a;
 }
@@ -55,15 +55,15 @@ inline Interval common(Interval a, Interval b) {
 namespace detail {
 
 template <class F>
-Interval rising(F f, Interval a) {
-  return valid({f(a.low), f(a.high)});
+Interval map_monotonic(F f, Interval a) {
+  return without_nan({f(a.low), f(a.high)});
 }
 
-inline Interval whole_power(Interval a, int n) {
+inline Interval integer_power(Interval a, int n) {
   const double low = std::pow(a.low, n), high = std::pow(a.high, n);
-  if (n % 2 == 1 || a.low >= 0) return valid({low, high});
-  if (a.high <= 0) return valid({high, low});
-  return valid({0, std::max(low, high)});
+  if (n % 2 == 1 || a.low >= 0) return without_nan({low, high});
+  if (a.high <= 0) return without_nan({high, low});
+  return without_nan({0, std::max(low, high)});
 }
 
 inline Interval sine(Interval a) {
@@ -82,14 +82,14 @@ inline Interval cosine(Interval a) {
   return sine(a + Interval{quarter, quarter});
 }
 
-inline Interval square(Interval a) { return whole_power(a, 2); }
+inline Interval square(Interval a) { return integer_power(a, 2); }
 
 inline bool has_pole_of_tan(Interval a) {
   constexpr double pi = std::numbers::pi;
   return !(a.width() < pi) || std::ceil((a.low - pi / 2) / pi) <= std::floor((a.high - pi / 2) / pi);
 }
 
-inline Interval within_one(Interval a) { return {std::clamp(a.low, -1.0, 1.0), std::clamp(a.high, -1.0, 1.0)}; }
+inline Interval clamp_to_unit(Interval a) { return {std::clamp(a.low, -1.0, 1.0), std::clamp(a.high, -1.0, 1.0)}; }
 
 /// The values of a function of one argument; none if it has a pole or is undefined.
 inline std::optional<Interval> values(Op function, Interval a) {
@@ -101,8 +101,8 @@ inline std::optional<Interval> values(Op function, Interval a) {
       const double low = at(a.low), high = at(a.high);
       return Interval{a.has(0) ? 1 : std::min(low, high), std::max(low, high)};
     }
-    case Op::acos: return Interval{at(within_one(a).high), at(within_one(a).low)};
-    case Op::asin: return rising(at, within_one(a));
+    case Op::acos: return Interval{at(clamp_to_unit(a).high), at(clamp_to_unit(a).low)};
+    case Op::asin: return map_monotonic(at, clamp_to_unit(a));
     case Op::sqrt:
       if (a.high < 0) return std::nullopt;
       return Interval{at(std::max(0.0, a.low)), at(a.high)};
@@ -111,8 +111,8 @@ inline std::optional<Interval> values(Op function, Interval a) {
       return Interval{a.low > 0 ? at(a.low) : -std::numeric_limits<double>::infinity(), at(a.high)};
     case Op::tan:
       if (has_pole_of_tan(a)) return std::nullopt;
-      return rising(at, a);
-    default: return rising(at, a);
+      return map_monotonic(at, a);
+    default: return map_monotonic(at, a);
   }
 }
 
@@ -126,23 +126,23 @@ struct IntervalNumbers {
 }  // namespace detail
 
 /// A value and its slope along the one variable. Slopes of jumping functions are unbounded.
-struct Sloped {
+struct SlopedInterval {
   Interval value, slope;
 };
 
 namespace sloped {
 
-inline Sloped product(const Sloped& a, const Sloped& b) {
+inline SlopedInterval product(const SlopedInterval& a, const SlopedInterval& b) {
   return {a.value * b.value, a.slope * b.value + a.value * b.slope};
 }
 
-inline Sloped quotient(const Sloped& a, const Sloped& b) {
+inline SlopedInterval quotient(const SlopedInterval& a, const SlopedInterval& b) {
   const Interval value = a.value / b.value;
   return {value, (a.slope - value * b.slope) / b.value};
 }
 
 /// A function of one argument, except abs and sign, whose branches may be known.
-inline Sloped call(Op function, const Sloped& a) {
+inline SlopedInterval call(Op function, const SlopedInterval& a) {
   const std::optional<Interval> value = detail::values(function, a.value);
   if (!value) return {Interval::all(), Interval::all()};
   const auto [size, divides, falls] =
@@ -153,18 +153,18 @@ inline Sloped call(Op function, const Sloped& a) {
 }
 
 /// exponent: 2 or more.
-inline Sloped power(const Sloped& a, int exponent) {
+inline SlopedInterval power(const SlopedInterval& a, int exponent) {
   const double factor = exponent;
-  return {detail::whole_power(a.value, exponent),
-          Interval{factor, factor} * detail::whole_power(a.value, exponent - 1) * a.slope};
+  return {detail::integer_power(a.value, exponent),
+          Interval{factor, factor} * detail::integer_power(a.value, exponent - 1) * a.slope};
 }
 
-inline Sloped pow(const Sloped& a, const Sloped& b) {
+inline SlopedInterval pow(const SlopedInterval& a, const SlopedInterval& b) {
   if (!(a.value.low > 0)) return {Interval::all(), Interval::all()};
   return call(Op::exp, product(b, call(Op::log, a)));
 }
 
-inline Sloped atan2(const Sloped& y, const Sloped& x) {
+inline SlopedInterval atan2(const SlopedInterval& y, const SlopedInterval& x) {
   const bool jumps = y.value.has(0) && x.value.low <= 0;
   if (jumps) return {{-std::numbers::pi, std::numbers::pi}, Interval::all()};
   const double a = std::atan2(y.value.low, x.value.low), b = std::atan2(y.value.low, x.value.high);

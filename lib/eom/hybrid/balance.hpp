@@ -13,7 +13,7 @@ namespace eom::hybrid {
 
 namespace balance {
 
-inline constexpr double always = 1e-4;       // of the energies: a smaller defect does not indicate a missed event
+inline constexpr double negligible_defect = 1e-4;       // of the energies: a smaller defect does not indicate a missed event
 inline constexpr double of_tolerance = 1e4;  // the energy error follows the states and accumulates over many steps
 inline constexpr double of_estimate = 1e3;   // the end state may be more accurate than the states on the way
 inline constexpr double without_estimate = 0.1;
@@ -40,9 +40,9 @@ inline void require_balance(const Problem& problem, RunResult& result) {
   for (std::size_t i = 0; i < problem.invariants.size(); ++i) {
     if (problem.invariants[i].output == problem.energy) open = std::max(open, result.invariants[i].max_relative_drift);
   }
-  const bool told = bool(result.error.doubt);  // the estimate is already marked as unreliable
-  if (told || !(open > balance::always)) return;
-  double allowed = problem.step > 0 ? 0 : balance::of_tolerance * problem.rtol;
+  const bool has_warning = bool(result.error.warning);  // the estimate is already marked as unreliable
+  if (has_warning || !(open > balance::negligible_defect)) return;
+  double allowed = problem.fixed_step > 0 ? 0 : balance::of_tolerance * problem.rtol;
   allowed = std::max(allowed, result.error.states.empty()
                                   ? balance::without_estimate
                                   : balance::of_estimate * balance::relative_estimate(problem, result));

@@ -22,8 +22,8 @@ class ChartSwitch {
  public:
   explicit ChartSwitch(const Problem& problem);
 
-  bool any() const { return !problem_.charts.empty(); }
-  unsigned second() const { return in_; }  // one bit per chart, set for a second chart
+  bool has_charts() const { return !problem_.charts.empty(); }
+  unsigned second_charts() const { return in_; }  // one bit per chart, set for a second chart
   int mode() const;                        // bits of `mode`
   const Code& code() const { return *code_; }
 
@@ -31,14 +31,14 @@ class ChartSwitch {
   bool start(double t, const double* x);
   /// Returns 2 if the state is so close to the singularity of its chart that the equations must not be evaluated. A
   /// step that gets there is shortened.
-  int admits(const double* x) const;
+  int check_chart(const double* x) const;
   /// Processes an accepted step, before any other observer. Returns true if the state has to be exchanged at its end.
-  bool follow(const StepView& step);
+  bool observe_step(const StepView& step);
   /// Makes the pending exchange. Returns the names of the owners of the exchanged charts.
   std::vector<std::string> exchange(double t, std::span<double> x);
 
   /// Converts a state of the last step to the own charts. Components without a value at the singularity are NaN.
-  void own(double t, const double* x, std::span<double> own) const;
+  void to_own_charts(double t, const double* x, std::span<double> own) const;
   /// Whether a coordinate of the model currently has another meaning.
   bool has_exchanged(std::uint32_t coordinate) const;
   /// Outputs that the compiled code does not provide in the current charts.
@@ -64,10 +64,10 @@ class ChartSwitch {
     std::vector<double> x;  // in the own charts
   };
   bool is_second(std::size_t j) const { return (in_ >> j & 1) != 0; }
-  void guard(const double* x);
-  unsigned wanted(const double* x, const double* own) const;
+  void set_guards(const double* x);
+  unsigned target_charts(const double* x, const double* own) const;
   void sample(const StepView& step, double until, const double* x, int depth);
-  void made_continuous(std::size_t j, const std::vector<double>& near, std::span<double> own) const;
+  void make_continuous(std::size_t j, const std::vector<double>& near, std::span<double> own) const;
 
   const Problem& problem_;
   const Code* code_;
@@ -87,7 +87,7 @@ inline ChartSwitch::ChartSwitch(const Problem& problem)
 
 inline int ChartSwitch::mode() const { return mode_of_charts(in_); }
 
-inline void ChartSwitch::guard(const double* x) {
+inline void ChartSwitch::set_guards(const double* x) {
   for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
     const ExchangedChart& chart = problem_.charts[j];
     const bool at_sine = is_second(j) ? chart.second_at_sine : chart.at_sine;
@@ -96,7 +96,7 @@ inline void ChartSwitch::guard(const double* x) {
   }
 }
 
-inline int ChartSwitch::admits(const double* x) const {
+inline int ChartSwitch::check_chart(const double* x) const {
   for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
     const ExchangedChart& chart = problem_.charts[j];
     const double above = x[chart.angles[chart.guarded]] - floor_[j];
@@ -105,7 +105,7 @@ inline int ChartSwitch::admits(const double* x) const {
   return 0;
 }
 
-inline unsigned ChartSwitch::wanted(const double* x, const double* own) const {
+inline unsigned ChartSwitch::target_charts(const double* x, const double* own) const {
   unsigned result = in_;
   for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
     const ExchangedChart& chart = problem_.charts[j];
@@ -123,19 +123,19 @@ inline unsigned ChartSwitch::wanted(const double* x, const double* own) const {
 inline bool ChartSwitch::start(double t, const double* x) {
   in_ = 0;
   samples_ = {{t, {x, x + 2 * n_}}};
-  guard(x);
-  due_ = wanted(x, x);
+  set_guards(x);
+  due_ = target_charts(x, x);
   return due_ != in_;
 }
 
-inline bool ChartSwitch::follow(const StepView& step) {
+inline bool ChartSwitch::observe_step(const StepView& step) {
   if (in_ == 0) {
-    due_ = wanted(step.x1.data(), step.x1.data());
+    due_ = target_charts(step.x1.data(), step.x1.data());
     return due_ != in_;
   }
   samples_.erase(samples_.begin(), samples_.end() - 1);
   sample(step, step.t1, step.x1.data(), 0);
-  due_ = wanted(step.x1.data(), samples_.back().x.data());
+  due_ = target_charts(step.x1.data(), samples_.back().x.data());
   return due_ != in_;
 }
 
@@ -144,7 +144,7 @@ inline bool ChartSwitch::follow(const StepView& step) {
 inline void ChartSwitch::sample(const StepView& step, double until, const double* x, int depth) {
   const Sample& last = samples_.back();
   Sample next{until, std::vector<double>(2 * n_ + problem_.code->integrals)};
-  own(until, x, next.x);
+  to_own_charts(until, x, next.x);
   double turned = 0;
   for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
     for (const std::size_t angle : problem_.charts[j].angles) {
@@ -165,7 +165,7 @@ inline void ChartSwitch::sample(const StepView& step, double until, const double
   samples_.push_back(std::move(next));
 }
 
-inline void ChartSwitch::own(double t, const double* x, std::span<double> result) const {
+inline void ChartSwitch::to_own_charts(double t, const double* x, std::span<double> result) const {
   std::copy_n(x, result.size(), result.begin());
   if (in_ == 0) return;
   code_->chart(x, mode(), 0, result.data());
@@ -173,13 +173,13 @@ inline void ChartSwitch::own(double t, const double* x, std::span<double> result
     return std::abs(a.t - t) < std::abs(b.t - t);
   });
   for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
-    if (is_second(j)) made_continuous(j, nearest->x, result);
+    if (is_second(j)) make_continuous(j, nearest->x, result);
   }
 }
 
 /// The formulas return the attitude with a positive sine or cosine. The same attitude has a representation with a
 /// negative one, and others that differ by whole turns. The one nearest to `near` is selected.
-inline void ChartSwitch::made_continuous(std::size_t j, const std::vector<double>& near, std::span<double> own) const {
+inline void ChartSwitch::make_continuous(std::size_t j, const std::vector<double>& near, std::span<double> own) const {
   const ExchangedChart& chart = problem_.charts[j];
   for (std::size_t k = 0; k < chart.angles.size(); ++k) {
     double& angle = own[chart.angles[k]];
@@ -193,7 +193,7 @@ inline void ChartSwitch::made_continuous(std::size_t j, const std::vector<double
 
 inline std::vector<std::string> ChartSwitch::exchange(double t, std::span<double> x) {
   std::vector<double> before(x.begin(), x.end()), own_x(2 * n_ + problem_.code->integrals);
-  own(t, before.data(), own_x);
+  to_own_charts(t, before.data(), own_x);
   if (due_ != 0) code_ = &problem_.in_charts(due_);
   code_->chart(before.data(), mode(), mode_of_charts(due_), x.data());
   std::vector<std::string> names;
@@ -208,7 +208,7 @@ inline std::vector<std::string> ChartSwitch::exchange(double t, std::span<double
   }
   in_ = due_;
   samples_ = {{t, std::move(own_x)}};
-  guard(x.data());
+  set_guards(x.data());
   return names;
 }
 

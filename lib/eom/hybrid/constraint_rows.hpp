@@ -20,24 +20,24 @@ class ConstraintRows {
   explicit ConstraintRows(const Problem& problem);
 
   std::size_t size() const { return order_.size() + integrals_.size() + slips_.size(); }
-  std::size_t on_positions() const { return holonomic_ + integrals_.size(); }
+  std::size_t position_row_count() const { return holonomic_ + integrals_.size(); }
   /// The active constraint of a row. For a row of an integral or of slip: the number of active constraints.
   std::size_t constraint_of(std::size_t row) const {
     if (row < holonomic_) return order_[row];
-    return row < on_positions() || row - integrals_.size() >= order_.size() ? order_.size()
+    return row < position_row_count() || row - integrals_.size() >= order_.size() ? order_.size()
                                                                             : order_[row - integrals_.size()];
   }
 
   /// Takes the constants of the integrals from this state; u: the inputs there.
   void start(double t, const double* x, const double* u);
   int operator()(double t, const double* x, const double* u, double* psi, double* A, double* b);
-  /// Sets the mode of the contacts. slide_all() treats all other closed contacts as sliding.
-  void mode(int contacts) { mode_ = contacts, all_slide_ = false; }
+  /// Sets the mode of the contacts. set_all_sliding() treats all other closed contacts as sliding.
+  void set_mode(int contacts) { mode_ = contacts, all_slide_ = false; }
   /// Sets the charts of all following states.
-  void charts(const Code& code, int bits) { code_ = &code, charts_ = bits; }
-  void slide_all(int contacts) { mode_ = contacts, all_slide_ = true; }
+  void set_charts(const Code& code, int bits) { code_ = &code, charts_ = bits; }
+  void set_all_sliding(int contacts) { mode_ = contacts, all_slide_ = true; }
   /// Sets the value that a row has to reach instead of 0.
-  void target(std::size_t row, double value) { targets_.at(row) = value; }
+  void set_target(std::size_t row, double value) { targets_.at(row) = value; }
   void clear_targets() { targets_.assign(size(), 0.0); }
   /// The row of a unilateral contact; the first row of a contact's slip.
   std::size_t row_of(std::size_t contact) const;
@@ -62,7 +62,7 @@ class ConstraintRows {
     std::vector<std::size_t> slopes;  // with respect to the rates of the free coordinates
   };
 
-  bool is_apart(std::size_t active_constraint) const;
+  bool is_open(std::size_t active_constraint) const;
   int constraints(double t, const double* x);
   void fill_integrals(const double* x, double* psi, double* A, double* b) const;
   void fill_slips(const double* x, double* psi, double* A, double* b) const;
@@ -105,15 +105,15 @@ inline ConstraintRows::ConstraintRows(const Problem& problem)
 
 inline void ConstraintRows::start(double t, const double* x, const double* u) {
   if (integrals_.empty()) return;
-  const int code = problem_.code->outputs(t, x, problem_.parameters.data(), u, apart_mode(code_->contacts), y_.data());
+  const int code = problem_.code->outputs(t, x, problem_.parameters.data(), u, open_mode(code_->contacts), y_.data());
   if (code != 0) std::fill(y_.begin(), y_.end(), std::numeric_limits<double>::quiet_NaN());  // no constant available
   for (Integral& integral : integrals_) integral.constant = y_[integral.psi];
 }
 
-inline bool ConstraintRows::is_apart(std::size_t k) const {
+inline bool ConstraintRows::is_open(std::size_t k) const {
   for (std::size_t j = 0; j < problem_.contacts.size(); ++j) {
     if (problem_.code->contacts[j].unilateral && problem_.contacts[j].constraint == k)
-      return contact_leaf(mode_, 2 * j + 1) < 0;
+      return contact_sign(mode_, 2 * j + 1) < 0;
   }
   return false;
 }
@@ -143,14 +143,14 @@ inline int ConstraintRows::operator()(double t, const double* x, const double* u
   }
   for (std::size_t k = 0; k < m; ++k) {
     const std::size_t row = k < holonomic_ ? k : k + integrals_.size();
-    const bool apart = is_apart(order_[k]);
-    psi[row] = apart ? 0 : psi_[order_[k]];
-    b[row] = apart ? 0 : b_[order_[k]];
-    for (std::size_t i = 0; i < n_; ++i) A[row + rows * i] = apart ? 0 : A_[order_[k] + m * i];
+    const bool open = is_open(order_[k]);
+    psi[row] = open ? 0 : psi_[order_[k]];
+    b[row] = open ? 0 : b_[order_[k]];
+    for (std::size_t i = 0; i < n_; ++i) A[row + rows * i] = open ? 0 : A_[order_[k] + m * i];
   }
   if (!integrals_.empty() || !slips_.empty()) {
     // Neither integrals nor slips depend on forces.
-    const int code = problem_.code->outputs(t, x, p, u, apart_mode(code_->contacts), y_.data());
+    const int code = problem_.code->outputs(t, x, p, u, open_mode(code_->contacts), y_.data());
     if (code != 0) return code;
     fill_integrals(x, psi, A, b);
     fill_slips(x, psi, A, b);
@@ -219,7 +219,7 @@ inline double ConstraintRows::defect(double t, const double* x) {
   if (constraints(t, x) != 0) return HUGE_VAL;
   double largest = 0;
   for (std::size_t k = 0; k < psi_.size(); ++k) {
-    if (is_apart(k)) continue;
+    if (is_open(k)) continue;
     double defect = psi_[k];
     if (!code.holonomic[k]) {
       defect = b_[k];

@@ -36,18 +36,18 @@ class ContactModes {
   int start_code() const { return start_code_; }
   void watch(std::span<EventFunction> functions) const { switch_->watch(functions); }
   /// Transforms the functions into the monitored ones, and records the slip speeds.
-  void adjust(double* g);
+  void shift_to_watched(double* g);
   /// Called at the start (t, x) of each step.
-  void hold(double t, const double* x);
-  void tolerances(double rtol, double atol) { velocities_.tolerances(rtol, atol); }
+  void update_min_slip(double t, const double* x);
+  void set_tolerances(double rtol, double atol) { velocities_.set_tolerances(rtol, atol); }
   /// Whether slip in two directions changes so much in a step h, relative to its speed, that the step resolves neither
   /// its direction nor its end. `now`: the previous answer; it adds hysteresis.
-  bool slow_slip(double t, const double* x, double h, bool now);
+  bool is_slip_slow(double t, const double* x, double h, bool now);
   /// Handles a crossing of one of the functions and records its events.
-  AtEvent take(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions);
-  std::span<const ModeEvent> told() const { return told_; }
+  EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions);
+  std::span<const ModeEvent> recorded_events() const { return recorded_; }
   /// The outcome, if a contact has ended the run.
-  std::optional<Outcome> ended() const;
+  std::optional<Outcome> end_outcome() const;
   const std::string& detail() const { return switch_->detail; }
 
  private:
@@ -61,17 +61,17 @@ class ContactModes {
     int stick(double t, std::span<double> x, int mode, std::size_t j) const;
     int stop(double& t, std::span<double> x, int mode, std::size_t j) const;
     int slide(double t, std::span<double> x, int mode, std::size_t j) const;
-    double least_slip(std::size_t j) const { return self->velocities_.least_slip(j); }
-    double approach(double t, std::span<const double> x, std::size_t j) const;
-    double still() const { return self->velocities_.still(); }
+    double min_slip_speed(std::size_t j) const { return self->velocities_.min_slip_speed(j); }
+    double gap_rate(double t, std::span<const double> x, std::size_t j) const;
+    double negligible_speed() const { return self->velocities_.negligible_speed(); }
   };
-  struct Met {
+  struct MetContacts {
     std::vector<std::size_t> contacts;
     bool over = true;  // all bounces are lower than the accuracy of the gaps
   };
-  bool falls(double t, std::span<double> x, int mode, std::vector<double>& result);
-  Met meets(double t, std::span<double> x, std::size_t j, double time);
-  void end_bounces(double& t, std::span<double> x, std::size_t j);
+  bool compute_gap_decelerations(double t, std::span<double> x, int mode, std::vector<double>& result);
+  MetContacts contacts_met(double t, std::span<double> x, std::size_t j, double time);
+  void end_bounce_sequence(double& t, std::span<double> x, std::size_t j);
 
   /// Callables for eom::Contacts, with the mode of the contacts as argument.
   struct Rhs {
@@ -105,8 +105,8 @@ class ContactModes {
   Functions functions_;
   Rule rule_;
   std::vector<double> g_, k_, middle_;
-  std::optional<modes::Switch<Rule>> switch_;
-  std::vector<ModeEvent> told_;  // of the last crossing
+  std::optional<modes::ModeSwitch<Rule>> switch_;
+  std::vector<ModeEvent> recorded_;  // of the last crossing
 };
 
 inline ContactModes::ContactModes(const Problem& problem, Model& model, ConstraintRows& rows, Changed changed)
@@ -147,56 +147,56 @@ inline int ContactModes::Motion::slide(double t, std::span<double> x, int mode, 
   if (code == 0) self->changed_(t, before, x);
   return code;
 }
-inline double ContactModes::Motion::approach(double t, std::span<const double> x, std::size_t j) const {
-  return self->velocities_.approach(t, x, self->model_.inputs(t), j);
+inline double ContactModes::Motion::gap_rate(double t, std::span<const double> x, std::size_t j) const {
+  return self->velocities_.gap_rate(t, x, self->model_.inputs(t), j);
 }
 
 inline std::vector<ModeEvent> ContactModes::start(double t, std::span<double> x) {
   const std::vector<Contact>& contacts = problem_.code->contacts;
   std::vector<double> g(rule_.functions());
-  velocities_.forget();
+  velocities_.reset();
   switch_.reset();  // of a previous run: a value that is a force in one mode is a gap in another
   largest_gap_ = 0;
   restitution_.assign(contacts.size(), 0.0);
   start_code_ = 0;
-  if (two_directions_) velocities_.hold(t, x.data(), model_.inputs(t));  // sets the least slip, before it is used
+  if (two_directions_) velocities_.update_min_slip(t, x.data(), model_.inputs(t));  // sets the least slip, before it is used
   std::vector<double> slip(contacts.size(), 0.0);
-  std::array<bool, max_contacts> apart{};
+  std::array<bool, max_contacts> open{};
   int begins = 0;  // unilateral contacts as given by the start, all others sticking
   for (std::size_t j = 0; j < contacts.size(); ++j) {
-    apart[j] = problem_.apart[j];
-    if (apart[j]) begins = with_contact_digit(begins, j, 3);
+    open[j] = problem_.starts_open[j];
+    if (open[j]) begins = with_contact_digit(begins, j, 3);
     const int code = velocities_.restitution(t, x.data(), model_.inputs(t), j, restitution_[j]);
     if (code != 0) start_code_ = code;
-    rule_.restitution(j, restitution_[j]);
+    rule_.set_restitution(j, restitution_[j]);
   }
   if (functions_(t, x.data(), begins, g.data()) == 0) {
     for (std::size_t j = 0; j < contacts.size(); ++j) {
       const double* const value = g.data() + contact_values * j;
       slip[j] = contacts[j].dimensions == 2 ? std::hypot(value[0], value[2]) : std::abs(value[0]);
     }
-    adjust(g.data());
+    shift_to_watched(g.data());
   }
-  const int mode = rule_.start(t, x, std::span<const bool>(apart.data(), contacts.size()));
-  rows_.mode(mode);
+  const int mode = rule_.start(t, x, std::span<const bool>(open.data(), contacts.size()));
+  rows_.set_mode(mode);
   switch_.emplace(rule_.table(), rule_, mode);
-  hold(t, x.data());
-  std::vector<ModeEvent> told;
+  update_min_slip(t, x.data());
+  std::vector<ModeEvent> recorded;
   for (std::size_t j = 0; j < contacts.size(); ++j) {
     const int digit = contact_digit(mode, j);
-    const bool touches = !contacts[j].unilateral || digit < 3;
-    if (contacts[j].sticks && touches && digit % 3 != 0 && slip[j] <= velocities_.still())
-      told.push_back({t, "slip", contacts[j].name, 0, mode});
-    if (!touches && !apart[j]) told.push_back({t, "lose_contact", contacts[j].name, 0, mode});
+    const bool is_closed = !contacts[j].unilateral || digit < 3;
+    if (contacts[j].sticks && is_closed && digit % 3 != 0 && slip[j] <= velocities_.negligible_speed())
+      recorded.push_back({t, "slip", contacts[j].name, 0, mode});
+    if (!is_closed && !open[j]) recorded.push_back({t, "lose_contact", contacts[j].name, 0, mode});
   }
-  return told;
+  return recorded;
 }
 
-inline void ContactModes::hold(double t, const double* x) {
-  if (two_directions_) velocities_.hold(t, x, model_.inputs(t));
+inline void ContactModes::update_min_slip(double t, const double* x) {
+  if (two_directions_) velocities_.update_min_slip(t, x, model_.inputs(t));
 }
 
-inline bool ContactModes::slow_slip(double t, const double* x, double h, bool now) {
+inline bool ContactModes::is_slip_slow(double t, const double* x, double h, bool now) {
   const double steps = now ? 8 : 4;
   bool slow = false, moved = false;
   for (std::size_t j = 0; j < problem_.code->contacts.size() && !slow; ++j) {
@@ -239,7 +239,7 @@ inline int ContactModes::Motion::stop(double& t, std::span<double> x, int mode, 
   // The rate of the slip, from a step in which it changes by a small fraction of itself.
   double h = 1e-6, rate = (moved(h) - speed) / h;
   if (rate < 0) h = -speed / rate / 8, rate = (moved(h) - speed) / h;
-  if (!(rate < 0)) return slips_on;
+  if (!(rate < 0)) return keeps_sliding;
   h = -speed / rate;
   for (std::size_t i = 0; i < x.size(); ++i) middle[i] = x[i] + h / 2 * k[i];
   if (const int code = self->rhs_(t + h / 2, middle.data(), mode, k.data()); code != 0) return code;
@@ -248,20 +248,20 @@ inline int ContactModes::Motion::stop(double& t, std::span<double> x, int mode, 
   return 0;
 }
 
-inline void ContactModes::adjust(double* g) {
+inline void ContactModes::shift_to_watched(double* g) {
   for (std::size_t j = 0; j < problem_.code->contacts.size(); ++j) {
     const double* const value = g + contact_values * j;
     const double slip =
         problem_.code->contacts[j].dimensions == 2 ? std::hypot(value[0], value[2]) : std::abs(value[0]);
-    if (problem_.code->contacts[j].dimensions > 0 && std::isfinite(slip)) velocities_.see_slip(slip);
+    if (problem_.code->contacts[j].dimensions > 0 && std::isfinite(slip)) velocities_.record_slip_speed(slip);
     if (problem_.code->contacts[j].unilateral && contact_digit(mode(), j) >= 3 && std::isfinite(value[3]))
       largest_gap_ = std::max(largest_gap_, value[3]);  // not the values that trial steps reach below the surface
   }
-  rule_.shift(g);
+  rule_.shift_to_watched(g);
 }
 
 /// Computes the deceleration of each gap in `mode`. False if the right-hand side has no value.
-inline bool ContactModes::falls(double t, std::span<double> x, int mode, std::vector<double>& result) {
+inline bool ContactModes::compute_gap_decelerations(double t, std::span<double> x, int mode, std::vector<double>& result) {
   k_.resize(x.size()), middle_.resize(x.size());
   if (rhs_(t, x.data(), mode, k_.data()) != 0) return false;
   constexpr double h = 1e-6;
@@ -270,33 +270,33 @@ inline bool ContactModes::falls(double t, std::span<double> x, int mode, std::ve
   result.assign(problem_.code->contacts.size(), 0.0);
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (!problem_.code->contacts[i].unilateral) continue;
-    result[i] = (motion.approach(t, x, i) - motion.approach(t + h, middle_, i)) / h;
+    result[i] = (motion.gap_rate(t, x, i) - motion.gap_rate(t + h, middle_, i)) / h;
   }
   return true;
 }
 
 /// The other contacts that the last bounces of contact j, over after `time`, either open or reach by then (as in a
 /// corner).
-inline ContactModes::Met ContactModes::meets(double t, std::span<double> x, std::size_t j, double time) {
-  Met result;
+inline ContactModes::MetContacts ContactModes::contacts_met(double t, std::span<double> x, std::size_t j, double time) {
+  MetContacts result;
   const std::vector<Contact>& contacts = problem_.code->contacts;
-  int apart = mode();
+  int open = mode();
   for (std::size_t i = 0; i < contacts.size(); ++i)
-    if (contacts[i].unilateral) apart = with_contact_digit(apart, i, 3);
+    if (contacts[i].unilateral) open = with_contact_digit(open, i, 3);
   std::vector<double> fall, after(x.begin(), x.end());
-  if (!falls(t, x, apart, fall) || functions_(t, x.data(), apart, g_.data()) != 0 ||
+  if (!compute_gap_decelerations(t, x, open, fall) || functions_(t, x.data(), open, g_.data()) != 0 ||
       velocities_.impact(t, after, model_.inputs(t), with_contact_digit(mode(), j, 0), j, restitution_[j]) != 0)
     return result;
   const Motion motion{this};
   const double known = known_gap * largest_gap_;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (i == j || !contacts[i].unilateral) continue;
-    const bool touches = contact_digit(mode(), i) < 3;
-    const double gap = touches ? 0 : g_[contact_values * i + 3], away = motion.approach(t, after, i);
-    const bool alone = touches ? std::abs(away) <= velocities_.still()
+    const bool is_closed = contact_digit(mode(), i) < 3;
+    const double gap = is_closed ? 0 : g_[contact_values * i + 3], away = motion.gap_rate(t, after, i);
+    const bool alone = is_closed ? std::abs(away) <= velocities_.negligible_speed()
                                : gap > known && gap + (away - std::max(fall[i], 0.0) * time / 2) * time > 0;
     if (alone) continue;
-    const double speed = std::max(std::abs(motion.approach(t, x, i)), std::abs(away));
+    const double speed = std::max(std::abs(motion.gap_rate(t, x, i)), std::abs(away));
     result.over = result.over && fall[i] > 0 && speed * speed / (2 * fall[i]) <= known;
     result.contacts.push_back(i);
   }
@@ -306,18 +306,18 @@ inline ContactModes::Met ContactModes::meets(double t, std::span<double> x, std:
 /// If the next bounce is lower than the accuracy of the gap, so are all later ones. They end after the sum of their
 /// times, during which the motion continues as it begins, and the contact stays closed. In a corner the other contacts
 /// close too once their bounces are as low; until then no bounce is skipped.
-inline void ContactModes::end_bounces(double& t, std::span<double> x, std::size_t j) {
+inline void ContactModes::end_bounce_sequence(double& t, std::span<double> x, std::size_t j) {
   const Motion motion{this};
-  const double e = restitution_[j], up = -e * motion.approach(t, x, j);
+  const double e = restitution_[j], up = -e * motion.gap_rate(t, x, j);
   std::vector<double> fall;
-  if (!(up > 0) || !falls(t, x, mode(), fall)) return;
+  if (!(up > 0) || !compute_gap_decelerations(t, x, mode(), fall)) return;
   if (!(fall[j] > 0) || up * up / (2 * fall[j]) > known_gap * largest_gap_) return;
   const double time = 2 * up / (fall[j] * (1 - e));
-  Met met = meets(t, x, j, time);
+  MetContacts met = contacts_met(t, x, j, time);
   if (!met.contacts.empty()) {
     if (!met.over) return;
     met.contacts.push_back(j);
-    rule_.close_next(std::move(met.contacts));
+    rule_.close_together(std::move(met.contacts));
     return;
   }
   // One bounce of the total duration: it ends at height 0, so that the projection does no work.
@@ -328,28 +328,28 @@ inline void ContactModes::end_bounces(double& t, std::span<double> x, std::size_
   const std::size_t n = problem_.code->free.size();
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += time * (k_[i] + (i < n ? time / 2 * k_[n + i] : 0));
   t += time;
-  rule_.restitution(j, 0);
+  rule_.set_restitution(j, 0);
 }
 
-inline AtEvent ContactModes::take(double& t, std::span<double> x, const Crossing& crossing,
+inline EventAction ContactModes::handle_event(double& t, std::span<double> x, const Crossing& crossing,
                                   std::span<EventFunction> functions) {
   const auto before = static_cast<std::ptrdiff_t>(switch_->events.size());
   const std::size_t j = crossing.function / contact_values;
   const bool hits =
       crossing.function % contact_values == 3 && problem_.code->contacts[j].unilateral && contact_digit(mode(), j) >= 3;
   const double e = hits ? restitution_[j] : 0;
-  if (e > 0 && e < most_restitution) end_bounces(t, x, j);
-  const AtEvent answer = switch_->take(t, x, crossing, functions);
-  if (e > 0) rule_.restitution(j, e);
-  rows_.mode(switch_->mode);
-  if (answer == AtEvent::restart) hold(t, x.data());
-  told_.assign(switch_->events.begin() + before, switch_->events.end());
+  if (e > 0 && e < most_restitution) end_bounce_sequence(t, x, j);
+  const EventAction answer = switch_->handle_event(t, x, crossing, functions);
+  if (e > 0) rule_.set_restitution(j, e);
+  rows_.set_mode(switch_->mode);
+  if (answer == EventAction::restart) update_min_slip(t, x.data());
+  recorded_.assign(switch_->events.begin() + before, switch_->events.end());
   return answer;
 }
 
-inline std::optional<Outcome> ContactModes::ended() const {
-  if (!switch_ || switch_->ended == Outcome::done) return std::nullopt;
-  return switch_->ended;
+inline std::optional<Outcome> ContactModes::end_outcome() const {
+  if (!switch_ || switch_->end_outcome == Outcome::done) return std::nullopt;
+  return switch_->end_outcome;
 }
 
 }  // namespace eom::hybrid

@@ -22,12 +22,12 @@
 
 namespace eom::hybrid {
 
-class EndEstimate {
+class EndErrorEstimator {
  public:
   /// first: the run, in the model's own charts; adequacy: for fixed steps, else null; error: the output, which may
   /// already have a warning.
-  EndEstimate(const Problem& problem, const Result& first, const Options& options, StepAdequacy* adequacy,
-              EndError& error)
+  EndErrorEstimator(const Problem& problem, const Result& first, const Options& options, StepAdequacy* adequacy,
+              EndErrorEstimate& error)
       : problem_(problem),
         first_(first),
         options_(options),
@@ -39,31 +39,31 @@ class EndEstimate {
   void run() {
     const auto start = std::chrono::steady_clock::now();
     ErrorEstimate estimate = repeat();
-    if (adequacy_ != nullptr) see_rounding(estimate);
-    if (method_.needs.required.has(Feature::momenta)) see_rounding_of_rates(estimate);
+    if (adequacy_ != nullptr) add_rounding_error(estimate);
+    if (method_.needs.required.has(Feature::momenta)) add_rate_rounding(estimate);
     const std::size_t states = 2 * problem_.n() + problem_.code->integrals;
     error_.states.assign(estimate.x.begin(), estimate.x.begin() + static_cast<std::ptrdiff_t>(states));
     for (const double e : error_.states) error_.max = std::max(error_.max, e);
     if (first_.outcome == Outcome::stopped_by_event) error_.t = stop_;
     error_.rhs_evaluations = estimate.statistics.rhs_evaluations + impulses_.evaluations();
-    if (estimate.outcome != Outcome::done) error_.doubt = {Doubt::Kind::tighter_run, 0, 0, estimate.outcome};
-    if (!same_end_) doubt({Doubt::Kind::event_missed});
-    if (adequacy_ != nullptr) see_unresolved();
+    if (estimate.outcome != Outcome::done) error_.warning = {EstimateWarning::Kind::tighter_run_differs, 0, 0, estimate.outcome};
+    if (!has_same_end_) warn({EstimateWarning::Kind::event_not_reached});
+    if (adequacy_ != nullptr) check_resolution();
     impulses_.finish();
-    see_impulses();
-    if (!estimate.converging) doubt({Doubt::Kind::not_converging});
-    if (method_.needs.required.has(Feature::momenta)) see_frozen();
+    check_impulses();
+    if (!estimate.converging) warn({EstimateWarning::Kind::not_converging});
+    if (method_.needs.required.has(Feature::momenta)) check_frozen_positions();
     error_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
  private:
-  static constexpr double worth_a_note = 1e-3;  // of a velocity
+  static constexpr double warning_threshold = 1e-3;  // of a velocity
 
-  void doubt(const Doubt& doubt) {
-    if (!error_.doubt) error_.doubt = doubt;
+  void warn(const EstimateWarning& warning) {
+    if (!error_.warning) error_.warning = warning;
   }
 
-  void at_least(std::size_t state, double estimate) {
+  void raise_estimate(std::size_t state, double estimate) {
     error_.states[state] = std::max(error_.states[state], estimate);
     error_.max = std::max(error_.max, error_.states[state]);
   }
@@ -80,35 +80,35 @@ class EndEstimate {
   /// Makes the repeated runs. If the steps are fixed, the first one is also compared with the run on the way.
   ErrorEstimate repeat() {
     Integration again(problem_);
-    Parts& parts = again.parts();
+    RunContext& context = again.context();
     bool compared = false;
     stop_ = std::numeric_limits<double>::epsilon() * std::abs(first_.t);
     return estimate_error(method_.order, problem_.t0, first_, options_, [&](const Options& tighter) {
       const Observer compare = [&](const StepView& step) {
-        if (parts.charts.second() != 0) return true;
+        if (context.charts.second_charts() != 0) return true;
         adequacy_->compare(step, [&](const auto& one, auto& two) { align(one, two); });
-        impulses_.see(step, [&](double t, const double* x, double* dx) { return parts.rhs(t, x, dx); });
+        impulses_.observe_step(step, [&](double t, const double* x, double* dx) { return context.rhs(t, x, dx); });
         return true;
       };
       const bool on_the_way = adequacy_ != nullptr && !std::exchange(compared, true);
       Result other = again.run(tighter, on_the_way ? compare : Observer{});
       if (other.outcome == first_.outcome) {
-        other.x = parts.own_state(other.t, other.x);
+        other.x = context.own_state(other.t, other.x);
         align(first_.x, other.x);
       }
-      same_end_ = same_end_ && other.outcome == first_.outcome;
+      has_same_end_ = has_same_end_ && other.outcome == first_.outcome;
       stop_ = std::max(stop_, std::abs(other.t - first_.t));
       return other;
     });
   }
 
   /// For fixed steps: the effect of the last digits of the start on the end.
-  void see_rounding(ErrorEstimate& estimate) {
-    Result other = from_rounded_start(problem_, options_);
+  void add_rounding_error(ErrorEstimate& estimate) {
+    Result other = run_from_perturbed_start(problem_, options_);
     ++estimate.runs;
     estimate.statistics += other.statistics;
     if (other.outcome != first_.outcome) {
-      error_.doubt = {Doubt::Kind::rounded_start, 0, 0, other.outcome};
+      error_.warning = {EstimateWarning::Kind::sensitive_start, 0, 0, other.outcome};
       return;
     }
     align(first_.x, other.x);
@@ -119,8 +119,8 @@ class EndEstimate {
     }
   }
 
-  void see_rounding_of_rates(ErrorEstimate& estimate) const {
-    const std::vector<double> rates = rounding_of_rates(problem_, first_.t, first_.x);
+  void add_rate_rounding(ErrorEstimate& estimate) const {
+    const std::vector<double> rates = rate_rounding(problem_, first_.t, first_.x);
     for (std::size_t i = 0; i < rates.size(); ++i) {
       double& of = estimate.x[problem_.n() + i];
       of = std::max(of, rates[i]);
@@ -129,27 +129,27 @@ class EndEstimate {
 
   /// If fixed steps do not resolve the motion, the end states are not conclusive, and the differences on the way are
   /// the estimate.
-  void see_unresolved() {
+  void check_resolution() {
     if (!(adequacy_->largest() > StepAdequacy::unresolved)) return;
     const std::vector<double>& differences = adequacy_->differences();
-    for (std::size_t i = 0; i < std::min(differences.size(), error_.states.size()); ++i) at_least(i, differences[i]);
-    doubt({Doubt::Kind::unresolved, 0, adequacy_->largest()});
+    for (std::size_t i = 0; i < std::min(differences.size(), error_.states.size()); ++i) raise_estimate(i, differences[i]);
+    warn({EstimateWarning::Kind::unresolved, 0, adequacy_->largest()});
   }
 
   /// If a force turns within one step, its impulse acts at the wrong place. The resulting error of the velocity is part
   /// of the end state but not of the differences between end states.
-  void see_impulses() {
+  void check_impulses() {
     double at = 0;
     const double part = 2 * impulses_.largest(at);  // measured with steps of half the size
     if (!(part > 0)) return;
-    for (std::size_t i = 0; i < error_.states.size(); ++i) at_least(i, part * std::abs(first_.x[i]));
-    if (part < worth_a_note) return;
-    doubt({Doubt::Kind::impulse, at, part});
+    for (std::size_t i = 0; i < error_.states.size(); ++i) raise_estimate(i, part * std::abs(first_.x[i]));
+    if (part < warning_threshold) return;
+    warn({EstimateWarning::Kind::impulse, at, part});
   }
 
   /// If the steps are so short that positions change only in their last digits, rounding satisfies the position
   /// constraints and determines the rates.
-  void see_frozen() {
+  void check_frozen_positions() {
     constexpr double digits = 100 * std::numeric_limits<double>::epsilon();
     const std::size_t n = problem_.n();
     double position = 0, rate = 0;
@@ -159,7 +159,7 @@ class EndEstimate {
     }
     if (problem_.code->active_constraints == 0 || !(rate > 0) || options_.fixed_step * rate >= digits * position)
       return;
-    doubt({Doubt::Kind::frozen, 0, options_.fixed_step});
+    warn({EstimateWarning::Kind::positions_frozen, 0, options_.fixed_step});
   }
 
   const Problem& problem_;
@@ -167,9 +167,9 @@ class EndEstimate {
   const Options& options_;
   const MethodInfo& method_;
   StepAdequacy* adequacy_;
-  EndError& error_;
+  EndErrorEstimate& error_;
   UnresolvedImpulses impulses_;
-  bool same_end_ = true;
+  bool has_same_end_ = true;
   double stop_ = 0;
 };
 

@@ -38,7 +38,7 @@ class EventFunctions {
     if (code != 0 || !contacts_) return code;
     double* const of_contacts = g + first_contact();
     if (const int bad = ContactModes::code_of(of_contacts, first_jump() - first_contact()); bad != 0) return bad;
-    contacts_->adjust(of_contacts);
+    contacts_->shift_to_watched(of_contacts);
     return 0;
   }
 
@@ -57,14 +57,14 @@ class EventFunctions {
   }
 
   /// The interval of a step in which function i first leaves its side although no sample shows it.
-  std::optional<std::pair<double, double>> hidden(const StepView& step, std::size_t i, int side, double from, double to,
+  std::optional<std::pair<double, double>> hidden_crossing(const StepView& step, std::size_t i, int side, double from, double to,
                                                   const Sampling& sampling) const {
     if (charts_of(model_.mode()) != 0) return std::nullopt;
     if (i >= first_contact()) {
       const std::size_t j = (i - first_contact()) / contact_values;
-      const bool apart = j < problem_.code->contacts.size() && problem_.code->contacts[j].unilateral &&
+      const bool open = j < problem_.code->contacts.size() && problem_.code->contacts[j].unilateral &&
                          contact_digit(model_.contact_mode(), j) >= 3;
-      if (!apart) return std::nullopt;
+      if (!open) return std::nullopt;
     }
     return ranges_.first(step, i, side, from, to, sampling);
   }

@@ -42,10 +42,10 @@ class EventRanges {
       open.pop_back();
       StepPlace m{(a.s + b.s) / 2, {}};
       variables_.at(step, sampling, m);
-      expressions::Sloped g = code.range(variables_.box(a, m, b));
+      expressions::SlopedInterval g = code.range(variables_.box(a, m, b));
       const double middle = code.value(m.variables);
       if (std::isfinite(g.slope.width()))
-        g.value = common(g.value, Interval{middle, middle} + g.slope * Interval{-0.5, 0.5});
+        g.value = intersection(g.value, Interval{middle, middle} + g.slope * Interval{-0.5, 0.5});
       if (side < 0) g = {-g.value, -g.slope};
       if (g.value.low > 0) continue;
       const bool start = a.s == from, rises = g.slope.low > 0;

@@ -28,17 +28,17 @@ class ContactVelocities {
   int close(double t, std::span<double> x, const double* u, int mode);
   int stick(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
   int slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
-  double approach(double t, std::span<const double> x, const double* u, std::size_t contact);
+  double gap_rate(double t, std::span<const double> x, const double* u, std::size_t contact);
 
   /// Slip and gap speeds up to this value count as zero: within the tolerances of the run.
-  double still() const;
-  void forget();
+  double negligible_speed() const;
+  void reset();
   /// Tolerances of the steps of the run.
-  void tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
-  void see_slip(double speed) { largest_slip_ = std::max(largest_slip_, speed); }
+  void set_tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
+  void record_slip_speed(double speed) { largest_slip_ = std::max(largest_slip_, speed); }
   /// Called at the start (t, x) of each step: updates the least slip in two directions that counts.
-  void hold(double t, const double* x, const double* u);
-  double least_slip(std::size_t contact) const { return least_[contact]; }
+  void update_min_slip(double t, const double* x, const double* u);
+  double min_slip_speed(std::size_t contact) const { return least_[contact]; }
   std::array<double, 2> slip(double t, const double* x, const double* u, std::size_t contact);
   /// Writes the restitution into e. Returns the code of the outputs.
   int restitution(double t, const double* x, const double* u, std::size_t contact, double& e);
@@ -63,7 +63,7 @@ inline ContactVelocities::ContactVelocities(const Problem& problem, ConstraintRo
       rtol_(problem.rtol),
       atol_(problem.atol) {}
 
-inline double ContactVelocities::still() const {
+inline double ContactVelocities::negligible_speed() const {
   constexpr double rounding = 1e-15, share = 1e-3, roundings = 1e-14;
   return std::max({rounding, atol_, std::max(share * rtol_, roundings) * largest_slip_});
 }
@@ -71,22 +71,22 @@ inline double ContactVelocities::still() const {
 inline int ContactVelocities::restitution(double t, const double* x, const double* u, std::size_t contact, double& e) {
   e = 0;
   if (!problem_.contacts[contact].restitution) return 0;
-  const int mode = apart_mode(problem_.code->contacts);
+  const int mode = open_mode(problem_.code->contacts);
   const int code = problem_.code->outputs(t, x, problem_.parameters.data(), u, mode, y_.data());
   if (code == 0) e = y_[*problem_.contacts[contact].restitution];
   return code;
 }
 
-inline void ContactVelocities::forget() {
+inline void ContactVelocities::reset() {
   largest_slip_ = 0;
-  least_.assign(problem_.contacts.size(), still());
+  least_.assign(problem_.contacts.size(), negligible_speed());
 }
 
 // The slip is accurate to the tolerance of the rates on which it depends.
-inline void ContactVelocities::hold(double t, const double* x, const double* u) {
+inline void ContactVelocities::update_min_slip(double t, const double* x, const double* u) {
   constexpr double tolerances = 30;
   const std::size_t n = problem_.code->free.size();
-  const int mode = apart_mode(problem_.code->contacts);
+  const int mode = open_mode(problem_.code->contacts);
   if (problem_.code->outputs(t, x, problem_.parameters.data(), u, mode, y_.data()) != 0) return;
   for (std::size_t j = 0; j < least_.size(); ++j) {
     if (problem_.contacts[j].slip.size() != 2) continue;
@@ -99,13 +99,13 @@ inline void ContactVelocities::hold(double t, const double* x, const double* u) 
       }
       known = std::max(known, sum);
     }
-    least_[j] = std::max(still(), tolerances * known);
+    least_[j] = std::max(negligible_speed(), tolerances * known);
   }
 }
 
 inline std::array<double, 2> ContactVelocities::slip(double t, const double* x, const double* u, std::size_t contact) {
   std::array<double, 2> w{};
-  const int mode = apart_mode(problem_.code->contacts);
+  const int mode = open_mode(problem_.code->contacts);
   if (problem_.code->outputs(t, x, problem_.parameters.data(), u, mode, y_.data()) != 0) return w;
   for (std::size_t a = 0; a < 2; ++a) w[a] = y_[problem_.contacts[contact].slip[a]];
   return w;
@@ -123,7 +123,7 @@ inline int ContactVelocities::move(double t, std::span<double> x, const double* 
       .code;
 }
 
-inline double ContactVelocities::approach(double t, std::span<const double> x, const double* u, std::size_t contact) {
+inline double ContactVelocities::gap_rate(double t, std::span<const double> x, const double* u, std::size_t contact) {
   return rows_.rate(t, x.data(), u, rows_.row_of(contact));
 }
 
@@ -131,22 +131,22 @@ inline double ContactVelocities::approach(double t, std::span<const double> x, c
 inline int ContactVelocities::impact(double t, std::span<double> x, const double* u, int mode, std::size_t contact,
                                      double restitution) {
   const std::vector<double> before(x.begin(), x.end());
-  const double after = -restitution * approach(t, x, u, contact);
+  const double after = -restitution * gap_rate(t, x, u, contact);
   int part = mode;
   for (std::size_t j = 0; j < problem_.contacts.size(); ++j) {
     if (j != contact && problem_.code->contacts[j].unilateral) part = with_contact_digit(part, j, 3);
   }
   for (std::size_t round = 0; round <= problem_.contacts.size(); ++round) {
     std::copy(before.begin(), before.end(), x.begin());
-    rows_.slide_all(part);
-    rows_.target(rows_.row_of(contact), after);
+    rows_.set_all_sliding(part);
+    rows_.set_target(rows_.row_of(contact), after);
     const int code = move(t, x, u);
     rows_.clear_targets();
     if (code != 0) return code;
     bool more = false;
     for (std::size_t j = 0; j < problem_.contacts.size(); ++j) {
       const bool left_out = contact_digit(part, j) == 3 && contact_digit(mode, j) != 3;
-      if (!problem_.code->contacts[j].unilateral || !left_out || approach(t, x, u, j) >= -still()) continue;
+      if (!problem_.code->contacts[j].unilateral || !left_out || gap_rate(t, x, u, j) >= -negligible_speed()) continue;
       part = with_contact_digit(part, j, 0);
       more = true;
     }
@@ -156,12 +156,12 @@ inline int ContactVelocities::impact(double t, std::span<double> x, const double
 }
 
 inline int ContactVelocities::close(double t, std::span<double> x, const double* u, int mode) {
-  rows_.slide_all(mode);
+  rows_.set_all_sliding(mode);
   return move(t, x, u);
 }
 
 inline int ContactVelocities::stick(double t, std::span<double> x, const double* u, int mode, std::size_t) {
-  rows_.mode(mode);
+  rows_.set_mode(mode);
   return move(t, x, u);
 }
 
@@ -175,9 +175,9 @@ inline int ContactVelocities::slide(double t, std::span<double> x, const double*
   for (const std::size_t phi : problem_.contacts[contact].phi) direction.push_back(-y_[phi]);
   for (const double d : direction) length = std::hypot(length, d);
   if (!(length > 0)) direction.assign(direction.size(), length = 1);
-  rows_.mode(mode);
+  rows_.set_mode(mode);
   for (std::size_t a = 0; a < direction.size(); ++a)
-    rows_.target(rows_.slip_row_of(contact) + a, 2 * least_slip(contact) * direction[a] / length);
+    rows_.set_target(rows_.slip_row_of(contact) + a, 2 * min_slip_speed(contact) * direction[a] / length);
   const int code = move(t, x, u);
   rows_.clear_targets();
   return code;

@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "eom/hybrid/parts.hpp"
+#include "eom/hybrid/run_context.hpp"
 #include "eom/hybrid/segments.hpp"
 
 namespace eom::hybrid {
 
-inline bool any_contact_touches(const Parts& parts) {
-  const std::vector<Contact>& contacts = parts.problem.code->contacts;
+inline bool has_closed_contact(const RunContext& context) {
+  const std::vector<Contact>& contacts = context.problem.code->contacts;
   for (std::size_t j = 0; j < contacts.size(); ++j) {
-    if (!contacts[j].unilateral || contact_digit(parts.model.contact_mode(), j) < 3) return true;
+    if (!contacts[j].unilateral || contact_digit(context.model.contact_mode(), j) < 3) return true;
   }
   return false;
 }
@@ -38,34 +38,34 @@ inline std::string changed_rates(const Problem& problem, const std::vector<doubl
 
 /// Continues from the end of a segment to the start of the next one. Returns the undetermined jump, in which case
 /// `total` is unchanged, or none.
-inline Reason cross_impulse(Parts& parts, const Segment& before, Result& total, const OnEvent& event) {
-  const Problem& problem = parts.problem;
-  const double from = parts.outputs.energy(before.end, total.x.data());
-  const double* at_end = parts.model.inputs(before.end);
+inline Reason cross_impulse(RunContext& context, const Segment& before, Result& total, const OnEvent& event) {
+  const Problem& problem = context.problem;
+  const double from = context.outputs.energy(before.end, total.x.data());
+  const double* at_end = context.model.inputs(before.end);
   const std::vector<double> u(at_end, at_end + std::max<std::size_t>(1, problem.inputs.size()));
   const std::vector<double> x = total.x;
-  const double side = parts.model.side(std::nextafter(before.next, problem.t1));
+  const double side = context.model.set_segment_time(std::nextafter(before.next, problem.t1));
   const Impulse impulse =
-      parts.events.jumps().cross({before.end, x, u.data()}, before.next, parts.model.inputs(before.next), total.x);
+      context.events.jumps().cross_time_kink({before.end, x, u.data()}, before.next, context.model.inputs(before.next), total.x);
   Reason open = impulse.undetermined;
   if (!impulse.velocities && !impulse.potential) return open;
-  if (!open && impulse.velocities && parts.contacts && any_contact_touches(parts))
-    open = {Reason::Kind::support_and_contact, before.next};
+  if (!open && impulse.velocities && context.contacts && has_closed_contact(context))
+    open = {Reason::Kind::support_jump_in_contact, before.next};
   total.t = before.next;
-  parts.hold_sides(total.t, total.x.data(), true);
-  if (!open && impulse.velocities && parts.rows.size() > 0) {
-    const StateProjection::Corrections largest = parts.projection.largest();
-    if (parts.projection(before.next, total.x.data()) != 0) open = {Reason::Kind::support_alone, before.next};
-    parts.projection.undo(largest);
+  context.freeze_branches(total.t, total.x.data(), true);
+  if (!open && impulse.velocities && context.rows.size() > 0) {
+    const StateProjection::Corrections largest = context.projection.largest();
+    if (context.projection(before.next, total.x.data()) != 0) open = {Reason::Kind::support_jump_unsolvable, before.next};
+    context.projection.restore_corrections(largest);
   }
   if (open) {
-    parts.model.side(side);
+    context.model.set_segment_time(side);
     total.x = x;
     total.t = before.end;
     return open;
   }
-  const double done = parts.outputs.energy(before.next, total.x.data()) - from;
-  parts.impulse_work += done;
+  const double done = context.outputs.energy(before.next, total.x.data()) - from;
+  context.impulse_work += done;
   const std::string names = changed_rates(problem, x, total);
   const std::string what = !names.empty()          ? names
                            : !impulse.what.empty() ? impulse.what
@@ -77,15 +77,15 @@ inline Reason cross_impulse(Parts& parts, const Segment& before, Result& total, 
 
 /// Crosses the gap between two segments: counts changed sides of kinks and reports jumps. Returns an undetermined jump,
 /// or none.
-inline Reason begin_segment(Parts& parts, const Segment& before, Result& total, const OnEvent& event) {
-  const int sides = parts.model.mode();
+inline Reason begin_segment(RunContext& context, const Segment& before, Result& total, const OnEvent& event) {
+  const int sides = context.model.mode();
   const bool kink = before.next > before.end;
   Reason open;
-  if (kink && parts.events.jumps().by_time()) open = cross_impulse(parts, before, total, event);
+  if (kink && context.events.jumps().has_time_kinks()) open = cross_impulse(context, before, total, event);
   total.t = before.next;
   if (!kink) return open;
-  parts.hold_sides(total.t, total.x.data(), true);
-  parts.kinks.count(sides);
+  context.freeze_branches(total.t, total.x.data(), true);
+  context.kinks.count_crossings(sides);
   return open;
 }
 

@@ -25,7 +25,7 @@ class Inputs {
     const Signal& signal = signals_[i];
     if (codes_[i].roots() > 0) return codes_[i].value({&t, 1});
     if (signal.times.empty()) return signal.function ? signal.function(t) : 0.0;
-    return in_segment(signal, side);
+    return segment_value(signal, side);
   }
 
  private:

@@ -23,33 +23,33 @@ class Jumps {
  public:
   /// n free coordinates, and the numbers of integrals and inputs. breaks: whether there are kinks in time in the span.
   Jumps(const JumpFunctions& of, std::size_t n, std::size_t integrals, std::size_t inputs,
-        std::span<const double> parameters, bool breaks)
+        std::span<const double> parameters, bool breakpoints)
       : of_(of), n_(n), integrals_(integrals), inputs_(inputs) {
     if (of.functions.empty()) return;
     code_ = expressions::Code(of.values, parameters);
     for (std::size_t k = 0; k < code_.kinks(); ++k) {
-      if (!code_.moves(k)) {
-        by_time_ = by_time_ || breaks;
+      if (!code_.depends_on_state(k)) {
+        has_time_kinks_ = has_time_kinks_ || breakpoints;
         continue;
       }
       if (!code_.jumps(k)) continue;
       const bool known = std::any_of(surfaces_.begin(), surfaces_.end(),
-                                     [&](std::size_t other) { return code_.same_surface(k, other); });
+                                     [&](std::size_t other) { return code_.have_same_surface(k, other); });
       if (!known) surfaces_.push_back(k);
     }
-    if (by_time_) mass_ = expressions::Code(of.mass, parameters);
+    if (has_time_kinks_) mass_ = expressions::Code(of.mass, parameters);
   }
   explicit Jumps(const Problem& problem)
       : Jumps(problem.jumps, problem.n(), problem.code->integrals, problem.inputs.size(), problem.parameters,
-              !problem.breaks.empty()) {}
+              !problem.breakpoints.empty()) {}
 
   /// No function jumps, whatever the motion.
-  bool none() const { return !by_time_ && surfaces_.empty(); }
-  bool by_time() const { return by_time_; }
+  bool none() const { return !has_time_kinks_ && surfaces_.empty(); }
+  bool has_time_kinks() const { return has_time_kinks_; }
 
   /// Crosses a kink in time: changes the velocities in `x` to those after it without impulses of constraints.
-  Impulse cross(const Place& before, double after, const double* u_after, std::span<double> x) const {
-    Impulse told;
+  Impulse cross_time_kink(const MotionPoint& before, double after, const double* u_after, std::span<double> x) const {
+    Impulse impulse;
     const double later = after + far * (std::abs(after) > 0 ? std::abs(after) : 1);
     const auto at = [&](double t, const double* u) -> const std::vector<double>& {
       return variables({t, before.x, u});
@@ -64,23 +64,23 @@ class Jumps {
     Eigen::Index row = 0;
     bool momentum = false;
     for (std::size_t i = 0; i < of_.functions.size(); ++i) {
-      const What what = of_.functions[i].what;
+      const Quantity what = of_.functions[i].what;
       const double by = std::abs(values[1][i] - values[0][i]), on = std::abs(values[2][i] - values[1][i]);
       const bool jump = by > std::max(rounding * size[static_cast<std::size_t>(what)], part_of_far * on) &&
                         by > 1e-14 * std::max(std::abs(values[0][i]), std::abs(values[1][i]));
-      if (what == What::momentum) {
+      if (what == Quantity::momentum) {
         change(row++) = jump ? values[0][i] - values[1][i] : 0;
         momentum = momentum || jump;
       }
       if (!jump) continue;
-      told.potential = told.potential || what == What::potential;
-      told.velocities = told.velocities || what != What::potential;
-      if (what == What::velocity && told.what.empty()) told.what = of_.functions[i].name;
-      if (what != What::psi && what != What::place) continue;
-      told.undetermined = {Reason::Kind::place_jumps, after, values[1][i] - values[0][i], name(i)};
-      return told;
+      impulse.potential = impulse.potential || what == Quantity::potential;
+      impulse.velocities = impulse.velocities || what != Quantity::potential;
+      if (what == Quantity::velocity && impulse.what.empty()) impulse.what = of_.functions[i].name;
+      if (what != Quantity::psi && what != Quantity::place) continue;
+      impulse.undetermined = {Reason::Kind::position_jump, after, values[1][i] - values[0][i], name(i)};
+      return impulse;
     }
-    if (!momentum) return told;
+    if (!momentum) return impulse;
     const auto n = static_cast<Eigen::Index>(n_);
     std::vector<double> M(n_ * n_);
     mass_.values(at(after, u_after), M);
@@ -88,22 +88,22 @@ class Jumps {
         Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(Eigen::Map<const Eigen::MatrixXd>(M.data(), n, n))
             .solve(change);
     for (std::size_t i = 0; i < n_; ++i) x[n_ + i] += moved(static_cast<Eigen::Index>(i));
-    return told;
+    return impulse;
   }
 
   /// Number of surfaces in the state at which a function may jump. Their values are positive on one side.
   std::size_t surfaces() const { return surfaces_.size(); }
-  void values(const Place& at, double* g) const {
+  void values(const MotionPoint& at, double* g) const {
     code_.values(variables(at), {});
     for (std::size_t i = 0; i < surfaces_.size(); ++i) g[i] = code_.surface(surfaces_[i]);
   }
 
   /// The jump at a surface, or none.
-  Reason cross(const Place& at, std::size_t surface) {
+  Reason cross_surface(const MotionPoint& at, std::size_t surface) {
     std::array<std::vector<double>, 2> sides;
     for (const int side : {0, 1}) {
       for (std::size_t k = 0; k < code_.kinks(); ++k) {
-        if (code_.same_surface(k, surfaces_[surface])) code_.hold(k, side == 0 ? -1 : 1);
+        if (code_.have_same_surface(k, surfaces_[surface])) code_.freeze(k, side == 0 ? -1 : 1);
       }
       auto& values = sides[static_cast<std::size_t>(side)];
       values.resize(code_.roots());
@@ -114,20 +114,20 @@ class Jumps {
     for (std::size_t i = 0; i < of_.functions.size(); ++i) {
       const double change = sides[1][i] - sides[0][i];
       if (!(std::abs(change) > rounding * size[static_cast<std::size_t>(of_.functions[i].what)])) continue;
-      return {Reason::Kind::branch_jumps, at.t, change, name(i)};
+      return {Reason::Kind::branch_jump, at.t, change, name(i)};
     }
     return {};
   }
 
  private:
-  using What = JumpFunctions::What;
+  using Quantity = JumpFunctions::Quantity;
   static constexpr std::size_t kinds = 7;
   using Sizes = std::array<double, kinds>;
   static constexpr double rounding = 1e-9;     // of the jumping quantity: smaller differences are ignored
   static constexpr double far = 1e-6;          // of the time: the distance over which a regular change is measured
   static constexpr double part_of_far = 1e-4;  // a change below this fraction of the regular change is not a jump
 
-  const std::vector<double>& variables(const Place& at) const {
+  const std::vector<double>& variables(const MotionPoint& at) const {
     variables_.assign(1, at.t);
     variables_.insert(variables_.end(), at.x.begin(), at.x.begin() + static_cast<std::ptrdiff_t>(2 * n_ + integrals_));
     variables_.insert(variables_.end(), at.u, at.u + inputs_);
@@ -136,11 +136,11 @@ class Jumps {
 
   std::string name(std::size_t function) const {
     switch (of_.functions[function].what) {
-      case What::potential: return "the potential energy";
-      case What::momentum: return "the kinetic energy";
-      case What::psi: return "the place where a constraint holds";
-      case What::row: return "the direction of a constraint";
-      case What::rate: return "the rate of a constraint";
+      case Quantity::potential: return "the potential energy";
+      case Quantity::momentum: return "the kinetic energy";
+      case Quantity::psi: return "the place where a constraint holds";
+      case Quantity::row: return "the direction of a constraint";
+      case Quantity::rate: return "the rate of a constraint";
       default: return of_.functions[function].name;
     }
   }
@@ -149,28 +149,28 @@ class Jumps {
   /// for a constraint.
   Sizes sizes(const std::vector<double>& one, const std::vector<double>& other, std::span<const double> x) const {
     Sizes size{};
-    const auto of = [&](What what) -> double& { return size[static_cast<std::size_t>(what)]; };
+    const auto of = [&](Quantity what) -> double& { return size[static_cast<std::size_t>(what)]; };
     double energy = 0, position = 0, rate = 0;
     for (std::size_t i = 0, k = 0; i < of_.functions.size(); ++i) {
-      const What what = of_.functions[i].what;
+      const Quantity what = of_.functions[i].what;
       of(what) = std::max({of(what), std::abs(one[i]), std::abs(other[i])});
-      if (what == What::momentum) energy += std::abs(one[i] * x[n_ + k++]) / 2;
+      if (what == Quantity::momentum) energy += std::abs(one[i] * x[n_ + k++]) / 2;
     }
     for (std::size_t i = 0; i < n_; ++i) {
       position = std::max(position, std::abs(x[i]));
       rate = std::max(rate, std::abs(x[n_ + i]));
     }
-    of(What::potential) += energy;
-    of(What::place) += position;
-    of(What::velocity) += rate;
-    of(What::psi) += of(What::row) * position;
-    of(What::rate) += of(What::row) * rate;
+    of(Quantity::potential) += energy;
+    of(Quantity::place) += position;
+    of(Quantity::velocity) += rate;
+    of(Quantity::psi) += of(Quantity::row) * position;
+    of(Quantity::rate) += of(Quantity::row) * rate;
     return size;
   }
 
   const JumpFunctions& of_;
   std::size_t n_, integrals_, inputs_;
-  bool by_time_ = false;
+  bool has_time_kinks_ = false;
   expressions::Code code_, mass_;
   std::vector<std::size_t> surfaces_;  // kinks of code_, one per surface
   mutable std::vector<double> variables_;

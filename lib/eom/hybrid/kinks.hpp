@@ -26,7 +26,7 @@ class Kinks {
   }
 
   /// Whether every branch is frozen, so that no surface has to be evaluated.
-  bool all_held() const {
+  bool are_all_frozen() const {
     for (std::size_t k = 0; k < size_.size(); ++k)
       if ((model_.mode() >> bit(k) & 3) == 0) return false;
     return true;
@@ -34,26 +34,26 @@ class Kinks {
 
   /// Freezes each kink on the side of the state. On the surface itself the branch follows the state. anew: at the start
   /// of a segment, or after a change of mode. surfaces: their values.
-  void hold(const double* surfaces, bool anew) {
+  void freeze(const double* surfaces, bool anew) {
     for (std::size_t k = 0; k < size_.size(); ++k) {
       const double g = surfaces[k];
       if (std::isfinite(g)) size_[k] = std::max(size_[k], std::abs(g));
       // A value that is small compared with earlier ones may be rounding, and its side may differ from that found by
       // the event locator.
       if ((model_.mode() >> bit(k) & 3) != 0 || !(std::abs(g) > (anew ? 0 : beyond_rounding * size_[k]))) continue;
-      model_.mode(model_.mode() | 1 << (g > 0 ? bit(k) : bit(k) + 1));
+      model_.set_mode(model_.mode() | 1 << (g > 0 ? bit(k) : bit(k) + 1));
     }
   }
 
-  void cross(double t, std::size_t k, bool up) {
+  void flip_branch(double t, std::size_t k, bool up) {
     ++crossings_[k];
     last_ = k;
     at_ = t;
-    model_.mode((model_.mode() & ~(3 << bit(k))) | 1 << (up ? bit(k) : bit(k) + 1));
+    model_.set_mode((model_.mode() & ~(3 << bit(k))) | 1 << (up ? bit(k) : bit(k) + 1));
   }
 
   /// Counts the changes between two segments, from the mode `before` to the current one.
-  void count(int before) {
+  void count_crossings(int before) {
     for (std::size_t k = 0; k < size_.size(); ++k) {
       const int was = before >> bit(k) & 3, is = model_.mode() >> bit(k) & 3;
       if (was != 0 && is != 0 && was != is) ++crossings_[k];
@@ -62,8 +62,8 @@ class Kinks {
 
   const std::vector<std::size_t>& crossings() const { return crossings_; }
   /// The kink crossed last, and the time; NaN if there was none.
-  std::size_t last() const { return last_; }
-  double at() const { return at_; }
+  std::size_t last_crossed() const { return last_; }
+  double last_crossing_time() const { return at_; }
 
  private:
   static constexpr double beyond_rounding = 1e-6;  // of the largest value so far

@@ -50,11 +50,11 @@ inline void require_functions(const Problem& problem) {
          "the code has constraints, and no functions constraints and mass");
   demand((code.contacts.empty() && code.kinks.empty() && problem.events.empty()) || code.events != nullptr,
          "the code has events, kinks or contacts, and no function events");
-  demand(code.contacts.size() == problem.contacts.size() && code.contacts.size() <= problem.apart.size(),
+  demand(code.contacts.size() == problem.contacts.size() && code.contacts.size() <= problem.starts_open.size(),
          "each contact of the code needs its outputs, and whether it is apart at the start");
   demand(problem.start.size() >= 2 * code.free.size(), "the start has too few values");
   const MethodInfo& method = method_named(problem.solver);
-  const bool moving = std::any_of(problem.inputs.begin(), problem.inputs.end(), moves);
+  const bool moving = std::any_of(problem.inputs.begin(), problem.inputs.end(), is_time_dependent);
   const Eligibility found = eligible(method, features_of(code).set(Feature::moving_inputs, moving));
   if (!found) eom::detail::throw_ineligible("eom::hybrid::run", method, found, "model", "eom/hybrid/code.hpp");
 }

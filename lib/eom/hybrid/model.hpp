@@ -26,16 +26,16 @@ class Model {
         n_(problem.n()),
         inputs_(problem),
         u_(std::max<std::size_t>(1, problem.inputs.size())),
-        inputs_move_(std::any_of(problem.inputs.begin(), problem.inputs.end(), moves)),
+        inputs_move_(std::any_of(problem.inputs.begin(), problem.inputs.end(), is_time_dependent)),
         h_(n_),
         y_(problem.code->output_names.size()) {
     // Before the first segment: a time just inside it, so that a table returns its value right of t0.
-    side_ = std::nextafter(problem.t0, problem.t1);
+    segment_time_ = std::nextafter(problem.t0, problem.t1);
     prepare();
   }
 
   const Code& code() const { return *code_; }  // includes all charts of the run so far
-  void use(const Code& code) {
+  void set_code(const Code& code) {
     if (code_ == &code) return;
     code_ = &code;
     prepare();
@@ -43,17 +43,17 @@ class Model {
 
   int mode() const { return mode_; }
   int contact_mode() const { return mode_ & contact_bits; }
-  void mode(int mode) { mode_ = mode; }
-  void contact_mode(int contacts) { mode_ = (mode_ & ~contact_bits) | contacts; }
-  void charts(int bits) { mode_ = (mode_ & ~chart_bits) | bits; }
-  void forget_sides() { mode_ &= contact_bits | chart_bits; }
+  void set_mode(int mode) { mode_ = mode; }
+  void set_contact_mode(int contacts) { mode_ = (mode_ & ~contact_bits) | contacts; }
+  void set_charts(int bits) { mode_ = (mode_ & ~chart_bits) | bits; }
+  void release_branches() { mode_ &= contact_bits | chart_bits; }
 
   /// A time inside the current segment of the inputs.
-  double side() const { return side_; }
-  double side(double t) { return std::exchange(side_, t); }
+  double segment_time() const { return segment_time_; }
+  double set_segment_time(double t) { return std::exchange(segment_time_, t); }
   /// Valid until the next call.
   const double* inputs(double t) const {
-    for (std::size_t i = 0; i < inputs_.size(); ++i) u_[i] = inputs_(i, t, side_);
+    for (std::size_t i = 0; i < inputs_.size(); ++i) u_[i] = inputs_(i, t, segment_time_);
     return u_.data();
   }
   const double* parameters() const { return problem_.parameters.data(); }
@@ -63,7 +63,7 @@ class Model {
     const int code = motion(t, x, u, mode_, dx);
     // A branch that is frozen beyond its surface may have no value there (a root). The unfrozen expression always has
     // one.
-    return code != 0 && mode_ != live() ? motion(t, x, u, live(), dx) : code;
+    return code != 0 && mode_ != mode_without_branches() ? motion(t, x, u, mode_without_branches(), dx) : code;
   }
 
   /// In a given mode of the contacts.
@@ -77,7 +77,7 @@ class Model {
     if (code_->jac == nullptr) return no_jacobian_here;
     const double* u = inputs(t);
     int code = code_->jac(t, x, parameters(), u, mode_, dfdx, dfdt);
-    if (code != 0 && mode_ != live()) code = code_->jac(t, x, parameters(), u, live(), dfdx, dfdt);
+    if (code != 0 && mode_ != mode_without_branches()) code = code_->jac(t, x, parameters(), u, mode_without_branches(), dfdx, dfdt);
     return code == 0 && inputs_move_ ? no_time_derivative_here : code;
   }
 
@@ -85,7 +85,7 @@ class Model {
   int taylor(double t, const double* x, int order, double* coefficients) {
     const double* u = inputs(t);
     const int code = code_->taylor(t, x, parameters(), u, mode_, order, coefficients);
-    return code != 0 && mode_ != live() ? code_->taylor(t, x, parameters(), u, live(), order, coefficients) : code;
+    return code != 0 && mode_ != mode_without_branches() ? code_->taylor(t, x, parameters(), u, mode_without_branches(), order, coefficients) : code;
   }
 
   int momenta(double t, const double* x, double* p, double* rate) {
@@ -111,7 +111,7 @@ class Model {
   }
 
  private:
-  int live() const { return mode_ & (contact_bits | chart_bits); }
+  int mode_without_branches() const { return mode_ & (contact_bits | chart_bits); }
 
   void prepare() {
     w_.assign(code_->prepare != nullptr ? code_->prepared : 0, 0.0);
@@ -132,7 +132,7 @@ class Model {
   const Code* code_;
   std::size_t n_;
   int mode_ = 0;  // of the current step: contacts, sides of kinks, charts
-  double side_ = 0;
+  double segment_time_ = 0;
   Inputs inputs_;
   mutable std::vector<double> u_;
   bool inputs_move_;       // some input varies between its jumps

@@ -8,12 +8,12 @@
 #include <optional>
 #include <utility>
 
-#include "eom/hybrid/parts.hpp"
+#include "eom/hybrid/run_context.hpp"
 
 namespace eom::hybrid {
 
 struct Motion {
-  Parts& of;
+  RunContext& of;
   bool keeps_constraints = false;  // the method satisfies the constraints itself
 
   int operator()(double t, const double* x, double* dx) const { return of.rhs(t, x, dx); }
@@ -32,17 +32,17 @@ struct Motion {
   }
   std::size_t coordinates() const { return keeps_constraints ? of.problem.n() : 0; }
   std::size_t constraints() const { return of.rows.size(); }
-  std::size_t position_constraints() const { return of.rows.on_positions(); }
+  std::size_t position_constraints() const { return of.rows.position_row_count(); }
 };
 
 struct BoundedEvents {
-  Parts& of;
+  RunContext& of;
   const Sampling& sampling;
 
   int operator()(double t, const double* x, double* g) const { return of.events(t, x, g); }
-  std::optional<std::pair<double, double>> hidden(const StepView& step, std::size_t i, int side, double from,
+  std::optional<std::pair<double, double>> hidden_crossing(const StepView& step, std::size_t i, int side, double from,
                                                   double to) const {
-    return of.events.hidden(step, i, side, from, to, sampling);
+    return of.events.hidden_crossing(step, i, side, from, to, sampling);
   }
 };
 

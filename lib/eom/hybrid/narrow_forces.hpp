@@ -29,14 +29,14 @@ class NarrowForces {
   double longest(const StepView& step, const Sampling& sampling) const {
     const double h = std::abs(step.t1 - step.t0);
     double first = 1;
-    for (const expressions::Code& code : codes_) first = std::min(first, hidden(code, step, sampling).value_or(1));
+    for (const expressions::Code& code : codes_) first = std::min(first, first_hidden_value(code, step, sampling).value_or(1));
     if (first < 1) return first * h;
     if (sampling.series && unsatisfied(step, sampling, 1, 1)) return h / 2;
     return std::numeric_limits<double>::infinity();
   }
 
   /// Start of the first step since the last call for which the bounds were too wide to decide.
-  std::optional<double> unsure() const { return std::exchange(unsure_, std::nullopt); }
+  std::optional<double> unresolved_from() const { return std::exchange(unresolved_from_, std::nullopt); }
 
  private:
   static constexpr std::size_t most_boxes = 200;  // per function and step
@@ -51,7 +51,7 @@ class NarrowForces {
   static double bounded(double v) { return std::clamp(v, -everything, everything); }
 
   /// The first point at which a function has a value outside of the samples and the equations are violated.
-  std::optional<double> hidden(const expressions::Code& code, const StepView& step, const Sampling& sampling) const {
+  std::optional<double> first_hidden_value(const expressions::Code& code, const StepView& step, const Sampling& sampling) const {
     using expressions::Interval;
     const auto value = [&](const StepPlace& at) { return bounded(code.value(at.variables)); };
     std::vector<std::pair<StepPlace, StepPlace>> open(1);
@@ -66,9 +66,9 @@ class NarrowForces {
       StepPlace m{(a.s + b.s) / 2, {}};
       variables_.at(step, sampling, m);
       const double middle = value(m), width = b.s - a.s;
-      expressions::Sloped range = code.range(variables_.box(a, m, b));
+      expressions::SlopedInterval range = code.range(variables_.box(a, m, b));
       if (std::isfinite(range.slope.width()))
-        range.value = common(range.value, Interval{middle, middle} + range.slope * Interval{-0.5, 0.5});
+        range.value = intersection(range.value, Interval{middle, middle} + range.slope * Interval{-0.5, 0.5});
       range.value = {bounded(range.value.low), bounded(range.value.high)};
       const double room =
           std::max({seen.width(), of_values * std::max(std::abs(seen.low), std::abs(seen.high)), nothing});
@@ -87,7 +87,7 @@ class NarrowForces {
       open.emplace_back(m, b);
       open.emplace_back(a, m);
     }
-    if (!open.empty() && !unsure_) unsure_ = step.t0;
+    if (!open.empty() && !unresolved_from_) unresolved_from_ = step.t0;
     return std::nullopt;
   }
 
@@ -122,7 +122,7 @@ class NarrowForces {
   std::size_t n_;
   StepVariables variables_;
   std::vector<expressions::Code> codes_;
-  mutable std::optional<double> unsure_;
+  mutable std::optional<double> unresolved_from_;
   mutable std::vector<double> x_, before_, after_, dx_;
 };
 

@@ -22,7 +22,7 @@ class Outputs {
   /// Returns a code of the compiled function.
   int operator()(double t, const double* x, std::span<double> y) const {
     const int result = model_.outputs(t, x, y.data());
-    if (charts_.second() != 0) own_values(t, x, y);
+    if (charts_.second_charts() != 0) own_values(t, x, y);
     return result;
   }
 
@@ -38,7 +38,7 @@ class Outputs {
     const Code& code = model_.code();
     const std::size_t n = problem_.n();
     own_x_.resize(2 * n + code.integrals);
-    charts_.own(t, x, own_x_);
+    charts_.to_own_charts(t, x, own_x_);
     for (std::size_t i = 0; i < n; ++i) {
       y[2 * code.free[i]] = own_x_[i];
       y[2 * code.free[i] + 1] = own_x_[n + i];

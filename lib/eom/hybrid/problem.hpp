@@ -31,7 +31,7 @@ struct WatchedEvent {
 };
 
 /// The two times between which a kink in time is crossed. They differ by rounding, and each is strictly on one side.
-struct Break {
+struct Breakpoint {
   double before = 0, after = 0;
 };
 
@@ -70,7 +70,7 @@ struct Invariant {
 };
 
 /// A point of a motion: time, state (q, qdot, ...), inputs.
-struct Place {
+struct MotionPoint {
   double t = 0;
   std::span<const double> x;
   const double* u = nullptr;
@@ -87,9 +87,9 @@ struct Impulse {
 /// Functions that may jump at kinks of the equations; compiled code does not provide them. Empty: nothing jumps.
 /// Variables of the expressions: t, free coordinates, their rates, integrals, inputs.
 struct JumpFunctions {
-  enum class What : std::uint8_t { potential, momentum, psi, row, rate, place, velocity };
+  enum class Quantity : std::uint8_t { potential, momentum, psi, row, rate, place, velocity };
   struct Function {
-    What what = What::potential;
+    Quantity what = Quantity::potential;
     std::string name = {};  // of a position or a velocity
   };
   std::vector<Function> functions = {};
@@ -133,7 +133,7 @@ struct Problem {
   std::vector<Signal> inputs;   // one per input of the model
   std::string solver = "auto";  // a method of eom::methods(), or auto
   double rtol = 1e-9, atol = 1e-12;
-  double step = 0;                              // fixed; 0: adaptive steps
+  double fixed_step = 0;                        // 0: adaptive steps
   double max_step = 0;                          // of adaptive steps; 0: no bound
   std::size_t max_steps = Options{}.max_steps;  // accepted and rejected together
 
@@ -145,10 +145,10 @@ struct Problem {
   std::vector<IntegralOutputs> integrals = {};  // preserved by the projection
   std::vector<ContactOutputs> contacts = {};    // per Code::contacts
 
-  std::vector<bool> apart = {};           // per contact: is open at the start
+  std::vector<bool> starts_open = {};           // per contact: is open at the start
   std::vector<WatchedEvent> events = {};  // all events of the model
   TimeFunctions time = {};                // from these a run computes kink times and step bounds; empty: both are given
-  std::vector<Break> breaks = {};         // inside the span, ascending; without the jumps of tables
+  std::vector<Breakpoint> breakpoints = {};         // inside the span, ascending; without the jumps of tables
   std::vector<StepBound> bounds = {};     // on steps, to resolve functions of time
   JumpFunctions jumps = {};
   BoundedFunctions bounded = {};
@@ -161,7 +161,7 @@ struct Problem {
   std::vector<std::string> constraint_names = {};  // of Code::active_constraints
 
   bool estimate = true;  // estimate the error by repeated runs
-  double every = 0;      // interval of rows; 0: no rows
+  double output_interval = 0;  // of rows; 0: no rows
   std::function<void(double t, std::span<const double> y)> row = {};
   std::function<void(double fraction)> progress = {};
   const std::atomic<bool>* interrupt = nullptr;

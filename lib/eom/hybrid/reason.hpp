@@ -17,12 +17,12 @@ struct Reason {
     parameter,            // one is infinite or NaN
     rows,                 // interrupted while rows were written
     range,                // the coordinate `what` leaves its range (lower, upper) between the times from and until
-    place_jumps,          // `what` jumps by `amount`, with an unbounded velocity
-    branch_jumps,         // `what` jumps by `amount`, at a surface in the state
-    support_and_contact,  // the velocity of a support jumps while a contact is closed
-    support_alone,        // the velocity of a support jumps, and no velocities satisfy the constraints after it
-    no_friction,          // the friction law at the contact `what` has no solution
-    many_frictions,       // the friction law at the contact `what` has several solutions
+    position_jump,          // `what` jumps by `amount`, with an unbounded velocity
+    branch_jump,         // `what` jumps by `amount`, at a surface in the state
+    support_jump_in_contact,  // the velocity of a support jumps while a contact is closed
+    support_jump_unsolvable,        // the velocity of a support jumps, and no velocities satisfy the constraints after it
+    friction_no_solution,          // the friction law at the contact `what` has no solution
+    friction_many_solutions,       // the friction law at the contact `what` has several solutions
     surface,              // the motion slides along a surface of the function `what`
     slip,                 // slip starts and ends without progress in time
     chart,                // a step leads beyond the singularity of the coordinates
@@ -50,24 +50,24 @@ inline std::string sentence(const Reason& reason) {
     case Kind::range:
       return reason.what + " leaves its range (" + printed(reason.lower) + ", " + printed(reason.upper) +
              ") between t = " + printed(reason.from) + " and " + printed(reason.until);
-    case Kind::place_jumps:
+    case Kind::position_jump:
       return reason.what + " jumps at t = " + printed(reason.t, 15) + " by " + printed(reason.amount, 6) +
              ", with an unbounded velocity: make it a motion that takes some time";
-    case Kind::branch_jumps:
+    case Kind::branch_jump:
       return reason.what + " jumps by " + printed(reason.amount, 6) + " at t = " + printed(reason.t, 15) +
              ", where a branch of `if` or `sign` changes: the equations do not determine the effect of the impulse; "
              "make "
              "it a steep but smooth step, for example tanh((x - a)/w), or a constraint with unilateral = true";
-    case Kind::support_and_contact:
+    case Kind::support_jump_in_contact:
       return "the velocity of a support jumps" + at +
              " while a contact is closed: the equations do not determine the effect of the impulse; make it a motion "
              "that takes some time";
-    case Kind::support_alone:
+    case Kind::support_jump_unsolvable:
       return "the velocity of a support jumps" + at + ", and no velocities satisfy the constraints after it";
-    case Kind::no_friction:
-    case Kind::many_frictions:
+    case Kind::friction_no_solution:
+    case Kind::friction_many_solutions:
       return "just after t = " + printed(reason.t) + " the law of friction at '" + reason.what + "' has " +
-             (reason.kind == Kind::no_friction ? "no solution" : "several solutions") +
+             (reason.kind == Kind::friction_no_solution ? "no solution" : "several solutions") +
              ": friction changes its own normal force by more than that force (Painleve)";
     case Kind::surface:
       return "the motion slides along a surface of " + reason.what + ": on both sides it leads back to it," + at +

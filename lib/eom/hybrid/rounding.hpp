@@ -71,14 +71,14 @@ inline double sign(std::size_t i) { return i % 2 == 0 ? 1 : -1; }
 /// The end of a run from a perturbed start, in the model's own charts. Every component of the start changes by a unit
 /// in its last place. A variational solver integrates momenta, so these change by a unit in the last place and the
 /// rates by M^-1 times this.
-inline Result from_rounded_start(const Problem& problem, const Options& options) {
+inline Result run_from_perturbed_start(const Problem& problem, const Options& options) {
   const std::size_t n = problem.n();
   Problem moved = problem;
-  moved.every = 0;
+  moved.output_interval = 0;
   moved.row = {};
   moved.progress = {};
   moved.beyond_range = {};
-  const std::vector<double> x = Integration(problem).parts().start;
+  const std::vector<double> x = Integration(problem).context().start;
   Eigen::VectorXd rates = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
   if (requires_feature(problem.solver, Feature::momenta)) {
     const Momenta momenta(problem, problem.t0, x);
@@ -96,13 +96,13 @@ inline Result from_rounded_start(const Problem& problem, const Options& options)
   Integration integration(moved);
   Result end = integration.run(options, {});
   if (end.outcome == Outcome::done || end.outcome == Outcome::stopped_by_event)
-    end.x = integration.parts().own_state(end.t, end.x);
+    end.x = integration.context().own_state(end.t, end.x);
   return end;
 }
 
 /// For a variational solver, whose rates follow from positions and momenta: the change of the rates of a state caused
 /// by the last digits of these and of the accumulated forces.
-inline std::vector<double> rounding_of_rates(const Problem& problem, double t, std::vector<double> x) {
+inline std::vector<double> rate_rounding(const Problem& problem, double t, std::vector<double> x) {
   const std::size_t n = problem.n();
   Momenta momenta(problem, t, x);
   Eigen::VectorXd moved(static_cast<Eigen::Index>(n)), sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));

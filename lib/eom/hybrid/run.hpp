@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "eom/hybrid/balance.hpp"
-#include "eom/hybrid/clock.hpp"
+#include "eom/hybrid/time_analysis.hpp"
 #include "eom/hybrid/estimate.hpp"
 #include "eom/hybrid/integration.hpp"
 #include "eom/hybrid/run_result.hpp"
-#include "eom/hybrid/watch.hpp"
+#include "eom/hybrid/run_monitor.hpp"
 
 namespace eom::hybrid {
 
@@ -26,7 +26,7 @@ inline Options options_of(const Problem& problem) {
   Options options;
   options.rtol = problem.rtol;
   options.atol = problem.atol;
-  options.fixed_step = problem.step;
+  options.fixed_step = problem.fixed_step;
   if (problem.max_step > 0) options.max_step = problem.max_step;
   options.interrupt = problem.interrupt;
   options.max_steps = problem.max_steps;
@@ -48,63 +48,63 @@ inline void require_parameters(const Problem& problem, RunResult& result) {
 inline RunResult run(const Problem& problem) {
   require_functions(problem);
   if (!problem.time.empty()) {
-    const Clock clock = look_at_time(problem.time, problem.parameters, problem.inputs, problem.t0, problem.t1);
+    const TimeAnalysis clock = analyse_time_functions(problem.time, problem.parameters, problem.inputs, problem.t0, problem.t1);
     Problem looked = problem;
     looked.time = {};
-    looked.breaks = clock.breaks;
+    looked.breakpoints = clock.breakpoints;
     looked.bounds = clock.bounds;
     RunResult result = run(looked);
-    result.time_unfollowed_from = clock.unfollowed_from;
+    result.time_unresolved_from = clock.unresolved_from;
     return result;
   }
   const Options options = options_of(problem);
   Integration integration(problem);
-  Parts& parts = integration.parts();
-  RunWatch watch(problem, parts);
+  RunContext& context = integration.context();
+  RunMonitor monitor(problem, context);
   std::optional<StepAdequacy> adequacy;
   const std::vector<Contact>& contacts = problem.code->contacts;
   const bool impacts =
       std::any_of(contacts.begin(), contacts.end(), [](const Contact& contact) { return contact.unilateral; });
   if (problem.estimate && options.fixed_step > 0) adequacy.emplace(impacts);
-  const auto see = [&](const StepView& view) {
-    if (adequacy && parts.charts.second() == 0) adequacy->see(view);
-    return watch.step(view);
+  const auto observe = [&](const StepView& view) {
+    if (adequacy && context.charts.second_charts() == 0) adequacy->observe_step(view);
+    return monitor.step(view);
   };
-  const auto tell = [&](const Event& event, std::span<const double> x) { watch.event(event, x); };
+  const auto record_event = [&](const Event& event, std::span<const double> x) { monitor.event(event, x); };
   const auto begin = std::chrono::steady_clock::now();
   const bool moves = problem.t1 != problem.t0;
-  Result end = moves ? integration.run(options, see, tell) : Result{Outcome::done, problem.t0, parts.start, {}, ""};
+  Result end = moves ? integration.run(options, observe, record_event) : Result{Outcome::done, problem.t0, context.start, {}, ""};
   RunResult result;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   result.reason = integration.reason();
-  watch.finish(end, result.reason);
-  watch.report(result);
+  monitor.finish(end, result.reason);
+  monitor.report(result);
   result.choice = integration.choice();
   result.solver = result.choice.method != nullptr ? result.choice.method : problem.solver;
   result.outcome = end.outcome;
   result.t = end.t;
   result.statistics = end.statistics;
-  result.kink_crossings = parts.kinks.crossings();
-  result.projection_position = parts.projection.largest().position;
-  result.projection_velocity = parts.projection.largest().velocity;
-  result.projection_work = parts.projection.work();
-  result.impulse_work = parts.impulse_work;
+  result.kink_crossings = context.kinks.crossings();
+  result.projection_position = context.projection.largest().position;
+  result.projection_velocity = context.projection.largest().velocity;
+  result.projection_work = context.projection.work();
+  result.impulse_work = context.impulse_work;
   result.outputs.resize(problem.code->output_names.size());
-  parts.outputs(end.t, end.x.data(), result.outputs);
-  result.state = parts.own_state(end.t, end.x);
+  context.outputs(end.t, end.x.data(), result.outputs);
+  result.state = context.own_state(end.t, end.x);
   require_parameters(problem, result);
-  if (const std::optional<double> passed_over = integration.passed_over())
-    result.error.doubt = {Doubt::Kind::passed_over, *passed_over};
-  result.unsure_from = integration.unsure_from();
+  if (const std::optional<double> missed_narrow_force = integration.missed_narrow_force())
+    result.error.warning = {EstimateWarning::Kind::missed_narrow_force, *missed_narrow_force};
+  result.narrow_forces_unresolved_from = integration.narrow_forces_unresolved_from();
   const bool ended = result.ended();
   if (problem.estimate && ended && moves) {
     Result own = end;
     own.x = result.state;
-    EndEstimate(problem, own, options, adequacy ? &*adequacy : nullptr, result.error).run();
+    EndErrorEstimator(problem, own, options, adequacy ? &*adequacy : nullptr, result.error).run();
   }
   if (ended) require_balance(problem, result);
   result.detail = sentence(result.reason);
-  result.error.note = sentence(result.error.doubt);
+  result.error.note = sentence(result.error.warning);
   return result;
 }
 

@@ -15,14 +15,14 @@ namespace eom::hybrid {
 struct FinerSteps {
   double begin, end, step;
 };
-inline constexpr double steps_of_bound = 0.03125;  // of a bound on adaptive steps
+inline constexpr double fixed_step_fraction = 0.03125;  // of a bound on adaptive steps
 
 inline std::vector<FinerSteps> finer_steps(const Problem& problem) {
   std::vector<FinerSteps> result;
   const std::vector<StepBound>& bounds = problem.bounds;
   for (std::size_t k = 0; k < bounds.size(); ++k) {
-    const double step = bounds[k].step * steps_of_bound, end = k + 1 < bounds.size() ? bounds[k + 1].t : problem.t1;
-    if (step < problem.step && end > bounds[k].t) result.push_back({bounds[k].t, end, step});
+    const double step = bounds[k].step * fixed_step_fraction, end = k + 1 < bounds.size() ? bounds[k + 1].t : problem.t1;
+    if (step < problem.fixed_step && end > bounds[k].t) result.push_back({bounds[k].t, end, step});
   }
   return result;
 }
@@ -38,14 +38,14 @@ inline std::vector<Segment> segments(const Problem& problem) {
   const std::vector<FinerSteps> finer = finer_steps(problem);
   for (const Signal& signal : problem.inputs) {
     for (const double t : signal.times) {
-      if (t > problem.t0 && t < problem.t1) result.push_back({t, t, problem.step});
+      if (t > problem.t0 && t < problem.t1) result.push_back({t, t, problem.fixed_step});
     }
   }
-  for (const Break& b : problem.breaks) result.push_back({b.before, b.after, problem.step});
-  if (problem.step > 0) {
+  for (const Breakpoint& b : problem.breakpoints) result.push_back({b.before, b.after, problem.fixed_step});
+  if (problem.fixed_step > 0) {
     for (const auto& [begin, end, step] : finer) {
-      if (begin > problem.t0) result.push_back({begin, begin, problem.step});
-      if (end < problem.t1) result.push_back({end, end, problem.step});
+      if (begin > problem.t0) result.push_back({begin, begin, problem.fixed_step});
+      if (end < problem.t1) result.push_back({end, end, problem.fixed_step});
     }
   }
   std::sort(result.begin(), result.end(), [](const Segment& a, const Segment& b) { return a.end < b.end; });
@@ -58,8 +58,8 @@ inline std::vector<Segment> segments(const Problem& problem) {
       result[kept++] = segment;
   }
   result.resize(kept);
-  result.push_back({problem.t1, problem.t1, problem.step});
-  if (problem.step > 0) {
+  result.push_back({problem.t1, problem.t1, problem.fixed_step});
+  if (problem.fixed_step > 0) {
     double from = problem.t0;
     for (Segment& segment : result) {
       for (const auto& [begin, end, step] : finer) {

@@ -18,14 +18,14 @@ struct Signal {
 };
 
 /// For a table: the value of the segment that contains the time `inside`. 0 if it is not a table.
-inline double in_segment(const Signal& signal, double inside) {
+inline double segment_value(const Signal& signal, double inside) {
   if (signal.times.empty()) return 0;
   const auto after = std::upper_bound(signal.times.begin(), signal.times.end(), inside);
   return signal.values[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - signal.times.begin() - 1))];
 }
 
 /// Whether the input varies between its jumps.
-inline bool moves(const Signal& signal) {
+inline bool is_time_dependent(const Signal& signal) {
   return signal.times.empty() && (signal.expression.empty() ? bool(signal.function) : !signal.expression.constant());
 }
 

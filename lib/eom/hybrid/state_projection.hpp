@@ -18,7 +18,7 @@ namespace eom::hybrid {
 class StateProjection {
  public:
   StateProjection(const Problem& problem, Model& model, ConstraintRows& rows, Outputs& outputs)
-      : model_(model), rows_(rows), outputs_(outputs), projection_(problem.n(), rows.size(), rows.on_positions()) {}
+      : model_(model), rows_(rows), outputs_(outputs), projection_(problem.n(), rows.size(), rows.position_row_count()) {}
 
   /// Returns the code of a callback or of a projection that does not converge. In both cases the state is unchanged.
   int operator()(double t, double* x) {
@@ -51,9 +51,9 @@ class StateProjection {
   const Corrections& largest() const { return largest_; }
   double work() const { return work_; }
   /// Called at the start of a run, and after the projection of the start.
-  void forget() { largest_ = {}, work_ = 0, trials_.clear(); }
+  void reset() { largest_ = {}, work_ = 0, trials_.clear(); }
   /// Restores the corrections `before`: later projections did not belong to steps of the run.
-  void undo(const Corrections& before) { largest_ = before, trials_.clear(); }
+  void restore_corrections(const Corrections& before) { largest_ = before, trials_.clear(); }
 
  private:
   Model& model_;

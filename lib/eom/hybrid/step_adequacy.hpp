@@ -21,7 +21,7 @@ class StepAdequacy {
   explicit StepAdequacy(bool impacts) : impacts_(impacts) {}
 
   /// Records some states of the run itself.
-  void see(const StepView& step);
+  void observe_step(const StepView& step);
 
   /// Compares a run with other steps. `align` may change angles of the second state by whole turns.
   using Align = std::function<void(const std::vector<double>& first, std::vector<double>& other)>;
@@ -36,34 +36,34 @@ class StepAdequacy {
 
  private:
   static constexpr std::size_t most = 729;  // stored states
-  struct Seen {
+  struct Snapshot {
     double t;
     std::vector<double> x;
   };
   bool impacts_;
-  std::vector<Seen> seen_;
+  std::vector<Snapshot> snapshots_;
   std::size_t stride_ = 1, steps_ = 0, next_ = 0;
   std::vector<double> size_, difference_, before_, x_;
 };
 
-inline void StepAdequacy::see(const StepView& step) {
+inline void StepAdequacy::observe_step(const StepView& step) {
   size_.resize(step.x1.size());
   difference_.resize(step.x1.size());
   for (std::size_t i = 0; i < step.x1.size(); ++i)
     size_[i] = std::max({size_[i], std::abs(step.x0[i]), std::abs(step.x1[i])});
   if (++steps_ % stride_ != 0) return;
-  seen_.push_back({step.t1, {step.x1.begin(), step.x1.end()}});
-  if (seen_.size() < most) return;
+  snapshots_.push_back({step.t1, {step.x1.begin(), step.x1.end()}});
+  if (snapshots_.size() < most) return;
   // Every third state is kept. With every second one, a state that changes its sign in each step would show no
   // difference.
-  for (std::size_t i = 0; 3 * i + 2 < seen_.size(); ++i) std::swap(seen_[i], seen_[3 * i + 2]);
-  seen_.resize(seen_.size() / 3);
+  for (std::size_t i = 0; 3 * i + 2 < snapshots_.size(); ++i) std::swap(snapshots_[i], snapshots_[3 * i + 2]);
+  snapshots_.resize(snapshots_.size() / 3);
   stride_ *= 3;
 }
 
 inline void StepAdequacy::compare(const StepView& step, const Align& align) {
-  for (; next_ < seen_.size() && seen_[next_].t <= step.t1; ++next_) {
-    const Seen& seen = seen_[next_];
+  for (; next_ < snapshots_.size() && snapshots_[next_].t <= step.t1; ++next_) {
+    const Snapshot& seen = snapshots_[next_];
     if (seen.t < step.t0) continue;
     x_.resize(step.x1.size());
     if (seen.t == step.t1)

@@ -27,7 +27,7 @@ class UnresolvedImpulses {
   UnresolvedImpulses(std::size_t first, std::size_t count) : first_(first), largest_(count), velocity_(count) {}
 
   /// Costs three evaluations.
-  void see(const StepView& step, const Derivative& f);
+  void observe_step(const StepView& step, const Derivative& f);
   /// To be called after the last step.
   void finish();
   std::size_t evaluations() const { return evaluations_; }
@@ -48,7 +48,7 @@ class UnresolvedImpulses {
   struct Largest {
     double size = 0, t = 0;
   };
-  void look(std::size_t place, const Step* before, const Step* after);
+  void examine_step(std::size_t place, const Step* before, const Step* after);
 
   std::size_t first_, evaluations_ = 0;
   std::array<Step, 2 * around + 1> steps_;  // the last ones, the oldest first
@@ -58,7 +58,7 @@ class UnresolvedImpulses {
   std::vector<double> x_, start_, middle_, end_;
 };
 
-inline void UnresolvedImpulses::see(const StepView& step, const Derivative& f) {
+inline void UnresolvedImpulses::observe_step(const StepView& step, const Derivative& f) {
   const double h = step.t1 - step.t0;
   x_.resize(step.x0.size());
   const auto at = [&](double part, std::vector<double>& dx) {
@@ -80,13 +80,13 @@ inline void UnresolvedImpulses::see(const StepView& step, const Derivative& f) {
   }
   ++seen_;
   if (seen_ >= steps_.size())
-    look(around, &steps_.front(), &steps_.back());
+    examine_step(around, &steps_.front(), &steps_.back());
   else if (seen_ > around)
-    look(steps_.size() - 1 - around, nullptr, &steps_.back());  // one of the first steps: none before it
+    examine_step(steps_.size() - 1 - around, nullptr, &steps_.back());  // one of the first steps: none before it
 }
 
 /// Examines the step at `place` among the last ones.
-inline void UnresolvedImpulses::look(std::size_t place, const Step* before, const Step* after) {
+inline void UnresolvedImpulses::examine_step(std::size_t place, const Step* before, const Step* after) {
   const Step& here = steps_[place];
   for (std::size_t i = 0; i < largest_.size(); ++i) {
     const auto second = [&](const Step* step) {
@@ -100,7 +100,7 @@ inline void UnresolvedImpulses::look(std::size_t place, const Step* before, cons
 inline void UnresolvedImpulses::finish() {
   for (std::size_t back = 0; back < std::min(around, seen_ > around ? seen_ - around : 0); ++back) {
     const std::size_t place = steps_.size() - 1 - back;
-    look(place, &steps_[place - around], nullptr);
+    examine_step(place, &steps_[place - around], nullptr);
   }
 }
 

@@ -42,7 +42,7 @@ class StepVariables {
   }
 
   /// Box between a and b, with m midway: the control points of the parabola through the three, with a margin.
-  const std::vector<expressions::Sloped>& box(const StepPlace& a, const StepPlace& m, const StepPlace& b) const {
+  const std::vector<expressions::SlopedInterval>& box(const StepPlace& a, const StepPlace& m, const StepPlace& b) const {
     constexpr double beyond = 0.05;  // of its width: terms beyond second order within a box
     box_.resize(a.variables.size());
     for (std::size_t v = 0; v < box_.size(); ++v) {
@@ -59,7 +59,7 @@ class StepVariables {
  private:
   std::size_t states_, inputs_;
   mutable std::vector<double> x_;
-  mutable std::vector<expressions::Sloped> box_;
+  mutable std::vector<expressions::SlopedInterval> box_;
 };
 
 /// The variables of a model's expressions at points of its steps.

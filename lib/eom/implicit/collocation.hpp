@@ -39,7 +39,7 @@ class Collocation : public Base, public CollocationHooks {
     if (jacobian_wanted_ || !jacobian_known_)
       if (const int code = new_jacobian(); code != 0) return code;
     if (!fixed_ && !std::exchange(begun_, true))
-      if (const double fast = std::abs(h_) * jacobian_.fastest(f_, f_ + n_); fast > first_step && std::isfinite(fast))
+      if (const double fast = std::abs(h_) * jacobian_.estimate_spectral_radius(f_, f_ + n_); fast > first_step && std::isfinite(fast))
         return fail(first_step / fast), code_no_convergence;
     while (true) {
       if (!factored_ || std::abs(h_ - h_factored_) > same_step * std::abs(h_))
@@ -291,10 +291,10 @@ class Collocation : public Base, public CollocationHooks {
     remaining_ = std::pow(std::max(remaining_, epsilon), 0.8);
     contraction_ = keep_jacobian;
     if (fixed_)
-      units_.see(
+      units_.compute(
           jacobian_, x0_, f0_, h_, 1, [&](double* w) { real_.solve(w); },
           [&](double* w, const auto& size) { method().border_units(w, size); });
-    ToRounding to_rounding;
+    RoundingConvergence convergence;
     double before = 0, ratio_before = 0;
     const int most_here = most_iterations();
     for (newton_ = 1; fixed_ || newton_ <= most_here; ++newton_) {
@@ -303,9 +303,9 @@ class Collocation : public Base, public CollocationHooks {
       const double size = correct();
       if (!std::isfinite(size)) return fail(0.5);
       if (fixed_) {
-        const ToRounding::State state = to_rounding.see(size);
-        contraction_ = to_rounding.contraction();
-        if (state != ToRounding::State::goes_on) return state == ToRounding::State::converged || fail(0.5);
+        const RoundingConvergence::State state = convergence.update(size);
+        contraction_ = convergence.contraction();
+        if (state != RoundingConvergence::State::iterating) return state == RoundingConvergence::State::converged || fail(0.5);
         continue;
       }
       if (newton_ > 1 && newton_ < most_here) {
@@ -327,7 +327,7 @@ class Collocation : public Base, public CollocationHooks {
   /// Computes x1, the quadratures and the filtered estimate.
   int finish() {
     made_with_ = tableau_;
-    if (const int code = method().settle(); code != 0) return code;
+    if (const int code = method().correct_last_stage(); code != 0) return code;
     const std::size_t s = stages();
     if (m_ < n_) {
       if (const int code = evaluate_stages(); code != 0) return code;
@@ -367,7 +367,7 @@ class Collocation : public Base, public CollocationHooks {
   std::size_t extra_, length_;  // number of algebraic unknowns; length of a stage
   Lu<double> real_;
   std::vector<Lu<Complex>> complex_;
-  Units units_;
+  CorrectionUnits units_;
   StageTolerances tolerances_;
   std::vector<double> work_, estimate_, right_;
   std::vector<Complex> pair_;

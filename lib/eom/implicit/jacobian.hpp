@@ -36,7 +36,7 @@ class Jacobian {
 
   /// Estimate of |lambda| of the fastest motion: power iteration on the square, which is exact for a pair of
   /// eigenvalues. v, w: work space, m each.
-  double fastest(double* v, double* w) const {
+  double estimate_spectral_radius(double* v, double* w) const {
     for (std::size_t i = 0; i < m_; ++i) v[i] = 1 + 0.5 * static_cast<double>(i % 3);
     const auto times = [&](const double* from, double* to) {
       double size = 0;

@@ -86,9 +86,9 @@ class Midpoint : public Base {
   /// Solves z = h/2 f(t0 + h/2, x0 + z).
   int iterate() {
     for (std::size_t i = 0; i < n_; ++i) z_[i] = i < m_ ? 0.5 * h_ * f0_[i] : 0;
-    units_.see(
+    units_.compute(
         jacobian_, x0_, f0_, h_, 0.5 * h_, [&](double* w) { lu_.solve(w); }, [](double*, const auto&) {});
-    ToRounding to_rounding;
+    RoundingConvergence convergence;
     while (true) {
       if (const int code = evaluate_middle(); code != 0) return code;
       ++counts_.newton_iterations;
@@ -98,10 +98,10 @@ class Midpoint : public Base {
       const double size = norm(
           [&](std::size_t i) { return right_[i]; },
           [&](std::size_t i) { return units_(i, std::max(std::abs(x0_[i]), std::abs(x0_[i] + z_[i])), right_[i]); });
-      const ToRounding::State state = to_rounding.see(size);
-      jacobian_wanted_ = to_rounding.contraction() > keep_jacobian;
-      if (state == ToRounding::State::converged) return 0;
-      if (state == ToRounding::State::failed || !std::isfinite(size)) return code_no_convergence;
+      const RoundingConvergence::State state = convergence.update(size);
+      jacobian_wanted_ = convergence.contraction() > keep_jacobian;
+      if (state == RoundingConvergence::State::converged) return 0;
+      if (state == RoundingConvergence::State::failed || !std::isfinite(size)) return code_no_convergence;
     }
   }
 
@@ -113,7 +113,7 @@ class Midpoint : public Base {
   }
 
   Lu<double> lu_;
-  Units units_;
+  CorrectionUnits units_;
   std::vector<double> work_;
   double *z_, *f_, *right_;  // half the step's increment, the derivative in the middle, a correction
   double h_factored_ = 0;

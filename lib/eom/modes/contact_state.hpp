@@ -26,7 +26,7 @@ constexpr int with_contact_digit(int mode, std::size_t contact, int digit) {
   return mode + (digit - contact_digit(mode, contact)) * weight;
 }
 /// Sign of leaf 2 contact + order in a mode. Order 0: 1 or -1 sliding, 0 sticking. Order 1: 1 or -1 by digit / 3.
-constexpr int contact_leaf(int mode, std::size_t index) {
+constexpr int contact_sign(int mode, std::size_t index) {
   const int digit = contact_digit(mode, index / 2);
   if (index % 2 == 1) return digit < 3 ? 1 : -1;
   return digit % 3 == 2 ? -1 : digit % 3;
@@ -44,7 +44,7 @@ struct ContactShape {
 /// The mode in which all unilateral contacts are open and all others stick. Forces are determined there. With all
 /// contacts closed they may be undetermined (a ball between a floor and a ceiling), and functions have no values.
 template <class Contacts>
-int apart_mode(const Contacts& contacts) {
+int open_mode(const Contacts& contacts) {
   int mode = 0;
   for (std::size_t j = 0; j < contacts.size(); ++j)
     if (contacts[j].unilateral) mode = with_contact_digit(mode, j, 3);
@@ -52,7 +52,7 @@ int apart_mode(const Contacts& contacts) {
 }
 
 /// Whether a contact of this shape can be in this state.
-constexpr bool contact_allows(const ContactShape& shape, int digit) {
+constexpr bool is_contact_digit(const ContactShape& shape, int digit) {
   const bool high = digit >= 3;
   if (high && shape.unilateral) return digit == 3;
   if (high && !shape.surface) return false;
@@ -67,7 +67,7 @@ inline std::vector<int> contact_modes(const std::vector<ContactShape>& shapes, s
   for (const ContactShape& shape : shapes) {
     std::vector<int> more;
     for (int digit = 0; digit < contact_states; ++digit) {
-      if (!contact_allows(shape, digit)) continue;
+      if (!is_contact_digit(shape, digit)) continue;
       for (const int mode : modes) {
         if (more.size() < most) more.push_back(mode + digit * weight);
       }

@@ -43,22 +43,22 @@ struct ContactMotion {
   int close(double, std::span<double>, int) { return 0; }
   /// Sets the slip at contact j to 0, in `mode`.
   int stick(double, std::span<double>, int, std::size_t) { return 0; }
-  /// Advances from (t, x), where contact j slides slowly, to its stop. Returns slips_on if the slip grows instead.
+  /// Advances from (t, x), where contact j slides slowly, to its stop. Returns keeps_sliding if the slip grows instead.
   int stop(double&, std::span<double>, int, std::size_t) { return 0; }
   /// Sets twice the least slip, in the direction in which contact j yields. In `mode` it still sticks.
   int slide(double, std::span<double>, int, std::size_t) { return 0; }
   /// The least slip in two directions that counts.
-  double least_slip(std::size_t) const { return 1e-12; }
+  double min_slip_speed(std::size_t) const { return 1e-12; }
   /// d(gap)/dt of contact j.
-  double approach(double, std::span<const double>, std::size_t) { return 0; }
+  double gap_rate(double, std::span<const double>, std::size_t) { return 0; }
   /// Slip and gap speeds up to this value count as zero.
-  double still() const { return 1e-12; }
+  double negligible_speed() const { return 1e-12; }
 };
 
 inline constexpr std::size_t contact_values = 5;
 
 /// Returned by ContactMotion::stop in place of a code.
-inline constexpr int slips_on = -1;
+inline constexpr int keeps_sliding = -1;
 
 template <class Rhs, class Functions, class Motion = ContactMotion>
 class Contacts {
@@ -81,17 +81,17 @@ class Contacts {
 
   std::size_t functions() const { return g_.size(); }
   std::span<const Mode> table() const { return table_; }
-  void restitution(std::size_t contact, double e) { contacts_[contact].restitution = e; }
+  void set_restitution(std::size_t contact, double e) { contacts_[contact].restitution = e; }
   /// The next impact closes all of these contacts, whose bounces have ended. Closing one after the other would open the
   /// earlier ones.
-  void close_next(std::vector<std::size_t> contacts) { close_next_ = std::move(contacts); }
+  void close_together(std::vector<std::size_t> contacts) { close_together_ = std::move(contacts); }
 
   /// Transforms the functions into the monitored ones: the slip speed in two directions, minus the least one.
-  void shift(double* g) const {
+  void shift_to_watched(double* g) const {
     for (std::size_t j = 0; j < contacts_.size(); ++j) {
       if (contacts_[j].dimensions != 2) continue;
       double* const value = g + contact_values * j;
-      value[0] = std::hypot(value[0], value[2]) - motion_.least_slip(j);
+      value[0] = std::hypot(value[0], value[2]) - motion_.min_slip_speed(j);
       value[2] = 1;
     }
   }
@@ -99,17 +99,17 @@ class Contacts {
   /// The mode of a start. A contact with slip slides. Without slip it sticks if the static law allows, else it starts
   /// to slide. Unilateral contacts that are open, or open at once, are open. `apart`: per contact; empty: all are
   /// closed. x changes if an impact occurs at the start.
-  int start(double t, std::span<double> x, std::span<const bool> apart = {}) {
+  int start(double t, std::span<double> x, std::span<const bool> open = {}) {
     int mode = 0;
-    for (std::size_t j = 0; j < apart.size(); ++j)
-      if (contacts_[j].unilateral && apart[j]) mode = with_contact_digit(mode, j, 3);
+    for (std::size_t j = 0; j < open.size(); ++j)
+      if (contacts_[j].unilateral && open[j]) mode = with_contact_digit(mode, j, 3);
     for (std::size_t j = 0; j < contacts_.size(); ++j) {
       if (!contacts_[j].unilateral || contact_digit(mode, j) == 3) continue;
-      const double speed = motion_.approach(t, x, j);
-      if (speed > motion_.still()) mode = with_contact_digit(mode, j, 3);
-      if (speed < -motion_.still()) mode = hit(t, x, mode, j).mode;
+      const double speed = motion_.gap_rate(t, x, j);
+      if (speed > motion_.negligible_speed()) mode = with_contact_digit(mode, j, 3);
+      if (speed < -motion_.negligible_speed()) mode = apply_impact(t, x, mode, j).mode;
     }
-    return settled(t, x, mode);
+    return consistent_mode(t, x, mode);
   }
 
   Transition operator()(const ModePoint& point) {
@@ -119,7 +119,7 @@ class Contacts {
       // If friction reaches its limit along the tangent, sliding starts against it, and vice versa.
       case 1: return start_sliding(point, j, contacts_[j].dimensions == 2 ? 1 : 2);
       case 2: return start_sliding(point, j, 1);
-      case 3: return change_hold(point, j);
+      case 3: return change_normal_force(point, j);
       default: break;
     }
     const int code = rhs_(point.t, point.x.data(), point.mode, dx_.data());
@@ -129,7 +129,7 @@ class Contacts {
 
   /// An infinite sequence of ever smaller bounces ends with lasting contact of all contacts that took turns, as in a
   /// corner.
-  std::optional<Transition> settle(const ModePoint& point) {
+  std::optional<Transition> settle_chattering(const ModePoint& point) {
     const std::size_t j = point.crossing.function / contact_values;
     if (point.crossing.function % contact_values != 3 || !contacts_[j].unilateral) return std::nullopt;
     int mode = with_contact_digit(point.mode, j, 0);
@@ -140,10 +140,10 @@ class Contacts {
       mode = with_contact_digit(mode, i, 0);
       alone = false;
     }
-    if (alone) return hit(point.t, point.x, with_contact_digit(point.mode, j, 3), j, false);
+    if (alone) return apply_impact(point.t, point.x, with_contact_digit(point.mode, j, 3), j, false);
     if (const int code = motion_.close(point.t, point.x, mode); code != 0) return failed(point, code);
-    const std::vector<std::string> also = closed_beside(j, point.mode, mode);
-    return Transition{settled(point.t, point.x, mode), "contact", contacts_[j].name, Outcome::done, also};
+    const std::vector<std::string> further_names = newly_closed_names(j, point.mode, mode);
+    return Transition{consistent_mode(point.t, point.x, mode), "contact", contacts_[j].name, Outcome::done, further_names};
   }
 
  private:
@@ -165,7 +165,7 @@ class Contacts {
     const std::string& name = contacts_[j].name;
     if (contacts_[j].dimensions == 2) {
       const int code = motion_.stop(point.t, point.x, point.mode, j);
-      if (code == slips_on) return {point.mode};
+      if (code == keeps_sliding) return {point.mode};
       if (code != 0) return failed(point, code);
     }
     if (const int code = functions_(point.t, point.x.data(), sticking, g_.data()); code != 0)
@@ -189,15 +189,15 @@ class Contacts {
     return {with_contact_digit(point.mode, j, digit - digit % 3 + way), "slip", contacts_[j].name};
   }
 
-  Transition change_hold(const ModePoint& point, std::size_t j) {
+  Transition change_normal_force(const ModePoint& point, std::size_t j) {
     const int digit = contact_digit(point.mode, j);
     if (!contacts_[j].unilateral) return {with_contact_digit(point.mode, j, (digit + 3) % 6)};
-    if (digit == 3) return hit(point.t, point.x, point.mode, j);
+    if (digit == 3) return apply_impact(point.t, point.x, point.mode, j);
     return {with_contact_digit(point.mode, j, 3), "lose_contact", contacts_[j].name};
   }
 
   /// Names of the contacts other than j that are open in one mode and closed in the next.
-  std::vector<std::string> closed_beside(std::size_t j, int before, int after) const {
+  std::vector<std::string> newly_closed_names(std::size_t j, int before, int after) const {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (i != j && contacts_[i].unilateral && contact_digit(before, i) == 3 && contact_digit(after, i) < 3)
@@ -207,54 +207,54 @@ class Contacts {
   }
 
   /// Handles an impact at contact j, which is open. It remains open if it bounces.
-  Transition hit(double t, std::span<double> x, int mode, std::size_t j, bool bounces = true) {
+  Transition apply_impact(double t, std::span<double> x, int mode, std::size_t j, bool bounces = true) {
     hits_[hit_++ % hits_.size()] = j;
-    if (const std::vector<std::size_t> all = std::exchange(close_next_, {}); !all.empty()) {
+    if (const std::vector<std::size_t> all = std::exchange(close_together_, {}); !all.empty()) {
       const std::vector<double> before(x.begin(), x.end());
       int closed = mode;
       for (const std::size_t i : all) closed = with_contact_digit(closed, i, 0);
       if (motion_.close(t, x, closed) == 0)
-        return {settled(t, x, closed), "contact", contacts_[j].name, Outcome::done, closed_beside(j, mode, closed)};
+        return {consistent_mode(t, x, closed), "contact", contacts_[j].name, Outcome::done, newly_closed_names(j, mode, closed)};
       std::copy(before.begin(), before.end(), x.begin());  // more contacts than degrees of freedom
     }
-    const double speed = motion_.approach(t, x, j), e = bounces ? contacts_[j].restitution : 0;
-    const bool away = e > 0 && -speed * e > motion_.still();
+    const double speed = motion_.gap_rate(t, x, j), e = bounces ? contacts_[j].restitution : 0;
+    const bool away = e > 0 && -speed * e > motion_.negligible_speed();
     if (speed < 0) {
       const int code = motion_.impact(t, x, with_contact_digit(mode, j, 0), j, away ? e : 0);
       if (code != 0) return {mode, "", "", outcome_of_abi_code(code)};
     }
     const int after = away ? mode : with_contact_digit(mode, j, 0);
-    return {settled(t, x, after), "contact", contacts_[j].name};
+    return {consistent_mode(t, x, after), "contact", contacts_[j].name};
   }
 
   /// The mode in which the closed contacts of `mode` slide or stick according to the velocities.
-  int settled(double t, std::span<double> x, int mode) {
-    const auto touches = [&](std::size_t j) { return !contacts_[j].unilateral || contact_digit(mode, j) < 3; };
+  int consistent_mode(double t, std::span<double> x, int mode) {
+    const auto is_closed = [&](std::size_t j) { return !contacts_[j].unilateral || contact_digit(mode, j) < 3; };
     const auto evaluate = [&] { return functions_(t, x.data(), mode, g_.data()) == 0; };
     for (std::size_t j = 0; j < contacts_.size(); ++j) {  // contacts that an impact elsewhere has opened
-      if (contacts_[j].unilateral && touches(j) && motion_.approach(t, x, j) > motion_.still())
+      if (contacts_[j].unilateral && is_closed(j) && motion_.gap_rate(t, x, j) > motion_.negligible_speed())
         mode = with_contact_digit(mode, j, 3);
     }
     for (std::size_t j = 0; j < contacts_.size(); ++j) {
-      if (!touches(j) || !contacts_[j].sticks) continue;
+      if (!is_closed(j) || !contacts_[j].sticks) continue;
       const int high = contact_digit(mode, j) / 3 * 3;
       mode = with_contact_digit(mode, j, high);
       if (!evaluate()) return mode;
-      if (speed(g_.data(), j) <= motion_.still()) continue;
+      if (speed(g_.data(), j) <= motion_.negligible_speed()) continue;
       const bool back = contacts_[j].dimensions == 1 && g_[contact_values * j] < 0;
       mode = with_contact_digit(mode, j, high + (back ? 2 : 1));
     }
     // One change may require another. Contacts that do not settle are left to the rule.
     for (std::size_t round = 0; round < 4 * contacts_.size(); ++round) {
       if (!evaluate()) return mode;
-      const int next = better(t, x, mode);
+      const int next = improved_mode(t, x, mode);
       if (next == mode) break;
       mode = next;
     }
     return mode;
   }
 
-  int better(double t, std::span<double> x, int mode) {
+  int improved_mode(double t, std::span<double> x, int mode) {
     for (std::size_t j = 0; j < contacts_.size(); ++j) {
       const int digit = contact_digit(mode, j);
       const double* g = g_.data() + contact_values * j;
@@ -274,8 +274,8 @@ class Contacts {
   void watch_contact(Mode& mode, std::size_t j, int digit) const {
     const Contact& contact = contacts_[j];
     const std::size_t first = contact_values * j;
-    const bool apart = contact.unilateral && digit >= 3;
-    if (contact.sticks && !apart) {
+    const bool open = contact.unilateral && digit >= 3;
+    if (contact.sticks && !open) {
       if (digit % 3 == 0) {
         mode.watched.push_back({first + 1, Direction::down});
         if (contact.dimensions == 1) mode.watched.push_back({first + 2, Direction::down});
@@ -283,9 +283,9 @@ class Contacts {
         mode.watched.push_back({first, digit % 3 == 1 ? Direction::down : Direction::up});
       }
     }
-    if (!apart && contact.dimensions > 0) mode.watched.push_back({first + 4, Direction::down});
+    if (!open && contact.dimensions > 0) mode.watched.push_back({first + 4, Direction::down});
     if (contact.surface || contact.unilateral) mode.watched.push_back({first + 3, Direction::down});
-    const char* state = apart                               ? " is apart"
+    const char* state = open                               ? " is apart"
                         : contact.dimensions == 0           ? " touches"
                         : !contact.sticks || digit % 3 != 0 ? " slides"
                         : contact.rolls                     ? " rolls"
@@ -309,7 +309,7 @@ class Contacts {
   std::array<std::size_t, 8> hits_{no_contact, no_contact, no_contact, no_contact,
                                    no_contact, no_contact, no_contact, no_contact};  // the most recent impacts
   std::size_t hit_ = 0;
-  std::vector<std::size_t> close_next_;
+  std::vector<std::size_t> close_together_;
   Rhs rhs_;
   Functions functions_;
   Motion motion_;

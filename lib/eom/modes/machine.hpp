@@ -9,7 +9,7 @@
 // surface on which a mode is entered is not crossed again before the motion has left it.
 //
 // Chattering (Zeno): transitions with ever shorter intervals, down to 1e-7 of the first one, accumulate at an
-// extrapolated time. If the rule has a member settle(point), it determines the next mode there. Otherwise the run ends
+// extrapolated time. If the rule has a member settle_chattering(point), it determines the next mode there. Otherwise the run ends
 // as step_too_small with that time in `detail`.
 #pragma once
 
@@ -52,7 +52,7 @@ struct Transition {
   int mode = 0;                        // the next one; may be the same
   std::string kind = {}, name = {};    // recorded: "slip", "stick", "contact", ... and whose; empty kind: not recorded
   Outcome outcome = Outcome::done;     // any other one ends the run here: stopped_by_event, friction_no_solution, ...
-  std::vector<std::string> also = {};  // further names recorded with the same kind
+  std::vector<std::string> further_names = {};  // further names recorded with the same kind
 };
 
 struct ModeEvent {
@@ -71,10 +71,10 @@ struct ModeResult : Result {
 namespace modes {
 
 /// Detects accumulation of the times of transitions.
-class Chatter {
+class ChatterDetector {
  public:
   /// Adds a transition. Returns the time at which the transitions accumulate, once their intervals are short enough.
-  std::optional<double> see(double t) {
+  std::optional<double> add_transition(double t) {
     const double interval = std::abs(t - last_), sum = interval + interval_, before = sum_, second_before = sum_before_;
     const double direction = t < last_ ? -1 : 1;
     interval_ = interval;
@@ -92,7 +92,7 @@ class Chatter {
     return t + direction * sum * ratio / (1 - ratio);
   }
 
-  void forget() { *this = Chatter{}; }
+  void reset() { *this = ChatterDetector{}; }
 
  private:
   static constexpr int fewest = 10;
@@ -107,9 +107,9 @@ class Chatter {
 
 /// The current mode of a run, and its transitions at the surfaces that bound it.
 template <class Rule>
-class Switch {
+class ModeSwitch {
  public:
-  Switch(std::span<const Mode> table, Rule& rule, int start) : mode(start), table_(table), rule_(rule) {}
+  ModeSwitch(std::span<const Mode> table, Rule& rule, int start) : mode(start), table_(table), rule_(rule) {}
 
   void watch(std::span<EventFunction> functions) const {
     for (EventFunction& f : functions) f.watch = Watch::off;
@@ -117,50 +117,50 @@ class Switch {
       functions[s.function] = {s.direction, Watch::breaking, s.direction != Direction::any};
   }
 
-  AtEvent take(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions) {
+  EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions) {
     const ModePoint here{t, x, mode, crossing};
     ++transitions;
     std::optional<Transition> next;
-    if (const std::optional<double> at = chatter_.see(t)) {
-      if constexpr (requires { rule_.settle(here); }) {
-        next = rule_.settle(here);
-        chatter_.forget();
+    if (const std::optional<double> at = chatter_.add_transition(t)) {
+      if constexpr (requires { rule_.settle_chattering(here); }) {
+        next = rule_.settle_chattering(here);
+        chatter_.reset();
       }
       if (!next) return end_chattering(*at);
     }
     if (!next) next = rule_(here);
     if (!next->kind.empty()) {
       events.push_back({t, next->kind, next->name, mode, next->mode});
-      for (const std::string& name : next->also) events.push_back({t, next->kind, name, mode, next->mode});
+      for (const std::string& name : next->further_names) events.push_back({t, next->kind, name, mode, next->mode});
     }
     mode = next->mode;
     watch(functions);
-    if (next->outcome == Outcome::done) return AtEvent::restart;
-    ended = next->outcome;
-    return AtEvent::stop;
+    if (next->outcome == Outcome::done) return EventAction::restart;
+    end_outcome = next->outcome;
+    return EventAction::stop;
   }
 
   int mode;
   std::vector<ModeEvent> events;
   std::size_t transitions = 0;
   double accumulation = std::numeric_limits<double>::quiet_NaN();
-  Outcome ended = Outcome::done;  // any other outcome: the run ended here
+  Outcome end_outcome = Outcome::done;  // any other outcome: the run ended here
   std::string detail;
 
  private:
-  AtEvent end_chattering(double at) {
+  EventAction end_chattering(double at) {
     accumulation = at;
-    ended = Outcome::step_too_small;
+    end_outcome = Outcome::step_too_small;
     char text[160];
     std::snprintf(text, sizeof text, "chattering: after %zu changes of mode they accumulate at t = %.17g", transitions,
                   at);
     detail = text;
-    return AtEvent::stop;
+    return EventAction::stop;
   }
 
   std::span<const Mode> table_;
   Rule& rule_;
-  Chatter chatter_;
+  ChatterDetector chatter_;
 };
 
 template <class F, class G, class Rule, class Observer, class AfterStep>
@@ -178,11 +178,11 @@ class Machine {
   }
 
   ModeResult run(std::string_view method, double t0, std::span<const double> x0, double t1, const Options& options) {
-    Result end = run_smooth(method, InMode{rhs_, switch_.mode}, t0, x0, t1, options);
+    Result end = run_smooth(method, ModeRhs{rhs_, switch_.mode}, t0, x0, t1, options);
     ModeResult result;
     static_cast<Result&>(result) = end;
-    if (switch_.ended != Outcome::done) {
-      result.outcome = switch_.ended;
+    if (switch_.end_outcome != Outcome::done) {
+      result.outcome = switch_.end_outcome;
       result.detail = switch_.detail;
     }
     result.mode = switch_.mode;
@@ -194,7 +194,7 @@ class Machine {
 
  private:
   /// The right-hand side in the current mode, with its derivatives.
-  struct InMode {
+  struct ModeRhs {
     F& rhs;
     const int& mode;
     int operator()(double t, const double* x, double* dx) const { return rhs(t, x, mode, dx); }
@@ -211,12 +211,12 @@ class Machine {
     Features features() const { return {Feature::modes}; }
   };
 
-  Result run_smooth(std::string_view method, const InMode& f, double t0, std::span<const double> x0, double t1,
+  Result run_smooth(std::string_view method, const ModeRhs& f, double t0, std::span<const double> x0, double t1,
                     const Options& options) {
     return integrate_events(
         method, f, t0, x0, t1, options,
         [this](double t, const double* x, double* g) { return events_(t, x, switch_.mode, g); }, functions_,
-        [this](const EventPoint& point) { return switch_.take(point.t, point.x, point.crossing, point.functions); },
+        [this](const EventPoint& point) { return switch_.handle_event(point.t, point.x, point.crossing, point.functions); },
         [this](const StepView& view) { return observer_(view, switch_.mode); },
         [this](double t, double* x) { return after_step_(t, x, switch_.mode); });
   }
@@ -224,7 +224,7 @@ class Machine {
   F& rhs_;
   G& events_;
   std::vector<EventFunction> functions_;
-  Switch<Rule> switch_;
+  ModeSwitch<Rule> switch_;
   Observer& observer_;
   AfterStep& after_step_;
 };

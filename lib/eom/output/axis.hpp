@@ -21,7 +21,7 @@ struct Tick {
 };
 
 /// Whether a value can be drawn. Beyond 1e300 differences of values would overflow.
-inline bool showable(double value, bool logarithmic) { return std::abs(value) <= 1e300 && (!logarithmic || value > 0); }
+inline bool is_showable(double value, bool logarithmic) { return std::abs(value) <= 1e300 && (!logarithmic || value > 0); }
 
 struct Axis {
   double low = 0, high = 1;
@@ -36,7 +36,7 @@ struct Axis {
     if (logarithmic) return std::log(value / low) / std::log(high / low);
     return (value - low) / (high - low);
   }
-  bool shows(double value) const { return showable(value, logarithmic); }
+  bool shows(double value) const { return is_showable(value, logarithmic); }
 };
 
 namespace detail {

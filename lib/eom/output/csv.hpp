@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A table of numbers in a file, complete or not at all. In: column names, rows of (t, values). Out: F.csv. Rows are
-// written to F.csv.partial-XXXXXX (whole_file.hpp). finish(outcome) adds the line "# outcome: NAME" and renames the
+// written to F.csv.partial-XXXXXX (atomic_file.hpp). finish(outcome) adds the line "# outcome: NAME" and renames the
 // file to F.csv atomically, also after an interruption or a failure. Without finish the partial file remains, with
 // whole lines (a kill during a write may truncate the last one). Numbers have 17 significant digits, like printf's
 // %.17g in the C locale, in any locale; -0 is written as 0.
@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "eom/outcome.hpp"
-#include "eom/output/whole_file.hpp"
+#include "eom/output/atomic_file.hpp"
 
 namespace eom {
 
@@ -26,8 +26,8 @@ class CsvWriter {
  public:
   /// Opens the file and writes the header line: t, then columns. Throws std::system_error with the path.
   CsvWriter(const std::filesystem::path& path, std::span<const std::string> columns)
-      : CsvWriter(WholeFile(path), columns) {}
-  CsvWriter(WholeFile file, std::span<const std::string> columns)
+      : CsvWriter(AtomicFile(path), columns) {}
+  CsvWriter(AtomicFile file, std::span<const std::string> columns)
       : path_(file.path()), partial_(file.partial()), columns_(columns.size()), file_(std::move(file)) {
     lines_.reserve(2 * flush_size);
     lines_ += 't';
@@ -110,7 +110,7 @@ class CsvWriter {
   std::filesystem::path path_;
   std::string partial_;
   std::size_t columns_;
-  WholeFile file_;
+  AtomicFile file_;
   std::string lines_;
   std::uint64_t rows_ = 0;
   bool finished_ = false;

@@ -108,7 +108,7 @@ class Drawing {
   struct Range {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
-    void see(double value) {
+    void include(double value) {
       low = std::min(low, value);
       high = std::max(high, value);
     }
@@ -121,9 +121,9 @@ class Drawing {
       if (series.x.size() != series.y.size())
         throw std::invalid_argument("svg plot: series '" + series.name + "' has x and y of different lengths");
       for (std::size_t i = 0; i < series.x.size(); ++i) {
-        if (!showable(series.x[i], plot_.log_x) || !showable(series.y[i], plot_.log_y)) continue;
-        x.see(series.x[i]);
-        y.see(series.y[i]);
+        if (!is_showable(series.x[i], plot_.log_x) || !is_showable(series.y[i], plot_.log_y)) continue;
+        x.include(series.x[i]);
+        y.include(series.y[i]);
       }
     }
     if (plot_.equal_scales && !plot_.log_x && !plot_.log_y && x.low <= x.high) equalise(x, y);

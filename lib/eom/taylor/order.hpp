@@ -16,7 +16,7 @@
 namespace eom::taylor {
 
 /// The last terms of a series.
-struct Measured {
+struct SeriesMeasure {
   int order = 0;                // 0: not computed
   double last = 0, before = 0;  // log2 of the last two terms at h = 1, including their effect on the error
 };
@@ -24,27 +24,27 @@ struct Measured {
 inline constexpr double aim = 0.5;  // of the tolerance that a step may use
 
 /// Error of a step h: 1 is just allowed.
-inline double error_of(const Measured& series, double h) {
+inline double error_of(const SeriesMeasure& series, double h) {
   const double log2_h = std::log2(std::abs(h));
   return std::exp2(std::max(series.last + series.order * log2_h, series.before + (series.order - 1) * log2_h));
 }
 
 /// log2 of the step at which the last terms reach their share of the tolerance.
-inline double log2_length(const Measured& series) {
+inline double log2_length(const SeriesMeasure& series) {
   constexpr double log2_aim = -1;
   return -std::max((series.last - log2_aim) / series.order, (series.before - log2_aim) / (series.order - 1));
 }
-inline double length(const Measured& series) {
+inline double length(const SeriesMeasure& series) {
   return std::min(std::exp2(log2_length(series)), std::numeric_limits<double>::max());
 }
-inline double after_rejected(const Measured& series, double h, double error) {
+inline double after_rejected(const SeriesMeasure& series, double h, double error) {
   return h * std::clamp(std::pow(aim / error, 1.0 / series.order), 0.1, 0.95);
 }
 inline double after_failed(double h) { return 0.25 * h; }
 
-class Order {
+class OrderControl {
  public:
-  Order(std::size_t components, double rtol, double atol, int highest)
+  OrderControl(std::size_t components, double rtol, double atol, int highest)
       : components_(components), rtol_(rtol), atol_(atol), highest_(highest) {}
 
   int highest() const { return highest_; }
@@ -68,16 +68,16 @@ class Order {
 
   /// Measures the last terms of a series.
   template <class Term, class Weight>
-  void measure(Measured& series, const Term& term, const Weight& weight) const {
+  void measure(SeriesMeasure& series, const Term& term, const Weight& weight) const {
     series.last = tail + size_of_term(series.order, term, weight);
     series.before = 2 * tail + size_of_term(series.order - 1, term, weight);
   }
   /// The change of the next order; an order p costs about (p + 6)^2.
   template <class Term, class Weight>
-  int trend(const Measured& series, const Term& term, const Weight& weight) const {
+  int trend(const SeriesMeasure& series, const Term& term, const Weight& weight) const {
     const int p = series.order;
     if (p < lowest_order + 2) return 1;
-    Measured lower{p - 2};
+    SeriesMeasure lower{p - 2};
     measure(lower, term, weight);
     const double gain = log2_length(series) - log2_length(lower) - 2 * std::log2((p + overhead) / (p - 2 + overhead));
     return gain > 1e-3 ? 1 : gain < -1e-3 ? -1 : 0;
@@ -87,7 +87,7 @@ class Order {
   /// side jumps, or changes faster than the series resolves (dry friction in a plane near zero slip), neither the
   /// coefficients nor their size show it.
   template <class Term, class Weight, class Slope>
-  bool goes_on(int order, double h, const Term& term, const Weight& weight, const Slope& f1) const {
+  bool matches_derivative(int order, double h, const Term& term, const Weight& weight, const Slope& f1) const {
     double off = 0, size = 0;
     for (std::size_t i = 0; i < components_; ++i) {
       double slope = order * term(i, order);

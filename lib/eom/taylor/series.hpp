@@ -29,7 +29,7 @@ inline constexpr Refusal refusals[] = {
     {Feature::charts, "its series is that of the model's own coordinates"}};
 
 class Series : public StepEnds {
-  struct At : Measured {
+  struct At : SeriesMeasure {
     double* c = nullptr;
   };
 
@@ -82,9 +82,9 @@ class Series : public StepEnds {
   int evaluate_end() {
     if (fixed_) return evaluate(t1_, x1_, f1_);
     const int code = expand(t1_, x1_, f1_, there_, next_order());
-    const bool goes_on = code != 0 || control_.goes_on(here_.order, h_, terms_of(here_), weights(),
+    const bool matches_derivative = code != 0 || control_.matches_derivative(here_.order, h_, terms_of(here_), weights(),
                                                        [this](std::size_t i) { return f1_[i]; });
-    return goes_on ? code : code_jump;
+    return matches_derivative ? code : code_jump;
   }
 
   double first_step() { return length(here_); }
@@ -200,7 +200,7 @@ class Series : public StepEnds {
   double* x1_node() { return f1_; }  // free until the end is evaluated
 
   std::size_t s_, error_;
-  Order control_;
+  OrderControl control_;
   int highest_, order_;
   bool order_is_given_;
   int trend_ = 0;

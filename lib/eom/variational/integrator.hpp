@@ -62,7 +62,7 @@ class Integrator : public implicit::Base {
   static constexpr bool error_uses_end = false;
   static constexpr Needs needs{.required = {Feature::momenta},
                                .refuses = refusals,
-                               .instead = "midpoint, which is symplectic as well",
+                               .alternative = "midpoint, which is symplectic as well",
                                .keeps_constraints = true};
 
   /// Throws std::invalid_argument if the state does not match the system.

@@ -44,7 +44,7 @@ class Drift {
   explicit Drift(std::string name) : name_(std::move(name)) {}
 
   /// Adds a value, in order of time; the first one is the initial value. magnitude: size of the terms whose sum it is.
-  void see(double value, double magnitude = 0) {
+  void observe(double value, double magnitude = 0) {
     if (!started_) initial_ = value;
     started_ = true;
     scale_ = std::max({scale_, std::abs(initial_), std::abs(magnitude)});
@@ -68,7 +68,7 @@ class Drift {
 class PowerBalance {
  public:
   /// Adds values, in order of time. energy_magnitude: for example T + |U|, if E = T + U cancels.
-  void see(double energy, double work, double energy_magnitude = 0) {
+  void observe(double energy, double work, double energy_magnitude = 0) {
     if (!started_) offset_ = energy - work;
     started_ = true;
     scale_ = std::max({scale_, std::abs(energy), std::abs(work), std::abs(energy_magnitude)});

@@ -13,26 +13,26 @@
 #include <utility>
 #include <vector>
 
-#include "eom/hybrid/parts.hpp"
+#include "eom/hybrid/run_context.hpp"
 #include "eom/hybrid/run_result.hpp"
 #include "eom/watch/drift.hpp"
 
 namespace eom::hybrid {
 
 /// Writes a row at multiples of the interval, at recorded events, and at the end.
-class Rows {
+class RowWriter {
  public:
-  Rows(const Problem& problem, Parts& parts)
-      : problem_(problem), parts_(parts), y_(problem.code->output_names.size()), between_(problem.states()) {}
+  RowWriter(const Problem& problem, RunContext& context)
+      : problem_(problem), context_(context), y_(problem.code->output_names.size()), between_(problem.states()) {}
 
-  bool any() const { return problem_.every > 0; }
+  bool any() const { return problem_.output_interval > 0; }
 
   /// Writes the rows of a step. Returns the time of the last row if the run was interrupted meanwhile and ends there.
-  std::optional<double> within(const StepView& view) {
+  std::optional<double> write_until(const StepView& view) {
     // Multiples of the interval are counted, so that the grid does not drift. A last sliver belongs to the end.
     while (true) {
-      const double t = problem_.t0 + static_cast<double>(next_) * problem_.every;
-      of_events(std::min(t, view.t1));
+      const double t = problem_.t0 + static_cast<double>(next_) * problem_.output_interval;
+      write_event_rows(std::min(t, view.t1));
       if (t > view.t1 || t > problem_.t1) return std::nullopt;
       if (t == last_) {
         // the row of an event has this time
@@ -52,7 +52,7 @@ class Rows {
 
   void row(double t, const double* x) {
     if (!any() || !problem_.row) return;
-    parts_.outputs(t, x, y_);
+    context_.outputs(t, x, y_);
     problem_.row(t, y_);
     last_ = t;
   }
@@ -60,7 +60,7 @@ class Rows {
   const std::vector<double>& last_state() const { return between_; }  // at an interruption
 
  private:
-  void of_events(double until) {
+  void write_event_rows(double until) {
     std::size_t written = 0;
     for (; written < pending_.size() && pending_[written].first <= until; ++written) {
       if (pending_[written].first != last_) row(pending_[written].first, pending_[written].second.data());
@@ -69,37 +69,37 @@ class Rows {
   }
 
   const Problem& problem_;
-  Parts& parts_;
+  RunContext& context_;
   std::vector<double> y_, between_;
   std::vector<std::pair<double, std::vector<double>>> pending_;  // of the current step
   std::uint64_t next_ = 1;
   double last_ = std::numeric_limits<double>::quiet_NaN();
 };
 
-class RunWatch {
+class RunMonitor {
  public:
-  RunWatch(const Problem& problem, Parts& parts)
+  RunMonitor(const Problem& problem, RunContext& context)
       : problem_(problem),
-        parts_(parts),
-        rows_(problem, parts),
+        context_(context),
+        rows_(problem, context),
         y_(problem.code->output_names.size()),
         last_(problem.invariants.size()),
         shift_(problem.invariants.size()) {
     for (const Invariant& invariant : problem.invariants) drifts_.emplace_back(invariant.name);
-    const std::vector<double> x = parts.start;
-    see(problem.t0, x.data());
+    const std::vector<double> x = context.start;
+    observe(problem.t0, x.data());
     rows_.row(problem.t0, x.data());
   }
 
   bool step(const StepView& view) {
-    see(view.t1, view.x1.data());
-    if (left_range(view)) {
-      ends_at(view.t0, view.x0);
+    observe(view.t1, view.x1.data());
+    if (has_left_range(view)) {
+      set_end(view.t0, view.x0);
       return false;
     }
-    if (const std::optional<double> t = rows_.any() ? rows_.within(view) : std::nullopt) {
+    if (const std::optional<double> t = rows_.any() ? rows_.write_until(view) : std::nullopt) {
       interrupted_ = true;
-      ends_at(*t, rows_.last_state());
+      set_end(*t, rows_.last_state());
       return false;
     }
     if (problem_.progress) problem_.progress((view.t1 - problem_.t0) / (problem_.t1 - problem_.t0));
@@ -142,46 +142,46 @@ class RunWatch {
   }
 
  private:
-  void ends_at(double t, std::span<const double> x) {
+  void set_end(double t, std::span<const double> x) {
     end_t_ = t;
     end_x_.assign(x.begin(), x.end());
   }
 
-  void see(double t, const double* x) {
-    parts_.outputs(t, x, y_);
+  void observe(double t, const double* x) {
+    context_.outputs(t, x, y_);
     const double magnitude = std::abs(y_[problem_.kinetic]) + std::abs(y_[problem_.potential]);
-    const std::span<const std::uint32_t> own = parts_.charts.own_outputs();
+    const std::span<const std::uint32_t> own = context_.charts.own_outputs();
     for (std::size_t i = 0; i < drifts_.size(); ++i) {
       const Invariant& invariant = problem_.invariants[i];
       // Near the singularity of the own chart its formulas are inaccurate.
       if (std::find(own.begin(), own.end(), invariant.output) != own.end()) continue;
       const double terms = invariant.magnitude ? y_[*invariant.magnitude] : 0;
       last_[i] = y_[invariant.output];
-      drifts_[i].see(y_[invariant.output] - shift_[i], invariant.output == problem_.energy ? magnitude : terms);
+      drifts_[i].observe(y_[invariant.output] - shift_[i], invariant.output == problem_.energy ? magnitude : terms);
     }
     const double work = problem_.power ? x[2 * problem_.n() + problem_.code->integrals] : 0;
-    balance_.see(y_[problem_.energy] - parts_.projection.work() - parts_.impulse_work, work, magnitude);
-    defect_ = std::max(defect_, parts_.constraint_defect(t, x));
+    balance_.observe(y_[problem_.energy] - context_.projection.work() - context_.impulse_work, work, magnitude);
+    defect_ = std::max(defect_, context_.constraint_defect(t, x));
     for (const std::size_t i : problem_.redundant) defect_ = std::max(defect_, std::abs(y_[i]));
   }
 
   // An energy is conserved only between the impulses of supports; momenta are conserved through them.
   void shift_invariants(double t, const double* x) {
-    parts_.outputs(t, x, y_);
+    context_.outputs(t, x, y_);
     for (std::size_t i = 0; i < drifts_.size(); ++i) {
       if (problem_.invariants[i].energy) shift_[i] += y_[problem_.invariants[i].output] - last_[i];
     }
   }
 
   // The outputs begin with every coordinate, also eliminated ones, followed by its rate.
-  bool left_range(const StepView& view) {
+  bool has_left_range(const StepView& view) {
     for (std::size_t i = 0; i < problem_.ranges.size(); ++i) {
       const Range& range = problem_.ranges[i];
       const double q = y_[2 * i];
-      if (parts_.charts.has_exchanged(static_cast<std::uint32_t>(i))) continue;
+      if (context_.charts.has_exchanged(static_cast<std::uint32_t>(i))) continue;
       if (q > range.lower && q < range.upper) continue;
       if (std::find(beyond_.begin(), beyond_.end(), i) != beyond_.end()) continue;
-      if (problem_.beyond_range && parts_.charts.second() == 0 &&
+      if (problem_.beyond_range && context_.charts.second_charts() == 0 &&
           problem_.beyond_range(static_cast<std::uint32_t>(i), view.t1, view.x1)) {
         beyond_.push_back(i);
         continue;
@@ -194,8 +194,8 @@ class RunWatch {
   }
 
   const Problem& problem_;
-  Parts& parts_;
-  Rows rows_;
+  RunContext& context_;
+  RowWriter rows_;
   std::vector<double> y_;
   std::vector<Drift> drifts_;
   std::vector<double> last_, shift_;  // of invariants: value at the end of the last step; change by impulses

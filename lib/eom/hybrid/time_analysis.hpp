@@ -21,15 +21,15 @@
 
 namespace eom::hybrid {
 
-struct Clock {
-  std::vector<Break> breaks;                   // inside the span, ascending; without the jumps of tables
+struct TimeAnalysis {
+  std::vector<Breakpoint> breakpoints;                   // inside the span, ascending; without the jumps of tables
   std::vector<StepBound> bounds;               // empty: no function is narrow compared with the span
-  std::optional<double> unfollowed_from = {};  // from here on a condition on time changes too often to be resolved
+  std::optional<double> unresolved_from = {};  // from here on a condition on time changes too often to be resolved
 };
 
-class ClockSearch {
+class TimeAnalyser {
  public:
-  ClockSearch(const TimeFunctions& functions, std::span<const double> parameters, const std::vector<Signal>& inputs,
+  TimeAnalyser(const TimeFunctions& functions, std::span<const double> parameters, const std::vector<Signal>& inputs,
               double t0, double t1)
       : functions_(functions),
         parameters_(parameters),
@@ -39,26 +39,26 @@ class ClockSearch {
         at_(1 + inputs.size()),
         box_(1 + inputs.size()) {}
 
-  Clock run() {
+  TimeAnalysis run() {
     if (functions_.empty()) return {};
     for (const Signal& input : inputs_) {
       for (const double t : input.times) {
         if (t > t0_ && t < t1_) cuts_.push_back({t, t});
       }
     }
-    tidy(cuts_);
-    for (const expressions::Table& surface : functions_.surfaces) find_kink(surface);
-    for (const expressions::Table& term : functions_.terms) bound(expressions::Code(term, parameters_));
+    merge_overlapping(cuts_);
+    for (const expressions::Table& surface : functions_.surfaces) find_kinks(surface);
+    for (const expressions::Table& term : functions_.terms) bound_steps(expressions::Code(term, parameters_));
     const auto narrow =
         std::min_element(bounds_.begin(), bounds_.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
     if (narrow == bounds_.end() || narrow->step >= (t1_ - t0_) / 2) bounds_.clear();
-    std::erase_if(cuts_, [&](const Break& b) { return b.before == b.after; });
-    return {std::move(cuts_), std::move(bounds_), unfollowed_from_};
+    std::erase_if(cuts_, [&](const Breakpoint& b) { return b.before == b.after; });
+    return {std::move(cuts_), std::move(bounds_), unresolved_from_};
   }
 
  private:
   using Code = expressions::Code;
-  using Sloped = expressions::Sloped;
+  using SlopedInterval = expressions::SlopedInterval;
   static constexpr std::size_t most_boxes = 100'000;  // in one root search
   static constexpr std::size_t most_breaks = 20'000;
   static constexpr std::size_t most_cells = 2'000;  // for one smooth function
@@ -72,54 +72,54 @@ class ClockSearch {
     bool operator<(const Cell& other) const { return unresolved < other.unresolved; }
   };
 
-  static void tidy(std::vector<Break>& breaks) {
-    std::sort(breaks.begin(), breaks.end(), [](const Break& a, const Break& b) { return a.before < b.before; });
+  static void merge_overlapping(std::vector<Breakpoint>& breakpoints) {
+    std::sort(breakpoints.begin(), breakpoints.end(), [](const Breakpoint& a, const Breakpoint& b) { return a.before < b.before; });
     std::size_t kept = 0;
-    for (const Break& b : breaks) {
-      if (kept > 0 && b.before <= breaks[kept - 1].after)
-        breaks[kept - 1].after = std::max(breaks[kept - 1].after, b.after);
+    for (const Breakpoint& b : breakpoints) {
+      if (kept > 0 && b.before <= breakpoints[kept - 1].after)
+        breakpoints[kept - 1].after = std::max(breakpoints[kept - 1].after, b.after);
       else
-        breaks[kept++] = b;
+        breakpoints[kept++] = b;
     }
-    breaks.resize(kept);
+    breakpoints.resize(kept);
   }
 
   /// Visits the pieces between the cuts. Branches of nested kinks are those at the middle of the piece.
-  template <class See>
-  void for_each_piece(See&& see) const {
+  template <class Visit>
+  void for_each_piece(Visit&& visit) const {
     double from = t0_;
-    for (const Break& cut : cuts_) {
-      if (cut.before > from) see(from, cut.before);
+    for (const Breakpoint& cut : cuts_) {
+      if (cut.before > from) visit(from, cut.before);
       from = std::max(from, cut.after);
     }
-    if (t1_ > from) see(from, t1_);
+    if (t1_ > from) visit(from, t1_);
   }
 
   const std::vector<double>& at(double t, double within) {
     at_[0] = t;
-    for (std::size_t i = 0; i < inputs_.size(); ++i) at_[1 + i] = in_segment(inputs_[i], within);
+    for (std::size_t i = 0; i < inputs_.size(); ++i) at_[1 + i] = segment_value(inputs_[i], within);
     return at_;
   }
-  const std::vector<Sloped>& box(double a, double b) {
+  const std::vector<SlopedInterval>& box(double a, double b) {
     at(a, (a + b) / 2);
     box_[0] = {{a, b}, {1, 1}};
     for (std::size_t i = 1; i < at_.size(); ++i) box_[i] = {{at_[i], at_[i]}, {0, 0}};
     return box_;
   }
 
-  void find_kink(const expressions::Table& surface) {
+  void find_kinks(const expressions::Table& surface) {
     Code code(surface, parameters_);
-    std::vector<Break> found;
+    std::vector<Breakpoint> found;
     std::size_t boxes = 0;
     for_each_piece([&](double a, double b) { find_roots(code, code.roots(), a, b, found, boxes); });
     cuts_.insert(cuts_.end(), found.begin(), found.end());
-    tidy(cuts_);
+    merge_overlapping(cuts_);
   }
 
-  void find_roots(Code& code, std::size_t operands, double from, double to, std::vector<Break>& found,
+  void find_roots(Code& code, std::size_t operands, double from, double to, std::vector<Breakpoint>& found,
                   std::size_t& boxes) {
     const double middle = (from + to) / 2;
-    code.hold(at(middle, middle));
+    code.freeze(at(middle, middle));
     const auto value = [&](double t) {
       code.values(at(t, middle), {});
       const double a = code.value(at(t, middle), 0);
@@ -130,12 +130,12 @@ class ClockSearch {
       const auto [a, b] = open.back();
       open.pop_back();
       if (++boxes > most_boxes || found.size() > most_breaks) {
-        tell(a);
+        record_unresolved(a);
         return;
       }
-      Sloped g = code.range(box(a, b), 0);
+      SlopedInterval g = code.range(box(a, b), 0);
       if (operands == 2) {
-        const Sloped other = code.range(box_, 1);
+        const SlopedInterval other = code.range(box_, 1);
         g = {g.value - other.value, g.slope - other.slope};
       }
       if (!g.value.has(0)) continue;
@@ -146,9 +146,9 @@ class ClockSearch {
       if (last || !g.slope.has(0)) {
         const double left = value(a), right = value(b);
         if (left * right < 0)
-          found.push_back(between(value, a, left, b));
+          found.push_back(locate_sign_change(value, a, left, b));
         else if (left == 0 && a > from)
-          around(value, a, found);
+          add_border_root(value, a, found);
         continue;
       }
       if (g.value.is(0)) continue;
@@ -159,14 +159,14 @@ class ClockSearch {
 
   /// Adds a root on the border of two boxes if the function has different signs on both sides.
   template <class Value>
-  void around(const Value& value, double t, std::vector<Break>& found) const {
-    const Break b = clear_of(value, t);
+  void add_border_root(const Value& value, double t, std::vector<Breakpoint>& found) const {
+    const Breakpoint b = nonzero_neighbours(value, t);
     if (value(b.before) * value(b.after) < 0) found.push_back(b);
   }
 
   template <class Value>
-  static Break clear_of(const Value& value, double t) {
-    Break b{t, t};
+  static Breakpoint nonzero_neighbours(const Value& value, double t) {
+    Breakpoint b{t, t};
     for (int i = 0; i < 64 && value(b.before) == 0; ++i)
       b.before = std::nextafter(b.before, -std::numeric_limits<double>::infinity());
     for (int i = 0; i < 64 && value(b.after) == 0; ++i)
@@ -176,30 +176,30 @@ class ClockSearch {
 
   /// Locates a change of sign to the last digit.
   template <class Value>
-  static Break between(const Value& value, double a, double left, double b) {
+  static Breakpoint locate_sign_change(const Value& value, double a, double left, double b) {
     while (true) {
       const double m = a + (b - a) / 2;
       if (!(m > a && m < b)) return {a, b};
       const double v = value(m);
-      if (v == 0) return clear_of(value, m);
+      if (v == 0) return nonzero_neighbours(value, m);
       (v * left > 0 ? a : b) = m;
     }
   }
 
-  void tell(double t) {
-    if (!unfollowed_from_) unfollowed_from_ = t;
+  void record_unresolved(double t) {
+    if (!unresolved_from_) unresolved_from_ = t;
   }
 
-  void bound(expressions::Code code) {
+  void bound_steps(expressions::Code code) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    const auto see = [&](double v) {
+    const auto visit = [&](double v) {
       if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
     };
     const auto cell = [&](double a, double b) {
       const double m = a + (b - a) / 2;
-      code.hold(at(m, m));
-      for (const double t : {a, m, b}) see(code.value(at(t, m)));
-      const Sloped f = code.range(box(a, b));
+      code.freeze(at(m, m));
+      for (const double t : {a, m, b}) visit(code.value(at(t, m)));
+      const SlopedInterval f = code.range(box(a, b));
       const double bend = f.slope.width() * (b - a), rise = 2 * f.value.width();
       const double unresolved = std::isfinite(bend) ? std::min(bend, rise) : rise;
       return Cell{a, b, std::isnan(unresolved) ? std::numeric_limits<double>::infinity() : unresolved};
@@ -228,11 +228,11 @@ class ClockSearch {
       const double step = steps_per_cell * (c.b - c.a);
       if (own.empty() || own.back().step != step) own.push_back({c.a, step});
     }
-    bounds_ = lower_of(bounds_, own);
+    bounds_ = minimum_of(bounds_, own);
   }
 
   /// The minimum of two step bounds at every time.
-  static std::vector<StepBound> lower_of(const std::vector<StepBound>& a, const std::vector<StepBound>& b) {
+  static std::vector<StepBound> minimum_of(const std::vector<StepBound>& a, const std::vector<StepBound>& b) {
     if (a.empty() || b.empty()) return a.empty() ? b : a;
     std::vector<StepBound> result;
     std::size_t i = 0, j = 0;
@@ -251,18 +251,18 @@ class ClockSearch {
   std::span<const double> parameters_;
   const std::vector<Signal>& inputs_;
   double t0_, t1_;
-  std::vector<Break> cuts_;
+  std::vector<Breakpoint> cuts_;
   std::vector<StepBound> bounds_;
-  std::optional<double> unfollowed_from_;
+  std::optional<double> unresolved_from_;
   std::vector<double> at_;
-  std::vector<Sloped> box_;
+  std::vector<SlopedInterval> box_;
 };
 
 /// Analyses functions of time with these parameters and inputs. Only inputs that are tables are variables; others are
 /// part of the functions.
-inline Clock look_at_time(const TimeFunctions& functions, std::span<const double> parameters,
+inline TimeAnalysis analyse_time_functions(const TimeFunctions& functions, std::span<const double> parameters,
                           const std::vector<Signal>& inputs, double t0, double t1) {
-  return ClockSearch(functions, parameters, inputs, t0, t1).run();
+  return TimeAnalyser(functions, parameters, inputs, t0, t1).run();
 }
 
 }  // namespace eom::hybrid

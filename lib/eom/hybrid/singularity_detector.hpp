@@ -18,23 +18,23 @@
 
 namespace eom::hybrid {
 
-class SingularPassage {
+class SingularityDetector {
  public:
   /// Writes A of a state, rows x n in column order; returns a code.
   using Rows = std::function<int(double t, const double* x, double* A)>;
 
-  SingularPassage(std::size_t n, std::size_t rows, Rows evaluate);
+  SingularityDetector(std::size_t n, std::size_t rows, Rows evaluate);
 
   /// After an accepted step: the length (> 0) of a step across a nearby rank-deficient configuration, else 0. It is not
   /// evaluated after every step.
-  double due(const StepView& step);
+  double due_length(const StepView& step);
   /// Called after the step across has been made; or after it was not accurate enough, so that it is tried again at half
   /// the distance.
-  void passed(double length);
-  void refused() { nearest_ = 0.5 * distance_; }
+  void mark_passed(double length);
+  void mark_refused() { nearest_ = 0.5 * distance_; }
 
   /// Whether rank is lost in the step across. `at`: the state at its target.
-  bool lost(double t, const double* at) { return rank_measure(t, at) < 0.2 * measure_; }
+  bool is_rank_lost(double t, const double* at) { return rank_measure(t, at) < 0.2 * measure_; }
   /// The row of A that depends on others at the loss of rank, as last measured.
   std::size_t row() const { return row_; }
   /// Relative rounding of a step across from its starting point.
@@ -43,7 +43,7 @@ class SingularPassage {
   static constexpr const char* solver = "dop853";
   /// The position of the configuration within the step across it: midway between the stages of DOP853 at 1/3 and 3/5.
   /// For the shorter step of the check: between those at 0.65 and 0.86.
-  static constexpr double place = 0.4667, place_of_check = 0.754;
+  static constexpr double crossing_fraction = 0.4667, check_fraction = 0.754;
 
  private:
   static constexpr double near = 0.1;        // of the measure: rank is lost soon, almost linearly in time
@@ -70,7 +70,7 @@ class SingularPassage {
   int unseen_ = 0;  // steps since the last measurement
 };
 
-inline SingularPassage::SingularPassage(std::size_t n, std::size_t rows, Rows evaluate)
+inline SingularityDetector::SingularityDetector(std::size_t n, std::size_t rows, Rows evaluate)
     : n_(n),
       evaluate_(std::move(evaluate)),
       A_(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(n)),
@@ -78,7 +78,7 @@ inline SingularPassage::SingularPassage(std::size_t n, std::size_t rows, Rows ev
       qr_(A_.cols(), A_.rows()),
       longest_row_(Eigen::VectorXd::Zero(A_.rows())) {}
 
-inline double SingularPassage::rank_measure(double t, const double* x) {
+inline double SingularityDetector::rank_measure(double t, const double* x) {
   if (A_.rows() == 0 || A_.rows() > A_.cols() || evaluate_(t, x, A_.data()) != 0 || !A_.allFinite())
     return std::numeric_limits<double>::quiet_NaN();
   for (Eigen::Index i = 0; i < A_.rows(); ++i) {
@@ -90,7 +90,7 @@ inline double SingularPassage::rank_measure(double t, const double* x) {
   return std::abs(qr_.matrixQR()(A_.rows() - 1, A_.rows() - 1)) / std::max(qr_.maxPivot(), 1e-300);
 }
 
-inline double SingularPassage::due(const StepView& step) {
+inline double SingularityDetector::due_length(const StepView& step) {
   const double h = step.t1 - step.t0, size = std::abs(h);
   if (longest_ == 0) measure_ = rank_measure(step.t0, step.x0.data());
   longest_ = std::max(longest_, size);
@@ -104,10 +104,10 @@ inline double SingularPassage::due(const StepView& step) {
   const double decrease = measure_ - rank_measure(step.t1 + look_ahead * h, ahead_.data());
   distance_ = decrease > 0 ? look_ahead * size * measure_ / decrease : std::numeric_limits<double>::infinity();
   if (!std::isfinite(distance_) || (nearest_ > 0 && distance_ > nearest_)) return 0;
-  return distance_ / place;
+  return distance_ / crossing_fraction;
 }
 
-inline void SingularPassage::passed(double length) {
+inline void SingularityDetector::mark_passed(double length) {
   longest_ = length;
   nearest_ = 0;
 }

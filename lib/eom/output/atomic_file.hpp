@@ -24,39 +24,39 @@
 
 namespace eom {
 
-class WholeFile {
+class AtomicFile {
  public:
   /// Throws std::system_error with the path and the system's reason, like every other function here.
-  explicit WholeFile(const std::filesystem::path& path) : path_(path) {
+  explicit AtomicFile(const std::filesystem::path& path) : path_(path) {
     struct stat found {};
     const bool there = ::stat(path.c_str(), &found) == 0;
     if (there && S_ISDIR(found.st_mode)) fail("open", path_, EISDIR);
-    if (there && open_through(found)) return;
-    target_ = followed(path);
+    if (there && open_for_direct_write(found)) return;
+    target_ = resolve_links(path);
     const std::filesystem::path folder = target_.has_parent_path() ? target_.parent_path() : std::filesystem::path(".");
-    partial_ = (folder / (shortened(target_.filename().string()) + ".partial-XXXXXX")).string();
+    partial_ = (folder / (shorten_name(target_.filename().string()) + ".partial-XXXXXX")).string();
     file_ = ::mkostemp(partial_.data(), O_CLOEXEC);
     if (file_ < 0) fail("open", path_, errno);
-    if (::fchmod(file_, there ? found.st_mode & 0777 : new_file_mode()) != 0) abandon("open", errno);
+    if (::fchmod(file_, there ? found.st_mode & 0777 : new_file_mode()) != 0) discard_and_fail("open", errno);
   }
 
   /// This process's standard output, under the name "standard output".
-  static WholeFile standard_output() {
-    WholeFile file;
+  static AtomicFile standard_output() {
+    AtomicFile file;
     file.path_ = "standard output";
     file.file_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
     if (file.file_ < 0) fail("open", file.path_, errno);
     return file;
   }
 
-  WholeFile(WholeFile&& other) noexcept
+  AtomicFile(AtomicFile&& other) noexcept
       : path_(std::move(other.path_)),
         target_(std::move(other.target_)),
         partial_(std::exchange(other.partial_, {})),
         file_(std::exchange(other.file_, -1)),
         bytes_(other.bytes_) {}
-  WholeFile& operator=(WholeFile&&) = delete;
-  ~WholeFile() {
+  AtomicFile& operator=(AtomicFile&&) = delete;
+  ~AtomicFile() {
     if (file_ >= 0) ::close(file_);
   }
 
@@ -92,7 +92,7 @@ class WholeFile {
   int descriptor() const { return file_; }
 
   /// The target of `path` with all links followed, even if it does not exist yet.
-  static std::filesystem::path followed(std::filesystem::path path) {
+  static std::filesystem::path resolve_links(std::filesystem::path path) {
     constexpr int most_links = 40;  // the limit of the system
     for (int links = 0;; ++links) {
       std::error_code none;
@@ -104,16 +104,16 @@ class WholeFile {
   }
 
   /// A file name, truncated so that ".partial-XXXXXX" can be appended.
-  static std::string shortened(const std::string& name) {
+  static std::string shorten_name(const std::string& name) {
     constexpr std::size_t longest = 255 - 15;
     return name.substr(0, longest);
   }
 
  private:
-  WholeFile() = default;
+  AtomicFile() = default;
 
   /// Opens a file that must not be replaced. False if it is a regular file.
-  bool open_through(const struct stat& found) {
+  bool open_for_direct_write(const struct stat& found) {
     for (const int own : {STDOUT_FILENO, STDERR_FILENO}) {
       struct stat standard {};
       if (::fstat(own, &standard) != 0 || standard.st_dev != found.st_dev || standard.st_ino != found.st_ino) continue;
@@ -135,7 +135,7 @@ class WholeFile {
     return 0666 & ~mask;
   }
 
-  [[noreturn]] void abandon(const char* action, int reason) {
+  [[noreturn]] void discard_and_fail(const char* action, int reason) {
     discard();
     fail(action, path_, reason);
   }

@@ -22,8 +22,8 @@
 
 namespace eom::hybrid {
 
-struct Parts {
-  explicit Parts(const Problem& asked)
+struct RunContext {
+  explicit RunContext(const Problem& asked)
       : problem(asked),
         charts(asked),
         model(asked),
@@ -44,8 +44,8 @@ struct Parts {
     std::vector<double> x = start;
     start_contacts(problem.t0, x);  // sets the mode for observers of the start
   }
-  Parts(const Parts&) = delete;
-  Parts& operator=(const Parts&) = delete;
+  RunContext(const RunContext&) = delete;
+  RunContext& operator=(const RunContext&) = delete;
 
   /// Free coordinates, rates, integrals, the work done since the start.
   std::vector<double> own_start() const {
@@ -56,47 +56,47 @@ struct Parts {
 
   /// dx/dt in the current mode. Returns 2 if the state is too close to the singularity of its chart.
   int rhs(double t, const double* x, double* dx) {
-    if (charts.any()) {
-      if (const int code = charts.admits(x); code != 0) return code;
+    if (charts.has_charts()) {
+      if (const int code = charts.check_chart(x); code != 0) return code;
     }
     return model.rhs(t, x, dx);
   }
 
   std::vector<std::string> start_charts(double t, std::span<double> x) {
-    model.charts(0);
-    if (!charts.any() || !charts.start(t, x.data())) return {};
+    model.set_charts(0);
+    if (!charts.has_charts() || !charts.start(t, x.data())) return {};
     return exchange_charts(t, x);
   }
 
   std::vector<std::string> exchange_charts(double t, std::span<double> x) {
-    std::vector<std::string> told = charts.exchange(t, x);
-    model.use(charts.code());
-    model.charts(charts.mode());
-    rows.charts(charts.code(), charts.mode());
-    return told;
+    std::vector<std::string> recorded = charts.exchange(t, x);
+    model.set_code(charts.code());
+    model.set_charts(charts.mode());
+    rows.set_charts(charts.code(), charts.mode());
+    return recorded;
   }
 
   std::vector<ModeEvent> start_contacts(double t, std::span<double> x) {
     if (!contacts) return {};
     impulse_work = 0;
-    model.mode(0);  // a model with contacts does not exchange charts
-    std::vector<ModeEvent> told = contacts->start(t, x);
-    model.mode(contacts->mode());
-    return told;
+    model.set_mode(0);  // a model with contacts does not exchange charts
+    std::vector<ModeEvent> recorded = contacts->start(t, x);
+    model.set_mode(contacts->mode());
+    return recorded;
   }
 
   /// Freezes each kink on the side of the state. anew: whether earlier sides are discarded.
-  void hold_sides(double t, const double* x, bool anew) {
+  void freeze_branches(double t, const double* x, bool anew) {
     if (!kinks.any()) return;
-    if (anew) model.forget_sides();
-    if (kinks.all_held() || events(t, x, g.data()) != 0) return;
-    kinks.hold(g.data() + events.first_kink(), anew);
+    if (anew) model.release_branches();
+    if (kinks.are_all_frozen() || events(t, x, g.data()) != 0) return;
+    kinks.freeze(g.data() + events.first_kink(), anew);
   }
 
   /// The state at the end of a run in the model's own charts.
   std::vector<double> own_state(double t, const std::vector<double>& end) const {
     std::vector<double> x = end;
-    charts.own(t, end.data(), std::span(x).first(2 * problem.n() + problem.code->integrals));
+    charts.to_own_charts(t, end.data(), std::span(x).first(2 * problem.n() + problem.code->integrals));
     return x;
   }
 
