@@ -122,7 +122,8 @@ void compare(const Problem& problem) {
   }
   const bool literature = !problem.values.empty();
   fmt::print(
-      "\n### {}, scene {}\n\nCompared with: {}. Digits: {} of the reference solution, {} of the equations by hand, {} in "
+      "\n### {}, scene {}\n\nCompared with: {}. Digits: {} of the reference solution, {} of the equations by hand, {} "
+      "in "
       "which these two agree on "
       "the same binary64 numbers.\n\n",
       problem.model, problem.scene, problem.literature, reference.digits_at_end, hand, both);

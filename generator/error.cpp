@@ -34,7 +34,8 @@ std::string source_excerpt(const SourceLocation& where) {
                      std::string(caret, ' '), std::string(length - 1, '~'));
 }
 
-std::string report(const char* grade, const SourceLocation& where, const std::string& message, const std::string& remedy) {
+std::string report(const char* grade, const SourceLocation& where, const std::string& message,
+                   const std::string& remedy) {
   std::string result;
   if (!where.file.empty()) result += printable(where.file) + ":";
   if (where.line > 0) result += fmt::format("{}:{}:", where.line, where.column);

@@ -27,7 +27,8 @@ enum class ErrorKind {
 
 class Error : public std::exception {
  public:
-  Error(std::string stage, SourceLocation where, std::string what, std::string remedy, ErrorKind fault = ErrorKind::input);
+  Error(std::string stage, SourceLocation where, std::string what, std::string remedy,
+        ErrorKind fault = ErrorKind::input);
 
   /// "file:line:col: error: ...", the source line, a caret under the place, and the remedy.
   const char* what() const noexcept override { return report_.c_str(); }

@@ -50,7 +50,8 @@ struct Signature {
   }
   template <std::size_t... result>
   static auto pointer(std::index_sequence<result...>)
-      -> int (*)(decltype(argument<inputs>(CallArguments{}))..., decltype(std::get<result>(CallArguments{}.results) + 0)...);
+      -> int (*)(decltype(argument<inputs>(CallArguments{}))...,
+                 decltype(std::get<result>(CallArguments{}.results) + 0)...);
 };
 
 /// The pointer type of a function with these inputs and this number of result arrays.
@@ -61,7 +62,8 @@ using FunctionPointer = decltype(Inputs::pointer(std::make_index_sequence<result
 struct CompiledFunctions {
 #define INPUTS(...) Signature<__VA_ARGS__>
 #define RESULTS(...) count({__VA_ARGS__})
-#define ABI_FUNCTION(name, signature, result_count, comes, purpose) FunctionPointer<signature, result_count> name = nullptr;
+#define ABI_FUNCTION(name, signature, result_count, comes, purpose) \
+  FunctionPointer<signature, result_count> name = nullptr;
   using enum Input;
 #include "abi/functions.inc"
 #undef ABI_FUNCTION

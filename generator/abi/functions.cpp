@@ -54,7 +54,8 @@ const Function* find(std::string_view name) {
 std::vector<std::string> optional_functions() {
   std::vector<std::string> names;
   for (const Function& function : functions()) {
-    if (function.availability == Availability::on_request || function.availability == Availability::with_outputs) names.push_back(function.name);
+    if (function.availability == Availability::on_request || function.availability == Availability::with_outputs)
+      names.push_back(function.name);
   }
   return names;
 }

@@ -18,9 +18,9 @@ const char* name(Input input);
 enum class Availability : std::uint8_t {
   always,
   when_beneficial,  // if some part is worth computing only once
-  on_request,      // emit --with NAME
-  with_outputs,    // emit --output NAMES, or --with outputs
-  with_charts      // emit --with charts
+  on_request,       // emit --with NAME
+  with_outputs,     // emit --output NAMES, or --with outputs
+  with_charts       // emit --with charts
 };
 
 /// An array that a function writes.

@@ -28,7 +28,8 @@ void require_smooth(const Simulation& simulation, const run::RunRequest& request
   if (!simulation.program.contacts.empty())
     unsupported("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
   for (const run::Signal& signal : simulation.scene.inputs) {
-    if (signal.is_varying()) unsupported("an input is an expression of t", "write it into the force, or give it as a table");
+    if (signal.is_varying())
+      unsupported("an input is an expression of t", "write it into the force, or give it as a table");
   }
   // A scene with a fixed step may not be solvable with adaptive steps.
   run::Integration trial(request, simulation.scene.step > 0 ? "rk4" : "dop853");
@@ -49,7 +50,7 @@ void require_smooth(const Simulation& simulation, const run::RunRequest& request
 }
 
 reference::Problem make_problem(const Simulation& simulation, const run::RunRequest& request,
-                              const std::vector<double>& times) {
+                                const std::vector<double>& times) {
   const run::Scene& scene = simulation.scene;
   reference::Problem problem{simulation.program.functions.front(),
                              run::Integration(request, "dop853").initial_state(),

@@ -19,8 +19,8 @@ struct BenchmarkRequest {
   pipeline::ApproachChoice approach = pipeline::ApproachChoice::automatic;
   pipeline::FormChoice form = std::nullopt;
   std::vector<std::string> solvers;  // empty: all eligible solvers
-  double max_seconds = 10;             // time limit of a run, s
-  bool other_libraries = true;             // also measure solvers of other libraries
+  double max_seconds = 10;           // time limit of a run, s
+  bool other_libraries = true;       // also measure solvers of other libraries
   std::uint64_t seed = 1;
   std::function<void(const std::string& what)> progress;
   const std::atomic<bool>* interrupt = nullptr;

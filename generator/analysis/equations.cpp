@@ -42,7 +42,8 @@ std::string name_of(const print::PrintedFormula& item) {
 }
 
 /// Items that exceeded their budget, and equations that are shown in parts.
-std::vector<work::LeftOut> omissions_of(const std::vector<print::PrintedFormula>& items, const reading::DisplayForm& form) {
+std::vector<work::LeftOut> omissions_of(const std::vector<print::PrintedFormula>& items,
+                                        const reading::DisplayForm& form) {
   std::vector<work::LeftOut> result;
   if (form.is_unexpanded) result.push_back({"equations written out", form.unexpanded_reason});
   if (!form.rotations_skip_reason.empty()) result.push_back({"angular velocities", form.rotations_skip_reason});
@@ -81,7 +82,7 @@ void add_conserved(mechanics::Mechanics& mechanics, reading::DisplayForms& forms
   for (const conservation::ConservedQuantity& c : conservation::conserved_quantities(mechanics, system)) {
     const auto named = express_in_named_functions(mechanics, form, c);
     print::PrintedFormula item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
-                             : print::render_expression(mechanics, "conserved", c.name, c.expression);
+                                       : print::render_expression(mechanics, "conserved", c.name, c.expression);
     item.role = c.title;
     items.push_back(std::move(item));
   }
@@ -102,8 +103,8 @@ void add_routh(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, co
 }
 
 // Only on explicit request: n^2 entries of four matrices, twice.
-void add_linear(const mechanics::Mechanics& mechanics, reading::DisplayForms& forms, const std::vector<std::string>& show,
-                std::vector<print::PrintedFormula>& items) {
+void add_linear(const mechanics::Mechanics& mechanics, reading::DisplayForms& forms,
+                const std::vector<std::string>& show, std::vector<print::PrintedFormula>& items) {
   if (std::find(show.begin(), show.end(), "linear") == show.end()) return;
   for (print::PrintedFormula& item : print::render_linear(mechanics, forms.linear())) items.push_back(std::move(item));
 }

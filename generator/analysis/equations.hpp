@@ -24,7 +24,7 @@ const std::vector<std::string>& equation_keys();
 struct Multiplier {
   std::string name, latex;
   std::string constraint;  // label of the constraint
-  std::string meaning;  // a phrase
+  std::string meaning;     // a phrase
 };
 
 struct Equations {

@@ -153,11 +153,12 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
   }
   for (const model::Input& input : model.inputs) {
     const bool given = input.default_value != model::no_node;
-    found.inputs.push_back({input.name, unit_of(input),
-                            given ? value_of(m, mechanics::lower_scalar(m, input.default_value),
-                                             fmt::format("input '{}'", input.name), m.model->arena[input.default_value].span)
-                                  : "0",
-                            ""});
+    found.inputs.push_back(
+        {input.name, unit_of(input),
+         given ? value_of(m, mechanics::lower_scalar(m, input.default_value), fmt::format("input '{}'", input.name),
+                          m.model->arena[input.default_value].span)
+               : "0",
+         ""});
   }
   found.has_all_units = has_all_units;
   add_constraints(m, found);

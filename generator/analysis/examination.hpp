@@ -33,7 +33,7 @@ struct ExaminedConstraint {
   std::optional<std::string> integral;   // the integrated equation
   bool redundant = false;                // follows from others and has no multiplier
   std::optional<bool> determined;        // whether the motion determines its force; not set for joints
-  std::string treatment, reason;               // treatment in the equations; reason for `integrable`
+  std::string treatment, reason;         // treatment in the equations; reason for `integrable`
   std::vector<std::string> integral_of;  // the constraints that together have this integral
 };
 

@@ -25,7 +25,8 @@ std::vector<std::string> chosen_constraints(const mechanics::Mechanics& m, const
   if (names.empty()) {
     std::vector<std::string> labels = analysis::prescribing_constraints(m);
     if (!labels.empty()) return labels;
-    throw Error("inverse", SourceLocation{m.model->file, 0, 0, 1, ""}, "no constraint of this model prescribes a motion",
+    throw Error("inverse", SourceLocation{m.model->file, 0, 0, 1, ""},
+                "no constraint of this model prescribes a motion",
                 "add one that reads coordinate = function of time, such as [[constraint]] name = \"drive\", holonomic "
                 "= \"R - f\", "
                 "or name others with --constraint");

@@ -43,7 +43,7 @@ std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const Disp
 }
 
 void check_against_oracle(Mechanics& m, const DisplayForm& one, const DisplayForm& two, std::uint64_t seed,
-           print::Findings& findings) {
+                          print::Findings& findings) {
   const work::Stage stage("holding the derivations against one another");
   verify::Subjects subjects;
   subjects.systems = verify::all_formulations(m, &subjects.left_out);

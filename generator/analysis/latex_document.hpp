@@ -13,8 +13,8 @@ namespace eomgen::analysis {
 /// Name of the document for `emit --target`, in addition to the targets of code.
 inline constexpr const char* latex_document_target = "latex";
 
-/// Returns the LaTeX source. Checks the equations against the independent oracle first; throws Error{ErrorKind::check} if
-/// they disagree.
+/// Returns the LaTeX source. Checks the equations against the independent oracle first; throws Error{ErrorKind::check}
+/// if they disagree.
 std::string latex_document(std::shared_ptr<const model::Model> model, std::uint64_t seed);
 
 }  // namespace eomgen::analysis

@@ -8,7 +8,7 @@ namespace eomgen::analysis {
 using system::OutputKind;
 
 std::optional<reading::Sum> express_in_named_functions(const mechanics::Mechanics& m, const reading::DisplayForm& form,
-                                               const conservation::ConservedQuantity& conserved) {
+                                                       const conservation::ConservedQuantity& conserved) {
   if (form.is_unexpanded) return std::nullopt;
   if (conserved.kind == OutputKind::energy && mechanics::eliminate_dependent_coordinates(m).fixed.empty())
     return form.kinetic + form.potential;

@@ -14,8 +14,8 @@ using mechanics::Mechanics;
 namespace {
 
 using mechanics::constraint_substitution;
-using mechanics::Vec3;
 using mechanics::time_function_substitution;
+using mechanics::Vec3;
 using symbolic::Dag;
 using symbolic::Ref;
 using symbolic::SymbolKind;

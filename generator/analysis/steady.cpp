@@ -163,7 +163,8 @@ NonsmoothTerm find_nonsmooth_term(const SteadyProblem& p, const linear::State<Pr
   DerivedModel& d = *p.derived;
   const model::Model& model = d.model;
   symbolic::Dag& dag = *d.mechanics.dag;
-  symbolic::Substitution imposed = derive::constraint_substitution(d.mechanics), written = derive::time_function_substitution(d.mechanics);
+  symbolic::Substitution imposed = derive::constraint_substitution(d.mechanics),
+                         written = derive::time_function_substitution(d.mechanics);
   const auto fails = [&](std::vector<symbolic::Ref> list, symbolic::Ref energy) {
     for (const symbolic::Symbol& s : p.flow->symbols()) {
       if (s.order == 0) list.push_back(symbolic::partial_derivative(dag, s)(written(imposed(energy))));

@@ -284,7 +284,8 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
     require_not_ignored(result, request);
     if (result.search.points.empty()) require_ends(result);
     if (!result.search.symmetry.autonomous) {
-      throw Error(command, SourceLocation{model.file, 0, 0, 1, ""}, "the accelerations depend on t: no motion stays what it is",
+      throw Error(command, SourceLocation{model.file, 0, 0, 1, ""},
+                  "the accelerations depend on t: no motion stays what it is",
                   "eomgen linearize gives A(t) along a motion");
     }
     for (const std::size_t i : result.search.held) {

@@ -139,14 +139,17 @@ StressFindings stress_test(const StressRequest& asked) {
   const run::Code code = simulation.code.code_for_run();
   const Variation variation(simulation, wanted.overrides, code);
   stress::Request request;
-  request.run = [&](const run::Scene& scene) { return pipeline::make_run_request(*simulation.derived, scene, code, true); };
+  request.run = [&](const run::Scene& scene) {
+    return pipeline::make_run_request(*simulation.derived, scene, code, true);
+  };
   request.solvers = found.solvers;
   request.seconds_limit = asked.max_seconds;
   request.steps_limit = asked.max_steps;
   request.interrupt = asked.interrupt;
   request.progress = asked.progress;
   stress::Auditor auditor(simulation.derived->mechanics, simulation.program);
-  request.on_motion = [&](const stress::Case& test, const run::Scene& scene, const std::vector<stress::Sample>& samples) {
+  request.on_motion = [&](const stress::Case& test, const run::Scene& scene,
+                          const std::vector<stress::Sample>& samples) {
     auditor.add_motion(test.name, scene, code, samples);
   };
   for (const stress::Case& test : stress::make_cases(simulation.derived->mechanics, simulation.scene, asked.quick)) {

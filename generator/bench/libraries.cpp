@@ -72,7 +72,8 @@ struct Calls {
 class Loaded {
  public:
   explicit Loaded(const std::string& path) : handle_(::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) {
-    if (handle_ == nullptr) throw Error("bench", {}, "cannot load " + path, "install the library anew", ErrorKind::tool);
+    if (handle_ == nullptr)
+      throw Error("bench", {}, "cannot load " + path, "install the library anew", ErrorKind::tool);
   }
   ~Loaded() { ::dlclose(handle_); }
   Loaded(const Loaded&) = delete;
@@ -200,7 +201,8 @@ FoundLibraries find_libraries(const run::RunRequest& request, const std::vector<
       continue;
     }
     for (const Library::Solver& solver : library.solvers)
-      found.external_solvers.push_back({solver.name, Runner{loaded, loaded->solver(solver.function), solver.name, start, calls}});
+      found.external_solvers.push_back(
+          {solver.name, Runner{loaded, loaded->solver(solver.function), solver.name, start, calls}});
   }
   return found;
 }

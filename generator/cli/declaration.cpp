@@ -144,7 +144,8 @@ std::vector<DeclaredCommand> Declaration::commands() const {
       one.help = option->get_description();
       one.default_value = option->get_default_str();
       one.takes_list = option->get_delimiter() != '\0';
-      if (const auto words = parser_->words.find(option); words != parser_->words.end()) one.allowed_values = words->second;
+      if (const auto words = parser_->words.find(option); words != parser_->words.end())
+        one.allowed_values = words->second;
       command.options.push_back(std::move(one));
     }
     result.push_back(std::move(command));

@@ -15,8 +15,8 @@ namespace eomgen::cli {
 struct DeclaredOption {
   std::vector<std::string> flags;  // "-o", "--out"; empty for a positional argument
   std::string argument;            // "MODEL" for a positional argument; value type of an option ("TEXT"); "" for a flag
-  std::string help, default_value;        // preset: the default value; may be empty
-  bool takes_list = false;         // several values separated by commas
+  std::string help, default_value;          // preset: the default value; may be empty
+  bool takes_list = false;                  // several values separated by commas
   std::vector<std::string> allowed_values;  // possible values; empty: any
 };
 

@@ -95,7 +95,8 @@ std::string locate_model(const std::string& name) {
   }
   if (fs::is_directory(name, error)) return name;  // the reader reports the error
   const std::string hint = nearest(name, folders);
-  throw Error("cli", SourceLocation{name, 0, 0, 1, ""}, "there is no such model file, nor a model of that name in models/",
+  throw Error("cli", SourceLocation{name, 0, 0, 1, ""},
+              "there is no such model file, nor a model of that name in models/",
               hint.empty() ? "eomgen new NAME writes a starter model" : fmt::format("did you mean {}?", hint));
 }
 

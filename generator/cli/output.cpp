@@ -167,7 +167,8 @@ void require_writable_targets(const std::vector<OutputTarget>& places, const std
 void require_folder(const std::string& folder) {
   std::error_code none;
   const std::string extension = lowered(fs::path(folder).extension().string());
-  const bool of_a_file = std::find(known_extensions.begin(), known_extensions.end(), extension) != known_extensions.end();
+  const bool of_a_file =
+      std::find(known_extensions.begin(), known_extensions.end(), extension) != known_extensions.end();
   const OutputTarget place{"--out", folder, ""};
   if (folder == "-") refuse(place, "several files do not fit into standard output", "name a folder for them");
   if (fs::exists(folder, none) && !fs::is_directory(folder, none))

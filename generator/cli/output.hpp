@@ -25,8 +25,8 @@ void print_message(std::string_view text) noexcept;
 
 /// Destination of results given by an option; `-` is standard output.
 struct OutputTarget {
-  std::string option, path, extension;  // "--out", "a.csv", ".csv"; empty extension: any
-  std::string alternative_extension = {};        // if the extension selects the format: the second one allowed
+  std::string option, path, extension;     // "--out", "a.csv", ".csv"; empty extension: any
+  std::string alternative_extension = {};  // if the extension selects the format: the second one allowed
 };
 
 /// Throws Error unless all `places` can be written, are distinct, differ from the model file, and have no extension of

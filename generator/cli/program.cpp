@@ -67,7 +67,8 @@ class MessagePrinter : public work::Listener {
 
 }  // namespace
 
-int run_program(std::span<char* const> typed, const char* name, std::span<const Command> commands, ProcessGroup* group) try {
+int run_program(std::span<char* const> typed, const char* name, std::span<const Command> commands,
+                ProcessGroup* group) try {
   open_closed_streams();
   Declaration declared(name, commands);
   declared.common.group = group;
@@ -86,7 +87,8 @@ int run_program(std::span<char* const> typed, const char* name, std::span<const 
   print_interrupted(nullptr);
   return exit_interrupted;
 } catch (const cln::floating_point_exception&) {
-  return report(Error("numbers", SourceLocation{}, "a value of this model is beyond what binary64 holds (1e308 in size)",
+  return report(Error("numbers", SourceLocation{},
+                      "a value of this model is beyond what binary64 holds (1e308 in size)",
                       "use units in which its masses, lengths and times are nearer to 1"));
 } catch (const std::bad_alloc&) {
   print_message("error: out of memory\n  remedy: make the model smaller\n");

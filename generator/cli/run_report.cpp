@@ -191,9 +191,9 @@ std::string RunReport::text() const {
       line("model", fmt::format("{}, scene {}, t = {} to {}", derived.model.id, scene.name, scene.t0, scene.t1));
   for (const std::string& sentence : scene.solved_notes) out += line("start", sentence);
   out += line("certificate", certificate.summary());
-  out +=
-      line("right-hand side", fmt::format("{} (formulation {}, approach {})", to_text(program.functions.front().operations),
-                                          program.formulation, system::name(program.approach)));
+  out += line("right-hand side",
+              fmt::format("{} (formulation {}, approach {})", to_text(program.functions.front().operations),
+                          program.formulation, system::name(program.approach)));
   const std::string accuracy =
       scene.step > 0 ? fmt::format("step {}", scene.step) : fmt::format("rtol {}, atol {}", scene.rtol, scene.atol);
   out += line("solver", fmt::format("{} ({}), {}", result.solver, run::to_text(result.reason), accuracy));
@@ -225,8 +225,8 @@ std::string RunReport::text() const {
            fmt::format(
                "derive {:.3f}, optimise {:.3f}, verify {:.3f}{}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}{}",
                seconds.read + seconds.derive, seconds.optimise, seconds.verify,
-               derived.certificate_from_cache ? " (kept)" : "", compiled.seconds, compiled.cached ? " (from the cache)" : "",
-               result.seconds_integrate, result.seconds_estimate,
+               derived.certificate_from_cache ? " (kept)" : "", compiled.seconds,
+               compiled.cached ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate,
                charts && charts->seconds() > 0 ? fmt::format(", second charts {:.3f}", charts->seconds()) : ""));
   for (const WrittenFile& file : files) {
     out += line("wrote", fmt::format("{} ({}{})", file.path, file.rows ? fmt::format("{} rows, ", *file.rows) : "",

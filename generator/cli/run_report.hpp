@@ -21,7 +21,7 @@ struct WrittenFile {
 
 struct RunReport {
   const pipeline::Simulation& simulation;
-  bool has_error_estimate = true;                           // false: the document has no error_estimate
+  bool has_error_estimate = true;                        // false: the document has no error_estimate
   std::optional<run::Sensitivities> sensitivities = {};  // if requested
   std::vector<WrittenFile> files = {};
 

@@ -33,7 +33,8 @@ void add_values(Arguments& app, SceneOptions& options) {
 }
 
 void add_solver(Arguments& app, SceneOptions& options) {
-  app.add_option("--solver", options.solver, "a solver that eomgen list shows, or auto").suggest_values(run::solver_names());
+  app.add_option("--solver", options.solver, "a solver that eomgen list shows, or auto")
+      .suggest_values(run::solver_names());
   app.add_option("--rtol", options.rtol, "relative tolerance").check(nonnegative_number());
   app.add_option("--atol", options.atol, "absolute tolerance").check(nonnegative_number());
 }
@@ -48,7 +49,9 @@ void add_outputs(Arguments& app, SceneOptions& options) {
 
 void add_approach(Arguments& app, std::string& approach) {
   const std::vector<std::string> words = pipeline::approach_names();
-  app.add_option("--approach", approach, fmt::format("{}", fmt::join(words, ", "))).show_default().suggest_values(words);
+  app.add_option("--approach", approach, fmt::format("{}", fmt::join(words, ", ")))
+      .show_default()
+      .suggest_values(words);
 }
 
 void add_form(Arguments& app, std::string& form) {

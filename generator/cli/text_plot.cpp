@@ -57,7 +57,8 @@ std::string render_text_plot(const TextPlot& plot, std::size_t columns) {
       if (std::isfinite(a) && std::isfinite(b)) take(a, b);
     }
   };
-  for (const TextCurve& curve : plot.curves) for_each_point(curve, [&](double a, double b) { x.include(a), y.include(b); });
+  for (const TextCurve& curve : plot.curves)
+    for_each_point(curve, [&](double a, double b) { x.include(a), y.include(b); });
   x.close();
   y.close();
   std::vector<std::string> field(rows, std::string(wide, ' '));
@@ -76,7 +77,8 @@ std::string render_text_plot(const TextPlot& plot, std::size_t columns) {
       else
         legend.back() += "   " + entry;
     }
-    for_each_point(plot.curves[k], [&](double a, double b) { field[rows - 1 - y.cell(b, rows)][x.cell(a, wide)] = letter; });
+    for_each_point(plot.curves[k],
+                   [&](double a, double b) { field[rows - 1 - y.cell(b, rows)][x.cell(a, wide)] = letter; });
   }
   std::string text = plot.y_label + "\n";
   for (const std::string& line : legend) text += line + "\n";

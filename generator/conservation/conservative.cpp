@@ -88,7 +88,7 @@ class Classifier {
     } else {
       result_.conservative = ConservativeVerdict::unknown;
       append_reason(potential ? "its curl vanishes, but the work around its singular points was not found"
-                    : "its curl vanishes, but no potential was found, and it has singular points");
+                              : "its curl vanishes, but no potential was found, and it has singular points");
     }
   }
 

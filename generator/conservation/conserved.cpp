@@ -71,7 +71,9 @@ Applied applied_potentials(Mechanics& m) {
 std::vector<ConservedQuantity> conserved_quantities(Mechanics& m, system::EquationSystem& s) {
   Dag& dag = *m.dag;
   std::vector<ConservedQuantity> result;
-  const auto offer = [&s](const ConservedQuantity& c) { s.outputs.push_back({c.name, c.expression, c.kind, c.index, c.part}); };
+  const auto offer = [&s](const ConservedQuantity& c) {
+    s.outputs.push_back({c.name, c.expression, c.kind, c.index, c.part});
+  };
   const bool hit =
       std::any_of(m.contacts.begin(), m.contacts.end(), [](const mechanics::Contact& c) { return c.unilateral; });
   symbolic::Derivation by_time = symbolic::explicit_time_derivative(dag, m.model->functions.size());
@@ -110,7 +112,8 @@ std::vector<ConservedQuantity> conserved_quantities(Mechanics& m, system::Equati
   must_vanish.push_back(by_time(dag.sub(L, V)));
   for (const Ref surface : surfaces) must_vanish.push_back(by_time(surface));
   must_vanish.push_back(input_power);
-  if (const Certainty c = energy_conserved || hit ? Certainty::no : zero_certainty(dag, must_vanish); c != Certainty::no) {
+  if (const Certainty c = energy_conserved || hit ? Certainty::no : zero_certainty(dag, must_vanish);
+      c != Certainty::no) {
     const bool plain = dag.is_zero(V);
     result.push_back({plain ? "jacobi" : "energy.applied",
                       plain ? "Jacobi integral T2 - T0 + U" : "T2 - T0 + U with the potentials of applied forces",

@@ -36,7 +36,7 @@ std::vector<ConservedQuantity> conserved_quantities(mechanics::Mechanics& mechan
 
 /// The same for several systems of one Mechanics, which share energies and constraints: found once, appended to all.
 std::vector<ConservedQuantity> conserved_quantities(mechanics::Mechanics& mechanics,
-                                            std::vector<system::EquationSystem>& systems);
+                                                    std::vector<system::EquationSystem>& systems);
 
 std::vector<std::uint32_t> cyclic_coordinates(const std::vector<ConservedQuantity>& conserved);
 

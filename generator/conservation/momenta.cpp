@@ -21,8 +21,8 @@ namespace {
 using derive::generalized_forces;
 using mechanics::constraint_substitution;
 using mechanics::Mechanics;
-using mechanics::Vec3;
 using mechanics::time_function_substitution;
+using mechanics::Vec3;
 using symbolic::Dag;
 using symbolic::Ref;
 using symbolic::Symbol;
@@ -82,13 +82,15 @@ class Search {
     }
     for (const Vec3& r : r_) {
       for (const Ref x : r) {
-        for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0})(x));
+        for (const std::uint32_t i : s.free)
+          J_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 0})(x));
       }
     }
     for (const mechanics::BodyRotation& spin : m.body_rotations) {
       w_.push_back(all(spin.w));
       for (const Ref w : w_.back()) {
-        for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1})(w));
+        for (const std::uint32_t i : s.free)
+          J_.push_back(symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1})(w));
       }
       H_.push_back(inertia_times(dag_, spin, w_.back()));
       axes_.push_back({all(spin.axes[0]), all(spin.axes[1]), all(spin.axes[2])});
@@ -244,9 +246,10 @@ bool is_redundant(const Dag& dag, const std::vector<ConservedQuantity>& known, R
 }  // namespace
 
 std::vector<ConservedQuantity> conserved_momenta(Mechanics& m, const system::EquationSystem& s,
-                                         const std::vector<ConservedQuantity>& known) {
+                                                 const std::vector<ConservedQuantity>& known) {
   std::vector<ConservedQuantity> all = known, found;
-  if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given) || s.free.empty() || s.free.size() > max_momentum_coordinates)
+  if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given) || s.free.empty() ||
+      s.free.size() > max_momentum_coordinates)
     return found;
   Search search(m, s);
   for (const bool angular : {false, true}) {

@@ -62,7 +62,8 @@ class Search {
   std::optional<Ref> along_coordinates(const std::vector<std::size_t>& order) {
     Ref U = dag_.zero();
     for (std::size_t step = 0; step < order.size(); ++step) {
-      std::optional<Ref> rest = symbolic::expand_or_keep(dag_, dag_.neg(dag_.add(Q_[order[step]], slope(U, order[step]))));
+      std::optional<Ref> rest =
+          symbolic::expand_or_keep(dag_, dag_.neg(dag_.add(Q_[order[step]], slope(U, order[step]))));
       if (mechanics::vanishes(dag_, {*rest})) continue;
       for (std::size_t before = 0; before < step && rest; ++before)
         rest = symbolic::eliminate_symbol(dag_, *rest, coordinate(order[before]));

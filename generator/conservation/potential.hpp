@@ -31,7 +31,7 @@ std::vector<DomainCondition> domain_of(mechanics::Mechanics& mechanics, const st
 /// The work of a field of vanishing curl along closed paths: none on all paths tried, or some.
 struct Circulation {
   enum class Answer { none, some, undecided } answer = Answer::none;
-  std::string path;                      // if some: "one turn of theta", "a closed path in the plane of x and y"
+  std::string path;                        // if some: "one turn of theta", "a closed path in the plane of x and y"
   std::optional<symbolic::Ref> work = {};  // of one turn, as an expression
 };
 

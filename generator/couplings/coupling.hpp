@@ -16,7 +16,8 @@ namespace eomgen::couplings {
 struct Coupling {
   std::string name;  // unique; the key of a [[constraint]]: KIND = { .. }
   std::string title;
-  std::string body_equation, angle_equation;  // left-hand sides of "= 0"; the multiplier is the moment on the first body
+  std::string body_equation,
+      angle_equation;  // left-hand sides of "= 0"; the multiplier is the moment on the first body
 };
 
 std::span<const Coupling> registry();

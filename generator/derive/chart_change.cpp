@@ -124,9 +124,17 @@ std::vector<Ref> change_of_direction(Dag& dag, const std::vector<std::uint32_t>&
 }  // namespace
 
 system::ChartChange chart_change(Dag& dag, const model::Model& model, const model::ChartPair& chart) {
-  system::ChartChange change{
-      chart.of, chart.own, chart.second, chart.singularity(model), chart.angles, chart.guarded, chart.at_sine, true, true,
-      {},       {}};
+  system::ChartChange change{chart.of,
+                             chart.own,
+                             chart.second,
+                             chart.singularity(model),
+                             chart.angles,
+                             chart.guarded,
+                             chart.at_sine,
+                             true,
+                             true,
+                             {},
+                             {}};
   if (chart.kind == model::ChartPair::Kind::rotation) {
     Axes second = chart.axes;
     second[2] = chart.second_axis;

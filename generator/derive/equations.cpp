@@ -54,7 +54,8 @@ void add_redundant(Mechanics& m, EquationSystem& s, FinalSubstitution& finish) {
     const mechanics::Constraint& c = m.constraints[k];
     const std::uint8_t order = c.holonomic() ? 0 : 1;
     const Ref psi = finish.imposed(c.holonomic() ? c.psi : m.velocity_form(c));
-    const Ref b = c.holonomic() ? symbolic::explicit_time_derivative(*m.dag, m.model->functions.size())(psi) : at_rest(m, s)(psi);
+    const Ref b =
+        c.holonomic() ? symbolic::explicit_time_derivative(*m.dag, m.model->functions.size())(psi) : at_rest(m, s)(psi);
     system::RedundantConstraint watched{k, finish(psi), {}, finish(b)};
     for (const std::uint32_t i : s.free)
       watched.A.push_back(finish(symbolic::partial_derivative(*m.dag, coordinate(i, order))(psi)));

@@ -9,7 +9,8 @@ FullEquations euler_lagrange(Mechanics& m, Ref T, Ref U, const std::vector<Ref>&
   Dag& dag = *m.dag;
   symbolic::Derivation bias = symbolic::total_time_derivative(dag, m.q.size(), m.model->functions.size(), true);
   std::vector<symbolic::Derivation> by_rate;
-  for (const std::uint32_t k : which) by_rate.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, k, 1}));
+  for (const std::uint32_t k : which)
+    by_rate.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, k, 1}));
   FullEquations result;
   for (std::size_t i = 0; i < which.size(); ++i) {
     symbolic::Derivation by = symbolic::partial_derivative(dag, {SymbolKind::coordinate, which[i], 0});

@@ -25,14 +25,16 @@ bool is_nearly_full(const mechanics::Mechanics& m, const system::EquationSystem&
   return static_cast<std::size_t>(filled) * share > s.M.size();
 }
 
-/// The tree formulations that remain efficient on larger trees than `formulation`, the one with the largest limit first.
+/// The tree formulations that remain efficient on larger trees than `formulation`, the one with the largest limit
+/// first.
 std::vector<FormulationEntry> cheaper_on_trees(const FormulationEntry& formulation) {
   std::vector<FormulationEntry> cheaper;
   for (const FormulationEntry& other : formulations()) {
     if (other.is_for_trees && other.max_tree_size > formulation.max_tree_size) cheaper.push_back(other);
   }
-  std::stable_sort(cheaper.begin(), cheaper.end(),
-                   [](const FormulationEntry& a, const FormulationEntry& b) { return a.max_tree_size > b.max_tree_size; });
+  std::stable_sort(cheaper.begin(), cheaper.end(), [](const FormulationEntry& a, const FormulationEntry& b) {
+    return a.max_tree_size > b.max_tree_size;
+  });
   return cheaper;
 }
 
@@ -49,7 +51,8 @@ bool has_cheaper_formulation(const FormulationEntry& formulation, mechanics::Mec
 
 std::span<const FormulationEntry> formulations() { return all(); }
 
-DerivationResult derive_if_worthwhile(const FormulationEntry& formulation, mechanics::Mechanics& m, system::Approach approach) {
+DerivationResult derive_if_worthwhile(const FormulationEntry& formulation, mechanics::Mechanics& m,
+                                      system::Approach approach) {
   constexpr std::size_t operations = 20'000'000;
   if (has_cheaper_formulation(formulation, m, approach)) return {std::nullopt, "a large tree has cheaper formulations"};
   try {

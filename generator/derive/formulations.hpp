@@ -40,12 +40,13 @@ namespace formulation {
 /// The equations of a formulation, or why it was skipped.
 struct DerivationResult {
   std::optional<system::EquationSystem> system;
-  std::string skip_reason;           // empty where there are equations
+  std::string skip_reason;   // empty where there are equations
   bool over_budget = false;  // false: it does not apply, or another one is far cheaper
 };
 
 /// Derives the equations within a budget of operations. A formulation is skipped if another is far cheaper on a tree of
 /// that size: full matrices serve small systems only (docs/theory.md, "Formulations").
-DerivationResult derive_if_worthwhile(const FormulationEntry& formulation, mechanics::Mechanics& mechanics, system::Approach approach);
+DerivationResult derive_if_worthwhile(const FormulationEntry& formulation, mechanics::Mechanics& mechanics,
+                                      system::Approach approach);
 
 }  // namespace eomgen::derive

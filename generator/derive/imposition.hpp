@@ -9,8 +9,8 @@ namespace eomgen::derive {
 
 using mechanics::constraint_substitution;
 using mechanics::Mechanics;
-using mechanics::Vec3;
 using mechanics::time_function_substitution;
+using mechanics::Vec3;
 using symbolic::Dag;
 using symbolic::Ref;
 

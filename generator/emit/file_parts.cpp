@@ -82,7 +82,8 @@ class Parts {
     if (is_without_mode(name)) {
       add(name, function_purpose(name) + " In the own charts.", argument_list(list, real_),
           fmt::format("  return {};\n", call(program_, name, list)));
-      add(name + "_in", function_purpose(name + "_in"), argument_list(abi_arguments(name + "_in"), real_), by_mode(name, list));
+      add(name + "_in", function_purpose(name + "_in"), argument_list(abi_arguments(name + "_in"), real_),
+          by_mode(name, list));
       return;
     }
     add(name, function_purpose(name), argument_list(list, real_), by_mode(name, list));
@@ -116,7 +117,8 @@ class Parts {
                           offset > 0 ? fmt::format(" + {}", offset) : "");
       offset += entries;
     }
-    add("prepare", function_purpose("prepare"), argument_list(abi_arguments("prepare"), real_), body + "  return code;\n");
+    add("prepare", function_purpose("prepare"), argument_list(abi_arguments("prepare"), real_),
+        body + "  return code;\n");
   }
 
   /// Changes charts, one bit of `mode` at a time.

@@ -11,7 +11,7 @@ namespace eomgen::emit {
 std::string sincos_lanes(const std::string& prefix, const std::string& linkage, const std::string& standard,
                          bool single) {
   return render_template(single ? skeleton::kernels_sincos_lanes_single : skeleton::kernels_sincos_lanes,
-                  {{"prefix", prefix}, {"inline", linkage}, {"std", standard}}, {});
+                         {{"prefix", prefix}, {"inline", linkage}, {"std", standard}}, {});
 }
 
 std::string sincos_kernel(const std::string& prefix, const std::string& linkage, const std::string& standard,

@@ -79,7 +79,7 @@ bool takes_inputs(const std::string& function) {
 }  // namespace
 
 std::vector<LeafLoads> leaf_loads(const std::string& function, const Leaves& leaves, const ModelNames& names,
-                           const EmissionContext& context, const Dialect& dialect, const std::string& block) {
+                                  const EmissionContext& context, const Dialect& dialect, const std::string& block) {
   const bool lanes = !dialect.lane_prefix.empty(), inputs = takes_inputs(function);
   std::vector<LeafLoads> result;
   for (const Slot slot :

@@ -21,6 +21,6 @@ struct LeafLoads {
 /// The leaves of a function that need a name, and the expressions that load them: from the arguments of one state, or
 /// from the lanes of `block` (templates/batch) if the dialect has lanes.
 std::vector<LeafLoads> leaf_loads(const std::string& function, const Leaves& leaves, const ModelNames& names,
-                           const EmissionContext& context, const Dialect& dialect, const std::string& block);
+                                  const EmissionContext& context, const Dialect& dialect, const std::string& block);
 
 }  // namespace eomgen::emit

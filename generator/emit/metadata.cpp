@@ -88,7 +88,8 @@ std::vector<std::string> banner_lines(const program::Program& program, const Emi
                                  context.title.empty() ? context.id : context.title, ""};
   lines.push_back("model       " + context.id);
   lines.push_back("content     " + context.content_hash);
-  lines.push_back(fmt::format("equations   approach {}, formulation {}", system::name(program.approach), program.formulation));
+  lines.push_back(
+      fmt::format("equations   approach {}, formulation {}", system::name(program.approach), program.formulation));
   lines.push_back("verified    " + (context.verdict.empty() ? "no" : context.verdict));
   for (const std::string& set : context.singular) lines.push_back("singular    " + set);
   for (const program::Function& function : program.functions) {

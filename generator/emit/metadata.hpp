@@ -27,7 +27,7 @@ std::string function_purpose(const std::string& function);
 
 /// Fills in a skeleton of templates/. Values are code and are not escaped.
 std::string render_template(const std::string& skeleton, const std::vector<std::pair<std::string, std::string>>& values,
-                     const std::vector<std::vector<std::pair<std::string, std::string>>>& functions);
+                            const std::vector<std::vector<std::pair<std::string, std::string>>>& functions);
 
 /// Throws Error if names and numbers in `context` do not match the program.
 void require_consistent(const program::Program& program, const EmissionContext& context);

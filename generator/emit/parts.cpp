@@ -28,7 +28,7 @@ std::vector<std::size_t> assign_parts(const program::Function& function) {
 }
 
 std::string part_calls(const std::string& name, const FunctionText& text, const std::string& arguments,
-                           const std::string& real) {
+                       const std::string& real) {
   std::string result = fmt::format("  {} {}[{}];\n", real, text.work, text.work_size);
   for (std::size_t k = 1; k <= text.parts.size(); ++k) {
     const std::string call = fmt::format("{}_part{}({}, {})", name, k, arguments, text.work);

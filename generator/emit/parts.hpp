@@ -14,6 +14,6 @@ std::vector<std::size_t> assign_parts(const program::Function& function);
 
 /// Calls "NAME_part2(t, x, .., work)" of every part, with a return if a part does not return 0.
 std::string part_calls(const std::string& name, const FunctionText& text, const std::string& arguments,
-                           const std::string& real);
+                       const std::string& real);
 
 }  // namespace eomgen::emit

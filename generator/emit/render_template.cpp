@@ -7,7 +7,7 @@
 namespace eomgen::emit {
 
 std::string render_template(const std::string& skeleton, const std::vector<std::pair<std::string, std::string>>& values,
-                     const std::vector<std::vector<std::pair<std::string, std::string>>>& functions) {
+                            const std::vector<std::vector<std::pair<std::string, std::string>>>& functions) {
   kainjow::mustache::mustache text{skeleton};
   if (!text.is_valid()) throw std::logic_error(text.error_message());
   text.set_custom_escape([](const std::string& s) { return s; });

@@ -64,9 +64,9 @@ std::optional<FunctionValues> rounded(const std::string& function, const program
       off = std::max(off, bounds[r][i]);
     }
     // Tolerances are rounded up to two digits.
-    const double tolerance =
-        single ? std::max({single_relative_tolerance * largest, single_to_double_ulp * safety_factor * off, single_least_number})
-               : std::max({relative_tolerance * largest, safety_factor * off, least_number});
+    const double tolerance = single ? std::max({single_relative_tolerance * largest,
+                                                single_to_double_ulp * safety_factor * off, single_least_number})
+                                    : std::max({relative_tolerance * largest, safety_factor * off, least_number});
     values.tolerances.push_back(std::stod(fmt::format("{:.1e}", 1.05 * tolerance)));
   }
   return values;
@@ -345,8 +345,8 @@ std::string selftest_comparison(const EmissionContext& context, const SelfTestNa
       "{}\n{} int {}(int count, const {}* got, const {}* expected){}{{\n  for (int i = 0; i < count; ++i) {{\n"
       "    if (!({}(got[i] - expected[i + 1]) <= expected[0])) return 1;\n  }}\n  return 0;\n}}\n\n",
       comment(dialect, "Whether values differ from the expected ones by more than expected[0]."),
-      dialect.line_comments ? "inline" : "static", names.comparison, real_of(context, dialect), real_of(context, dialect),
-      dialect.line_comments ? " " : "\n", dialect.line_comments ? "std::fabs" : "fabs");
+      dialect.line_comments ? "inline" : "static", names.comparison, real_of(context, dialect),
+      real_of(context, dialect), dialect.line_comments ? " " : "\n", dialect.line_comments ? "std::fabs" : "fabs");
 }
 
 }  // namespace eomgen::emit

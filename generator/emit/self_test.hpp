@@ -21,7 +21,7 @@ std::optional<TestVector> test_vector(const program::Program& program, const Emi
 /// Names that differ between C and C++.
 struct SelfTestNames {
   std::function<std::string(const std::string&)> function_name;  // name of a function of the ABI in code: "NAME_rhs"
-  std::string comparison;                                    // name of the comparison function
+  std::string comparison;                                        // name of the comparison function
   std::string null_pointer;
 };
 

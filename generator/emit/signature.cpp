@@ -92,8 +92,8 @@ std::string argument_names(const program::Function& function, const FunctionText
   return list;
 }
 
-std::vector<std::string> unread_arguments(const program::Function& function, const FunctionText& text, const ModelNames& names,
-                                const Leaves& leaves) {
+std::vector<std::string> unread_arguments(const program::Function& function, const FunctionText& text,
+                                          const ModelNames& names, const Leaves& leaves) {
   const auto is_read = [&](Slot slot) {
     return slot != Slot::constant &&
            std::any_of(leaves.begin(), leaves.end(), [slot](const auto& leaf) { return leaf.first == slot; });

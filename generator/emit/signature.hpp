@@ -36,8 +36,8 @@ std::string function_head(const std::string& name, const program::Function& func
 std::string argument_names(const program::Function& function, const FunctionText& text, const ModelNames& names);
 
 /// Arguments that a function printed in one piece does not read, and results without entries.
-std::vector<std::string> unread_arguments(const program::Function& function, const FunctionText& text, const ModelNames& names,
-                                const Leaves& leaves);
+std::vector<std::string> unread_arguments(const program::Function& function, const FunctionText& text,
+                                          const ModelNames& names, const Leaves& leaves);
 
 /// A line "  (void)x; (void)p;" of casts; empty without names.
 std::string void_casts(const std::vector<std::string>& names);

@@ -90,8 +90,9 @@ class Printer {
     if (in_lanes()) {  // the first entry of the array passes the mask of valid lanes on
       const std::string hand_on =
           last ? "" : fmt::format("  {}[0] = ({}){};\n  return 0;\n", text_.work, dialect_.real, valid_lanes_);
-      text_.parts.push_back(fmt::format("  (void){}; (void){}; (void){};\n", text_.block, text_.block_index, text_.work) +
-                            initial_lane_mask(part) + loads(part) + body_ + hand_on);
+      text_.parts.push_back(
+          fmt::format("  (void){}; (void){}; (void){};\n", text_.block, text_.block_index, text_.work) +
+          initial_lane_mask(part) + loads(part) + body_ + hand_on);
     } else {
       text_.parts.push_back(all_arguments() + using_declarations() + loads(part) + body_ +
                             (last ? "" : "  return 0;\n"));
@@ -164,8 +165,8 @@ class Printer {
   void sincos_of_lanes(const std::vector<std::string>& angles, const std::string& reach) {
     body_ += fmt::format("  {} {} = {{0}};\n", dialect_.real, reach);
     for (std::size_t i = 0; i < angles.size(); ++i) {
-      body_ += wrapped(fmt::format("  {0}sincos({1}, &{2}[{4}], &{3}[{4}], &{5});", dialect_.lane_prefix, angles[i], sine_,
-                                   cosine_, i, reach),
+      body_ += wrapped(fmt::format("  {0}sincos({1}, &{2}[{4}], &{3}[{4}], &{5});", dialect_.lane_prefix, angles[i],
+                                   sine_, cosine_, i, reach),
                        "      ") +
                "\n";
     }
@@ -266,7 +267,8 @@ class Printer {
       require(fmt::format("{0} - {0} <= {1}", sum, dialect_.constant(0)));
     }
     const std::string place = table_.declare("place");
-    line(fmt::format("const struct {0}target* {1} = {0}place({2}, {3});", dialect_.lane_prefix, place, text_.block, valid_lanes_));
+    line(fmt::format("const struct {0}target* {1} = {0}place({2}, {3});", dialect_.lane_prefix, place, text_.block,
+                     valid_lanes_));
     const std::string step = table_.declare("step");
     line(fmt::format("const size_t {0} = {1}->step;", step, place));
     for (std::size_t r = 0, k = 0; r < function_.results.size(); ++r) {
@@ -292,8 +294,9 @@ class Printer {
     line(fmt::format("{} &= ({}mask)({});", valid_lanes_, dialect_.lane_prefix, condition));
   }
   std::string initial_lane_mask(std::size_t part) const {
-    return part == 0 ? fmt::format("  {0}mask {1} = {0}whole();\n", dialect_.lane_prefix, valid_lanes_)
-                     : fmt::format("  {0}mask {1} = ({0}mask){2}[0];\n", dialect_.lane_prefix, valid_lanes_, text_.work);
+    return part == 0
+               ? fmt::format("  {0}mask {1} = {0}whole();\n", dialect_.lane_prefix, valid_lanes_)
+               : fmt::format("  {0}mask {1} = ({0}mask){2}[0];\n", dialect_.lane_prefix, valid_lanes_, text_.work);
   }
 
   void end_where_negative(int code, const std::vector<Operand>& entries) {
@@ -337,8 +340,8 @@ class Printer {
   std::size_t parts() const { return uses_.leaves.size(); }
   std::string loads(std::size_t part) const {
     std::string result;
-    for (const auto& [slot, values] :
-         leaf_loads(function_.name, uses_.leaves[part], names_, context_, dialect_, text_.block + ", " + text_.block_index)) {
+    for (const auto& [slot, values] : leaf_loads(function_.name, uses_.leaves[part], names_, context_, dialect_,
+                                                 text_.block + ", " + text_.block_index)) {
       std::string list;
       for (const auto& [index, value] : values)
         list += fmt::format("{} {} = {}", list.empty() ? "  " + dialect_.declaration_prefix() : ",",

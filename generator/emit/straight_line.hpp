@@ -26,16 +26,18 @@ struct Dialect {
   // The function restarts if an angle turns out to be large (FunctionText::near_angles_first).
   bool near_angles_first = false;
   bool line_comments = false;
-  bool using_std = false;         // emits `using std::sin;` before calls
-  bool is_typed = true;              // false: JavaScript, which declares constants without a type
+  bool using_std = false;                // emits `using std::sin;` before calls
+  bool is_typed = true;                  // false: JavaScript, which declares constants without a type
   std::string sincos_range = "65536.0";  // largest angle of sincos (templates/kernels)
-  std::string lane_prefix;              // prefix of the functions of templates/batch; empty: one state
-  std::string lane_type;            // type of one lane
-  std::string rounding_function;           // function that rounds each value if the language has doubles only
+  std::string lane_prefix;               // prefix of the functions of templates/batch; empty: one state
+  std::string lane_type;                 // type of one lane
+  std::string rounding_function;         // function that rounds each value if the language has doubles only
 
   /// The start of a declaration.
   std::string declaration_prefix() const { return is_typed ? "const " + real : "const"; }
-  std::string rounded(const std::string& text) const { return rounding_function.empty() ? text : rounding_function + "(" + text + ")"; }
+  std::string rounded(const std::string& text) const {
+    return rounding_function.empty() ? text : rounding_function + "(" + text + ")";
+  }
   /// Switches to lane vectors of the same numbers.
   void use_lanes(const std::string& prefix) {
     lane_type = real;
@@ -63,7 +65,7 @@ struct FunctionText {
   std::vector<std::string> results;  // names of the result arguments, in order
   std::string body;                  // statements, without braces
   std::uint32_t packs = 0;           // number of groups of sines and cosines
-  bool near_angles_first = false;           // has a first argument `guarded`; if it is 0, -1 may be returned (angle too large)
+  bool near_angles_first = false;    // has a first argument `guarded`; if it is 0, -1 may be returned (angle too large)
   std::string guarded;
   /// Parts of a long function, called in order, because compile time grows faster than the length of a function. Each
   /// part has its own arguments and an array for values that later parts need. `body` is empty then.

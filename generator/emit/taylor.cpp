@@ -138,12 +138,13 @@ TaylorText print_taylor(const program::Program& program, const ModelNames& names
   text += fmt::format("\n{}{}\n",
                       generic ? "// Coefficients of the solution's Taylor series.\ntemplate <class Real>\n" : "",
                       result.head);
-  text += fmt::format(
-      fmt::runtime(driver), fmt::arg("real", real), fmt::arg("prefix", prefix), fmt::arg("n", program.state_count()),
-      fmt::arg("series", taylor.product_count * program::taylor_order(taylor)), fmt::arg("prepared", taylor.workspace_size()),
-      fmt::arg("zeros", taylor.order_zero_count), fmt::arg("products", taylor.product_count), fmt::arg("zero", dialect.constant(0)),
-      fmt::arg("one", dialect.constant(1)), fmt::arg("real_of_k", converted("k")),
-      fmt::arg("real_of_next", converted("k + 1")));
+  text += fmt::format(fmt::runtime(driver), fmt::arg("real", real), fmt::arg("prefix", prefix),
+                      fmt::arg("n", program.state_count()),
+                      fmt::arg("series", taylor.product_count * program::taylor_order(taylor)),
+                      fmt::arg("prepared", taylor.workspace_size()), fmt::arg("zeros", taylor.order_zero_count),
+                      fmt::arg("products", taylor.product_count), fmt::arg("zero", dialect.constant(0)),
+                      fmt::arg("one", dialect.constant(1)), fmt::arg("real_of_k", converted("k")),
+                      fmt::arg("real_of_next", converted("k + 1")));
   result.definition = text;
   return result;
 }

@@ -37,11 +37,12 @@ std::string trig_name(const program::Function& function, const program::Instruct
   for (const Operand& operand : o) {
     if (operand.slot != Slot::state && operand.slot != Slot::parameter) return "";
   }
-  return head + expressions.unsigned_value(o[0]).text + (o[1].negated ? "_minus_" : "_plus_") + expressions.unsigned_value(o[1]).text;
+  return head + expressions.unsigned_value(o[0]).text + (o[1].negated ? "_minus_" : "_plus_") +
+         expressions.unsigned_value(o[1]).text;
 }
 
 std::string result_entry_name(const program::Function& function, const ModelNames& names, std::size_t result,
-                          std::size_t entry) {
+                              std::size_t entry) {
   const std::size_t n = names.acceleration.size(), all = names.state.size();
   if (function.name == "rhs" && entry >= n && entry < 2 * n) return names.acceleration[entry - n];
   if (function.name == "jac" && result == 0 && entry % all == 0) return fmt::format("d/d {}", names.state[entry / all]);

@@ -18,6 +18,6 @@ std::string trig_name(const program::Function& function, const program::Instruct
 
 /// The name of an entry of a result; empty if it has none.
 std::string result_entry_name(const program::Function& function, const ModelNames& names, std::size_t result,
-                          std::size_t entry);
+                              std::size_t entry);
 
 }  // namespace eomgen::emit

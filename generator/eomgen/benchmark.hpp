@@ -16,8 +16,8 @@ struct BenchmarkOptions {
   std::map<std::string, double> parameters = {};  // replace the scene's values; SI units
   std::optional<double> t_end = {};               // s; replaces the scene's
   std::vector<std::string> solvers = {};          // empty: all eligible solvers
-  double max_seconds = 10;                          // time limit of a run, s
-  bool other_libraries = false;                         // also measure solvers of other libraries
+  double max_seconds = 10;                        // time limit of a run, s
+  bool other_libraries = false;                   // also measure solvers of other libraries
   std::uint64_t seed = 1;
 };
 
@@ -45,14 +45,14 @@ struct StressOptions {
   std::map<std::string, double> parameters = {};
   std::optional<double> t_end = {};
   std::vector<std::string> solvers = {};  // empty: all
-  double max_seconds = 60;                    // time limit of a run, s
-  std::size_t max_steps = 20000;              // step limit of a run
+  double max_seconds = 60;                // time limit of a run, s
+  std::size_t max_steps = 20000;          // step limit of a run
   bool quick = false;                     // few variations of each kind
   std::uint64_t seed = 1;
 };
 
-/// Result of one solver on one variation. Verdicts: "pass" (the error is within 100 tolerances), "reported" (the error is
-/// larger and was reported), "undetected" (the error is larger and undetected).
+/// Result of one solver on one variation. Verdicts: "pass" (the error is within 100 tolerances), "reported" (the error
+/// is larger and was reported), "undetected" (the error is larger and undetected).
 struct StressRow {
   std::string test, solver, verdict;
   double error = 0, estimate = 0;

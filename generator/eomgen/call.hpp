@@ -8,8 +8,8 @@
 #include <stop_token>
 #include <string>
 
-#include "eomgen/formulas.hpp"
 #include "eomgen/call_control.hpp"
+#include "eomgen/formulas.hpp"
 #include "pipeline/pipeline.hpp"
 #include "print/render.hpp"
 #include "run/scene.hpp"
@@ -24,7 +24,8 @@ std::recursive_mutex& library_mutex();
 /// Forwards progress and warnings of one call to its CallControl, and its stop request to the stages.
 class CallListener : public work::Listener {
  public:
-  explicit CallListener(const CallControl& control) : Listener(&stopped_), control_(control), stop_callback_(control.stop, SetFlag{&stopped_}) {}
+  explicit CallListener(const CallControl& control)
+      : Listener(&stopped_), control_(control), stop_callback_(control.stop, SetFlag{&stopped_}) {}
 
   const std::atomic<bool>* stopped() const { return &stopped_; }
   std::function<void(double)> progress() const { return control_.on_progress; }

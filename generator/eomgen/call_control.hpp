@@ -15,8 +15,8 @@ struct CallControl {
   /// Stops the call within a fraction of a second. A run, a search and a verification then return partial results that
   /// are marked as interrupted. All other calls throw Interrupted.
   std::stop_token stop = {};
-  std::function<void(const std::string& stage)> on_stage = {};   // start of a stage: "deriving the equations"
-  std::function<void(double fraction)> on_progress = {};          // in [0, 1], of a time span or of a search
+  std::function<void(const std::string& stage)> on_stage = {};      // start of a stage: "deriving the equations"
+  std::function<void(double fraction)> on_progress = {};            // in [0, 1], of a time span or of a search
   std::function<void(const std::string& warning)> on_warning = {};  // a warning about the result
 };
 

@@ -17,7 +17,7 @@ struct ConstraintClass {
   std::string integrable;               // "yes", "no", "unknown"
   std::optional<std::string> integral;  // the integrated equation
   bool redundant = false;               // follows from others and has no multiplier
-  std::string treatment, reason;              // treatment in the equations; reason for `integrable`
+  std::string treatment, reason;        // treatment in the equations; reason for `integrable`
 };
 
 /// ConstraintClassification of one force.

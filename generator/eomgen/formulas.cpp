@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <sstream>
 
-#include "analysis/latex_document.hpp"
 #include "analysis/equations.hpp"
 #include "analysis/examination.hpp"
+#include "analysis/latex_document.hpp"
 #include "derive/formulations/lagrange.hpp"
 #include "eomgen/call.hpp"
 #include "eomgen/model.hpp"

@@ -13,16 +13,16 @@
 #include <string>
 #include <vector>
 
+#include "eomgen/benchmark.hpp"
+#include "eomgen/call_control.hpp"
 #include "eomgen/certificate.hpp"
 #include "eomgen/definition.hpp"
 #include "eomgen/error.hpp"
 #include "eomgen/examination.hpp"
 #include "eomgen/formulas.hpp"
-#include "eomgen/benchmark.hpp"
 #include "eomgen/motion.hpp"
 #include "eomgen/sources.hpp"
 #include "eomgen/steady.hpp"
-#include "eomgen/call_control.hpp"
 
 namespace eomgen {
 
@@ -55,8 +55,8 @@ class Model {
   Equations equations(const EquationsOptions& options = {}, const CallControl& control = {}) const;
   /// Derives the equations of motion in compiled form by Lagrange's equations. `automatic` means approach II here.
   Derivation derivation(Approach approach = Approach::two, const CallControl& control = {}) const;
-  /// Returns the whole derivation as a LaTeX document. Throws Error{ErrorKind::check} if the check against the independent
-  /// oracle fails. `seed`: of the random states of that check.
+  /// Returns the whole derivation as a LaTeX document. Throws Error{ErrorKind::check} if the check against the
+  /// independent oracle fails. `seed`: of the random states of that check.
   std::string latex_document(const CallControl& control = {}, std::uint64_t seed = 1) const;
   /// Checks all formulations against the independent oracle in multiple precision. A failed check is a result
   /// (Certificate::pass is false), not an error.

@@ -50,7 +50,7 @@ struct Invariant {
 struct Motion {
   std::string outcome;                                // "done", "stopped_by_event", or a failure (docs/runtime.md)
   std::string detail, solver;                         // solver: the last one used
-  std::string solver_reason;                                 // why this solver was chosen
+  std::string solver_reason;                          // why this solver was chosen
   double t = 0;                                       // final time, s
   std::vector<std::string> columns;                   // every coordinate and its rate, then the outputs
   std::vector<double> times;                          // of the rows, s

@@ -15,9 +15,10 @@ struct EmitOptions {
   Approach approach = Approach::automatic;
   /// How the remaining constraints are solved: "auto", "multipliers", "nullspace" or "chaplygin".
   std::string form = "auto";
-  std::vector<std::string> extra_functions = {};  // functions in addition to rhs: "jac", "mass", .. (docs/commands.md, emit)
+  std::vector<std::string> extra_functions =
+      {};                                 // functions in addition to rhs: "jac", "mass", .. (docs/commands.md, emit)
   std::vector<std::string> outputs = {};  // outputs computed by the function `outputs`
-  std::vector<std::string> fixed_parameters = {};      // parameters replaced by their numbers
+  std::vector<std::string> fixed_parameters = {};  // parameters replaced by their numbers
   std::uint64_t seed = 1;
   std::string real_type = "double";  // "double" or "float" (docs/abi.md, "Single precision")
 };

@@ -60,7 +60,8 @@ SteadyMotions Model::steady_motions(const SteadyOptions& options, const CallCont
       SteadyMotion motion;
       motion.kind = linear::name(from.l.kind);
       const std::vector<std::string>& names = found.problem.flow->names();
-      for (std::size_t i = 0; i + 1 < from.l.z.size(); ++i) motion.state[names[i]] = analysis::display_value(from.l.z[i]);
+      for (std::size_t i = 0; i + 1 < from.l.z.size(); ++i)
+        motion.state[names[i]] = analysis::display_value(from.l.z[i]);
       motion.stability = linear::name(from.verdict.stability);
       motion.reason = from.verdict.reason;
       motion.eigenvalues = eigenvalues(from.l.spectrum);

@@ -42,7 +42,7 @@ struct SteadyMotion {
   std::map<std::string, double> state;            // coordinates and rates, SI units
   std::string stability, reason;                  // "stable", "unknown" or "unstable", and why
   std::vector<std::complex<double>> eigenvalues;  // 1/s
-  std::size_t family_dimension = 0;                         // dimension of the family it belongs to; 0: isolated
+  std::size_t family_dimension = 0;               // dimension of the family it belongs to; 0: isolated
 };
 
 /// Result of Model::steady_motions().

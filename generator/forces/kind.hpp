@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Kinds of forces as data: a kind is one file with a function that returns a Kind, and one line in registry.inc. A Kind
 // lists the keys of the force in a model file, and its effects as formulas in the model language. The model reader
-// checks the keys and expands the formulas (model/expand_forces.cpp), so that no later stage depends on a kind of force.
-// The oracle has its own statement of each kind, in terms of the keys that the author wrote (verify/forces/).
+// checks the keys and expands the formulas (model/expand_forces.cpp), so that no later stage depends on a kind of
+// force. The oracle has its own statement of each kind, in terms of the keys that the author wrote (verify/forces/).
 //
 // Names in the formulas: the keys. In addition: for `ends` a and b; for `bodies` fA and fB with their axes A1 A2 A3 and
 // B1 B2 B3 and their angular velocities wA and wB (for the ground E1 E2 E3 and 0); for `points` rA and rB; for `body`
@@ -46,11 +46,11 @@ struct Key {
   std::string unit = {};  // required; empty: any
   Dependency dependency = Dependency::time;
   bool optional = false;
-  std::string default_value = {};  // default formula of an optional key; empty: no value
-  std::string default_requires = {};      // the default applies only if this other key is given
-  std::string required_unless = {};    // required only if this other key is not given
-  std::string what = {};      // in messages: "gravity"; empty: "the KEY of FORCE"
-  std::string remedy = {};    // if it is missing or depends on a forbidden variable
+  std::string default_value = {};     // default formula of an optional key; empty: no value
+  std::string default_requires = {};  // the default applies only if this other key is given
+  std::string required_unless = {};   // required only if this other key is not given
+  std::string what = {};              // in messages: "gravity"; empty: "the KEY of FORCE"
+  std::string remedy = {};            // if it is missing or depends on a forbidden variable
   std::vector<Choice> choices = {};
 };
 
@@ -89,7 +89,7 @@ struct Term {
   std::string formula;
   std::string at = {};
   std::vector<Condition> conditions = {};  // the term applies if all of them hold
-  std::string extension = {};   // the formula for which `extension` stands
+  std::string extension = {};              // the formula for which `extension` stands
   Domain domain = Domain::once;
   std::string arm = {};  // of Domain::bodies
 };

@@ -19,9 +19,18 @@ Kind rotary_actuator() {
       .rules = {{Rule::Type::not_both, "angle", "bodies", "has both an angle and bodies", "keep one of them"},
                 {Rule::Type::not_both, "axis", "angle", "has both an axis and an angle",
                  "an axis goes with bodies: keep bodies and axis, or the angle"}},
-      .terms = {{.load_type = LoadType::moment, .formula = "moment*unit(axis)", .at = "B", .conditions = {{Predicate::given, "axis"}}},
-                {.load_type = LoadType::moment, .formula = "-(moment*unit(axis))", .at = "A", .conditions = {{Predicate::given, "axis"}}},
-                {.load_type = LoadType::work, .formula = "moment", .at = "angle", .conditions = {{Predicate::given, "angle"}}}},
+      .terms = {{.load_type = LoadType::moment,
+                 .formula = "moment*unit(axis)",
+                 .at = "B",
+                 .conditions = {{Predicate::given, "axis"}}},
+                {.load_type = LoadType::moment,
+                 .formula = "-(moment*unit(axis))",
+                 .at = "A",
+                 .conditions = {{Predicate::given, "axis"}}},
+                {.load_type = LoadType::work,
+                 .formula = "moment",
+                 .at = "angle",
+                 .conditions = {{Predicate::given, "angle"}}}},
   };
 }
 

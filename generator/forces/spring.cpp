@@ -18,10 +18,13 @@ Kind spring() {
                 .remedy = "the energy of a spring is an expression of extension, parameters and time"}},
       .rules = {{Rule::Type::not_both, "energy", "stiffness", "has both a stiffness and an energy",
                  "keep one of them"}},
-      .terms = {{.formula = "stiffness*dot(a - b, a - b)/2", .conditions = {{Predicate::given, "stiffness"}, {Predicate::zero, "length"}}},
+      .terms = {{.formula = "stiffness*dot(a - b, a - b)/2",
+                 .conditions = {{Predicate::given, "stiffness"}, {Predicate::zero, "length"}}},
                 {.formula = "stiffness*(norm(a - b) - length)^2/2",
                  .conditions = {{Predicate::given, "stiffness"}, {Predicate::nonzero, "length"}}},
-                {.formula = "energy", .conditions = {{Predicate::given, "energy"}}, .extension = "norm(a - b) - length"}},
+                {.formula = "energy",
+                 .conditions = {{Predicate::given, "energy"}},
+                 .extension = "norm(a - b) - length"}},
       .spring = {"a", "b"},
   };
 }

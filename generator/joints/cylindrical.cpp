@@ -4,7 +4,8 @@
 namespace eomgen::joints {
 
 Joint cylindrical() {
-  return {"cylindrical", "slides along an axis and turns about it", AxisLayout::shared, concatenate({point_on_axis(), same_axis()})};
+  return {"cylindrical", "slides along an axis and turns about it", AxisLayout::shared,
+          concatenate({point_on_axis(), same_axis()})};
 }
 
 }  // namespace eomgen::joints

@@ -13,9 +13,9 @@ Joint cylindrical();
 Joint universal();
 Joint fixed();
 
-std::vector<Equation> same_point();   // r_B = r_A, eq. (7.16)
+std::vector<Equation> same_point();     // r_B = r_A, eq. (7.16)
 std::vector<Equation> point_on_axis();  // r_B is on the axis through r_A
-std::vector<Equation> same_axis();    // the axes are parallel: the two equations that a pin adds, eq. (7.18)
+std::vector<Equation> same_axis();      // the axes are parallel: the two equations that a pin adds, eq. (7.18)
 Equation no_rotation_about_axis();
 
 /// Concatenates groups of equations.

@@ -4,7 +4,8 @@
 namespace eomgen::joints {
 
 Joint pin() {
-  return {"pin", "a point and an axis in common: one rotation", AxisLayout::shared, concatenate({same_point(), same_axis()})};
+  return {"pin", "a point and an axis in common: one rotation", AxisLayout::shared,
+          concatenate({same_point(), same_axis()})};
 }
 
 }  // namespace eomgen::joints

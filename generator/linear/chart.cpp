@@ -163,7 +163,8 @@ Places constants(const std::vector<Field<Precise>>& fields, const Chart& chart, 
 
 Chart best_chart(const Flow& flow, const Field<Precise>& here, const std::vector<Field<Precise>>& fields) {
   const std::size_t n = flow.coordinates(), p = flow.position_constraint_count();
-  const std::vector<Candidate> positions = candidates(columns_of(rows_of(here.phi_jacobian, all_of(0, p)), all_of(0, n)));
+  const std::vector<Candidate> positions =
+      candidates(columns_of(rows_of(here.phi_jacobian, all_of(0, p)), all_of(0, n)));
   const std::vector<Candidate> speeds =
       candidates(columns_of(rows_of(here.phi_jacobian, all_of(p, here.phi_jacobian.rows)), all_of(n, 2 * n)));
   std::vector<Field<double>> rough;
@@ -234,12 +235,13 @@ template Matrix<Precise> tangent(const Field<Precise>&, const Chart&);
 template Matrix<double> reduced_jacobian(const Field<double>&, const Chart&, const Matrix<double>&);
 template Matrix<Precise> reduced_jacobian(const Field<Precise>&, const Chart&, const Matrix<Precise>&);
 
-std::optional<State<Precise>> project_onto_constraints(const Flow& flow, const State<Precise>& z, const Setting<Precise>& setting) {
+std::optional<State<Precise>> project_onto_constraints(const Flow& flow, const State<Precise>& z,
+                                                       const Setting<Precise>& setting) {
   return project_onto_constraints(flow, z, setting, all_of(0, 2 * flow.coordinates()));
 }
 
-std::optional<State<Precise>> project_onto_constraints(const Flow& flow, State<Precise> z, const Setting<Precise>& setting,
-                                        const Places& columns) {
+std::optional<State<Precise>> project_onto_constraints(const Flow& flow, State<Precise> z,
+                                                       const Setting<Precise>& setting, const Places& columns) {
   constexpr int most_steps = 60, exact = 120;
   for (int step = 0; step < most_steps; ++step) {
     const Field<Precise> field = flow.constraints_at(z, setting);
@@ -259,7 +261,7 @@ std::optional<State<Precise>> project_onto_constraints(const Flow& flow, State<P
 }
 
 std::optional<State<Precise>> nearby_state(const Flow& flow, const State<Precise>& z, Setting<Precise>& setting,
-                                     std::uint64_t seed) {
+                                           std::uint64_t seed) {
   double size = reach;
   for (int attempt = 0; attempt < 8; ++attempt, size /= 2) {
     State<Precise> moved = z;

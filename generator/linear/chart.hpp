@@ -38,14 +38,16 @@ std::vector<std::size_t> ignorable_positions(const Symmetry& symmetry);
 
 /// Projects a state onto the constraints by Newton's method in the entries `moving` of z. Empty if it does not
 /// converge.
-std::optional<State<Precise>> project_onto_constraints(const Flow& flow, State<Precise> z, const Setting<Precise>& setting,
-                                        const std::vector<std::size_t>& moving);
+std::optional<State<Precise>> project_onto_constraints(const Flow& flow, State<Precise> z,
+                                                       const Setting<Precise>& setting,
+                                                       const std::vector<std::size_t>& moving);
 /// The same in all entries except t.
-std::optional<State<Precise>> project_onto_constraints(const Flow& flow, const State<Precise>& z, const Setting<Precise>& setting);
+std::optional<State<Precise>> project_onto_constraints(const Flow& flow, const State<Precise>& z,
+                                                       const Setting<Precise>& setting);
 
 /// A state near z on the constraints and on its leaf; sets setting.leaf.
 std::optional<State<Precise>> nearby_state(const Flow& flow, const State<Precise>& z, Setting<Precise>& setting,
-                                     std::uint64_t seed);
+                                           std::uint64_t seed);
 
 /// The chart at z with the fewest retained entries. Throws std::domain_error if the field has no value there.
 Symmetry find_symmetry(const Flow& flow, const State<Precise>& z, const Setting<Precise>& setting, std::uint64_t seed);

@@ -102,15 +102,15 @@ class Search {
 
   std::optional<SteadyState> steady(const State<Precise>& z) const {
     return find_steady_state(flow_, symmetry_, z, r_.setting,
-                       [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& jacobian) {
-                         value = Matrix<Precise>(held_->targets.size(), 1);
-                         jacobian = Matrix<Precise>(held_->targets.size(), at.size());
-                         if (held_->targets.empty()) return;
-                         const ValueAndJacobian<Precise> s = held_->at(at, r_.setting);
-                         for (std::size_t k = 0; k < held_->targets.size(); ++k)
-                           value(k, 0) = s.value[k] - held_->targets[k];
-                         jacobian = s.jacobian;
-                       });
+                             [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& jacobian) {
+                               value = Matrix<Precise>(held_->targets.size(), 1);
+                               jacobian = Matrix<Precise>(held_->targets.size(), at.size());
+                               if (held_->targets.empty()) return;
+                               const ValueAndJacobian<Precise> s = held_->at(at, r_.setting);
+                               for (std::size_t k = 0; k < held_->targets.size(); ++k)
+                                 value(k, 0) = s.value[k] - held_->targets[k];
+                               jacobian = s.jacobian;
+                             });
   }
 
   /// The quantities held by the request.
@@ -199,7 +199,7 @@ class Search {
 
   void normalise(State<Precise>& z) const {
     select_representative(z, r_.setting, tiny<Precise>(30),
-                 [this](State<Precise>& at, const State<Precise>& other) { take_if_steady(at, other); });
+                          [this](State<Precise>& at, const State<Precise>& other) { take_if_steady(at, other); });
     wrap(z);
   }
 
@@ -350,7 +350,9 @@ void SearchResult::record_failure(const std::string& why, State<double> at) {
   failure_point = std::move(at);
 }
 
-void SearchResult::record_failure(const std::string& why, const State<Precise>& at) { record_failure(why, rounded(at)); }
+void SearchResult::record_failure(const std::string& why, const State<Precise>& at) {
+  record_failure(why, rounded(at));
+}
 
 SearchResult find_steady_motions(const SearchRequest& request) {
   SearchResult result;

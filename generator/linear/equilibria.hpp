@@ -24,7 +24,7 @@ struct SearchRequest {
   const Flow& flow;
   State<Precise> start;
   Setting<Precise> setting;
-  std::vector<Range> ranges;                           // per coordinate
+  std::vector<Range> ranges;                                 // per coordinate
   std::vector<std::array<std::size_t, 4>> euler_parameters;  // Euler parameters: e and -e are the same attitude
   std::vector<EulerAngles> euler_angles;
   std::vector<Quantity> held;  // with the values of `targets`
@@ -37,20 +37,20 @@ struct SearchRequest {
 struct FoundPoint {
   State<Precise> z;
   double parameter_change = 0;  // SteadyState::parameter_change
-  std::size_t family = 0;  // dimension of its family of steady motions, before any quantity was held
+  std::size_t family = 0;       // dimension of its family of steady motions, before any quantity was held
 };
 
 struct SearchResult {
   Symmetry symmetry;                // at the start
-  std::vector<bool> is_angle;          // per coordinate of z: an angle, periodic by one turn
+  std::vector<bool> is_angle;       // per coordinate of z: an angle, periodic by one turn
   std::vector<std::size_t> held;    // entries of z held at their start values, since families leave them undetermined
-  bool held_in_vain = false;            // nothing was found with them held; the points are members of families
+  bool held_in_vain = false;        // nothing was found with them held; the points are members of families
   std::vector<FoundPoint> points;   // in the order of their entries
   std::size_t converged = 0;        // starts that converged to a point
   std::size_t further_members = 0;  // starts that converged to members of families that are not in `points`
-  std::size_t failed_starts = 0;          // starts whose iteration ended where the equations have no value or no derivative
+  std::size_t failed_starts = 0;    // starts whose iteration ended where the equations have no value or no derivative
   std::string reason;               // of the first failure
-  State<double> failure_point;         // its state
+  State<double> failure_point;      // its state
   bool interrupted = false;         // before all starts were tried; results so far
 
   /// Records a start whose iteration ended where the equations have no value or no derivative.

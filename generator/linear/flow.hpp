@@ -27,11 +27,11 @@ struct Setting {
 
 template <class T>
 struct Field {
-  Matrix<T> X;          // 2n x 1: v, a
-  Matrix<T> jacobian;      // 2n x (2n + 1), with respect to z
+  Matrix<T> X;               // 2n x 1: v, a
+  Matrix<T> jacobian;        // 2n x (2n + 1), with respect to z
   Matrix<T> input_jacobian;  // 2n x inputs
-  Matrix<T> phi;        // constraints on positions (holonomic, then leaves), then on velocities
-  Matrix<T> phi_jacobian;  // by z
+  Matrix<T> phi;             // constraints on positions (holonomic, then leaves), then on velocities
+  Matrix<T> phi_jacobian;    // by z
 };
 
 class Flow {

@@ -39,7 +39,8 @@ template <class T>
 void accumulate(ValueAndJacobian<T>& sum, const ValueAndJacobian<T>& x, const T& factor) {
   if (sum.value.empty()) sum = {std::vector<T>(x.value.size(), T(0)), Matrix<T>(x.jacobian.rows, x.jacobian.cols)};
   for (std::size_t i = 0; i < x.value.size(); ++i) sum.value[i] = sum.value[i] + factor * x.value[i];
-  for (std::size_t i = 0; i < x.jacobian.a.size(); ++i) sum.jacobian.a[i] = sum.jacobian.a[i] + factor * x.jacobian.a[i];
+  for (std::size_t i = 0; i < x.jacobian.a.size(); ++i)
+    sum.jacobian.a[i] = sum.jacobian.a[i] + factor * x.jacobian.a[i];
 }
 
 using Steps = std::vector<std::pair<double, double>>;  // multiples of a step and their weights
@@ -103,7 +104,8 @@ ValueAndJacobian<T> Flow::value_and_jacobian(const Tape& tape, const State<T>& z
     why = error.what();
   }
   try {
-    ValueAndJacobian<T> found = limit([&](const State<T>& beside) { return tape.at<T>(lookup(beside, setting), sharp); }, z);
+    ValueAndJacobian<T> found =
+        limit([&](const State<T>& beside) { return tape.at<T>(lookup(beside, setting), sharp); }, z);
     try {
       found.value = tape.values<T>(lookup(z, setting));
     } catch (const std::domain_error&) {  // 0/0: the limit
@@ -115,7 +117,9 @@ ValueAndJacobian<T> Flow::value_and_jacobian(const Tape& tape, const State<T>& z
   }
 }
 
-template ValueAndJacobian<double> Flow::value_and_jacobian(const Tape&, const State<double>&, const Setting<double>&) const;
-template ValueAndJacobian<Precise> Flow::value_and_jacobian(const Tape&, const State<Precise>&, const Setting<Precise>&) const;
+template ValueAndJacobian<double> Flow::value_and_jacobian(const Tape&, const State<double>&,
+                                                           const Setting<double>&) const;
+template ValueAndJacobian<Precise> Flow::value_and_jacobian(const Tape&, const State<Precise>&,
+                                                            const Setting<Precise>&) const;
 
 }  // namespace eomgen::linear

@@ -36,7 +36,7 @@ std::optional<std::size_t> zeros_beside(const Flow& flow, const Linearisation& h
   try {
     setting.leaf = flow.leaf(here.z, setting);
     const auto z = here.kind == MotionKind::motion ? nearby_state(flow, here.z, setting, seed)
-                                             : solve_steady_state(flow, here.symmetry, here.z, setting);
+                                                   : solve_steady_state(flow, here.symmetry, here.z, setting);
     if (!z) return std::nullopt;
     const Field<Precise> field = flow.at(*z, setting);
     return zero_eigenvalues(reduced_matrix(field, here.symmetry.chart, tangent(field, here.symmetry.chart), here.known),
@@ -66,7 +66,8 @@ Linearisation linearise(const Flow& flow, const State<Precise>& start, const Set
   result.z = *on_constraints;
   result.symmetry = find_symmetry(flow, result.z, setting, seed);
   // Keeps the independent entries as given.
-  if (const auto same = project_onto_constraints(flow, start, setting, result.symmetry.chart.dependent)) result.z = *same;
+  if (const auto same = project_onto_constraints(flow, start, setting, result.symmetry.chart.dependent))
+    result.z = *same;
   if (result.symmetry.autonomous) {
     const auto steady = find_steady_state(flow, result.symmetry, result.z, setting);
     if (steady && is_near(steady->z, result.z)) {

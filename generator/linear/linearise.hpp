@@ -21,8 +21,8 @@ struct Linearisation {
   Matrix<Precise> tangent, A, B;  // in y, entries of z
   Spectrum spectrum;
   std::size_t structural_zeros = 0;
-  double parameter_change = 0;            // SteadyState::parameter_change
-  int known = known_digits;  // of A
+  double parameter_change = 0;  // SteadyState::parameter_change
+  int known = known_digits;     // of A
 };
 
 /// `neighbours`: the same setting with other parameters. They identify zeros that hold for all parameters. Throws

@@ -89,7 +89,8 @@ void set_attitude(const SearchRequest& request, const std::array<std::size_t, 4>
 }  // namespace
 
 RoughSolution rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& start,
-                            const Setting<double>& setting, const HeldQuantities& held, const std::vector<double>& targets) {
+                                 const Setting<double>& setting, const HeldQuantities& held,
+                                 const std::vector<double>& targets) {
   RoughSolution end{start, false, false, {}};
   State<double>& z = end.z;
   try {
@@ -109,7 +110,8 @@ RoughSolution rough_steady_state(const Flow& flow, const Symmetry& symmetry, con
 }
 
 bool is_rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& z,
-                           const Setting<double>& setting, const HeldQuantities& held, const std::vector<double>& targets) {
+                           const Setting<double>& setting, const HeldQuantities& held,
+                           const std::vector<double>& targets) {
   constexpr double nearness = 1e-8;
   try {
     bool open = false;

@@ -98,7 +98,8 @@ void add_pair(const Precise& a, const Precise& b, const Precise& c, const Precis
 
 class Francis {
  public:
-  explicit Francis(Matrix<Precise> H) : H_(std::move(H)), negligible_(tiny<Precise>(deflation_digits) * infinity_norm(H_)) {}
+  explicit Francis(Matrix<Precise> H)
+      : H_(std::move(H)), negligible_(tiny<Precise>(deflation_digits) * infinity_norm(H_)) {}
 
   /// False if the iteration does not converge.
   bool run(std::vector<cl_N>& found) {

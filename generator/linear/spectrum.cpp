@@ -13,10 +13,10 @@ namespace {
 
 // Pivots of scaled rows below these are 0: far above rounding, far below values in models.
 constexpr int most_rank_digits = 60, rank_margin = 5;
-constexpr int root_digits = 18;          // smaller parts of a root are 0
-constexpr double printed = 1e-12;        // accuracy of a printed eigenvalue
-constexpr double separable_condition = 1e-6;       // condition above which binary64 separates eigenvalues
-constexpr double rounding_factor = 100;  // of binary64's QR, on n eps |A|
+constexpr int root_digits = 18;               // smaller parts of a root are 0
+constexpr double printed = 1e-12;             // accuracy of a printed eigenvalue
+constexpr double separable_condition = 1e-6;  // condition above which binary64 separates eigenvalues
+constexpr double rounding_factor = 100;       // of binary64's QR, on n eps |A|
 
 Precise smaller(const Precise& x, const Precise& y) { return x < y ? x : y; }
 double re(const Root& r) { return to_double(cln::realpart(r.value)); }

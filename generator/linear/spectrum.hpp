@@ -9,7 +9,7 @@ namespace eomgen::linear {
 
 struct Eigenvalue {
   double re = 0, im = 0;
-  double error = 0;         // estimated in many digits: far below rounding except for large Jordan blocks
+  double error = 0;            // estimated in many digits: far below rounding except for large Jordan blocks
   bool is_in_binary64 = true;  // binary64's QR confirms it, within the condition of the matrix
   /// Whether every printed digit is correct and binary64 does not contradict.
   bool is_reliable() const;

@@ -119,8 +119,9 @@ bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size
   next:;
   }
   if (!taken.empty()) {
-    const Matrix<Precise> mu = Elimination<Precise>(transposed(along), tiny<Precise>(zero_digits), tiny<Precise>(zero_digits))
-                                   .solve(transposed(F.first * T));
+    const Matrix<Precise> mu =
+        Elimination<Precise>(transposed(along), tiny<Precise>(zero_digits), tiny<Precise>(zero_digits))
+            .solve(transposed(F.first * T));
     for (std::size_t a = 0; a < taken.size(); ++a) {
       for (std::size_t i = 0; i < F.first.a.size(); ++i) F.first.a[i] = F.first.a[i] - mu(a, 0) * taken[a].first.a[i];
       for (std::size_t i = 0; i < F.second.a.size(); ++i)
@@ -145,11 +146,13 @@ bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size
     }
   }
   Matrix<Precise> W = T;
-  if (!taken.empty()) W = T * Elimination<Precise>(along, tiny<Precise>(zero_digits), tiny<Precise>(zero_digits)).null_space();
+  if (!taken.empty())
+    W = T * Elimination<Precise>(along, tiny<Precise>(zero_digits), tiny<Precise>(zero_digits)).null_space();
   return is_definite(transposed(W) * F.second * W);
 }
 
-std::optional<std::size_t> steady_family_dimension(const Flow& flow, const Linearisation& steady, const Matrix<Precise>& retained) {
+std::optional<std::size_t> steady_family_dimension(const Flow& flow, const Linearisation& steady,
+                                                   const Matrix<Precise>& retained) {
   const Matrix<Precise> directions =
       Elimination<Precise>(retained, tiny<Precise>(zero_digits), tiny<Precise>(zero_digits)).null_space();
   const std::vector<std::size_t> entries = retained_entries(steady);

@@ -48,6 +48,7 @@ class StabilityTest {
 
 /// The dimension of the family of steady motions, if every direction in the null space of A leads along one; otherwise
 /// empty.
-std::optional<std::size_t> steady_family_dimension(const Flow& flow, const Linearisation& steady, const Matrix<Precise>& retained);
+std::optional<std::size_t> steady_family_dimension(const Flow& flow, const Linearisation& steady,
+                                                   const Matrix<Precise>& retained);
 
 }  // namespace eomgen::linear

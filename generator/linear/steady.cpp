@@ -216,7 +216,7 @@ void snap_to_zero(const Problem& p, SteadyState& found) {
 // In a family of steady motions the Jacobian is rank-deficient there, and nearly so nearby: such pivots count as 0. If
 // that drops a needed equation, the iteration does not converge, and smaller pivots count.
 std::optional<State<Precise>> solve_steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
-                                           const Setting<Precise>& setting, const ExtraEquations& extra) {
+                                                 const Setting<Precise>& setting, const ExtraEquations& extra) {
   for (const Rank rank : {Rank{5, 11}, Rank{10, 14}, Rank{20, 30}}) {
     try {
       if (auto found = newton(flow, symmetry, z, setting, extra, rank)) return found;
@@ -228,7 +228,7 @@ std::optional<State<Precise>> solve_steady_state(const Flow& flow, const Symmetr
 }
 
 std::optional<SteadyState> find_steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
-                                  const Setting<Precise>& setting, const ExtraEquations& extra) {
+                                             const Setting<Precise>& setting, const ExtraEquations& extra) {
   constexpr int near = 7;     // digits of the equations where such a root is sought
   constexpr int exact = 140;  // and after convergence to a simple root
   std::optional<SteadyState> found;

@@ -13,17 +13,18 @@ using ExtraEquations = std::function<void(const State<Precise>& z, Matrix<Precis
 /// Solves for zero rates of the entries that are constant in a steady motion. Ignorable positions keep their values.
 /// Empty if Newton's iteration does not converge.
 std::optional<State<Precise>> solve_steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
-                                           const Setting<Precise>& setting, const ExtraEquations& extra = {});
+                                                 const Setting<Precise>& setting, const ExtraEquations& extra = {});
 
 struct SteadyState {
   State<Precise> z;
-  double parameter_change = 0;            // relative change of the parameters and inputs that would make this an exact steady motion
+  double parameter_change =
+      0;                     // relative change of the parameters and inputs that would make this an exact steady motion
   int known = known_digits;  // digits of z
 };
 
 /// The same; also for a multiple root of the equations, or a root that exists only after a change of the last digits of
 /// parameters and inputs.
 std::optional<SteadyState> find_steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
-                                  const Setting<Precise>& setting, const ExtraEquations& extra = {});
+                                             const Setting<Precise>& setting, const ExtraEquations& extra = {});
 
 }  // namespace eomgen::linear

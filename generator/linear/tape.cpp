@@ -59,8 +59,12 @@ LocalDerivatives<T> kinked(Op op, const std::array<T, 4>& x, bool moves, int edg
   switch (op) {
     case Op::abs: return {magnitude(x[0]), {below ? T(-1) : T(1)}, no_slope};
     case Op::sign: return {is_zero(gap) ? T(0) : below ? T(-1) : T(1), {}, no_slope};
-    case Op::min: return below ? LocalDerivatives<T>{x[0], {T(1), T(0)}, no_slope} : LocalDerivatives<T>{x[1], {T(0), T(1)}, no_slope};
-    case Op::max: return below ? LocalDerivatives<T>{x[1], {T(0), T(1)}, no_slope} : LocalDerivatives<T>{x[0], {T(1), T(0)}, no_slope};
+    case Op::min:
+      return below ? LocalDerivatives<T>{x[0], {T(1), T(0)}, no_slope}
+                   : LocalDerivatives<T>{x[1], {T(0), T(1)}, no_slope};
+    case Op::max:
+      return below ? LocalDerivatives<T>{x[1], {T(0), T(1)}, no_slope}
+                   : LocalDerivatives<T>{x[0], {T(1), T(0)}, no_slope};
     default:
       return below ? LocalDerivatives<T>{x[2], {T(0), T(0), T(1), T(0)}, no_slope}
                    : LocalDerivatives<T>{x[3], {T(0), T(0), T(0), T(1)}, no_slope};
@@ -68,7 +72,8 @@ LocalDerivatives<T> kinked(Op op, const std::array<T, 4>& x, bool moves, int edg
 }
 
 template <class T>
-LocalDerivatives<T> of_operator(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves) {
+LocalDerivatives<T> of_operator(Op op, std::int32_t payload, const std::array<T, 4>& x,
+                                const std::array<bool, 4>& moves) {
   switch (op) {
     case Op::add: return {x[0] + x[1], {T(1), T(1)}};
     case Op::sub: return {x[0] - x[1], {T(1), T(-1)}};
@@ -104,7 +109,8 @@ LocalDerivatives<T> of_function(Op op, const T& x, bool moves) {
 }
 
 template <class T>
-LocalDerivatives<T> local(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves, int edge) {
+LocalDerivatives<T> local(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves,
+                          int edge) {
   if (symbolic::is_kink(op)) return kinked(op, x, moves[0] || moves[1], edge);
   switch (op) {
     case Op::add:

@@ -19,7 +19,7 @@ using symbolic::Symbol;
 template <class T>
 struct ValueAndJacobian {
   std::vector<T> value;  // per root
-  Matrix<T> jacobian;       // per root and direction
+  Matrix<T> jacobian;    // per root and direction
 };
 
 class Tape {

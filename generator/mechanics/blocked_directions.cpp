@@ -22,9 +22,9 @@ using ClosedContacts = std::vector<bool>;
 
 std::size_t sticking_directions(const Contact& contact, std::size_t index, const ClosedContacts& closed) {
   if (!sticks(contact) || (contact.unilateral && !closed[index])) return 0;
-  const auto held = std::count_if(contact.blocked.begin(), contact.blocked.end(), [&](const BlockedDirection& direction) {
-    return direction.by == index || closed[direction.by];
-  });
+  const auto held =
+      std::count_if(contact.blocked.begin(), contact.blocked.end(),
+                    [&](const BlockedDirection& direction) { return direction.by == index || closed[direction.by]; });
   return contact.dimensions() - std::min(contact.dimensions(), static_cast<std::size_t>(held));
 }
 

@@ -76,8 +76,8 @@ std::vector<double> scales(const Mechanics& m, const std::vector<cl_R>& q) {
 /// `vanishing`: the length below which a row counts as 0 and is nonzero only because the constraints hold
 /// approximately.
 template <class T>
-RowSelection select_rows(const std::vector<std::vector<T>>& rows, const std::vector<RowPriority>& priorities, const T& tolerance,
-                   const T& vanishing, const T& hair) {
+RowSelection select_rows(const std::vector<std::vector<T>>& rows, const std::vector<RowPriority>& priorities,
+                         const T& tolerance, const T& vanishing, const T& hair) {
   std::vector<std::vector<T>> left = rows;
   std::vector<T> length, outside;  // of each row, and of its part outside the span of the used rows
   for (const auto& row : rows) length.push_back(sqrt(dot(row, row)));
@@ -117,14 +117,16 @@ RowSelection select_rows(const std::vector<std::vector<T>>& rows, const std::vec
 
 }  // namespace
 
-RowSelection select_independent(const std::vector<Row>& rows, const std::vector<RowPriority>& priorities, const cl_R& tolerance) {
+RowSelection select_independent(const std::vector<Row>& rows, const std::vector<RowPriority>& priorities,
+                                const cl_R& tolerance) {
   return select_rows<cl_R>(rows, priorities, tolerance, small(25), cl_R(cln::cl_RA(1000001) / 1000000));
 }
 
 ClosureSolver::ClosureSolver(Mechanics& m, Lowering& lower) : m_(m), lower_(lower) {
   symbolic::Substitution written = time_function_substitution(m);
   for (const JointReaction& joint : m.joints) {
-    for (const auto& direction : joint.along) reaction_directions_.insert(reaction_directions_.end(), direction.begin(), direction.end());
+    for (const auto& direction : joint.along)
+      reaction_directions_.insert(reaction_directions_.end(), direction.begin(), direction.end());
   }
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     const Constraint& c = m.constraints[k];
@@ -293,7 +295,8 @@ std::optional<Configuration> ClosureSolver::start_configuration() {
   return std::nullopt;
 }
 
-std::optional<Configuration> ClosureSolver::nearby_configuration(const Configuration& from, std::uint64_t seed, bool other_parameters) {
+std::optional<Configuration> ClosureSolver::nearby_configuration(const Configuration& from, std::uint64_t seed,
+                                                                 bool other_parameters) {
   const std::vector<double> scale = scales(m_, from.q);
   const std::vector<bool> all(m_.q.size(), true);
   inconsistency_ = 0;
@@ -310,7 +313,8 @@ std::optional<Configuration> ClosureSolver::nearby_configuration(const Configura
   return std::nullopt;
 }
 
-std::optional<Configuration> ClosureSolver::extrapolated_configuration(const Configuration& before, const Configuration& at) {
+std::optional<Configuration> ClosureSolver::extrapolated_configuration(const Configuration& before,
+                                                                       const Configuration& at) {
   const std::vector<double> scale = scales(m_, at.q);
   double largest = 0;
   std::vector<double> way;

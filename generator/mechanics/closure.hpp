@@ -28,7 +28,8 @@ enum class RowPriority { always, first, last };
 struct RowSelection {
   std::vector<std::size_t> selected, rest;  // ascending
 };
-RowSelection select_independent(const std::vector<Row>& rows, const std::vector<RowPriority>& priorities, const cln::cl_R& tolerance);
+RowSelection select_independent(const std::vector<Row>& rows, const std::vector<RowPriority>& priorities,
+                                const cln::cl_R& tolerance);
 
 class ClosureSolver {
  public:
@@ -41,7 +42,8 @@ class ClosureSolver {
   /// constraints.
   std::optional<Configuration> start_configuration();
   /// Another configuration nearby; with other parameter values if `other_parameters` is set.
-  std::optional<Configuration> nearby_configuration(const Configuration& from, std::uint64_t seed, bool other_parameters);
+  std::optional<Configuration> nearby_configuration(const Configuration& from, std::uint64_t seed,
+                                                    bool other_parameters);
   /// The next configuration beyond `at` in the direction from `before` to `at`.
   std::optional<Configuration> extrapolated_configuration(const Configuration& before, const Configuration& at);
   /// d psi/d q of all constraints (coefficients of velocities) by all coordinates.

@@ -152,7 +152,9 @@ bool is_identity(const Mechanics& m, const Constraint& c) {
 
 /// A constraint is superfluous if all its equations are identities.
 void require_nontrivial(const Mechanics& m, const model::Constraint& constraint) {
-  const auto idle = [&](const Constraint& c) { return c.name != constraint.name || c.redundancy == Redundancy::identity; };
+  const auto idle = [&](const Constraint& c) {
+    return c.name != constraint.name || c.redundancy == Redundancy::identity;
+  };
   if (constraint.joint || !std::all_of(m.constraints.begin(), m.constraints.end(), idle)) return;
   throw Error("mechanics", m.model->where(constraint.span),
               "constraint '" + constraint.name + "' holds for all values of the coordinates",
@@ -198,7 +200,8 @@ void add_constraints(Mechanics& m, Lowering& lower) {
             : velocities ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
                          : "a constraint relates coordinates, such as holonomic = \"R - d\"");
       }
-      if (result.redundancy == Redundancy::independent && !velocities && !constraint.joint && !constraint.rolling && !constraint.unit)
+      if (result.redundancy == Redundancy::independent && !velocities && !constraint.joint && !constraint.rolling &&
+          !constraint.unit)
         refuse_power(m, result);
       result.determined = result.redundancy == Redundancy::independent;
       m.constraints.push_back(std::move(result));

@@ -287,8 +287,8 @@ void check_law(const Mechanics& m, const Contact& contact) {
                          : "sliding friction must not exceed the limit of sticking: give static >= dynamic");
   }
   if (!contact.width) return;
-  const std::vector<cln::cl_R> width =
-      known_values(m, {*contact.width}, "the width of the friction of '" + contact.name + "'", friction_law_of(m, contact).span);
+  const std::vector<cln::cl_R> width = known_values(
+      m, {*contact.width}, "the width of the friction of '" + contact.name + "'", friction_law_of(m, contact).span);
   if (width.empty() || cln::plusp(width[0])) return;
   throw Error("mechanics", m.model->where(friction_law_of(m, contact).span),
               "the width of the friction of '" + contact.name + "' is not positive",

@@ -22,7 +22,7 @@ constexpr double least_left = 0.2, most_left = 0.4;
 constexpr int in_a_row = 12, most_steps = 40;
 
 Convergence convergence(const symbolic::Dag& dag, const std::vector<Ref>& roots, const std::vector<Symbol>& of,
-                  std::uint64_t point) {
+                        std::uint64_t point) {
   std::map<Symbol, double> q;
   for (const Symbol& symbol : of) q[symbol] = symbolic::sample_double(symbol, point);
   const std::function<double(const Symbol&)> at = [&](const Symbol& symbol) {

@@ -41,7 +41,8 @@ SourceLocation where(const Mechanics& m, std::uint32_t k) {
 /// Rows of holonomic and velocity constraints that always hold, for all coordinates.
 struct ConstraintRows {
   std::vector<std::uint32_t> constraints;
-  std::vector<RowPriority> priorities;  // joints are dropped first; constraints with friction or that fix a coordinate never
+  std::vector<RowPriority>
+      priorities;  // joints are dropped first; constraints with friction or that fix a coordinate never
 };
 
 ConstraintRows constraint_rows(const Mechanics& m) {
@@ -50,8 +51,8 @@ ConstraintRows constraint_rows(const Mechanics& m) {
     if (m.constraints[k].unilateral || !m.is_independent(k)) continue;
     result.constraints.push_back(k);
     result.priorities.push_back(fixes(m, k) || has_friction(m, k) ? RowPriority::always
-                           : of_joint(m, k)                  ? RowPriority::last
-                                                             : RowPriority::first);
+                                : of_joint(m, k)                  ? RowPriority::last
+                                                                  : RowPriority::first);
   }
   return result;
 }
@@ -92,16 +93,16 @@ bool holds_at(const std::vector<Row>& rows, const RowSelection& chosen) {
   const std::uint32_t k = known ? closure.inconsistent_constraint() : m.active.back();
   throw Error(
       "mechanics", where(m, k),
-      fmt::format(
-          "there are more constraints than coordinates, and no configuration is found in which all hold{}",
-          known ? fmt::format(": '{}' is off by {:.2g} where the others do", m.constraints[k].label, closure.inconsistency())
-                : ""),
+      fmt::format("there are more constraints than coordinates, and no configuration is found in which all hold{}",
+                  known ? fmt::format(": '{}' is off by {:.2g} where the others do", m.constraints[k].label,
+                                      closure.inconsistency())
+                        : ""),
       "give the default scene a start or a `guess` near one, if constraints repeat one another; else remove one");
 }
 
 /// Prescribed motion must be the same in all equations that repeat one another.
-void require_same_rates(const Mechanics& m, const ClosureSolver& closure, const ConstraintRows& of, const RowSelection& chosen,
-                        const Configuration& at) {
+void require_same_rates(const Mechanics& m, const ClosureSolver& closure, const ConstraintRows& of,
+                        const RowSelection& chosen, const Configuration& at) {
   std::vector<Row> rows = rows_of(closure, of, at);
   const std::vector<cl_R> rates = closure.rates(at);
   std::vector<RowPriority> priorities(rows.size(), RowPriority::last);
@@ -204,7 +205,8 @@ std::vector<Configuration> nearby_configurations(ClosureSolver& closure, const C
 }
 
 /// Configurations along the motion from the start, in both directions: once around a loop.
-std::vector<Configuration> along_motion(ClosureSolver& closure, const Configuration& start, const Configuration& beside) {
+std::vector<Configuration> along_motion(ClosureSolver& closure, const Configuration& start,
+                                        const Configuration& beside) {
   constexpr int strides = 14;
   std::vector<Configuration> way;
   for (const auto& [from, to] : {std::pair{start, beside}, std::pair{beside, start}}) {
@@ -280,7 +282,8 @@ void exchange_along_motion(const ConstraintRows& of, const std::vector<std::vect
 }
 
 // Drops the equations of a loop that are redundant at every configuration and for all parameters.
-void drop_redundant_at(Mechanics& m, ClosureSolver& closure, const Configuration& start, const std::vector<Configuration>& points) {
+void drop_redundant_at(Mechanics& m, ClosureSolver& closure, const Configuration& start,
+                       const std::vector<Configuration>& points) {
   const ConstraintRows of = constraint_rows(m);
   RowSelection chosen;
   for (const Configuration& at : points) {
@@ -291,8 +294,9 @@ void drop_redundant_at(Mechanics& m, ClosureSolver& closure, const Configuration
   const std::vector<Row> at_start = rows_of(closure, of, start);
   const RowSelection there = select_independent(at_start, of.priorities, small(dependent_digits));
   if (there.selected.size() == chosen.selected.size() && !holds_at(at_start, chosen)) chosen = there;
-  std::erase_if(chosen.rest,
-                [&](std::size_t k) { return of.priorities[k] == RowPriority::always; });  // the start of a run reports it
+  std::erase_if(chosen.rest, [&](std::size_t k) {
+    return of.priorities[k] == RowPriority::always;
+  });  // the start of a run reports it
   if (chosen.rest.empty()) return;
   std::vector<std::vector<Row>> way;
   for (const std::vector<Configuration>& some :
@@ -304,10 +308,13 @@ void drop_redundant_at(Mechanics& m, ClosureSolver& closure, const Configuration
   for (std::uint64_t seed = 11; seed <= 16 && others < 2; ++seed) {
     const std::optional<Configuration> found = closure.nearby_configuration(start, seed, true);
     if (!found) continue;
-    if (!holds_at(rows_of(closure, of, *found), chosen)) throw_special_parameters(m, of.constraints[chosen.rest.front()]);
+    if (!holds_at(rows_of(closure, of, *found), chosen))
+      throw_special_parameters(m, of.constraints[chosen.rest.front()]);
     ++others;
   }
-  if (others == 0) throw_special_parameters(m, closure.inconsistency() > 0 ? closure.inconsistent_constraint() : of.constraints[chosen.rest.front()]);
+  if (others == 0)
+    throw_special_parameters(
+        m, closure.inconsistency() > 0 ? closure.inconsistent_constraint() : of.constraints[chosen.rest.front()]);
   for (const Configuration& at : points) require_same_rates(m, closure, of, chosen, at);
   for (const std::size_t k : chosen.rest) {
     m.constraints[of.constraints[k]].redundancy = Redundancy::redundant;

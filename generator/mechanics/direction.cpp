@@ -81,7 +81,8 @@ std::optional<Vec3> line(Lowering& lower, Dag& dag, std::size_t coordinates, con
     if (std::any_of(slope.begin(), slope.end(), [&](Ref x) { return depends_on_coordinates(dag, x); }))
       return std::nullopt;
     const Vec3 across = lower.cross(along, slope);
-    if (std::all_of(across.begin(), across.end(), [&](Ref x) { return dag.is_zero(expander.expand_or_keep(x)); })) return slope;
+    if (std::all_of(across.begin(), across.end(), [&](Ref x) { return dag.is_zero(expander.expand_or_keep(x)); }))
+      return slope;
     return std::nullopt;
   }
   return std::nullopt;

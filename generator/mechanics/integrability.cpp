@@ -50,7 +50,8 @@ class Classifier {
       if (orbit_) orbit_point_ = point;
     }
     for (std::size_t k = 0; k < forms_.size(); ++k) {
-      if (alone[k] == ZeroTestResult::proven || alone[k] == ZeroTestResult::numerical) seek_integral(forms_[k], velocity_[k]);
+      if (alone[k] == ZeroTestResult::proven || alone[k] == ZeroTestResult::numerical)
+        seek_integral(forms_[k], velocity_[k]);
     }
     // If the numerical test finds the integrals complete, no combinations are needed.
     const bool more = !orbit_ || orbit_->integrable_count() > holonomic_.size() + m_.integrals.size();
@@ -312,8 +313,9 @@ class Classifier {
 
   void note_integral(std::uint32_t constraint) {
     ConstraintClassification& found = m_.classification[constraint];
-    const auto its = std::find_if(m_.integrals.begin(), m_.integrals.end(),
-                                  [&](const ConstraintIntegral& i) { return i.label == m_.constraints[constraint].label; });
+    const auto its = std::find_if(m_.integrals.begin(), m_.integrals.end(), [&](const ConstraintIntegral& i) {
+      return i.label == m_.constraints[constraint].label;
+    });
     if (its != m_.integrals.end()) {
       // An integral whose differential is proven to be the constraint's completes the missing proof.
       if (found.integrable == Integrability::unknown && its->constraints == std::vector<std::uint32_t>{constraint}) {

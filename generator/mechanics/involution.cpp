@@ -204,10 +204,10 @@ class Path {
     const std::size_t k = x_.size() - 1;
     Vector next(n_, cl_R(0));
     for (const std::size_t j : independent_) {
-      next[j] =
-          cln::cl_float(cl_R(symbolic::sample({symbolic::SymbolKind::auxiliary, static_cast<std::uint32_t>(j), 0}, 7 + k) -
-                             symbolic::Rational(7) / 10),
-                        cln::float_format(digits));
+      next[j] = cln::cl_float(
+          cl_R(symbolic::sample({symbolic::SymbolKind::auxiliary, static_cast<std::uint32_t>(j), 0}, 7 + k) -
+               symbolic::Rational(7) / 10),
+          cln::float_format(digits));
     }
     Vector right(rows_, cl_R(0));
     for (std::size_t row = 0; row < rows_; ++row) {

@@ -37,7 +37,8 @@ void add_joints(Mechanics& m, Lowering& lower) {
       for (std::size_t k = 0; k < joint.force.size(); ++k) {
         const model::NodeId of = j < 3 ? joint.force[k] : joint.moment[k];
         reaction.along[j].push_back(of == model::no_node ? dag.zero() : lower.dot(lower.vector(of), e));
-        if (m.constraints[reaction.first + k].redundancy == Redundancy::identity && !vanishes(dag, {reaction.along[j].back()}))
+        if (m.constraints[reaction.first + k].redundancy == Redundancy::identity &&
+            !vanishes(dag, {reaction.along[j].back()}))
           reaction.determined[j] = false;
       }
     }

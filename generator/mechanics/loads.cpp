@@ -58,8 +58,10 @@ class ForceReader {
     const Vec3 along = lower_.subtract(a, b);
     if (const auto w = direction(lower_, dag_, m_.q.size(), along)) {
       // For points that may coincide, c (w . v)/(w . w) w with the line w between them also has a value there.
-      const Ref size = symbolic::expand_or_keep(dag_, lower_.dot(*w, *w)), rate = lower_.dot(*w, lower_.ddt(along, force_->span));
-      const Ref pull = dag_.div(dag_.mul(lower_.scalar(effect.value), symbolic::expand_if_shorter(dag_, rate, 60)), size);
+      const Ref size = symbolic::expand_or_keep(dag_, lower_.dot(*w, *w)),
+                rate = lower_.dot(*w, lower_.ddt(along, force_->span));
+      const Ref pull =
+          dag_.div(dag_.mul(lower_.scalar(effect.value), symbolic::expand_if_shorter(dag_, rate, 60)), size);
       load(lower_.scale(dag_.neg(pull), *w), a);
       load(lower_.scale(pull, *w), b);
       return;

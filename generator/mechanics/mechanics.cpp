@@ -27,7 +27,8 @@ void add_symbols(Mechanics& m) {
 void add_known_values(Mechanics& m, Lowering& lower) {
   m.function_value.clear();
   m.parameter_value.clear();
-  for (const model::Function& function : m.model->functions) m.function_value.push_back(lower.scalar(function.expression));
+  for (const model::Function& function : m.model->functions)
+    m.function_value.push_back(lower.scalar(function.expression));
   for (const model::Parameter& parameter : m.model->parameters)
     m.parameter_value.push_back(lower.scalar(parameter.value));
 }

@@ -34,7 +34,7 @@ struct BodyRotation {
   std::uint32_t frame = 0;
   std::array<Vec3, 3> axes;
   std::array<std::array<Ref, 3>, 3> J;
-  std::array<Ref, 3> w;        // along `axes`
+  std::array<Ref, 3> w;                      // along `axes`
   std::array<Ref, 3> axes_angular_velocity;  // angular velocity of `axes`
 };
 
@@ -59,11 +59,11 @@ struct Constraint {
   std::string name;   // "sphere"
   std::string label;  // "sphere", or "sphere.2" where the constraint has several equations
   ConstraintKind kind = ConstraintKind::holonomic;
-  Ref psi;                                 // 0 for a velocity constraint
-  std::vector<Ref> gradient;               // f_i, all coordinates
-  Ref rate;                                // b: d psi/d t at fixed q
+  Ref psi;                                          // 0 for a velocity constraint
+  std::vector<Ref> gradient;                        // f_i, all coordinates
+  Ref rate;                                         // b: d psi/d t at fixed q
   model::NodeId model_expression = model::no_node;  // psi or the velocity form, in the model
-  bool unilateral = false;                 // psi >= 0: never eliminated
+  bool unilateral = false;                          // psi >= 0: never eliminated
   Redundancy redundancy = Redundancy::independent;
   bool determined = true;  // whether the motion determines its force; for joints see JointReaction
 
@@ -88,7 +88,7 @@ struct ConstraintClassification {
 
 /// psi(q, t) of free coordinates, t and independent parameters. Velocity constraints keep it at its start value.
 struct ConstraintIntegral {
-  std::string label;              // of the constraint that it replaces
+  std::string label;                       // of the constraint that it replaces
   std::vector<std::uint32_t> constraints;  // d psi is a combination of these constraints
   Ref psi;
 };
@@ -105,15 +105,15 @@ struct BlockedDirection {
 /// another body, or one coordinate with a given normal force. The friction force is sum_a phi_a t_a with the symbols
 /// phi_a = {SymbolKind::friction, first + a}. A unilateral constraint is a contact with or without friction.
 struct Contact {
-  std::string name;                        // of the constraint or the force
-  std::vector<std::uint32_t> constraints;  // 1 or 2 indices; none: the normal force is given
-  std::uint32_t place = 0;                 // of the particle; 0 for friction in a coordinate
-  std::uint32_t coordinate = 0;            // the coordinate with friction, if place is 0
-  std::uint32_t first = 0;                 // index of the first phi
-  std::vector<Ref> gram;                   // grad psi_k . grad psi_l at the particle, row-major
-  Ref normal;                              // the given normal force
-  std::vector<Vec3> directions;            // t_a, orthonormal; none for friction in a coordinate
-  std::vector<std::uint32_t> tangent_indices;      // of a body: which of its two tangents each t_a is, 0 or 1
+  std::string name;                            // of the constraint or the force
+  std::vector<std::uint32_t> constraints;      // 1 or 2 indices; none: the normal force is given
+  std::uint32_t place = 0;                     // of the particle; 0 for friction in a coordinate
+  std::uint32_t coordinate = 0;                // the coordinate with friction, if place is 0
+  std::uint32_t first = 0;                     // index of the first phi
+  std::vector<Ref> gram;                       // grad psi_k . grad psi_l at the particle, row-major
+  Ref normal;                                  // the given normal force
+  std::vector<Vec3> directions;                // t_a, orthonormal; none for friction in a coordinate
+  std::vector<std::uint32_t> tangent_indices;  // of a body: which of its two tangents each t_a is, 0 or 1
   std::vector<std::vector<Ref>>
       tangents;           // t_a . dr/dq_i per t_a, all coordinates; of a body t_a . dv/dqdot_i of its point there
   std::vector<Ref> slip;  // t_a . (v - v_s)
@@ -154,12 +154,12 @@ struct Mechanics {
   std::vector<Ref> q, qdot, qddot;  // all coordinates of the model
   Ref t;
 
-  std::vector<PointMass> masses;        // particles, then bodies with all their mass at the centre
-  std::vector<BodyRotation> body_rotations;              // per Model::bodies entry
-  Ref kinetic_given;                    // of [energy], 0 if none
-  Ref kinetic;                          // sum m/2 v.v + kinetic_given, with the unconstrained coordinates
-  Ref potential;                        // of all conservative forces, and of [energy]
-  std::vector<Ref> potential_by_force;  // per Model::forces entry, 0 where the force is a Load
+  std::vector<PointMass> masses;             // particles, then bodies with all their mass at the centre
+  std::vector<BodyRotation> body_rotations;  // per Model::bodies entry
+  Ref kinetic_given;                         // of [energy], 0 if none
+  Ref kinetic;                               // sum m/2 v.v + kinetic_given, with the unconstrained coordinates
+  Ref potential;                             // of all conservative forces, and of [energy]
+  std::vector<Ref> potential_by_force;       // per Model::forces entry, 0 where the force is a Load
   std::vector<Load> loads;
   std::vector<std::vector<Ref>> force_components;  // per Model::forces entry: its Q_i without the potential, with loads
 
@@ -184,7 +184,9 @@ struct Mechanics {
   /// Degrees of freedom: free coordinates minus constraints that always hold.
   long degrees_of_freedom() const;
   /// Whether a constraint is independent: imposed or active.
-  bool is_independent(std::uint32_t constraint) const { return constraints[constraint].redundancy == Redundancy::independent; }
+  bool is_independent(std::uint32_t constraint) const {
+    return constraints[constraint].redundancy == Redundancy::independent;
+  }
   /// f . qdot + b of a constraint.
   Ref velocity_form(const Constraint& constraint) const;
 };

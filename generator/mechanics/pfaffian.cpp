@@ -163,11 +163,13 @@ ZeroTestResult OneFormSpace::vanishing(Ref expression) {
   return symbolic::is_proven_zero(dag_, expression, &effort_) ? ZeroTestResult::proven : ZeroTestResult::numerical;
 }
 
-Ref OneFormSpace::simpler(Ref expression) { return symbolic::expand_if_shorter(dag_, expression, term_budget, &effort_); }
+Ref OneFormSpace::simpler(Ref expression) {
+  return symbolic::expand_if_shorter(dag_, expression, term_budget, &effort_);
+}
 
 // Chooses a constant pivot if there is one, otherwise the one with the smallest expression, to keep results short.
 bool OneFormSpace::choose_pivot(const std::vector<OneForm>& rows, const std::vector<bool>& used, std::size_t columns,
-                             const std::vector<std::size_t>& pivots, std::pair<std::size_t, std::size_t>& at) const {
+                                const std::vector<std::size_t>& pivots, std::pair<std::size_t, std::size_t>& at) const {
   std::size_t best = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (std::size_t j = 0; j < columns && !used[i]; ++j) {

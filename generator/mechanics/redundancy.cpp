@@ -147,7 +147,7 @@ std::string listed(const Mechanics& m, const std::vector<std::uint32_t>& constra
 /// Whether psi of constraint k is the same combination of the others: if they are closed, so is k. True if one of them
 /// cannot open, or if there are no values.
 bool are_closed_together(const Mechanics& m, OneFormSpace& space, const std::vector<std::uint32_t>& constraints,
-                    const std::vector<std::size_t>& independent, std::size_t k, const Combination& at) {
+                         const std::vector<std::size_t>& independent, std::size_t k, const Combination& at) {
   std::vector<Ref> psi{space.impose_and_expand(m.constraints[constraints[k]].psi)};
   std::vector<cl_R> coefficients;
   for (std::size_t a = 0; a < independent.size(); ++a) {
@@ -268,7 +268,9 @@ void drop_repeated_equations(Mechanics& m) {
   const Refusals refusals = drop_repeated(m);
   for (const model::Constraint& whole : m.model->constraints) {
     if (whole.joint || whole.unit) continue;
-    const auto needed = [&](const Constraint& c) { return c.name == whole.name && c.redundancy == Redundancy::independent; };
+    const auto needed = [&](const Constraint& c) {
+      return c.name == whole.name && c.redundancy == Redundancy::independent;
+    };
     if (std::any_of(m.constraints.begin(), m.constraints.end(), needed)) continue;
     const auto why = refusals.find(whole.name);
     if (why != refusals.end()) throw why->second;

@@ -11,11 +11,11 @@ void add_bodies(Mechanics& mechanics, Lowering& lower);       // rotations, eq. 
 void add_forces(Mechanics& mechanics, Lowering& lower);       // potential, loads, generalised forces
 void add_constraints(Mechanics& mechanics, Lowering& lower);  // psi and its gradient, eq. (2.31)
 void add_contacts(Mechanics& mechanics, Lowering& lower);  // Coulomb friction: tangents and slip, eqs. (2.33), (2.40)
-void check_friction_coefficients(const Mechanics& mechanics);       // of friction, where they depend on parameters alone
-void eliminate_coordinates(Mechanics& mechanics);          // by constraints q_c = d(t), eq. (2.96)
-void add_joints(Mechanics& mechanics, Lowering& lower);    // their reactions
-bool holds_identically(Dag& dag, Ref psi);                 // proven or numerical; false if unknown
-void drop_repeated_equations(Mechanics& mechanics);        // that [[constraint]]s imply identically; or throws
+void check_friction_coefficients(const Mechanics& mechanics);  // of friction, where they depend on parameters alone
+void eliminate_coordinates(Mechanics& mechanics);              // by constraints q_c = d(t), eq. (2.96)
+void add_joints(Mechanics& mechanics, Lowering& lower);        // their reactions
+bool holds_identically(Dag& dag, Ref psi);                     // proven or numerical; false if unknown
+void drop_repeated_equations(Mechanics& mechanics);            // that [[constraint]]s imply identically; or throws
 void drop_dependent_equations(Mechanics& mechanics, Lowering& lower);  // implied where all hold, as in loops
 /// Whether an equation may be redundant because a user cannot omit it: equations of joints, unit lengths, rolling and
 /// vectors.

@@ -16,7 +16,8 @@ void ChainsReader::declare(const Value& table) {
   chain.name = text_of_key(table, "name", "this [[chain]]");
   const std::string what = fmt::format("the chain {}", quote(chain.name));
   const Value& n = require_value(table, "n", what, "add n = 6, the number of links");
-  require_kind(Value::Kind::integer, n, "the number of links", fmt::format("write a whole number from 1 to {}", max_chain));
+  require_kind(Value::Kind::integer, n, "the number of links",
+               fmt::format("write a whole number from 1 to {}", max_chain));
   chain.n = n.text.size() > 4 ? 0 : std::stol(n.text);
   if (chain.n < 1 || chain.n > max_chain) {
     source_.fail(n.span, fmt::format("a chain of {} links", quote(n.text)),
@@ -42,7 +43,8 @@ void ChainsReader::declare(const Value& table) {
     }
     known->used = true;
     chain.coordinates.push_back(known->index);
-    if (coordinates_with_unit_.insert(known->index).second) model_.coordinates[known->index].unit = Unit{"rad", Dimension{}};
+    if (coordinates_with_unit_.insert(known->index).second)
+      model_.coordinates[known->index].unit = Unit{"rad", Dimension{}};
     chain.places.push_back(PlacesReader(context_).declare_place(
         fmt::format("{}{}", chain.name, k), table.find("name")->span, PlaceDeclaration{&table, true, false, index, k}));
   }
@@ -52,8 +54,8 @@ void ChainsReader::declare(const Value& table) {
 // A value for all links, "m", or an array with one entry per link.
 TypedNode ChainsReader::entry(const Value& table, std::string_view key, long link, const Context& context) {
   const std::string what = "this [[chain]]";
-  const Value& value =
-      require_value(table, key, what, fmt::format("add {} = \"..\" for all links, or an array with one entry for each", key));
+  const Value& value = require_value(
+      table, key, what, fmt::format("add {} = \"..\" for all links, or an array with one entry for each", key));
   if (!value.is(Value::Kind::array)) return resolver_.value(value, context);
   const Chain& chain =
       chains_[place_sources_[scope_.find(table.find("name")->text + std::to_string(link))->index].chain - 1];

@@ -14,11 +14,11 @@ struct Entry;
 struct Value {
   enum class Kind { text, integer, real, boolean, date, array, table };
   Kind kind = Kind::table;
-  std::string text;                 // strings: decoded; numbers: as written in the file
-  bool boolean = false;               // of booleans
-  std::vector<Value> items;         // of arrays
-  std::vector<Entry> entries;       // of tables
-  std::size_t begin = 0;            // byte offset in the file
+  std::string text;                       // strings: decoded; numbers: as written in the file
+  bool boolean = false;                   // of booleans
+  std::vector<Value> items;               // of arrays
+  std::vector<Entry> entries;             // of tables
+  std::size_t begin = 0;                  // byte offset in the file
   std::vector<std::size_t> text_offsets;  // strings: file offsets of every byte of `text` and of its end
   Span span;
 

@@ -9,21 +9,23 @@
 namespace eomgen::model {
 namespace {
 
+using forces::Domain;
 using forces::LoadType;
 using forces::Predicate;
-using forces::Domain;
 
 const std::map<LoadType, Effect::LoadType>& effects() {
   static const std::map<LoadType, Effect::LoadType> all{{LoadType::acceleration, Effect::LoadType::acceleration},
-                                                {LoadType::potential, Effect::LoadType::potential},
-                                                {LoadType::force, Effect::LoadType::force},
-                                                {LoadType::moment, Effect::LoadType::moment},
-                                                {LoadType::work, Effect::LoadType::work},
-                                                {LoadType::damping, Effect::LoadType::damping}};
+                                                        {LoadType::potential, Effect::LoadType::potential},
+                                                        {LoadType::force, Effect::LoadType::force},
+                                                        {LoadType::moment, Effect::LoadType::moment},
+                                                        {LoadType::work, Effect::LoadType::work},
+                                                        {LoadType::damping, Effect::LoadType::damping}};
   return all;
 }
 
-bool is_vector(LoadType acts) { return acts == LoadType::acceleration || acts == LoadType::force || acts == LoadType::moment; }
+bool is_vector(LoadType acts) {
+  return acts == LoadType::acceleration || acts == LoadType::force || acts == LoadType::moment;
+}
 
 TypedNode known(NodeId node) {
   TypedNode result;
@@ -63,7 +65,8 @@ bool ForcesReader::applies(const ForceDraft& open, const forces::Term& term) con
   });
 }
 
-void ForcesReader::add_effect(const ForceDraft& open, const forces::Term& term, const std::map<std::string, TypedNode>& local) {
+void ForcesReader::add_effect(const ForceDraft& open, const forces::Term& term,
+                              const std::map<std::string, TypedNode>& local) {
   const Span span = open.force.span;
   const auto text = [&](const std::string& written, Shape shape) {
     return resolver_.text(written, local, span, formula(shape)).node;
@@ -86,7 +89,7 @@ void ForcesReader::add_effect(const ForceDraft& open, const forces::Term& term, 
 }
 
 std::map<std::string, TypedNode> ForcesReader::mass_names(std::uint32_t place, NodeId mass, const std::string& number,
-                                                      Span span) {
+                                                          Span span) {
   TypedNode r = resolver_.place(place, span);
   r.dimension = std::nullopt;
   return {{"m" + number, known(mass)}, {"r" + number, r}};

@@ -21,14 +21,14 @@ void SectionReader::check_keys(const Value& table, const Keys& keys) const {
 }
 
 const Value& SectionReader::require_value(const Value& table, std::string_view key, const std::string& what,
-                                   const std::string& remedy) const {
+                                          const std::string& remedy) const {
   const Value* value = table.find(key);
   if (value == nullptr) source_.fail(table.span, fmt::format("{} has no {}", what, key), remedy);
   return *value;
 }
 
 const Value& SectionReader::require_kind(Value::Kind kind, const Value& value, const std::string& what,
-                               const std::string& remedy) const {
+                                         const std::string& remedy) const {
   if (!value.is(kind)) {
     source_.fail(value.span,
                  fmt::format("{} is {}, and {} is asked", what, model::kind_name(value.kind), model::kind_name(kind)),
@@ -41,7 +41,7 @@ const Value* SectionReader::section(std::string_view name) const {
   const Entry* entry = root_.entry(name);
   if (entry == nullptr) return nullptr;
   return &require_kind(Value::Kind::table, entry->value, fmt::format("[{}]", name),
-             fmt::format("write [{}] and its keys below", name));
+                       fmt::format("write [{}] and its keys below", name));
 }
 
 std::vector<const Value*> SectionReader::sections(std::string_view name) const {
@@ -70,7 +70,8 @@ Span SectionReader::key_span(const Value& table, std::string_view key) const {
 std::string SectionReader::tex_of(const Value& table, const std::string& what) const {
   const Value* value = table.find("tex");
   if (value == nullptr) return "";
-  require_kind(Value::Kind::text, *value, fmt::format("the tex of {}", what), "write it in quotes, such as '\\theta_{1}'");
+  require_kind(Value::Kind::text, *value, fmt::format("the tex of {}", what),
+               "write it in quotes, such as '\\theta_{1}'");
   if (const auto problem = tex_error(value->text)) {
     source_.fail(
         value->span, fmt::format("the tex of {} is refused: {}", what, *problem),

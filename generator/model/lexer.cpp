@@ -163,7 +163,9 @@ Span SourceText::span(std::size_t at, std::size_t length) const {
   return source->span(begin, end > begin ? end - begin : 1);
 }
 
-SourceText source_text(const Source& source, const Value& value) { return SourceText{value.text, &source, &value, 0, value.span}; }
+SourceText source_text(const Source& source, const Value& value) {
+  return SourceText{value.text, &source, &value, 0, value.span};
+}
 
 std::vector<Token> tokenize(const SourceText& text) { return Lexer(text).all(); }
 

@@ -93,7 +93,8 @@ class Collector {
 
 std::vector<ModelExpression> model_expressions(const Model& model) { return Collector(model).run(); }
 
-std::string find_mention(const Model& model, const std::function<std::string(const Node&, const ModelExpression&)>& what) {
+std::string find_mention(const Model& model,
+                         const std::function<std::string(const Node&, const ModelExpression&)>& what) {
   for (const ModelExpression& root : model_expressions(model)) {
     std::vector<NodeId> open{root.expression};
     std::unordered_set<NodeId> seen;

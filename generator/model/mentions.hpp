@@ -22,6 +22,7 @@ struct ModelExpression {
 std::vector<ModelExpression> model_expressions(const Model& model);
 
 /// "WHAT is named by OF" for the first node for which `what` returns a text; empty if there is none.
-std::string find_mention(const Model& model, const std::function<std::string(const Node& node, const ModelExpression& root)>& what);
+std::string find_mention(const Model& model,
+                         const std::function<std::string(const Node& node, const ModelExpression& root)>& what);
 
 }  // namespace eomgen::model

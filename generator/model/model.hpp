@@ -89,11 +89,11 @@ struct RotationStage {
 /// Rotating axes of a body or of a [[frame]]; frames[0] are E1 E2 E3, without stages.
 struct Frame {
   std::string name;
-  std::string rotation;         // name in rotations::registry()
-  std::uint32_t parent = 0;     // the frame relative to which it rotates
-  std::vector<NodeId> entries;  // angles, parameters
-  std::vector<RotationStage> stages;    // the last is its own axes
-  NodeId singularity = no_node;     // Euler angles: an expression that is 0 where they are singular
+  std::string rotation;               // name in rotations::registry()
+  std::uint32_t parent = 0;           // the frame relative to which it rotates
+  std::vector<NodeId> entries;        // angles, parameters
+  std::vector<RotationStage> stages;  // the last is its own axes
+  NodeId singularity = no_node;       // Euler angles: an expression that is 0 where they are singular
   Span span;
 };
 /// A rigid body; its centre of mass is a place.
@@ -192,10 +192,10 @@ inline constexpr std::size_t joint_components = 6;  // of reactions: three of th
 
 struct Constraint {
   std::string name;
-  std::vector<NodeId> psi;  // scalar equations psi = 0; more than one are NAME.1, NAME.2, ...
-  bool curve = false;       // holonomic = ["psi1", "psi2"]
-  bool velocity = false;    // velocity = "..": psi constrains velocities
-  bool rolling = false;     // without friction: equations 1 and 2 constrain velocities, equation 3 positions
+  std::vector<NodeId> psi;             // scalar equations psi = 0; more than one are NAME.1, NAME.2, ...
+  bool curve = false;                  // holonomic = ["psi1", "psi2"]
+  bool velocity = false;               // velocity = "..": psi constrains velocities
+  bool rolling = false;                // without friction: equations 1 and 2 constrain velocities, equation 3 positions
   std::optional<BodyContact> contact;  // of rolling and sliding
   bool unilateral = false;             // psi >= 0: the normal force is not negative
   NodeId restitution = no_node;        // of impacts of a unilateral constraint; none: 0
@@ -289,8 +289,8 @@ struct Scene {
   std::vector<std::pair<std::uint32_t, std::uint8_t>> solve;  // (coordinate, order) of values that may be adjusted
   std::vector<std::pair<std::uint32_t, NodeId>> parameters;
   std::vector<SceneInput> inputs;
-  std::vector<OutputReference> outputs;       // existing names only: "energy", "reaction.NAME", ...
-  std::vector<std::uint32_t> stop;  // events that end this scene, regardless of their action
+  std::vector<OutputReference> outputs;  // existing names only: "energy", "reaction.NAME", ...
+  std::vector<std::uint32_t> stop;       // events that end this scene, regardless of their action
   std::string solver = "auto";
   NodeId rtol = no_node, atol = no_node, step = no_node, every = no_node;
   Span span;
@@ -332,7 +332,7 @@ struct Model {
   std::vector<Scene> scenes;  // scenes[0] is "default" (generated if the file has none)
   std::vector<Warning> warnings;
 
-  SourceLocation where(const Span& span) const;                // for Error
+  SourceLocation where(const Span& span) const;       // for Error
   const Scene& scene(const std::string& name) const;  // throws Error with did-you-mean
 };
 

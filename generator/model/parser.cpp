@@ -274,7 +274,7 @@ Syntax parse_quantity(const SourceText& text) {
     // "2 fm/s": the message calls it a unit, as it cannot be anything else.
     const bool unit_like =
         suggest_unit(last->word).has_value() || (std::isalpha(static_cast<unsigned char>(last->word[0])) != 0 &&
-                                                   last->word.find_first_of("(),+-<>.") == std::string_view::npos);
+                                                 last->word.find_first_of("(),+-<>.") == std::string_view::npos);
     if (unit_like) {
       const std::string hint = unit_hint(last->word);
       text.source->fail(text.span(at, last->word.size()), fmt::format("{} is not a unit", quote(last->word)),

@@ -72,11 +72,12 @@ std::vector<const Value*> BodiesReader::rotation_entries(Frame& frame, const rot
       source_.fail(entry.value.span, "a rotation cannot be fixed = false", form);
     return {};
   }
-  if (found.family == "axis") return {&require_value(rotation, "angle", "a rotation about an axis", "add angle = \"phi\"")};
+  if (found.family == "axis")
+    return {&require_value(rotation, "angle", "a rotation about an axis", "add angle = \"phi\"")};
   const bool euler = found.family == "euler";
-  const Value& list =
-      euler ? require_value(rotation, "angles", "a rotation by Euler angles", "add angles = [\"phi\", \"theta\", \"psi\"]")
-            : entry.value;
+  const Value& list = euler ? require_value(rotation, "angles", "a rotation by Euler angles",
+                                            "add angles = [\"phi\", \"theta\", \"psi\"]")
+                            : entry.value;
   const std::string what = euler ? "'angles'" : fmt::format("'{}'", entry.key);
   require_kind(Value::Kind::array, list, what, form);
   if (list.items.size() != found.entries.size()) {
@@ -154,7 +155,7 @@ void BodiesReader::read_rotation(Frame& frame, std::uint32_t index, const Value&
 
 // A rotation about an axis fixed in the parent: one of its axes, or a sum of them with constant components.
 void BodiesReader::read_axis_rotation(Frame& frame, std::uint32_t index, const Value& rotation,
-                              std::map<std::string, TypedNode>& local) {
+                                      std::map<std::string, TypedNode>& local) {
   const Value& written = *rotation.find("axis");
   const std::string of =
       frame.parent == 0 ? "E1, E2, E3" : fmt::format("{0}.e1, {0}.e2, {0}.e3", model_.frames[frame.parent].name);
@@ -169,8 +170,8 @@ void BodiesReader::read_axis_rotation(Frame& frame, std::uint32_t index, const V
   const FrameDeclaration& parent = frame_sources_[frame.parent];
   // In plane motion all bodies rotate about E3.
   const auto in_space = numbers_of(axis.node);
-  const bool common =
-      parent.starts_aligned && parent.axis && parent.axis->numbers && in_space && parallel(*parent.axis->numbers, *in_space);
+  const bool common = parent.starts_aligned && parent.axis && parent.axis->numbers && in_space &&
+                      parallel(*parent.axis->numbers, *in_space);
   const TypedNode along = frame.parent == 0 || common ? axis : resolver_.in_axes(axis, frame.parent);
   if (along.node == no_node) {
     source_.fail(written.span, "this axis is not fixed in the parent",
@@ -233,7 +234,8 @@ void BodiesReader::add_stage(std::uint32_t index, const rotations::Step& step,
     for (std::size_t j = 0; j < 3; ++j) {
       if (step.R[k][j] == "0") continue;
       const TypedNode factor = resolver_.text(step.R[k][j], local, span, context);
-      const TypedNode axis = before == 0 ? resolver_.own_axis(parent, j, span) : resolver_.axis(index, before - 1, j, span);
+      const TypedNode axis =
+          before == 0 ? resolver_.own_axis(parent, j, span) : resolver_.axis(index, before - 1, j, span);
       const TypedNode term = step.R[k][j] == "1" ? axis : resolver_.product_of(factor, axis, span);
       stage.R[k][j] = factor.node;
       sum = sum ? resolver_.sum_of(*sum, term, span) : term;
@@ -249,7 +251,8 @@ TypedNode BodiesReader::point_on_body(const Value& table, const std::string& wha
     source_.fail(position->span, fmt::format("{} is on a body and has a position too", what), "keep one of them");
   }
   const Value& on = require_value(table, "on", what, "add on = \"B\", the body that carries the point");
-  const Value& at = require_value(table, "at", what, "add at = [x, y, z] along the body's axes, from its centre of mass");
+  const Value& at =
+      require_value(table, "at", what, "add at = [x, y, z] along the body's axes, from its centre of mass");
   const std::uint32_t frame = require_frame(on, "'on'");
   if (frame == 0 || frame_sources_[frame].place == 0) {
     source_.fail(on.span, "a point is on a body, and this has no centre of mass",

@@ -29,7 +29,8 @@ class BodiesReader : private SectionReader {
   std::vector<const Value*> rotation_entries(Frame& frame, const rotations::Rotation& found, const Entry& entry,
                                              const Value& rotation);
   std::optional<std::array<cln::cl_RA, 3>> numbers_of(NodeId vector) const;
-  void read_axis_rotation(Frame& frame, std::uint32_t index, const Value& rotation, std::map<std::string, TypedNode>& local);
+  void read_axis_rotation(Frame& frame, std::uint32_t index, const Value& rotation,
+                          std::map<std::string, TypedNode>& local);
   void add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, TypedNode>& local,
                  Span span);
 };

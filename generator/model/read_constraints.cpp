@@ -42,10 +42,12 @@ void ConstraintsReader::read() {
         constraint,
         velocity != nullptr
             ? *velocity
-            : require_value(*table, "holonomic", what,
-                     "add holonomic = \"psi\", the expression that is 0, or velocity = \"..\" for one of velocities"));
+            : require_value(
+                  *table, "holonomic", what,
+                  "add holonomic = \"psi\", the expression that is 0, or velocity = \"..\" for one of velocities"));
     read_unilateral(constraint, *table);
-    if (const Value* friction = table->find("friction")) FrictionReader(context_).read_constraint_friction(constraint, *friction);
+    if (const Value* friction = table->find("friction"))
+      FrictionReader(context_).read_constraint_friction(constraint, *friction);
   }
 }
 
@@ -62,7 +64,8 @@ bool ConstraintsReader::read_contact(Constraint& constraint, const Value& table)
   }
   ContactsReader(context_).read(constraint, kind.value, rolling != nullptr, table.find("friction") != nullptr);
   read_unilateral(constraint, table);
-  if (const Value* friction = table.find("friction")) FrictionReader(context_).read_constraint_friction(constraint, *friction);
+  if (const Value* friction = table.find("friction"))
+    FrictionReader(context_).read_constraint_friction(constraint, *friction);
   return true;
 }
 
@@ -86,7 +89,8 @@ void ConstraintsReader::read_unilateral(Constraint& constraint, const Value& tab
   const Value* holds = table.find("holds");
   const Value* restitution = table.find("restitution");
   if (holds != nullptr) {
-    require_kind(Value::Kind::text, *holds, fmt::format("'holds' of {}", what), "write holds = \"bilateral\" or \"unilateral\"");
+    require_kind(Value::Kind::text, *holds, fmt::format("'holds' of {}", what),
+                 "write holds = \"bilateral\" or \"unilateral\"");
     if (holds->text != "bilateral" && holds->text != "unilateral") {
       source_.fail(holds->span, fmt::format("a constraint cannot hold {}", quote(holds->text)),
                    "write holds = \"bilateral\", or \"unilateral\" for one that can be left");

@@ -53,8 +53,8 @@ void ContactsReader::spheres_in_contact(const Value& table, std::map<std::string
       source_.fail(key_span(table, key), fmt::format("this contact has both 'shape' and '{}'", key), form);
   }
   const auto radius = [&](const char* key, const std::vector<std::string_view>& kinds) {
-    const Value& shape =
-        require_kind(Value::Kind::table, require_value(table, key, "a contact of two spheres", form), fmt::format("'{}'", key), form);
+    const Value& shape = require_kind(Value::Kind::table, require_value(table, key, "a contact of two spheres", form),
+                                      fmt::format("'{}'", key), form);
     check_keys(shape, {fmt::format("'{}' in a contact of two bodies", key), kinds});
     if (shape.entries.size() != 1)
       source_.fail(shape.span, fmt::format("'{}' is given in {} ways", key, shape.entries.size()), form);

@@ -30,7 +30,7 @@ TypedNode CouplingsReader::relative_angular_velocity(std::uint32_t frame, Span s
 }
 
 RotationCoupling CouplingsReader::between_bodies(const Value& table, const std::string& what,
-                                        std::map<std::string, TypedNode>& local) {
+                                                 std::map<std::string, TypedNode>& local) {
   const Value& bodies = *table.find("bodies");
   const std::string remedy = "write bodies = [\"A\", \"B\"]; one of them may be \"ground\"";
   require_kind(Value::Kind::array, bodies, fmt::format("'bodies' of {}", what), remedy);
@@ -50,7 +50,8 @@ RotationCoupling CouplingsReader::between_bodies(const Value& table, const std::
                  carrier != nullptr ? "the carrier is a third body, or the ground, on which both turn"
                                     : "add carrier = \"C\", the body on which both turn; it is the ground if left out");
   }
-  const Value& axes = require_value(table, "axes", what, "add axes = [\"A.e3\", \"B.e3\"], the axes about which they turn");
+  const Value& axes =
+      require_value(table, "axes", what, "add axes = [\"A.e3\", \"B.e3\"], the axes about which they turn");
   const bool two = axes.is(Value::Kind::array) && axes.items.size() == 2;
   if (axes.is(Value::Kind::array) && !two && axes.items.size() != 3)
     source_.fail(axes.span, fmt::format("'axes' of {} has {} entries", what, axes.items.size()),
@@ -61,7 +62,8 @@ RotationCoupling CouplingsReader::between_bodies(const Value& table, const std::
   for (std::size_t k = 0; k < 2; ++k) {
     const Value& axis = two ? axes.items[k] : axes;
     local[k == 0 ? "a" : "b"] = resolver_.unit_of_vector(resolver_.value(axis, direction), axis.span);
-    const std::map<std::string, TypedNode> speeds{{"w", relative_angular_velocity(frames[k], span)}, {"c", relative_angular_velocity(frames[2], span)}};
+    const std::map<std::string, TypedNode> speeds{{"w", relative_angular_velocity(frames[k], span)},
+                                                  {"c", relative_angular_velocity(frames[2], span)}};
     local[k == 0 ? "wA" : "wB"] =
         resolver_.text("w - c", speeds, span, {what, on_anything, Shape::vector, std::nullopt, ""});
     coupled.axes[k] = local[k == 0 ? "a" : "b"].node;
@@ -95,8 +97,8 @@ void CouplingsReader::read(Constraint& constraint, const Entry& entry) {
       local[fmt::format("angle{}", k + 1)] = resolver_.value(angles->items[k], angle);
     }
   }
-  const Value& ratio =
-      require_value(table, "ratio", what, "add ratio = \"-2\", the first speed over the second; of a belt it is positive");
+  const Value& ratio = require_value(table, "ratio", what,
+                                     "add ratio = \"-2\", the first speed over the second; of a belt it is positive");
   const Context number{fmt::format("the ratio of {}", what), on_motion, Shape::scalar, dimension_of("1"),
                        "a ratio is made of numbers, parameters, coordinates and t"};
   local["ratio"] = resolver_.value(ratio, number);
@@ -107,7 +109,7 @@ void CouplingsReader::read(Constraint& constraint, const Entry& entry) {
                  fmt::format("the ratio of {} is 0, which holds the first and leaves the second free", what),
                  "give a ratio that is not 0");
   const TypedNode psi = resolver_.text(bodies != nullptr ? kind.body_equation : kind.angle_equation, local, table.span,
-                                   {what, on_anything, Shape::scalar, std::nullopt, ""});
+                                       {what, on_anything, Shape::scalar, std::nullopt, ""});
   if ((psi.dependencies & on_velocity) == 0 && resolver_.coordinates_in(psi.node).empty())
     source_.fail(table.span, fmt::format("{} binds nothing that moves", what), form(kind.name));
   constraint.velocity = true;

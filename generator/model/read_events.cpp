@@ -55,7 +55,8 @@ void EventsReader::read() {
     }
     if (const Value* action = table->find("action")) {
       const char* remedy = "write action = \"record\" or \"stop\"";
-      const std::string& text = require_kind(Value::Kind::text, *action, fmt::format("the action of {}", what), remedy).text;
+      const std::string& text =
+          require_kind(Value::Kind::text, *action, fmt::format("the action of {}", what), remedy).text;
       if (text != "record" && text != "stop")
         source_.fail(action->span, fmt::format("an event has no action {}", quote(text)), remedy);
       event.stop = text == "stop";

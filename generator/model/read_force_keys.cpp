@@ -22,7 +22,8 @@ Dependencies allowed(forces::Dependency dependency) {
 
 }  // namespace
 
-void ForcesReader::store_argument(ForceDraft& open, const std::string& name, const TypedNode& typed, std::uint32_t index) {
+void ForcesReader::store_argument(ForceDraft& open, const std::string& name, const TypedNode& typed,
+                                  std::uint32_t index) {
   open.force.arguments.push_back({name, typed.node, index});
   TypedNode known = typed;  // its unit has been checked, the formula's is not
   known.dimension = std::nullopt;
@@ -47,8 +48,10 @@ Context ForcesReader::context(const ForceDraft& open, const forces::Key& key, Sh
 void ForcesReader::read_value(ForceDraft& open, const forces::Key& key, const Value& value) {
   const std::string quoted = fmt::format("'{}' of {}", key.name, open.what);
   switch (key.type) {
-    case ValueType::scalar: return store_argument(open, key.name, resolver_.value(value, context(open, key, Shape::scalar)));
-    case ValueType::vector: return store_argument(open, key.name, resolver_.value(value, context(open, key, Shape::vector)));
+    case ValueType::scalar:
+      return store_argument(open, key.name, resolver_.value(value, context(open, key, Shape::scalar)));
+    case ValueType::vector:
+      return store_argument(open, key.name, resolver_.value(value, context(open, key, Shape::vector)));
     case ValueType::triple: return read_triple(open, key, value);
     case ValueType::point: return store_argument(open, key.name, point(value, context(open, key, Shape::vector).what));
     case ValueType::points:
@@ -142,7 +145,8 @@ void ForcesReader::read_energy(ForceDraft& open, const forces::Key& key, const V
                  fmt::format("rename {} 'extension' of line {}", model::kind_name(other->kind), other->span.line));
   }
   const TypedNode extension = resolver_.extension(value.span);
-  store_argument(open, key.name, resolver_.value_with_names(value, {{"extension", extension}}, context(open, key, Shape::scalar)));
+  store_argument(open, key.name,
+                 resolver_.value_with_names(value, {{"extension", extension}}, context(open, key, Shape::scalar)));
 }
 
 void ForcesReader::read_choice(ForceDraft& open, const forces::Key& key, const Value& value) {
@@ -156,10 +160,10 @@ void ForcesReader::read_choice(ForceDraft& open, const forces::Key& key, const V
     source_.fail(value.span, fmt::format("{} has no {} {}", open.kind.name, key.name, quote(value.text)), remedy);
   }
   if (!found->body_requirement.empty() && model_.bodies.empty()) {
-    source_.fail(
-        value.span,
-        fmt::format("{} of {} {} {}, and the model has none", open.kind.name, key.name, found->text, found->body_requirement),
-        "write " + texts.front());
+    source_.fail(value.span,
+                 fmt::format("{} of {} {} {}, and the model has none", open.kind.name, key.name, found->text,
+                             found->body_requirement),
+                 "write " + texts.front());
   }
   open.force.arguments.push_back({key.name, no_node, static_cast<std::uint32_t>(found - key.choices.begin())});
 }

@@ -39,7 +39,8 @@ std::string remedy_for(const forces::Key& key) {
   switch (key.type) {
     case forces::ValueType::ends: return "write between = [\"P\", \"Q\"] with particles, points, \"origin\" or vectors";
     case forces::ValueType::triple: return fmt::format("add {} = [\"..\", \"..\", \"..\"], along three axes", key.name);
-    case forces::ValueType::bodies: return fmt::format("add {} = [\"A\", \"B\"]; one of them may be \"ground\"", key.name);
+    case forces::ValueType::bodies:
+      return fmt::format("add {} = [\"A\", \"B\"]; one of them may be \"ground\"", key.name);
     case forces::ValueType::points: return fmt::format("add {} = [\"point of A\", \"point of B\"]", key.name);
     case forces::ValueType::vector: return fmt::format("add {} = \"<vector>\"", key.name);
     default: return fmt::format("add {} = \"..\"", key.name);
@@ -139,7 +140,8 @@ void ForcesReader::check_rules(const ForceDraft& open) const {
 
 void ForcesReader::read_key(ForceDraft& open, const forces::Key& key) {
   if (const Value* given = open.table.find(key.name)) return read_value(open, key, *given);
-  if (key.default_value.empty() || (!key.default_requires.empty() && open.table.find(key.default_requires) == nullptr)) return;
+  if (key.default_value.empty() || (!key.default_requires.empty() && open.table.find(key.default_requires) == nullptr))
+    return;
   const Context any{key.name, on_anything, Shape::either, std::nullopt, ""};
   store_argument(open, key.name, resolver_.text(key.default_value, {}, open.table.span, any));
 }

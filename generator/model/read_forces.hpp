@@ -20,9 +20,9 @@ class ForcesReader : private SectionReader {
   struct ForceDraft {
     const forces::Kind& kind;
     Force& force;
-    const Value& table;                  // the table with its keys
-    std::string what;                    // "'NAME'" or "this spring"
-    bool named = false;                  // the author gave it a name
+    const Value& table;                      // the table with its keys
+    std::string what;                        // "'NAME'" or "this spring"
+    bool named = false;                      // the author gave it a name
     std::map<std::string, TypedNode> local;  // names available in its formulas
   };
   // read_forces.cpp

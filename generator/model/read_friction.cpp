@@ -14,7 +14,8 @@ Friction FrictionReader::coefficients(const Value& table, const std::string& wha
   Friction law;
   law.span = table.span;
   const auto coefficient = [&](std::string_view key) {
-    const Value& value = require_value(table, key, what, "give both coefficients: static = \"..\" and dynamic = \"..\"");
+    const Value& value =
+        require_value(table, key, what, "give both coefficients: static = \"..\" and dynamic = \"..\"");
     if (const Symbol* other = scope_.find("slip")) {
       source_.fail(value.span, "'slip' means the slip speed of this contact here, and it is also declared in the model",
                    fmt::format("rename {} 'slip' of line {}", model::kind_name(other->kind), other->span.line));
@@ -30,7 +31,8 @@ Friction FrictionReader::coefficients(const Value& table, const std::string& wha
   const Value* name = table.find("law");
   const Value* width = table.find("width");
   if (name != nullptr)
-    require_kind(Value::Kind::text, *name, fmt::format("'law' of {}", what), "write law = \"coulomb\" or law = \"smooth\"");
+    require_kind(Value::Kind::text, *name, fmt::format("'law' of {}", what),
+                 "write law = \"coulomb\" or law = \"smooth\"");
   if (name != nullptr && name->text != "coulomb" && name->text != "smooth") {
     source_.fail(name->span, fmt::format("there is no law of friction {}", quote(name->text)),
                  "write law = \"coulomb\" (the default), which sticks and slides, or law = \"smooth\"");

@@ -51,7 +51,8 @@ void JointsReader::read() {
 
 void JointsReader::read_joint(Joint& joint, const Value& table) {
   const std::string what = fmt::format("the joint '{}'", joint.name);
-  const Value& type = require_kind(Value::Kind::text, require_value(table, "type", what, form), fmt::format("'type' of {}", what), form);
+  const Value& type = require_kind(Value::Kind::text, require_value(table, "type", what, form),
+                                   fmt::format("'type' of {}", what), form);
   const joints::Joint* kind = joints::find(type.text);
   if (kind == nullptr) {
     std::vector<std::string> names;
@@ -65,7 +66,8 @@ void JointsReader::read_joint(Joint& joint, const Value& table) {
   for (std::size_t k = 0; k < 2; ++k) joint.frames[k] = ends[k].frame;
   if (const Value* axes = table.find("axes")) joint.axes = require_frame(*axes, fmt::format("'axes' of {}", what));
   joint_points(joint, ends,
-               require_value(table, "at", what, "add at = [\"point of A\", \"point of B\"], the points that coincide"), what);
+               require_value(table, "at", what, "add at = [\"point of A\", \"point of B\"], the points that coincide"),
+               what);
   joint_axes(*kind, ends, table, what);
 
   StartSubstitution start = at_start(joint.constraint);
@@ -99,8 +101,8 @@ void JointsReader::read_joint(Joint& joint, const Value& table) {
 }
 
 std::array<JointsReader::JointEnd, 2> JointsReader::joint_ends(const Value& table, const std::string& what) {
-  const Value& bodies =
-      require_kind(Value::Kind::array, require_value(table, "bodies", what, form), fmt::format("'bodies' of {}", what), form);
+  const Value& bodies = require_kind(Value::Kind::array, require_value(table, "bodies", what, form),
+                                     fmt::format("'bodies' of {}", what), form);
   if (bodies.items.size() != 2) {
     source_.fail(bodies.span, fmt::format("{} is between {} bodies", what, bodies.items.size()),
                  "write bodies = [\"A\", \"B\"]; one of them may be \"ground\"");
@@ -146,7 +148,8 @@ StartSubstitution JointsReader::at_start(std::uint32_t constraint) {
 }
 
 // A vector fixed in a body that is equal to `direction` at the start.
-TypedNode JointsReader::fixed_in_frame(const TypedNode& direction, std::uint32_t frame, StartSubstitution& start, Span span, bool attitude) {
+TypedNode JointsReader::fixed_in_frame(const TypedNode& direction, std::uint32_t frame, StartSubstitution& start,
+                                       Span span, bool attitude) {
   const auto known = [&](const TypedNode& typed) {
     TypedNode result = typed;
     result.node = start(typed.node);
@@ -184,9 +187,10 @@ void JointsReader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, con
       joint.points[k] = ends[k].point.node;
       const Node& node = model_.arena[joint.points[k]];
       if (frame == 0 || (node.op == Op::place && node.index == frame_sources_[frame].place)) continue;
-      const std::map<std::string, TypedNode> local{{"p", ends[k].point},
-                                               {"r", resolver_.place(frame_sources_[frame].place, at.items[k].span)},
-                                               {"w", resolver_.angular_velocity(frame, at.items[k].span)}};
+      const std::map<std::string, TypedNode> local{
+          {"p", ends[k].point},
+          {"r", resolver_.place(frame_sources_[frame].place, at.items[k].span)},
+          {"w", resolver_.angular_velocity(frame, at.items[k].span)}};
       joint.drift[k] = resolver_
                            .text("ddt(p - r) - cross(w, p - r)", local, at.items[k].span,
                                  {what, on_anything, Shape::vector, std::nullopt, ""})
@@ -206,7 +210,8 @@ void JointsReader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, con
     const TypedNode from = resolver_.place(frame == 0 ? 0 : frame_sources_[frame].place, at.span);
     const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
     const TypedNode arm = resolver_.text("p - r", {{"p", point}, {"r", from}}, at.span, vector);
-    ends[k].point = resolver_.text("r + s", {{"r", from}, {"s", fixed_in_frame(arm, frame, start, at.span)}}, at.span, vector);
+    ends[k].point =
+        resolver_.text("r + s", {{"r", from}, {"s", fixed_in_frame(arm, frame, start, at.span)}}, at.span, vector);
     joint.points[k] = ends[k].point.node;
   }
 }
@@ -251,8 +256,8 @@ std::array<TypedNode, 3> JointsReader::triad_about(const Value& written, const J
   const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
   std::map<std::string, TypedNode> local{{"v", along}, {"c", resolver_.own_axis(0, least, written.span)}};
   std::array<TypedNode, 3> triad{resolver_.text("unit(v)", local, written.span, vector),
-                             resolver_.text("unit(cross(v, c))", local, written.span, vector),
-                             {}};
+                                 resolver_.text("unit(cross(v, c))", local, written.span, vector),
+                                 {}};
   triad[2] = resolver_.text("cross(a, a1)", {{"a", triad[0]}, {"a1", triad[1]}}, written.span, vector);
   for (TypedNode& direction : triad) {
     if (end.frame == 0) continue;
@@ -315,8 +320,8 @@ void JointsReader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>
 }
 
 // One axis, given by the initial state, with two directions normal to it, all fixed in A; the axis is also fixed in B.
-void JointsReader::axis_at_start(const TypedNode& direction, std::array<JointEnd, 2>& ends, StartSubstitution& start, Span span,
-                                 const std::string& what) {
+void JointsReader::axis_at_start(const TypedNode& direction, std::array<JointEnd, 2>& ends, StartSubstitution& start,
+                                 Span span, const std::string& what) {
   const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
   const TypedNode placed = fixed_in_frame(direction, 0, start, span);
   const std::array<double, 3> v = start.vector_value(placed.node);

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "joints/joint.hpp"
-#include "model/start_substitution.hpp"
 #include "model/section_reader.hpp"
+#include "model/start_substitution.hpp"
 
 namespace eomgen::model {
 
@@ -34,7 +34,8 @@ class JointsReader : private SectionReader {
   void axis_at_start(const TypedNode& direction, std::array<JointEnd, 2>& ends, StartSubstitution& start, Span span,
                      const std::string& what);
   StartSubstitution at_start(std::uint32_t constraint);
-  TypedNode fixed_in_frame(const TypedNode& direction, std::uint32_t frame, StartSubstitution& start, Span span, bool attitude = false);
+  TypedNode fixed_in_frame(const TypedNode& direction, std::uint32_t frame, StartSubstitution& start, Span span,
+                           bool attitude = false);
 };
 
 }  // namespace eomgen::model

@@ -63,7 +63,7 @@ void NamesReader::read_coordinate(const Entry& entry) {
     unit = &entry.value;
   } else {
     require_kind(Value::Kind::table, entry.value, fmt::format("the coordinate {}", what),
-       "write x = \"m\", x = {} or x = { unit = \"m\" }");
+                 "write x = \"m\", x = {} or x = { unit = \"m\" }");
     check_keys(entry.value, {fmt::format("the coordinate {}", what), {"unit", "tex", "range"}});
     unit = entry.value.find("unit");
     coordinate.tex = tex_of(entry.value, what);
@@ -83,7 +83,7 @@ void NamesReader::read_ranges() {
     if (range == nullptr) continue;
     Coordinate& coordinate = model_.coordinates[scope_.find(entry.key)->index];
     require_kind(Value::Kind::array, *range, fmt::format("the range of '{}'", entry.key),
-       "write range = [0, \"pi\"]; inf means no bound");
+                 "write range = [0, \"pi\"]; inf means no bound");
     if (range->items.size() != 2)
       source_.fail(range->span, "a range has two ends", "write range = [0, \"pi\"]; inf means no bound");
     const Context context{fmt::format("the range of '{}'", entry.key), 0, Shape::scalar, coordinate.unit.dimension, ""};
@@ -180,7 +180,8 @@ TypedNode NamesReader::define_function(Symbol& symbol) {
 TypedNode NamesReader::define_input(Symbol& symbol) {
   const Value& declared = symbol.entry->value;
   const std::string what = fmt::format("the input '{}'", symbol.name);
-  require_kind(Value::Kind::table, declared, what, fmt::format("write {} = {{ unit = \"N\", default = 0 }}", symbol.name));
+  require_kind(Value::Kind::table, declared, what,
+               fmt::format("write {} = {{ unit = \"N\", default = 0 }}", symbol.name));
   check_keys(declared, {what, {"unit", "default", "tex"}});
   Input input;
   input.name = symbol.name;

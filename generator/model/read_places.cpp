@@ -90,14 +90,14 @@ TypedNode PlacesReader::define_place(Symbol& symbol) {
     position = ChainsReader(context_).position(where);
   } else if (where.body && where.table->find("position") == nullptr) {
     position = resolver_.check_context(resolver_.number(0, symbol.span), symbol.span,
-                              Context{"a position", 0, Shape::vector, std::nullopt, ""});
+                                       Context{"a position", 0, Shape::vector, std::nullopt, ""});
   } else if (!where.particle && !where.body &&
              (where.table->find("on") != nullptr || where.table->find("at") != nullptr)) {
     position = BodiesReader(context_).point_on_body(*where.table, fmt::format("'{}'", symbol.name));
   } else {
     const std::string what = fmt::format("'{}'", symbol.name);
     const Value& value = require_value(*where.table, "position", what,
-                                "add position = { cartesian = [\"x\", \"y\", \"z\"] } or a vector expression");
+                                       "add position = { cartesian = [\"x\", \"y\", \"z\"] } or a vector expression");
     if (value.is(Value::Kind::table)) {
       position = PositionsReader(context_).position(symbol.index, value);
     } else {
@@ -122,7 +122,7 @@ void PlacesReader::read_particles() {
     const Context context{fmt::format("the mass of {}", what), on_time, Shape::scalar, dimension_of("kg"), ""};
     if (where.chain == 0) require_value(*where.table, "mass", what, "add mass = \"m\" or a value such as \"2 kg\"");
     const TypedNode mass = where.chain > 0 ? ChainsReader(context_).entry(*where.table, "mass", where.link, context)
-                                       : resolver_.value(*where.table->find("mass"), context);
+                                           : resolver_.value(*where.table->find("mass"), context);
     if (mass.constant && !cln::plusp(*mass.constant)) {
       source_.fail(where.table->find("mass")->span, fmt::format("the mass of {} is not positive", what),
                    "a mass is greater than 0");

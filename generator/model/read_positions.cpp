@@ -78,7 +78,8 @@ const Entry& PositionsReader::system_entry(const Value& table) const {
   return *found;
 }
 
-std::array<TypedNode, 3> PositionsReader::chart_entries(const coordinates::CoordinateSystem& system, const Value& entries) {
+std::array<TypedNode, 3> PositionsReader::chart_entries(const coordinates::CoordinateSystem& system,
+                                                        const Value& entries) {
   const std::string remedy =
       fmt::format("write {} = [\"{}\", \"{}\", \"{}\"]{}", system.name, system.slots[0].name, system.slots[1].name,
                   system.slots[2].name, system.planar ? ", or the first two in the plane" : "");
@@ -128,7 +129,7 @@ PositionsReader::ExpandedPosition PositionsReader::expanded_position(const Value
   }
   if (const std::string key(system.constant.name); !key.empty()) {
     const Value& constant = require_value(table, key, fmt::format("a position in {} coordinates", system.name),
-                                   fmt::format("add {} = \"..\" beside {}", key, system.name));
+                                          fmt::format("add {} = \"..\" beside {}", key, system.name));
     local[key] = resolver_.value(
         constant, {fmt::format("'{}'", key), on_time, Shape::scalar, dimension_of(system.constant.unit), ""});
   }

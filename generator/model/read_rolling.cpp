@@ -30,7 +30,8 @@ std::map<std::string, TypedNode> ContactsReader::plane_of_contact(const Value& o
     }
     return {{"o", zero}, {"V", zero}, {"n", basis(2)}, {"t1", basis(0)}, {"t2", basis(1)}};
   }
-  require_kind(Value::Kind::table, on, "'on'", "write on = \"ground\" or on = { point = \"<vector>\", normal = \"<vector>\" }");
+  require_kind(Value::Kind::table, on, "'on'",
+               "write on = \"ground\" or on = { point = \"<vector>\", normal = \"<vector>\" }");
   check_keys(on, {"a plane", {"point", "normal", "velocity"}});
   const auto vector = [&](const char* key, Dependencies allowed, const char* unit, const char* remedy) {
     const Value* value = on.find(key);

@@ -128,7 +128,8 @@ void ScenesReader::read_scene(const Entry& entry) {
     const std::string& key = item->key;
     if (std::find(merging.begin(), merging.end(), key) != merging.end()) {
       if (key != "from")
-        require_kind(Value::Kind::table, value, fmt::format("'{}'", key), fmt::format("write {} = {{ name = value }}", key));
+        require_kind(Value::Kind::table, value, fmt::format("'{}'", key),
+                     fmt::format("write {} = {{ name = value }}", key));
     } else if (key == "t") {
       read_span(scene, value);
     } else if (key == "solve") {

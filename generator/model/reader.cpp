@@ -120,7 +120,8 @@ void Reader::read_head() {
   Place origin;
   origin.name = "origin";
   origin.position =
-      resolver_.check_context(resolver_.number(0, Span{}), Span{}, Context{"the origin", 0, Shape::vector, std::nullopt, ""})
+      resolver_
+          .check_context(resolver_.number(0, Span{}), Span{}, Context{"the origin", 0, Shape::vector, std::nullopt, ""})
           .node;
   model_.places.push_back(std::move(origin));
   place_sources_.emplace_back();

@@ -38,13 +38,15 @@ void Resolver::check_size(TypedNode& typed, Span span) {
   }
 }
 
-void Resolver::require_same_dimension(TypedNode& result, const TypedNode& a, const TypedNode& b, Span span, std::string_view relation) {
+void Resolver::require_same_dimension(TypedNode& result, const TypedNode& a, const TypedNode& b, Span span,
+                                      std::string_view relation) {
   const bool known_a = a.dimension.has_value(), known_b = b.dimension.has_value();
   const bool loose = (known_a && a.has_uncertain_dimension) || (known_b && b.has_uncertain_dimension);
   if (known_a && known_b && !same(*a.dimension, *b.dimension)) {
-    report_mismatch(span,
-          fmt::format("{} on one side and {} on the other side of {}", side(a.dimension), side(b.dimension), relation),
-          loose);
+    report_mismatch(
+        span,
+        fmt::format("{} on one side and {} on the other side of {}", side(a.dimension), side(b.dimension), relation),
+        loose);
     result.dimension = a.has_uncertain_dimension ? b.dimension : a.dimension;
     result.has_uncertain_dimension = a.has_uncertain_dimension && b.has_uncertain_dimension;
     return;
@@ -74,7 +76,8 @@ void Resolver::combine(TypedNode& result, const TypedNode& a, const TypedNode& b
     const Dimension right = b.literal ? Dimension{} : *b.dimension;
     result.dimension = quotient_of ? quotient(left, right) : product(left, right);
   }
-  result.has_uncertain_dimension = result.has_uncertain_dimension || (a.literal && !a.is_pure_number) || (b.literal && !b.is_pure_number);
+  result.has_uncertain_dimension =
+      result.has_uncertain_dimension || (a.literal && !a.is_pure_number) || (b.literal && !b.is_pure_number);
 }
 
 TypedNode Resolver::apply_unit(TypedNode typed, const MeasuredUnit& unit, Span span) {
@@ -85,9 +88,9 @@ TypedNode Resolver::apply_unit(TypedNode typed, const MeasuredUnit& unit, Span s
     }
   } else if (typed.dimension && !is_one(*typed.dimension)) {
     report_mismatch(span,
-          fmt::format("the value already has the dimension {}, and the unit {} is added", text_of(*typed.dimension),
-                      unit.text),
-          typed.has_uncertain_dimension);
+                    fmt::format("the value already has the dimension {}, and the unit {} is added",
+                                text_of(*typed.dimension), unit.text),
+                    typed.has_uncertain_dimension);
   }
   TypedNode result = typed;
   if (typed.literal && typed.constant && !typed.vector) {
@@ -196,7 +199,8 @@ TypedNode Resolver::divide(const TypedNode& a, const TypedNode& b, Span span) {
 TypedNode Resolver::power(const TypedNode& a, const TypedNode& b, Span span) {
   if (a.vector || b.vector) source_.fail(span, "a vector stands in a power", "write dot(a, a) or norm(a)^2");
   if (b.dimension && !is_one(*b.dimension)) {
-    report_mismatch(span, fmt::format("an exponent is a pure number, and this one is in {}", text_of(*b.dimension)), b.has_uncertain_dimension);
+    report_mismatch(span, fmt::format("an exponent is a pure number, and this one is in {}", text_of(*b.dimension)),
+                    b.has_uncertain_dimension);
   }
   TypedNode result = make(Op::power, false, {a, b}, span);
   result.literal = a.literal && b.literal;

@@ -56,8 +56,8 @@ TypedNode Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, co
     if (!same_kind && !keeps && function.fn != Fn::sqrt && function.fn != Fn::sign && a.dimension &&
         !is_one(*a.dimension)) {
       report_mismatch(syntax.nodes[node.children[k]].span,
-            fmt::format("{}() takes a pure number, and this is in {}", function.name, text_of(*a.dimension)),
-            a.has_uncertain_dimension || a.is_bare_time);
+                      fmt::format("{}() takes a pure number, and this is in {}", function.name, text_of(*a.dimension)),
+                      a.has_uncertain_dimension || a.is_bare_time);
     }
     if (k == 0 && arguments.size() > 1) continue;
     // min and max of several arguments become nested pairs.

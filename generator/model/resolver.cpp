@@ -41,7 +41,8 @@ TypedNode Resolver::value(const Value& value, const Context& context) {
   return value_with_names(value, nothing, context);
 }
 
-TypedNode Resolver::value_with_names(const Value& value, const std::map<std::string, TypedNode>& local, const Context& context) {
+TypedNode Resolver::value_with_names(const Value& value, const std::map<std::string, TypedNode>& local,
+                                     const Context& context) {
   const Hold<const Context*> hold_context(context_, &context);
   const Hold<const std::map<std::string, TypedNode>*> hold_local(local_, &local);
   switch (value.kind) {
@@ -77,7 +78,7 @@ TypedNode Resolver::value_with_names(const Value& value, const std::map<std::str
 }
 
 TypedNode Resolver::text(std::string_view text, const std::map<std::string, TypedNode>& local, Span span,
-                     const Context& context) {
+                         const Context& context) {
   const Hold<const std::map<std::string, TypedNode>*> hold_local(local_, &local);
   return syntax(parse_expression(SourceText{text, &source_, nullptr, 0, span}), context);
 }
@@ -106,9 +107,9 @@ TypedNode Resolver::check_context(TypedNode typed, Span span, const Context& con
   }
   if (context.dimension && typed.dimension && !same(*context.dimension, *typed.dimension)) {
     report_mismatch(span,
-          fmt::format("{} must be in {}, and this is in {}", context.what, text_of(*context.dimension),
-                      text_of(*typed.dimension)),
-          typed.has_uncertain_dimension);
+                    fmt::format("{} must be in {}, and this is in {}", context.what, text_of(*context.dimension),
+                                text_of(*typed.dimension)),
+                    typed.has_uncertain_dimension);
   }
   return typed;
 }
@@ -240,7 +241,9 @@ TypedNode Resolver::slip(Span span) {
   return result;
 }
 
-TypedNode Resolver::sum_of(const TypedNode& a, const TypedNode& b, Span span) { return add(SyntaxKind::add, a, b, span); }
+TypedNode Resolver::sum_of(const TypedNode& a, const TypedNode& b, Span span) {
+  return add(SyntaxKind::add, a, b, span);
+}
 
 TypedNode Resolver::component(const TypedNode& vector, std::uint32_t axis, Span span) {
   TypedNode direction = make(Op::fixed_basis, true, {}, span);

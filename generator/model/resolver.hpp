@@ -22,7 +22,7 @@ inline constexpr int max_depth = 2000;            // of an expression with all t
 /// A set of variables on which an expression depends or may depend.
 using Dependencies = std::uint8_t;
 inline constexpr Dependencies on_time = 1, on_input = 2, on_coordinate = 4, on_velocity = 8, on_acceleration = 16,
-                       on_reaction = 32;
+                              on_reaction = 32;
 inline constexpr Dependencies on_motion = on_time | on_coordinate;
 inline constexpr Dependencies on_anything = 31;
 
@@ -51,7 +51,8 @@ class Resolver {
   /// Resolves a TOML value (number, expression, expression with unit, array of three) as the context requires.
   TypedNode value(const Value& value, const Context& context);
   /// Resolves an internal expression (for example of a coordinate system) with names of its own.
-  TypedNode text(std::string_view text, const std::map<std::string, TypedNode>& local, Span span, const Context& context);
+  TypedNode text(std::string_view text, const std::map<std::string, TypedNode>& local, Span span,
+                 const Context& context);
   /// Resolves an expression composed by the reader; its names are those of the model.
   TypedNode tree(const Syntax& syntax, const Context& context) { return this->syntax(syntax, context); }
   /// Resolves a TOML value with additional names (`extension`).
@@ -132,7 +133,8 @@ class Resolver {
   TypedNode make(Op op, bool vector, std::initializer_list<TypedNode> children, Span span);
   /// Sets the dimension of a sum. Known dimensions must be equal.
   void combine(TypedNode& result, const TypedNode& a, const TypedNode& b, bool quotient_of);
-  void require_same_dimension(TypedNode& result, const TypedNode& a, const TypedNode& b, Span span, std::string_view relation);
+  void require_same_dimension(TypedNode& result, const TypedNode& a, const TypedNode& b, Span span,
+                              std::string_view relation);
   void report_mismatch(Span span, std::string what, bool loose);
   void require_allowed(Dependencies dependencies, Span span, std::string_view what);
   void check_size(TypedNode& typed, Span span);

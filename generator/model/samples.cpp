@@ -104,7 +104,8 @@ double Samples::gram_determinant(const std::array<NodeId, 3>& x, const std::vect
   std::vector<Vector> a;
   for (const std::uint32_t k : coordinates) {
     Vector tangent;
-    for (std::size_t c = 0; c < 3; ++c) tangent[c] = (value_at_offset(x[c], k, step) - value_at_offset(x[c], k, -step)) / (2 * step);
+    for (std::size_t c = 0; c < 3; ++c)
+      tangent[c] = (value_at_offset(x[c], k, step) - value_at_offset(x[c], k, -step)) / (2 * step);
     const double length = std::sqrt(dot(tangent, tangent));
     if (length < 1e-8) return 0;
     for (double& component : tangent) component /= length;

@@ -84,7 +84,8 @@ InputTable ScenesReader::read_input_table(const Value& table, const Symbol& inpu
   const std::string remedy = "write { t = [0, 1, 2], value = [0, 5, 0] }: value[k] holds from t[k] on";
   check_keys(table, {what, {"t", "value"}});
   const Value& times = require_kind(Value::Kind::array, require_value(table, "t", what, remedy), "'t'", remedy);
-  const Value& values = require_kind(Value::Kind::array, require_value(table, "value", what, remedy), "'value'", remedy);
+  const Value& values =
+      require_kind(Value::Kind::array, require_value(table, "value", what, remedy), "'value'", remedy);
   if (times.items.empty() || times.items.size() != values.items.size()) {
     source_.fail(values.span,
                  fmt::format("{} has {} times and {} values", what, times.items.size(), values.items.size()), remedy);

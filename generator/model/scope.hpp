@@ -20,15 +20,15 @@ inline constexpr std::size_t max_names = 5000;
 struct TypedNode {
   NodeId node = no_node;
   bool vector = false;
-  bool literal = false;                // made of number literals and unit vectors: compatible with every dimension
-  bool is_pure_number = false;                   // a literal that is a pure number: 2, 1/12, E1
-  bool is_bare_time = false;              // made of t and number literals: in sin(2*t) the 2 has the unit 1/s
-  bool has_uncertain_dimension = false;                  // dimension uncertain due to a bare number (0.3*x): mismatches are warnings
-  std::optional<Dimension> dimension;  // nothing: unknown
-  std::uint8_t dependencies = 0;              // the variables on which it depends
-  int depth = 1;                       // including everything to which it refers
-  double exponents = 1;                // product of nested constant exponents
-  std::optional<Rational> constant;    // of numbers and parameters that are numbers
+  bool literal = false;                  // made of number literals and unit vectors: compatible with every dimension
+  bool is_pure_number = false;           // a literal that is a pure number: 2, 1/12, E1
+  bool is_bare_time = false;             // made of t and number literals: in sin(2*t) the 2 has the unit 1/s
+  bool has_uncertain_dimension = false;  // dimension uncertain due to a bare number (0.3*x): mismatches are warnings
+  std::optional<Dimension> dimension;    // nothing: unknown
+  std::uint8_t dependencies = 0;         // the variables on which it depends
+  int depth = 1;                         // including everything to which it refers
+  double exponents = 1;                  // product of nested constant exponents
+  std::optional<Rational> constant;      // of numbers and parameters that are numbers
 };
 
 enum class SymbolKind { parameter, function, input, coordinate, definition, place, frame, constraint, force, event };
@@ -43,7 +43,7 @@ struct Symbol {
   std::uint32_t index = 0;  // in the list of the model; set when done for parameters, functions and definitions
   State state = State::unresolved;
   bool used = false;
-  TypedNode typed;                   // when done: value of a parameter, position of a place, ...
+  TypedNode typed;               // when done: value of a parameter, position of a place, ...
   const Entry* entry = nullptr;  // where it is declared
 };
 

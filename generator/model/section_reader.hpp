@@ -56,7 +56,7 @@ struct FixedDirection {
 struct FrameDeclaration {
   const Value* table = nullptr;
   std::uint32_t place = 0;                  // of a body
-  bool keeps_attitude = false;                       // it does not rotate, like the ground
+  bool keeps_attitude = false;              // it does not rotate, like the ground
   std::optional<FixedDirection> axis = {};  // its axis of rotation, if that is fixed
   bool starts_aligned =
       false;  // it rotates about that axis only, starting from E1, E2, E3: the axis has the same components in space
@@ -76,7 +76,8 @@ struct ReaderContext {
   std::vector<PlaceDeclaration> place_sources;  // per Model::places
   std::vector<FrameDeclaration> frame_sources;  // per Model::frames
   std::vector<Chain> chains;
-  std::set<std::uint32_t> coordinates_with_range, coordinates_with_unit;  // coordinates whose range or unit [coordinates] states
+  std::set<std::uint32_t> coordinates_with_range,
+      coordinates_with_unit;  // coordinates whose range or unit [coordinates] states
 };
 
 class SectionReader {
@@ -86,8 +87,9 @@ class SectionReader {
   // keys.cpp
   void check_keys(const Value& table, const Keys& keys) const;
   const Value& require_value(const Value& table, std::string_view key, const std::string& what,
-                      const std::string& remedy) const;
-  const Value& require_kind(Value::Kind kind, const Value& value, const std::string& what, const std::string& remedy) const;
+                             const std::string& remedy) const;
+  const Value& require_kind(Value::Kind kind, const Value& value, const std::string& what,
+                            const std::string& remedy) const;
   const Value* section(std::string_view name) const;                // [name], checked to be a table
   std::vector<const Value*> sections(std::string_view name) const;  // [[name]]
   std::string text_of_key(const Value& table, std::string_view key, const std::string& what) const;

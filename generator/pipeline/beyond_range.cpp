@@ -106,7 +106,7 @@ bool holds_beyond(const DerivedModel& derived, const run::Scene& scene, const st
 }  // namespace
 
 bool equations_hold_beyond_range(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
-                        std::uint32_t coordinate, double t, std::span<const double> x) {
+                                 std::uint32_t coordinate, double t, std::span<const double> x) {
   if (!code.contacts.empty() || code.integrals > 0) return false;
   const std::size_t n = code.free.size();
   std::vector<double> dx(x.size()), y(code.output_names.size()), u;

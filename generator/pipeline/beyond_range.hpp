@@ -10,7 +10,7 @@
 namespace eomgen::pipeline {
 
 bool equations_hold_beyond_range(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
-                        std::uint32_t coordinate, double t, std::span<const double> x);
+                                 std::uint32_t coordinate, double t, std::span<const double> x);
 
 /// The coordinates for which this is true near the start of the scene, by the equations alone, without compiled code.
 std::vector<std::uint32_t> coordinates_valid_beyond_range(const DerivedModel& derived, const run::Scene& scene);

@@ -57,8 +57,8 @@ void add_second_charts(DerivedModel& own, program::Program& program, const std::
       if ((mask >> j & 1) != 0) exchanged.push_back(angle);
     }
   }
-  const std::vector<std::uint32_t> places = program::chart_independent_outputs(program.outputs, own.candidates.front().outputs,
-                                                                    derived->candidates.front().outputs, exchanged);
+  const std::vector<std::uint32_t> places = program::chart_independent_outputs(
+      program.outputs, own.candidates.front().outputs, derived->candidates.front().outputs, exchanged);
   program::Request wanted = request.request;
   wanted.outputs.clear();
   for (const std::uint32_t i : places) wanted.outputs.push_back(program.outputs[i]);
@@ -71,7 +71,8 @@ void add_second_charts(DerivedModel& own, program::Program& program, const std::
   program::add_chart_variant(program, std::move(second), mask, places);
 }
 
-ChartLibrary::ChartLibrary(DerivedModel& own, program::Program program, emit::EmissionContext context, ChartRequest request)
+ChartLibrary::ChartLibrary(DerivedModel& own, program::Program program, emit::EmissionContext context,
+                           ChartRequest request)
     : own_(own),
       program_(std::move(program)),
       context_(std::move(context)),

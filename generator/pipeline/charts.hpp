@@ -26,8 +26,8 @@ struct ChartRequest {
   std::uint64_t seed = 1;
 };
 
-/// Derives, verifies and optimises the second charts of `mask`, and adds them to `program`. Throws Error{ErrorKind::check}
-/// if the verification fails.
+/// Derives, verifies and optimises the second charts of `mask`, and adds them to `program`. Throws
+/// Error{ErrorKind::check} if the verification fails.
 void add_second_charts(DerivedModel& own, program::Program& program, const std::vector<model::ChartPair>& charts,
                        unsigned mask, const ChartRequest& request);
 

@@ -28,7 +28,8 @@ run::Code describe_code(const program::Program& program) {
     for (const program::Function& function : second.functions) {
       if (function.name != "outputs") continue;
       for (std::uint32_t i = 0; i < program.outputs.size(); ++i) {
-        if (std::find(function.result_indices.begin(), function.result_indices.end(), i) == function.result_indices.end())
+        if (std::find(function.result_indices.begin(), function.result_indices.end(), i) ==
+            function.result_indices.end())
           code.own_outputs.back().outputs.push_back(i);
       }
     }
@@ -56,8 +57,8 @@ std::vector<double> rounded(const std::vector<verify::Real>& values) {
 
 /// Calls a compiled function by name; nothing if it returns an error code.
 std::optional<std::vector<std::vector<double>>> called(const emit::LoadedModel& m, const std::string& function,
-                                                       const verify::AbiArguments& at, const std::vector<std::size_t>& sizes,
-                                                       std::size_t prepared) {
+                                                       const verify::AbiArguments& at,
+                                                       const std::vector<std::size_t>& sizes, std::size_t prepared) {
   const double t = cln::double_approx(at.t);
   const std::vector<double> x = rounded(at.x), p = rounded(at.p), u = rounded(at.u);
   std::vector<std::vector<double>> y;

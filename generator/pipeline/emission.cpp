@@ -34,7 +34,8 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 
 program::Request request_of(const EmissionRequest& options, DerivedModel& derived, const run::Scene& scene) {
   program::Request request;
-  if (has(options.with, "run")) request = functions_for_run(derived, scene, run::choose_solver(scene.solver, scene).first);
+  if (has(options.with, "run"))
+    request = functions_for_run(derived, scene, run::choose_solver(scene.solver, scene).first);
   for (const std::string& name : options.with) {
     if (name == "energy") {
       request.outputs.push_back("energy");
@@ -97,7 +98,8 @@ void add_all_charts(DerivedModel& derived, program::Program& program, const Char
   }
   const std::vector<model::ChartPair> charts = exchangeable_charts(all);
   if (charts.empty()) {
-    throw Error("emit", SourceLocation{derived.model.file, 0, 0, 1, ""}, "this model has no chart that can be exchanged",
+    throw Error("emit", SourceLocation{derived.model.file, 0, 0, 1, ""},
+                "this model has no chart that can be exchanged",
                 "leave charts out of --with; eomgen check lists the charts");
   }
   for (unsigned mask = 1; mask < 1u << charts.size(); ++mask)
@@ -110,7 +112,8 @@ void require_target(const std::string& target, const std::vector<std::string>& b
   std::vector<std::string> known = emit::target_names();
   known.insert(known.end(), beside.begin(), beside.end());
   if (has(known, target)) return;
-  throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), model::suggest_choice(target, known));
+  throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)),
+              model::suggest_choice(target, known));
 }
 
 Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionRequest& request) {

@@ -189,7 +189,7 @@ std::vector<std::string> form_names() { return words(form_choices()); }
 FormChoice parse_form(const std::string& text) { return chosen(form_choices(), "form", text); }
 
 std::unique_ptr<DerivedModel> derive_model(std::shared_ptr<const model::Model> model, ApproachChoice approach,
-                                      FormChoice form) {
+                                           FormChoice form) {
   const work::Stage stage("deriving the equations");
   auto derived = std::make_unique<DerivedModel>(std::move(model));
   Stopwatch watch;
@@ -246,7 +246,8 @@ namespace {
 /// The key of everything that a certificate depends on. Empty: the certificate is not cached.
 std::string key_of(const DerivedModel& derived, const program::Program& program, const Verification& options) {
   const std::string identity = program_identity();
-  if (!options.use_cache || options.compiled != nullptr || identity.empty() || derived.model.content_hash.empty()) return "";
+  if (!options.use_cache || options.compiled != nullptr || identity.empty() || derived.model.content_hash.empty())
+    return "";
   std::string key = fmt::format("{}\n{}\n{} {} {} {}\n", identity, derived.model.content_hash, options.digits,
                                 options.points, options.seed, options.reductions);
   for (const auto& [parameter, value] : options.fixed)

@@ -24,12 +24,12 @@ struct Timings {
 };
 
 enum class ApproachChoice { automatic, one, two };
-std::vector<std::string> approach_names();                // "auto", "I", "II"
+std::vector<std::string> approach_names();               // "auto", "I", "II"
 ApproachChoice parse_approach(const std::string& text);  // from one of these names; throws Error
 
 /// A form of the equations; nothing for the cheapest one that holds everywhere.
 using FormChoice = std::optional<system::Form>;
-std::vector<std::string> form_names();            // "auto", and the names of system::Form
+std::vector<std::string> form_names();           // "auto", and the names of system::Form
 FormChoice parse_form(const std::string& text);  // from one of these names; throws Error
 
 /// A model and its equations. It cannot be moved: products refer to it.
@@ -50,7 +50,7 @@ struct DerivedModel {
 
 /// Builds the mechanics and derives the equations. Throws Error.
 std::unique_ptr<DerivedModel> derive_model(std::shared_ptr<const model::Model> model, ApproachChoice approach,
-                                      FormChoice form = std::nullopt);
+                                           FormChoice form = std::nullopt);
 
 /// The cheapest program of the candidates; adds its time to `seconds`.
 program::Program make_program(DerivedModel& derived, const program::Request& request);
@@ -68,7 +68,7 @@ struct Verification {
   bool reductions = false;                                 // also Routh's reduction, which code is not made of
   std::vector<double> default_inputs = {};  // of the emitted code, for mass and constraints; none: arbitrary values
   bool partial = false;                     // accept a certificate that an interruption cut short
-  bool use_cache = true;                         // use the cache of certificates
+  bool use_cache = true;                    // use the cache of certificates
 };
 verify::Certificate certify(DerivedModel& derived, const program::Program& program, const Verification& options);
 

@@ -38,7 +38,7 @@ std::vector<eom::hybrid::ExchangedChart> exchanged(const program::Program& progr
 }  // namespace
 
 std::shared_ptr<const emit::RunDescription> run_text(const DerivedModel& derived, const run::Scene& scene,
-                                              const program::Program& program) {
+                                                     const program::Program& program) {
   auto described = std::make_shared<Described>(Described{scene, describe_code(program), {}});
   run::RunRequest request = make_run_request(derived, described->scene, described->code, true);
   request.every = row_interval(scene);

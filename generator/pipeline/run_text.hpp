@@ -12,6 +12,6 @@ namespace eomgen::pipeline {
 /// The default scene in numbers, and the description of the functions of `program`, for NAME_run.hpp. Throws
 /// Error{stage "emit"} if the run needs expressions that emitted code does not have.
 std::shared_ptr<const emit::RunDescription> run_text(const DerivedModel& derived, const run::Scene& scene,
-                                              const program::Program& program);
+                                                     const program::Program& program);
 
 }  // namespace eomgen::pipeline

@@ -114,7 +114,8 @@ std::vector<std::string> state_names(const DerivedModel& derived) {
   return names;
 }
 
-run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
+run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
+                                 bool estimate) {
   run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {},
                       {},   {}};
   const system::EquationSystem& system = derived.candidates.front();
@@ -149,8 +150,8 @@ namespace {
 std::vector<symbolic::Ref> kink_values(const DerivedModel& derived, const program::Program& program) {
   std::vector<symbolic::Ref> values;
   for (const system::EquationSystem& candidate : derived.candidates) {
-    if (program.kinks.empty() || candidate.formulation != program.formulation || candidate.approach != program.approach ||
-        candidate.form != program.form)
+    if (program.kinks.empty() || candidate.formulation != program.formulation ||
+        candidate.approach != program.approach || candidate.form != program.form)
       continue;
     system::EquationSystem held = candidate;
     for (const program::Kink& kink : program::freeze_kink_branches(held)) values.push_back(kink.value);
@@ -192,7 +193,7 @@ eom::Features wanted_features(const std::string& solver, bool every, eom::Featur
 }  // namespace
 
 program::Request functions_for_run(const DerivedModel& derived, const run::Scene& scene, const std::string& solver,
-                               bool every_solver) {
+                                   bool every_solver) {
   const system::EquationSystem& system = derived.candidates.front();
   const eom::Features features = run::features_of(system, program::has_kinks(system));
   run::require_eligible(solver, features | run::features_of(scene));

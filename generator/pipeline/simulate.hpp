@@ -68,13 +68,14 @@ Simulation simulate(const SimulationRequest& request);
 /// The functions and outputs that a run of the scene by this solver uses. every_solver: by any eligible solver. Throws
 /// Error{stage "run"} if the solver is not eligible.
 program::Request functions_for_run(const DerivedModel& derived, const run::Scene& scene, const std::string& solver,
-                               bool every_solver = false);
+                                   bool every_solver = false);
 
 /// Names of the states: free coordinates, their rates, integrals over time.
 std::vector<std::string> state_names(const DerivedModel& derived);
 
 /// The request of a run with compiled code, without rows.
-run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& scene, const run::Code& code, bool estimate);
+run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
+                                 bool estimate);
 
 /// Tables of the event functions of the code that depend on the state alone: events, kink surfaces, gaps of contacts.
 std::vector<eom::expressions::Table> bounded_events(const DerivedModel& derived, const run::Code& code);

@@ -49,7 +49,7 @@ struct Findings {
   std::optional<reading::RouthForm> routh;  // if a coordinate is cyclic
   std::vector<SteadyFinding> steady;
   std::vector<std::pair<std::string, double>> held;  // names and values that the search kept fixed
-  std::string steady_skip_reason;                             // reason if no search was made, else empty
+  std::string steady_skip_reason;                    // reason if no search was made, else empty
   std::string certificate;                           // the verdict of the comparison
   std::string checked_formulations;  // compared with d'Alembert's principle: "lagrange I, lagrange II, ..."
   std::vector<work::LeftOut> left_out;

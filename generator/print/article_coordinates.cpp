@@ -78,7 +78,8 @@ class Coordinates {
       std::string range = lower.empty() && upper.empty() ? "" : a_.coordinate_math(i);
       if (!lower.empty()) range = lower + " $<$ " + range;
       if (!upper.empty()) range += " $<$ " + upper;
-      out_.raw(a_.coordinate_math(i) + " & " + unit_in_latex(q.unit.text) + " & " + range + " & " + role(i) + " \\\\\n");
+      out_.raw(a_.coordinate_math(i) + " & " + unit_in_latex(q.unit.text) + " & " + range + " & " + role(i) +
+               " \\\\\n");
     }
     out_.raw("\\end{longtable}\n");
   }

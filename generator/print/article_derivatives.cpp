@@ -8,12 +8,12 @@
 namespace eomgen::print {
 
 using reading::arrange;
-using reading::FormulaKind;
+using reading::DisplayForm;
 using reading::Formula;
+using reading::FormulaKind;
 using reading::Layout;
 using reading::mark;
 using reading::PartialDerivatives;
-using reading::DisplayForm;
 using symbolic::SymbolKind;
 
 namespace {
@@ -48,9 +48,10 @@ void write_energies(Article& a) {
 void write_lagrange_law(Article& a) {
   const Letters letters(a.model, false);
   const Formula q = mark("q"), rate = dotted(q);
-  std::vector<Formula> left{reading::make_formula(FormulaKind::rate, {reading::make_formula(FormulaKind::partial, {mark(letters.T), rate})}),
-                            reading::negative(reading::make_formula(FormulaKind::partial, {mark(letters.T), q})),
-                            reading::make_formula(FormulaKind::partial, {mark(letters.U), q})};
+  std::vector<Formula> left{
+      reading::make_formula(FormulaKind::rate, {reading::make_formula(FormulaKind::partial, {mark(letters.T), rate})}),
+      reading::negative(reading::make_formula(FormulaKind::partial, {mark(letters.T), q})),
+      reading::make_formula(FormulaKind::partial, {mark(letters.U), q})};
   const std::string equation = a.out.math(reading::sum(std::move(left)));  // between $ and $
   const bool constrained = !a.one.constraints.empty();
   a.out.paragraph(std::string("Of every coordinate $q$, with its generalised force $Q_q$ beyond the potential") +
@@ -73,7 +74,8 @@ void write_lagrange_law(Article& a) {
 
 void write_partial_derivatives(Article& a, const DisplayForm& form, std::vector<PartialDerivatives>& first) {
   if (form.is_unexpanded) {
-    a.out.paragraph("The partial derivatives are too large to be written out (" + escape_user_text(form.unexpanded_reason) + ").");
+    a.out.paragraph("The partial derivatives are too large to be written out (" +
+                    escape_user_text(form.unexpanded_reason) + ").");
     return;
   }
   const bool two = form.approach == system::Approach::two;
@@ -115,8 +117,8 @@ void write_partial_derivatives(Article& a, const DisplayForm& form, std::vector<
     };
     std::vector<Formula> momentum{reading::relation({partial(letters.T, 1), arrange(p.momentum)})};
     if (!p.rate.is_zero())
-      momentum.push_back(
-          reading::relation({reading::make_formula(FormulaKind::rate, {partial(letters.T, 1)}), arrange(p.rate, Layout::terms)}));
+      momentum.push_back(reading::relation(
+          {reading::make_formula(FormulaKind::rate, {partial(letters.T, 1)}), arrange(p.rate, Layout::terms)}));
     add(std::move(momentum));
     add({reading::relation({partial(letters.T, 0), arrange(p.kinetic)}),
          reading::relation({partial(letters.U, 0), arrange(p.potential)}),

@@ -168,8 +168,8 @@ class Equations {
   void tabulated(const Row& row) {
     const std::string name = a_.coordinate_math(row.coordinate);
     const auto spanning = [&](const std::string& label, const Formula& f) {
-      out_.raw(label + " & \\multicolumn{2}{p{0.84\\linewidth}}{" + out_.table_cell(f, whole_width) + "} & " + number(row) +
-               " \\\\[6pt]\n");
+      out_.raw(label + " & \\multicolumn{2}{p{0.84\\linewidth}}{" + out_.table_cell(f, whole_width) + "} & " +
+               number(row) + " \\\\[6pt]\n");
     };
     if (merged(row)) {
       if (row.one) spanning(name, *row.one);
@@ -239,8 +239,8 @@ class Equations {
                    "and the time derivatives of the constraints.");
     for (const reading::DisplayConstraint& c : a_.two.constraints) {
       if (!c.fixes || m_.is_eliminated(c.fixes->coordinate)) continue;
-      out_.paragraph("By Approach II \\textbf{" + escape_user_text(c.label) + "} takes " + a_.coordinate_math(c.fixes->coordinate) +
-                     " out, and its multiplier with it.");
+      out_.paragraph("By Approach II \\textbf{" + escape_user_text(c.label) + "} takes " +
+                     a_.coordinate_math(c.fixes->coordinate) + " out, and its multiplier with it.");
     }
   }
 

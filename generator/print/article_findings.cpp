@@ -91,7 +91,8 @@ std::string eigenvalues_of(const SteadyFinding& s) {
       parts.push_back("$" + (e.real() == 0 ? "" : number_in_latex(e.real())) + " \\pm " + number_in_latex(e.imag()) +
                       "\\,\\mathrm{i}$");
   }
-  if (s.zero_eigenvalues > 0) parts.push_back(s.zero_eigenvalues == 1 ? "one zero" : std::to_string(s.zero_eigenvalues) + " zeros");
+  if (s.zero_eigenvalues > 0)
+    parts.push_back(s.zero_eigenvalues == 1 ? "one zero" : std::to_string(s.zero_eigenvalues) + " zeros");
   return enumeration(parts);
 }
 
@@ -103,7 +104,8 @@ void write_steady_motion(Article& a, const SteadyFinding& s) {
   for (std::size_t i = 0; i < values.size(); ++i) text += (i > 0 ? ", " : "") + values[i];
   text += ". ";
   if (s.family_dimension > 0)
-    text += "One of a family of " + std::to_string(s.family_dimension) + (s.family_dimension == 1 ? " dimension. " : " dimensions. ");
+    text += "One of a family of " + std::to_string(s.family_dimension) +
+            (s.family_dimension == 1 ? " dimension. " : " dimensions. ");
   text += "\\emph{" + escape_user_text(s.stability) + "}: " + escape_user_text(s.reason) +
           ". Eigenvalues of the linearised equations: " + eigenvalues_of(s) + ".";
   a.out.paragraph(text);
@@ -119,8 +121,8 @@ void write_conserved_quantities(Article& a) {
         "None was found: no coordinate is cyclic, neither the energy nor Jacobi's integral is conserved, nor a "
         "momentum along or about a fixed axis.");
   for (const ConservedFinding& c : all) {
-    const std::string title =
-        c.kind == OutputKind::momentum ? "generalised momentum of " + a.coordinate_math(c.index) : escape_user_text(c.title);
+    const std::string title = c.kind == OutputKind::momentum ? "generalised momentum of " + a.coordinate_math(c.index)
+                                                             : escape_user_text(c.title);
     a.out.paragraph("The " + title + " is conserved: " + reason_of(a, c) +
                     (c.proven ? "." : " (shown by numbers, in 40 digits)."));
     const std::optional<Formula> value = value_of(a, c);
@@ -154,7 +156,8 @@ void write_routh(Article& a) {
   a.out.display({reading::relation({mark("cal R"), reading::arrange(form.routhian)})});
   if (form.equations.empty()) return;
   a.out.paragraph(form.equations.size() == 1 ? "and one equation is left:" : "and the equations that are left are");
-  for (const reading::Equation& equation : form.equations) a.out.numbered_display(a.out.next_number(), explicit_form(equation));
+  for (const reading::Equation& equation : form.equations)
+    a.out.numbered_display(a.out.next_number(), explicit_form(equation));
   if (!form.energy) return;
   a.out.paragraph("The reduced motion keeps");
   a.out.display({reading::relation({mark(free_letter(a.model, "h", "cal H")), reading::arrange(*form.energy)})});
@@ -210,7 +213,8 @@ void write_certificate(Article& a) {
   }
   if (a.left_out.empty()) return;
   a.out.section("Left out");
-  for (const work::LeftOut& l : a.left_out) a.out.paragraph(escape_user_text(l.what) + ": " + escape_user_text(l.why) + ".");
+  for (const work::LeftOut& l : a.left_out)
+    a.out.paragraph(escape_user_text(l.what) + ": " + escape_user_text(l.why) + ".");
 }
 
 }  // namespace eomgen::print

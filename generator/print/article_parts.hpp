@@ -36,7 +36,8 @@ void write_energies(Article& article);
 void write_lagrange_law(Article& article);
 /// dT/dqdot, its rate, dT/dq, dU/dq, Q of each coordinate. Approach I fills `first`; approach II shows only those that
 /// differ from `first`.
-void write_partial_derivatives(Article& article, const reading::DisplayForm& form, std::vector<reading::PartialDerivatives>& first);
+void write_partial_derivatives(Article& article, const reading::DisplayForm& form,
+                               std::vector<reading::PartialDerivatives>& first);
 void write_equations(Article& article);
 void write_constraint_forces(Article& article);
 void write_contacts(Article& article);

@@ -89,8 +89,8 @@ class System {
                         from = place.from == 0 ? "" : " from " + bold(model_.places[place.from].name);
       if (!of.empty())
         text += (is_body ? ", its centre of mass in " : ", in ") +
-                (place.chart->system == "cartesian" ? "Cartesian" : escape_user_text(place.chart->system)) + " coordinates " + of +
-                from;
+                (place.chart->system == "cartesian" ? "Cartesian" : escape_user_text(place.chart->system)) +
+                " coordinates " + of + from;
     }
     if (is_body) {
       const model::Frame& frame = model_.frames[body->frame];

@@ -13,9 +13,9 @@ namespace eomgen::print {
 namespace {
 
 using mechanics::Mechanics;
+using reading::DisplayForm;
 using reading::Formula;
 using reading::mark;
-using reading::DisplayForm;
 using reading::Sum;
 using symbolic::Ref;
 using symbolic::SymbolKind;
@@ -139,8 +139,8 @@ class BodyForces {
         }
         continue;
       }
-      const bool all_minus =
-          std::all_of(parts.begin(), parts.end(), [](const Formula& f) { return f.kind == reading::FormulaKind::negative; });
+      const bool all_minus = std::all_of(parts.begin(), parts.end(),
+                                         [](const Formula& f) { return f.kind == reading::FormulaKind::negative; });
       if (all_minus) std::for_each(parts.begin(), parts.end(), [](Formula& f) { f = reading::negative(std::move(f)); });
       Formula term = reading::product({lambda, reading::sum(std::move(parts))});
       terms.push_back(all_minus ? reading::negative(std::move(term)) : std::move(term));

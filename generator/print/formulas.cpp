@@ -10,12 +10,12 @@ namespace eomgen::print {
 
 using mechanics::Mechanics;
 using reading::arrange;
+using reading::DisplayForm;
 using reading::Equation;
-using reading::FormulaKind;
 using reading::Formula;
+using reading::FormulaKind;
 using reading::Layout;
 using reading::mark;
-using reading::DisplayForm;
 using reading::Sum;
 using reading::Symbol;
 using reading::SymbolKind;
@@ -27,8 +27,12 @@ Formula dotted(Formula letter, int order) {
   return result;
 }
 Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
-Formula partial(Formula of, Formula by) { return reading::make_formula(FormulaKind::partial, {std::move(of), std::move(by)}); }
-Formula dot_product(Formula a, Formula b) { return reading::make_formula(FormulaKind::dot_product, {std::move(a), std::move(b)}); }
+Formula partial(Formula of, Formula by) {
+  return reading::make_formula(FormulaKind::partial, {std::move(of), std::move(by)});
+}
+Formula dot_product(Formula a, Formula b) {
+  return reading::make_formula(FormulaKind::dot_product, {std::move(a), std::move(b)});
+}
 
 namespace {
 
@@ -91,7 +95,8 @@ std::vector<Formula> rotational_terms(const reading::DisplayRotation& spin, bool
   std::vector<Formula> terms;
   std::array<bool, 3> done{};
   const auto square = [&](std::size_t k) {
-    return named ? reading::make_formula(FormulaKind::power, {component(spin, k), reading::number(2)}) : squared(spin.w[k]);
+    return named ? reading::make_formula(FormulaKind::power, {component(spin, k), reading::number(2)})
+                 : squared(spin.w[k]);
   };
   for (std::size_t i = 0; i < 3; ++i) {
     if (done[i] || spin.J[i][i].is_zero()) continue;
@@ -213,7 +218,7 @@ void add_lagrangian(const Mechanics& m, const DisplayForm& form, std::vector<Sta
   if (form.is_unexpanded) return;
   const Formula L = mark(Letters(*m.model, form.approach == system::Approach::two).L);
   std::vector<Formula> terms = form.body_rotations.empty() ? reading::arranged_terms(form.kinetic, Layout::grouped)
-                                                  : std::vector<Formula>{kinetic_formula(form)};
+                                                           : std::vector<Formula>{kinetic_formula(form)};
   if (!form.potential.is_zero()) {
     for (Formula& term : reading::arranged_terms(-form.potential, Layout::grouped)) terms.push_back(std::move(term));
   }
@@ -262,12 +267,13 @@ void add_constraints(const Mechanics& m, const DisplayForm& form, std::vector<St
       const mechanics::Integrability found = m.classification[c.constraint].integrable;
       add(found == mechanics::Integrability::yes  ? "binds velocities, integrable"
           : found == mechanics::Integrability::no ? "binds velocities, not integrable"
-                                               : "binds velocities, integrability unknown",
+                                                  : "binds velocities, integrability unknown",
           // Equations by parts define it.
           form.is_unexpanded ? reading::relation({dotted(psi), written, zero}) : reading::relation({written, zero}));
       for (const mechanics::ConstraintIntegral& integral : m.integrals) {
         if (integral.label == c.label)
-          add("its integral", reading::relation({reading::make_formula(FormulaKind::rate, {read_or_dots(m, integral.psi)}), zero}));
+          add("its integral",
+              reading::relation({reading::make_formula(FormulaKind::rate, {read_or_dots(m, integral.psi)}), zero}));
       }
       add_sum("its time derivative", c.acceleration, c.acceleration_skip_reason);
     } else {

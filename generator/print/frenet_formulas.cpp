@@ -90,8 +90,9 @@ void add_frenet(const mechanics::Mechanics& m, bool asked, std::vector<Statement
   if (f.along) {
     const Formula q = reading::symbol({reading::SymbolKind::coordinate, *f.along, 0});
     add("arc length",
-        reading::relation({reading::make_formula(reading::FormulaKind::differential, {mark("s")}),
-                           reading::product({arrange(f.speed), reading::make_formula(reading::FormulaKind::differential, {q})})}));
+        reading::relation(
+            {reading::make_formula(reading::FormulaKind::differential, {mark("s")}),
+             reading::product({arrange(f.speed), reading::make_formula(reading::FormulaKind::differential, {q})})}));
   }
 }
 

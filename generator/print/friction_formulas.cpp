@@ -11,8 +11,8 @@ namespace {
 
 using mechanics::Contact;
 using mechanics::Mechanics;
-using reading::FormulaKind;
 using reading::Formula;
+using reading::FormulaKind;
 using reading::mark;
 using symbolic::Ref;
 using symbolic::SymbolKind;
@@ -27,7 +27,12 @@ Formula square(Formula f) { return reading::make_formula(FormulaKind::power, {st
 class ContactFormulas {
  public:
   ContactFormulas(const Mechanics& m, const Contact& contact, std::size_t index, std::vector<Statement>& out)
-      : m_(m), dag_(*m.dag), contact_(contact), index_(index), imposed_(mechanics::constraint_substitution(m)), out_(out) {
+      : m_(m),
+        dag_(*m.dag),
+        contact_(contact),
+        index_(index),
+        imposed_(mechanics::constraint_substitution(m)),
+        out_(out) {
     slip_ = free_letter(*m_.model, "w", "varpi");
     normal_ = call(symbolic::Op::abs, mark(free_letter(*m_.model, "N", "cal N"), subscript({})));
   }
@@ -45,8 +50,8 @@ class ContactFormulas {
     show("is apart", {multiplier(k), reading::number(0)});
     show("is apart while", {read(m_.constraints[k].psi), reading::number(0)}, true);
     const auto rate = [&](const char* when) {
-      Formula result =
-          reading::make_formula(FormulaKind::dot, {mark(free_letter(*m_.model, "psi", "Psi"), subscript({}), {mark(when)})});
+      Formula result = reading::make_formula(FormulaKind::dot,
+                                             {mark(free_letter(*m_.model, "psi", "Psi"), subscript({}), {mark(when)})});
       result.order = 1;
       return result;
     };

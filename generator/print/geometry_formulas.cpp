@@ -10,8 +10,8 @@ namespace {
 using mechanics::Mechanics;
 using reading::arrange;
 using reading::Components;
-using reading::FormulaKind;
 using reading::Formula;
+using reading::FormulaKind;
 using reading::Geometry;
 using reading::Layout;
 using reading::mark;

@@ -11,7 +11,7 @@ namespace {
 using reading::Formula;
 
 constexpr std::size_t page_width = 78;    // visible characters
-constexpr std::size_t max_lines = 24;    // maximum of formulas other than equations
+constexpr std::size_t max_lines = 24;     // maximum of formulas other than equations
 constexpr std::size_t longest_word = 24;  // longer words may be broken
 
 constexpr const char* begin = R"(\documentclass[10pt,a4paper,fleqn]{article}

@@ -64,9 +64,9 @@ std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& m, const L
     const auto& terms = form.rest_residuals[i].terms();
     const bool all_are_subtracted =
         std::all_of(terms.begin(), terms.end(), [](const auto& term) { return cln::minusp(term.second); });
-    out.push_back(
-        {"linear", "", m.model->coordinates[form.coordinates[i]].name, "at rest where",
-         reading::relation({arrange(all_are_subtracted ? -form.rest_residuals[i] : form.rest_residuals[i]), reading::number(0)})});
+    out.push_back({"linear", "", m.model->coordinates[form.coordinates[i]].name, "at rest where",
+                   reading::relation({arrange(all_are_subtracted ? -form.rest_residuals[i] : form.rest_residuals[i]),
+                                      reading::number(0)})});
   }
   entries.show(form.at_rest, "at rest");
   return render(m, out);

@@ -8,8 +8,8 @@
 
 namespace eomgen::print {
 
-using reading::FormulaKind;
 using reading::Formula;
+using reading::FormulaKind;
 using reading::mark;
 using symbolic::Ref;
 using symbolic::Vec3;
@@ -25,11 +25,13 @@ std::vector<Formula> lower_index(std::uint32_t j, std::uint32_t k) {
 }  // namespace
 
 bool NamedForces::has_only_vector_effects(const model::Force& force) {
-  return std::all_of(force.effects.begin(), force.effects.end(),
-                     [](const model::Effect& e) { return e.load_type != LoadType::work && e.load_type != LoadType::component; });
+  return std::all_of(force.effects.begin(), force.effects.end(), [](const model::Effect& e) {
+    return e.load_type != LoadType::work && e.load_type != LoadType::component;
+  });
 }
 
-bool NamedForces::add_generalised_force(std::uint32_t j, std::uint32_t k, std::uint32_t i, std::vector<Formula>& terms) {
+bool NamedForces::add_generalised_force(std::uint32_t j, std::uint32_t k, std::uint32_t i,
+                                        std::vector<Formula>& terms) {
   const model::Effect& effect = m_.model->forces[j].effects[k];
   if (effect.load_type == LoadType::acceleration || effect.load_type == LoadType::potential) return true;  // in U
   const std::vector<Formula> of = lower_index(j, k);
@@ -86,8 +88,8 @@ std::optional<Formula> NamedForces::spring_energy(std::uint32_t j) {
     if (!reading::is_zero(*free)) {
       Formula distance = reading::make_formula(FormulaKind::call, {square});
       distance.op = symbolic::Op::sqrt;
-      square = reading::make_formula(FormulaKind::power,
-                             {reading::sum({std::move(distance), reading::negative(*free)}), reading::number(2)});
+      square = reading::make_formula(
+          FormulaKind::power, {reading::sum({std::move(distance), reading::negative(*free)}), reading::number(2)});
     }
     // A single numeric factor in front.
     if (c->kind == FormulaKind::number)
@@ -139,7 +141,8 @@ bool NamedForces::define_point(std::uint32_t place) {
   points_.push_back(place);
   const std::optional<Formula> written = vector(m_.model->places[place].position);
   if (written)
-    callbacks_.define("position", m_.model->places[place].name, reading::relation({mark("r", {index(place)}), *written}));
+    callbacks_.define("position", m_.model->places[place].name,
+                      reading::relation({mark("r", {index(place)}), *written}));
   return written.has_value();
 }
 

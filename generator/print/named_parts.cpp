@@ -16,11 +16,11 @@ namespace eomgen::print {
 namespace {
 
 using mechanics::Mechanics;
-using reading::Equation;
-using reading::FormulaKind;
-using reading::Formula;
-using reading::mark;
 using reading::DisplayForm;
+using reading::Equation;
+using reading::Formula;
+using reading::FormulaKind;
+using reading::mark;
 using reading::Sum;
 using symbolic::Ref;
 using symbolic::Symbol;
@@ -28,7 +28,7 @@ using symbolic::SymbolKind;
 using symbolic::Vec3;
 
 constexpr std::size_t longest_numerator = 12;  // terms; longer sums are not combined in one fraction
-constexpr std::size_t max_terms = 100;        // terms of a readable part
+constexpr std::size_t max_terms = 100;         // terms of a readable part
 constexpr std::size_t longest_energy = 24;     // terms; named forces are shorter than longer energies
 
 /// 0 for a zero vector.
@@ -153,7 +153,8 @@ class NamedParts {
     const auto along = [&](std::uint32_t k) {
       Ref sum = dag.zero();
       for (std::size_t j = 0; j < m_.force_components.size(); ++j) {
-        if (!rest || !NamedForces::has_only_vector_effects(m_.model->forces[j])) sum = dag.add(sum, m_.force_components[j][k]);
+        if (!rest || !NamedForces::has_only_vector_effects(m_.model->forces[j]))
+          sum = dag.add(sum, m_.force_components[j][k]);
       }
       for (const mechanics::Contact& contact : m_.contacts) {
         for (std::uint32_t a = 0; a < contact.dimensions(); ++a)
@@ -215,7 +216,8 @@ class NamedParts {
       left.push_back(dot_product(dotted(mark("bold H", {index(spin.frame)})),
                                  partial(mark("bold omega", {index(spin.frame)}), rate)));
     }
-    if (depends(m_.kinetic_given, i, 1)) left.push_back(reading::make_formula(FormulaKind::rate, {partial(mark(letters_.T), rate)}));
+    if (depends(m_.kinetic_given, i, 1))
+      left.push_back(reading::make_formula(FormulaKind::rate, {partial(mark(letters_.T), rate)}));
     if (depends(m_.kinetic_given, i, 0)) left.push_back(reading::negative(partial(mark(letters_.T), q)));
     if (depends(m_.potential, i, 0)) right.push_back(reading::negative(partial(mark(letters_.U), q)));
     if (!m_.dag->is_zero(generalized_force(i))) right.push_back(mark("Q", {q}));
@@ -294,7 +296,8 @@ class NamedParts {
     define("angular velocity", spin.name,
            reading::relation({mark("bold omega", {index(b)}), linear_combination(w, axes)}));
     if (carried) {
-      for (std::size_t k = 0; k < 3; ++k) define("angular velocity of the axes", spin.name, W[k], spin.axes_angular_velocity[k]);
+      for (std::size_t k = 0; k < 3; ++k)
+        define("angular velocity of the axes", spin.name, W[k], spin.axes_angular_velocity[k]);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       std::vector<Formula> J;

@@ -13,8 +13,8 @@
 namespace eomgen::print {
 namespace {
 
-using reading::FormulaKind;
 using reading::Formula;
+using reading::FormulaKind;
 using reading::Op;
 
 /// 9.81 instead of 981/100: fractions with denominators from 100 on that end within four decimals; otherwise nothing.
@@ -74,7 +74,7 @@ class FormulaPrinter {
       }
     };
     Shortener shortener([this](const Formula& term) { return at_least(term, Piece::product); },
-                      [this](const std::string& text) { return style_.fits(text); });
+                        [this](const std::string& text) { return style_.fits(text); });
     const std::vector<Formula> sides = f.kind == FormulaKind::relation ? f.args : std::vector<Formula>{f};
     for (std::size_t side = 0; side < sides.size(); ++side) {
       if (side > 0 && reading::is_zero(sides[side])) {  // "= 0" stays on the last line
@@ -162,7 +162,8 @@ class FormulaPrinter {
   std::vector<std::string> line_pieces(const Formula& f, Shortener& shortener, bool leads = true) const {
     std::vector<std::string> result;
     add_signed(f, [&](const Formula& term, bool minus) {
-      std::vector<std::string> pieces = shortener.fits(term) ? std::vector<std::string>{} : bracket_pieces(term, shortener);
+      std::vector<std::string> pieces =
+          shortener.fits(term) ? std::vector<std::string>{} : bracket_pieces(term, shortener);
       if (pieces.empty()) pieces = {at_least(shortener(term), Piece::product)};
       pieces.front() = sign(minus, leads && result.empty()) + pieces.front();
       result.insert(result.end(), pieces.begin(), pieces.end());

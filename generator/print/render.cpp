@@ -24,7 +24,7 @@ std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const 
 }
 
 std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
-                         const std::vector<std::string>& show, bool* interrupted) {
+                                   const std::vector<std::string>& show, bool* interrupted) {
   std::vector<Statement> all;
   std::optional<work::DeferInterrupt> kept;  // partial results are printed after a stop request
   try {
@@ -44,7 +44,7 @@ std::vector<PrintedFormula> render_singular(const mechanics::Mechanics& mechanic
 }
 
 PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
-                       const reading::Sum& expression) {
+                                 const reading::Sum& expression) {
   const Notation notation(mechanics);
   PrintedFormula item;
   item.key = std::move(key);
@@ -57,7 +57,7 @@ PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::str
 }
 
 PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
-                       symbolic::Ref expression) {
+                                 symbolic::Ref expression) {
   try {
     return render_expression(mechanics, key, name, reading::display_sum(mechanics, expression));
   } catch (const work::BudgetExceeded& over) {

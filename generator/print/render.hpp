@@ -25,7 +25,7 @@ struct PrintedFormula {
 /// The formulas that `show` selects (keys, or "all"); "equations" includes the explicit form. On an interruption it
 /// throws work::Interrupted, or, if `interrupted` is given, sets it and returns the formulas so far.
 std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
-                         const std::vector<std::string>& show, bool* interrupted = nullptr);
+                                   const std::vector<std::string>& show, bool* interrupted = nullptr);
 
 /// M, C, K, B under the key "linear": along a motion, or at rest with the equilibrium equations.
 std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& mechanics, const reading::LinearForm& form);
@@ -38,9 +38,9 @@ std::vector<PrintedFormula> render_singular(const mechanics::Mechanics& mechanic
 
 /// An expression of the Dag, simplified for display: potentials, conserved quantities.
 PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
-                       symbolic::Ref expression);
+                                 symbolic::Ref expression);
 
 PrintedFormula render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
-                       const reading::Sum& expression);
+                                 const reading::Sum& expression);
 
 }  // namespace eomgen::print

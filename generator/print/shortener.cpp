@@ -5,8 +5,8 @@
 
 namespace eomgen::print {
 
-using reading::FormulaKind;
 using reading::Formula;
+using reading::FormulaKind;
 
 Formula Shortener::abbreviation(std::size_t index) {
   return reading::mark("cal S", {reading::number(static_cast<long>(index) + 1)});

@@ -8,8 +8,8 @@
 namespace eomgen::print {
 
 using model::Op;
-using reading::FormulaKind;
 using reading::Formula;
+using reading::FormulaKind;
 using reading::mark;
 using Terms = std::optional<std::vector<Formula>>;
 

@@ -247,7 +247,8 @@ FunctionExpressions AbiFunctions::momenta() {
     const Ref p = symbolic::partial_derivative(dag, {SymbolKind::coordinate, system_.free[i], 1})(lagrangian);
     Ref rate = dag.add(frictionless(modeless_f_[i]), by_time(p));
     for (std::size_t j = 0; j < n_; ++j) {
-      rate = dag.add(rate, dag.mul(symbolic::partial_derivative(dag, {SymbolKind::coordinate, system_.free[j], 0})(p), qdot_[j]));
+      rate = dag.add(
+          rate, dag.mul(symbolic::partial_derivative(dag, {SymbolKind::coordinate, system_.free[j], 0})(p), qdot_[j]));
     }
     function.results[0].entries.push_back(p);
     function.results[1].entries.push_back(rate);

@@ -10,8 +10,8 @@
 
 #include "program/friction.hpp"
 #include "program/kinks.hpp"
-#include "program/program.hpp"
 #include "program/linear_solver.hpp"
+#include "program/program.hpp"
 #include "symbolic/calculus.hpp"
 
 namespace eomgen::program {

@@ -199,7 +199,7 @@ std::optional<AbiResults> abi_values(const Program& program, const std::string& 
 }
 
 std::vector<std::vector<double>> abi_error_bounds(const Program& program, const std::string& function,
-                                            const AbiArguments& arguments) {
+                                                  const AbiArguments& arguments) {
   const Program& here = *program_in_charts(program, arguments.at.mode);
   Arguments<double> at = prepared_for(here, function, in_binary64(arguments.at), in_binary64(arguments.default_inputs));
   if (function == "taylor") {

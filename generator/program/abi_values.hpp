@@ -37,6 +37,6 @@ std::optional<AbiResults> abi_values(const Program& program, const std::string& 
 
 /// Error bounds of binary64 (rounding.hpp), in the same lists; for taylor an estimate.
 std::vector<std::vector<double>> abi_error_bounds(const Program& program, const std::string& function,
-                                            const AbiArguments& arguments);
+                                                  const AbiArguments& arguments);
 
 }  // namespace eomgen::program

@@ -63,7 +63,8 @@ std::vector<PolynomialGraph> starts(const PolynomialGraph& graph) {
 
 std::vector<ResultShape> shape(const FunctionExpressions& wanted) {
   std::vector<ResultShape> shape;
-  for (const ResultExpressions& result : wanted.results) shape.push_back({result.name, result.entries.size(), result.code});
+  for (const ResultExpressions& result : wanted.results)
+    shape.push_back({result.name, result.entries.size(), result.code});
   return shape;
 }
 
@@ -123,7 +124,8 @@ std::size_t choose(std::vector<Candidate>& candidates) {
 }
 
 // One entry per system, for its cheaper order of elimination.
-std::vector<CandidateCost> candidate_costs(const std::vector<Candidate>& candidates, const std::vector<system::EquationSystem>& systems) {
+std::vector<CandidateCost> candidate_costs(const std::vector<Candidate>& candidates,
+                                           const std::vector<system::EquationSystem>& systems) {
   std::vector<CandidateCost> result;
   std::optional<std::size_t> last;
   for (const Candidate& candidate : candidates) {

@@ -38,9 +38,9 @@ Function exchange(const symbolic::Dag& dag, const std::string& name, const Progr
 }  // namespace
 
 std::vector<std::uint32_t> chart_independent_outputs(const std::vector<std::string>& outputs,
-                                          const std::vector<system::Output>& own,
-                                          const std::vector<system::Output>& second,
-                                          const std::vector<std::uint32_t>& exchanged) {
+                                                     const std::vector<system::Output>& own,
+                                                     const std::vector<system::Output>& second,
+                                                     const std::vector<std::uint32_t>& exchanged) {
   std::vector<std::uint32_t> result;
   for (std::uint32_t i = 0; i < outputs.size(); ++i) {
     const system::Output* output = system::find(own, outputs[i]);
@@ -55,9 +55,9 @@ std::vector<std::uint32_t> chart_independent_outputs(const std::vector<std::stri
 
 void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<system::ChartChange>& changes) {
   if (program.kinks.size() > max_kinks_with_charts) {
-    throw Error("program", {}, fmt::format("{} kinks leave no bits of `mode` for charts", program.kinks.size()),
-                fmt::format("at most {} kinks are possible with charts: omit the charts or the events",
-                            max_kinks_with_charts));
+    throw Error(
+        "program", {}, fmt::format("{} kinks leave no bits of `mode` for charts", program.kinks.size()),
+        fmt::format("at most {} kinks are possible with charts: omit the charts or the events", max_kinks_with_charts));
   }
   for (const system::ChartChange& change : changes) {
     ChartInfo info{change.of, change.own, change.second, change.singularity, {}, 0, change.second_at_sine, {}, {}};

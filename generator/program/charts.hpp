@@ -15,9 +15,9 @@ inline constexpr std::size_t max_kinks_with_charts = 10;
 /// accelerations of exchanged angles, and quantities that only the own charts conserve. `own`, `second`: outputs of the
 /// equations in these charts; `exchanged`: coordinates of the model.
 std::vector<std::uint32_t> chart_independent_outputs(const std::vector<std::string>& outputs,
-                                          const std::vector<system::Output>& own,
-                                          const std::vector<system::Output>& second,
-                                          const std::vector<std::uint32_t>& exchanged);
+                                                     const std::vector<system::Output>& own,
+                                                     const std::vector<system::Output>& second,
+                                                     const std::vector<std::uint32_t>& exchanged);
 
 /// Adds the functions of the chart changes to `program`. `dag`: the graph of `changes`.
 void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<system::ChartChange>& changes);

@@ -21,11 +21,11 @@ using symbolic::Symbol;
 constexpr std::size_t max_points = 4;
 constexpr std::uint64_t tries = 12;
 constexpr int max_steps = 40;
-constexpr double difference = 6e-6;     // for central differences: the cube root of epsilon
-constexpr double longest_step = 0.5;    // for values between 0.2 and 1.2
+constexpr double difference = 6e-6;       // for central differences: the cube root of epsilon
+constexpr double longest_step = 0.5;      // for values between 0.2 and 1.2
 constexpr double converged_step = 1e-11;  // differences are accurate to about 1e-10; then two steps reach rounding
-constexpr double zero = 1e-11;          // for psi, after a step of that length at slopes of about 1
-constexpr double shortest_row = 1e-6;   // relative to the same row at the start of the search
+constexpr double zero = 1e-11;            // for psi, after a step of that length at slopes of about 1
+constexpr double shortest_row = 1e-6;     // relative to the same row at the start of the search
 
 Eigen::VectorXd values(const Dag& dag, const std::vector<Ref>& roots, const Point& at) {
   const std::vector<double> result =
@@ -34,7 +34,8 @@ Eigen::VectorXd values(const Dag& dag, const std::vector<Ref>& roots, const Poin
 }
 
 /// Newton's method with minimum-norm steps; returns nothing if it does not converge.
-std::optional<Point> project_onto_constraints(const Dag& dag, const std::vector<Ref>& psi, const std::vector<Symbol>& moved, Point at) {
+std::optional<Point> project_onto_constraints(const Dag& dag, const std::vector<Ref>& psi,
+                                              const std::vector<Symbol>& moved, Point at) {
   Eigen::MatrixXd J(static_cast<Eigen::Index>(psi.size()), static_cast<Eigen::Index>(moved.size()));
   for (int k = 0; k < max_steps; ++k) {
     const Eigen::VectorXd now = values(dag, psi, at);

@@ -82,7 +82,8 @@ class FrictionLawSolver {
     for (std::size_t b = 0; b < count_; ++b) {
       Ref slope = symbolic::partial_derivative(dag_, phi_symbol(b))(expression);
       for (std::size_t i = 0; i < unknown_.size(); ++i) {
-        slope = dag_.add(slope, dag_.mul(symbolic::partial_derivative(dag_, unknown_[i])(expression), motion_[i].slope[b]));
+        slope =
+            dag_.add(slope, dag_.mul(symbolic::partial_derivative(dag_, unknown_[i])(expression), motion_[i].slope[b]));
       }
       result.slope.push_back(slope);
     }
@@ -165,7 +166,8 @@ class FrictionLawSolver {
     for (std::size_t a = 0; a < rows.size(); ++a) {
       const Affine& other = where_it_touches[a];
       rows[a].value = select_by_contact(held.by, rows[a].value, other.value);
-      for (std::size_t b = 0; b < count_; ++b) rows[a].slope[b] = select_by_contact(held.by, rows[a].slope[b], other.slope[b]);
+      for (std::size_t b = 0; b < count_; ++b)
+        rows[a].slope[b] = select_by_contact(held.by, rows[a].slope[b], other.slope[b]);
     }
     return rows;
   }
@@ -262,7 +264,8 @@ class FrictionLawSolver {
     Ref feedback = dag_.zero();  // of friction on its own normal force, sliding with p = 1
     const Ref pressed = dag_.mul(c.dynamic_coefficient, root(c.gram[0]));
     for (std::size_t a = 0; a < c.slip.size(); ++a) {
-      feedback = dag_.add(feedback, dag_.mul(dag_.mul(pressed, sliding_direction(j, a)), normal_[j][0].slope[c.first + a]));
+      feedback =
+          dag_.add(feedback, dag_.mul(dag_.mul(pressed, sliding_direction(j, a)), normal_[j][0].slope[c.first + a]));
     }
     if (dag_.is_zero(feedback)) return;
     const Ref own = dag_.add(dag_.one(), dag_.mul(presses(j), feedback));

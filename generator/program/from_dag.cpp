@@ -141,8 +141,8 @@ Monomial common_factor(const PolynomialGraph& graph, const Term& a, const Term& 
 
 }  // namespace
 
-PolynomialGraph from_dag(const symbolic::Dag& dag, const FunctionExpressions& wanted, const std::vector<std::uint32_t>& free,
-                     const std::vector<system::IntegralState>& integrals) {
+PolynomialGraph from_dag(const symbolic::Dag& dag, const FunctionExpressions& wanted,
+                         const std::vector<std::uint32_t>& free, const std::vector<system::IntegralState>& integrals) {
   return Conversion(dag, free, integrals).run(wanted);
 }
 

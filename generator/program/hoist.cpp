@@ -114,8 +114,8 @@ void keep_needed(Function& rest, PolynomialGraph& prepare) {
 
 }  // namespace
 
-std::optional<Hoisted> hoist(const std::vector<PolynomialGraph>& starts, const Operations& whole, const std::string& name,
-                             const std::vector<ResultShape>& shape) {
+std::optional<Hoisted> hoist(const std::vector<PolynomialGraph>& starts, const Operations& whole,
+                             const std::string& name, const std::vector<ResultShape>& shape) {
   PolynomialGraph best, prepare;
   const std::size_t least = std::max<std::size_t>(2, (whole.cost() + min_saving_divisor - 1) / min_saving_divisor);
   if (whole.cost() < least) return std::nullopt;

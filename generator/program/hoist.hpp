@@ -19,7 +19,7 @@ struct Hoisted {
 
 /// The cheapest split of the equivalent graphs `starts`. Returns nothing if the split saves less than a fiftieth of the
 /// cost of `whole`. `shape` as in `schedule`.
-std::optional<Hoisted> hoist(const std::vector<PolynomialGraph>& starts, const Operations& whole, const std::string& name,
-                             const std::vector<ResultShape>& shape);
+std::optional<Hoisted> hoist(const std::vector<PolynomialGraph>& starts, const Operations& whole,
+                             const std::string& name, const std::vector<ResultShape>& shape);
 
 }  // namespace eomgen::program

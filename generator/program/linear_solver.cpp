@@ -92,7 +92,8 @@ LdlSolver::LdlSolver(const system::EquationSystem& system, Ties ties)
   for (std::size_t i = 0; i < m_; ++i) {
     for (std::size_t j = 0; j <= i; ++j) S[i * m_ + j] = S[j * m_ + i] = mass_->inner(Y_[i], Y_[j]);
   }
-  for (std::size_t k = 0; k < system.contact_open.size(); ++k) S[k * m_ + k] = dag.add(S[k * m_ + k], system.contact_open[k]);
+  for (std::size_t k = 0; k < system.contact_open.size(); ++k)
+    S[k * m_ + k] = dag.add(S[k * m_ + k], system.contact_open[k]);
   schur_ = std::make_unique<Factorisation>(dag, std::move(S), m_, ties);
 }
 
@@ -138,7 +139,8 @@ std::pair<std::vector<Ref>, std::vector<Ref>> LdlSolver::solve_accelerations() c
   return (*this)(f_, c);
 }
 
-std::pair<std::vector<Ref>, std::vector<Ref>> LdlSolver::operator()(std::vector<Ref> r, const std::vector<Ref>& c) const {
+std::pair<std::vector<Ref>, std::vector<Ref>> LdlSolver::operator()(std::vector<Ref> r,
+                                                                    const std::vector<Ref>& c) const {
   Dag& dag = *dag_;
   if (augmented_) {
     for (std::size_t i = 0; i < n_; ++i) {
@@ -148,7 +150,8 @@ std::pair<std::vector<Ref>, std::vector<Ref>> LdlSolver::operator()(std::vector<
   return solve_from_forward(forward(r), c);
 }
 
-std::pair<std::vector<Ref>, std::vector<Ref>> LdlSolver::solve_from_forward(std::vector<Ref> z, const std::vector<Ref>& c) const {
+std::pair<std::vector<Ref>, std::vector<Ref>> LdlSolver::solve_from_forward(std::vector<Ref> z,
+                                                                            const std::vector<Ref>& c) const {
   Dag& dag = *dag_;
   std::vector<Ref> lambda;
   if (m_ > 0) {

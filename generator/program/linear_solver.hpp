@@ -3,8 +3,9 @@
 //   M qddot = f + A^T lambda,   A qddot = -gamma                              (docs/theory.md, index-1 form)
 // by M = L D L^T, unrolled in an order that preserves the zeros of M, then
 //   S lambda = -gamma - A M^-1 f,   S = A M^-1 A^T = Y^T D^-1 Y,   Y = L^-1 A^T.
-// Structural zeros cost no operations; a diagonal M gives plain divisions. If the system has QuasiVelocityEquations, their
-// matrix is factorised: M^-1 = S^-1 M_theta^-1 S^-T. If only M is singular (a massless coordinate, Euler parameters), M
+// Structural zeros cost no operations; a diagonal M gives plain divisions. If the system has QuasiVelocityEquations,
+// their matrix is factorised: M^-1 = S^-1 M_theta^-1 S^-T. If only M is singular (a massless coordinate, Euler
+// parameters), M
 // + A^T S A replaces M and f - A^T S gamma replaces f, which changes nothing on the constraints. If sufficient, only
 // the rows of A that constrain a singular block of M alone are used, so that bodies with coordinates of their own stay
 // decoupled. S is diagonal and scaled to M, so that small terms are not lost in the sum. An open contact has a zero row

@@ -19,7 +19,7 @@ struct CurveForce {
 struct NormalForces {
   std::vector<symbolic::Ref> nu;
   symbolic::Ref solution_margin;  // negative: no solution, several, or no convergence
-  symbolic::Ref multiplicity;  // positive if there are several solutions in that case
+  symbolic::Ref multiplicity;     // positive if there are several solutions in that case
 };
 
 /// Solves for one curve in closed form. Solves for several curves by an unrolled Newton iteration that starts at the

@@ -89,7 +89,7 @@ bool is_zero_numerically(const Dag& dag, Ref r) {
 
 /// Whether the determinant, relative to the lengths of its rows, is 0 at all test points on the constraints.
 bool vanishes_on_constraints(const Dag& dag, const std::vector<Ref>& A, std::size_t n, const DependentBlock& block,
-                              const std::vector<Point>& points) {
+                             const std::vector<Point>& points) {
   constexpr double rounding = 1e-8;  // for points with errors of 1e-11 and slopes of about 100
   std::vector<Ref> roots{block.determinant};
   for (const std::size_t k : block.rows)

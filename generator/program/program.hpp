@@ -159,11 +159,11 @@ struct Program {
       kinks;  // "abs", "if": after them the surfaces whose branches `mode` can hold, then 5 per contact
   std::size_t active_constraints = 0;
   std::vector<ContactInfo> contacts;
-  std::optional<Taylor> taylor;   // if requested
-  std::vector<bool> holonomic;    // per active constraint; false if it constrains velocities only
-  std::vector<ChartInfo> charts;  // exchangeable charts; empty if the code has one chart
-  std::vector<Program> chart_variants;    // the same functions with second charts
-  int in_charts = 0;              // for a variant in second charts: its bits of `mode`
+  std::optional<Taylor> taylor;         // if requested
+  std::vector<bool> holonomic;          // per active constraint; false if it constrains velocities only
+  std::vector<ChartInfo> charts;        // exchangeable charts; empty if the code has one chart
+  std::vector<Program> chart_variants;  // the same functions with second charts
+  int in_charts = 0;                    // for a variant in second charts: its bits of `mode`
 };
 
 }  // namespace eomgen::program

@@ -16,7 +16,7 @@ using symbolic::Op;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double smallest_normal = std::numeric_limits<double>::min();  // smaller numbers lose digits
-constexpr double library_half_units = 4;                                        // error of C library functions in half units
+constexpr double library_half_units = 4;                                // error of C library functions in half units
 
 /// A value and the bound of its error.
 struct BoundedValue {
@@ -25,14 +25,16 @@ struct BoundedValue {
 
 BoundedValue rounded(double value, double error, double half_units = 1) {
   if (!std::isfinite(value)) return {value, infinite};
-  return {value, error + half_units * unit_roundoff * std::fabs(value) + (value == 0 && error == 0 ? 0 : smallest_normal)};
+  return {value,
+          error + half_units * unit_roundoff * std::fabs(value) + (value == 0 && error == 0 ? 0 : smallest_normal)};
 }
 
 /// x times y with 0 times infinity = 0.
 double times(double x, double y) { return x == 0 || y == 0 ? 0 : x * y; }
 
 BoundedValue product(const BoundedValue& a, const BoundedValue& b) {
-  const double error = times(a.error, std::fabs(b.value)) + times(std::fabs(a.value), b.error) + times(a.error, b.error);
+  const double error =
+      times(a.error, std::fabs(b.value)) + times(std::fabs(a.value), b.error) + times(a.error, b.error);
   if (a.value == 0 && a.error == 0) return {0, 0};
   if (b.value == 0 && b.error == 0) return {0, 0};
   return rounded(a.value * b.value, error);
@@ -47,8 +49,9 @@ BoundedValue quotient(const BoundedValue& a, const BoundedValue& b) {
 
 BoundedValue root(const BoundedValue& a) {
   if (a.value - a.error > 0) return rounded(std::sqrt(a.value), a.error / std::sqrt(a.value - a.error));
-  return a.error == 0 && a.value == 0 ? BoundedValue{0, 0}
-                                    : BoundedValue{std::sqrt(std::max(0.0, a.value)), std::sqrt(std::fabs(a.value) + a.error)};
+  return a.error == 0 && a.value == 0
+             ? BoundedValue{0, 0}
+             : BoundedValue{std::sqrt(std::max(0.0, a.value)), std::sqrt(std::fabs(a.value) + a.error)};
 }
 
 BoundedValue power(const BoundedValue& a, const BoundedValue& b) {
@@ -104,8 +107,8 @@ BoundedValue of_two(Op op, const BoundedValue& a, const BoundedValue& b) {
     case Op::pow: return power(a, b);
     case Op::atan2: {
       const double square = a.value * a.value + b.value * b.value;
-      return rounded(std::atan2(a.value, b.value), (std::fabs(b.value) * a.error + std::fabs(a.value) * b.error) / square,
-                     library_half_units);
+      return rounded(std::atan2(a.value, b.value),
+                     (std::fabs(b.value) * a.error + std::fabs(a.value) * b.error) / square, library_half_units);
     }
     case Op::min: return {std::min(a.value, b.value), std::max(a.error, b.error)};
     case Op::max: return {std::max(a.value, b.value), std::max(a.error, b.error)};

@@ -147,7 +147,7 @@ class Schedule {
     for (std::size_t i = 0; i < angles.size(); ++i) {
       const Operand& angle = angles[i].first;
       traversal.visit(angles[i].second,
-                [&](NodeId id) { value_[id] = add_instruction(graph_[id].op, {angle}, name_of(id)); });
+                      [&](NodeId id) { value_[id] = add_instruction(graph_[id].op, {angle}, name_of(id)); });
       if (!pack) continue;
       function_.code.back().pack = packs_;
       function_.code.back().lane = lanes[i];

@@ -26,7 +26,9 @@ class SeriesBuilder {
   Operand at_start(symbolic::Op op, std::vector<Operand> operands, const std::string& name = {}) {
     return append_instruction(start_, op, std::move(operands), name);
   }
-  Operand at_next(symbolic::Op op, std::vector<Operand> operands) { return append_instruction(next_, op, std::move(operands)); }
+  Operand at_next(symbolic::Op op, std::vector<Operand> operands) {
+    return append_instruction(next_, op, std::move(operands));
+  }
   Operand one() { return constant(start_, 1); }
   /// A value of `start` as an operand of `next`.
   Operand start_value(const Operand& value);

@@ -38,7 +38,8 @@ inline Operand constant(Function& function, const symbolic::Rational& value) {
   return {Slot::constant, index, false};
 }
 
-inline Operand append_instruction(Function& function, symbolic::Op op, std::vector<Operand> operands, std::string name = {}) {
+inline Operand append_instruction(Function& function, symbolic::Op op, std::vector<Operand> operands,
+                                  std::string name = {}) {
   if (operands.size() == 1 && (op == symbolic::Op::add || op == symbolic::Op::mul)) return operands[0];
   Instruction instruction;
   instruction.op = op;

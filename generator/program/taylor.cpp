@@ -88,8 +88,8 @@ class Recurrences : private SeriesBuilder {
     if (keys(a) == keys(b)) {
       c.next = at_next(Op::add, {s, at_next(Op::mul, {constant(next_, 2), start_value(a.zero), a.next})});
     } else {
-      c.next =
-          at_next(Op::add, {s, at_next(Op::mul, {start_value(a.zero), b.next}), at_next(Op::mul, {a.next, start_value(b.zero)})});
+      c.next = at_next(Op::add, {s, at_next(Op::mul, {start_value(a.zero), b.next}),
+                                 at_next(Op::mul, {a.next, start_value(b.zero)})});
     }
     return c;
   }
@@ -117,7 +117,8 @@ class Recurrences : private SeriesBuilder {
 
   Series quotient(const Series& a, const Series& b, const std::string& name) {
     const Operand inverse = at_start(Op::div, {one(), b.zero});
-    if (!b.varies) return {true, at_start(Op::div, {a.zero, b.zero}, name), at_next(Op::mul, {a.next, start_value(inverse)})};
+    if (!b.varies)
+      return {true, at_start(Op::div, {a.zero, b.zero}, name), at_next(Op::mul, {a.next, start_value(inverse)})};
     Series c{true, at_start(Op::div, {a.zero, b.zero}, name), {}};
     const Operand s = open_sum(b.next);
     std::vector<Operand> rest{negate(s), negate(at_next(Op::mul, {b.next, start_value(c.zero)}))};
@@ -156,7 +157,8 @@ class Recurrences : private SeriesBuilder {
     const Operand w = times_order(a), of_c = open_sum(w), of_s = open_sum(w);
     const auto signed_by = [turns](const Operand& o) { return turns ? negate(o) : o; };
     s.next = divide_by_order(at_next(Op::add, {of_c, at_next(Op::mul, {w, start_value(c.zero)})}));
-    c.next = divide_by_order(at_next(Op::add, {signed_by(of_s), signed_by(at_next(Op::mul, {w, start_value(s.zero)}))}));
+    c.next =
+        divide_by_order(at_next(Op::add, {signed_by(of_s), signed_by(at_next(Op::mul, {w, start_value(s.zero)}))}));
     close_sum(of_c, c.next);
     close_sum(of_s, s.next);
   }

@@ -9,7 +9,8 @@ namespace eomgen::reading {
 namespace {
 
 // The (b) equations from the last fixed coordinate to the first: each has one new multiplier.
-std::vector<DisplayReaction> solve_reactions(const mechanics::Mechanics& m, GinacBridge& bridge, const DisplayForm& form) {
+std::vector<DisplayReaction> solve_reactions(const mechanics::Mechanics& m, GinacBridge& bridge,
+                                             const DisplayForm& form) {
   std::vector<std::optional<Sum>> lambda(m.constraints.size());
   for (auto fixed = m.fixed.rbegin(); fixed != m.fixed.rend(); ++fixed) {
     const Equation& equation = form.equations[fixed->coordinate];
@@ -31,8 +32,8 @@ std::vector<DisplayReaction> solve_reactions(const mechanics::Mechanics& m, Gina
 
 }  // namespace
 
-void derive_approach_one(const mechanics::Mechanics& m, GinacBridge& bridge, const std::vector<DisplayRotation>& body_rotations,
-                  DisplayForm& form) {
+void derive_approach_one(const mechanics::Mechanics& m, GinacBridge& bridge,
+                         const std::vector<DisplayRotation>& body_rotations, DisplayForm& form) {
   const std::map<Symbol, Sum> values = imposed_values(m, bridge);
   const Sum translation = translational_energy(m, bridge);
   if (!body_rotations.empty()) form.translation = translation;

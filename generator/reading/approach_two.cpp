@@ -6,8 +6,8 @@
 
 namespace eomgen::reading {
 
-void derive_approach_two(const mechanics::Mechanics& m, GinacBridge& bridge, const std::vector<DisplayRotation>& body_rotations,
-                  DisplayForm& form) {
+void derive_approach_two(const mechanics::Mechanics& m, GinacBridge& bridge,
+                         const std::vector<DisplayRotation>& body_rotations, DisplayForm& form) {
   const std::map<Symbol, Sum> values = imposed_values(m, bridge);
   const Sum translation = translational_energy(m, bridge);
   if (!body_rotations.empty()) form.translation = simplify(bridge.substitute(translation, values));

@@ -7,9 +7,9 @@
 
 namespace eomgen::reading {
 
-void derive_approach_one(const mechanics::Mechanics& mechanics, GinacBridge& bridge, const std::vector<DisplayRotation>& body_rotations,
-                  DisplayForm& form);
-void derive_approach_two(const mechanics::Mechanics& mechanics, GinacBridge& bridge, const std::vector<DisplayRotation>& body_rotations,
-                  DisplayForm& form);
+void derive_approach_one(const mechanics::Mechanics& mechanics, GinacBridge& bridge,
+                         const std::vector<DisplayRotation>& body_rotations, DisplayForm& form);
+void derive_approach_two(const mechanics::Mechanics& mechanics, GinacBridge& bridge,
+                         const std::vector<DisplayRotation>& body_rotations, DisplayForm& form);
 
 }  // namespace eomgen::reading

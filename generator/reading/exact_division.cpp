@@ -7,8 +7,8 @@
 #include <array>
 #include <unordered_map>
 
-#include "symbolic/small_vector.hpp"
 #include "symbolic/small_numbers.hpp"
+#include "symbolic/small_vector.hpp"
 
 namespace eomgen::reading {
 namespace {
@@ -246,7 +246,8 @@ std::optional<Sum> divide_expanded(const Sum& a, const Content& common_a, const 
 std::optional<Sum> divide_exactly(const Sum& a, const Sum& b) {
   const Letters letters(a, b);
   const std::vector<Rational> common_a = letters.common(a), common_b = letters.common(b);
-  if (letters.expands_power(a, common_a) || letters.expands_power(b, common_b)) return divide_expanded(a, content(a), b, content(b));
+  if (letters.expands_power(a, common_a) || letters.expands_power(b, common_b))
+    return divide_expanded(a, content(a), b, content(b));
   // The operations of extracting the common factors.
   work::consume_budget(2 * (a.size() + b.size()));
   const std::optional<Sum> whole = divide(letters, a, common_a, b, common_b);

@@ -15,12 +15,12 @@ struct LinearCoefficients {
 };
 
 struct LinearForm {
-  std::string skip_reason;                     // if set, the rest is empty: too long, multipliers, friction
+  std::string skip_reason;                 // if set, the rest is empty: too long, multipliers, friction
   std::vector<std::uint32_t> coordinates;  // n
   std::vector<std::uint32_t> inputs;       // m
-  LinearCoefficients along_motion;                            // a motion
-  LinearCoefficients at_rest;                          // qdot = qddot = 0
-  std::vector<Sum> rest_residuals;                   // r at rest; 0 in an equilibrium
+  LinearCoefficients along_motion;         // a motion
+  LinearCoefficients at_rest;              // qdot = qddot = 0
+  std::vector<Sum> rest_residuals;         // r at rest; 0 in an equilibrium
 };
 
 /// Never throws work::BudgetExceeded, but sets `skip_reason`.

@@ -143,7 +143,8 @@ DisplayForm derive_display_form(const Mechanics& given, system::Approach approac
   try {
     const work::Budget budget(form_budget);  // one budget for the whole form
     if (terms > longest_of_spins) form.rotations_skip_reason = TermBudget().what();
-    const std::vector<DisplayRotation> body_rotations = form.rotations_skip_reason.empty() ? add_rotations(m, bridge, form) : std::vector<DisplayRotation>{};
+    const std::vector<DisplayRotation> body_rotations =
+        form.rotations_skip_reason.empty() ? add_rotations(m, bridge, form) : std::vector<DisplayRotation>{};
     if (terms > longest) throw TermBudget();
     if (approach == system::Approach::one)
       derive_approach_one(m, bridge, body_rotations, form);

@@ -31,9 +31,10 @@ struct DisplayConstraint {
   std::string label;
   bool holonomic = true;
   Sum psi, rate, acceleration;
-  std::string psi_skip_reason, rate_skip_reason, acceleration_skip_reason;     // why they are omitted; empty if they are present
+  std::string psi_skip_reason, rate_skip_reason,
+      acceleration_skip_reason;                     // why they are omitted; empty if they are present
   std::optional<mechanics::FixedCoordinate> fixes;  // if it is q_c = d(t); in Approach II also of other coordinates
-  Sum value, value_rate, value_acceleration;  // of that coordinate
+  Sum value, value_rate, value_acceleration;        // of that coordinate
 };
 
 /// lambda_k dpsi_k/dq_i of one equation.
@@ -89,8 +90,8 @@ struct DisplayForm {
   std::string unexpanded_reason;
   Sum kinetic, potential, lagrangian;           // unconstrained for I, constrained for II
   Sum translation;                              // the part of `kinetic` without rotations; 0 if is_unexpanded
-  std::vector<DisplayRotation> body_rotations;                  // in II with the constraints imposed
-  std::string rotations_skip_reason;                         // why they are omitted, if bodies rotate
+  std::vector<DisplayRotation> body_rotations;  // in II with the constraints imposed
+  std::string rotations_skip_reason;            // why they are omitted, if bodies rotate
   std::optional<std::array<Sum, 3>> by_degree;  // II: T2, T1, T0, eq. (3.50)
   std::vector<DisplayConstraint> constraints;
   std::vector<Equation> equations;  // I: all coordinates, II: the free ones

@@ -93,7 +93,7 @@ struct Atom {
   Op op = Op::symbol;
   Symbol symbol{};
   std::vector<Sum> args;
-  bool positive = false;   // known to be > 0
+  bool positive = false;            // known to be > 0
   bool is_half_turn_angle = false;  // an angle in (0, pi)
 };
 

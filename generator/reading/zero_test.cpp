@@ -43,7 +43,8 @@ ZeroTestResult numerically(const Sum& sum) {
 bool is_zero(const Sum& sum) {
   if (sum.is_zero()) return true;
   const ZeroTestResult numbers = numerically(sum);
-  return numbers == ZeroTestResult::numerical || (numbers == ZeroTestResult::unknown && zero_test(sum) == ZeroTestResult::proven);
+  return numbers == ZeroTestResult::numerical ||
+         (numbers == ZeroTestResult::unknown && zero_test(sum) == ZeroTestResult::proven);
 }
 
 ZeroTestResult zero_test(const Sum& sum) {

@@ -107,7 +107,7 @@ class Start {
 }  // namespace
 
 std::vector<Number> make_consistent(const program::Function& constraints, std::size_t n, const Number& t,
-                               std::vector<Number> x, const std::vector<double>& p, int digits) {
+                                    std::vector<Number> x, const std::vector<double>& p, int digits) {
   return Start(constraints, n, p, digits).moved(t, std::move(x));
 }
 

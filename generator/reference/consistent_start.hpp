@@ -15,6 +15,6 @@ namespace eomgen::reference {
 /// Projects x = (q, qdot, ..) of n coordinates, by the least change, onto psi = 0 and then A qdot + b = 0, the results
 /// of `constraints`.
 std::vector<cln::cl_F> make_consistent(const program::Function& constraints, std::size_t n, const cln::cl_F& t,
-                                  std::vector<cln::cl_F> x, const std::vector<double>& p, int digits);
+                                       std::vector<cln::cl_F> x, const std::vector<double>& p, int digits);
 
 }  // namespace eomgen::reference

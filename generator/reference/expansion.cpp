@@ -76,8 +76,8 @@ void TaylorExpansion::run_next() {
 }
 
 std::vector<std::vector<Number>> TaylorExpansion::operator()(const Number& t, const std::vector<Number>& x,
-                                                       const std::vector<double>& p, const std::vector<double>& u,
-                                                       int order) {
+                                                             const std::vector<double>& p, const std::vector<double>& u,
+                                                             int order) {
   program::Arguments<cln::cl_R> at;
   at.t = t;
   at.x.assign(x.begin(), x.end());

@@ -35,9 +35,9 @@ struct Rotation {
   /// w = sum_i basis_i d(entry_i)/dt, eq. (5.59), and w . dual_i = d(entry_i)/dt: components along the axes after the
   /// last step.
   std::vector<Components> basis, dual;
-  std::string unit = {};      // constraint on the entries: this expression is 0; empty: no constraint
-  std::string singular = {};  // where the basis has no dual, as text; empty: nowhere
-  std::string singularity = {};   // an expression that is 0 exactly there
+  std::string unit = {};         // constraint on the entries: this expression is 0; empty: no constraint
+  std::string singular = {};     // where the basis has no dual, as text; empty: nowhere
+  std::string singularity = {};  // an expression that is 0 exactly there
 };
 
 std::span<const Rotation> registry();

@@ -48,7 +48,8 @@ std::vector<std::string> select_solvers(const std::string& stage, const std::vec
   std::vector<std::string> known = solver_names();
   for (const std::string& name : asked) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw Error(stage, {}, fmt::format("there is no solver {}", model::quote(name)), model::suggest_choice(name, known));
+    throw Error(stage, {}, fmt::format("there is no solver {}", model::quote(name)),
+                model::suggest_choice(name, known));
   }
   if (asked.empty()) return known;
   std::erase_if(known,
@@ -77,8 +78,9 @@ eom::Features features_of(const system::EquationSystem& system, bool kinks) {
 eom::Features features_of(const Code& code) { return eom::hybrid::features_of(code); }
 
 eom::Features features_of(const Scene& scene) {
-  return eom::Features{}.set(Feature::moving_inputs, std::any_of(scene.inputs.begin(), scene.inputs.end(),
-                                                                 [](const Signal& input) { return input.is_varying(); }));
+  return eom::Features{}.set(
+      Feature::moving_inputs,
+      std::any_of(scene.inputs.begin(), scene.inputs.end(), [](const Signal& input) { return input.is_varying(); }));
 }
 
 eom::Eligibility check_eligibility(const std::string& solver, const Scene& scene, const Code& code) {
@@ -98,7 +100,8 @@ void require_eligible(const std::string& solver, eom::Features features) {
   const bool compiled = found.reason == eom::Eligibility::Reason::refused || found.feature == Feature::constraints;
   const std::string instead = *method.needs.alternative == '\0' ? "" : fmt::format("{}, ", method.needs.alternative);
   const char* const what = found.feature == Feature::moving_inputs ? "scene" : "model";
-  throw Error("run", {}, fmt::format("solver '{}' cannot integrate this {}: {}", solver, what, ineligibility_reason(found)),
+  throw Error("run", {},
+              fmt::format("solver '{}' cannot integrate this {}: {}", solver, what, ineligibility_reason(found)),
               compiled ? fmt::format("take {}dop853 or auto", instead)
                        : fmt::format("choose the solver {} when the code is made", solver));
 }

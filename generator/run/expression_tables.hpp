@@ -31,7 +31,8 @@ struct SymbolMeaning {
 using SymbolResolver = std::function<SymbolMeaning(const symbolic::Symbol&)>;
 
 /// The table of the roots; nothing if a symbol cannot be evaluated.
-std::optional<Table> make_table(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& roots, const SymbolResolver& lookup);
+std::optional<Table> make_table(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& roots,
+                                const SymbolResolver& lookup);
 
 /// The variables of a run (eom/hybrid/problem.hpp): t, free coordinates, their rates, integrals, inputs.
 SymbolResolver run_variables(const system::EquationSystem& system);

@@ -30,7 +30,9 @@ const std::vector<std::size_t>& Integration::kink_crossings() const {
 double Integration::constraint_defect(double t, const double* x) {
   return bound_->integration.context().constraint_defect(t, x);
 }
-int Integration::derivative(double t, const double* x, double* dx) { return bound_->integration.context().rhs(t, x, dx); }
+int Integration::derivative(double t, const double* x, double* dx) {
+  return bound_->integration.context().rhs(t, x, dx);
+}
 
 eom::hybrid::RunResult run_problem(const eom::hybrid::Problem& problem) { return eom::hybrid::run(problem); }
 

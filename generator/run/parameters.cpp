@@ -152,7 +152,8 @@ void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values) {
   }
 }
 
-void require_friction_coefficients(const Mechanics& m, const std::vector<cln::cl_R>& values, const model::Scene& scene) {
+void require_friction_coefficients(const Mechanics& m, const std::vector<cln::cl_R>& values,
+                                   const model::Scene& scene) {
   for (const mechanics::Contact& contact : m.contacts) {
     if (contact.dimensions() == 0) continue;
     const std::vector<Ref> both{contact.width ? contact.dynamic_coefficient : contact.static_coefficient,

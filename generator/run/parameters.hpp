@@ -16,6 +16,6 @@ void require_masses(mechanics::Mechanics& mechanics, const std::vector<cln::cl_R
 
 /// Throws if a coefficient of friction is negative or undefined, or the static one is less than the dynamic one.
 void require_friction_coefficients(const mechanics::Mechanics& mechanics, const std::vector<cln::cl_R>& parameters,
-                          const model::Scene& scene);
+                                   const model::Scene& scene);
 
 }  // namespace eomgen::run

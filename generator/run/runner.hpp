@@ -52,7 +52,7 @@ struct RunResult {
   std::string solver;   // the method at the end of the run
   SolverReason reason;  // why it was chosen
   eom::Outcome outcome = eom::Outcome::done;
-  std::string detail;        // the cause, in terms of the command line, or ""
+  std::string detail;                             // the cause, in terms of the command line, or ""
   eom::hybrid::EstimateWarning estimate_warning;  // of the estimate
   double t = 0;
   eom::Statistics statistics;

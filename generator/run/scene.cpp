@@ -7,8 +7,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <eom/hybrid/time_analysis.hpp>
 #include <eom/hybrid/jumps.hpp>
+#include <eom/hybrid/time_analysis.hpp>
 #include <limits>
 
 #include "derive/imposition.hpp"
@@ -123,7 +123,8 @@ void resolve_clock(const Mechanics& m, const system::EquationSystem& system,
                    const std::vector<std::optional<Ref>>& expressions, Scene& result) {
   for (Signal& input : result.inputs) input.set_parameters(result.parameters);
   result.time = time_functions(system, expressions);
-  result.clock = eom::hybrid::analyse_time_functions(result.time, result.parameters, input_signals(result), result.t0, result.t1);
+  result.clock =
+      eom::hybrid::analyse_time_functions(result.time, result.parameters, input_signals(result), result.t0, result.t1);
   eom::hybrid::JumpFunctions jumps = jump_functions(system);
   const eom::hybrid::Jumps found(jumps, system.free.size(), system.integrals.size(), m.model->inputs.size(),
                                  result.parameters, !result.clock.breakpoints.empty());
@@ -286,8 +287,8 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.solved_notes = problem.solved_notes;
   if (problem.given.empty() && scene.rotations.empty()) {
     result.solved_notes.insert(result.solved_notes.begin(),
-                         "no initial values: all coordinates and rates start at 0" +
-                             std::string(problem.solved_notes.empty() ? "" : ", but for those that follow"));
+                               "no initial values: all coordinates and rates start at 0" +
+                                   std::string(problem.solved_notes.empty() ? "" : ", but for those that follow"));
   }
   result.open = problem.open;
   for (const model::Event& event : m.model->events) result.ends_run.push_back(event.stop);

@@ -88,9 +88,11 @@ std::vector<eom::hybrid::Breakpoint> segments(const Scene& scene, double t_end) 
     if ((b.before - scene.t0) * direction > 0 && (t_end - b.after) * direction > 0)
       ends.push_back(direction > 0 ? b : Breakpoint{b.after, b.before});
   }
-  std::sort(ends.begin(), ends.end(),
-            [direction](const Breakpoint& a, const Breakpoint& b) { return a.before * direction < b.before * direction; });
-  ends.erase(std::unique(ends.begin(), ends.end(), [](const Breakpoint& a, const Breakpoint& b) { return a.before == b.before; }),
+  std::sort(ends.begin(), ends.end(), [direction](const Breakpoint& a, const Breakpoint& b) {
+    return a.before * direction < b.before * direction;
+  });
+  ends.erase(std::unique(ends.begin(), ends.end(),
+                         [](const Breakpoint& a, const Breakpoint& b) { return a.before == b.before; }),
              ends.end());
   ends.push_back({t_end, t_end});
   return ends;

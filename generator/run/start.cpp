@@ -182,7 +182,7 @@ class StartSolver {
       names += (names.empty() ? "'" : ", '") + s_.contacts[j].name + "'";
     }
     p_.solved_notes.push_back(names + (open.size() == 1 ? " is" : " are") + " apart: the start cannot be met while " +
-                        (open.size() == 1 ? "it touches" : "all touch"));
+                              (open.size() == 1 ? "it touches" : "all touch"));
     solve(0);
     for (const std::size_t j : open) require_open(s_.contacts[j]);
   }
@@ -221,7 +221,8 @@ class StartSolver {
       if (rows_.of_order(order).empty()) return;
     }
     Eigen::Index k = 0;
-    if (rows_.largest_residual(order, &k) > start_tolerance) refuse_start(p_, rows_, order, static_cast<std::size_t>(k), free);
+    if (rows_.largest_residual(order, &k) > start_tolerance)
+      refuse_start(p_, rows_, order, static_cast<std::size_t>(k), free);
   }
 
   /// If several choices satisfy the constraints (as for rolling without a given spin about the normal), solves for the
@@ -276,7 +277,8 @@ class StartSolver {
       for (const std::size_t i : free) {
         const StartProblem::Key key{s_.free[i], order};
         if (rows_.value(key) == start[key.first]) continue;
-        p_.solved_notes.push_back(fmt::format("{} = {} follows from the constraints", rows_.label(key), rows_.value(key)));
+        p_.solved_notes.push_back(
+            fmt::format("{} = {} follows from the constraints", rows_.label(key), rows_.value(key)));
       }
       return;
     }
@@ -302,7 +304,8 @@ class StartSolver {
       auto [move, rank] = numeric::least_squares(columns, residual, start_rank_tolerance);
       if (rank < columns.cols()) {
         if (!partly) return false;
-        if (!keep_determined(columns, rank, start_rank_tolerance, move)) return rows_.largest_residual(order) <= rounding;
+        if (!keep_determined(columns, rank, start_rank_tolerance, move))
+          return rows_.largest_residual(order) <= rounding;
       }
       double size = 0, scale = 0;
       for (std::size_t i = 0; i < moving.size(); ++i) {
@@ -311,7 +314,8 @@ class StartSolver {
         size = std::max(size, std::abs(move(static_cast<Eigen::Index>(i))));
         scale = std::max(scale, std::abs(x));
       }
-      if (size <= start_rounding * scale || rows_.largest_residual(order) <= start_rounding) return rows_.largest_residual(order) <= rounding;
+      if (size <= start_rounding * scale || rows_.largest_residual(order) <= start_rounding)
+        return rows_.largest_residual(order) <= rounding;
     }
     return rows_.largest_residual(order) <= rounding;
   }

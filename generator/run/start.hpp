@@ -35,9 +35,9 @@ struct StartProblem {
   };
   std::vector<AngularVelocity> angular_velocities;
 
-  std::vector<double> q, qdot;           // out: all coordinates
+  std::vector<double> q, qdot;                 // out: all coordinates
   std::vector<std::string> solved_notes = {};  // out: a sentence for each value that follows from the constraints
-  std::vector<bool> open = {};          // out: per contact, whether it is open
+  std::vector<bool> open = {};                 // out: per contact, whether it is open
 };
 
 /// Computes q and qdot: positions by Newton's method on psi = 0, then rates by A qdot + b = 0. Throws

@@ -60,7 +60,8 @@ std::optional<Broken> first_broken(const StartRows& rows, const std::vector<std:
   return std::nullopt;
 }
 
-[[noreturn]] void refuse_angular_velocity(const StartProblem& problem, const StartProblem::AngularVelocity& turn, double off) {
+[[noreturn]] void refuse_angular_velocity(const StartProblem& problem, const StartProblem::AngularVelocity& turn,
+                                          double off) {
   throw Error("scene", problem.mechanics.model->where(turn.span),
               fmt::format("no rates give '{}' this angular velocity: a component is off by {:.6g}",
                           problem.mechanics.model->frames[turn.frame].name, off),

@@ -41,7 +41,8 @@ bool StartRows::add_rolling() {
   const std::size_t before = rows_[1].size();
   for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
     const std::optional<std::uint32_t> body_contact = p_.mechanics.contacts[j].body_contact;
-    if (!body_contact || !p_.mechanics.model->constraints[*body_contact].is_rolling_with_friction() || p_.open[j]) continue;
+    if (!body_contact || !p_.mechanics.model->constraints[*body_contact].is_rolling_with_friction() || p_.open[j])
+      continue;
     if (s_.contacts[j].unilateral &&
         std::find(rows_[1].begin(), rows_[1].end(), *s_.contacts[j].unilateral) == rows_[1].end())
       continue;
@@ -50,12 +51,14 @@ bool StartRows::add_rolling() {
   return rows_[1].size() > before;
 }
 void StartRows::drop_rolling() {
-  while (!rows_[1].empty() && rows_[1].back() >= first_angular_velocity_row() + 3 * p_.angular_velocities.size()) rows_[1].pop_back();
+  while (!rows_[1].empty() && rows_[1].back() >= first_angular_velocity_row() + 3 * p_.angular_velocities.size())
+    rows_[1].pop_back();
 }
 
 // An angular velocity is linear in the rates: three further rows.
 void StartRows::add_angular_velocity(const StartProblem::AngularVelocity& turn) {
-  symbolic::Substitution imposed = derive::constraint_substitution(p_.mechanics), written = derive::time_function_substitution(p_.mechanics);
+  symbolic::Substitution imposed = derive::constraint_substitution(p_.mechanics),
+                         written = derive::time_function_substitution(p_.mechanics);
   for (std::size_t k = 0; k < 3; ++k)
     add_rate(written(imposed(p_.mechanics.angular_velocity[turn.frame][k])), turn.value[k]);
 }
@@ -67,7 +70,8 @@ void StartRows::add_rate(Ref w, double wanted) {
   for (const std::uint32_t i : s_.free) zero[{SymbolKind::coordinate, i, 1}] = dag.zero();
   symbolic::Substitution at_rest(dag, zero);
   rows_[1].push_back(b_.size());
-  for (const std::uint32_t i : s_.free) A_.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 1})(w));
+  for (const std::uint32_t i : s_.free)
+    A_.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 1})(w));
   b_.push_back(at_rest(w));
   target_.push_back(wanted);
 }

@@ -91,7 +91,8 @@ class Finder {
       if (s.kind == SymbolKind::time) return SymbolMeaning::of_variable(0);
       if (s.kind == SymbolKind::parameter) return SymbolMeaning::of_parameter(s.index);
       if (s.kind != SymbolKind::input) return SymbolMeaning{};
-      return inputs_[s.index] ? SymbolMeaning::of_expression(*inputs_[s.index]) : SymbolMeaning::of_variable(1 + s.index);
+      return inputs_[s.index] ? SymbolMeaning::of_expression(*inputs_[s.index])
+                              : SymbolMeaning::of_variable(1 + s.index);
     });
     if (table) tables.push_back(std::move(*table));
   }

@@ -13,8 +13,8 @@ namespace eomgen::stress {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double pass_within = 100;  // tolerances times the condition of the end state
-constexpr double reported_within = 10;   // estimates
+constexpr double pass_within = 100;     // tolerances times the condition of the end state
+constexpr double reported_within = 10;  // estimates
 constexpr std::size_t most_fixed_steps = 2000;
 constexpr double limit_of_rk4 = 2.8;  // 2.785 along the real axis, 2.828 along the imaginary one
 constexpr double fewest_stable = 4;   // least number of stable steps in a span
@@ -23,7 +23,7 @@ constexpr int shortenings = 24;       // of the span, each at least by half, unt
 class Assessment {
  public:
   Assessment(const Case& test, const run::Scene& scene, const Request& request, const ReferenceSolution* reference,
-            double stable_step)
+             double stable_step)
       : test_(test), scene_(scene), request_(request), reference_(reference), stable_step_(stable_step) {}
 
   Row row(const std::string& solver) {
@@ -35,7 +35,7 @@ class Assessment {
     const run::RunResult result = run_solver(scene_, solver, clock);
     row.seconds = clock.seconds();
     row.outcome = clock.was_exceeded() ? "interrupted" : eom::name(result.outcome);
-    row.note = clock.was_exceeded()         ? "exceeds the time limit"
+    row.note = clock.was_exceeded()     ? "exceeds the time limit"
                : !result.detail.empty() ? result.detail
                                         : result.estimate_note;
     if (clock.was_exceeded() || result.outcome != eom::Outcome::done) {
@@ -55,7 +55,7 @@ class Assessment {
   double fixed_steps() const {
     const std::size_t usual = std::min(most_fixed_steps, std::max<std::size_t>(1, request_.steps_limit / 4));
     return test_.stability_fraction ? std::ceil((scene_.t1 - scene_.t0) / (*test_.stability_fraction * stable_step_))
-                          : static_cast<double>(usual);
+                                    : static_cast<double>(usual);
   }
 
   run::RunResult run_solver(const run::Scene& given, const std::string& solver, TimeLimit& clock) const {
@@ -140,7 +140,8 @@ std::vector<Row> assess(const Case& test, const run::Scene& given, const Request
     for (int k = 0; k <= shortenings && !reference; ++k) {
       if (interrupted()) return rows;
       double next = 0;
-      reference = ReferenceSolver(scene, given.t1 - given.t0, test.singularity_distance, request).solution(left_out, next);
+      reference =
+          ReferenceSolver(scene, given.t1 - given.t0, test.singularity_distance, request).solution(left_out, next);
       if (reference) break;
       if (next == 0) return rows;
       scene.t1 = scene.t0 + next;
@@ -158,7 +159,9 @@ std::vector<Row> assess(const Case& test, const run::Scene& given, const Request
   const run::RunRequest run = request.run(scene);
   for (const std::string& solver : request.solvers) {
     if (interrupted()) break;
-    if (!run::check_eligibility(solver, scene, run.code) || (test.stability_fraction && run::get_method(solver).adaptive)) continue;
+    if (!run::check_eligibility(solver, scene, run.code) ||
+        (test.stability_fraction && run::get_method(solver).adaptive))
+      continue;
     if (request.progress) request.progress(test.name + ", " + solver);
     rows.push_back(assessment.row(solver));
     if (scene.t1 != given.t1 && rows.back().note.empty()) rows.back().note = fmt::format("until t = {:g}", scene.t1);

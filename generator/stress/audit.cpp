@@ -68,7 +68,7 @@ Auditor::Auditor(const mechanics::Mechanics& mechanics, const program::Program& 
 }
 
 void Auditor::add_motion(const std::string& test, const run::Scene& scene, const run::Code& code,
-                  const std::vector<Sample>& samples) {
+                         const std::vector<Sample>& samples) {
   std::vector<const Sample*> taken;
   for (const std::size_t place : places) {
     if (place < samples.size() && all_finite(samples[place].x)) taken.push_back(&samples[place]);
@@ -85,7 +85,7 @@ void Auditor::add_motion(const std::string& test, const run::Scene& scene, const
 
 /// The condition on the null space of the constraints: M alone may be singular (Euler parameters).
 void Auditor::audit_mass(const std::string& test, const run::Scene& scene, const run::Code& code,
-                           const Sample& sample) {
+                         const Sample& sample) {
   if (code.mass == nullptr) return;
   const auto n = static_cast<Eigen::Index>(code.free.size()), m = static_cast<Eigen::Index>(code.active_constraints);
   Eigen::MatrixXd M(n, n);
@@ -108,7 +108,7 @@ void Auditor::audit_mass(const std::string& test, const run::Scene& scene, const
 }
 
 void Auditor::audit_denominators(const std::string& test, const run::Scene& scene, const Sample& sample,
-                                   const std::vector<double>& u) {
+                                 const std::vector<double>& u) {
   const program::Values<double> values =
       program::interpret(divided_, {sample.t, sample.x, scene.parameters, u, {}, {}, sample.mode});
   for (std::size_t i = 0; i < audit_.denominators.size(); ++i) {
@@ -127,7 +127,7 @@ void Auditor::audit_denominators(const std::string& test, const run::Scene& scen
 
 /// The digits lost of each acceleration, relative to its largest value in the motion.
 void Auditor::audit_digits(const std::string& test, const run::Scene& scene, const run::Code& code,
-                             const std::vector<const Sample*>& samples) {
+                           const std::vector<const Sample*>& samples) {
   const std::size_t n = code.free.size();
   std::vector<double> scale(n, 0.0), off(n, 0.0);
   for (const Sample* sample : samples) {

@@ -41,15 +41,16 @@ class Auditor {
   Auditor(const mechanics::Mechanics& mechanics, const program::Program& program);
 
   /// Audits a few states of a motion.
-  void add_motion(const std::string& test, const run::Scene& scene, const run::Code& code, const std::vector<Sample>& samples);
+  void add_motion(const std::string& test, const run::Scene& scene, const run::Code& code,
+                  const std::vector<Sample>& samples);
   const Audit& audit() const { return audit_; }
 
  private:
   void audit_mass(const std::string& test, const run::Scene& scene, const run::Code& code, const Sample& sample);
   void audit_denominators(const std::string& test, const run::Scene& scene, const Sample& sample,
-                            const std::vector<double>& u);
+                          const std::vector<double>& u);
   void audit_digits(const std::string& test, const run::Scene& scene, const run::Code& code,
-                      const std::vector<const Sample*>& samples);
+                    const std::vector<const Sample*>& samples);
 
   const program::Function& rhs_;
   program::Function divided_;  // the same code with the denominators as its only result

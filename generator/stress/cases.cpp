@@ -113,7 +113,8 @@ class Cases {
   void zeros() {
     bool any = false;
     for (const std::uint32_t i : m_.free) any = any || scene_.q[i] == 0 || scene_.qdot[i] == 0;
-    if (any) result_.push_back({.name = fmt::format("zeros of the start {:g}", denormal), .zero_replacement = denormal});
+    if (any)
+      result_.push_back({.name = fmt::format("zeros of the start {:g}", denormal), .zero_replacement = denormal});
   }
 
   void charts() {

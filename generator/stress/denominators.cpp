@@ -140,7 +140,7 @@ std::string test_of(const Function& function, const Operand& denominator) {
 }  // namespace
 
 std::vector<Divisor> list_divisors(const Function& function, const program::Program& program,
-                              const mechanics::Mechanics& mechanics) {
+                                   const mechanics::Mechanics& mechanics) {
   std::vector<Operand> whole;
   for (const Instruction& i : function.code) {
     if (i.op == Op::div) whole.push_back(i.operands[1]);

@@ -17,6 +17,6 @@ struct Divisor {
 
 /// Factors of all denominators and pivots, each once, in the order of the code.
 std::vector<Divisor> list_divisors(const program::Function& function, const program::Program& program,
-                              const mechanics::Mechanics& mechanics);
+                                   const mechanics::Mechanics& mechanics);
 
 }  // namespace eomgen::stress

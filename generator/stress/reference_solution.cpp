@@ -89,7 +89,8 @@ std::optional<ReferenceSolution> ReferenceSolver::solution(std::string& why, dou
     return std::nullopt;
   }
   // The start and every sum are rounded to binary64, even if two runs agree better.
-  reference.uncertainty = safety_factor * distance(reference.x, second, reference.scale) + unit_roundoff * reference.condition;
+  reference.uncertainty =
+      safety_factor * distance(reference.x, second, reference.scale) + unit_roundoff * reference.condition;
   if (reference.growth <= max_condition && reference.uncertainty < most_uncertain) {
     const run::Integration start(run_, solver_);
     reference.samples.insert(reference.samples.begin(), {scene_.t0, start.initial_state(), start.contact_mode()});
@@ -101,7 +102,7 @@ std::optional<ReferenceSolution> ReferenceSolver::solution(std::string& why, dou
 }
 
 ReferenceSolver::TightRun ReferenceSolver::run_tight(const std::string& solver, double rtol, const State* start,
-                                          State* scale) const {
+                                                     State* scale) const {
   run::Scene scene = start != nullptr ? scene_from(*start) : scene_;
   run::RunRequest request = request_.run(scene);
   request.estimate = request.watch_power = false;
@@ -165,7 +166,8 @@ bool ReferenceSolver::condition(ReferenceSolution& reference) {
   const State x0 = run::Integration(run_, solver_).initial_state();
   for (const int pattern : {0, 1, 2}) {
     // If this disturbance leaves the chart, the opposite one is tried.
-    if (!follow_disturbed(reference, x0, pattern, 1) && (late_ || !follow_disturbed(reference, x0, pattern, -1))) return false;
+    if (!follow_disturbed(reference, x0, pattern, 1) && (late_ || !follow_disturbed(reference, x0, pattern, -1)))
+      return false;
   }
   return true;
 }

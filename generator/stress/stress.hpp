@@ -20,13 +20,14 @@ struct Case {
   std::vector<std::pair<std::uint32_t, double>> factor = {};  // parameters with their factors
   std::vector<std::pair<std::uint32_t, double>> value = {};   // parameters with new values, finite or not
   std::vector<std::pair<std::uint32_t, double>> start = {};   // coordinates with new initial values
-  double speed_factor = 1;                               // factor of all initial velocities; the span is divided by it
-  double span_factor = 1;                                // factor of the span
-  std::optional<double> rtol = std::nullopt;      // atol in proportion
-  std::optional<double> stability_fraction = std::nullopt;  // fixed steps, relative to the stability limit of rk4 at the start
-  std::optional<double> zero_replacement = std::nullopt;     // replaces initial values of 0
-  double singularity_distance = 1;                            // distance of the start from a chart singularity
-  bool has_no_motion = false;                     // no motion exists: the outcome `done` is wrong
+  double speed_factor = 1;                    // factor of all initial velocities; the span is divided by it
+  double span_factor = 1;                     // factor of the span
+  std::optional<double> rtol = std::nullopt;  // atol in proportion
+  std::optional<double> stability_fraction =
+      std::nullopt;  // fixed steps, relative to the stability limit of rk4 at the start
+  std::optional<double> zero_replacement = std::nullopt;  // replaces initial values of 0
+  double singularity_distance = 1;                        // distance of the start from a chart singularity
+  bool has_no_motion = false;                             // no motion exists: the outcome `done` is wrong
 };
 
 /// All variations for this model and scene: factors of stiffnesses, masses and inertias; speeds; starts near the bounds

@@ -29,7 +29,8 @@ Derivation partial_derivative(Dag& dag, Symbol symbol);
 /// Total time derivative: t -> 1, q -> qdot -> qddot, f -> f' for functions of time, integrals -> their integrands.
 /// Third derivatives of coordinates do not exist. `freeze_acceleration` seeds qdot with 0 instead of qddot (for bias
 /// terms).
-Derivation total_time_derivative(Dag& dag, std::size_t coordinates, std::size_t functions, bool freeze_acceleration = false);
+Derivation total_time_derivative(Dag& dag, std::size_t coordinates, std::size_t functions,
+                                 bool freeze_acceleration = false);
 
 /// Partial time derivative at fixed coordinates and velocities: t -> 1, f -> f'.
 Derivation explicit_time_derivative(Dag& dag, std::size_t functions);

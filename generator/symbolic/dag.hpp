@@ -48,12 +48,12 @@ enum class SymbolKind : std::uint8_t {
   function,    // of time; order 0, 1, ..., 6
   parameter,
   input,
-  multiplier,  // lambda of Mechanics::constraints[index]
-  friction,    // phi of a tangent of Mechanics::contacts: a component of a friction force
-  contact_mode,   // mode of a contact: order 0: slip direction (0: it sticks), order 1: sign of the normal force
+  multiplier,    // lambda of Mechanics::constraints[index]
+  friction,      // phi of a tangent of Mechanics::contacts: a component of a friction force
+  contact_mode,  // mode of a contact: order 0: slip direction (0: it sticks), order 1: sign of the normal force
   auxiliary,     // an auxiliary variable of the caller (cut points of the solve, the extension of a spring)
-  integral,    // of a function of time, from the start of the run; set_rate defines its derivative
-  branch,      // branch at which a kink is held: -1 or 1, or 0 for none (program/kinks.hpp)
+  integral,      // of a function of time, from the start of the run; set_rate defines its derivative
+  branch,        // branch at which a kink is held: -1 or 1, or 0 for none (program/kinks.hpp)
 };
 
 struct Symbol {

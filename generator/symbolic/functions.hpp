@@ -29,7 +29,7 @@ struct Function {
   // dv/dx, from the table of the runtime.
   constexpr eom::expressions::Derivative derivative() const { return derivative_of(runtime_op(op)); }
   constexpr Slope slope() const { return derivative().form; }
-  constexpr bool falls() const { return derivative().falls; }             // the derivative is minus `slope`
+  constexpr bool falls() const { return derivative().falls; }          // the derivative is minus `slope`
   constexpr Op other() const { return graph_op(derivative().other); }  // of Slope::other
 };
 

@@ -234,7 +234,9 @@ Ref Expander::rebuild(const Polynomial& p) {
   return dag_.mul(result, sum);
 }
 
-Ref expand_or_keep(Dag& dag, Ref expression, std::size_t term_budget) { return Expander(dag, term_budget).expand_or_keep(expression); }
+Ref expand_or_keep(Dag& dag, Ref expression, std::size_t term_budget) {
+  return Expander(dag, term_budget).expand_or_keep(expression);
+}
 
 Ref expand_if_shorter(Dag& dag, Ref expression, std::size_t term_budget, ProductBudget* effort) {
   const std::optional<Ref> expanded = Expander(dag, term_budget, effort)(expression);

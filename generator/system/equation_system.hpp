@@ -97,8 +97,12 @@ struct Contact {
 
 /// Symbols of the mode of a contact. slip_direction_symbol: 1 slides along its tangent, -1 against it, 0 sticks.
 /// normal_sign_symbol: the sign of the normal force; for a unilateral contact 1 closed, -1 open.
-inline symbolic::Symbol slip_direction_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact_mode, contact, 0}; }
-inline symbolic::Symbol normal_sign_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact_mode, contact, 1}; }
+inline symbolic::Symbol slip_direction_symbol(std::uint32_t contact) {
+  return {symbolic::SymbolKind::contact_mode, contact, 0};
+}
+inline symbolic::Symbol normal_sign_symbol(std::uint32_t contact) {
+  return {symbolic::SymbolKind::contact_mode, contact, 1};
+}
 
 /// A constraint that follows from the active ones. Runs monitor psi, and initial states satisfy it.
 struct RedundantConstraint {
@@ -134,10 +138,11 @@ struct EquationSystem {
   std::vector<Ref> b;           // m: A qdot + b = 0
   std::vector<Ref> gamma;       // m: A qddot + gamma = 0
   std::vector<RedundantConstraint> redundant;
-  std::vector<Ref> contact_open;  // m, or empty: 1 if the contact of a constraint is open; its row of A and gamma is then 0
+  std::vector<Ref>
+      contact_open;  // m, or empty: 1 if the contact of a constraint is open; its row of A and gamma is then 0
 
   std::optional<QuasiVelocityEquations> quasi;  // equivalent equations in quasi-velocities
-  std::optional<Solution> solution;     // equal to the solution from M, f, A, gamma
+  std::optional<Solution> solution;             // equal to the solution from M, f, A, gamma
 
   std::vector<Contact> contacts;
 

@@ -209,7 +209,8 @@ const Real& AffineResidualCache::psi_ddot_offset(std::size_t constraint) {
   if (!oracle_.is_holonomic(constraint))
     return psi_ddot_offset_[constraint].emplace(later.scalar(expression).slope(later.level(), 0).real());
   Interpreter& twice = later.with_time_slope();
-  return psi_ddot_offset_[constraint].emplace(twice.scalar(expression).slope(twice.level(), 0).slope(later.level(), 0).real());
+  return psi_ddot_offset_[constraint].emplace(
+      twice.scalar(expression).slope(twice.level(), 0).slope(later.level(), 0).real());
 }
 
 }  // namespace eomgen::verify

@@ -29,10 +29,12 @@ Real to_exact(const Real& value) {
                                     : Real(cln::cl_float(value, cln::float_format(plenty)));
 }
 
-Real direction_component(std::size_t j) { return cln::cl_RA(static_cast<long>(16 + (7 * j + 3) % 11)) / (j % 2 == 0 ? 16 : -16); }
+Real direction_component(std::size_t j) {
+  return cln::cl_RA(static_cast<long>(16 + (7 * j + 3) % 11)) / (j % 2 == 0 ? 16 : -16);
+}
 
-std::optional<CentralDifference> central_difference(const ProgramForm& program, const std::string& function, const AbiArguments& at, const Shift& shift,
-                           int digits) {
+std::optional<CentralDifference> central_difference(const ProgramForm& program, const std::string& function,
+                                                    const AbiArguments& at, const Shift& shift, int digits) {
   const int more = 3 * digits + 10;
   const Precision precision(more);
   const Real h = precision.round(power_of_ten(-digits));
@@ -41,7 +43,7 @@ std::optional<CentralDifference> central_difference(const ProgramForm& program, 
   shift(above, h);
   shift(below, -h);
   const std::optional<AbiResults> high = program.call(function, above, more), low = program.call(function, below, more),
-                              middle = program.call(function, here, more);
+                                  middle = program.call(function, here, more);
   if (!high || !low || !middle) return std::nullopt;
   CentralDifference result{*high, *high};
   const Real small = power_of_ten(-digits / 2);
@@ -61,7 +63,8 @@ std::optional<CentralDifference> central_difference(const ProgramForm& program, 
   AbiArguments beyond = here, before = here;
   shift(beyond, 2 * h);
   shift(before, -2 * h);
-  const std::optional<AbiResults> far = program.call(function, beyond, more), back = program.call(function, before, more);
+  const std::optional<AbiResults> far = program.call(function, beyond, more),
+                                  back = program.call(function, before, more);
   if (!far || !back) return std::nullopt;
   for (std::size_t r = 0; r < high->size(); ++r) {
     for (std::size_t i = 0; i < (*high)[r].size(); ++i) {

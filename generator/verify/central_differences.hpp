@@ -28,12 +28,12 @@ using Shift = std::function<void(AbiArguments& at, const Real& step)>;
 /// A central difference, for each entry of each array of a function.
 struct CentralDifference {
   AbiResults values;  // [f(at + h) - f(at - h)]/2h
-  AbiResults errors;  // h times the second differences; if a derivative is as small as its third difference, also h times
-                  // that over h^2
+  AbiResults errors;  // h times the second differences; if a derivative is as small as its third difference, also h
+                      // times that over h^2
 };
 
 /// The central difference with h = 10^-digits, in three times the digits; nothing if the function has no values.
-std::optional<CentralDifference> central_difference(const ProgramForm& program, const std::string& function, const AbiArguments& at, const Shift& shift,
-                           int digits);
+std::optional<CentralDifference> central_difference(const ProgramForm& program, const std::string& function,
+                                                    const AbiArguments& at, const Shift& shift, int digits);
 
 }  // namespace eomgen::verify

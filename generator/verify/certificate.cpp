@@ -109,7 +109,8 @@ std::vector<std::string> Certificate::agreeing_forms() const {
   return names;
 }
 
-std::vector<system::EquationSystem> all_formulations(mechanics::Mechanics& mechanics, std::vector<work::LeftOut>* left_out) {
+std::vector<system::EquationSystem> all_formulations(mechanics::Mechanics& mechanics,
+                                                     std::vector<work::LeftOut>* left_out) {
   constexpr std::size_t large = 16;  // coordinates
   std::vector<system::EquationSystem> systems;
   for (const derive::FormulationEntry& formulation : derive::formulations())
@@ -120,8 +121,8 @@ std::vector<system::EquationSystem> all_formulations(mechanics::Mechanics& mecha
       if (outcome.system)
         systems.push_back(std::move(*outcome.system));
       else if (left_out != nullptr)
-        left_out->push_back(
-            {fmt::format("{} {}", formulation.name, system::name(approach)), std::move(outcome.skip_reason), outcome.over_budget});
+        left_out->push_back({fmt::format("{} {}", formulation.name, system::name(approach)),
+                             std::move(outcome.skip_reason), outcome.over_budget});
     }
   return systems;
 }
@@ -136,7 +137,7 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
     if (!mechanics.is_independent(k)) oracle.mark_implied(k);
   }
   StateSampler points(oracle, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed,
-                unilateral_constraints(mechanics));
+                      unilateral_constraints(mechanics));
   ComparisonTable tally(options.digits);
   bool interrupted = false;
   while (tally.points() < options.points) {

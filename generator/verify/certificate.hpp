@@ -27,7 +27,7 @@ struct Options {
   std::size_t points = 20;
   std::uint64_t seed = 1;
   std::map<std::uint32_t, cln::cl_RA> fixed = {};  // parameters that are constants of the program
-  std::optional<int> extra_digits = {};                   // required_extra_digits, if it is known
+  std::optional<int> extra_digits = {};            // required_extra_digits, if it is known
 };
 
 /// Expressions that vanish for the true motion, in t, q, qdot, qddot of all coordinates, functions of time, parameters,
@@ -71,7 +71,8 @@ struct CompiledForm {
   std::function<std::optional<std::vector<double>>(double t, const std::vector<double>& x, const std::vector<double>& p,
                                                    const std::vector<double>& u, int mode)>
       rhs;
-  std::function<std::optional<std::vector<std::vector<double>>>(const std::string& function, const AbiArguments& at)> call = {};
+  std::function<std::optional<std::vector<std::vector<double>>>(const std::string& function, const AbiArguments& at)>
+      call = {};
 };
 
 struct Subjects {
@@ -115,17 +116,17 @@ struct Certificate {
   std::vector<std::string> agreeing_forms() const;
 };
 
-/// Every formulation of derive::formulations(), by both approaches, that applies within its budget. The others are listed in
-/// `left_out`.
+/// Every formulation of derive::formulations(), by both approaches, that applies within its budget. The others are
+/// listed in `left_out`.
 std::vector<system::EquationSystem> all_formulations(mechanics::Mechanics& mechanics,
-                                               std::vector<work::LeftOut>* left_out = nullptr);
+                                                     std::vector<work::LeftOut>* left_out = nullptr);
 
 /// Extra digits for parameters, starts, rates and times far from 1: next to a mass of 1e300 kg all other terms would be
 /// lost. 0 for usual values.
 int required_extra_digits(const mechanics::Mechanics& mechanics);
 
-/// Compares the subjects at random states. Throws Error{ErrorKind::check} if no states can be found. After an interruption
-/// the certificate covers the points that were compared.
+/// Compares the subjects at random states. Throws Error{ErrorKind::check} if no states can be found. After an
+/// interruption the certificate covers the points that were compared.
 Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Options& options = {});
 
 /// Certifies all formulations.

@@ -8,9 +8,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "verify/applied_forces.hpp"
 #include "verify/friction_law.hpp"
 #include "verify/function_comparisons.hpp"
-#include "verify/applied_forces.hpp"
 
 namespace eomgen::verify {
 namespace {
@@ -131,14 +131,16 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
         }
       }
       if (known)
-        tally.record(function + " of " + form.name, function + " of " + program.name, true, largest, Arithmetic::binary64);
+        tally.record(function + " of " + form.name, function + " of " + program.name, true, largest,
+                     Arithmetic::binary64);
     }
   }
 }
 
 }  // namespace
 
-void compare_code(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode, ComparisonTable& tally) {
+void compare_code(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode,
+                  ComparisonTable& tally) {
   const EquationSystem& first = subjects.systems.front();
   bool undecided = false;  // the friction law has no solution here, or several
   for (const ProgramForm& form : subjects.programs) {
@@ -149,7 +151,7 @@ void compare_code(const Subjects& subjects, const SystemValues& v, const Oracle&
     // An acceleration may be 0 because its terms cancel: it is compared relative to these terms.
     const std::vector<Real> rounding = rounding_of_rhs(form, arguments, oracle);
     tally.record(form.name, system_name(first), true,
-               rhs_difference(dx, right_hand_side(first, oracle, v.state), first, v, rounding));
+                 rhs_difference(dx, right_hand_side(first, oracle, v.state), first, v, rounding));
   }
   if (undecided) return;
   compare_functions(subjects, v, oracle, mode, tally);
@@ -157,7 +159,7 @@ void compare_code(const Subjects& subjects, const SystemValues& v, const Oracle&
   const State at = in_binary64(v.state, oracle);
   for (const CompiledForm& form : subjects.compiled) {
     tally.record(form.name, system_name(first), true, compiled_difference(form, subjects, at, v, oracle, mode),
-               Arithmetic::binary64);
+                 Arithmetic::binary64);
   }
   compare_compiled_functions(subjects, at, oracle, mode, tally);
 }

@@ -10,10 +10,10 @@
 
 #include "derive/imposition.hpp"
 #include "symbolic/evaluate.hpp"
+#include "verify/applied_forces.hpp"
 #include "verify/code_comparisons.hpp"
 #include "verify/friction_law.hpp"
 #include "verify/motion.hpp"
-#include "verify/applied_forces.hpp"
 #include "verify/system_values.hpp"
 
 namespace eomgen::verify {
@@ -106,15 +106,18 @@ void compare_energies(const EquationSystem& s, const SystemValues& v, const Orac
   const EnergyValues e = oracle.energy_values(v.state);
   const std::string name = system_name(s);
   tally.record("energies of " + name, oracle_name, false,
-             worst({relative_difference(v.kinetic - e.kinetic, e.scale), relative_difference(v.potential - e.potential, e.scale),
-                    relative_difference(v.energy - e.kinetic - e.potential, e.scale)}));
+               worst({relative_difference(v.kinetic - e.kinetic, e.scale),
+                      relative_difference(v.potential - e.potential, e.scale),
+                      relative_difference(v.energy - e.kinetic - e.potential, e.scale)}));
   Real scale = e.rate_scale + cln::abs(v.power);  // plus the power of every term of the equations
   for (std::size_t i = 0; i < v.rows.size(); ++i) scale = scale + cln::abs(v.state.qdot[i]) * v.rows[i].scale;
-  tally.record("power of " + name, oracle_name, false, relative_difference(v.power - e.kinetic_rate - e.potential_rate, scale));
+  tally.record("power of " + name, oracle_name, false,
+               relative_difference(v.power - e.kinetic_rate - e.potential_rate, scale));
   const Real rate = energy_rate(s, oracle, v, oracle.digits() - guard_digits);
   // The difference of two energies has no more digits than these.
   const Real noise = e.scale * cln::expt(cln::cl_RA(1) / 10, cln::cl_I(tally.digits()));
-  tally.record("power of " + name, "its energy along the path", true, relative_difference(v.power - rate, scale + noise));
+  tally.record("power of " + name, "its energy along the path", true,
+               relative_difference(v.power - rate, scale + noise));
 }
 
 /// Outputs that the oracle can compute from the model: coordinates, positions, velocities, scalar definitions.
@@ -174,7 +177,8 @@ void compare_integrals(const mechanics::Mechanics& mechanics, const EquationSyst
     const Real value = symbolic::evaluate(*mechanics.dag, {form}, lookup, oracle.digits())[0];
     const Real span = v.state.t - v.state.parameters[*m.start_time];
     const Real scale = cln::abs(span * now.environment().integrals[i][1].real());
-    largest = std::max(largest, relative_difference(value - v.state.integrals[i], cln::abs(v.state.integrals[i]) + scale));
+    largest =
+        std::max(largest, relative_difference(value - v.state.integrals[i], cln::abs(v.state.integrals[i]) + scale));
   }
   const std::vector<Real> rates = integral_rates(s, lookup, oracle.digits());
   for (std::size_t k = 0; k < rates.size(); ++k) {
@@ -244,7 +248,7 @@ bool has_inertia(const Oracle& oracle, State at, const std::vector<Real>& lambda
 /// Residuals of the display form for the motion by the oracle. The form also has to detect a wrong acceleration: 0 = 0
 /// holds for every motion.
 double display_form_residual(const DisplayForm& form, const mechanics::Mechanics& mechanics, const Motion& motion,
-                        const Oracle& oracle, bool try_wrong_ones) {
+                             const Oracle& oracle, bool try_wrong_ones) {
   SymbolValues lookup(oracle, motion.state);
   lookup.lambda = motion.lambda;
   const double largest = largest_residual(form, *mechanics.dag, lookup, motion, oracle);
@@ -313,13 +317,15 @@ std::vector<int> modes_of(const EquationSystem& s, const State& state) {
 
 }  // namespace
 
-void ComparisonTable::record(const std::string& a, const std::string& b, bool shares_code, double relative_difference, Arithmetic arithmetic) {
+void ComparisonTable::record(const std::string& a, const std::string& b, bool shares_code, double relative_difference,
+                             Arithmetic arithmetic) {
   const auto same = [&](const Comparison& row) { return row.a == a && row.b == b; };
   auto row = std::find_if(rows_.begin(), rows_.end(), same);
   if (row == rows_.end()) {
     rows_.push_back({a, b, shares_code, 0, 0, 0, true});
     row = rows_.end() - 1;
-    row->tolerance = arithmetic == Arithmetic::binary64 ? tolerance_binary64 : std::pow(10.0, digits_given_up - digits_);
+    row->tolerance =
+        arithmetic == Arithmetic::binary64 ? tolerance_binary64 : std::pow(10.0, digits_given_up - digits_);
   }
   row->max_relative_difference = std::max(row->max_relative_difference, relative_difference);
   const double largest = row->max_relative_difference;
@@ -347,7 +353,8 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
     const Motion motion = solve_motion(oracle, state);
     for (const DisplayForm& form : subjects.reading)
       if (!form.residuals.empty())
-        tally.record(form.name, oracle_name, false, display_form_residual(form, mechanics, motion, oracle, tally.points() == 0));
+        tally.record(form.name, oracle_name, false,
+                     display_form_residual(form, mechanics, motion, oracle, tally.points() == 0));
   }
   if (values.empty()) return;
   const EquationSystem& first = subjects.systems.front();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: the subjects and one state. Out: the difference of each pair there; a ComparisonTable collects the largest over all states.
+// In: the subjects and one state. Out: the difference of each pair there; a ComparisonTable collects the largest over
+// all states.
 #pragma once
 
 #include <string>
@@ -22,7 +23,7 @@ class ComparisonTable {
  public:
   explicit ComparisonTable(int digits) : digits_(digits) {}
   void record(const std::string& a, const std::string& b, bool shares_code, double relative_difference,
-            Arithmetic arithmetic = Arithmetic::precise);
+              Arithmetic arithmetic = Arithmetic::precise);
   void count_point() { ++points_; }
   std::size_t points() const { return points_; }
   int digits() const { return digits_; }
@@ -36,7 +37,7 @@ class ComparisonTable {
 
 /// Compares all subjects at one state. Throws std::domain_error if one of them has no value or is nearly singular
 /// there.
-void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Oracle& oracle, const State& state,
-                ComparisonTable& tally);
+void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Oracle& oracle,
+                const State& state, ComparisonTable& tally);
 
 }  // namespace eomgen::verify

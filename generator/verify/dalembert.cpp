@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <set>
 
-#include "verify/applied_forces.hpp"
 #include "verify/affine_residual_cache.hpp"
+#include "verify/applied_forces.hpp"
 #include "verify/uses.hpp"
 
 namespace eomgen::verify {
@@ -111,7 +111,8 @@ void Oracle::add_functions(Environment& environment, const std::vector<Real>& in
   };
   while (progress) {
     progress = false;
-    for (std::size_t i = 0; i < model_.functions.size(); ++i) add(model_.functions[i].expression, environment.functions[i]);
+    for (std::size_t i = 0; i < model_.functions.size(); ++i)
+      add(model_.functions[i].expression, environment.functions[i]);
     for (std::size_t i = 0; i < integrals.size(); ++i) {
       if (!environment.integrals[i].empty()) continue;
       add(model_.integrals[i].integrand, environment.integrals[i]);  // its rate and further derivatives
@@ -212,11 +213,13 @@ bool same_place(const State& a, const State& b) {
 }  // namespace
 
 AffineResidualCache& Oracle::residual_cache(const State& state) const {
-  if (!residual_cache_ || !same_place(residual_cache_->state, state)) residual_cache_ = std::make_unique<AffineResidualCache>(*this, state);
+  if (!residual_cache_ || !same_place(residual_cache_->state, state))
+    residual_cache_ = std::make_unique<AffineResidualCache>(*this, state);
   return *residual_cache_;
 }
 
-std::vector<Residual> Oracle::dalembert_residuals(const State& state, const std::vector<Real>& lambda, KinkMargin* margin) const {
+std::vector<Residual> Oracle::dalembert_residuals(const State& state, const std::vector<Real>& lambda,
+                                                  KinkMargin* margin) const {
   AffineResidualCache& at = residual_cache(state);
   std::vector<Residual> sums = at.inertia().multiply(state.qddot);
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(at.offset()[i].value, at.offset()[i].scale);
@@ -258,7 +261,7 @@ void Oracle::subtract_friction(const State& state, Interpreter& now, std::vector
 // A contact force on a body: at its centre of mass, with its moment about it, F . dr/dq_i + (p x F) . dw/dqdot_i. The
 // other body has the opposite force.
 void Oracle::subtract_contact(const model::BodyContact& contact, const std::array<Real, 3>& force, Interpreter& now,
-                             std::vector<Residual>& sums) const {
+                              std::vector<Residual>& sums) const {
   Interpreter& by_q = now.with_coordinate_slopes(false);
   const auto act = [&](std::uint32_t place, std::uint32_t frame, model::NodeId arm, int sign) {
     const Vector F{Jet(sign * force[0]), Jet(sign * force[1]), Jet(sign * force[2])};

@@ -36,11 +36,11 @@ struct State {
   Real t = 0;
   std::vector<Real> q, qdot, qddot;  // every coordinate of the model
   std::vector<Real> parameters, inputs;
-  std::vector<Real> integrals;  // of functions of time, from the start of the run; empty: not computed yet
-  std::vector<Real> phi;        // components of friction along the tangents
+  std::vector<Real> integrals;          // of functions of time, from the start of the run; empty: not computed yet
+  std::vector<Real> phi;                // components of friction along the tangents
   std::vector<FrictionForce> friction;  // the forces that belong to phi
   int mode = 0;                         // of the contacts (eom/modes/contact_state.hpp)
-  std::set<std::size_t> open;          // scalar constraints that are open in this state: inactive and without force
+  std::set<std::size_t> open;           // scalar constraints that are open in this state: inactive and without force
 };
 
 /// A sum that should vanish, and the sum of the absolute values of its terms, which determines its rounding error.
@@ -94,7 +94,8 @@ class Oracle {
   std::vector<Real> parameters(std::vector<Real> given) const;
   bool is_independent_parameter(std::size_t index) const;
 
-  std::vector<Residual> dalembert_residuals(const State& state, const std::vector<Real>& lambda, KinkMargin* margin = nullptr) const;
+  std::vector<Residual> dalembert_residuals(const State& state, const std::vector<Real>& lambda,
+                                            KinkMargin* margin = nullptr) const;
   ConstraintValues constraint_values(const State& state, KinkMargin* margin = nullptr) const;
   EnergyValues energy_values(const State& state) const;
   /// Value of an expression of the model, such as an initial value of a scene.

@@ -17,7 +17,8 @@ using symbolic::Ref;
 
 class Law {
  public:
-  Law(const system::EquationSystem& s, const Oracle& oracle, const State& state) : s_(s), oracle_(oracle), state_(state) {
+  Law(const system::EquationSystem& s, const Oracle& oracle, const State& state)
+      : s_(s), oracle_(oracle), state_(state) {
     for (const system::Contact& contact : s.contacts) {
       for (const auto* list : {&contact.gram, &contact.slip, &contact.slip_rate}) {
         roots_.insert(roots_.end(), list->begin(), list->end());

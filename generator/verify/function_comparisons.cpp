@@ -12,8 +12,8 @@
 #include <string_view>
 
 #include "symbolic/evaluate.hpp"
-#include "verify/central_differences.hpp"
 #include "verify/applied_forces.hpp"
+#include "verify/central_differences.hpp"
 
 namespace eomgen::verify {
 namespace {
@@ -23,7 +23,8 @@ using system::EquationSystem;
 
 class FunctionComparisons {
  public:
-  FunctionComparisons(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode, ComparisonTable& tally)
+  FunctionComparisons(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode,
+                      ComparisonTable& tally)
       : program_(subjects.programs.front()),
         v_(v),
         oracle_(oracle),
@@ -120,11 +121,13 @@ class FunctionComparisons {
   }
 
   /// Difference of array `r` from these expressions of the system.
-  double against(const AbiResults& values, std::size_t r, const std::vector<Ref>& roots, const SymbolValues& lookup) const {
+  double against(const AbiResults& values, std::size_t r, const std::vector<Ref>& roots,
+                 const SymbolValues& lookup) const {
     const Sized expected = sized(roots, lookup);
     double largest = 0;
     for (std::size_t i = 0; i < roots.size(); ++i) {
-      largest = std::max(largest, relative_difference(values[r].at(i) - expected.values[i], sizes_[r].at(i) + expected.sizes[i]));
+      largest = std::max(
+          largest, relative_difference(values[r].at(i) - expected.values[i], sizes_[r].at(i) + expected.sizes[i]));
     }
     return largest;
   }
@@ -187,7 +190,8 @@ class FunctionComparisons {
   void parameters(const AbiResults& values) {
     std::vector<Real> direction;
     for (std::size_t j = 0; j < at_.p.size(); ++j)
-      direction.push_back(cln::zerop(at_.p[j]) ? direction_component(j) : direction_component(j) * cln::rational(at_.p[j]));
+      direction.push_back(cln::zerop(at_.p[j]) ? direction_component(j)
+                                               : direction_component(j) * cln::rational(at_.p[j]));
     along("jac_p", values, 0, direction, slope("rhs", [&](AbiArguments& at, const Real& h) {
             for (std::size_t j = 0; j < direction.size(); ++j) at.p[j] = at.p[j] + h * direction[j];
           }));
@@ -243,8 +247,8 @@ class FunctionComparisons {
     const Sized expected = sized(roots, lookup_);
     double largest = 0;
     for (std::size_t i = 0; i < roots.size(); ++i) {
-      largest = std::max(
-          largest, relative_difference(values[0].at(places[i]) - expected.values[i], sizes_[0].at(places[i]) + expected.sizes[i]));
+      largest = std::max(largest, relative_difference(values[0].at(places[i]) - expected.values[i],
+                                                      sizes_[0].at(places[i]) + expected.sizes[i]));
     }
     if (!roots.empty()) note("outputs", system_name(s_), largest);
   }
@@ -311,7 +315,7 @@ class FunctionComparisons {
     double largest = 0;
     for (std::size_t i = 0; i < n; ++i) {
       largest = std::max(largest, relative_difference(slopes->values[0][i] - expected[i].value,
-                                           expected[i].scale + most * power_of_ten(-digits_of_none)));
+                                                      expected[i].scale + most * power_of_ten(-digits_of_none)));
     }
     note("rates of momenta", "momenta along the path", largest);
   }
@@ -349,7 +353,8 @@ class FunctionComparisons {
     const Real size = last * order * cln::expt(h, order - 1) + most * power_of_ten(exponent - more);
     double largest = 0;
     for (std::size_t i = 0; i < n; ++i)
-      largest = std::max(largest, relative_difference(rate[i] - (*rhs)[0][i], size + summed[0][i] * power_of_ten(exponent - more)));
+      largest = std::max(
+          largest, relative_difference(rate[i] - (*rhs)[0][i], size + summed[0][i] * power_of_ten(exponent - more)));
     note("taylor", "dx along the series", largest);
   }
 

@@ -208,7 +208,8 @@ Jet Interpreter::call(const Node& node) {
 }
 
 Jet Interpreter::extension(const model::Force& spring) {
-  return norm(vector(argument_expression(spring, "b")) - vector(argument_expression(spring, "a")), precision_) - scalar(argument_expression(spring, "length"));
+  return norm(vector(argument_expression(spring, "b")) - vector(argument_expression(spring, "a")), precision_) -
+         scalar(argument_expression(spring, "length"));
 }
 
 void Interpreter::refuse(const Node& node, const char* what) const {

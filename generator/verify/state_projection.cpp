@@ -42,7 +42,7 @@ bool StateSampler::step_within_ranges(State& s, const std::vector<Real>& step) c
 /// The least change that removes the defect, weighted by the scales or by the distances to the ends of the ranges:
 /// W A^T (A W A^T)^-1 (-defect).
 std::vector<Real> StateSampler::correction(const State& state, bool rates, const std::vector<bool>* held,
-                                     bool weighted_by_distance) const {
+                                           bool weighted_by_distance) const {
   State at = state;
   at.qddot.clear();  // psi_ddot is not needed
   ConstraintValues c = oracle_.constraint_values(at);
@@ -61,7 +61,7 @@ std::vector<Real> StateSampler::correction(const State& state, bool rates, const
   for (std::size_t i = 0; i < n; ++i) {
     const Real scale = held != nullptr && (*held)[i] ? Real(0)
                        : rates                       ? exact(sampling_ranges_[i].rate_scale)
-                       : weighted_by_distance                     ? distance_to_bound(state, i)
+                       : weighted_by_distance        ? distance_to_bound(state, i)
                                                      : exact(sampling_ranges_[i].scale);
     weight.push_back(scale * scale);
   }
@@ -96,7 +96,8 @@ void StateSampler::project_positions(State& s, const std::vector<bool>* held) co
   for (int iteration = 0; iteration < 40; ++iteration) {
     const std::vector<Real> step = correction(s, false, held, weighted_by_distance);
     Real size = 0;
-    for (std::size_t i = 0; i < step.size(); ++i) size = cln::max(size, cln::abs(step[i]) / exact(sampling_ranges_[i].scale));
+    for (std::size_t i = 0; i < step.size(); ++i)
+      size = cln::max(size, cln::abs(step[i]) / exact(sampling_ranges_[i].scale));
     if (!step_within_ranges(s, step)) weighted_by_distance = true;
     // The first step may be as long as the distance of a prescribed motion: the radius of a planet, if no start gives a
     // scale.

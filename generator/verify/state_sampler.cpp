@@ -28,9 +28,14 @@ bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text 
 
 }  // namespace
 
-StateSampler::StateSampler(const Oracle& oracle, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed,
-               std::vector<std::size_t> unilateral_constraints)
-    : oracle_(oracle), engine_(seed), cap_(cap), fixed_(std::move(fixed)), unilateral_constraints_(std::move(unilateral_constraints)), contact_sets_(1) {
+StateSampler::StateSampler(const Oracle& oracle, std::uint64_t seed, std::size_t cap,
+                           std::map<std::uint32_t, cln::cl_RA> fixed, std::vector<std::size_t> unilateral_constraints)
+    : oracle_(oracle),
+      engine_(seed),
+      cap_(cap),
+      fixed_(std::move(fixed)),
+      unilateral_constraints_(std::move(unilateral_constraints)),
+      contact_sets_(1) {
   try {
     read_scene();
   } catch (const UndefinedValue& none) {

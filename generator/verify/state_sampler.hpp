@@ -41,8 +41,8 @@ class StateSampler {
   /// the constraints, and onto implied ones that do not hold by themselves. The unilateral scalar constraints in
   /// `leavable` are closed, or, if they cannot all be closed, as many as possible, in turn; the others are
   /// State::open.
-  StateSampler(const Oracle& oracle, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed = {},
-         std::vector<std::size_t> unilateral_constraints = {});
+  StateSampler(const Oracle& oracle, std::uint64_t seed, std::size_t cap,
+               std::map<std::uint32_t, cln::cl_RA> fixed = {}, std::vector<std::size_t> unilateral_constraints = {});
 
   /// The next state, with qddot = 0. Throws Error (ErrorKind::check) after too many rejections.
   State next();
@@ -67,7 +67,7 @@ class StateSampler {
   bool give_up_closing(OpenContactSet& contact_set);
   void leave_one_open();
   double uniform();                // in (0, 1)
-  double uniform_symmetric();              // in (-1, 1)
+  double uniform_symmetric();      // in (-1, 1)
   Real exact(double value) const;  // the same number at full precision
   void read_scene();
   void read_ranges(const State& start);
@@ -79,7 +79,8 @@ class StateSampler {
   /// Coordinates that are `held` keep their values.
   void project_positions(State& state, const std::vector<bool>* held = nullptr) const;
   void project_velocities(State& state) const;
-  std::vector<Real> correction(const State& state, bool rates, const std::vector<bool>* held, bool weighted_by_distance) const;
+  std::vector<Real> correction(const State& state, bool rates, const std::vector<bool>* held,
+                               bool weighted_by_distance) const;
   Real distance_to_bound(const State& state, std::size_t coordinate) const;
   bool step_within_ranges(State& state, const std::vector<Real>& step) const;
   void close_implied(State& state);
@@ -95,9 +96,9 @@ class StateSampler {
   std::vector<std::size_t> unilateral_constraints_;
   std::vector<OpenContactSet> contact_sets_;  // used in turn
   std::size_t turn_ = 0;
-  std::set<std::size_t> open_;   // implied constraints that positions are still projected onto
+  std::set<std::size_t> open_;                  // implied constraints that positions are still projected onto
   std::vector<SamplingRange> sampling_ranges_;  // per coordinate
-  std::vector<Real> defaults_;   // of the parameters
+  std::vector<Real> defaults_;                  // of the parameters
   std::vector<double> input_defaults_;
   double t0_ = 0, t1_ = 1;
   double spread_ = 1;  // narrows around the defaults as states are rejected

@@ -213,7 +213,8 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
 
 }  // namespace
 
-SymbolValues::SymbolValues(const Oracle& of, State at) : oracle(of), state(std::move(at)), lambda(of.constraints().size(), Real(0)) {
+SymbolValues::SymbolValues(const Oracle& of, State at)
+    : oracle(of), state(std::move(at)), lambda(of.constraints().size(), Real(0)) {
   if (state.integrals.empty()) state.integrals = oracle.integrals(state);
   const Interpreter now = oracle.interpreter(state);
   for (const std::vector<Jet>& orders : now.environment().functions) {
@@ -247,7 +248,7 @@ void solve_accelerations(const EquationSystem& s, SymbolValues& lookup, int digi
 }
 
 SystemValues evaluate_system(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Oracle& oracle,
-                       const State& state) {
+                             const State& state) {
   SymbolValues lookup(oracle, state);
   const Solved solved = solve_system(s, lookup, oracle.digits(), true);
   for (std::size_t i = 0; i < s.free.size(); ++i) lookup.state.qddot[s.free[i]] = solved.qddot[i];

@@ -39,8 +39,8 @@ struct SystemValues {
 std::string system_name(const system::EquationSystem& system);
 
 /// Evaluates a system. Throws std::domain_error if a value is undefined, Singular if the system is ill-conditioned.
-SystemValues evaluate_system(const system::EquationSystem& system, const mechanics::Mechanics& mechanics, const Oracle& oracle,
-                       const State& state);
+SystemValues evaluate_system(const system::EquationSystem& system, const mechanics::Mechanics& mechanics,
+                             const Oracle& oracle, const State& state);
 
 /// Solves for accelerations of the free coordinates and multipliers of the active constraints, and sets them in
 /// `lookup`.

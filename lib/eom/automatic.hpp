@@ -131,7 +131,7 @@ class Automatic {
   static constexpr double vibration_start = 0.75;  // of dopri5
   static constexpr int confirming_steps = 50;
   static constexpr double smoothing =
-      0.2;                        // of the logarithm: in a vibration the estimate varies like the tangent of its phase
+      0.2;  // of the logarithm: in a vibration the estimate varies like the tangent of its phase
   static constexpr int nonstiff_run = 6;  // this many steps in a row that are not stiff reset the count
   static constexpr int required_stiff_steps = MethodChoice::min_stiff_steps;
   static constexpr int short_implicit_phase = 4 * required_stiff_steps;
@@ -165,12 +165,14 @@ class Automatic {
     const double limit = fifth ? limit_of_dopri5 : limit_of_dop853;
     if (value > limit) {
       nonstiff_steps_ = 0;
-      if (++stiff_steps_ >= choice_.required_stiff_steps) plan(Active::radau5, ChangeReason::beyond_stability, limit, stiff_steps_);
+      if (++stiff_steps_ >= choice_.required_stiff_steps)
+        plan(Active::radau5, ChangeReason::beyond_stability, limit, stiff_steps_);
     } else if (++nonstiff_steps_ == nonstiff_run) {
       stiff_steps_ = 0;
     }
     inaccurate_steps_ = !fifth && value > accuracy_limit() ? inaccurate_steps_ + 1 : 0;
-    if (inaccurate_steps_ >= confirming_steps * choice_.required_stiff_steps / required_stiff_steps && !next_.has_value())
+    if (inaccurate_steps_ >= confirming_steps * choice_.required_stiff_steps / required_stiff_steps &&
+        !next_.has_value())
       plan(Active::radau5, ChangeReason::beyond_accuracy, accuracy_limit(), inaccurate_steps_);
     vibration_steps_ = fifth && value > vibration_limit() ? vibration_steps_ + 1 : 0;
     if (vibration_steps_ >= confirming_steps && !next_.has_value())
@@ -182,7 +184,8 @@ class Automatic {
     const double value = h_ * spectral_radius();
     nonstiff_steps_ = value < explicit_limit() ? nonstiff_steps_ + 1 : 0;
     if (nonstiff_steps_ < required_stiff_steps) return;
-    choice_.required_stiff_steps = implicit_steps_ < short_implicit_phase ? 2 * choice_.required_stiff_steps : required_stiff_steps;
+    choice_.required_stiff_steps =
+        implicit_steps_ < short_implicit_phase ? 2 * choice_.required_stiff_steps : required_stiff_steps;
     plan(options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853, ChangeReason::no_longer_stiff,
          explicit_limit(), nonstiff_steps_);
   }

@@ -78,7 +78,7 @@ struct Needs {
   Features required = {};                 // the method cannot run without these
   Features used = {};                     // used if available, not required
   std::span<const Refusal> refuses = {};  // the method cannot integrate a system that has one of these
-  const char* alternative = "";               // a method to take if this one is not eligible, and why; empty: explicit
+  const char* alternative = "";           // a method to take if this one is not eligible, and why; empty: explicit
   bool keeps_constraints = false;         // the method satisfies the constraints itself; no projection is needed
 
   constexpr const Refusal* refusal(Feature feature) const {

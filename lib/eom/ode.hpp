@@ -92,7 +92,7 @@ bool any_method(By by) {
 template <class Method, class Problem, class AfterStep>
 Result run(Problem& problem, const InitialValues& values, ObserverRef observer, AfterStep after_step) {
   return Run<Method, ObserverRef, AfterStep>(problem, values.t0, values.x0, values.t1, values.options, observer,
-                                            after_step)
+                                             after_step)
       .run();
 }
 

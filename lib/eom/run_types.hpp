@@ -66,7 +66,7 @@ inline std::string to_text(const MethodChange& change) {
 /// The method that `auto` (automatic.hpp) uses, and the history of its changes.
 struct MethodChoice {
   static constexpr int min_stiff_steps = 15;
-  const char* method = nullptr;   // null: not chosen yet
+  const char* method = nullptr;                // null: not chosen yet
   int required_stiff_steps = min_stiff_steps;  // stiff steps required before the next change
   std::vector<MethodChange> changes;
 };
@@ -104,7 +104,7 @@ struct Options {
   std::size_t max_steps = 50'000'000;            // accepted and rejected together
   std::size_t quadratures = 0;                   // trailing components of x that are excluded from the error norm
   const std::atomic<bool>* interrupt = nullptr;  // polled once per step
-  MethodChoice* choice = nullptr;                      // of `auto`: output, and the initial value for the next run
+  MethodChoice* choice = nullptr;                // of `auto`: output, and the initial value for the next run
 };
 
 struct Statistics {

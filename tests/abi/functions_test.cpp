@@ -69,7 +69,8 @@ struct Emitted {
   /// Whether NAME_info lists a function.
   bool tells_of(const abi::Function& function) const {
     if (function.name == "taylor") return info.contains("taylor_order");
-    if (function.availability == abi::Availability::with_charts) return info.contains("charts") && info.contains("chart_operations");
+    if (function.availability == abi::Availability::with_charts)
+      return info.contains("charts") && info.contains("chart_operations");
     return info["operations"].contains(function.name);
   }
 };
@@ -135,7 +136,8 @@ TEST_CASE("abi: exactly the requested functions are emitted") {
     for (const abi::Function& function : abi::functions()) {
       CAPTURE(function.name);
       if (function.availability == abi::Availability::when_beneficial) continue;
-      const bool expected = function.name == "taylor" ? !charts : function.availability != abi::Availability::with_charts || charts;
+      const bool expected =
+          function.name == "taylor" ? !charts : function.availability != abi::Availability::with_charts || charts;
       CHECK(emitted.loaded.contains(function.name) == expected);
     }
   }

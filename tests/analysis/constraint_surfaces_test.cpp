@@ -77,7 +77,8 @@ TEST_CASE("drawing: a constrained particle has a surface or curve, unless a rod 
 
 TEST_CASE("drawing: a surface moves with its reference place, and centres of bodies have surfaces too") {
   const auto surfaces = [](const std::string& text) {
-    return InitialState(model::read_model_text("format = 1\n[parameters]\nm = \"1 kg\"\nL = \"2 m\"\n" + text, "m.toml"))
+    return InitialState(
+               model::read_model_text("format = 1\n[parameters]\nm = \"1 kg\"\nL = \"2 m\"\n" + text, "m.toml"))
         .drawing.parts()
         .surfaces;
   };

@@ -51,7 +51,8 @@ double sense(const InitialState& start, const analysis::DrawnForce& force, const
 std::pair<double, double> off(InitialState& start, std::size_t b) {
   symbolic::Dag& dag = *start.m.dag;
   symbolic::Derivation ddt = symbolic::total_time_derivative(dag, start.m.q.size(), start.model.functions.size());
-  symbolic::Substitution imposed = mechanics::constraint_substitution(start.m), written = mechanics::time_function_substitution(start.m);
+  symbolic::Substitution imposed = mechanics::constraint_substitution(start.m),
+                         written = mechanics::time_function_substitution(start.m);
   const mechanics::BodyRotation& spin = start.m.body_rotations[b];
   symbolic::Vec3 H = symbolic::zero_vector(dag);
   const std::array<Ref, 3> along = mechanics::angular_momentum(dag, spin);
@@ -74,7 +75,9 @@ std::pair<double, double> off(InitialState& start, std::size_t b) {
   return {(sum - wanted).norm(), size};
 }
 
-InitialState of_text(const std::string& text) { return InitialState(model::read_model_text("format = 1\n" + text, "m.toml")); }
+InitialState of_text(const std::string& text) {
+  return InitialState(model::read_model_text("format = 1\n" + text, "m.toml"));
+}
 
 // Two bars in a row, each with its own angle, a torsion spring between them and a motor at the first.
 const char* const bars = R"([parameters]
@@ -125,7 +128,8 @@ TEST_CASE("drawing: the drawn forces satisfy Newton's law for the masses") {
     start.solve();
     symbolic::Dag& dag = *start.m.dag;
     symbolic::Derivation ddt = symbolic::total_time_derivative(dag, start.m.q.size(), start.model.functions.size());
-    symbolic::Substitution imposed = mechanics::constraint_substitution(start.m), written = mechanics::time_function_substitution(start.m);
+    symbolic::Substitution imposed = mechanics::constraint_substitution(start.m),
+                           written = mechanics::time_function_substitution(start.m);
     Vector wanted = Vector::Zero(), sum = wanted;
     double size = 0;
     for (const mechanics::PointMass& mass : start.m.masses) {

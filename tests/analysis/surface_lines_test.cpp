@@ -27,7 +27,7 @@ View from_above() { return View({Point(0, 0, 0), Point(1, 1, 1)}, Point(0, 0, -1
 
 /// Jacobians by differences of exact functions.
 SurfaceFunction function(const std::function<VectorXd(const VectorXd&)>& psi,
-                       const std::function<Point(const VectorXd&)>& x) {
+                         const std::function<Point(const VectorXd&)>& x) {
   return [psi, x](const VectorXd& q) -> std::optional<SurfacePoint> {
     SurfacePoint p{psi(q), MatrixXd(psi(q).size(), q.size()), x(q), Eigen::Matrix3Xd(3, q.size())};
     for (Eigen::Index k = 0; k < q.size(); ++k) {
@@ -67,7 +67,7 @@ TEST_CASE("surface lines: a sphere has meridians, circles and its silhouette, in
   const std::vector<std::vector<SurfaceLine>> both{
       surface_lines(function([](const VectorXd& q) { return one(q[0] - 2); }, spherical), in_angles, view),
       surface_lines(function([](const VectorXd& q) { return one(q.squaredNorm() - 4); }, plain),
-                  place(spherical(numbers({2, 1, 0.5})), {false, false, false}, 2), view)};
+                    place(spherical(numbers({2, 1, 0.5})), {false, false, false}, 2), view)};
   for (const std::vector<SurfaceLine>& lines : both) {
     CHECK(lines.size() > 8);
     double widest = 0;
@@ -89,7 +89,7 @@ TEST_CASE("surface lines: a sphere has meridians, circles and its silhouette, in
 TEST_CASE("surface lines: a plane is a parallelogram around its particle") {
   const Point n = Point(1, 2, 2) / 3;
   const auto lines = surface_lines(function([&](const VectorXd& q) { return one(n.dot(plain(q)) - 0.2); }, plain),
-                                 place(numbers({1, 0, 0}), {false, false, false}, 1.5), from_above());
+                                   place(numbers({1, 0, 0}), {false, false, false}, 1.5), from_above());
   REQUIRE(lines.size() == 1);
   REQUIRE(lines[0].points.size() == 5);
   for (const Point& r : lines[0].points) CHECK(std::abs(n.dot(r) - 0.2) < on_surface);
@@ -108,7 +108,7 @@ TEST_CASE("surface lines: a bowl has circles and spokes from its lowest point to
   SurfaceSetting in = place(numbers({1, 0.3, 0.5}), {false, true, false}, 1.2);
   in.low[0] = 0;
   const auto lines = surface_lines(function([](const VectorXd& q) { return one(q[2] - q[0] * q[0] / 2); }, cylindrical),
-                                 in, from_above());
+                                   in, from_above());
   CHECK(lines.size() >= 12 + 4);
   double lowest = infinite, highest = -infinite;
   for (const SurfaceLine& line : lines) {
@@ -124,25 +124,25 @@ TEST_CASE("surface lines: a bowl has circles and spokes from its lowest point to
 
 TEST_CASE("surface lines: curves close or end near their particle, and start on the curve from a nearby point") {
   const auto circle = surface_lines(function([](const VectorXd& q) { return one(q.squaredNorm() - 1); }, plain),
-                                  place(numbers({0.2, 1.4}), {false, false}, 1), from_above());
+                                    place(numbers({0.2, 1.4}), {false, false}, 1), from_above());
   REQUIRE(circle.size() == 1);
   CHECK(circle[0].points.size() > 200);
   CHECK(circle[0].points.front() == circle[0].points.back());
   for (const Point& r : circle[0].points) CHECK(std::abs(r.norm() - 1) < on_surface);
   // A ball above the floor: a line on the floor.
   const auto floor = surface_lines(function([](const VectorXd& q) { return one(q[1]); }, plain),
-                                 place(numbers({0, 1}), {false, false}, 1), from_above());
+                                   place(numbers({0, 1}), {false, false}, 1), from_above());
   REQUIRE(floor.size() == 1);
   for (const Point& r : floor[0].points) {
     CHECK(std::abs(r.y()) < on_surface);
     CHECK(std::abs(r.x()) < 1.3);
   }
   const auto helix = surface_lines(function(
-                                     [](const VectorXd& q) {
-                                       return numbers({q[0] - 1, q[2] - 0.1 * q[1]});
-                                     },
-                                     cylindrical),
-                                 place(numbers({1, 0, 0}), {false, true, false}, 1), from_above());
+                                       [](const VectorXd& q) {
+                                         return numbers({q[0] - 1, q[2] - 0.1 * q[1]});
+                                       },
+                                       cylindrical),
+                                   place(numbers({1, 0, 0}), {false, true, false}, 1), from_above());
   REQUIRE(helix.size() == 1);
   double least = infinite, most = -infinite;
   for (const Point& r : helix[0].points) {

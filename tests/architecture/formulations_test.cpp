@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The formulations of generator/derive/formulations/registry.inc: none includes another, and their shared files are those
-// listed in docs/architecture.md.
+// The formulations of generator/derive/formulations/registry.inc: none includes another, and their shared files are
+// those listed in docs/architecture.md.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -82,7 +82,8 @@ std::map<Names, Names> documented_files() {
   std::map<Names, Names> rows;
   for (const std::string& line : matches(section, row)) {
     const std::size_t bar = line.find('|');
-    const std::vector<std::string> formulations = matches(line.substr(0, bar), word), files = matches(line.substr(bar), word);
+    const std::vector<std::string> formulations = matches(line.substr(0, bar), word),
+                                   files = matches(line.substr(bar), word);
     if (!files.empty()) rows[{formulations.begin(), formulations.end()}] = {files.begin(), files.end()};
   }
   return rows;

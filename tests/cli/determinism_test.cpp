@@ -114,7 +114,8 @@ TEST_CASE("every shipped model emits equal bytes in fresh processes") {
       require_same_everywhere(model, {"derive", model, "--show", "all", "--json"}, 0);
       continue;
     }
-    require_same_everywhere(model, {"emit", model, "-o", "out", "--with", "jac,reactions,outputs", "--output", "energy"}, 3);
+    require_same_everywhere(model,
+                            {"emit", model, "-o", "out", "--with", "jac,reactions,outputs", "--output", "energy"}, 3);
   }
 }
 

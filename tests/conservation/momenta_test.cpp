@@ -77,7 +77,8 @@ TEST_CASE("momenta: Kepler's problem in Cartesian coordinates provably conserves
   const Found found(kepler());
   CHECK(found.names() ==
         std::vector<std::string>{"energy", "angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"});
-  for (const conservation::ConservedQuantity& c : found.conserved) CHECK(c.certainty == conservation::Certainty::proven);
+  for (const conservation::ConservedQuantity& c : found.conserved)
+    CHECK(c.certainty == conservation::Certainty::proven);
 }
 
 TEST_CASE("momenta: the result is r x m v, and its magnitude the sum of the magnitudes of its terms") {

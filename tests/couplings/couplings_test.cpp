@@ -58,7 +58,8 @@ TEST_CASE("every coupling has a unique name and equations for bodies and for ang
     CAPTURE(coupling.name);
     CHECK(names.insert(coupling.name).second);
     CHECK(couplings::find(coupling.name) == &coupling);
-    for (const std::string& text : {coupling.title, coupling.body_equation, coupling.angle_equation}) CHECK_FALSE(text.empty());
+    for (const std::string& text : {coupling.title, coupling.body_equation, coupling.angle_equation})
+      CHECK_FALSE(text.empty());
   }
 }
 

@@ -20,10 +20,12 @@ namespace {
 // Sums of a few dozen terms of order 1 to 100 in binary64.
 constexpr double rounding = 1e-12;
 
-std::string named(const system::EquationSystem& system) { return system.formulation + " " + system::name(system.approach); }
+std::string named(const system::EquationSystem& system) {
+  return system.formulation + " " + system::name(system.approach);
+}
 
 void for_each_formulation(const model::Model& model,
-                    const std::function<void(mechanics::Mechanics&, const system::EquationSystem&)>& check) {
+                          const std::function<void(mechanics::Mechanics&, const system::EquationSystem&)>& check) {
   for (const derive::FormulationEntry& formulation : derive::formulations()) {
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
       mechanics::Mechanics m = mechanics::build_mechanics(model);

@@ -56,8 +56,8 @@ std::string wrong(const std::string& folder, const Example& e, const Width& widt
     if (has(function)) command.emplace_back(define);
   }
   if (e.program.taylor) command.emplace_back("-DTAYLOR");
-  const std::string said =
-      compiler_diagnostics(command, {EOMGEN_TEST_HARNESS, folder + "/" + name + ".c", folder + "/" + name + "_batch.c", "-lm"});
+  const std::string said = compiler_diagnostics(
+      command, {EOMGEN_TEST_HARNESS, folder + "/" + name + ".c", folder + "/" + name + "_batch.c", "-lm"});
   if (!said.empty()) return said;
   const emit::ProcessResult finished = emit::run_process({program});
   return finished.status == 0 ? "" : fmt::format("line {} of the harness: {}", finished.status, finished.output);
@@ -156,7 +156,8 @@ TEST_CASE("batch: hostile names, and every available compiler") {
     const Folder folder;
     emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
     const std::string c = folder.path + "/two_batch.c";
-    CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/o"}, {c}) == "");
+    CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/o"}, {c}) ==
+          "");
     if (emit::run_process({"clang", "--version"}).started) {
       CHECK(compiler_diagnostics({"clang", "-std=c11", "-c", "-o", folder.path + "/o"}, {c}) == "");
     }

@@ -25,13 +25,13 @@ std::string wrong(const Example& e) {
   const Folder folder;
   write(e, folder);
   const std::string name = emit::mangled_id(e.context.id), path = folder.path + "/" + name;
-  const std::string of_c =
-      compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", "-O1", "-ffp-contract=off", "-c", "-o", path + ".o"}, {path + ".c"});
+  const std::string of_c = compiler_diagnostics(
+      {EOMGEN_TEST_CC, "-std=c11", "-O1", "-ffp-contract=off", "-c", "-o", path + ".o"}, {path + ".c"});
   if (!of_c.empty()) return of_c;
-  const std::string said =
-      compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-O0", "-ffp-contract=off", "-o", folder.path + "/use",
-                  "-DNAME=" + name, "-I" + folder.path, "-I" EOMGEN_TEST_LIB},
-                 {"-x", "c++", path + "_ensemble.cu", EOMGEN_TEST_CUDA_HARNESS, "-x", "none", path + ".o", "-lm"});
+  const std::string said = compiler_diagnostics(
+      {EOMGEN_TEST_CXX, "-std=c++20", "-O0", "-ffp-contract=off", "-o", folder.path + "/use", "-DNAME=" + name,
+       "-I" + folder.path, "-I" EOMGEN_TEST_LIB},
+      {"-x", "c++", path + "_ensemble.cu", EOMGEN_TEST_CUDA_HARNESS, "-x", "none", path + ".o", "-lm"});
   if (!said.empty()) return said;
   const emit::ProcessResult finished = emit::run_process({folder.path + "/use"});
   return finished.status == 0 ? "" : fmt::format("line {} of the harness: {}", finished.status, finished.output);
@@ -61,8 +61,9 @@ TEST_CASE("cuda: nvcc compiles it without warnings, if installed") {
   const Folder folder;
   const Example e = example("two", double_pendulum(), {"a", "b"}, {"m1", "m2", "L1", "L2", "g"});
   CHECK(write(e, folder) == std::vector<std::string>{"two.cuh", "two_ensemble.cu", "two_ensemble.h"});
-  const emit::ProcessResult finished = emit::run_process({nvcc, "-std=c++20", "-O1", "-I" EOMGEN_TEST_LIB, "-ptx",
-                                                     folder.path + "/two_ensemble.cu", "-o", folder.path + "/two.ptx"});
+  const emit::ProcessResult finished =
+      emit::run_process({nvcc, "-std=c++20", "-O1", "-I" EOMGEN_TEST_LIB, "-ptx", folder.path + "/two_ensemble.cu",
+                         "-o", folder.path + "/two.ptx"});
   CHECK(finished.output == "");
   CHECK(finished.status == 0);
 }

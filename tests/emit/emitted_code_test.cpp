@@ -123,8 +123,9 @@ TEST_CASE("emitted code: no model name collides with a name of the runtime") {
   }
   const Folder folder;
   std::ofstream(folder.path + "/use.cpp") << text;
-  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-fsyntax-only", "-I", lib.string(), "-isystem", EOMGEN_TEST_EIGEN},
-                   {folder.path + "/use.cpp"}) == "");
+  CHECK(compiler_diagnostics(
+            {EOMGEN_TEST_CXX, "-std=c++20", "-fsyntax-only", "-I", lib.string(), "-isystem", EOMGEN_TEST_EIGEN},
+            {folder.path + "/use.cpp"}) == "");
 }
 
 TEST_CASE("emitted code: df/dt may be omitted from the Jacobian, in C and in C++") {
@@ -145,8 +146,10 @@ int main() {
 }
 )";
   const std::string object = folder.path + "/object.o", program = folder.path + "/use";
-  CHECK(compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object}, {folder.path + "/spherical.c"}) == "");
-  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp", object, "-lm"}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object}, {folder.path + "/spherical.c"}) ==
+        "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-o", program},
+                             {folder.path + "/use.cpp", object, "-lm"}) == "");
   CHECK(emit::run_process({program}).status == 0);
 }
 
@@ -155,8 +158,8 @@ TEST_CASE("emitted code: -ffast-math is rejected") {
   const Example e = examples()[0];
   emit::write_files(folder.path, emit::emit(e.program, e.context));
   for (const char* flag : {"-ffast-math", "-ffinite-math-only"}) {
-    const auto said =
-        compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", flag, "-c", "-o", folder.path + "/o"}, {folder.path + "/pendulum.c"});
+    const auto said = compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", flag, "-c", "-o", folder.path + "/o"},
+                                           {folder.path + "/pendulum.c"});
     CHECK(said.find("without -ffast-math") != std::string::npos);
   }
 }
@@ -266,8 +269,9 @@ int main() {{
                                                            e.context.id);
     const std::string object = folder.path + "/object.o", program = folder.path + "/use";
     CHECK(compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object},
-                     {folder.path + "/" + e.context.id + ".c"}) == "");
-    CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp", object, "-lm"}) == "");
+                               {folder.path + "/" + e.context.id + ".c"}) == "");
+    CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-o", program},
+                               {folder.path + "/use.cpp", object, "-lm"}) == "");
     CHECK(emit::run_process({program}).status == 0);
   }
 }

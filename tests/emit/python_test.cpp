@@ -18,7 +18,8 @@ void compiles_and_imports(const Example& e, const std::string& more = "pass") {
   const std::string name = emit::mangled_id(e.context.id), module = emit::module_name(e.context.id),
                     c = folder.path + "/" + name + "_simulate.c";
   CHECK(compiler_diagnostics({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", folder.path + "/c.o"}, {c}) == "");
-  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/cpp.o"}, {c}) == "");
+  CHECK(compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/cpp.o"}, {c}) ==
+        "");
   for (const auto& file : files) {
     for (const char letter : file.text)
       CHECK_MESSAGE((static_cast<unsigned char>(letter) < 0x7f && (letter >= ' ' || letter == '\n')), file.name);

@@ -48,7 +48,8 @@ std::vector<std::string> with(std::vector<std::string> command, const std::vecto
 std::string wrong_c(const std::string& folder, const Example& e) {
   const std::string name = emit::mangled_id(e.context.id), use = folder + "/use";
   std::ofstream(use + ".c") << fmt::format("#include \"{0}.h\"\nint main(void) {{ return {0}_selftest(); }}\n", name);
-  const std::string said = compiler_diagnostics(with(compile_c(), {"-o", use}), {use + ".c", folder + "/" + name + ".c", "-lm"});
+  const std::string said =
+      compiler_diagnostics(with(compile_c(), {"-o", use}), {use + ".c", folder + "/" + name + ".c", "-lm"});
   if (!said.empty()) return said;
   return emit::run_process({use}).status == 0 ? "" : "its self test";
 }
@@ -69,7 +70,8 @@ std::string wrong_templates(const std::string& folder, const std::string& header
 std::string wrong_module(const std::string& folder, const Example& e) {
   if (!runs("python3")) return "";
   const std::string c = folder + "/" + emit::mangled_id(e.context.id) + "_simulate.c";
-  const std::string said = compiler_diagnostics(with(compile_c(), {"-c", "-Wno-double-promotion", "-o", folder + "/c.o"}), {c});
+  const std::string said =
+      compiler_diagnostics(with(compile_c(), {"-c", "-Wno-double-promotion", "-o", folder + "/c.o"}), {c});
   if (!said.empty()) return said;
   const ScopedEnvironmentVariable cache("EOMGEN_CACHE_DIR", folder);
   const emit::ProcessResult finished = emit::run_process(
@@ -201,7 +203,7 @@ TEST_CASE("single precision: JavaScript gives the bits of C, except for library 
         "    for (i = 0; i < {2}; ++i) printf(\"%.9g\\n\", code == 0 ? (double)dx[i] : 0.0);\n  }}\n  return 0;\n}}\n",
         name, numbers, n, states);
     REQUIRE(compiler_diagnostics(with(compile_c(), {"-Wno-double-promotion", "-o", folder.path + "/use"}),
-                       {folder.path + "/use.c", folder.path + "/" + name + ".c", "-lm"}) == "");
+                                 {folder.path + "/use.c", folder.path + "/" + name + ".c", "-lm"}) == "");
     std::ofstream(folder.path + "/use.js") << fmt::format(
         "const m = require('./{0}.js'), numbers = [{1}];\n"
         "for (let s = 0; s < {3}; ++s) {{\n  const x = [], p = [], dx = [];\n  m.defaults(x, p);\n"

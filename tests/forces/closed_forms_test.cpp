@@ -60,11 +60,12 @@ initial = { x = 0.7, y = 0.1, y_dot = 1 }
   for (const std::string length : {", length = \"0.5 m\"", ""}) {
     CAPTURE(length);
     const std::string ends = "between = [\"origin\", \"P\"]";
-    const FinishedRun one = run_tight("spring_damper_one", plane + "[[force]]\nspring_damper = { " + ends + length +
-                                                            ", stiffness = \"50 N/m\", coefficient = \"3 N*s/m\" }\n");
+    const FinishedRun one =
+        run_tight("spring_damper_one", plane + "[[force]]\nspring_damper = { " + ends + length +
+                                           ", stiffness = \"50 N/m\", coefficient = \"3 N*s/m\" }\n");
     const FinishedRun two = run_tight("spring_damper_two", plane + "[[force]]\nspring = { " + ends + length +
-                                                            ", stiffness = \"50 N/m\" }\n[[force]]\ndamper = { " +
-                                                            ends + ", coefficient = \"3 N*s/m\" }\n");
+                                                               ", stiffness = \"50 N/m\" }\n[[force]]\ndamper = { " +
+                                                               ends + ", coefficient = \"3 N*s/m\" }\n");
     CHECK(one.simulation.certificate.pass);
     CHECK(std::abs(one.final("x") - two.final("x")) < same);
     CHECK(std::abs(one.final("y") - two.final("y")) < same);
@@ -159,7 +160,7 @@ outputs = ["first_integral", "psi_ddot"]
 
 TEST_CASE("bushing: two free bodies follow Newton's and Euler's equations; momentum is conserved") {
   const FinishedRun run = run_tight("bushing_free",
-                                 R"toml(
+                                    R"toml(
 [parameters]
 m = "2 kg"
 J = "0.3 kg*m^2"

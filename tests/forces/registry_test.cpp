@@ -49,7 +49,8 @@ TEST_CASE("keys, rules and terms of a kind refer to existing keys") {
       CAPTURE(key.name);
       CHECK(keys.insert(key.name).second);
       CHECK(model::is_identifier(key.name));
-      for (const std::string& other : {key.default_requires, key.required_unless}) CHECK((other.empty() || has_key(kind, other)));
+      for (const std::string& other : {key.default_requires, key.required_unless})
+        CHECK((other.empty() || has_key(kind, other)));
       CHECK(key.choices.empty() == (key.type != forces::ValueType::choice));
     }
     for (const forces::Rule& rule : kind.rules) {

@@ -27,7 +27,8 @@ struct Built {
       : model(model::read_model_text(text, "loop.toml")), mechanics(mechanics::build_mechanics(model)) {}
   std::size_t redundant() const {
     std::size_t count = 0;
-    for (const mechanics::Constraint& c : mechanics.constraints) count += c.redundancy == mechanics::Redundancy::redundant;
+    for (const mechanics::Constraint& c : mechanics.constraints)
+      count += c.redundancy == mechanics::Redundancy::redundant;
     return count;
   }
 };

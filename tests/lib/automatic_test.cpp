@@ -145,7 +145,9 @@ TEST_CASE("auto: dense output and events work across changes; the method is kept
     return true;
   };
   const auto g = [](double, const double* at, double* values) { return values[0] = at[0], 0; };
-  const auto handler = [&](const eom::EventPoint& point) { return times.push_back(point.t), eom::EventAction::restart; };
+  const auto handler = [&](const eom::EventPoint& point) {
+    return times.push_back(point.t), eom::EventAction::restart;
+  };
   Options options = options_for(1e-9, choice);
   options.max_step = 0.1;  // radau5 interpolates stiff components by a cubic
   const Result found = eom::integrate_events("auto", Decay{}, 0, State{1}, 10, options, g,

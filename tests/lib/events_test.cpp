@@ -14,8 +14,8 @@
 
 namespace {
 
-using eom::EventAction;
 using eom::Direction;
+using eom::EventAction;
 using eom::EventFunction;
 using eom::EventPoint;
 using eom::Watch;

@@ -185,7 +185,9 @@ TEST_CASE("ggl: events of a pendulum in Cartesian coordinates at the times of th
     for (const double direction : {1.0, -1.0}) {
       std::vector<double> times;
       const auto g = [](double, const double* x, double* values) { return values[0] = x[0], 0; };
-      const auto handler = [&](const eom::EventPoint& point) { return times.push_back(point.t), eom::EventAction::resume; };
+      const auto handler = [&](const eom::EventPoint& point) {
+        return times.push_back(point.t), eom::EventAction::resume;
+      };
       const Result found = eom::integrate_events("ggl", f, 0, f.start(), 10 * direction, tolerance(1e-12), g,
                                                  {{eom::Direction::any, watch}}, handler);
       CHECK(found.outcome == eom::Outcome::done);

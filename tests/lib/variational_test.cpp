@@ -240,7 +240,9 @@ TEST_CASE("variational: events are found, and a right-hand side without momenta 
   for (const eom::MethodInfo& method : variational()) {
     std::vector<double> times;
     const auto position = [](double, const double* x, double* values) { return values[0] = x[0], 0; };
-    const auto handler = [&](const eom::EventPoint& point) { return times.push_back(point.t), eom::EventAction::resume; };
+    const auto handler = [&](const eom::EventPoint& point) {
+      return times.push_back(point.t), eom::EventAction::resume;
+    };
     const Result result = eom::integrate_events(method.name, DoublePendulum{}, 0, swinging, 2, fixed(0.001), position,
                                                 {{eom::Direction::down, eom::Watch::breaking}}, handler);
     CHECK(result.outcome == eom::Outcome::done);

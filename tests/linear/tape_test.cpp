@@ -51,7 +51,8 @@ TEST_CASE("derivatives of every operation match symbolic differentiation, in 160
     const auto rough = [point](const Symbol& s) { return symbolic::sample_double(s, point); };
     const auto expected =
         symbolic::evaluate(dag, slopes, std::function<Precise(const Symbol&)>(precise), linear::working_digits);
-    const auto values = symbolic::evaluate(dag, roots, std::function<Precise(const Symbol&)>(precise), linear::working_digits);
+    const auto values =
+        symbolic::evaluate(dag, roots, std::function<Precise(const Symbol&)>(precise), linear::working_digits);
     const auto got = tape.at<Precise>(precise);
     const auto got_rough = tape.at<double>(rough);
     for (std::size_t i = 0; i < roots.size(); ++i) {

@@ -92,7 +92,8 @@ TEST_CASE("Bricard's mechanism has one degree of freedom with as many constraint
     CHECK(built.m.q.size() == built.m.constraints.size());
     CHECK(built.m.degrees_of_freedom() == 1);
     std::size_t redundant = 0;
-    for (const mechanics::Constraint& c : built.m.constraints) redundant += c.redundancy == mechanics::Redundancy::redundant;
+    for (const mechanics::Constraint& c : built.m.constraints)
+      redundant += c.redundancy == mechanics::Redundancy::redundant;
     CHECK(redundant == 1);
     CHECK_FALSE(built.undetermined().empty());
   }

@@ -28,7 +28,8 @@ TEST_CASE("G5: coordinates by x(q) and by q(x) have the same basis, metric and k
 
 TEST_CASE("G5: the throw, and components of a given vector in both bases") {
   for (const char* name : {"G5_custom_by_x", "G5_custom_by_q"}) {
-    const FinishedRun run = check_projectile(name, {"along_a1", "along_a2", "along_a3", "along_g1", "along_g2", "along_g3"});
+    const FinishedRun run =
+        check_projectile(name, {"along_a1", "along_a2", "along_a3", "along_g1", "along_g2", "along_g3"});
     const double slope = 2 * run.parameter("k") * run.final("a");
     constexpr double tolerance = 1e-14;
     CHECK(run.final("along_a1") == doctest::Approx(10).epsilon(tolerance));

@@ -31,12 +31,13 @@ TEST_CASE("P1: a conical pendulum has constant height and the tension of circula
 }
 
 TEST_CASE("P1: with L(t), dE/dt = lambda Ldot along the run") {
-  const test::FinishedRun run = test::run_model("P1_spherical_pendulum_varying", [](pipeline::SimulationRequest& request) {
-    // Rows come from the dense output; the differences below divide its error by 0.01.
-    request.overrides.rtol = 1e-14;
-    request.overrides.atol = 1e-14;
-    request.overrides.every = 0.01;
-  });
+  const test::FinishedRun run =
+      test::run_model("P1_spherical_pendulum_varying", [](pipeline::SimulationRequest& request) {
+        // Rows come from the dense output; the differences below divide its error by 0.01.
+        request.overrides.rtol = 1e-14;
+        request.overrides.atol = 1e-14;
+        request.overrides.every = 0.01;
+      });
   CHECK(run.drift("momentum.theta") < 1e-10);
   CHECK(run.simulation.result.power_balance < 1e-9);
   double worst_power = 0, worst_slope = 0, scale = 0;

@@ -51,7 +51,7 @@ void follows_newton(const std::string& model, bool moves) {
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "stick");
   HandWrittenMotion hand([&](double t, const double* x, double* dx) { cone.rates(t, x, dx); }, 0,
-            {0.8, 0, 0, run.rows.at(0, "theta_dot")});
+                         {0.8, 0, 0, run.rows.at(0, "theta_dot")});
   std::size_t compared = 0;
   for (std::size_t i = 1; i < run.rows.size() && run.rows.t[i] < events_of(run)[0].t - 0.01; ++i, ++compared) {
     hand.advance_to(run.rows.t[i]);

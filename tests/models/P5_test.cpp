@@ -113,7 +113,7 @@ TEST_CASE("P5: inside it slides by (2.157) until it sticks, with the friction of
     hand.advance_to(run.rows.t[i]);
     CHECK(std::abs(run.rows.at(i, "phi") - hand.x[0]) < integration_tolerance);
     CHECK(std::abs(run.rows.at(i, "theta") - hand.x[1]) < 10 * integration_tolerance);  // some 8 rad
-    CHECK(run.rows.at(i, "energy") < before);                             // decreases while it moves
+    CHECK(run.rows.at(i, "energy") < before);                                           // decreases while it moves
     before = run.rows.at(i, "energy");
   }
   CHECK(compared > 100);
@@ -168,7 +168,8 @@ TEST_CASE(
     CHECK(run.rows.at(i, "R") > sphere.R0);
     CHECK(run.rows.at(i, "reaction.sphere") == 0);
     CHECK(run.rows.at(i, "mode.sphere") == 2);
-    CHECK(std::abs(run.rows.at(i, "energy") - run.final("energy")) < integration_tolerance);  // includes the energy of the spring
+    CHECK(std::abs(run.rows.at(i, "energy") - run.final("energy")) <
+          integration_tolerance);  // includes the energy of the spring
     ++flying;
   }
   CHECK(flying > 10);

@@ -60,8 +60,9 @@ TEST_CASE("P6: between events the particle follows the hand-written equation, un
   const std::vector<run::RunEvent> events = events_of(run);
   REQUIRE(events.size() == 4);
   double sign = 1;
-  HandWrittenMotion hand([&](double t, const double* x, double* dx) { dx[0] = x[1], dx[1] = c.acceleration(t, x[0], x[1], sign); },
-            0, {-std::acos(-1.0) / 2, 8});
+  HandWrittenMotion hand(
+      [&](double t, const double* x, double* dx) { dx[0] = x[1], dx[1] = c.acceleration(t, x[0], x[1], sign); }, 0,
+      {-std::acos(-1.0) / 2, 8});
   for (std::size_t k = 0; k < events.size(); ++k) {
     CHECK(events[k].kind == (k + 1 < events.size() ? "reverse" : "stick"));
     hand.advance_to(events[k].t);

@@ -32,7 +32,8 @@ TEST_CASE("P9: the normal force is (2.171), h is conserved, and with it the moti
 }
 
 TEST_CASE("P9: energy and h are conserved over 100 s, and u stays between the roots of (2.173)") {
-  const FinishedRun run = run_model("P9_paraboloid", [](pipeline::SimulationRequest& request) { request.scene = "long"; });
+  const FinishedRun run =
+      run_model("P9_paraboloid", [](pipeline::SimulationRequest& request) { request.scene = "long"; });
   CHECK(run.drift("energy") < 1e-10);
   CHECK(run.drift("momentum.theta") < 1e-10);
   // u_dot = 0 in (2.173), multiplied with 2 u^2/m: g u^4 - (2 E/m + g c^2) u^2 + (h/(m c))^2 = 0

@@ -55,7 +55,7 @@ void check_balance(const FinishedRun& run, const std::string& joint) {
 
 TEST_CASE("R15: a ball joint gives the same motion as relative coordinates, angles 1-3-1") {
   const FinishedRun joint = run_model("R15_ball_joint", tighten),
-                 tree = run_text("R15_ball_built_in", built_in("R15_ball_joint"));
+                    tree = run_text("R15_ball_built_in", built_in("R15_ball_joint"));
   CHECK(joint.simulation.derived->mechanics.degrees_of_freedom() == 9);
   check_balance(joint, "ball");
   for (const char* moment : {"reaction.ball.4", "reaction.ball.5", "reaction.ball.6"}) CHECK(joint.final(moment) == 0);

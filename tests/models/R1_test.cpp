@@ -88,11 +88,12 @@ TEST_CASE("R1: with two equal moments w rotates at a constant rate, with three i
 }
 
 TEST_CASE("R1: near the intermediate axis it tumbles: e2 reverses, and E and H are conserved") {
-  const test::FinishedRun run = test::run_model("R1_free_body_euler_parameters", [](pipeline::SimulationRequest& request) {
-    tighten(request);
-    request.overrides.rtol = request.overrides.atol = 1e-13;
-    request.scene = "tumbling";
-  });
+  const test::FinishedRun run =
+      test::run_model("R1_free_body_euler_parameters", [](pipeline::SimulationRequest& request) {
+        tighten(request);
+        request.overrides.rtol = request.overrides.atol = 1e-13;
+        request.scene = "tumbling";
+      });
   double least = 1, greatest = -1;
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     least = std::min(least, run.rows.at(i, "B.omega2"));

@@ -63,11 +63,12 @@ TEST_CASE("S5: approach I and approach II give the same motion, planar and spher
 }
 
 TEST_CASE("S5: the spherical double pendulum conserves E and the vertical angular momentum") {
-  const test::FinishedRun run = test::run_model("S5_spherical_double_pendulum", [](pipeline::SimulationRequest& request) {
-    tighten(request);
-    request.overrides.outputs = {"P1.position1", "P1.position2", "P1.velocity1", "P1.velocity2",
-                                 "P2.position1", "P2.position2", "P2.velocity1", "P2.velocity2"};
-  });
+  const test::FinishedRun run =
+      test::run_model("S5_spherical_double_pendulum", [](pipeline::SimulationRequest& request) {
+        tighten(request);
+        request.overrides.outputs = {"P1.position1", "P1.position2", "P1.velocity1", "P1.velocity2",
+                                     "P2.position1", "P2.position2", "P2.velocity1", "P2.velocity2"};
+      });
   const auto h = [&](std::size_t i) {
     const auto about_vertical = [&](const std::string& P) {
       return run.rows.at(i, P + ".position1") * run.rows.at(i, P + ".velocity2") -

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "handwritten_chain.hpp"
-#include "support/reference_integration.hpp"
 #include "support/elliptic.hpp"
+#include "support/reference_integration.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;

@@ -39,9 +39,9 @@ std::string variant(const std::string& name, const std::string& forces, const st
 
 TEST_CASE("bilinear_oscillator: after ten periods it is where it started, and the kink was crossed twice in each") {
   for (const char* solver : {"dopri5", "tsit5", "dop853"}) {
-    const test::FinishedRun run = test::run_model("bilinear_oscillator", [solver](pipeline::SimulationRequest& request) {
-      tight(request).overrides.solver = solver;
-    });
+    const test::FinishedRun run =
+        test::run_model("bilinear_oscillator",
+                        [solver](pipeline::SimulationRequest& request) { tight(request).overrides.solver = solver; });
     const run::RunResult& result = run.simulation.result;
     CAPTURE(solver);
     CHECK(result.outcome == eom::Outcome::done);
@@ -76,7 +76,7 @@ TEST_CASE(
 
 TEST_CASE("bilinear_oscillator: a start on the kink itself is no crossing") {
   const test::FinishedRun run = test::run_model(variant("from_kink", "-k1*max(0, x) - k2*min(0, x)", "x_dot = 0.7"),
-                                             [](auto& request) { tight(request); });
+                                                [](auto& request) { tight(request); });
   CHECK(std::abs(run.final("x")) < tolerance);
   CHECK(std::abs(run.final("x_dot") - 0.7) < 10 * tolerance);
   // Nineteen inside, and the one at the very end that rounding may put before or behind it.

@@ -34,7 +34,7 @@ struct Rod {
 
 TEST_CASE("bodies_in_contact: the rod at the critical slope: below mu = 4/3 it slides as the balances by hand say") {
   const FinishedRun run = run_rough("painleve_rod", "default",
-                                 [](pipeline::SimulationRequest& request) { request.overrides.every = 0.002; });
+                                    [](pipeline::SimulationRequest& request) { request.overrides.every = 0.002; });
   const Rod rod(run);
   CHECK(run.simulation.result.outcome == eom::Outcome::done);
   CHECK(run.rows.at(0, "reaction.end") == doctest::Approx(rod.m * rod.g / (1.6 - 1.2 * rod.mu)).epsilon(rounding));

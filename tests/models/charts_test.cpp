@@ -88,8 +88,9 @@ Kept kept(const test::Rows& rows) {
 
 TEST_CASE(
     "charts: a thousand turns of a free body, in twelve sets of Euler angles with exchanges and in Euler parameters") {
-  const test::FinishedRun reference = thousand_turns(*rotations::find("euler_parameters"),
-                                                  "tsit5");  // dop853 takes 13 times longer steps here, and is 4e-7 off
+  const test::FinishedRun reference =
+      thousand_turns(*rotations::find("euler_parameters"),
+                     "tsit5");  // dop853 takes 13 times longer steps here, and is 4e-7 off
   CHECK(exchanges(reference) == 0);
   std::size_t sets = 0;
   for (const rotations::Rotation& r : rotations::registry()) {

@@ -7,9 +7,12 @@ namespace eomgen::test {
 
 DisplayedModel::DisplayedModel(const std::string& name) : s(model::read_model(shipped(name))) {}
 
-reading::DisplayForm DisplayedModel::form(system::Approach approach) { return reading::derive_display_form(s.mechanics, approach); }
+reading::DisplayForm DisplayedModel::form(system::Approach approach) {
+  return reading::derive_display_form(s.mechanics, approach);
+}
 
-const reading::Equation& DisplayedModel::equation(const reading::DisplayForm& form, const std::string& coordinate) const {
+const reading::Equation& DisplayedModel::equation(const reading::DisplayForm& form,
+                                                  const std::string& coordinate) const {
   for (const reading::Equation& e : form.equations) {
     if (s.model.coordinates[e.coordinate].name == coordinate) return e;
   }

@@ -79,7 +79,7 @@ TEST_CASE("elastic_pendulum: where the oscillation is part of the motion, all so
 TEST_CASE("elastic_pendulum: midpoint keeps the energy within bounds that do not grow; its error is of order 2") {
   const test::FinishedRun reference = motion("stretched", "dop853", 1e-13);
   const test::FinishedRun coarse = motion("stretched", "midpoint", 1e-9, 1e-3),
-                       fine = motion("stretched", "midpoint", 1e-9, 2.5e-4);
+                          fine = motion("stretched", "midpoint", 1e-9, 2.5e-4);
   const double order = std::log2(difference(coarse, reference) / difference(fine, reference)) / 2;
   CHECK(std::abs(order - 2) < 0.3);
   const test::FinishedRun longer = test::run_model("elastic_pendulum", [](pipeline::SimulationRequest& request) {

@@ -47,7 +47,7 @@ double error(const test::FinishedRun& run, const Values& values) {
 }
 
 test::FinishedRun check(const std::string& model, const std::string& scene, const std::string& solver,
-                     const Values& values, double tolerance) {
+                        const Values& values, double tolerance) {
   CAPTURE(model);
   CAPTURE(scene);
   CAPTURE(solver);

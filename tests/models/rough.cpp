@@ -11,7 +11,7 @@
 namespace eomgen::test {
 
 FinishedRun run_rough(const std::string& model, const std::string& scene,
-                   const std::function<void(pipeline::SimulationRequest&)>& adjust) {
+                      const std::function<void(pipeline::SimulationRequest&)>& adjust) {
   return run_model(model, [&](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.rtol = 1e-12;

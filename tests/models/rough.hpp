@@ -21,7 +21,7 @@ constexpr double integration_tolerance = 1e-10;
 constexpr double rounding = 1e-12;
 
 FinishedRun run_rough(const std::string& model, const std::string& scene = "default",
-                   const std::function<void(pipeline::SimulationRequest&)>& adjust = {});
+                      const std::function<void(pipeline::SimulationRequest&)>& adjust = {});
 
 /// Sets parameters to exact values.
 std::function<void(pipeline::SimulationRequest&)> with(std::map<std::string, double> parameters);
@@ -33,7 +33,8 @@ std::vector<run::RunEvent> events_of(const FinishedRun& run);
 class HandWrittenMotion {
  public:
   using RightHandSide = std::function<void(double t, const double* x, double* dx)>;
-  HandWrittenMotion(RightHandSide rates, double t, std::vector<double> start) : x(std::move(start)), t_(t), rates_(std::move(rates)) {}
+  HandWrittenMotion(RightHandSide rates, double t, std::vector<double> start)
+      : x(std::move(start)), t_(t), rates_(std::move(rates)) {}
 
   void advance_to(double t);
   std::vector<double> x;

@@ -65,7 +65,8 @@ TEST_CASE("rough_bodies: R3: rolling persists if and only if mu_s >= (2/7) tan(b
   const double limit = 2 * std::tan(k.b) / 7;
   CHECK(events_of(run_rough("R3_rough_incline", "default", with({{"mu_s", limit * (1 + 1e-12)}, {"mu_d", 0.05}})))
             .empty());
-  const FinishedRun over = run_rough("R3_rough_incline", "default", with({{"mu_s", limit * (1 - 1e-12)}, {"mu_d", 0.05}}));
+  const FinishedRun over =
+      run_rough("R3_rough_incline", "default", with({{"mu_s", limit * (1 - 1e-12)}, {"mu_d", 0.05}}));
   REQUIRE(events_of(over).size() == 1);
   CHECK(events_of(over)[0].kind == "slip");
   CHECK(events_of(over)[0].t == 0);
@@ -200,7 +201,8 @@ TEST_CASE(
   REQUIRE(!events_of(run).empty());
   CHECK(events_of(run)[0].kind == "roll");
   const double stop = events_of(run)[0].t;
-  HandWrittenMotion hand([&](double, const double* x, double* dx) { disk.rates(x, dx); }, 0, {0, 0, 2, 0, 0, 1.2, 0, 0, 0});
+  HandWrittenMotion hand([&](double, const double* x, double* dx) { disk.rates(x, dx); }, 0,
+                         {0, 0, 2, 0, 0, 1.2, 0, 0, 0});
   std::size_t i = 1;
   for (; run.rows.t[i] < stop - 1e-3; ++i) {
     hand.advance_to(run.rows.t[i]);
@@ -219,7 +221,7 @@ TEST_CASE(
 TEST_CASE("rough_bodies: R6: the disk rolls as without friction until the plane cannot hold it, and slips there") {
   const FinishedRun run = run_rough("R6_rough_disk");
   const FinishedRun held = run_rough("R6_rolling_disk", "default",
-                                  [](pipeline::SimulationRequest& request) { request.overrides.t_end = 2; });
+                                     [](pipeline::SimulationRequest& request) { request.overrides.t_end = 2; });
   REQUIRE(events_of(run).size() == 2);
   CHECK(events_of(run)[0].kind == "slip");
   CHECK(events_of(run)[1].kind == "roll");

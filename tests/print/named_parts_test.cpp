@@ -20,8 +20,8 @@
 
 using namespace eomgen;
 using print::Statement;
-using reading::FormulaKind;
 using reading::Formula;
+using reading::FormulaKind;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
@@ -51,7 +51,7 @@ std::string key(const Formula& f) {
   std::string text = f.kind == FormulaKind::dot ? "dot " + key(f.args[0]) : f.word;
   for (const Formula& lower : f.lower)
     text += lower.kind == FormulaKind::number ? " " + std::to_string(cln::double_approx(lower.number))
-                                       : " q" + std::to_string(lower.symbol.index);
+                                              : " q" + std::to_string(lower.symbol.index);
   return text;
 }
 
@@ -225,7 +225,8 @@ TEST_CASE("named parts: with their definitions the equations are the equations o
     ++models;
     by_forces +=
         std::any_of(statements.begin(), statements.end(), [](const Statement& part) { return part.role == "force"; });
-    for (const mechanics::BodyRotation& spin : m.body_rotations) with_axes_of_their_own += spin.axes_angular_velocity != spin.w ? 1 : 0;
+    for (const mechanics::BodyRotation& spin : m.body_rotations)
+      with_axes_of_their_own += spin.axes_angular_velocity != spin.w ? 1 : 0;
   }
   CHECK(models > 15);
   CHECK(with_axes_of_their_own > 2);  // models with axes that rotate differently from their bodies

@@ -32,8 +32,8 @@ bool reads(const program::Function& function, program::Slot slot) {
 
 TEST_CASE("hoisting: prepare and rhs_prepared agree with rhs to 45 digits, and cost less") {
   std::size_t split = 0;
-  for (const auto& system :
-       {pendulum(), double_pendulum(), cart_pendulum(), spherical_pendulum(), massless_coordinate(), chain(3), chain(6)}) {
+  for (const auto& system : {pendulum(), double_pendulum(), cart_pendulum(), spherical_pendulum(),
+                             massless_coordinate(), chain(3), chain(6)}) {
     CAPTURE(system.free.size());
     const auto built = build(system);
     const auto* prepare = function_of(built, "prepare");

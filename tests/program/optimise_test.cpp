@@ -69,7 +69,7 @@ TEST_CASE("optimiser: the value of every function stays the same to 45 digits") 
       std::vector<std::string> outputs;
       for (const auto& output : system.outputs) outputs.push_back(output.name);
       std::vector<program::FunctionExpressions> wanted = {functions.rhs(), functions.jac(), functions.mass(),
-                                                     functions.constraints(), functions.reactions()};
+                                                          functions.constraints(), functions.reactions()};
       if (!outputs.empty()) wanted.push_back(functions.outputs(outputs));
       REQUIRE(built.functions.size() == wanted.size() + (built.prepared_count() > 0 ? 2 : 0));
       for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -142,7 +142,8 @@ TEST_CASE("optimiser: sin^2 + cos^2 is 1, also inside shared products") {
   SystemBuilder k;
   const Scalar l = k.p(0), c = k.cos(k.q(0)), s = k.sin(k.q(0));
   const Scalar x = l * c, y = l * s;
-  program::FunctionExpressions wanted{"outputs", {{"y", {(x * x + y * y).ref, x.ref, y.ref, (l - l * c * c).ref}}}, {}, {}};
+  program::FunctionExpressions wanted{
+      "outputs", {{"y", {(x * x + y * y).ref, x.ref, y.ref, (l - l * c * c).ref}}}, {}, {}};
   const auto best = program::optimise({program::flatten(program::from_dag(*k.dag, wanted, {0}), false)});
   const auto operations = program::count_operations(best);
   CHECK(operations.add == 0);

@@ -12,7 +12,8 @@ using namespace eomgen;
 using namespace test_systems;
 
 TEST_CASE("program: the Jacobian agrees with difference quotients of the right-hand side to 20 digits") {
-  for (const auto& system : {double_pendulum(), cart_pendulum(), spherical_pendulum(), massless_coordinate(), chain(3)}) {
+  for (const auto& system :
+       {double_pendulum(), cart_pendulum(), spherical_pendulum(), massless_coordinate(), chain(3)}) {
     CAPTURE(system.free.size());
     const auto built = build(system, {"jac", "jac_p"});
     const auto base = arguments_at<cln::cl_R>(system, 1);

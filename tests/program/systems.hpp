@@ -36,7 +36,8 @@ struct SystemBuilder {
 };
 
 /// M and f of d/dt dT/dqdot - dT/dq + dV/dq = Q.
-inline system::EquationSystem lagrange(const SystemBuilder& k, std::uint32_t n, Scalar T, Scalar V, std::vector<Scalar> Q) {
+inline system::EquationSystem lagrange(const SystemBuilder& k, std::uint32_t n, Scalar T, Scalar V,
+                                       std::vector<Scalar> Q) {
   system::EquationSystem system;
   system.dag = k.dag;
   system.formulation = "lagrange";

@@ -117,8 +117,8 @@ TEST_CASE("taylor: the recurrence of every operation") {
   }
   for (const Op op : {Op::atan2, Op::min, Op::max}) {
     CAPTURE(static_cast<int>(op));
-    follows_the_motion(one([op](const SystemBuilder& k) { return k.s(k.dag->call(op, k.q(0).ref, (k.q(0, 1) * k.t()).ref)); }),
-                       2);
+    follows_the_motion(
+        one([op](const SystemBuilder& k) { return k.s(k.dag->call(op, k.q(0).ref, (k.q(0, 1) * k.t()).ref)); }), 2);
     follows_the_motion(one([op](const SystemBuilder& k) { return k.s(k.dag->call(op, k.q(0).ref, k.p(0).ref)); }), 2);
     follows_the_motion(one([op](const SystemBuilder& k) { return k.s(k.dag->call(op, k.p(0).ref, k.q(0).ref)); }), 3);
   }
@@ -132,11 +132,15 @@ TEST_CASE("taylor: powers, quotients and branches of varying and constant values
       [&](const SystemBuilder& k) { return pow(k, k.q(0), k.q(0, 1)); },
       [&](const SystemBuilder& k) { return pow(k, k.q(0) * k.t(), k.number(7, 3)); },
       [&](const SystemBuilder& k) { return k.q(0) / k.p(0) + k.p(1) / k.q(0) + k.q(0) / k.q(0, 1); },
-      [&](const SystemBuilder& k) { return k.number(1) / (k.q(0) * k.q(0) * k.q(0)) - k.q(0) * k.q(0, 1) * k.p(2) * k.t(); },
+      [&](const SystemBuilder& k) {
+        return k.number(1) / (k.q(0) * k.q(0) * k.q(0)) - k.q(0) * k.q(0, 1) * k.p(2) * k.t();
+      },
       [&](const SystemBuilder& k) {
         return k.s(k.dag->select(k.q(0).ref, k.p(0).ref, (k.q(0) * k.q(0)).ref, k.sin(k.q(0, 1)).ref));
       },
-      [&](const SystemBuilder& k) { return k.s(k.dag->select(k.p(0).ref, k.q(0).ref, (k.q(0) * k.q(0)).ref, k.p(1).ref)); },
+      [&](const SystemBuilder& k) {
+        return k.s(k.dag->select(k.p(0).ref, k.q(0).ref, (k.q(0) * k.q(0)).ref, k.p(1).ref));
+      },
       [&](const SystemBuilder& k) { return k.sin(k.q(0)) * k.cos(k.q(0, 1)) + k.cos(k.q(0)) + k.t() * k.t(); },
       [&](const SystemBuilder& k) { return k.p(0) * k.q(0) + k.u(0); }};
   for (std::size_t i = 0; i < list.size(); ++i) {

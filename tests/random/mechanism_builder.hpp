@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "random/random_source.hpp"
 #include "random/mechanisms.hpp"
+#include "random/random_source.hpp"
 
 namespace eomgen::random_models {
 

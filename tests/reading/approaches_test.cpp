@@ -7,8 +7,8 @@
 
 using namespace eomgen;
 using namespace eomgen::test;
-using reading::Equation;
 using reading::DisplayForm;
+using reading::Equation;
 
 namespace {
 

@@ -152,7 +152,8 @@ TEST_CASE("factors: sums with an atom in one term alone have none, others are fo
 TEST_CASE("zero test: proven, numerical, no") {
   System s = some_symbols();
   const Sum a = s.symbol("a"), b = s.symbol("b"), x = s.symbol("x");
-  CHECK(reading::zero_test(sin(Sum(3) * a) - Sum(3) * sin(a) + Sum(4) * power(sin(a), 3)) == reading::ZeroTestResult::proven);
+  CHECK(reading::zero_test(sin(Sum(3) * a) - Sum(3) * sin(a) + Sum(4) * power(sin(a), 3)) ==
+        reading::ZeroTestResult::proven);
   CHECK(reading::zero_test(sin(a + b) - sin(a) * cos(b) - cos(a) * sin(b)) == reading::ZeroTestResult::proven);
   CHECK(reading::zero_test(sin(a) - cos(a)) == reading::ZeroTestResult::no);
   const Sum hyperbolic =

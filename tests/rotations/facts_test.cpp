@@ -25,9 +25,9 @@ void same_axes(RotationModel& model) {
 // axes the two steps have the opposite order.
 TEST_CASE("F(pi/2, E3) F(pi/2, E1) = F(2 pi/3, (E1 + E2 + E3)/sqrt 3), and not the other way round") {
   RotationModel model(body("A", "{ axis = \"E3\", angle = \"n1\" }") +
-                body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
-                body("C", "{ axis = \"E1 + E2 + E3\", angle = \"p\" }") + "[definitions]\n" + three("B", "a") +
-                three("C", "b"));
+                      body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
+                      body("C", "{ axis = \"E1 + E2 + E3\", angle = \"p\" }") + "[definitions]\n" + three("B", "a") +
+                      three("C", "b"));
   model.at[{"n1", 0}] = model.at[{"n2", 0}] = half_pi();
   model.at[{"p", 0}] = half_pi() * 4 / 3;
   same_axes(model);
@@ -39,9 +39,9 @@ TEST_CASE("F(pi/2, E3) F(pi/2, E1) = F(2 pi/3, (E1 + E2 + E3)/sqrt 3), and not t
 // body axes A is the second step.
 TEST_CASE("Euler parameters of a composition are the product of the parameters") {
   RotationModel model(body("F", "{ euler_parameters = [\"f0\", \"f1\", \"f2\", \"f3\"] }") +
-                body("E", "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }", "relative_to = \"F\"\n") +
-                body("G", "{ euler_parameters = [\"g0\", \"g1\", \"g2\", \"g3\"] }") + "[definitions]\n" +
-                three("E", "a") + three("G", "b"));
+                      body("E", "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }", "relative_to = \"F\"\n") +
+                      body("G", "{ euler_parameters = [\"g0\", \"g1\", \"g2\", \"g3\"] }") + "[definitions]\n" +
+                      three("E", "a") + three("G", "b"));
   const std::array<Real, 4> e{ratio(1, 11), ratio(2, 11), ratio(4, 11), ratio(10, 11)},
       f{ratio(4, 5), ratio(-2, 5), ratio(1, 5), ratio(2, 5)};
   const Numbers ev{e[1], e[2], e[3]}, fv{f[1], f[2], f[3]}, fxe = cross(fv, ev);
@@ -64,9 +64,9 @@ TEST_CASE("axis and angle, Euler parameters and the Rodrigues vector are the sam
                  cln::cos(p * Real(cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits)))) / 2);
   for (const bool parameters : {true, false}) {
     RotationModel model(body("A", "{ axis = \"E1 + 2*E2 - 2*E3\", angle = \"p\" }") +
-                  body("B", parameters ? "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }"
-                                       : "{ rodrigues = [\"e1\", \"e2\", \"e3\"] }") +
-                  "[definitions]\n" + three("A", "a") + three("B", "b"));
+                        body("B", parameters ? "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }"
+                                             : "{ rodrigues = [\"e1\", \"e2\", \"e3\"] }") +
+                        "[definitions]\n" + three("A", "a") + three("B", "b"));
     model.at[{"p", 0}] = p;
     const Real length = parameters ? Real(1 / cln::sqrt(1 + tangent * tangent)) : Real(1);
     model.at[{"e0", 0}] = length;
@@ -107,9 +107,10 @@ TEST_CASE("3-2-3 angles have the bases of (5.86) and (5.87)") {
 }
 
 TEST_CASE("intermediate axes of Euler angles: e' after the first, e'' after the second") {
-  RotationModel model(body("B", "{ euler = \"313\", angles = [\"n1\", \"n2\", \"n3\"] }") +
-                "[definitions]\na1 = \"B.e1'\"\na2 = \"B.e2''\"\na3 = \"B.e3'\"\nw = \"n1_dot*E3 + n2_dot*B.e1' + "
-                "n3_dot*B.e3'' - B.omega\"\n");
+  RotationModel model(
+      body("B", "{ euler = \"313\", angles = [\"n1\", \"n2\", \"n3\"] }") +
+      "[definitions]\na1 = \"B.e1'\"\na2 = \"B.e2''\"\na3 = \"B.e3'\"\nw = \"n1_dot*E3 + n2_dot*B.e1' + "
+      "n3_dot*B.e3'' - B.omega\"\n");
   for (const char* name : {"n1", "n2", "n3"}) {
     model.at[{name, 0}] = ratio(name[1] - '0', 4);
     model.at[{name, 1}] = ratio(name[1] - '0', 7);
@@ -122,9 +123,9 @@ TEST_CASE("intermediate axes of Euler angles: e' after the first, e'' after the 
 // Ex 5.2: R = Q2 Q1^T for a body that rotates about e1 of the previous one; w_R = w_2 - w_1, eq. (5.95), (5.96).
 TEST_CASE("the relative angular velocity of two bodies, along the axes between them and not its rate alone") {
   RotationModel model(body("A", "{ axis = \"E3\", angle = \"n1\" }") +
-                body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
-                "[definitions]\nr = \"n2_dot*A.e1\"\nw = \"omega(B) - omega(A)\"\n" + three("A", "a") +
-                three("B", "b"));
+                      body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
+                      "[definitions]\nr = \"n2_dot*A.e1\"\nw = \"omega(B) - omega(A)\"\n" + three("A", "a") +
+                      three("B", "b"));
   model.at[{"n1", 0}] = ratio(2, 3);
   model.at[{"n2", 0}] = ratio(-5, 4);
   model.at[{"n1", 1}] = ratio(3, 2);
@@ -171,8 +172,8 @@ TEST_CASE("the relative angular velocity of two bodies, along the axes between t
 // Ex 5.3 (g): a quarter about E3, then a quarter about E2: E1 -> E2 -> E2, E2 -> -E1 -> E3, E3 -> E3 -> E1.
 TEST_CASE("a quarter about E3 and a quarter about E2 permute the axes") {
   RotationModel model(body("F", "{ axis = \"E2\", angle = \"n2\" }") +
-                body("E", "{ axis = \"F.e3\", angle = \"n1\" }", "relative_to = \"F\"\n") + "[definitions]\n" +
-                three("E", "a"));
+                      body("E", "{ axis = \"F.e3\", angle = \"n1\" }", "relative_to = \"F\"\n") + "[definitions]\n" +
+                      three("E", "a"));
   model.at[{"n1", 0}] = model.at[{"n2", 0}] = half_pi();
   CHECK(distance(model.vector("a1"), {0, 1, 0}) < exact);
   CHECK(distance(model.vector("a2"), {0, 0, 1}) < exact);
@@ -181,11 +182,12 @@ TEST_CASE("a quarter about E3 and a quarter about E2 permute the axes") {
 
 // Ex 5.5: north, east, down at longitude l and latitude b: about E3 by l, then about the new e2 by -(pi/2 + b).
 TEST_CASE("north, east and down are two rotations from the fixed axes") {
-  RotationModel model(body("A", "{ axis = \"E3\", angle = \"l\" }") +
-                body("B", "{ axis = \"A.e2\", angle = \"-pi/2 - b\" }", "relative_to = \"A\"\n") +
-                "[coordinates]\nb = \"rad\"\n[definitions]\n" + three("B", "a") +
-                "b1 = \"-cos(l)*sin(b)*E1 - sin(l)*sin(b)*E2 + cos(b)*E3\"\nb2 = \"-sin(l)*E1 + cos(l)*E2\"\nb3 = "
-                "\"-cos(l)*cos(b)*E1 - sin(l)*cos(b)*E2 - sin(b)*E3\"\n");
+  RotationModel model(
+      body("A", "{ axis = \"E3\", angle = \"l\" }") +
+      body("B", "{ axis = \"A.e2\", angle = \"-pi/2 - b\" }", "relative_to = \"A\"\n") +
+      "[coordinates]\nb = \"rad\"\n[definitions]\n" + three("B", "a") +
+      "b1 = \"-cos(l)*sin(b)*E1 - sin(l)*sin(b)*E2 + cos(b)*E3\"\nb2 = \"-sin(l)*E1 + cos(l)*E2\"\nb3 = "
+      "\"-cos(l)*cos(b)*E1 - sin(l)*cos(b)*E2 - sin(b)*E3\"\n");
   model.at[{"l", 0}] = ratio(9, 4);
   model.at[{"b", 0}] = ratio(4, 5);
   same_axes(model);
@@ -193,10 +195,11 @@ TEST_CASE("north, east and down are two rotations from the fixed axes") {
 
 // Ex 5.6: (5.122), the angular velocity of a rotation about a rotating axis, from the Rodrigues formula (5.46).
 TEST_CASE("about a rotating axis: the corotational part and the part due to the rotation of the axis") {
-  RotationModel model(body("A", "{ axis = \"E3\", angle = \"p\" }") +
-                body("C", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
-                "[definitions]\nw = \"omega(C)\"\na = \"n_dot*A.e1 - p_dot*(cos(n)*E3 - sin(n)*A.e2) + p_dot*E3\"\n"
-                "b = \"p_dot*(cos(n)*E3 - sin(n)*A.e2)\"\n");
+  RotationModel model(
+      body("A", "{ axis = \"E3\", angle = \"p\" }") +
+      body("C", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
+      "[definitions]\nw = \"omega(C)\"\na = \"n_dot*A.e1 - p_dot*(cos(n)*E3 - sin(n)*A.e2) + p_dot*E3\"\n"
+      "b = \"p_dot*(cos(n)*E3 - sin(n)*A.e2)\"\n");
   model.at[{"p", 0}] = ratio(2, 3);
   model.at[{"n", 0}] = ratio(7, 4);
   model.at[{"p", 1}] = ratio(-3, 5);
@@ -220,8 +223,9 @@ TEST_CASE("about E3 the axes are e_r, e_theta, E3, and w is theta_dot E3") {
 // Ex 5.9, last part: a half turn about E1 followed by a half turn about E2 is a half turn about E3.
 TEST_CASE("two half turns about axes at right angles are one about the third") {
   RotationModel model(body("A", "{ axis = \"E2\", angle = \"n\" }") +
-                body("B", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
-                body("C", "{ axis = \"E3\", angle = \"n\" }") + "[definitions]\n" + three("B", "a") + three("C", "b"));
+                      body("B", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
+                      body("C", "{ axis = \"E3\", angle = \"n\" }") + "[definitions]\n" + three("B", "a") +
+                      three("C", "b"));
   model.at[{"n", 0}] = 2 * half_pi();
   same_axes(model);
 }

@@ -159,7 +159,7 @@ TEST_CASE("inertia: the cylinder of Ex 6.8 about a point off its axis") {
 // differences.
 TEST_CASE("inertia: the tensors rotate with the body") {
   RotationModel model(body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") +
-                "[definitions]\na1 = \"B.e1\"\na2 = \"B.e2\"\na3 = \"B.e3\"\nw = \"B.omega\"\n");
+                      "[definitions]\na1 = \"B.e1\"\na2 = \"B.e2\"\na3 = \"B.e3\"\nw = \"B.omega\"\n");
   for (const char* name : {"n1", "n2", "n3"}) {
     model.at[{name, 0}] = ratio(name[1] - '0', 5);
     model.at[{name, 1}] = ratio(2 * (name[1] - '0') - 3, 7);
@@ -194,10 +194,11 @@ TEST_CASE("inertia: the tensors rotate with the body") {
 
 // (6.100), and (6.101): with w . g3 = w . g2 = 0 only a rotation about E3 remains.
 TEST_CASE("inertia: angular velocity, momentum and energy in 3-2-3 angles") {
-  RotationModel model(body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") +
-                "[definitions]\nw1 = \"dot(B.omega, B.e1) - (n2_dot*sin(n3) - n1_dot*sin(n2)*cos(n3))\"\n"
-                "w2 = \"dot(B.omega, B.e2) - (n2_dot*cos(n3) + n1_dot*sin(n3)*sin(n2))\"\nw3 = \"dot(B.omega, B.e3) - "
-                "(n1_dot*cos(n2) + n3_dot)\"\nw = \"B.omega\"\n");
+  RotationModel model(
+      body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") +
+      "[definitions]\nw1 = \"dot(B.omega, B.e1) - (n2_dot*sin(n3) - n1_dot*sin(n2)*cos(n3))\"\n"
+      "w2 = \"dot(B.omega, B.e2) - (n2_dot*cos(n3) + n1_dot*sin(n3)*sin(n2))\"\nw3 = \"dot(B.omega, B.e3) - "
+      "(n1_dot*cos(n2) + n3_dot)\"\nw = \"B.omega\"\n");
   for (const char* name : {"n1", "n2", "n3"}) {
     model.at[{name, 0}] = ratio(name[1] - '0', 5);
     model.at[{name, 1}] = ratio(2 * (name[1] - '0') - 3, 7);

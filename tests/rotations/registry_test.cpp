@@ -136,7 +136,7 @@ TEST_CASE("rotations: relative to another body angular velocities add up, in eve
       CAPTURE(a.name);
       CAPTURE(b.name);
       RotationModel model(body("B", rotation_toml(a, "a")) + body("C", rotation_toml(b, "b"), "relative_to = \"B\"\n") +
-                    "[definitions]\na1 = \"C.e1\"\na2 = \"C.e2\"\na3 = \"C.e3\"\nw = \"omega(C)\"\n");
+                          "[definitions]\na1 = \"C.e1\"\na2 = \"C.e2\"\na3 = \"C.e3\"\nw = \"omega(C)\"\n");
       set(model, a, "a");
       set(model, b, "b", 1);
       const Numbers w = model.vector("w");
@@ -148,10 +148,11 @@ TEST_CASE("rotations: relative to another body angular velocities add up, in eve
 }
 
 TEST_CASE("rotations: an axis may be any vector that is fixed in the parent") {
-  RotationModel model(body("B", "{ euler = \"321\", angles = [\"a\", \"b\", \"c\"] }") +
-                body("C", "{ axis = \"B.e1 - 3*B.e3\", angle = \"d\" }", "relative_to = \"B\"\n") +
-                "[definitions]\na1 = \"C.e1\"\na2 = \"C.e2\"\na3 = \"C.e3\"\nw = \"omega(C)\"\nof_B = \"dot(C.e1 - "
-                "3*C.e3, B.e1 - 3*B.e3)\"\n");
+  RotationModel model(
+      body("B", "{ euler = \"321\", angles = [\"a\", \"b\", \"c\"] }") +
+      body("C", "{ axis = \"B.e1 - 3*B.e3\", angle = \"d\" }", "relative_to = \"B\"\n") +
+      "[definitions]\na1 = \"C.e1\"\na2 = \"C.e2\"\na3 = \"C.e3\"\nw = \"omega(C)\"\nof_B = \"dot(C.e1 - "
+      "3*C.e3, B.e1 - 3*B.e3)\"\n");
   for (const char* name : {"a", "b", "c", "d"}) {
     model.at[{name, 0}] = ratio(name[0] - 'a' + 1, 3);
     model.at[{name, 1}] = ratio(7 - 2 * (name[0] - 'a'), 5);

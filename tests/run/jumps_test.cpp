@@ -109,9 +109,9 @@ TEST_CASE("jumps: a step of a potential ends the run if it is crossed, and has n
 
 TEST_CASE("jumps: a wire with a corner ends the run there") {
   const test::FinishedRun corner = test::run_text("corner",
-                                               "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = "
-                                               "\"P\"\nmass = \"m\"\nposition = [\"x\", \"max(0, x - 1)\", 0]\n"
-                                               "[scene.default]\nt = [0, 3]\ninitial = { x_dot = 1 }\n");
+                                                  "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = "
+                                                  "\"P\"\nmass = \"m\"\nposition = [\"x\", \"max(0, x - 1)\", 0]\n"
+                                                  "[scene.default]\nt = [0, 3]\ninitial = { x_dot = 1 }\n");
   CHECK(corner.simulation.result.outcome == eom::Outcome::jump_undetermined);
   CHECK(corner.simulation.result.detail.find("P.velocity2 jumps by -1 at t = 1") == 0);
 }

@@ -40,7 +40,7 @@ TEST_CASE(
         Case{"F*max(0, 1 - abs(t - 5.123)/0.001)", F * w, 1e-9, false}}) {
     CAPTURE(std::string(c.force));
     const test::FinishedRun finished = test::run_text("pulse", particle(c.force, "") + "[scene.default]\nt = [0, 10]\n",
-                                                   [](auto& request) { request.every_solver = true; });
+                                                      [](auto& request) { request.every_solver = true; });
     CHECK(std::abs(finished.final("x_dot") - c.impulse) < c.allowed);
     for (const eom::MethodInfo& method : eom::methods()) {
       if (method.needs.required.has(eom::Feature::constraints) ||
@@ -144,7 +144,6 @@ TEST_CASE(
     run::Overrides fixed;
     fixed.solver = "rk4";
     fixed.step = 0.29;  // no step ends at 3
-    CHECK(pipeline::rerun(finished.simulation, fixed).estimate_note.find("narrow in the state") !=
-          std::string::npos);
+    CHECK(pipeline::rerun(finished.simulation, fixed).estimate_note.find("narrow in the state") != std::string::npos);
   }
 }

@@ -113,7 +113,7 @@ TEST_CASE("stops: a block on a rough floor at a wall or a rail slides along it, 
   for (const bool rail : {false, true}) {
     CAPTURE(rail);
     const test::FinishedRun end = run_text(rail ? "block_on_rail" : "block_at_walls",
-                                        block_beside_a_wall("z", "50*E1 + 30*E2 + 4*t*(E1 - E2)", 2, rail));
+                                           block_beside_a_wall("z", "50*E1 + 30*E2 + 4*t*(E1 - E2)", 2, rail));
     // Along the wall, (E1 - E2)/sqrt(2), it is pulled by (20 + 8 t)/sqrt(2) > mu m g = 6: it slides from the start.
     const double root = std::sqrt(2.0), along = (10 * 4 + 4.0 * 8 / 3) / root / 2 - 6.0 * 4 / 2 / 2;
     CHECK(std::abs((end.final("x") - end.final("y") + 1) / root - along) <= 1e-8);
@@ -126,7 +126,7 @@ TEST_CASE("stops: a block that sticks beside a wall or on a rail has no friction
   for (const bool rail : {false, true}) {
     CAPTURE(rail);
     const test::FinishedRun end = run_text(rail ? "block_at_rest_on_rail" : "block_at_rest",
-                                        block_beside_a_wall("z - x/10", "50*E1 + 46*E2", 1, rail));
+                                           block_beside_a_wall("z - x/10", "50*E1 + 46*E2", 1, rail));
     CHECK(std::abs(end.final("x") - 1) <= closed_form);
     CHECK(std::abs(end.final("y") - 2) <= closed_form);
     // The force F, the weight and the normal forces of floor and wall have no component along (1, -1, 1/10), the line
@@ -198,7 +198,7 @@ restitution = 1
 [scene.default]
 t = [0, 1]
 initial = { x1 = -1, x2 = 0, x1_dot = 2, x3 = )toml" + std::string(gap ? "0.10001" : "0.1") +
-                                                                          " }\n");
+                                                                             " }\n");
     const double after[2][3] = {{-2.0 / 3, 4.0 / 3, 4.0 / 3}, {0, 0, 2}};
     CHECK(std::abs(end.final("x1_dot") - after[gap][0]) <= closed_form);
     CHECK(std::abs(end.final("x2_dot") - after[gap][1]) <= closed_form);
@@ -245,7 +245,8 @@ TEST_CASE("stops: a contact is closed at the start by default, and one that cann
   const std::string ball =
       "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\"] }\n"
       "[[constraint]]\nname = \"floor\"\nholonomic = \"y - x^2 - 1\"\nholds = \"unilateral\"\n";
-  const test::FinishedRun end = run_text("touching_ball", ball + "[scene.default]\nt = [0, 0.1]\ninitial = { x = 1 }\n");
+  const test::FinishedRun end =
+      run_text("touching_ball", ball + "[scene.default]\nt = [0, 0.1]\ninitial = { x = 1 }\n");
   CHECK(std::abs(end.rows.at(0, "y") - 2) <= closed_form);
   CHECK_THROWS_WITH_AS(run_text("sunk_ball", ball + "[scene.default]\nt = [0, 0.1]\ninitial = { y = 0.5 }\n"),
                        doctest::Contains("the start breaks constraint 'floor'"), Error);

@@ -6,8 +6,8 @@
 
 namespace eomgen::test {
 
-std::vector<double> integrate_reference(const RightHandSide& f, double t0, const std::vector<double>& x0, double t1, double rtol,
-                                      double atol) {
+std::vector<double> integrate_reference(const RightHandSide& f, double t0, const std::vector<double>& x0, double t1,
+                                        double rtol, double atol) {
   eom::Options options;
   options.rtol = rtol;
   options.atol = atol;

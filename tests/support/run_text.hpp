@@ -8,6 +8,6 @@ namespace eomgen::test {
 
 /// Writes the model to NAME.toml in the build folder and runs it; `adjust` as in run_model.
 FinishedRun run_text(const std::string& name, const std::string& sections,
-                  const std::function<void(pipeline::SimulationRequest&)>& adjust = {});
+                     const std::function<void(pipeline::SimulationRequest&)>& adjust = {});
 
 }  // namespace eomgen::test

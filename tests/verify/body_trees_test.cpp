@@ -220,7 +220,8 @@ TEST_CASE("body trees: Euler parameters of a free body, and of one that hangs on
 }
 
 TEST_CASE("body trees: bodies that rotate about their own centres of mass on one shaft") {
-  check_both_formulations(parameters + body("shaft", "\"L/2*E3\"", "{ axis = \"E3\", angle = \"psi\" }") +
-                    body("A", "\"L*E3\"", "{ axis = \"shaft.e2\", angle = \"theta\" }", "shaft") +
-                    body("payload", "\"L*E3 + b*A.e3 + b*payload.e1\"", "{ axis = \"A.e3\", angle = \"phi\" }", "A"));
+  check_both_formulations(
+      parameters + body("shaft", "\"L/2*E3\"", "{ axis = \"E3\", angle = \"psi\" }") +
+      body("A", "\"L*E3\"", "{ axis = \"shaft.e2\", angle = \"theta\" }", "shaft") +
+      body("payload", "\"L*E3 + b*A.e3 + b*payload.e1\"", "{ axis = \"A.e3\", angle = \"phi\" }", "A"));
 }

@@ -33,8 +33,9 @@ Certificate with_fault(const model::Model& model, const std::string& formulation
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   Subjects subjects;
   subjects.systems = all_formulations(m);
-  const auto chosen = std::find_if(subjects.systems.begin(), subjects.systems.end(),
-                                   [&](const EquationSystem& s) { return s.formulation == formulation && s.approach == approach; });
+  const auto chosen = std::find_if(subjects.systems.begin(), subjects.systems.end(), [&](const EquationSystem& s) {
+    return s.formulation == formulation && s.approach == approach;
+  });
   REQUIRE(chosen != subjects.systems.end());
   fault(*m.dag, *chosen);
   return certify(m, subjects, {50, 3, 1});
@@ -146,7 +147,7 @@ TEST_CASE("certificate: a wrong entry of M, A, b or gamma fails and is named") {
   check_only_failing(lagrange_two([](symbolic::Dag& dag, EquationSystem& s) { s.A[1] = dag.neg(s.A[1]); }), culprit);
   check_only_failing(lagrange_two([](symbolic::Dag& dag, EquationSystem& s) { s.b[0] = dag.one(); }), culprit);
   check_only_failing(lagrange_two([](symbolic::Dag& dag, EquationSystem& s) { s.gamma[0] = dag.neg(s.gamma[0]); }),
-                    culprit);
+                     culprit);
 }
 
 TEST_CASE("certificate: wrong energies, power and outputs fail and are named") {
@@ -155,13 +156,14 @@ TEST_CASE("certificate: wrong energies, power and outputs fail and are named") {
   };
   const auto half = [](symbolic::Dag& dag, Ref& r) { r = dag.div(r, dag.integer(2)); };
   check_only_failing(lagrange_one([&](symbolic::Dag& dag, EquationSystem& s) { half(dag, s.energy); }), "lagrange I");
-  check_only_failing(lagrange_one([&](symbolic::Dag& dag, EquationSystem& s) { half(dag, s.potential); }), "lagrange I");
+  check_only_failing(lagrange_one([&](symbolic::Dag& dag, EquationSystem& s) { half(dag, s.potential); }),
+                     "lagrange I");
   check_only_failing(lagrange_one([&](symbolic::Dag& dag, EquationSystem& s) { half(dag, s.power); }), "lagrange I");
   check_only_failing(lagrange_one([&](symbolic::Dag& dag, EquationSystem& s) {
-                      for (system::Output& o : s.outputs)
-                        if (o.name == "R_dot") half(dag, o.value);
-                    }),
-                    "lagrange I");
+                       for (system::Output& o : s.outputs)
+                         if (o.name == "R_dot") half(dag, o.value);
+                     }),
+                     "lagrange I");
 }
 
 namespace {
@@ -229,7 +231,8 @@ TEST_CASE("certificate: code that reports undecided friction at every state fail
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   Subjects subjects;
   subjects.systems = all_formulations(m);
-  const std::string first = subjects.systems.front().formulation + " " + system::name(subjects.systems.front().approach);
+  const std::string first =
+      subjects.systems.front().formulation + " " + system::name(subjects.systems.front().approach);
   CHECK(certify(m, subjects, {50, 3, 1}).pass);
   subjects.programs.push_back({"program", [](const Real&, const std::vector<Real>&, const std::vector<Real>&,
                                              const std::vector<Real>&, int) { return std::vector<Real>{}; }});

@@ -155,7 +155,8 @@ TEST_CASE("oracle: variable mass, drag, attraction, torsion, an energy of the ex
   const Real &K = s.parameters[0], &X = s.q[0], &V = s.qdot[0];
   const Real drag = -K * K * K / 2 * cln::abs(V) * V, pull = -K * (K * s.t) / ((X + K) * (X + K));
   const Real torsion = -(K * X * X + K * 2 * X * V) * 2 * X, spring = -4 * K * cln::expt(X - K, 3);
-  check_rows(oracle.dalembert_residuals(s, {}), {K * s.t * s.qddot[0] + K * V - drag - pull - torsion - spring - 3 * X * X});
+  check_rows(oracle.dalembert_residuals(s, {}),
+             {K * s.t * s.qddot[0] + K * V - drag - pull - torsion - spring - 3 * X * X});
 }
 
 TEST_CASE("oracle: energies and their rates balance for the true motion") {

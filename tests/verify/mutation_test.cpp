@@ -210,8 +210,8 @@ std::string library(const test::TemporaryFolder& folder, const Subject& s, const
   for (std::size_t k = 0; k < changes.size(); ++k) out << mutator.changed(changes[k], fmt::format("{}_m{}", s.name, k));
   out.close();
   const std::string library = folder.path + "/" + s.name + ".so";
-  const emit::ProcessResult finished = emit::run_process({EOMGEN_TEST_CC, "-std=c11", "-O0", "-w", "-fPIC", "-shared", "-o",
-                                                     library, folder.path + "/" + s.name + ".c", "-lm"});
+  const emit::ProcessResult finished = emit::run_process({EOMGEN_TEST_CC, "-std=c11", "-O0", "-w", "-fPIC", "-shared",
+                                                          "-o", library, folder.path + "/" + s.name + ".c", "-lm"});
   INFO(finished.output);
   REQUIRE(finished.status == 0);
   return library;
@@ -235,7 +235,8 @@ bool differ(const verify::CompiledForm& a, const verify::CompiledForm& b, const 
   const std::vector<eom::ContactShape> shapes(s.program.contacts.begin(), s.program.contacts.end());
   const std::vector<int> modes = eom::contact_modes(shapes, 12);
   for (std::size_t point = 0; point < 3 * modes.size(); ++point) {
-    verify::AbiArguments at{numeric::exact(s.context.start_time) + random(), {}, {}, {}, modes[point % modes.size()], 4};
+    verify::AbiArguments at{
+        numeric::exact(s.context.start_time) + random(), {}, {}, {}, modes[point % modes.size()], 4};
     for (const double x : s.context.start) at.x.push_back(numeric::exact(x) + random() / 2);
     for (const emit::Quantity& p : s.context.parameters)
       at.p.push_back(numeric::exact(p.value) * (1 + random() / 4) + (p.value == 0 ? random() : cln::cl_RA(0)));

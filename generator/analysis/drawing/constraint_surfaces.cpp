@@ -7,8 +7,8 @@
 #include <set>
 #include <string_view>
 
-#include "analysis/drawing/sample_value.hpp"
 #include "analysis/drawing/parts.hpp"
+#include "analysis/drawing/sample_value.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/evaluate.hpp"
 
@@ -41,8 +41,8 @@ bool is_moving(const symbolic::Dag& dag, const std::vector<Ref>& expressions) {
 
 /// Constraints on the position of a particle: not those of joints, contacts of bodies and Euler parameters.
 bool binds_places(const mechanics::Mechanics& m, const mechanics::Constraint& c, const model::Constraint& of) {
-  return c.holonomic() && c.redundancy == mechanics::Redundancy::independent && !of.joint && !of.contact && !of.unit && !of.coupled &&
-         !m.dag->is_zero(c.psi);
+  return c.holonomic() && c.redundancy == mechanics::Redundancy::independent && !of.joint && !of.contact && !of.unit &&
+         !of.coupled && !m.dag->is_zero(c.psi);
 }
 
 const model::Constraint& written(const model::Model& model, const mechanics::Constraint& c) {
@@ -244,7 +244,8 @@ bool Drawing::is_rigid(std::uint32_t a, std::uint32_t b) {
   const std::set<std::uint32_t> of = coordinates_of(dag, {d[0], d[1], d[2]});
   if (of.empty() || is_moving(dag, {square})) return false;
   std::vector<Ref> slopes;
-  for (const std::uint32_t i : of) slopes.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0})(square));
+  for (const std::uint32_t i : of)
+    slopes.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0})(square));
   return mechanics::vanishes(dag, slopes);
 }
 
@@ -275,7 +276,8 @@ void Drawing::pivots() {
     std::vector<Ref> changes;
     for (const std::uint32_t i : coordinates_of(dag, {arm[0], arm[1], arm[2]})) {
       for (const Vec3& axis : e)
-        changes.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0})(symbolic::dot(dag, arm, axis)));
+        changes.push_back(
+            symbolic::partial_derivative(dag, {SymbolKind::coordinate, i, 0})(symbolic::dot(dag, arm, axis)));
     }
     if (!mechanics::vanishes(dag, changes)) continue;
     parts_.joints.push_back({"", vector(symbolic::add(dag, r, arm)), {body.place - 1, std::nullopt}});

@@ -258,8 +258,8 @@ class Drawer {
     const DrawnPlace& place = parts_.places[i];
     const PlanePoint at = sketch.on_paper(point(place.at));
     if (place.from == -1) sketch.dot(sketch.on_paper(Point::Zero()), 1.2, false);
-    const bool is_solid =
-        std::any_of(solids_.begin(), solids_.end(), [i](const PlacedSolids& p) { return p.place == i && !p.solids.empty(); });
+    const bool is_solid = std::any_of(solids_.begin(), solids_.end(),
+                                      [i](const PlacedSolids& p) { return p.place == i && !p.solids.empty(); });
     if (std::string_view(place.kind) == "particle") return sketch.dot(at, is_solid ? 0.8 : 2.4, true);
     sketch.dot(at, std::string_view(place.kind) == "body" && !is_solid ? 2.4 : 0.8, true);
   }

@@ -15,9 +15,9 @@ namespace eomgen::analysis {
 
 struct DrawnForce {
   std::string name;
-  const char* kind;  // "applied", "constraint", "friction"
-  std::size_t at;    // index of the point of application among the outputs: first the drawing's, then these
-  std::size_t value;   // index of the vector, likewise
+  const char* kind;        // "applied", "constraint", "friction"
+  std::size_t at;          // index of the point of application among the outputs: first the drawing's, then these
+  std::size_t value;       // index of the vector, likewise
   bool is_moment = false;  // a moment
 };
 

@@ -194,7 +194,8 @@ std::vector<double> sizes_of(const Drawing& drawing, const symbolic::Dag& dag, c
   return result;
 }
 
-std::optional<std::array<double, 3>> gravity_direction(mechanics::Mechanics& mechanics, const std::vector<double>& parameters) {
+std::optional<std::array<double, 3>> gravity_direction(mechanics::Mechanics& mechanics,
+                                                       const std::vector<double>& parameters) {
   for (const model::Force& force : mechanics.model->forces) {
     const model::NodeId gravity = force.acceleration();
     if (gravity == model::no_node) continue;

@@ -41,7 +41,7 @@ struct DrawnContact {
   std::string name;
   std::size_t at;
   std::optional<std::array<std::size_t, 2>> tangents;  // of a plane
-  std::size_t foot;  // a vector: projection of the point onto the contact plane
+  std::size_t foot;                                    // a vector: projection of the point onto the contact plane
 };
 /// The surface or curve to which holonomic constraints restrict a particle, or the centre of a body, with two or three
 /// coordinates of its own.
@@ -53,9 +53,9 @@ struct DrawnSurface {
   std::vector<std::uint32_t> others;       // indices in the model of coordinates that move or reshape the surface
   std::vector<std::size_t> others_at;      // indices of these among the outputs
   std::optional<std::size_t> integrals;    // a vector: the first integrals over time
-  bool has_contact = false;                    // a contact: with friction, or unilateral
-  bool changes_shape = false;                   // psi changes with time or with the other coordinates
-  bool is_moving = false;                      // reshapes, or moves as a whole
+  bool has_contact = false;                // a contact: with friction, or unilateral
+  bool changes_shape = false;              // psi changes with time or with the other coordinates
+  bool is_moving = false;                  // reshapes, or moves as a whole
   std::vector<symbolic::Ref> psi;          // functions of all these coordinates, time and parameters
   symbolic::Vec3 position;
 };
@@ -149,7 +149,8 @@ class Drawing {
 std::vector<double> sizes_of(const Drawing& drawing, const symbolic::Dag& dag, const std::vector<double>& parameters);
 
 /// Returns the direction of uniform gravity; nullopt if there is none.
-std::optional<std::array<double, 3>> gravity_direction(mechanics::Mechanics& mechanics, const std::vector<double>& parameters);
+std::optional<std::array<double, 3>> gravity_direction(mechanics::Mechanics& mechanics,
+                                                       const std::vector<double>& parameters);
 
 /// Whether an expression depends on parameters only.
 bool depends_on_parameters_only(const symbolic::Dag& dag, symbolic::Ref expression);

@@ -82,7 +82,7 @@ class Placing {
 }  // namespace
 
 std::vector<PlacedSolids> placed_solids(const DrawnParts& parts, const std::vector<double>& sizes,
-                                  const std::vector<double>& values) {
+                                        const std::vector<double>& values) {
   return Placing(parts, sizes, values).run();
 }
 

@@ -17,6 +17,6 @@ struct PlacedSolids {
 };
 
 std::vector<PlacedSolids> placed_solids(const DrawnParts& parts, const std::vector<double>& sizes,
-                                  const std::vector<double>& values);
+                                        const std::vector<double>& values);
 
 }  // namespace eomgen::analysis

@@ -26,7 +26,7 @@ struct SurfaceSetting {
   Eigen::VectorXd q;
   Eigen::VectorXd low, high;  // bounds of the coordinates; infinite: no bound
   std::vector<bool> angle;    // whether each coordinate is an angle
-  double size;  // of the figure, in the unit of x
+  double size;                // of the figure, in the unit of x
 };
 
 struct SurfaceLine {

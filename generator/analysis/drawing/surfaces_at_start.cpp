@@ -14,8 +14,8 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 
 std::vector<SurfaceLine> surfaces_at_start(const mechanics::Mechanics& m, const DrawnParts& parts,
-                                         const run::Scene& scene, const std::vector<double>& values, const View& view,
-                                         double size) {
+                                           const run::Scene& scene, const std::vector<double>& values, const View& view,
+                                           double size) {
   std::vector<SurfaceLine> result;
   for (const DrawnSurface& surface : parts.surfaces) {
     const auto n = static_cast<Index>(surface.coordinates.size()), bound = static_cast<Index>(surface.psi.size());

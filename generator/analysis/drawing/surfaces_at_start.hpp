@@ -5,15 +5,15 @@
 
 #include <vector>
 
-#include "analysis/drawing/surface_lines.hpp"
 #include "analysis/drawing/parts.hpp"
+#include "analysis/drawing/surface_lines.hpp"
 #include "run/scene.hpp"
 
 namespace eomgen::analysis {
 
 /// `values`: of the drawing's expressions. `size`: of the rest of the figure, in the unit of positions.
 std::vector<SurfaceLine> surfaces_at_start(const mechanics::Mechanics& mechanics, const DrawnParts& parts,
-                                         const run::Scene& scene, const std::vector<double>& values, const View& view,
-                                         double size);
+                                           const run::Scene& scene, const std::vector<double>& values, const View& view,
+                                           double size);
 
 }  // namespace eomgen::analysis

@@ -61,7 +61,7 @@ std::optional<VectorXd> CurveTracer::tangent(const CurveEquations& equations, co
 }
 
 std::vector<Point> CurveTracer::trace(const CurveEquations& equations, const VectorXd& start, const VectorXd& low,
-                                 const VectorXd& high) const {
+                                      const VectorXd& high) const {
   const auto first = f_(start);
   if (!first || !first->x.allFinite()) return {};
   const Point begin = first->x;

@@ -10,11 +10,13 @@
 namespace eomgen::analysis {
 
 /// Values (n - 1) and Jacobian (n - 1 x n) of the equations; nullopt if they are undefined.
-using CurveEquations = std::function<std::optional<std::pair<Eigen::VectorXd, Eigen::MatrixXd>>(const Eigen::VectorXd&)>;
+using CurveEquations =
+    std::function<std::optional<std::pair<Eigen::VectorXd, Eigen::MatrixXd>>(const Eigen::VectorXd&)>;
 
 class CurveTracer {
  public:
-  CurveTracer(const SurfaceFunction& function, const SurfaceSetting& place) : f_(function), place_(place), n_(place.q.size()) {}
+  CurveTracer(const SurfaceFunction& function, const SurfaceSetting& place)
+      : f_(function), place_(place), n_(place.q.size()) {}
 
   /// Change of coordinate k that moves the position by about the size of the figure.
   double span(Eigen::Index k) const;

@@ -187,11 +187,13 @@ class Live {
       const model::Parameter& p = model.parameters[i];
       start.parameters.push_back({p.name, p.unit.text, p.note, s_.scene.parameters[i], p.positive,
                                   !is_dependent(i) && !p.initial_value_of && model.start_time != i});
-      const auto place = p.initial_value_of ? std::find(m_.free.begin(), m_.free.end(), *p.initial_value_of) : m_.free.end();
+      const auto place =
+          p.initial_value_of ? std::find(m_.free.begin(), m_.free.end(), *p.initial_value_of) : m_.free.end();
       if (place != m_.free.end()) start.starts.emplace_back(i, static_cast<std::size_t>(place - m_.free.begin()));
     }
     for (std::size_t i = 0; i < model.events.size(); ++i)
-      start.events.push_back({model.events[i].name, bool(s_.scene.ends_run[i]), model::name(model.events[i].direction)});
+      start.events.push_back(
+          {model.events[i].name, bool(s_.scene.ends_run[i]), model::name(model.events[i].direction)});
     for (const std::uint32_t c : m_.free) {
       start.lower.push_back(s_.scene.lower[c]);
       start.upper.push_back(s_.scene.upper[c]);

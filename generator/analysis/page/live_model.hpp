@@ -43,9 +43,8 @@ struct LiveStart {
 };
 
 struct LiveModel {
-  std::string
-      script;        // of the target javascript; its last statement has no side effects; empty: the page replays
-  std::string name;  // of the constant that the script defines
+  std::string script;  // of the target javascript; its last statement has no side effects; empty: the page replays
+  std::string name;    // of the constant that the script defines
   std::string reason;  // a sentence: why the page replays the run
   LiveStart start;
 };

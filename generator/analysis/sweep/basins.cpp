@@ -19,14 +19,16 @@ BasinStatistics::BasinStatistics(const SteadyMotions& found, double within) : to
   }
   for (const SteadyMotion& point : found.points) {
     Attractor goal;
-    for (std::size_t k = 0; k < places.size(); ++k) goal.values.emplace_back(names_[k], display_value(point.l.z[places[k]]));
+    for (std::size_t k = 0; k < places.size(); ++k)
+      goal.values.emplace_back(names_[k], display_value(point.l.z[places[k]]));
     goal.stability = point.verdict.stability;
     attractors_.push_back(std::move(goal));
   }
 }
 
 void BasinStatistics::classify(const std::vector<double>& state) {
-  const auto goal = std::find_if(attractors_.begin(), attractors_.end(), [&](const Attractor& g) { return is_at(g, state); });
+  const auto goal =
+      std::find_if(attractors_.begin(), attractors_.end(), [&](const Attractor& g) { return is_at(g, state); });
   ++(goal == attractors_.end() ? unclassified_ : goal->runs);
 }
 

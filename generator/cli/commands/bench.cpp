@@ -61,7 +61,8 @@ int execute(const Options& options, const CommonOptions& common) {
   const BenchReport report{found, "code compiled with -O2"};
   if (!options.csv.empty()) write_text(options.csv, report.csv());
   const model::Model& model = *request.model;
-  if (plot.wanted()) plot.write(bench::work_precision_diagram(found.rows, model.title.empty() ? model.id : model.title));
+  if (plot.wanted())
+    plot.write(bench::work_precision_diagram(found.rows, model.title.empty() ? model.id : model.title));
   if (common.json) {
     print_document(report.json());
   } else {
@@ -86,7 +87,7 @@ Execute declare_bench(Arguments& app) {
   app.add_flag("--no-libraries", options->no_libraries, "without the solvers of other libraries");
   app.add_output_path("-o,--out,--csv", options->csv, "the table as a CSV file");
   app.add_output_path("--plot,--svg", options->plot,
-                "error over run time, SVG or PNG by its ending; - draws it with characters");
+                      "error over run time, SVG or PNG by its ending; - draws it with characters");
   add_approach(app, options->approach);
   add_form(app, options->form);
   return [options](const CommonOptions& common) { return execute(*options, common); };

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "analysis/latex_document.hpp"
 #include "analysis/equations.hpp"
+#include "analysis/latex_document.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/shared_options.hpp"
-#include "cli/usage.hpp"
 #include "cli/stage_monitor.hpp"
+#include "cli/usage.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -30,8 +30,8 @@ const std::string& in_format(const print::PrintedFormula& item, const std::strin
   return format == "latex" ? item.latex : format == "mathml" ? item.mathml : item.text;
 }
 
-Json to_json(const std::vector<print::PrintedFormula>& items, const std::string& approach, const std::vector<std::string>& show,
-             const std::vector<work::LeftOut>& left_out) {
+Json to_json(const std::vector<print::PrintedFormula>& items, const std::string& approach,
+             const std::vector<std::string>& show, const std::vector<work::LeftOut>& left_out) {
   Json result{{"format", 1}, {"approach", approach}, {"equations", Json::array()}, {"reactions", Json::array()}};
   const bool all = std::find(show.begin(), show.end(), "all") != show.end();
   for (const std::string& key : analysis::equation_keys()) {
@@ -82,8 +82,9 @@ std::string heading_of(const print::PrintedFormula& item) {
   return item.key + ": " + item.role;
 }
 
-std::string readable(const std::vector<print::PrintedFormula>& items, const std::string& approach, const std::string& format,
-                     const std::vector<work::LeftOut>& left_out, const std::vector<analysis::Multiplier>& multipliers) {
+std::string readable(const std::vector<print::PrintedFormula>& items, const std::string& approach,
+                     const std::string& format, const std::vector<work::LeftOut>& left_out,
+                     const std::vector<analysis::Multiplier>& multipliers) {
   std::string text = fmt::format("Approach {}\n", approach), heading;
   for (const print::PrintedFormula& item : items) {
     if (!item.left_out.empty()) continue;

@@ -60,8 +60,9 @@ void warn_of_missing_run(const Options& options, const std::vector<emit::Emitted
   if (std::find(options.with.begin(), options.with.end(), "run") == options.with.end() ||
       std::any_of(files.begin(), files.end(), is_header))
     return;
-  print_message(fmt::format("warning: the target {} has no header of a run: --with run adds the functions that a run calls\n",
-                   options.target));
+  print_message(
+      fmt::format("warning: the target {} has no header of a run: --with run adds the functions that a run calls\n",
+                  options.target));
 }
 
 /// Operations that depend on parameters only, and those of the remaining right-hand side; null if it is not split.
@@ -128,7 +129,8 @@ int execute(const Options& options, const CommonOptions& common) {
   const auto with_form = [constrained](system::Form f) {
     return constrained ? fmt::format(", form {}", system::name(f)) : "";
   };
-  fmt::print("formulation       {}, approach {}{}\n", program.formulation, system::name(program.approach), with_form(program.form));
+  fmt::print("formulation       {}, approach {}{}\n", program.formulation, system::name(program.approach),
+             with_form(program.form));
   fmt::print("operations  {}\n", to_text(program.functions.front().operations));
   if (program.prepared_count() > 0) {
     fmt::print("prepared    {}, after {} once for the parameters\n", to_text(program.functions.back().operations),

@@ -10,8 +10,8 @@
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/shared_options.hpp"
-#include "cli/usage.hpp"
 #include "cli/stage_monitor.hpp"
+#include "cli/usage.hpp"
 #include "work.hpp"
 
 namespace eomgen::cli {
@@ -62,7 +62,8 @@ std::string text(const analysis::SteadyMotion& point, const std::vector<std::str
   std::string out = fmt::format("\n{}, {}: {}\n", linear::name(point.l.kind), linear::in_words(point.verdict.stability),
                                 point.verdict.reason);
   if (point.family_dimension > 0)
-    out += fmt::format("  one of a family of {} dimension{}\n", point.family_dimension, point.family_dimension == 1 ? "" : "s");
+    out += fmt::format("  one of a family of {} dimension{}\n", point.family_dimension,
+                       point.family_dimension == 1 ? "" : "s");
   if (point.l.parameter_change > 0)
     out += fmt::format(
         "  but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one\n",

@@ -116,7 +116,8 @@ std::string text(const Answer& a) {
   for (const std::size_t i : chart.independent)
     out += fmt::format("  {:<24} {:>24}\n", a.problem.flow->names()[i], display_value(a.l.z[i]));
   for (const std::size_t i : chart.dependent) {
-    out += fmt::format("  {:<24} {:>24}   follows from the constraints\n", a.problem.flow->names()[i], display_value(a.l.z[i]));
+    out += fmt::format("  {:<24} {:>24}   follows from the constraints\n", a.problem.flow->names()[i],
+                       display_value(a.l.z[i]));
   }
   out += matrix_text("A", a.l.A, a.states(), a.states());
   if (!a.inputs().empty()) out += matrix_text("B", a.l.B, a.states(), a.inputs());

@@ -81,7 +81,8 @@ std::string page_of(const DeclaredCommand& command, const std::string& documenta
   return head(page, command.summary) +
          fmt::format(".SH SYNOPSIS\n\\fBeomgen {}\\fR{} [\\fIoptions\\fR]\n.SH OPTIONS\n{}", roff(command.name),
                      arguments, options) +
-         tail() + fmt::format(".SH SEE ALSO\n.BR eomgen (1)\n.PP\nThe whole documentation: {}\n", roff(documentation_path));
+         tail() +
+         fmt::format(".SH SEE ALSO\n.BR eomgen (1)\n.PP\nThe whole documentation: {}\n", roff(documentation_path));
 }
 
 std::string page_of_all(const Declaration& declared, const std::string& documentation_path) {
@@ -89,14 +90,16 @@ std::string page_of_all(const Declaration& declared, const std::string& document
   text += ".SH SYNOPSIS\n\\fBeomgen\\fR \\fICOMMAND\\fR \\fIMODEL\\fR [\\fIoptions\\fR]\n.SH DESCRIPTION\n";
   text +=
       "A short text file describes a mechanical system. eomgen derives its equations of motion, holds them against an "
-      "independent oracle, shows them, writes C and C++, integrates, and tells how large the error is.\n.PP\nMODEL is a "
+      "independent oracle, shows them, writes C and C++, integrates, and tells how large the error is.\n.PP\nMODEL is "
+      "a "
       "path, or the name of a model in a folder of models.\n.SH COMMANDS\n";
   std::string also;
   for (const DeclaredCommand& sub : declared.commands()) {
     text += fmt::format(".TP\n.B {}\n{}\n", roff(sub.name), roff(sub.summary));
     also += fmt::format("{}.BR eomgen\\-{} (1)", also.empty() ? "" : ",\n", roff(sub.name));
   }
-  return text + tail() + fmt::format(".SH SEE ALSO\n{}\n.PP\nThe whole documentation: {}\n", also, roff(documentation_path));
+  return text + tail() +
+         fmt::format(".SH SEE ALSO\n{}\n.PP\nThe whole documentation: {}\n", also, roff(documentation_path));
 }
 
 int execute(const Options& options, const CommonOptions& common) {

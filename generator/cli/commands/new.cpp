@@ -29,7 +29,8 @@ int execute(const Options& options, const CommonOptions& common) {
   const std::string file = options.name + ".toml";
   std::error_code none;
   if (std::filesystem::exists(std::filesystem::symlink_status(file, none))) {
-    throw Error("new", SourceLocation{file, 0, 0, 1, ""}, "this file exists already", "choose another name, or remove the file");
+    throw Error("new", SourceLocation{file, 0, 0, 1, ""}, "this file exists already",
+                "choose another name, or remove the file");
   }
   std::string text = starter_text;
   for (std::size_t at; (at = text.find("NAME.")) != std::string::npos;) text.replace(at, 4, options.name);

@@ -107,8 +107,8 @@ class Formulas {
 };
 
 /// `taken`: bytes of the rest of the page.
-void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<conservation::ConservedQuantity>& conserved,
-                   std::size_t taken) {
+void add_equations(Html& html, const mechanics::Mechanics& m,
+                   const std::vector<conservation::ConservedQuantity>& conserved, std::size_t taken) {
   const reading::DisplayForm form = analysis::displayed_form(m);
   html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(form.approach)));
   Formulas formulas(html, taken);
@@ -277,15 +277,16 @@ int execute(const Options& options, const CommonOptions& common) {
     motion = moving.is_null() ? "" : moving.dump();
     plots = Html();
     add_run(plots, simulation, run, recorded, curves, coarser);
-    taken = render_page({title, plots.text() + rest.text(), motion, live.script, live.name, surfaces.script, surfaces.name})
-                .size();
+    taken =
+        render_page({title, plots.text() + rest.text(), motion, live.script, live.name, surfaces.script, surfaces.name})
+            .size();
     if (taken <= largest_motion || recorded.size() <= fewest_rows) break;
     recorded.drop_every_second_row();
   }
   add_head(html, model, !motion.empty());
   add_equations(html, simulation.derived->mechanics, simulation.derived->conserved, taken);
   write_text(file, render_page({title, html.text() + plots.text() + rest.text(), motion, live.script, live.name,
-                         surfaces.script, surfaces.name}));
+                                surfaces.script, surfaces.name}));
   const eom::Outcome outcome = simulation.result.outcome;
   if (common.json) {
     print_document({{"format", 1},

@@ -17,9 +17,8 @@ namespace {
 
 Json document(const SweepOptions& options, const model::Model& model, const Sweep& sweep) {
   const Sweep::Counts counts = sweep.counts();
-  Json found = {
-      {"format", 1},         {"model", model.id},       {"scene", options.scene},     {"runs", sweep.runs()},
-      {"done", counts.done}, {"failed", counts.failed}, {"resumed", sweep.resumed()}, {"file", sweep.path()}};
+  Json found = {{"format", 1},         {"model", model.id},       {"scene", options.scene},     {"runs", sweep.runs()},
+                {"done", counts.done}, {"failed", counts.failed}, {"resumed", sweep.resumed()}, {"file", sweep.path()}};
   if (options.shard) found["shard"] = *options.shard;
   return found;
 }
@@ -76,7 +75,7 @@ Execute declare_sweep(Arguments& app) {
   add_values(app, *options);
   app.add_option("--t-end", options->t_end, "the end of the runs").check(finite_number());
   app.add_output_path("-o,--out", options->out,
-                "the table: F.csv, or F.npz for arrays of columns; without it MODEL_sweep.csv in this folder");
+                      "the table: F.csv, or F.npz for arrays of columns; without it MODEL_sweep.csv in this folder");
   add_outputs(app, *options);
   app.add_option("--jobs", options->jobs, "processes, or threads of an ensemble; without it one for each processor")
       .check(whole_number(1, 1024));

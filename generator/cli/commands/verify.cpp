@@ -6,8 +6,8 @@
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
-#include "cli/usage.hpp"
 #include "cli/stage_monitor.hpp"
+#include "cli/usage.hpp"
 #include "pipeline/verification.hpp"
 
 namespace eomgen::cli {
@@ -25,12 +25,12 @@ Json to_json(const verify::Certificate& certificate) {
   for (const work::LeftOut& l : certificate.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}});
   for (const verify::Comparison& c : certificate.comparisons) {
     formulations.push_back({{"a", c.a},
-                      {"b", c.b},
-                      {"shares_code", c.shares_code},
-                      {"max_relative_difference", c.max_relative_difference},
-                      {"tolerance", c.tolerance},
-                      {"digits_agreed", c.digits_agreed},
-                      {"pass", c.pass}});
+                            {"b", c.b},
+                            {"shares_code", c.shares_code},
+                            {"max_relative_difference", c.max_relative_difference},
+                            {"tolerance", c.tolerance},
+                            {"digits_agreed", c.digits_agreed},
+                            {"pass", c.pass}});
   }
   for (const auto& [reason, count] : certificate.rejected) reasons[reason] = count;
   return {{"format", 1},

@@ -63,7 +63,9 @@ bool MpiProcessGroup::await_start() {
   return phase_ != Phase::stop;
 }
 
-void MpiProcessGroup::start_workers(std::optional<std::uint64_t> run) { broadcast(run ? Phase::work : Phase::nothing, run.value_or(0)); }
+void MpiProcessGroup::start_workers(std::optional<std::uint64_t> run) {
+  broadcast(run ? Phase::work : Phase::nothing, run.value_or(0));
+}
 
 std::optional<std::uint64_t> MpiProcessGroup::first_run() const {
   return phase_ == Phase::work ? std::optional(run_) : std::nullopt;
@@ -174,8 +176,9 @@ std::string MpiProcessGroup::agreed(const std::string& why) {
   return told;
 }
 
-std::string MpiProcessGroup::write(const std::string& path, std::uint64_t begin, const std::vector<TableSegment>& pieces,
-                           const std::function<std::string(std::size_t)>& text) {
+std::string MpiProcessGroup::write(const std::string& path, std::uint64_t begin,
+                                   const std::vector<TableSegment>& pieces,
+                                   const std::function<std::string(std::size_t)>& text) {
   std::string place = path, why;
   int length = static_cast<int>(place.size());
   MPI_Bcast(&length, 1, MPI_INT, 0, MPI_COMM_WORLD);

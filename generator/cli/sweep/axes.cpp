@@ -14,8 +14,8 @@
 namespace eomgen::cli {
 namespace {
 
-using analysis::GridAxis;
 using analysis::Design;
+using analysis::GridAxis;
 using analysis::SampledAxis;
 using symbolic::Rational;
 

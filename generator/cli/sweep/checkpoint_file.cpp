@@ -46,7 +46,8 @@ OpenFile open_own(const std::string& path) {
 
 }  // namespace
 
-CheckpointFile::CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t)> contains_run, Role part)
+CheckpointFile::CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t)> contains_run,
+                               Role part)
     : file_(std::move(file)), place_(file_), key_(std::move(key)), contains_run_(std::move(contains_run)) {
   std::error_code none;
   kept_ = !is_standard_output(file_) && (!fs::exists(file_, none) || fs::is_regular_file(file_, none));

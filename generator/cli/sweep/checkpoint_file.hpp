@@ -20,14 +20,12 @@ namespace eomgen::cli {
 /// written directly.
 class CheckpointFile {
  public:
-  enum class Role {
-    whole,
-    member
-  };  // member: a process of a group other than its leader; it takes nothing over
+  enum class Role { whole, member };  // member: a process of a group other than its leader; it takes nothing over
 
   /// `key` identifies the sweep; it is in the first line of the file. `belongs`: whether the table has this run. Throws
   /// Error if there is an unfinished table of another sweep.
-  CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t run)> contains_run, Role part = Role::whole);
+  CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t run)> contains_run,
+                 Role part = Role::whole);
 
   const Rows& rows() const { return rows_; }  // sorted before the first add() and after finish()
   void sort() { rows_.sort(); }

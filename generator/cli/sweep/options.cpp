@@ -9,7 +9,7 @@
 namespace eomgen::cli {
 
 std::string sweep_key(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
-                   const std::string& points_hash) {
+                      const std::string& points_hash) {
   std::string text = model.content_hash + '\n' + options.scene + '\n' +
                      (options.no_error_estimate || options.ensemble ? "plain" : "estimate");
   for (const auto* list : {&options.grid, &options.set, &options.outputs}) {

@@ -24,6 +24,6 @@ struct SweepOptions : SceneOptions {
 
 /// Key that identifies a sweep: the bytes of the model and all options.
 std::string sweep_key(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
-                   const std::string& points_hash);
+                      const std::string& points_hash);
 
 }  // namespace eomgen::cli

@@ -63,12 +63,13 @@ std::string RowFormatter::format_point(std::size_t run, const Point& point) cons
 }
 
 std::string RowFormatter::format_refused(std::size_t run, const Point& point, const std::string& why) const {
-  return format_point(run, point) + "," + refused_outcome + ",,," + std::string(names_.size() + 1, ',') + "," + field(why);
+  return format_point(run, point) + "," + refused_outcome + ",,," + std::string(names_.size() + 1, ',') + "," +
+         field(why);
 }
 
 std::string RowFormatter::format_row(std::size_t run, const Point& point, const run::RunResult& result) const {
   std::string text = format_point(run, point) + fmt::format(",{},{},{},{}", eom::name(result.outcome), number(result.t),
-                                                         result.statistics.steps, result.statistics.rhs_evaluations);
+                                                            result.statistics.steps, result.statistics.rhs_evaluations);
   for (const std::string& name : names_) {
     const auto found =
         std::find_if(result.final.begin(), result.final.end(), [&](const auto& entry) { return entry.first == name; });

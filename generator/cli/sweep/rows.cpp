@@ -112,7 +112,7 @@ void Rows::sort() {
 }
 
 void Rows::for_each(std::size_t first, std::size_t last,
-                const std::function<void(std::size_t, std::string_view)>& take) const {
+                    const std::function<void(std::size_t, std::string_view)>& take) const {
   constexpr std::size_t piece = 1 << 14;
   std::string held;  // a block of one file, since neighbouring rows are mostly adjacent
   std::uint32_t file = 0;

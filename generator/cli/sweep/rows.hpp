@@ -50,7 +50,7 @@ class Rows {
   std::size_t length(std::size_t i) const { return places_[i].length; }
   /// Calls `take` with the rows in [first, last). Throws std::system_error.
   void for_each(std::size_t first, std::size_t last,
-            const std::function<void(std::size_t run, std::string_view line)>& take) const;
+                const std::function<void(std::size_t run, std::string_view line)>& take) const;
 
  private:
   struct Place {

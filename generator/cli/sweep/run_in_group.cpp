@@ -83,7 +83,7 @@ void Sweep::write_table_in_group() {
   const auto text = [&](std::size_t piece) {
     std::string lines;
     rows.for_each(parts[piece].first, parts[piece].last,
-              [&lines](std::size_t, std::string_view line) { lines.append(line) += '\n'; });
+                  [&lines](std::size_t, std::string_view line) { lines.append(line) += '\n'; });
     return lines;
   };
   std::optional<eom::AtomicFile> table;

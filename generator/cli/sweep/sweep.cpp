@@ -14,8 +14,8 @@
 #include "cli/sweep/workers.hpp"
 #include "cli/usage.hpp"
 #include "model/names.hpp"
-#include "pipeline/start_checker.hpp"
 #include "pipeline/graph_trimmer.hpp"
+#include "pipeline/start_checker.hpp"
 #include "run/eligibility.hpp"
 
 namespace eomgen::cli {
@@ -67,7 +67,8 @@ void require_names(const analysis::SweepPoints& points, const SweepOptions& opti
 }
 
 std::string key_of_table(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
-                         const std::string& points_hash, const analysis::Shard& shard, const analysis::SweepPoints& points) {
+                         const std::string& points_hash, const analysis::Shard& shard,
+                         const analysis::SweepPoints& points) {
   return sweep_key(options, model, seed, points_hash) + (options.shard ? shard_header(shard, points.size()) : "");
 }
 
@@ -89,11 +90,14 @@ Sweep::Sweep(const SweepOptions& options, const CommonOptions& common, const mod
       points_(points_of(options, common.seed, points_hash_)),
       shard_(shard_of(options, points_, common.group != nullptr ? common.group->workers() : 1)),
       file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
-      checkpoint_((require_names(points_, options, model),
-               require_writable_targets({{"--out", file_, is_npz(file_) ? ".npz" : ".csv"}}, model.file, common.json), file_),
-              key_of_table(options, model, common.seed, points_hash_, shard_, points_),
-              [this](std::size_t run) { return run < points_.size() && shard_.contains(run); },
-              common.group == nullptr || common.group->is_leader() ? CheckpointFile::Role::whole : CheckpointFile::Role::member),
+      checkpoint_(
+          (require_names(points_, options, model),
+           require_writable_targets({{"--out", file_, is_npz(file_) ? ".npz" : ".csv"}}, model.file, common.json),
+           file_),
+          key_of_table(options, model, common.seed, points_hash_, shard_, points_),
+          [this](std::size_t run) { return run < points_.size() && shard_.contains(run); },
+          common.group == nullptr || common.group->is_leader() ? CheckpointFile::Role::whole
+                                                               : CheckpointFile::Role::member),
       resumed_(checkpoint_.rows().size()),
       group_(common.group) {
   if (is_npz(file_) && (options.shard || group_ != nullptr)) {
@@ -174,7 +178,8 @@ std::optional<analysis::BasinStatistics> Sweep::basins() const {
 /// In a group of processes the rows are read from the table, because other processes have rows too.
 void Sweep::for_each_row(const std::function<void(std::string_view row)>& take) const {
   if (group_ == nullptr)
-    return checkpoint_.rows().for_each(0, checkpoint_.rows().size(), [&take](std::size_t, std::string_view line) { take(line); });
+    return checkpoint_.rows().for_each(0, checkpoint_.rows().size(),
+                                       [&take](std::size_t, std::string_view line) { take(line); });
   const OpenFile table(::open(checkpoint_.path().c_str(), O_RDONLY | O_CLOEXEC));
   std::size_t number = 0;
   for_each_line(table, [&](std::string_view line, std::uint64_t) {

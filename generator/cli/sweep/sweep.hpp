@@ -11,9 +11,9 @@
 #include "cli/sweep/checkpoint_file.hpp"
 #include "cli/sweep/options.hpp"
 #include "cli/sweep/points.hpp"
+#include "cli/sweep/process_group.hpp"
 #include "cli/sweep/row_formatter.hpp"
 #include "cli/sweep/statistics.hpp"
-#include "cli/sweep/process_group.hpp"
 #include "pipeline/ensemble.hpp"
 #include "pipeline/simulate.hpp"
 

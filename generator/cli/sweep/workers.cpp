@@ -117,9 +117,9 @@ Child start(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t
 }  // namespace
 
 void run_in_processes(const std::vector<std::size_t>& jobs, std::size_t processes,
-                  const std::function<std::string(std::size_t)>& line,
-                  const std::function<void(std::size_t, const std::string&)>& done,
-                  const std::atomic<bool>& interrupt) {
+                      const std::function<std::string(std::size_t)>& line,
+                      const std::function<void(std::size_t, const std::string&)>& done,
+                      const std::atomic<bool>& interrupt) {
   const std::size_t count = std::min(processes, jobs.size());
   std::vector<Child> children;
   for (std::size_t first = 0; first < count; ++first) children.push_back(start(jobs, first, count, line));

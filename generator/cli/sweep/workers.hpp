@@ -13,8 +13,8 @@ namespace eomgen::cli {
 /// completion. If a job returns an empty line, it and the remaining jobs of its process are skipped. Returns early if
 /// `interrupt` is set. Throws Error if a process dies.
 void run_in_processes(const std::vector<std::size_t>& jobs, std::size_t processes,
-                  const std::function<std::string(std::size_t)>& line,
-                  const std::function<void(std::size_t job, const std::string& line)>& done,
-                  const std::atomic<bool>& interrupt);
+                      const std::function<std::string(std::size_t)>& line,
+                      const std::function<void(std::size_t job, const std::string& line)>& done,
+                      const std::atomic<bool>& interrupt);
 
 }  // namespace eomgen::cli

@@ -31,8 +31,8 @@ system::Solution factorised(Dag& dag, const BodyTree& tree, const std::vector<Li
   return result;
 }
 
-/// Applies to particles that form a tree (derive/trees/particle_tree.hpp), derived with the constraints imposed; in Approach
-/// I only if there are no constraints to impose.
+/// Applies to particles that form a tree (derive/trees/particle_tree.hpp), derived with the constraints imposed; in
+/// Approach I only if there are no constraints to impose.
 std::optional<system::EquationSystem> by_recursive(Mechanics& m, system::Approach approach) {
   if (!m.body_rotations.empty()) return equations_of_bodies(m, approach, "recursive", factorised);
   const std::optional<TreeEquations> motion = derive_tree_motion(m, approach);

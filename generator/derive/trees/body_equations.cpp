@@ -51,8 +51,8 @@ std::vector<Ref> multipliers_of_lengths(const Mechanics& m, const BodyTree& tree
 
 }  // namespace
 
-std::optional<system::EquationSystem> equations_of_bodies(Mechanics& m, system::Approach approach, const char* formulation,
-                                                          BodySolve solve) {
+std::optional<system::EquationSystem> equations_of_bodies(Mechanics& m, system::Approach approach,
+                                                          const char* formulation, BodySolve solve) {
   if (approach == system::Approach::one && !m.fixed.empty()) return std::nullopt;
   Dag& dag = *m.dag;
   std::optional<BodyTree> tree = body_tree(m, m.free, true);

@@ -126,7 +126,8 @@ std::vector<LinkMotion> link_motions(Dag& dag, const BodyTree& tree) {
       motion.W[i][i] = dag.neg(dag.add(ww[(i + 1) % 3][(i + 1) % 3], ww[(i + 2) % 3][(i + 2) % 3]));
     }
     const Vec3 twice = symbolic::scale(dag, dag.integer(2), cross(dag, parent.w, link.offset_rate));
-    motion.origin_bias = symbolic::add(dag, times(dag, parent.W, link.offset), symbolic::add(dag, twice, link.offset_bias));
+    motion.origin_bias =
+        symbolic::add(dag, times(dag, parent.W, link.offset), symbolic::add(dag, twice, link.offset_bias));
     result.push_back(motion);
   }
   return result;
@@ -175,7 +176,7 @@ Vec3 joint_moment(Dag& dag, const BodyLink& link, const std::vector<Ref>& Q) {
 }
 
 std::vector<Ref> coordinate_accelerations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion,
-                              const std::vector<Ref>& u, std::vector<symbolic::Pivot>& pivots) {
+                                          const std::vector<Ref>& u, std::vector<symbolic::Pivot>& pivots) {
   const Vec3 none = symbolic::zero_vector(dag);
   std::vector<Vec3> alpha;
   std::vector<Ref> result = u;
@@ -197,8 +198,8 @@ std::vector<Ref> coordinate_accelerations(Dag& dag, const BodyTree& tree, const 
       pivots.push_back({angles->divisor(), dag.one()});
       continue;
     }
-    const Vec3 left =
-        symbolic::subtract(dag, alpha.back(), symbolic::add(dag, link.rotation.to_own_axes(dag, parent), motion[l].bias));
+    const Vec3 left = symbolic::subtract(dag, alpha.back(),
+                                         symbolic::add(dag, link.rotation.to_own_axes(dag, parent), motion[l].bias));
     if (!link.parameters.empty()) {
       parameter_rates(dag, link, left, result);
       continue;

@@ -12,7 +12,8 @@ struct LinkMotion {
   Vec3 w;     // angular velocity
   Vec3 bias;  // angular acceleration without the parts of the parent and of qddot
   Mat3 W;     // v -> w x (w x v)
-  Vec3 origin_bias;  // acceleration of the origin at zero alpha, a of the parent and zero qddot, along the parent's axes
+  Vec3
+      origin_bias;  // acceleration of the origin at zero alpha, a of the parent and zero qddot, along the parent's axes
 };
 
 /// One entry per link.
@@ -27,6 +28,6 @@ Vec3 joint_moment(Dag& dag, const BodyLink& link, const std::vector<Ref>& Q);
 /// Converts the derivatives u of the rates to those of the coordinates. They differ for absolute links only, where u is
 /// the angular acceleration. The divisors of their angles are appended to `pivots`.
 std::vector<Ref> coordinate_accelerations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion,
-                              const std::vector<Ref>& u, std::vector<symbolic::Pivot>& pivots);
+                                          const std::vector<Ref>& u, std::vector<symbolic::Pivot>& pivots);
 
 }  // namespace eomgen::derive

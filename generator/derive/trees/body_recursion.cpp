@@ -86,10 +86,12 @@ class Recursion {
       const Composite& own = composite_[l];
       Composite& to = composite_[place(link.parent)];
       const Vec3 md = symbolic::scale(dag_, own.mass, link.offset);
-      const Vec3 h = link.is_carried_by_parent() ? link.rotation.to_parent(dag_, own.moment) : symbolic::zero_vector(dag_);
+      const Vec3 h =
+          link.is_carried_by_parent() ? link.rotation.to_parent(dag_, own.moment) : symbolic::zero_vector(dag_);
       to.mass = dag_.add(to.mass, own.mass);
       to.moment = symbolic::add(dag_, to.moment, symbolic::add(dag_, md, h));
-      if (link.is_carried_by_parent()) to.inertia = add(dag_, to.inertia, link.rotation.to_parent(dag_, own.inertia, true));
+      if (link.is_carried_by_parent())
+        to.inertia = add(dag_, to.inertia, link.rotation.to_parent(dag_, own.inertia, true));
       // m (d.d 1 - d d^T) + 2 d.h 1 - d h^T - h d^T
       const Ref trace = dag_.add(dot(dag_, md, link.offset), dag_.mul(dag_.integer(2), dot(dag_, link.offset, h)));
       for (std::size_t i = 0; i < 3; ++i) {

@@ -31,11 +31,11 @@ struct Link {
 struct ParticleTree {
   QuasiCoordinates coordinates;
   std::vector<TreeParticle> particles;
-  std::vector<Vec3> J;          // per theta
+  std::vector<Vec3> J;               // per theta
   std::vector<std::size_t> link_of;  // link of each theta
-  std::vector<Link> links;      // parents first
-  Vec3 gravity;                 // acceleration, of uniform gravity
-  std::vector<Ref> f;           // per theta: the forces without gravity, S^-T (Q - dU/dq)
+  std::vector<Link> links;           // parents first
+  Vec3 gravity;                      // acceleration, of uniform gravity
+  std::vector<Ref> f;                // per theta: the forces without gravity, S^-T (Q - dU/dq)
 
   /// Whether link `outer` is `inner` or one of its descendants.
   bool is_beyond(std::size_t outer, std::size_t inner) const;

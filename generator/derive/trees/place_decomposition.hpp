@@ -16,6 +16,7 @@ struct PlaceDecomposition {
 };
 
 /// Empty if the position is not such a sum (cross products, unit vectors, ..).
-std::optional<PlaceDecomposition> decompose_place(const Mechanics& mechanics, mechanics::Lowering& lower, std::uint32_t place);
+std::optional<PlaceDecomposition> decompose_place(const Mechanics& mechanics, mechanics::Lowering& lower,
+                                                  std::uint32_t place);
 
 }  // namespace eomgen::derive

@@ -202,9 +202,9 @@ class Tensions {
   Tidy tidy_;
   const ParticleTree& tree_;
   const TensionLinks& links_;
-  std::vector<Vec3> free_;                              // W of each link
+  std::vector<Vec3> free_;                                        // W of each link
   std::vector<std::pair<std::size_t, Vec3>> tension_directions_;  // link, direction
-  std::vector<Ref> tension_;                            // T / m_first, for each of these
+  std::vector<Ref> tension_;                                      // T / m_first, for each of these
 };
 
 }  // namespace

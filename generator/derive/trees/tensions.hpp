@@ -12,7 +12,7 @@ namespace eomgen::derive {
 /// One link with its particle. Vectors are in theta and its rate.
 struct TensionLink {
   int parent = -1;
-  Ref inverse_mass_ratio;                       // m_first / m_k: dimensionless inverse mass
+  Ref inverse_mass_ratio;           // m_first / m_k: dimensionless inverse mass
   std::vector<std::size_t> joints;  // indices of theta
   std::vector<Vec3> J;
   std::vector<Vec3> N;  // the directions of force: normal to all J, and to one another

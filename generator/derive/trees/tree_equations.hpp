@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// M_theta, f_theta of a tree of particles (particle_tree.hpp), and their transformation to the coordinates of the model.
+// M_theta, f_theta of a tree of particles (particle_tree.hpp), and their transformation to the coordinates of the
+// model.
 #pragma once
 
 #include "derive/equations.hpp"
@@ -9,7 +10,7 @@ namespace eomgen::derive {
 
 struct TreeEquations {
   ParticleTree tree;
-  FullEquations of_model;        // M = S^T M_theta S, f = S^T f_theta, of the requested coordinates
+  FullEquations of_model;                // M = S^T M_theta S, f = S^T f_theta, of the requested coordinates
   system::QuasiVelocityEquations quasi;  // the same before the transformation
 };
 

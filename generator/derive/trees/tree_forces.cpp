@@ -28,7 +28,8 @@ Vec3 extract_gravity(Mechanics& m, ImposedExpansion& expanded, Ref& non_gravity_
   return sum;
 }
 
-std::vector<Ref> non_gravity_forces(Mechanics& m, const std::vector<std::uint32_t>& of, ImposedExpansion& expanded, Ref potential) {
+std::vector<Ref> non_gravity_forces(Mechanics& m, const std::vector<std::uint32_t>& of, ImposedExpansion& expanded,
+                                    Ref potential) {
   Dag& dag = *m.dag;
   const std::vector<Ref> Q = generalized_forces(m);
   std::vector<Ref> by_coordinate;

@@ -12,7 +12,8 @@ namespace eomgen::derive {
 /// Expands functions of time, and imposes the constraints if `imposed`.
 class ImposedExpansion {
  public:
-  ImposedExpansion(Mechanics& m, bool imposed) : imposed_(imposed), impose_(constraint_substitution(m)), write_(time_function_substitution(m)) {}
+  ImposedExpansion(Mechanics& m, bool imposed)
+      : imposed_(imposed), impose_(constraint_substitution(m)), write_(time_function_substitution(m)) {}
   Ref operator()(Ref r) { return write_(imposed_ ? impose_(r) : r); }
   Vec3 operator()(const Vec3& v) { return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])}; }
 
@@ -25,6 +26,7 @@ class ImposedExpansion {
 Vec3 extract_gravity(Mechanics& m, ImposedExpansion& expanded, Ref& non_gravity_potential);
 
 /// Q_i - d(potential)/dq_i of the coordinates `of`.
-std::vector<Ref> non_gravity_forces(Mechanics& m, const std::vector<std::uint32_t>& of, ImposedExpansion& expanded, Ref potential);
+std::vector<Ref> non_gravity_forces(Mechanics& m, const std::vector<std::uint32_t>& of, ImposedExpansion& expanded,
+                                    Ref potential);
 
 }  // namespace eomgen::derive

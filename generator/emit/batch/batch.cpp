@@ -152,7 +152,8 @@ class File {
   /// Prints the function for the lanes of one block.
   std::string block_function(const std::string& function, const FunctionText& text) {
     const std::string block = name_for_width(function + "_block"),
-                      arguments = fmt::format("const struct {}block* {}, size_t {}", prefix_, text.block, text.block_index),
+                      arguments =
+                          fmt::format("const struct {}block* {}, size_t {}", prefix_, text.block, text.block_index),
                       handed = fmt::format("{}, {}", text.block, text.block_index);
     std::string result;
     for (std::size_t k = 0; k < text.parts.size(); ++k) {
@@ -211,7 +212,8 @@ class File {
       std::string values;
       for (const Quantity& input : context_.inputs)
         values += (values.empty() ? "" : ", ") + dialect_.value(input.value);
-      body += wrapped(fmt::format("  static const {} standing[] = {{{}}};", dialect_.lane_type, values), "      ") + "\n";
+      body +=
+          wrapped(fmt::format("  static const {} standing[] = {{{}}};", dialect_.lane_type, values), "      ") + "\n";
     }
     const auto size = [&](std::size_t count) {
       if (count > 0) numbers += (numbers.empty() ? "" : " + ") + std::to_string(count);
@@ -247,7 +249,8 @@ class File {
                           size(results[r].second));
     }
     if (function == "taylor") fill += rows_asked_for();
-    body += fmt::format("  {} room[({}WIDTH + 1)*({})];\n", dialect_.lane_type, prefix_, numbers.empty() ? "1" : numbers);
+    body +=
+        fmt::format("  {} room[({}WIDTH + 1)*({})];\n", dialect_.lane_type, prefix_, numbers.empty() ? "1" : numbers);
     const std::string head =
         wrapped(fmt::format("static int {}({})", name_for_width(function + "_many"), batch_arguments(list)), "    ");
     return fmt::format("{}\n{{\n{}{}  return {}run(&call, count, stride, room, codes);\n}}\n", head, body, fill,

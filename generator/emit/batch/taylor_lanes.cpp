@@ -120,14 +120,16 @@ std::string taylor_block(const program::Program& program, const ModelNames& name
     for (const std::string& name : *list) table.declare(name);
   }
   of_next.prepared.clear();
-  for (std::size_t i = 0; i < taylor.workspace_size(); ++i) of_next.prepared.push_back(table.declare(fmt::format("w_{}", i)));
+  for (std::size_t i = 0; i < taylor.workspace_size(); ++i)
+    of_next.prepared.push_back(table.declare(fmt::format("w_{}", i)));
   const std::size_t orders = program::taylor_order(taylor);
   return kernel("taylor_start", print_function(taylor.start, names, context, dialect)) +
          kernel("taylor_next", print_function(taylor.next, of_next, context, dialect)) +
          fmt::format(fmt::runtime(text), dialect.lane_prefix, fmt::arg("name", mangled_id(context.id)),
                      fmt::arg("n", program.state_count()), fmt::arg("products", taylor.product_count),
                      fmt::arg("series", taylor.product_count * orders), fmt::arg("prepared", taylor.workspace_size()),
-                     fmt::arg("zeros", taylor.order_zero_count), fmt::arg("coefficients", program.state_count() * (orders + 1)));
+                     fmt::arg("zeros", taylor.order_zero_count),
+                     fmt::arg("coefficients", program.state_count() * (orders + 1)));
 }
 
 }  // namespace eomgen::emit

@@ -57,7 +57,8 @@ std::string definition(const std::string& name, const program::Function& functio
           "{})\n{{\n{}}}\n\n",
           name, k + 1, list, real, text.work, text.parts[k]);
     }
-    const std::string handed = (text.near_angles_first ? text.guarded + ", " : "") + argument_names(function, text, names);
+    const std::string handed =
+        (text.near_angles_first ? text.guarded + ", " : "") + argument_names(function, text, names);
     text.body = part_calls(name, text, handed, real);
     text.parts.clear();
     return parts + definition(name, function, text, names, real, internal);

@@ -58,19 +58,20 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
                            "nullptr"};
   std::vector<EmittedFile> files = {
       {name + ".hpp",
-       render_template(skeleton::cpp_model_hpp,
-                {{"banner", banner(program, context, "// ", "// ", "")},
-                 {"name", name},
-                 {"includes", packs ? "#include <cfloat>\n#include <cmath>\n#include <cstddef>\n#include <cstring>"
-                                    : "#include <cmath>\n#include <cstddef>"},
-                 {"kernels", packs ? generic_sincos + sincos_kernel(template_kernel_prefix, "inline", "std::") : ""},
-                 {"enums", index_names(names, program.prepared_count(), program.taylor)},
-                 {"prepared", (program.prepared_count() > 0 ? prepared_struct : "") + taylor},
-                 {"info", string_literal(info_json(program, context), "      ")},
-                 {"defaults", defaults_body(program, context, dialect)},
-                 {"comparison", selftest_comparison(context, test, dialect)},
-                 {"selftest", selftest_body(program, context, test, dialect)}},
-                functions)}};
+       render_template(
+           skeleton::cpp_model_hpp,
+           {{"banner", banner(program, context, "// ", "// ", "")},
+            {"name", name},
+            {"includes", packs ? "#include <cfloat>\n#include <cmath>\n#include <cstddef>\n#include <cstring>"
+                               : "#include <cmath>\n#include <cstddef>"},
+            {"kernels", packs ? generic_sincos + sincos_kernel(template_kernel_prefix, "inline", "std::") : ""},
+            {"enums", index_names(names, program.prepared_count(), program.taylor)},
+            {"prepared", (program.prepared_count() > 0 ? prepared_struct : "") + taylor},
+            {"info", string_literal(info_json(program, context), "      ")},
+            {"defaults", defaults_body(program, context, dialect)},
+            {"comparison", selftest_comparison(context, test, dialect)},
+            {"selftest", selftest_body(program, context, test, dialect)}},
+           functions)}};
   for (EmittedFile& file : emit_c(program, context)) files.push_back(std::move(file));
   return files;
 }

@@ -68,7 +68,9 @@ std::string harmless(std::string text) {
   return text;
 }
 
-const char* array_of(const Dialect& dialect) { return dialect.rounding_function.empty() ? "Float64Array" : "Float32Array"; }
+const char* array_of(const Dialect& dialect) {
+  return dialect.rounding_function.empty() ? "Float64Array" : "Float32Array";
+}
 
 std::string parameter_list(const std::string& function, const FunctionText& text, const ModelNames& names) {
   std::string list;

@@ -62,15 +62,16 @@ std::vector<EmittedFile> emit_python(const program::Program& program, const Emis
   }
   std::vector<EmittedFile> files = emit_c(program, context);
   const std::string name = mangled_id(context.id);
-  std::vector<std::pair<std::string, std::string>> values = {
-      {"name", name}, {"banner", banner(program, context, "# ", "# ", "")}, {"functions_of_c", c_function_declarations()}};
+  std::vector<std::pair<std::string, std::string>> values = {{"name", name},
+                                                             {"banner", banner(program, context, "# ", "# ", "")},
+                                                             {"functions_of_c", c_function_declarations()}};
   const std::vector<std::pair<std::string, std::string>> numbers = number_values(context.single_error.has_value());
   values.insert(values.end(), numbers.begin(), numbers.end());
   files.push_back({name + "_simulate.c", render_template(skeleton::python_simulate_c, values, {})});
   files.push_back({module_name(context.id) + ".py", render_template(skeleton::python_model_py, values, {})});
   if (context.run) {
-    files.push_back(
-        {name + "_run.cpp", render_template(skeleton::python_run_cpp,
+    files.push_back({name + "_run.cpp",
+                     render_template(skeleton::python_run_cpp,
                                      {{"banner", banner(program, context, "// ", "// ", "")}, {"name", name}}, {})});
   }
   return files;

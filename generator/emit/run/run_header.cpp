@@ -232,18 +232,19 @@ std::vector<EmittedFile> emit_run_header(const program::Program& program, const 
   const bool infinite = std::any_of(problem.ranges.begin(), problem.ranges.end(), [](const eom::hybrid::Range& r) {
     return std::isinf(r.lower) || std::isinf(r.upper);
   });
-  return {{name + "_run.hpp",
-           render_template(skeleton::cpp_run_hpp,
-                    {{"name", name},
-                     {"banner", banner(program, context, "// ", "// ", "")},
-                     {"code", code_text(program, *problem.code, name)},
-                     {"infinity",
-                      infinite ? "  constexpr double infinity = std::numeric_limits<double>::infinity();\n" : ""},
-                     {"parameters", fmt::format("{}", problem.parameters.size())},
-                     {"problem", problem_text(*context.run)},
-                     {"names", used_names(problem)},
-                     {"columns", wrapped(fmt::format("  return {};", text(context.run->columns)), "      ")}},
-                    {})}};
+  return {
+      {name + "_run.hpp",
+       render_template(
+           skeleton::cpp_run_hpp,
+           {{"name", name},
+            {"banner", banner(program, context, "// ", "// ", "")},
+            {"code", code_text(program, *problem.code, name)},
+            {"infinity", infinite ? "  constexpr double infinity = std::numeric_limits<double>::infinity();\n" : ""},
+            {"parameters", fmt::format("{}", problem.parameters.size())},
+            {"problem", problem_text(*context.run)},
+            {"names", used_names(problem)},
+            {"columns", wrapped(fmt::format("  return {};", text(context.run->columns)), "      ")}},
+           {})}};
 }
 
 }  // namespace eomgen::emit

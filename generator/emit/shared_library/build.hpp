@@ -26,16 +26,17 @@ struct Recipe {
 };
 
 struct BuiltLibrary {
-  std::string path;                              // path of the library in the cache
-  bool cached = false;                           // true if it was cached already
-  double seconds = 0;                            // time of the compiler
-  std::shared_ptr<const ScratchFolder> folder = {};  // private folder of this process, which lives as long as this pointer
-  std::string note = {};                         // reason for the private folder
+  std::string path;     // path of the library in the cache
+  bool cached = false;  // true if it was cached already
+  double seconds = 0;   // time of the compiler
+  std::shared_ptr<const ScratchFolder> folder =
+      {};                 // private folder of this process, which lives as long as this pointer
+  std::string note = {};  // reason for the private folder
 };
 
 /// Builds a library or finds it in the cache. `examine` is called on a new library before it enters the cache and
-/// throws to reject it. Throws Error{ErrorKind::tool}: no compiler (with the install command), or a compiler failure (with
-/// its output).
+/// throws to reject it. Throws Error{ErrorKind::tool}: no compiler (with the install command), or a compiler failure
+/// (with its output).
 BuiltLibrary build_library(const Recipe& recipe, const std::function<void(const std::string& path)>& examine = {});
 
 }  // namespace eomgen::emit

@@ -91,7 +91,8 @@ CacheFolder cache_folder() {
     std::error_code failed;
     if (folder.has_parent_path()) fs::create_directories(folder.parent_path(), failed);
     if (failed || (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)) fail(folder);
-  } else if (requested.by_name && S_ISDIR(found.st_mode) && found.st_uid == ::geteuid() && (found.st_mode & 0022) == 0) {
+  } else if (requested.by_name && S_ISDIR(found.st_mode) && found.st_uid == ::geteuid() &&
+             (found.st_mode & 0022) == 0) {
     ::chmod(folder.c_str(), 0700);  // created by an earlier version: readable by others, not writable
   }
   std::string why = distrust_reason(folder);
@@ -127,8 +128,8 @@ void clear_leftovers(const fs::path& folder, const std::string& name) {
     struct stat found {};
     const int file = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (file < 0) continue;
-    const bool old =
-        ::fstat(file, &found) == 0 && found.st_uid == ::geteuid() && std::time(nullptr) - found.st_mtime > creation_grace;
+    const bool old = ::fstat(file, &found) == 0 && found.st_uid == ::geteuid() &&
+                     std::time(nullptr) - found.st_mtime > creation_grace;
     if (old && ::flock(file, LOCK_EX | LOCK_NB) == 0) fs::remove_all(place, none);
     ::close(file);
   }

@@ -26,7 +26,7 @@ class ScratchFolder {
 struct CacheFolder {
   std::filesystem::path path;
   std::shared_ptr<ScratchFolder> scratch;  // private replacement for this process if the cache is not trusted
-  std::string reason;                     // reason for the replacement
+  std::string reason;                      // reason for the replacement
 };
 
 /// The cache folder: $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen, ~/.cache/eomgen, or eomgen-UID in the temporary folder.

@@ -5,7 +5,7 @@
 namespace eomgen::emit {
 
 CompiledModel compile_and_load(const std::string& c_source, const std::string& header, const std::string& name,
-                          const std::atomic<bool>* interrupt) {
+                               const std::atomic<bool>* interrupt) {
   Recipe recipe;
   recipe.name = name;
   recipe.files = {{name + ".c", c_source}, {name + ".h", header}};

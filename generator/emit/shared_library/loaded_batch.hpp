@@ -30,8 +30,8 @@ inline constexpr int own_time = 1, own_parameters = 2, own_inputs = 4, own_prepa
 
 class LoadedBatch {
  public:
-  /// Throws Error{ErrorKind::tool} as LoadedModel does, and if a batch of the default state differs in any bit from that
-  /// state alone.
+  /// Throws Error{ErrorKind::tool} as LoadedModel does, and if a batch of the default state differs in any bit from
+  /// that state alone.
   LoadedBatch(const std::string& path, const std::string& name);
 
   LoadedModel model;
@@ -39,7 +39,7 @@ class LoadedBatch {
   PreparedBatchFunction rhs_prepared = nullptr;  // exists if `prepare` exists
   BatchJacobian jac = nullptr;                   // null if not emitted or too large for lanes
   BatchSeries taylor = nullptr;
-  int width = 1;                                 // number of lanes
+  int width = 1;                                     // number of lanes
   std::shared_ptr<const ScratchFolder> folder = {};  // private folder of this process, if used
 
  private:

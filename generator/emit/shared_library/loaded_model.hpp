@@ -34,11 +34,11 @@ class ScratchFolder;
 
 struct CompiledModel {
   LoadedModel model;
-  std::string path;                              // path of the library in the cache
-  bool cached = false;                           // true if it was cached already
-  double seconds = 0;                            // time of the compiler
+  std::string path;                                  // path of the library in the cache
+  bool cached = false;                               // true if it was cached already
+  double seconds = 0;                                // time of the compiler
   std::shared_ptr<const ScratchFolder> folder = {};  // private folder of this process, if used
-  std::string note = {};                         // reason for the private folder
+  std::string note = {};                             // reason for the private folder
 };
 
 /// Compiles `c_source` (NAME.c; `header` is NAME.h) into the cache, unless an intact entry exists, and loads it. The
@@ -46,6 +46,6 @@ struct CompiledModel {
 /// Throws Error{ErrorKind::tool}: no compiler (with the install command), or a compiler failure (with its output).
 /// `interrupt` terminates the compiler.
 CompiledModel compile_and_load(const std::string& c_source, const std::string& header, const std::string& name,
-                          const std::atomic<bool>* interrupt = nullptr);
+                               const std::atomic<bool>* interrupt = nullptr);
 
 }  // namespace eomgen::emit

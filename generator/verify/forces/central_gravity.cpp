@@ -32,7 +32,8 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
   const model::NodeId center = argument_expression(force, "center");
   for (const Mass& p : list_masses(w.model)) {
     const Jet strength = w.now.scalar(argument_expression(force, "GM")) * w.now.scalar(p.mass);
-    w.apply_attraction(strength, w.now.place(p.place) - w.now.vector(center), w.by_q.place(p.place) - w.by_q.vector(center));
+    w.apply_attraction(strength, w.now.place(p.place) - w.now.vector(center),
+                       w.by_q.place(p.place) - w.by_q.vector(center));
   }
 }
 

@@ -7,7 +7,8 @@ namespace {
 void add_virtual_work(const model::Force& force, VirtualWork& w) {
   const model::NodeId a = argument_expression(force, "a"), b = argument_expression(force, "b");
   const Jet length = norm(w.with_time_slope().vector(b) - w.with_time_slope().vector(a), w.precision);
-  const Jet tension = w.now.scalar(argument_expression(force, "coefficient")) * length.slope(w.with_time_slope().level(), 0);
+  const Jet tension =
+      w.now.scalar(argument_expression(force, "coefficient")) * length.slope(w.with_time_slope().level(), 0);
   const Vector along = w.now.vector(b) - w.now.vector(a);
   w.apply_force((-tension / norm(along, w.precision)) * along, w.by_q.vector(b) - w.by_q.vector(a));
 }

@@ -7,7 +7,8 @@ namespace {
 void add_virtual_work(const model::Force& force, VirtualWork& w) {  // (8.53)
   const model::NodeId on = argument_expression(force, "on");
   const Vector v = w.velocity(on);
-  const Jet factor = w.now.scalar(argument_expression(force, "density")) * w.now.scalar(argument_expression(force, "area")) *
+  const Jet factor = w.now.scalar(argument_expression(force, "density")) *
+                     w.now.scalar(argument_expression(force, "area")) *
                      w.now.scalar(argument_expression(force, "coefficient")) / -2;
   w.apply_force((factor * norm(v, w.precision)) * v, w.by_q.vector(on));
 }

@@ -10,8 +10,8 @@
 namespace eomgen::verify::forces {
 
 struct ForceLaw {
-  void (*add_virtual_work)(const model::Force&, VirtualWork&) = nullptr;       // its virtual work
-  void (*potential)(const model::Force&, Potentials&) = nullptr;  // its potential energy, if it has one
+  void (*add_virtual_work)(const model::Force&, VirtualWork&) = nullptr;  // its virtual work
+  void (*potential)(const model::Force&, Potentials&) = nullptr;          // its potential energy, if it has one
 };
 
 #define FORCE(name) ForceLaw name();

@@ -5,7 +5,8 @@ namespace eomgen::verify::forces {
 namespace {
 
 void add_virtual_work(const model::Force& force, VirtualWork& w) {
-  for (const model::Argument& component : force.arguments) w.apply_to_coordinate(component.index, w.now.scalar(component.value));
+  for (const model::Argument& component : force.arguments)
+    w.apply_to_coordinate(component.index, w.now.scalar(component.value));
 }
 
 }  // namespace

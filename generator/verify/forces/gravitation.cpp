@@ -8,9 +8,10 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
   const std::vector<Mass> all = list_masses(w.model);
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t k = i + 1; k < all.size(); ++k) {
-      const Jet strength = w.now.scalar(argument_expression(force, "G")) * w.now.scalar(all[i].mass) * w.now.scalar(all[k].mass);
+      const Jet strength =
+          w.now.scalar(argument_expression(force, "G")) * w.now.scalar(all[i].mass) * w.now.scalar(all[k].mass);
       w.apply_attraction(strength, w.now.place(all[i].place) - w.now.place(all[k].place),
-                w.by_q.place(all[i].place) - w.by_q.place(all[k].place));
+                         w.by_q.place(all[i].place) - w.by_q.place(all[k].place));
     }
 }
 

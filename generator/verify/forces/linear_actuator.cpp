@@ -6,7 +6,8 @@ namespace {
 
 void add_virtual_work(const model::Force& force, VirtualWork& w) {
   const Vector d = w.by_q.vector(argument_expression(force, "b")) - w.by_q.vector(argument_expression(force, "a"));
-  w.apply_generalized_force(w.now.scalar(argument_expression(force, "force")), norm(d, w.precision));  // along the distance
+  w.apply_generalized_force(w.now.scalar(argument_expression(force, "force")),
+                            norm(d, w.precision));  // along the distance
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {  // (8.52)
   const model::Body& body = w.model.bodies[argument(force, "on")->index];
   const Jet factor = w.now.scalar(body.mass) * w.now.scalar(argument_expression(force, "coefficient"));
   w.apply_force(factor * cross(w.now.angular_velocity(body.frame), w.velocity_of_place(body.place)),
-          w.by_q.place(body.place));
+                w.by_q.place(body.place));
 }
 
 }  // namespace

@@ -6,7 +6,8 @@ namespace {
 
 void add_virtual_work(const model::Force& force, VirtualWork& w) {
   const Jet moment = w.now.scalar(argument_expression(force, "moment"));
-  if (argument_expression(force, "angle") != model::no_node) return w.apply_generalized_force(moment, w.by_q.scalar(argument_expression(force, "angle")));
+  if (argument_expression(force, "angle") != model::no_node)
+    return w.apply_generalized_force(moment, w.by_q.scalar(argument_expression(force, "angle")));
   const Vector axis = w.now.vector(argument_expression(force, "axis"));
   const Vector on_b = (moment / norm(axis, w.precision)) * axis;
   w.apply_moment(on_b, argument(force, "B")->index);

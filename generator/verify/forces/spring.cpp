@@ -12,7 +12,8 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
   const Jet stiffness = w.by_q.scalar(argument_expression(force, "stiffness"));
   // Without a free length the energy is smooth where the ends coincide.
   if (w.by_q.scalar(argument_expression(force, "length")).is_exactly_zero())
-    return w.apply_elastic_force(stiffness, w.by_q.vector(argument_expression(force, "b")) - w.by_q.vector(argument_expression(force, "a")));
+    return w.apply_elastic_force(
+        stiffness, w.by_q.vector(argument_expression(force, "b")) - w.by_q.vector(argument_expression(force, "a")));
   w.apply_elastic_force(stiffness, w.by_q.extension(force));
 }
 

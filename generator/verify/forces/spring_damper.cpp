@@ -20,7 +20,8 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
 
 void potential(const model::Force& force, Potentials& U) {
   const Vector d = U.at.vector(argument_expression(force, "b")) - U.at.vector(argument_expression(force, "a"));
-  const Jet length = U.at.scalar(argument_expression(force, "length")), half = U.at.scalar(argument_expression(force, "stiffness")) / 2;
+  const Jet length = U.at.scalar(argument_expression(force, "length")),
+            half = U.at.scalar(argument_expression(force, "stiffness")) / 2;
   if (length.is_exactly_zero()) return U.add(half * dot(d, d));
   const Jet extension = norm(d, U.precision) - length;
   U.add(half * extension * extension);

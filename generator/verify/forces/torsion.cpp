@@ -7,9 +7,11 @@ namespace {
 void add_virtual_work(const model::Force& force, VirtualWork& w) {
   const Jet angle = w.by_q.scalar(argument_expression(force, "angle"));
   if (argument_expression(force, "stiffness") != model::no_node)
-    w.apply_elastic_force(w.by_q.scalar(argument_expression(force, "stiffness")), angle - w.by_q.scalar(argument_expression(force, "rest")));
+    w.apply_elastic_force(w.by_q.scalar(argument_expression(force, "stiffness")),
+                          angle - w.by_q.scalar(argument_expression(force, "rest")));
   if (argument_expression(force, "coefficient") != model::no_node) {
-    const Jet rate = w.with_time_slope().scalar(argument_expression(force, "angle")).slope(w.with_time_slope().level(), 0);
+    const Jet rate =
+        w.with_time_slope().scalar(argument_expression(force, "angle")).slope(w.with_time_slope().level(), 0);
     w.apply_generalized_force(-(w.now.scalar(argument_expression(force, "coefficient")) * rate), angle);
   }
 }

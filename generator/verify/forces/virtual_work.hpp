@@ -8,8 +8,8 @@
 #include <set>
 #include <vector>
 
-#include "verify/argument.hpp"
 #include "verify/applied_forces.hpp"
+#include "verify/argument.hpp"
 
 namespace eomgen::verify {
 

@@ -59,7 +59,8 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
     if (2 * system.coordinates + options.quadratures > x0.size())
       throw std::invalid_argument("eom::integrate: ggl needs a state that begins with coordinates and velocities");
     ConstraintEquations rows(system);
-    if (rows.evaluate(t0, x0.data()) == 0 && (rows.select_independent(), !rows.are_satisfied(x0.data(), start_tolerance)))
+    if (rows.evaluate(t0, x0.data()) == 0 &&
+        (rows.select_independent(), !rows.are_satisfied(x0.data(), start_tolerance)))
       throw std::invalid_argument(
           "eom::integrate: the start of ggl does not meet the constraints; eom::Projection "
           "(eom/constraints/projection.hpp) moves it there");
@@ -149,8 +150,8 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
 
  private:
   static constexpr int most_rounds = 40;
-  static constexpr double start_tolerance = 1e-6;    // of the coordinates or rates
-  static constexpr double stagnation_ratio = 0.9;              // of a residual: above this ratio it no longer decreases
+  static constexpr double start_tolerance = 1e-6;        // of the coordinates or rates
+  static constexpr double stagnation_ratio = 0.9;        // of a residual: above this ratio it no longer decreases
   static constexpr double rounding_level = 4 * epsilon;  // of the terms of a constraint
   static constexpr double tolerance =
       1e-10;  // of the coordinates or rates: a larger residual of a row that is not selected is a contradiction
@@ -168,7 +169,8 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
     for (std::size_t j = 0; j < c_; ++j)
       for (std::size_t i = 0; i < c_; ++i) {
         double sum = M_[i + c_ * j];
-        for (std::size_t a = rows_.position_row_count(); a < extra_; ++a) sum += mean * rows_.slope(a, i) * rows_.slope(a, j);
+        for (std::size_t a = rows_.position_row_count(); a < extra_; ++a)
+          sum += mean * rows_.slope(a, i) * rows_.slope(a, j);
         mass_(i, j) = sum;
       }
     if (!mass_.factor()) return code_no_convergence;

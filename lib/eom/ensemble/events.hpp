@@ -24,8 +24,8 @@ class EventMonitor {
  public:
   static constexpr bool dense = true;
 
-  EventMonitor(std::string_view method, MemberRhs& member_rhs, std::span<const EventFunction> functions, OnCrossing& on_crossing,
-             const EnsembleOptions& options, std::size_t slots)
+  EventMonitor(std::string_view method, MemberRhs& member_rhs, std::span<const EventFunction> functions,
+               OnCrossing& on_crossing, const EnsembleOptions& options, std::size_t slots)
       : method_(method),
         member_rhs_(member_rhs),
         functions_(functions.begin(), functions.end()),
@@ -55,7 +55,8 @@ class EventMonitor {
   struct Functions {
     One& one;
     int operator()(double t, const double* x, double* values) const { return one.events(t, x, values); }
-    auto hidden_crossing(const StepView& view, std::size_t i, int side, double from, double to) const requires requires {
+    auto hidden_crossing(const StepView& view, std::size_t i, int side, double from,
+                         double to) const requires requires {
       one.hidden_crossing(view, i, side, from, to);
     }
     { return one.hidden_crossing(view, i, side, from, to); }

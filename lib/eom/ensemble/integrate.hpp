@@ -35,8 +35,9 @@ inline void check(const EnsembleOptions& options, std::size_t states) {
 /// Integrates in lanes if the method of this name supports them; else returns false. make_watch() -> Unwatched,
 /// EventMonitor.
 template <class Rhs, class Start, class Done, class MakeWatch>
-bool integrate_in_lanes(std::string_view method, Rhs& rhs, std::size_t members, std::size_t states, std::size_t parameters,
-              const EnsembleOptions& options, Start& start, Done& done, const MakeWatch& make_watch) {
+bool integrate_in_lanes(std::string_view method, Rhs& rhs, std::size_t members, std::size_t states,
+                        std::size_t parameters, const EnsembleOptions& options, Start& start, Done& done,
+                        const MakeWatch& make_watch) {
   using Watch = decltype(make_watch());
   const auto by = [&]<class T>(T*) {
     if constexpr (requires { typename LanesOf<T, Rhs, Watch::dense>::type; }) {
@@ -70,8 +71,8 @@ bool has_lanes(std::string_view method, const EnsembleOptions& options) {
 
 /// Integrates one member after the other in each thread, by any method, if lanes are not supported.
 template <class Rhs, class Start, class Done>
-void integrate_one_by_one(std::string_view method, Rhs& rhs, std::size_t members, std::size_t states, std::size_t parameters,
-                const EnsembleOptions& options, Start& start, Done& done) {
+void integrate_one_by_one(std::string_view method, Rhs& rhs, std::size_t members, std::size_t states,
+                          std::size_t parameters, const EnsembleOptions& options, Start& start, Done& done) {
   run_in_threads(options.threads, members, [&](const auto& next) {
     const Options same = options_of(options);
     std::vector<double> x(states), p(parameters);
@@ -92,14 +93,14 @@ void integrate_one_by_one(std::string_view method, Rhs& rhs, std::size_t members
 /// EnsembleEnd&) receives each end, in no particular order. `threads` threads call all three at once. Explicit
 /// Runge-Kutta methods integrate many members side by side. So does `rodas` if rhs has jacobian()
 /// (rosenbrock_lanes.hpp), and `taylor` if it has taylor() (series_lanes.hpp). Other methods integrate them one by one
-/// in each thread if rhs.member_rhs(member, p) returns the right-hand side of one member. Throws std::invalid_argument for
-/// any other method, and for invalid options.
+/// in each thread if rhs.member_rhs(member, p) returns the right-hand side of one member. Throws std::invalid_argument
+/// for any other method, and for invalid options.
 template <class Rhs, class Start, class Done>
 void integrate_ensemble(std::string_view method, Rhs&& rhs, std::size_t members, std::size_t states,
                         std::size_t parameters, const EnsembleOptions& options, Start&& start, Done&& done) {
   ensemble::check(options, states);
   if (ensemble::integrate_in_lanes(method, rhs, members, states, parameters, options, start, done,
-                         [] { return ensemble::Unwatched{}; }))
+                                   [] { return ensemble::Unwatched{}; }))
     return;
   if constexpr (requires(const double* p) { rhs.member_rhs(std::size_t{}, p); })
     return ensemble::integrate_one_by_one(method, rhs, members, states, parameters, options, start, done);
@@ -108,13 +109,15 @@ void integrate_ensemble(std::string_view method, Rhs&& rhs, std::size_t members,
                               "member_rhs()");
 }
 
-/// The same with events, for methods that integrate members side by side. The result of rhs.member_rhs(member, p) also has
-/// events(t, x, values) -> code, with as many values as there are `functions`. The callback (member, const EventPoint&)
-/// receives each crossing, from several threads at once. A breaking one ends the member as stopped_by_event.
+/// The same with events, for methods that integrate members side by side. The result of rhs.member_rhs(member, p) also
+/// has events(t, x, values) -> code, with as many values as there are `functions`. The callback (member, const
+/// EventPoint&) receives each crossing, from several threads at once. A breaking one ends the member as
+/// stopped_by_event.
 template <class Rhs, class OnCrossing, class Start, class Done>
 void integrate_ensemble_events(std::string_view method, Rhs&& rhs, std::size_t members, std::size_t states,
                                std::size_t parameters, const EnsembleOptions& options,
-                               std::span<const EventFunction> functions, OnCrossing&& on_crossing, Start&& start, Done&& done) {
+                               std::span<const EventFunction> functions, OnCrossing&& on_crossing, Start&& start,
+                               Done&& done) {
   ensemble::check(options, states);
   const auto member_rhs = [&rhs](std::size_t member, const double* p) { return rhs.member_rhs(member, p); };
   const auto watch = [&] {

@@ -126,8 +126,9 @@ class SeriesLanes : public LaneRows<Rhs, SeriesSteps, width> {
     rhs_.taylor(lane_.size(), stride_, t_, x1_, p_, orders_.data(), there_, codes_.data());
     for (std::size_t i = 0; i < n_; ++i) std::copy_n(there_ + row(i, 1), stride_, f1_ + i * stride_);
     for (std::size_t l = 0; l < lane_.size(); ++l) {
-      const bool matches_derivative = codes_[l] != 0 || control_.matches_derivative(lane_[l].steps().here.order, h_[l], terms(here_, l),
-                                                              weights(l), [&](std::size_t i) { return of(f1_, i, l); });
+      const bool matches_derivative =
+          codes_[l] != 0 || control_.matches_derivative(lane_[l].steps().here.order, h_[l], terms(here_, l), weights(l),
+                                                        [&](std::size_t i) { return of(f1_, i, l); });
       if (!matches_derivative) codes_[l] = code_jump;
     }
   }

@@ -209,12 +209,13 @@ class Run {
     Crossing crossing = *cut_;
     const double h = cut_h_;
     const bool continues = refine(cut_t_, cut_x_, h, options_.event_parts, crossing, total_.x,
-                              [this](const StepView& view) { return observer_(view); });
+                                  [this](const StepView& view) { return observer_(view); });
     const double progress = std::abs(crossing.t - total_.t);
     total_.t = crossing.t;
     const bool known = g_(total_.t, total_.x.data(), values_.data()) == 0 && std::isfinite(values_[crossing.function]);
     if (known) crossing.value = values_[crossing.function];
-    events_without_progress_ = progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : events_without_progress_ + 1;
+    events_without_progress_ =
+        progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : events_without_progress_ + 1;
     const EventAction answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions()});
     if (!continues) return end(Outcome::stopped_by_event, answer == EventAction::stop ? "" : "stopped by the observer");
     if (answer == EventAction::stop) return end(Outcome::stopped_by_event, "");

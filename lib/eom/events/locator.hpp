@@ -5,12 +5,12 @@
 // Each event function has a side: its last sign. A crossing flips it, so that the residual of a root does not give the
 // same root again. The side may be unknown, at the start of a run on the surface or after a change of the state there.
 // Then it is the sign of the first value beyond rounding on a geometric sequence of points. g may have a member
-// hidden_crossing(view, i, side, from, to), which returns an interval of the step in which function i first leaves its side,
-// whatever the samples show. Each step is sampled at nine points. Between samples of one sign a double root is searched
-// for if they indicate a dip that may reach zero: three samples by the parabola through them, four by the lines through
-// the two outer samples on each side, which bound a convex function, with or without a kink, from below. At each
-// crossing all functions are evaluated. One that is beyond zero there has crossed before, however short the interval
-// and whatever the samples show. A zero without a change of sign is not an event.
+// hidden_crossing(view, i, side, from, to), which returns an interval of the step in which function i first leaves its
+// side, whatever the samples show. Each step is sampled at nine points. Between samples of one sign a double root is
+// searched for if they indicate a dip that may reach zero: three samples by the parabola through them, four by the
+// lines through the two outer samples on each side, which bound a convex function, with or without a kink, from below.
+// At each crossing all functions are evaluated. One that is beyond zero there has crossed before, however short the
+// interval and whatever the samples show. A zero without a change of sign is not an event.
 #pragma once
 
 #include <algorithm>
@@ -79,7 +79,8 @@ class EventLocator {
     const int code = g(t, x, values_.data());
     if (code != 0) return code;
     std::fill(residual_.begin(), residual_.end(), 0.0);
-    for (std::size_t i = 0; i < functions_.size(); ++i) side_[i] = exceeds_rounding(i, values_[i]) ? sign(values_[i]) : 0;
+    for (std::size_t i = 0; i < functions_.size(); ++i)
+      side_[i] = exceeds_rounding(i, values_[i]) ? sign(values_[i]) : 0;
     for (const Crossing& c : crossed) {
       const double near = std::max(4 * std::abs(c.value), crossed_rounding * size_[c.function]);
       if (!(std::abs(values_[c.function]) > near)) side_[c.function] = 0;
@@ -208,7 +209,8 @@ class EventLocator {
     s = tolerance;
     for (std::size_t k = 0; k < decades; ++k, s *= 10) {
       if (!(std::abs(v[k]) > 4 * residual_[i])) continue;
-      if (exceeds_rounding(i, v[k]) || (k + 2 < decades && grows(k) && grows(k + 1))) return set_side(view, i, sign(v[k]), s);
+      if (exceeds_rounding(i, v[k]) || (k + 2 < decades && grows(k) && grows(k + 1)))
+        return set_side(view, i, sign(v[k]), s);
     }
     for (std::size_t k = 1; k < places.size(); ++k) {
       if (exceeds_rounding(i, sample(k, i))) return set_side(view, i, sign(sample(k, i)), places[k]);

@@ -44,7 +44,8 @@ class Code {
       : steps_(std::move(table.steps)), numbers_(std::move(table.numbers)), roots_(std::move(table.roots)) {
     for (Step& step : steps_) {
       bool depends_on_state = step.op == Op::variable && step.a[0] > 0;
-      for (std::size_t k = 0; k < operands(step.op); ++k) depends_on_state = depends_on_state || depends_on_state_[place(step.a[k])];
+      for (std::size_t k = 0; k < operands(step.op); ++k)
+        depends_on_state = depends_on_state || depends_on_state_[place(step.a[k])];
       depends_on_state_.push_back(depends_on_state);
       kink_of_.push_back(kinks_.size());
       if (is_kink(step.op)) kinks_.push_back(depends_on_state_.size() - 1);
@@ -199,9 +200,9 @@ class Code {
   std::vector<Step> steps_;
   std::vector<double> numbers_;
   std::vector<std::int32_t> roots_;
-  std::vector<bool> depends_on_state_;                   // on a variable other than the first
+  std::vector<bool> depends_on_state_;        // on a variable other than the first
   std::vector<std::size_t> kink_of_, kinks_;  // per step: its index among the kinks; the steps of kinks
-  std::vector<int> frozen_;                     // per kink
+  std::vector<int> frozen_;                   // per kink
   mutable std::vector<double> work_;
   mutable std::vector<SlopedInterval> ranges_;
 };

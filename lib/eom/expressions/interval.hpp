@@ -37,8 +37,8 @@ inline Interval operator+(Interval a, Interval b) { return detail::without_nan({
 inline Interval operator-(Interval a, Interval b) { return detail::without_nan({a.low - b.high, a.high - b.low}); }
 inline Interval operator-(Interval a) { return {-a.high, -a.low}; }
 inline Interval operator*(Interval a, Interval b) {
-  const double p = detail::product_of_bounds(a.low, b.low), q = detail::product_of_bounds(a.low, b.high), r = detail::product_of_bounds(a.high, b.low),
-               s = detail::product_of_bounds(a.high, b.high);
+  const double p = detail::product_of_bounds(a.low, b.low), q = detail::product_of_bounds(a.low, b.high),
+               r = detail::product_of_bounds(a.high, b.low), s = detail::product_of_bounds(a.high, b.high);
   return detail::without_nan({std::min({p, q, r, s}), std::max({p, q, r, s})});
 }
 inline Interval operator/(Interval a, Interval b) {

@@ -13,7 +13,7 @@ namespace eom::hybrid {
 
 namespace balance {
 
-inline constexpr double negligible_defect = 1e-4;       // of the energies: a smaller defect does not indicate a missed event
+inline constexpr double negligible_defect = 1e-4;  // of the energies: a smaller defect does not indicate a missed event
 inline constexpr double of_tolerance = 1e4;  // the energy error follows the states and accumulates over many steps
 inline constexpr double of_estimate = 1e3;   // the end state may be more accurate than the states on the way
 inline constexpr double without_estimate = 0.1;

@@ -24,7 +24,7 @@ class ChartSwitch {
 
   bool has_charts() const { return !problem_.charts.empty(); }
   unsigned second_charts() const { return in_; }  // one bit per chart, set for a second chart
-  int mode() const;                        // bits of `mode`
+  int mode() const;                               // bits of `mode`
   const Code& code() const { return *code_; }
 
   /// Sets the start state, in the own charts. Returns whether it has to be exchanged at once.

@@ -25,7 +25,7 @@ class ConstraintRows {
   std::size_t constraint_of(std::size_t row) const {
     if (row < holonomic_) return order_[row];
     return row < position_row_count() || row - integrals_.size() >= order_.size() ? order_.size()
-                                                                            : order_[row - integrals_.size()];
+                                                                                  : order_[row - integrals_.size()];
   }
 
   /// Takes the constants of the integrals from this state; u: the inputs there.

@@ -44,7 +44,8 @@ class ContactModes {
   /// its direction nor its end. `now`: the previous answer; it adds hysteresis.
   bool is_slip_slow(double t, const double* x, double h, bool now);
   /// Handles a crossing of one of the functions and records its events.
-  EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions);
+  EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing,
+                           std::span<EventFunction> functions);
   std::span<const ModeEvent> recorded_events() const { return recorded_; }
   /// The outcome, if a contact has ended the run.
   std::optional<Outcome> end_outcome() const;
@@ -159,7 +160,8 @@ inline std::vector<ModeEvent> ContactModes::start(double t, std::span<double> x)
   largest_gap_ = 0;
   restitution_.assign(contacts.size(), 0.0);
   start_code_ = 0;
-  if (two_directions_) velocities_.update_min_slip(t, x.data(), model_.inputs(t));  // sets the least slip, before it is used
+  if (two_directions_)
+    velocities_.update_min_slip(t, x.data(), model_.inputs(t));  // sets the least slip, before it is used
   std::vector<double> slip(contacts.size(), 0.0);
   std::array<bool, max_contacts> open{};
   int begins = 0;  // unilateral contacts as given by the start, all others sticking
@@ -261,7 +263,8 @@ inline void ContactModes::shift_to_watched(double* g) {
 }
 
 /// Computes the deceleration of each gap in `mode`. False if the right-hand side has no value.
-inline bool ContactModes::compute_gap_decelerations(double t, std::span<double> x, int mode, std::vector<double>& result) {
+inline bool ContactModes::compute_gap_decelerations(double t, std::span<double> x, int mode,
+                                                    std::vector<double>& result) {
   k_.resize(x.size()), middle_.resize(x.size());
   if (rhs_(t, x.data(), mode, k_.data()) != 0) return false;
   constexpr double h = 1e-6;
@@ -294,7 +297,7 @@ inline ContactModes::MetContacts ContactModes::contacts_met(double t, std::span<
     const bool is_closed = contact_digit(mode(), i) < 3;
     const double gap = is_closed ? 0 : g_[contact_values * i + 3], away = motion.gap_rate(t, after, i);
     const bool alone = is_closed ? std::abs(away) <= velocities_.negligible_speed()
-                               : gap > known && gap + (away - std::max(fall[i], 0.0) * time / 2) * time > 0;
+                                 : gap > known && gap + (away - std::max(fall[i], 0.0) * time / 2) * time > 0;
     if (alone) continue;
     const double speed = std::max(std::abs(motion.gap_rate(t, x, i)), std::abs(away));
     result.over = result.over && fall[i] > 0 && speed * speed / (2 * fall[i]) <= known;
@@ -332,7 +335,7 @@ inline void ContactModes::end_bounce_sequence(double& t, std::span<double> x, st
 }
 
 inline EventAction ContactModes::handle_event(double& t, std::span<double> x, const Crossing& crossing,
-                                  std::span<EventFunction> functions) {
+                                              std::span<EventFunction> functions) {
   const auto before = static_cast<std::ptrdiff_t>(switch_->events.size());
   const std::size_t j = crossing.function / contact_values;
   const bool hits =

@@ -27,7 +27,7 @@ class EndErrorEstimator {
   /// first: the run, in the model's own charts; adequacy: for fixed steps, else null; error: the output, which may
   /// already have a warning.
   EndErrorEstimator(const Problem& problem, const Result& first, const Options& options, StepAdequacy* adequacy,
-              EndErrorEstimate& error)
+                    EndErrorEstimate& error)
       : problem_(problem),
         first_(first),
         options_(options),
@@ -46,7 +46,8 @@ class EndErrorEstimator {
     for (const double e : error_.states) error_.max = std::max(error_.max, e);
     if (first_.outcome == Outcome::stopped_by_event) error_.t = stop_;
     error_.rhs_evaluations = estimate.statistics.rhs_evaluations + impulses_.evaluations();
-    if (estimate.outcome != Outcome::done) error_.warning = {EstimateWarning::Kind::tighter_run_differs, 0, 0, estimate.outcome};
+    if (estimate.outcome != Outcome::done)
+      error_.warning = {EstimateWarning::Kind::tighter_run_differs, 0, 0, estimate.outcome};
     if (!has_same_end_) warn({EstimateWarning::Kind::event_not_reached});
     if (adequacy_ != nullptr) check_resolution();
     impulses_.finish();
@@ -132,7 +133,8 @@ class EndErrorEstimator {
   void check_resolution() {
     if (!(adequacy_->largest() > StepAdequacy::unresolved)) return;
     const std::vector<double>& differences = adequacy_->differences();
-    for (std::size_t i = 0; i < std::min(differences.size(), error_.states.size()); ++i) raise_estimate(i, differences[i]);
+    for (std::size_t i = 0; i < std::min(differences.size(), error_.states.size()); ++i)
+      raise_estimate(i, differences[i]);
     warn({EstimateWarning::Kind::unresolved, 0, adequacy_->largest()});
   }
 

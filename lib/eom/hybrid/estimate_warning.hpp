@@ -13,14 +13,14 @@ namespace eom::hybrid {
 struct EstimateWarning {
   enum class Kind {
     none,
-    missed_narrow_force,     // after t fixed steps skip a force that is narrow in the state
-    sensitive_start,   // a start that differs in its last digits ends with another outcome: `other`
-    tighter_run_differs,     // a tighter run ended with the outcome `other`
+    missed_narrow_force,  // after t fixed steps skip a force that is narrow in the state
+    sensitive_start,      // a start that differs in its last digits ends with another outcome: `other`
+    tighter_run_differs,  // a tighter run ended with the outcome `other`
     event_not_reached,    // a tighter run did not stop at the event
-    unresolved,      // fixed steps do not resolve the motion: halving them moves states by `amount` of their size
-    impulse,         // near t a force turns within one step, by `amount` of the velocity
-    not_converging,  // shorter fixed steps change the end by as much again
-    positions_frozen           // steps of `amount` change positions only in their last digits
+    unresolved,           // fixed steps do not resolve the motion: halving them moves states by `amount` of their size
+    impulse,              // near t a force turns within one step, by `amount` of the velocity
+    not_converging,       // shorter fixed steps change the end by as much again
+    positions_frozen      // steps of `amount` change positions only in their last digits
   };
   Kind kind = Kind::none;
   double t = 0, amount = 0;
@@ -43,7 +43,8 @@ inline std::string sentence(const EstimateWarning& warning) {
              "'; the estimate is not to be trusted";
     case Kind::tighter_run_differs:
       return std::string("a tighter run ended with '") + name(warning.other) + "'; the estimate is not to be trusted";
-    case Kind::event_not_reached: return "a tighter run did not stop at the event: the compared ends are at different times";
+    case Kind::event_not_reached:
+      return "a tighter run did not stop at the event: the compared ends are at different times";
     case Kind::unresolved:
       return "steps of this size do not resolve the motion: halving them moves states on the way by " +
              printed(warning.amount, 2) + " of their size; take shorter ones, or a solver that chooses its steps";

@@ -57,13 +57,13 @@ class EventFunctions {
   }
 
   /// The interval of a step in which function i first leaves its side although no sample shows it.
-  std::optional<std::pair<double, double>> hidden_crossing(const StepView& step, std::size_t i, int side, double from, double to,
-                                                  const Sampling& sampling) const {
+  std::optional<std::pair<double, double>> hidden_crossing(const StepView& step, std::size_t i, int side, double from,
+                                                           double to, const Sampling& sampling) const {
     if (charts_of(model_.mode()) != 0) return std::nullopt;
     if (i >= first_contact()) {
       const std::size_t j = (i - first_contact()) / contact_values;
       const bool open = j < problem_.code->contacts.size() && problem_.code->contacts[j].unilateral &&
-                         contact_digit(model_.contact_mode(), j) >= 3;
+                        contact_digit(model_.contact_mode(), j) >= 3;
       if (!open) return std::nullopt;
     }
     return ranges_.first(step, i, side, from, to, sampling);

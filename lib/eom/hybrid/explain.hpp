@@ -19,7 +19,8 @@ inline Reason explain_friction(RunContext& context, const Result& end) {
   for (std::size_t j = 1; j < contacts.size(); ++j) {
     if (margin(j) < margin(worst)) worst = j;
   }
-  return {none ? Reason::Kind::friction_no_solution : Reason::Kind::friction_many_solutions, end.t, 0, contacts[worst].name, worst};
+  return {none ? Reason::Kind::friction_no_solution : Reason::Kind::friction_many_solutions, end.t, 0,
+          contacts[worst].name, worst};
 }
 
 /// The reason for the end of a segment. Sets the outcome if contacts or a jump ended it. reason: the one known so far;
@@ -27,7 +28,8 @@ inline Reason explain_friction(RunContext& context, const Result& end) {
 inline Reason explain(RunContext& context, Reason reason, const Reason& jump, Result& end) {
   if (!end.detail.empty()) reason = {Reason::Kind::method, end.t, 0, end.detail};
   if (end.outcome == Outcome::step_too_small && context.kinks.last_crossing_time() == end.t)
-    reason = {Reason::Kind::surface, end.t, 0, context.problem.code->kinks[context.kinks.last_crossed()], context.kinks.last_crossed()};
+    reason = {Reason::Kind::surface, end.t, 0, context.problem.code->kinks[context.kinks.last_crossed()],
+              context.kinks.last_crossed()};
   if (jump) {
     end.outcome = Outcome::jump_undetermined;
     reason = jump;

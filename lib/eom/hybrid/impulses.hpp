@@ -45,8 +45,8 @@ inline Reason cross_impulse(RunContext& context, const Segment& before, Result& 
   const std::vector<double> u(at_end, at_end + std::max<std::size_t>(1, problem.inputs.size()));
   const std::vector<double> x = total.x;
   const double side = context.model.set_segment_time(std::nextafter(before.next, problem.t1));
-  const Impulse impulse =
-      context.events.jumps().cross_time_kink({before.end, x, u.data()}, before.next, context.model.inputs(before.next), total.x);
+  const Impulse impulse = context.events.jumps().cross_time_kink({before.end, x, u.data()}, before.next,
+                                                                 context.model.inputs(before.next), total.x);
   Reason open = impulse.undetermined;
   if (!impulse.velocities && !impulse.potential) return open;
   if (!open && impulse.velocities && context.contacts && has_closed_contact(context))
@@ -55,7 +55,8 @@ inline Reason cross_impulse(RunContext& context, const Segment& before, Result& 
   context.freeze_branches(total.t, total.x.data(), true);
   if (!open && impulse.velocities && context.rows.size() > 0) {
     const StateProjection::Corrections largest = context.projection.largest();
-    if (context.projection(before.next, total.x.data()) != 0) open = {Reason::Kind::support_jump_unsolvable, before.next};
+    if (context.projection(before.next, total.x.data()) != 0)
+      open = {Reason::Kind::support_jump_unsolvable, before.next};
     context.projection.restore_corrections(largest);
   }
   if (open) {

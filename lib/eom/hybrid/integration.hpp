@@ -22,8 +22,8 @@
 #include "eom/hybrid/motion.hpp"
 #include "eom/hybrid/narrow_forces.hpp"
 #include "eom/hybrid/run_context.hpp"
-#include "eom/hybrid/singularity_step.hpp"
 #include "eom/hybrid/segments.hpp"
+#include "eom/hybrid/singularity_step.hpp"
 #include "eom/hybrid/slow_slip.hpp"
 
 namespace eom::hybrid {
@@ -68,12 +68,12 @@ class Integration {
   std::optional<double> missed_narrow_force_;
   double fixed_step_ = 0;  // of the run
   bool stopped_ = false, exchange_due_ = false;
-  Reason jump_;             // a jump with undetermined consequences
-  Reason reason_;           // of the end
-  double last_step_ = 0;    // signed
-  double singularity_step_length_ = 0;  // signed length of a pending step across a rank-deficient configuration
-  bool is_crossing_singularity_ = false;    // this step is being made
-  int stalled_restarts_ = 0;            // restarts without progress in time
+  Reason jump_;                           // a jump with undetermined consequences
+  Reason reason_;                         // of the end
+  double last_step_ = 0;                  // signed
+  double singularity_step_length_ = 0;    // signed length of a pending step across a rank-deficient configuration
+  bool is_crossing_singularity_ = false;  // this step is being made
+  int stalled_restarts_ = 0;              // restarts without progress in time
 };
 
 inline Integration::Integration(const Problem& problem)
@@ -82,7 +82,8 @@ inline Integration::Integration(const Problem& problem)
       keeps_constraints_(method_named(problem.solver).needs.keeps_constraints),
       slow_slip_(context_),
       narrow_(problem) {
-  if (!context_.contacts && context_.rows.size() > 0 && !keeps_constraints_) singularity_step_ = std::make_unique<SingularityStep>(context_);
+  if (!context_.contacts && context_.rows.size() > 0 && !keeps_constraints_)
+    singularity_step_ = std::make_unique<SingularityStep>(context_);
   sampling_ = {[this](double t) { return context_.model.inputs(t); },
                [this](double t, const double* x, double* dx) { return context_.rhs(t, x, dx); }, problem.rtol,
                problem.atol, requires_feature(problem.solver, Feature::series)};
@@ -98,7 +99,7 @@ inline Result Integration::run(const Options& options, const Observer& observer,
   slow_slip_.start(fixed_step_);
   if (context_.contacts)
     context_.contacts->set_tolerances(fixed_step_ > 0 ? slow_slip_rtol : options.rtol,
-                                fixed_step_ > 0 ? slow_slip_atol : options.atol);
+                                      fixed_step_ > 0 ? slow_slip_atol : options.atol);
   choice_ = {};
   missed_narrow_force_.reset();
   Options segment = options;
@@ -159,7 +160,9 @@ inline void Integration::integrate_until(double end, Options options, const Obse
                                          Result& total) {
   const Motion f{context_, keeps_constraints_};
   const BoundedEvents g{context_, sampling_};
-  const auto observe = [&](const StepView& step) { return observe_step(step, observer, event, options.fixed_step > 0); };
+  const auto observe = [&](const StepView& step) {
+    return observe_step(step, observer, event, options.fixed_step > 0);
+  };
   const auto at = [&](const EventPoint& point) { return handle_event(point, event); };
   const auto after = [this](double t, double* x) {
     return context_.rows.size() == 0 || keeps_constraints_ ? 0 : context_.projection(t, x);
@@ -174,11 +177,11 @@ inline void Integration::integrate_until(double end, Options options, const Obse
     is_crossing_singularity_ = step_over_singularity(total, end, options, total.statistics.rhs_evaluations);
     Options now = slow_slip_.is_active() ? slow_slip_.refined_options(options) : options;
     if (is_crossing_singularity_) now.fixed_step = std::abs(length);
-    const std::string method = is_crossing_singularity_             ? SingularityStep::solver
+    const std::string method = is_crossing_singularity_ ? SingularityStep::solver
                                : slow_slip_.is_active() ? Automatic::name
-                                                    : problem_.solver.c_str();
-    const Result part = integrate_events(method, f, total.t, total.x, is_crossing_singularity_ ? total.t + length : end, now, g,
-                                         context_.events.watched(), at, observe, after);
+                                                        : problem_.solver.c_str();
+    const Result part = integrate_events(method, f, total.t, total.x, is_crossing_singularity_ ? total.t + length : end,
+                                         now, g, context_.events.watched(), at, observe, after);
     if (!continue_after_event(part, begin, end, event, total)) return;
     options.initial_step = std::abs(last_step_);
     options.max_steps -= std::min(options.max_steps, part.statistics.steps + part.statistics.rejected);
@@ -186,7 +189,8 @@ inline void Integration::integrate_until(double end, Options options, const Obse
 }
 
 /// Processes an accepted step. False: the integration stops at its end, either for good or to continue in another way.
-inline bool Integration::observe_step(const StepView& step, const Observer& observer, const OnEvent& event, bool fixed) {
+inline bool Integration::observe_step(const StepView& step, const Observer& observer, const OnEvent& event,
+                                      bool fixed) {
   context_.projection.accept(step);
   last_step_ = step.t1 - step.t0;
   exchange_due_ = context_.charts.has_charts() && context_.charts.observe_step(step);
@@ -196,28 +200,32 @@ inline bool Integration::observe_step(const StepView& step, const Observer& obse
   if (is_crossing_singularity_) singularity_step_->report(step, event);
   exchange_due_ = exchange_due_ && wanted;
   slow_slip_.set_switch_due(wanted && slow_slip_.must_switch(step.t1, step.x1.data()));
-  singularity_step_length_ =
-      singularity_step_ && !is_crossing_singularity_ && wanted && !exchange_due_ && !fixed ? std::copysign(singularity_step_->due_length(step), last_step_) : 0;
+  singularity_step_length_ = singularity_step_ && !is_crossing_singularity_ && wanted && !exchange_due_ && !fixed
+                                 ? std::copysign(singularity_step_->due_length(step), last_step_)
+                                 : 0;
   return wanted && !exchange_due_ && !slow_slip_.is_switch_due() && singularity_step_length_ == 0;
 }
 
 /// Whether the pending step across a rank-deficient configuration is made.
-inline bool Integration::step_over_singularity(const Result& from, double end, const Options& options, std::size_t& evaluations) {
+inline bool Integration::step_over_singularity(const Result& from, double end, const Options& options,
+                                               std::size_t& evaluations) {
   const double length = std::exchange(singularity_step_length_, 0.0);
   if (length == 0) return false;
-  const bool made = std::abs(length) < std::abs(end - from.t) && singularity_step_->is_accurate(from, length, options, evaluations);
+  const bool made =
+      std::abs(length) < std::abs(end - from.t) && singularity_step_->is_accurate(from, length, options, evaluations);
   if (!made) singularity_step_->mark_refused();
   return made;
 }
 
 /// Continues after an integration that ended inside the segment. False if the segment or the run ends here.
-inline bool Integration::continue_after_event(const Result& part, double begin, double end, const OnEvent& event, Result& total) {
+inline bool Integration::continue_after_event(const Result& part, double begin, double end, const OnEvent& event,
+                                              Result& total) {
   const Statistics before = total.statistics;
   total = part;
   total.statistics += before;
   const bool passed = is_crossing_singularity_ && part.outcome == Outcome::done;
-  const bool paused =
-      (exchange_due_ || slow_slip_.is_switch_due() || singularity_step_length_ != 0) && part.outcome == Outcome::stopped_by_event;
+  const bool paused = (exchange_due_ || slow_slip_.is_switch_due() || singularity_step_length_ != 0) &&
+                      part.outcome == Outcome::stopped_by_event;
   if (stopped_ || jump_ || (context_.contacts && context_.contacts->end_outcome()) || !(passed || paused)) return false;
   if (exchange_due_) {
     for (const std::string& whose : context_.exchange_charts(total.t, total.x)) {
@@ -239,7 +247,8 @@ inline EventAction Integration::handle_event(const EventPoint& point, const OnEv
   const std::size_t i = point.crossing.function;
   const EventFunctions& functions = context_.events;
   if (i >= functions.first_jump()) {
-    jump_ = context_.events.jumps().cross_surface({point.t, point.x, context_.model.inputs(point.t)}, i - functions.first_jump());
+    jump_ = context_.events.jumps().cross_surface({point.t, point.x, context_.model.inputs(point.t)},
+                                                  i - functions.first_jump());
     return !jump_ ? EventAction::resume : EventAction::stop;
   }
   if (i >= functions.first_contact()) return change_contact(point, event);
@@ -256,10 +265,12 @@ inline EventAction Integration::handle_event(const EventPoint& point, const OnEv
 inline EventAction Integration::change_contact(const EventPoint& point, const OnEvent& event) {
   Crossing crossing = point.crossing;
   crossing.function -= context_.events.first_contact();
-  const EventAction answer = context_.contacts->handle_event(point.t, point.x, crossing, context_.events.of_contacts(point.functions));
+  const EventAction answer =
+      context_.contacts->handle_event(point.t, point.x, crossing, context_.events.of_contacts(point.functions));
   context_.model.set_contact_mode(context_.contacts->mode());
   if (event) {
-    for (const ModeEvent& recorded : context_.contacts->recorded_events()) event({recorded.t, recorded.kind, recorded.name}, point.x);
+    for (const ModeEvent& recorded : context_.contacts->recorded_events())
+      event({recorded.t, recorded.kind, recorded.name}, point.x);
   }
   if (answer != EventAction::restart) return answer;
   context_.freeze_branches(point.t, point.x.data(), true);
@@ -271,7 +282,8 @@ inline EventAction Integration::change_contact(const EventPoint& point, const On
 inline double Integration::longest_step(const StepView& step) {
   if (context_.charts.second_charts() != 0) return std::numeric_limits<double>::infinity();
   const double longest = narrow_.longest(step, sampling_);
-  if (fixed_step_ > 0 && !slow_slip_.is_active() && !missed_narrow_force_ && longest < step.t1 - step.t0) missed_narrow_force_ = step.t0;
+  if (fixed_step_ > 0 && !slow_slip_.is_active() && !missed_narrow_force_ && longest < step.t1 - step.t0)
+    missed_narrow_force_ = step.t0;
   return longest;
 }
 

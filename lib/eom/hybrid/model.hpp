@@ -77,7 +77,8 @@ class Model {
     if (code_->jac == nullptr) return no_jacobian_here;
     const double* u = inputs(t);
     int code = code_->jac(t, x, parameters(), u, mode_, dfdx, dfdt);
-    if (code != 0 && mode_ != mode_without_branches()) code = code_->jac(t, x, parameters(), u, mode_without_branches(), dfdx, dfdt);
+    if (code != 0 && mode_ != mode_without_branches())
+      code = code_->jac(t, x, parameters(), u, mode_without_branches(), dfdx, dfdt);
     return code == 0 && inputs_move_ ? no_time_derivative_here : code;
   }
 
@@ -85,7 +86,9 @@ class Model {
   int taylor(double t, const double* x, int order, double* coefficients) {
     const double* u = inputs(t);
     const int code = code_->taylor(t, x, parameters(), u, mode_, order, coefficients);
-    return code != 0 && mode_ != mode_without_branches() ? code_->taylor(t, x, parameters(), u, mode_without_branches(), order, coefficients) : code;
+    return code != 0 && mode_ != mode_without_branches()
+               ? code_->taylor(t, x, parameters(), u, mode_without_branches(), order, coefficients)
+               : code;
   }
 
   int momenta(double t, const double* x, double* p, double* rate) {

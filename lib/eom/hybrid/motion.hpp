@@ -41,7 +41,7 @@ struct BoundedEvents {
 
   int operator()(double t, const double* x, double* g) const { return of.events(t, x, g); }
   std::optional<std::pair<double, double>> hidden_crossing(const StepView& step, std::size_t i, int side, double from,
-                                                  double to) const {
+                                                           double to) const {
     return of.events.hidden_crossing(step, i, side, from, to, sampling);
   }
 };

@@ -29,7 +29,8 @@ class NarrowForces {
   double longest(const StepView& step, const Sampling& sampling) const {
     const double h = std::abs(step.t1 - step.t0);
     double first = 1;
-    for (const expressions::Code& code : codes_) first = std::min(first, first_hidden_value(code, step, sampling).value_or(1));
+    for (const expressions::Code& code : codes_)
+      first = std::min(first, first_hidden_value(code, step, sampling).value_or(1));
     if (first < 1) return first * h;
     if (sampling.series && unsatisfied(step, sampling, 1, 1)) return h / 2;
     return std::numeric_limits<double>::infinity();
@@ -51,7 +52,8 @@ class NarrowForces {
   static double bounded(double v) { return std::clamp(v, -everything, everything); }
 
   /// The first point at which a function has a value outside of the samples and the equations are violated.
-  std::optional<double> first_hidden_value(const expressions::Code& code, const StepView& step, const Sampling& sampling) const {
+  std::optional<double> first_hidden_value(const expressions::Code& code, const StepView& step,
+                                           const Sampling& sampling) const {
     using expressions::Interval;
     const auto value = [&](const StepPlace& at) { return bounded(code.value(at.variables)); };
     std::vector<std::pair<StepPlace, StepPlace>> open(1);

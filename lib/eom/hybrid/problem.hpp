@@ -145,11 +145,11 @@ struct Problem {
   std::vector<IntegralOutputs> integrals = {};  // preserved by the projection
   std::vector<ContactOutputs> contacts = {};    // per Code::contacts
 
-  std::vector<bool> starts_open = {};           // per contact: is open at the start
+  std::vector<bool> starts_open = {};     // per contact: is open at the start
   std::vector<WatchedEvent> events = {};  // all events of the model
   TimeFunctions time = {};                // from these a run computes kink times and step bounds; empty: both are given
-  std::vector<Breakpoint> breakpoints = {};         // inside the span, ascending; without the jumps of tables
-  std::vector<StepBound> bounds = {};     // on steps, to resolve functions of time
+  std::vector<Breakpoint> breakpoints = {};  // inside the span, ascending; without the jumps of tables
+  std::vector<StepBound> bounds = {};        // on steps, to resolve functions of time
   JumpFunctions jumps = {};
   BoundedFunctions bounded = {};
   std::vector<ExchangedChart> charts = {};                     // empty: the run does not exchange coordinates
@@ -160,7 +160,7 @@ struct Problem {
   std::vector<std::string> state_names = {};       // of x
   std::vector<std::string> constraint_names = {};  // of Code::active_constraints
 
-  bool estimate = true;  // estimate the error by repeated runs
+  bool estimate = true;        // estimate the error by repeated runs
   double output_interval = 0;  // of rows; 0: no rows
   std::function<void(double t, std::span<const double> y)> row = {};
   std::function<void(double fraction)> progress = {};

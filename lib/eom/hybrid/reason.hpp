@@ -12,21 +12,21 @@ namespace eom::hybrid {
 struct Reason {
   enum class Kind {
     none,
-    method,               // `what`: message of the method
-    start,                // it cannot be projected onto the constraints
-    parameter,            // one is infinite or NaN
-    rows,                 // interrupted while rows were written
-    range,                // the coordinate `what` leaves its range (lower, upper) between the times from and until
-    position_jump,          // `what` jumps by `amount`, with an unbounded velocity
-    branch_jump,         // `what` jumps by `amount`, at a surface in the state
+    method,                   // `what`: message of the method
+    start,                    // it cannot be projected onto the constraints
+    parameter,                // one is infinite or NaN
+    rows,                     // interrupted while rows were written
+    range,                    // the coordinate `what` leaves its range (lower, upper) between the times from and until
+    position_jump,            // `what` jumps by `amount`, with an unbounded velocity
+    branch_jump,              // `what` jumps by `amount`, at a surface in the state
     support_jump_in_contact,  // the velocity of a support jumps while a contact is closed
-    support_jump_unsolvable,        // the velocity of a support jumps, and no velocities satisfy the constraints after it
-    friction_no_solution,          // the friction law at the contact `what` has no solution
-    friction_many_solutions,       // the friction law at the contact `what` has several solutions
-    surface,              // the motion slides along a surface of the function `what`
-    slip,                 // slip starts and ends without progress in time
-    chart,                // a step leads beyond the singularity of the coordinates
-    balance               // the energy changes by the fraction `amount` more than the forces account for
+    support_jump_unsolvable,  // the velocity of a support jumps, and no velocities satisfy the constraints after it
+    friction_no_solution,     // the friction law at the contact `what` has no solution
+    friction_many_solutions,  // the friction law at the contact `what` has several solutions
+    surface,                  // the motion slides along a surface of the function `what`
+    slip,                     // slip starts and ends without progress in time
+    chart,                    // a step leads beyond the singularity of the coordinates
+    balance                   // the energy changes by the fraction `amount` more than the forces account for
   };
   Kind kind = Kind::none;
   double t = 0, amount = 0;

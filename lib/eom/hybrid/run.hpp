@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "eom/hybrid/balance.hpp"
-#include "eom/hybrid/time_analysis.hpp"
 #include "eom/hybrid/estimate.hpp"
 #include "eom/hybrid/integration.hpp"
-#include "eom/hybrid/run_result.hpp"
 #include "eom/hybrid/run_monitor.hpp"
+#include "eom/hybrid/run_result.hpp"
+#include "eom/hybrid/time_analysis.hpp"
 
 namespace eom::hybrid {
 
@@ -48,7 +48,8 @@ inline void require_parameters(const Problem& problem, RunResult& result) {
 inline RunResult run(const Problem& problem) {
   require_functions(problem);
   if (!problem.time.empty()) {
-    const TimeAnalysis clock = analyse_time_functions(problem.time, problem.parameters, problem.inputs, problem.t0, problem.t1);
+    const TimeAnalysis clock =
+        analyse_time_functions(problem.time, problem.parameters, problem.inputs, problem.t0, problem.t1);
     Problem looked = problem;
     looked.time = {};
     looked.breakpoints = clock.breakpoints;
@@ -73,7 +74,8 @@ inline RunResult run(const Problem& problem) {
   const auto record_event = [&](const Event& event, std::span<const double> x) { monitor.event(event, x); };
   const auto begin = std::chrono::steady_clock::now();
   const bool moves = problem.t1 != problem.t0;
-  Result end = moves ? integration.run(options, observe, record_event) : Result{Outcome::done, problem.t0, context.start, {}, ""};
+  Result end = moves ? integration.run(options, observe, record_event)
+                     : Result{Outcome::done, problem.t0, context.start, {}, ""};
   RunResult result;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   result.reason = integration.reason();

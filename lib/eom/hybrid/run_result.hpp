@@ -31,8 +31,8 @@ struct EndErrorEstimate {
 };
 
 struct RunResult {
-  std::string solver;  // the method that ended the run
-  MethodChoice choice;       // of auto: its changes
+  std::string solver;   // the method that ended the run
+  MethodChoice choice;  // of auto: its changes
   Outcome outcome = Outcome::done;
   Reason reason;       // if the outcome alone does not give it
   std::string detail;  // the reason as a sentence, or ""
@@ -43,14 +43,16 @@ struct RunResult {
   std::vector<double> outputs;  // at the end
   EndErrorEstimate error;
   std::vector<InvariantDrift> invariants;  // per Problem::invariants
-  double power_balance = 0;         // largest |E - E(0) - W| relative to the energies exchanged
-  double constraint_drift = 0;      // largest |psi|, or |f . qdot + b| of a velocity constraint, at the end of a step
+  double power_balance = 0;                // largest |E - E(0) - W| relative to the energies exchanged
+  double constraint_drift = 0;  // largest |psi|, or |f . qdot + b| of a velocity constraint, at the end of a step
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
   double impulse_work = 0;  // of impacts
   std::vector<Event> events;
   std::vector<std::size_t> kink_crossings;  // per Code::kinks
-  std::optional<double> narrow_forces_unresolved_from = {};   // first time at which a narrow force in a step could not be excluded
-  std::optional<double> time_unresolved_from = {};  // TimeAnalysis::unresolved_from, if the run analysed functions of time
+  std::optional<double> narrow_forces_unresolved_from =
+      {};  // first time at which a narrow force in a step could not be excluded
+  std::optional<double> time_unresolved_from =
+      {};  // TimeAnalysis::unresolved_from, if the run analysed functions of time
 
   bool ended() const { return outcome == Outcome::done || outcome == Outcome::stopped_by_event; }
 };

@@ -21,7 +21,8 @@ inline std::vector<FinerSteps> finer_steps(const Problem& problem) {
   std::vector<FinerSteps> result;
   const std::vector<StepBound>& bounds = problem.bounds;
   for (std::size_t k = 0; k < bounds.size(); ++k) {
-    const double step = bounds[k].step * fixed_step_fraction, end = k + 1 < bounds.size() ? bounds[k + 1].t : problem.t1;
+    const double step = bounds[k].step * fixed_step_fraction,
+                 end = k + 1 < bounds.size() ? bounds[k + 1].t : problem.t1;
     if (step < problem.fixed_step && end > bounds[k].t) result.push_back({bounds[k].t, end, step});
   }
   return result;

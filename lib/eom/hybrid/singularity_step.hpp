@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A step across a configuration at which active constraints lose rank (singularity_detector.hpp): the test whether it is
-// accurate enough, and the event that reports it.
+// A step across a configuration at which active constraints lose rank (singularity_detector.hpp): the test whether it
+// is accurate enough, and the event that reports it.
 #pragma once
 
 #include <algorithm>
@@ -48,8 +48,8 @@ class SingularityStep {
       return integrate(solver, f, t, x, t_end, one, NoObserver{}, after);
     };
     const StateProjection::Corrections largest = context_.projection.largest();  // of the accepted steps
-    const double t_end = from.t + length,
-                 middle = from.t + length * SingularityDetector::crossing_fraction / SingularityDetector::check_fraction;
+    const double t_end = from.t + length, middle = from.t + length * SingularityDetector::crossing_fraction /
+                                                                SingularityDetector::check_fraction;
     const Result whole = step(from.t, from.x, t_end), half = step(from.t, from.x, middle);
     const Result other = half.outcome == Outcome::done ? step(half.t, half.x, t_end) : half;
     context_.projection.restore_corrections(largest);
@@ -63,7 +63,8 @@ class SingularityStep {
     const double h = step.t1 - step.t0, t = step.t0 + SingularityDetector::crossing_fraction * h;
     std::vector<double> x(step.x0.size());
     step.interpolate(t, x);
-    if (event && detector_.is_rank_lost(t, x.data())) event({t, "singular_configuration", name_of_row(detector_.row())}, x);
+    if (event && detector_.is_rank_lost(t, x.data()))
+      event({t, "singular_configuration", name_of_row(detector_.row())}, x);
     detector_.mark_passed(std::abs(h));
   }
 

@@ -22,7 +22,8 @@ class SlowSlipSteps {
   }
 
   bool must_switch(double t, const double* x) {
-    return fixed_step_ > 0 && context_.contacts && context_.contacts->is_slip_slow(t, x, fixed_step_, is_active_) != is_active_;
+    return fixed_step_ > 0 && context_.contacts &&
+           context_.contacts->is_slip_slow(t, x, fixed_step_, is_active_) != is_active_;
   }
   void toggle() { is_active_ = !is_active_; }
   bool is_active() const { return is_active_; }

@@ -18,7 +18,10 @@ namespace eom::hybrid {
 class StateProjection {
  public:
   StateProjection(const Problem& problem, Model& model, ConstraintRows& rows, Outputs& outputs)
-      : model_(model), rows_(rows), outputs_(outputs), projection_(problem.n(), rows.size(), rows.position_row_count()) {}
+      : model_(model),
+        rows_(rows),
+        outputs_(outputs),
+        projection_(problem.n(), rows.size(), rows.position_row_count()) {}
 
   /// Returns the code of a callback or of a projection that does not converge. In both cases the state is unchanged.
   int operator()(double t, double* x) {

@@ -22,7 +22,7 @@
 namespace eom::hybrid {
 
 struct TimeAnalysis {
-  std::vector<Breakpoint> breakpoints;                   // inside the span, ascending; without the jumps of tables
+  std::vector<Breakpoint> breakpoints;         // inside the span, ascending; without the jumps of tables
   std::vector<StepBound> bounds;               // empty: no function is narrow compared with the span
   std::optional<double> unresolved_from = {};  // from here on a condition on time changes too often to be resolved
 };
@@ -30,7 +30,7 @@ struct TimeAnalysis {
 class TimeAnalyser {
  public:
   TimeAnalyser(const TimeFunctions& functions, std::span<const double> parameters, const std::vector<Signal>& inputs,
-              double t0, double t1)
+               double t0, double t1)
       : functions_(functions),
         parameters_(parameters),
         inputs_(inputs),
@@ -73,7 +73,8 @@ class TimeAnalyser {
   };
 
   static void merge_overlapping(std::vector<Breakpoint>& breakpoints) {
-    std::sort(breakpoints.begin(), breakpoints.end(), [](const Breakpoint& a, const Breakpoint& b) { return a.before < b.before; });
+    std::sort(breakpoints.begin(), breakpoints.end(),
+              [](const Breakpoint& a, const Breakpoint& b) { return a.before < b.before; });
     std::size_t kept = 0;
     for (const Breakpoint& b : breakpoints) {
       if (kept > 0 && b.before <= breakpoints[kept - 1].after)
@@ -261,7 +262,7 @@ class TimeAnalyser {
 /// Analyses functions of time with these parameters and inputs. Only inputs that are tables are variables; others are
 /// part of the functions.
 inline TimeAnalysis analyse_time_functions(const TimeFunctions& functions, std::span<const double> parameters,
-                          const std::vector<Signal>& inputs, double t0, double t1) {
+                                           const std::vector<Signal>& inputs, double t0, double t1) {
   return TimeAnalyser(functions, parameters, inputs, t0, t1).run();
 }
 

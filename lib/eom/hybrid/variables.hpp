@@ -42,7 +42,8 @@ class StepVariables {
   }
 
   /// Box between a and b, with m midway: the control points of the parabola through the three, with a margin.
-  const std::vector<expressions::SlopedInterval>& box(const StepPlace& a, const StepPlace& m, const StepPlace& b) const {
+  const std::vector<expressions::SlopedInterval>& box(const StepPlace& a, const StepPlace& m,
+                                                      const StepPlace& b) const {
     constexpr double beyond = 0.05;  // of its width: terms beyond second order within a box
     box_.resize(a.variables.size());
     for (std::size_t v = 0; v < box_.size(); ++v) {

@@ -39,7 +39,8 @@ class Collocation : public Base, public CollocationHooks {
     if (jacobian_wanted_ || !jacobian_known_)
       if (const int code = new_jacobian(); code != 0) return code;
     if (!fixed_ && !std::exchange(begun_, true))
-      if (const double fast = std::abs(h_) * jacobian_.estimate_spectral_radius(f_, f_ + n_); fast > first_step && std::isfinite(fast))
+      if (const double fast = std::abs(h_) * jacobian_.estimate_spectral_radius(f_, f_ + n_);
+          fast > first_step && std::isfinite(fast))
         return fail(first_step / fast), code_no_convergence;
     while (true) {
       if (!factored_ || std::abs(h_ - h_factored_) > same_step * std::abs(h_))
@@ -305,7 +306,8 @@ class Collocation : public Base, public CollocationHooks {
       if (fixed_) {
         const RoundingConvergence::State state = convergence.update(size);
         contraction_ = convergence.contraction();
-        if (state != RoundingConvergence::State::iterating) return state == RoundingConvergence::State::converged || fail(0.5);
+        if (state != RoundingConvergence::State::iterating)
+          return state == RoundingConvergence::State::converged || fail(0.5);
         continue;
       }
       if (newton_ > 1 && newton_ < most_here) {

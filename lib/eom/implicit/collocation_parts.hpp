@@ -36,7 +36,7 @@ struct CollocationHooks {
   }  // t, x, u, derivatives followed by g; returns a code
   template <class Size>
   void border_units(double*, const Size&) const {}  // right-hand sides for the correction units
-  int correct_last_stage() { return 0; }                        // after the iteration: corrects the last stage; returns a code
+  int correct_last_stage() { return 0; }            // after the iteration: corrects the last stage; returns a code
   void choose_stages(double) {}                     // after an accepted step; argument: growth of the next
 };
 

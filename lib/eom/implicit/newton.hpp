@@ -51,8 +51,8 @@ class RoundingConvergence {
 /// The units in which the components of a correction are small. The unit is a component's own size if it exceeds the
 /// rounding of the other components. Their rounding contributes eps w_i to component i, where (I - h J) w = |h J| |x|:
 /// it enters through the arguments of f, and the matrix of the iteration distributes it. In a unit of 1e-6 w_i this is
-/// 2e-10. 50000 times this value, by cancellation within f, still counts as stagnation (RoundingConvergence::stagnant). A
-/// component that is smaller than w_i by any factor down to 1e-6 keeps all its digits. The w_i have the dimensions of
+/// 2e-10. 50000 times this value, by cancellation within f, still counts as stagnation (RoundingConvergence::stagnant).
+/// A component that is smaller than w_i by any factor down to 1e-6 keeps all its digits. The w_i have the dimensions of
 /// the x_i. If a constraint fixes a component at 0, w_i is 0, and the unit is 1e-25 of the largest of all.
 class CorrectionUnits {
  public:
@@ -63,7 +63,7 @@ class CorrectionUnits {
   /// to a factor; part: h times that factor. border(w, sizes): right-hand sides of unknowns beyond the components.
   template <class Solve, class Border>
   void compute(const Jacobian& jacobian, const double* x, const double* f, double h, double part, Solve solve,
-           Border border) {
+               Border border) {
     std::fill(w_.begin(), w_.end(), 0.0);
     least_ = 0;
     const auto size = [&](std::size_t j) { return std::max(std::abs(x[j]), std::abs(h * f[j])); };

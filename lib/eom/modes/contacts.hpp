@@ -143,7 +143,8 @@ class Contacts {
     if (alone) return apply_impact(point.t, point.x, with_contact_digit(point.mode, j, 3), j, false);
     if (const int code = motion_.close(point.t, point.x, mode); code != 0) return failed(point, code);
     const std::vector<std::string> further_names = newly_closed_names(j, point.mode, mode);
-    return Transition{consistent_mode(point.t, point.x, mode), "contact", contacts_[j].name, Outcome::done, further_names};
+    return Transition{consistent_mode(point.t, point.x, mode), "contact", contacts_[j].name, Outcome::done,
+                      further_names};
   }
 
  private:
@@ -214,7 +215,8 @@ class Contacts {
       int closed = mode;
       for (const std::size_t i : all) closed = with_contact_digit(closed, i, 0);
       if (motion_.close(t, x, closed) == 0)
-        return {consistent_mode(t, x, closed), "contact", contacts_[j].name, Outcome::done, newly_closed_names(j, mode, closed)};
+        return {consistent_mode(t, x, closed), "contact", contacts_[j].name, Outcome::done,
+                newly_closed_names(j, mode, closed)};
       std::copy(before.begin(), before.end(), x.begin());  // more contacts than degrees of freedom
     }
     const double speed = motion_.gap_rate(t, x, j), e = bounces ? contacts_[j].restitution : 0;
@@ -285,7 +287,7 @@ class Contacts {
     }
     if (!open && contact.dimensions > 0) mode.watched.push_back({first + 4, Direction::down});
     if (contact.surface || contact.unilateral) mode.watched.push_back({first + 3, Direction::down});
-    const char* state = open                               ? " is apart"
+    const char* state = open                                ? " is apart"
                         : contact.dimensions == 0           ? " touches"
                         : !contact.sticks || digit % 3 != 0 ? " slides"
                         : contact.rolls                     ? " rolls"

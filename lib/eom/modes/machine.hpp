@@ -9,8 +9,8 @@
 // surface on which a mode is entered is not crossed again before the motion has left it.
 //
 // Chattering (Zeno): transitions with ever shorter intervals, down to 1e-7 of the first one, accumulate at an
-// extrapolated time. If the rule has a member settle_chattering(point), it determines the next mode there. Otherwise the run ends
-// as step_too_small with that time in `detail`.
+// extrapolated time. If the rule has a member settle_chattering(point), it determines the next mode there. Otherwise
+// the run ends as step_too_small with that time in `detail`.
 #pragma once
 
 #include <cmath>
@@ -49,9 +49,9 @@ struct ModePoint {
 
 /// Result of the rule.
 struct Transition {
-  int mode = 0;                        // the next one; may be the same
-  std::string kind = {}, name = {};    // recorded: "slip", "stick", "contact", ... and whose; empty kind: not recorded
-  Outcome outcome = Outcome::done;     // any other one ends the run here: stopped_by_event, friction_no_solution, ...
+  int mode = 0;                      // the next one; may be the same
+  std::string kind = {}, name = {};  // recorded: "slip", "stick", "contact", ... and whose; empty kind: not recorded
+  Outcome outcome = Outcome::done;   // any other one ends the run here: stopped_by_event, friction_no_solution, ...
   std::vector<std::string> further_names = {};  // further names recorded with the same kind
 };
 
@@ -117,7 +117,8 @@ class ModeSwitch {
       functions[s.function] = {s.direction, Watch::breaking, s.direction != Direction::any};
   }
 
-  EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions) {
+  EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing,
+                           std::span<EventFunction> functions) {
     const ModePoint here{t, x, mode, crossing};
     ++transitions;
     std::optional<Transition> next;
@@ -216,7 +217,9 @@ class Machine {
     return integrate_events(
         method, f, t0, x0, t1, options,
         [this](double t, const double* x, double* g) { return events_(t, x, switch_.mode, g); }, functions_,
-        [this](const EventPoint& point) { return switch_.handle_event(point.t, point.x, point.crossing, point.functions); },
+        [this](const EventPoint& point) {
+          return switch_.handle_event(point.t, point.x, point.crossing, point.functions);
+        },
         [this](const StepView& view) { return observer_(view, switch_.mode); },
         [this](double t, double* x) { return after_step_(t, x, switch_.mode); });
   }

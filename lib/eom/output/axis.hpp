@@ -21,7 +21,9 @@ struct Tick {
 };
 
 /// Whether a value can be drawn. Beyond 1e300 differences of values would overflow.
-inline bool is_showable(double value, bool logarithmic) { return std::abs(value) <= 1e300 && (!logarithmic || value > 0); }
+inline bool is_showable(double value, bool logarithmic) {
+  return std::abs(value) <= 1e300 && (!logarithmic || value > 0);
+}
 
 struct Axis {
   double low = 0, high = 1;

@@ -82,8 +82,9 @@ class Series : public StepEnds {
   int evaluate_end() {
     if (fixed_) return evaluate(t1_, x1_, f1_);
     const int code = expand(t1_, x1_, f1_, there_, next_order());
-    const bool matches_derivative = code != 0 || control_.matches_derivative(here_.order, h_, terms_of(here_), weights(),
-                                                       [this](std::size_t i) { return f1_[i]; });
+    const bool matches_derivative =
+        code != 0 || control_.matches_derivative(here_.order, h_, terms_of(here_), weights(),
+                                                 [this](std::size_t i) { return f1_[i]; });
     return matches_derivative ? code : code_jump;
   }
 
