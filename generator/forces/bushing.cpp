@@ -12,7 +12,7 @@ Kind bushing() {
   const std::string moment =
       "(rotational_coefficient1*dot(wB - wA, A1)*A1 + rotational_coefficient2*dot(wB - wA, A2)*A2 + "
       "rotational_coefficient3*dot(wB - wA, A3)*A3)";
-  const When slides{Predicate::given, "coefficient"}, turns{Predicate::given, "rotational_coefficient"};
+  const Condition slides{Predicate::given, "coefficient"}, turns{Predicate::given, "rotational_coefficient"};
   return {
       .name = "bushing",
       .title = "springs and dampers along and about the axes of one of two bodies",
