@@ -72,7 +72,7 @@ def number(value, form):
 
 class Row:
     def __init__(self, name, setting):
-        self.name, self.setting, self.runs, self.told = name, setting, {}, ""
+        self.name, self.setting, self.runs, self.note = name, setting, {}, ""
 
     def points(self, which):
         return [(n, drift(found)[which]) for n, found in self.runs.items()]
@@ -86,7 +86,7 @@ class Row:
             points = self.points(which)
             cells += [number(points[-1][1], ".0e"), number(growth(points), ".2f")]
         end = self.runs[last]
-        return cells + [f"{last:.0e}", f"{end['steps']:.2g}", f"{end['seconds']['integrate']:.2g}", self.told]
+        return cells + [f"{last:.0e}", f"{end['steps']:.2g}", f"{end['seconds']['integrate']:.2g}", self.note]
 
 
 def scene_rows(eomgen, folder, limit, solvers, index):
@@ -97,10 +97,10 @@ def scene_rows(eomgen, folder, limit, solvers, index):
             command = [eomgen, "run", *model, *options, "--t-end", repr(period * count), "--no-error-estimate", "--max-steps", "100000000000", "--json"]
             found = run(command, pathlib.Path(folder, f"{index}.{name}.{setting.replace(' ', '_')}.{count}.json"))
             if isinstance(found, str):
-                row.told = found
+                row.note = found
                 break
             if found["outcome"] != "done":
-                row.told = f"{found['outcome']} at {found['t'] / period:.3g} periods"
+                row.note = f"{found['outcome']} at {found['t'] / period:.3g} periods"
                 break
             row.runs[count] = found
             if 10 * found["seconds"]["integrate"] > limit:

@@ -161,10 +161,10 @@ void measure(const char* method, std::vector<Contender>& contenders, std::size_t
   fmt::print("| {} alone | {:.1f} | {:.2f} | {:.1e} |\n", method, us_alone, us_alone / us, largest);
   for (const Contender& c : contenders) {
     const double each = 1e6 * c.seconds / static_cast<double>(sample);
-    double apart = 0;
+    double largest_difference = 0;
     for (std::size_t k = 0; k < sample; ++k)
-      apart = std::max(apart, difference(c.ends[k], ends[k * (members / sample)]));
-    fmt::print("| {} | {:.1f} | {:.2f} | {:.1e} |\n", c.name, each, each / us, apart);
+      largest_difference = std::max(largest_difference, difference(c.ends[k], ends[k * (members / sample)]));
+    fmt::print("| {} | {:.1f} | {:.2f} | {:.1e} |\n", c.name, each, each / us, largest_difference);
   }
 }
 

@@ -17,7 +17,7 @@ def row(name, found):
     audit = found["denominator_audit"]
     lost = audit["digits_lost"]
     where = f" ({lost['case']})" if lost and lost["value"] >= 0.5 else ""
-    return (f"| {name} | {len({r['case'] for r in found['rows']})} | {found['kept']} | {found['told']} | {found['silent']} | {len(found['left_out'])} "
+    return (f"| {name} | {len({r['case'] for r in found['rows']})} | {found['pass']} | {found['reported']} | {found['undetected']} | {len(found['left_out'])} "
             f"| {number(audit['mass_condition'], '.1e')} | {number(audit['scaled_mass_condition'], '.1e')} | {number(lost, '.1f')}{where} |")
 
 

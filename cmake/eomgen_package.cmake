@@ -4,7 +4,7 @@ set(CPACK_PACKAGE_VENDOR "eomgen contributors")
 set(CPACK_PACKAGE_CONTACT "eomgen contributors")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "equations of motion of mechanical systems, from a text model")
 set(CPACK_PACKAGE_DESCRIPTION "Derives Lagrange's equations symbolically, holds every derivation against an independent oracle, shows them in LaTeX,
-writes C and C++, integrates, and tells how large the error is. With headers for programs of others: the runtime (MIT)
+writes C and C++, integrates, and reports how large the error is. With headers for programs of others: the runtime (MIT)
 and the library of the generator.")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)

@@ -159,14 +159,15 @@ class Prescribed {
       const double side = (at.before + at.after) / 2;
       for (const run::Signal& input : scene_.inputs)
         before.push_back(input(at.before, side)), after.push_back(input(at.after, side));
-      const eom::hybrid::Impulse told = jumps.cross_time_kink({at.before, x, before.data()}, at.after, after.data(), x);
-      if (!told.undetermined && !told.velocities) continue;
+      const eom::hybrid::Impulse impulse =
+          jumps.cross_time_kink({at.before, x, before.data()}, at.after, after.data(), x);
+      if (!impulse.undetermined && !impulse.velocities) continue;
       result.outcome = eom::Outcome::jump_undetermined;
-      result.detail = told.undetermined ? sentence(told.undetermined)
-                                        : fmt::format(
-                                              "{} jumps at t = {:.15g}: the forces there are an impulse, "
-                                              "which no row shows; make it a motion that takes some time",
-                                              told.what.empty() ? "a velocity" : told.what, at.after);
+      result.detail = impulse.undetermined ? sentence(impulse.undetermined)
+                                           : fmt::format(
+                                                 "{} jumps at t = {:.15g}: the forces there are an impulse, "
+                                                 "which no row shows; make it a motion that takes some time",
+                                                 impulse.what.empty() ? "a velocity" : impulse.what, at.after);
       return;
     }
   }

@@ -84,7 +84,7 @@ Error usage_error(const CLI::ParseError& error, const CLI::App& app) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(command);
   std::string what = error.what();
   if (what == "A subcommand is required") what = "a command is missing";
-  return Error("usage", {}, what, name + " --help tells how it is used");
+  return Error("usage", {}, what, name + " --help shows how it is used");
 }
 
 }  // namespace

@@ -69,8 +69,9 @@ void require_extension(const OutputTarget& place) {
   const std::string extension = lowered(fs::path(place.path).extension().string());
   if (extension == place.extension || (place.extension == ".html" && extension == ".htm")) return;
   const bool chooses = !place.alternative_extension.empty();
-  const bool tells = std::find(known_extensions.begin(), known_extensions.end(), extension) != known_extensions.end();
-  if (chooses ? extension.size() < 2 || extension == place.alternative_extension : !tells) return;
+  const bool is_known =
+      std::find(known_extensions.begin(), known_extensions.end(), extension) != known_extensions.end();
+  if (chooses ? extension.size() < 2 || extension == place.alternative_extension : !is_known) return;
   const auto named = [&](const std::string& other) { return fs::path(place.path).replace_extension(other).string(); };
   refuse(place,
          fmt::format("this option writes {}{}, and the name says {}", place.extension.substr(1),

@@ -64,7 +64,7 @@ std::string text(double x, double y, const std::string& style, const std::string
   return fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", number(x), number(y), style, escaped(content));
 }
 
-std::string told(const stress::Row& row) {
+std::string row_summary(const stress::Row& row) {
   const auto value = [](double x) { return std::isfinite(x) ? fmt::format("{:.1e}", x) : std::string("none"); };
   return fmt::format("{}, {}: {}, error {}, estimate {}, {}", row.test, row.solver, stress::name(row.verdict),
                      value(row.error), value(row.estimate), row.outcome);
@@ -112,7 +112,7 @@ std::string StressPlot::svg() const {
     for (std::size_t s = 0; s < lines[k].rows.size(); ++s) {
       const stress::Row* row = lines[k].rows[s];
       if (row == nullptr) continue;
-      out += "<g><title>" + escaped(told(*row)) + "</title>" +
+      out += "<g><title>" + escaped(row_summary(*row)) + "</title>" +
              mark(row->verdict, left + column * static_cast<double>(s), y + 2.5) + "</g>\n";
     }
   }

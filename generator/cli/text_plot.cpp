@@ -83,11 +83,11 @@ std::string render_text_plot(const TextPlot& plot, std::size_t columns) {
   std::string text = plot.y_label + "\n";
   for (const std::string& line : legend) text += line + "\n";
   for (std::size_t r = 0; r < rows; ++r) {
-    const bool told = r % 5 == 0;
+    const bool is_labelled = r % 5 == 0;
     const double value = y.high - (y.high - y.low) * static_cast<double>(r) / static_cast<double>(rows - 1);
     std::string line = fmt::format(
-        "{:>{}} {}{}", told ? label(std::fabs(value) < 1e-12 * (y.high - y.low) ? 0.0 : value, plot.log_y) : "",
-        margin - 1, told ? '+' : '|', field[r]);
+        "{:>{}} {}{}", is_labelled ? label(std::fabs(value) < 1e-12 * (y.high - y.low) ? 0.0 : value, plot.log_y) : "",
+        margin - 1, is_labelled ? '+' : '|', field[r]);
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }

@@ -278,8 +278,8 @@ void add_contact_outputs(Mechanics& m, EquationSystem& s) {
     }
     add_slip_outputs(m, j, s);
     const Ref slides = contact.width ? dag.one() : dag.symbol(system::slip_direction_symbol(j));
-    const Ref apart = dag.select(dag.symbol(system::normal_sign_symbol(j)), dag.zero(), dag.integer(2), slides);
-    s.outputs.push_back({"mode." + contact.name, contact.unilateral ? apart : slides, OutputKind::mode, j});
+    const Ref open_mode = dag.select(dag.symbol(system::normal_sign_symbol(j)), dag.zero(), dag.integer(2), slides);
+    s.outputs.push_back({"mode." + contact.name, contact.unilateral ? open_mode : slides, OutputKind::mode, j});
     if (contact.unilateral)
       s.outputs.push_back({"contact.restitution." + contact.name, contact.restitution, OutputKind::restitution, j});
   }

@@ -139,8 +139,8 @@ std::string banner(const program::Program& program, const EmissionContext& conte
 namespace {
 
 const char* state_name(const program::ContactInfo& contact, int digit) {
-  if (contact.unilateral && digit >= 3) return "is apart";
-  if (contact.dimensions == 0) return "touches";
+  if (contact.unilateral && digit >= 3) return "is open";
+  if (contact.dimensions == 0) return "is closed";
   if (!contact.sticks || (contact.dimensions == 2 && digit % 3 == 1)) return "slides";
   return digit % 3 == 0 ? (contact.rolls ? "rolls" : "sticks") : digit % 3 == 1 ? "slides along" : "slides against";
 }

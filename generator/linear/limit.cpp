@@ -8,8 +8,8 @@
 namespace eomgen::linear {
 namespace {
 
-constexpr double apart = 1e-5;  // least relative difference of derivatives across a kink
-constexpr int rays = 2;         // and their opposites
+constexpr double min_slope_difference = 1e-5;  // least relative difference of derivatives across a kink
+constexpr int rays = 2;                        // and their opposites
 
 template <class T>
 State<T> moved(const State<T>& z, const T& step, std::uint64_t ray) {
@@ -73,13 +73,13 @@ std::pair<ValueAndJacobian<T>, T> over_rays(const At<T>& at, const State<T>& z, 
 
 ValueAndJacobian<double> limit(const At<double>& at, const State<double>& z) {
   auto [mean, largest] = over_rays<double>(at, z, 1e-9, {{1, 1}});
-  require_domain(largest < apart, "");
+  require_domain(largest < min_slope_difference, "");
   return mean;
 }
 
 ValueAndJacobian<Precise> limit(const At<Precise>& at, const State<Precise>& z) {
   constexpr int exact = 20;
-  require_domain(to_double(over_rays<Precise>(at, z, tiny<Precise>(12), {{1, 1}}).second) < apart, "");
+  require_domain(to_double(over_rays<Precise>(at, z, tiny<Precise>(12), {{1, 1}}).second) < min_slope_difference, "");
   // Extrapolates along each ray from three points: linear and quadratic terms in the step cancel.
   const Precise third = Precise(1) / Precise(3);
   auto [sum, largest] = over_rays<Precise>(at, z, tiny<Precise>(50), {{1, 8}, {2, -6}, {4, 1}});

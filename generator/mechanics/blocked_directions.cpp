@@ -43,16 +43,16 @@ class Search {
 
   /// If more directions can stick than there are degrees of freedom, the motion does not determine the static friction.
   void require_determinate(const ClosedContacts& closed) {
-    std::size_t freedom = m_.free.size() - m_.active.size(), directions = 0, apart = 0;
+    std::size_t freedom = m_.free.size() - m_.active.size(), directions = 0, open_contacts = 0;
     bool any_touches = false;
     base_ = always_;
     for (std::size_t j = 0; j < m_.contacts.size(); ++j) {
       if (!m_.contacts[j].unilateral) continue;
-      apart += closed[j] ? 0 : 1;
+      open_contacts += closed[j] ? 0 : 1;
       any_touches = any_touches || closed[j];
       if (closed[j]) base_.push_back(row(m_.constraints[m_.contacts[j].constraints[0]].gradient));
     }
-    freedom += apart;
+    freedom += open_contacts;
     tangents_.clear();
     for (std::size_t j = 0; j < m_.contacts.size(); ++j) {
       const Contact& contact = m_.contacts[j];
@@ -62,9 +62,9 @@ class Search {
       for (const std::vector<Ref>& tangent : contact.tangents) tangents_.push_back(row(tangent));
       const std::size_t free = has_sample_points() ? free_directions(base_) : directions;
       if (directions <= freedom && directions <= free) continue;
-      const std::string where = !any_touches ? ""
-                                : apart == 0 ? " while everything touches"
-                                             : " while some contacts touch";
+      const std::string where = !any_touches         ? ""
+                                : open_contacts == 0 ? " while all contacts are closed"
+                                                     : " while some contacts touch";
       const std::string left =
           directions > freedom ? " directions, and the system has " + std::to_string(freedom) +
                                      (freedom == 1 ? " degree" : " degrees") + " of freedom"

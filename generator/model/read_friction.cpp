@@ -87,7 +87,7 @@ void FrictionReader::read_constraint_friction(Constraint& constraint, const Valu
 
 DryFriction FrictionReader::read_dry_friction(const Value& table, const std::string& what) {
   check_keys(table, {what, {"coordinate", "normal", "static", "dynamic", "law", "width"}});
-  const Value& name = require_value(table, "coordinate", what, "add coordinate = \"x\", the coordinate that rubs");
+  const Value& name = require_value(table, "coordinate", what, "add coordinate = \"x\", the coordinate with friction");
   require_kind(Value::Kind::text, name, fmt::format("the coordinate of {}", what), "write the name of a coordinate");
   const Symbol* symbol = scope_.find(name.text);
   if (symbol == nullptr || symbol->kind != SymbolKind::coordinate) {
@@ -96,7 +96,7 @@ DryFriction FrictionReader::read_dry_friction(const Value& table, const std::str
                  hint.empty() ? "name a coordinate of the model" : hint);
   }
   DryFriction rubbing{symbol->index, no_node, {}};
-  const Value& normal = require_value(table, "normal", what, "add normal = \"m*g\", the force that presses");
+  const Value& normal = require_value(table, "normal", what, "add normal = \"m*g\", the normal force");
   rubbing.normal = resolver_
                        .value(normal, Context{fmt::format("the normal force of {}", what), on_state, Shape::scalar,
                                               std::nullopt, "a normal force is made of parameters, the state and t"})

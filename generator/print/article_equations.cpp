@@ -203,12 +203,12 @@ class Equations {
     std::vector<const Equation*> pure, coupled, of_forces;
     bool friction = false;
     for (const Equation& e : a_.one.equations) {
-      const bool rubs = has_forces_of_constraints(e.force);
+      const bool has_friction = has_forces_of_constraints(e.force);
       if (!e.of_motion)
         of_forces.push_back(&e);
       else
-        (rubs || !e.multipliers.empty() ? coupled : pure).push_back(&e);
-      friction = friction || (e.of_motion && rubs);
+        (has_friction || !e.multipliers.empty() ? coupled : pure).push_back(&e);
+      friction = friction || (e.of_motion && has_friction);
     }
     out_.subsection("What decouples");
     const auto s = [](const std::vector<const Equation*>& list) { return list.size() == 1; };

@@ -19,10 +19,12 @@ void write_contacts(Article& a) {
   std::vector<Statement> all;
   add_contacts(a.m, all);
   if (all.empty()) return;
-  const bool rubs =
+  const bool has_friction =
       std::any_of(a.m.contacts.begin(), a.m.contacts.end(), [](const auto& c) { return c.dimensions() > 0; });
   const bool opens = std::any_of(a.m.contacts.begin(), a.m.contacts.end(), [](const auto& c) { return c.unilateral; });
-  a.out.section(rubs && opens ? "Contacts and friction" : rubs ? "Friction" : "Contacts that can be left");
+  a.out.section(has_friction && opens ? "Contacts and friction"
+                : has_friction        ? "Friction"
+                                      : "Contacts that can be left");
   std::string name;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Statement& s = all[i];

@@ -46,9 +46,9 @@ class ContactFormulas {
     }
     if (!contact_.unilateral) return;
     const std::uint32_t k = contact_.constraints[0];
-    show("touches while", {multiplier(k), reading::number(0)}, true);
-    show("is apart", {multiplier(k), reading::number(0)});
-    show("is apart while", {read(m_.constraints[k].psi), reading::number(0)}, true);
+    show("is closed while", {multiplier(k), reading::number(0)}, true);
+    show("is open", {multiplier(k), reading::number(0)});
+    show("is open while", {read(m_.constraints[k].psi), reading::number(0)}, true);
     const auto rate = [&](const char* when) {
       Formula result = reading::make_formula(FormulaKind::dot,
                                              {mark(free_letter(*m_.model, "psi", "Psi"), subscript({}), {mark(when)})});

@@ -147,10 +147,10 @@ class LatexStyle final : public Style {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const std::string& piece = pieces[i];
       const std::size_t more = visible(piece);
-      const bool apart = starts[i] == PieceStart::abbreviation;
-      if (apart || (width > 0 && width + more > line_width_)) {
-        result += apart ? " \\\\\n&" : " \\\\\n&\\quad{}";
-        width = apart ? 0 : 4;
+      const bool is_separate = starts[i] == PieceStart::abbreviation;
+      if (is_separate || (width > 0 && width + more > line_width_)) {
+        result += is_separate ? " \\\\\n&" : " \\\\\n&\\quad{}";
+        width = is_separate ? 0 : 4;
         broken = true;
       }
       result += piece;

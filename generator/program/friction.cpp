@@ -97,13 +97,13 @@ class FrictionLawSolver {
 
   Ref slides(std::uint32_t j) const { return dag_.symbol(system::slip_direction_symbol(j)); }
   /// The sign of the normal force; a unilateral contact does not pull.
-  Ref presses(std::uint32_t j) const {
+  Ref normal_sign(std::uint32_t j) const {
     return s_.contacts[j].unilateral ? dag_.one() : dag_.symbol(system::normal_sign_symbol(j));
   }
   /// Selects `apart` if contact j is open, else `touching`.
-  Ref select_by_contact(std::uint32_t j, Ref apart, Ref touching) const {
-    if (!s_.contacts[j].unilateral || apart == touching) return touching;
-    return dag_.select(dag_.symbol(system::normal_sign_symbol(j)), dag_.zero(), apart, touching);
+  Ref select_by_contact(std::uint32_t j, Ref if_open, Ref if_closed) const {
+    if (!s_.contacts[j].unilateral || if_open == if_closed) return if_closed;
+    return dag_.select(dag_.symbol(system::normal_sign_symbol(j)), dag_.zero(), if_open, if_closed);
   }
   /// Selects `sliding` if contact j slides, else `sticking`.
   Ref by_mode(std::uint32_t j, Ref sticking, Ref sliding) const {
@@ -156,11 +156,11 @@ class FrictionLawSolver {
   /// The rows as a case distinction over the contacts that constrain a direction. Contacts before `next` are decided:
   /// those in `touching` are closed, the others open.
   std::vector<Affine> sticking_rows(const Contact& c, const std::vector<Affine>& rates, std::size_t next,
-                                    const std::vector<const system::BlockedDirection*>& touching) const {
-    if (next == c.blocked.size()) return held_rows(c, rates, touching);
+                                    const std::vector<const system::BlockedDirection*>& closed) const {
+    if (next == c.blocked.size()) return held_rows(c, rates, closed);
     const system::BlockedDirection& held = c.blocked[next];
-    std::vector<Affine> rows = sticking_rows(c, rates, next + 1, touching);
-    std::vector<const system::BlockedDirection*> more = touching;
+    std::vector<Affine> rows = sticking_rows(c, rates, next + 1, closed);
+    std::vector<const system::BlockedDirection*> more = closed;
     more.push_back(&held);
     const std::vector<Affine> where_it_touches = sticking_rows(c, rates, next + 1, more);
     for (std::size_t a = 0; a < rows.size(); ++a) {
@@ -172,15 +172,15 @@ class FrictionLawSolver {
     return rows;
   }
   std::vector<Affine> held_rows(const Contact& c, const std::vector<Affine>& rates,
-                                const std::vector<const system::BlockedDirection*>& touching) const {
-    if (touching.empty()) return rates;
+                                const std::vector<const system::BlockedDirection*>& closed) const {
+    if (closed.empty()) return rates;
     std::vector<Affine> rows(rates.size(), Affine{dag_.zero(), std::vector<Ref>(count_, dag_.zero())});
-    if (rates.size() == 1 || touching.size() > 1) {
+    if (rates.size() == 1 || closed.size() > 1) {
       for (std::size_t a = 0; a < rows.size(); ++a) rows[a].slope[c.first + a] = dag_.one();
       return rows;
     }
     // phi has no component along h; the slip rate has none perpendicular to h.
-    const std::vector<Ref>& h = touching[0]->along;
+    const std::vector<Ref>& h = closed[0]->along;
     const auto across = [&](Ref first, Ref second) { return dag_.sub(dag_.mul(h[0], second), dag_.mul(h[1], first)); };
     for (std::size_t a = 0; a < 2; ++a) rows[0].slope[c.first + a] = h[a];
     rows[1].value = across(rates[0].value, rates[1].value);
@@ -199,7 +199,7 @@ class FrictionLawSolver {
     } else if (c.reactions.size() == 2) {
       if (coupled_.empty()) law.value = dag_.mul(drag, curve_normal_[j]);
     } else {
-      const Ref factor = dag_.mul(drag, dag_.mul(presses(j), root(c.gram[0])));
+      const Ref factor = dag_.mul(drag, dag_.mul(normal_sign(j), root(c.gram[0])));
       law.value = dag_.mul(factor, normal_[j][0].value);
       for (std::size_t b = 0; b < count_; ++b) {
         law.slope[b] = dag_.add(law.slope[b], dag_.mul(factor, normal_[j][0].slope[b]));
@@ -268,11 +268,11 @@ class FrictionLawSolver {
           dag_.add(feedback, dag_.mul(dag_.mul(pressed, sliding_direction(j, a)), normal_[j][0].slope[c.first + a]));
     }
     if (dag_.is_zero(feedback)) return;
-    const Ref own = dag_.add(dag_.one(), dag_.mul(presses(j), feedback));
+    const Ref own = dag_.add(dag_.one(), dag_.mul(normal_sign(j), feedback));
     // A unilateral contact does not pull: p = 1. It may also open, which the law allows if x0 < 0.
     const Ref single = c.unilateral ? own : dag_.sub(dag_.one(), absolute(feedback));
     margin_[j] = select_by_contact(j, dag_.one(), by_mode(j, dag_.one(), single));
-    add_codes(margin_[j], dag_.mul(dag_.mul(presses(j), normal_[j][0].value), own));
+    add_codes(margin_[j], dag_.mul(dag_.mul(normal_sign(j), normal_[j][0].value), own));
   }
 
   /// Adds the codes for a negative margin: several solutions if `several` is positive, otherwise none.
@@ -321,7 +321,7 @@ class FrictionLawSolver {
     const Contact& c = s_.contacts[j];
     const std::size_t n = c.reactions.size();
     if (n == 0) return absolute(c.normal);
-    if (n == 1) press = dag_.mul(presses(j), at(normal_[j][0]));
+    if (n == 1) press = dag_.mul(normal_sign(j), at(normal_[j][0]));
     Ref square = dag_.zero();
     for (std::size_t k = 0; k < n * n && !c.gram.empty(); ++k) {
       square = dag_.add(square, dag_.mul(c.gram[k], dag_.mul(at(normal_[j][k / n]), at(normal_[j][k % n]))));

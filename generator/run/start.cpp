@@ -28,8 +28,8 @@ class StartSolver {
  public:
   explicit StartSolver(StartProblem& problem) : p_(problem), s_(problem.system), n_(s_.free.size()), rows_(problem) {
     const model::Model& model = *p_.mechanics.model;
-    const auto touches = [](const model::Constraint& c) { return c.contact.has_value(); };
-    if (std::any_of(model.constraints.begin(), model.constraints.end(), touches)) hold_angles(held_);
+    const auto has_contact = [](const model::Constraint& c) { return c.contact.has_value(); };
+    if (std::any_of(model.constraints.begin(), model.constraints.end(), has_contact)) hold_angles(held_);
     if (!model.joints.empty()) hold_angles(loose_);
   }
 
@@ -44,11 +44,11 @@ class StartSolver {
     leave(1);
     if (rows_.add_rolling()) {
       const std::vector<double> given = p_.qdot;
-      const std::vector<std::string> told = p_.solved_notes;
+      const std::vector<std::string> notes_before = p_.solved_notes;
       newton(1, unknowns(1));
       if (rows_.largest_residual(1) <= start_tolerance) return;
       p_.qdot = given;  // the body slides
-      p_.solved_notes = told;
+      p_.solved_notes = notes_before;
       rows_.drop_rolling();
     }
     solve(1);
@@ -166,7 +166,7 @@ class StartSolver {
   }
 
   /// Opens the contacts that are incompatible with the given values, if they are open at the initial guess.
-  void open_unreachable_contacts(const std::vector<double>& begin, const std::vector<std::string>& told) {
+  void open_unreachable_contacts(const std::vector<double>& begin, const std::vector<std::string>& notes_before) {
     const std::vector<double> end = p_.q;
     p_.q = begin;
     const std::vector<std::size_t> open = open_contacts();
@@ -174,15 +174,15 @@ class StartSolver {
       p_.q = end;
       return;
     }
-    p_.solved_notes = told;
+    p_.solved_notes = notes_before;
     std::string names;
     for (const std::size_t j : open) {
       p_.open[j] = true;
       rows_.drop(*s_.contacts[j].unilateral);
       names += (names.empty() ? "'" : ", '") + s_.contacts[j].name + "'";
     }
-    p_.solved_notes.push_back(names + (open.size() == 1 ? " is" : " are") + " apart: the start cannot be met while " +
-                              (open.size() == 1 ? "it touches" : "all touch"));
+    p_.solved_notes.push_back(names + (open.size() == 1 ? " is" : " are") + " open: the start cannot be met while " +
+                              (open.size() == 1 ? "it is closed" : "all are closed"));
     solve(0);
     for (const std::size_t j : open) require_open(s_.contacts[j]);
   }
@@ -190,13 +190,13 @@ class StartSolver {
     if (rows_.evaluate({s_.psi[*contact.unilateral]})[0] >= 0) return;
     throw Error("scene", p_.mechanics.model->where(p_.scene.span),
                 fmt::format("the start breaks constraint '{}', which is to be 0 or more", contact.name),
-                "give values with which it is open or touches, or start the search elsewhere with guess = { .. }");
+                "give values with which it is open or closed, or start the search elsewhere with guess = { .. }");
   }
 
   void solve(std::uint8_t order) {
     if (rows_.of_order(order).empty()) return;
     std::vector<std::size_t> free = unknowns(order);
-    const std::vector<std::string> told = p_.solved_notes;
+    const std::vector<std::string> notes_before = p_.solved_notes;
     for (const std::size_t i : free) {
       const auto guess = p_.guess.find({s_.free[i], order});
       if (guess != p_.guess.end()) rows_.value({s_.free[i], order}) = guess->second;
@@ -217,7 +217,7 @@ class StartSolver {
     }
     if (rows_.largest_residual(order) > start_tolerance) choose(order, free);
     if (order == 0 && rows_.largest_residual(order) > start_tolerance) {
-      open_unreachable_contacts(begin, told);
+      open_unreachable_contacts(begin, notes_before);
       if (rows_.of_order(order).empty()) return;
     }
     Eigen::Index k = 0;

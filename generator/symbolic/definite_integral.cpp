@@ -119,8 +119,9 @@ std::optional<Ref> by_antiderivative(Dag& dag, Ref integrand, Symbol time, Ref f
     if (std::binary_search(given.begin(), given.end(), r)) continue;
     const Node node = dag[r];
     const bool square = dag[node.args[0]].op == Op::power && dag[node.args[0]].payload % 2 == 0;
-    const bool anywhere = dag.is_positive(node.args[0]) || (square && node.op == Op::log);  // u^2 of a u below the line
-    if ((node.op == Op::sqrt || node.op == Op::log || node.op == Op::pow) && !anywhere) return std::nullopt;
+    const bool is_defined =
+        dag.is_positive(node.args[0]) || (square && node.op == Op::log);  // u^2 of a u below the line
+    if ((node.op == Op::sqrt || node.op == Op::log || node.op == Op::pow) && !is_defined) return std::nullopt;
     if (node.op == Op::asin || node.op == Op::acos) return std::nullopt;
   }
   return dag.sub(*F, Substitution(dag, {{time, from}})(*F));

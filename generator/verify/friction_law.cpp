@@ -55,18 +55,18 @@ class Law {
       std::vector<std::vector<Real>> held;  // by closed contacts
       for (const system::BlockedDirection& direction : c.blocked) {
         std::vector<Real> along = take(direction.along.size());
-        const bool touches = !s_.contacts[direction.by].unilateral || presses(direction.by) >= 0;
-        if (touches) held.push_back(std::move(along));
+        const bool is_closed = !s_.contacts[direction.by].unilateral || normal_sign(direction.by) >= 0;
+        if (is_closed) held.push_back(std::move(along));
       }
       if (slip.empty()) continue;
-      const bool opens = c.unilateral && presses(j) < 0;
-      if (!held.empty() && !opens && !c.width && slides(j) == 0) {
+      const bool is_open = c.unilateral && normal_sign(j) < 0;
+      if (!held.empty() && !is_open && !c.width && slides(j) == 0) {
         add_held(held, &phi[c.first], rate, result);
         continue;
       }
       const Real normal = normal_force(j, gram, given, lambda);
       for (std::size_t a = 0; a < slip.size(); ++a) {
-        if (opens)
+        if (is_open)
           result.push_back(phi[c.first + a]);
         else if (c.width)
           result.push_back(phi[c.first + a] + mu * normal * slip[a] / length(slip, width));
@@ -92,13 +92,13 @@ class Law {
     for (std::size_t a = 0; a < rate.size(); ++a) result.push_back(phi[a]);
   }
   int slides(std::size_t j) const { return eom::contact_sign(state_.mode, 2 * j); }
-  int presses(std::size_t j) const { return eom::contact_sign(state_.mode, 2 * j + 1); }
+  int normal_sign(std::size_t j) const { return eom::contact_sign(state_.mode, 2 * j + 1); }
   Real root(const Real& x) const { return cln::realpart(cln::sqrt(oracle_.precision().round(x))); }
 
   Real normal_force(std::size_t j, const std::vector<Real>& gram, const Real& given,
                     const std::vector<Real>& lambda) const {
     if (lambda.empty()) return cln::abs(given);
-    if (lambda.size() == 1) return presses(j) * root(gram[0]) * lambda[0];
+    if (lambda.size() == 1) return normal_sign(j) * root(gram[0]) * lambda[0];
     Real square = 0;
     for (std::size_t k = 0; k < 4; ++k) square = square + gram[k] * lambda[k / 2] * lambda[k % 2];
     return root(square);

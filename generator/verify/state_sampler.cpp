@@ -175,8 +175,8 @@ double StateSampler::max_decades_from_one() const {
 double StateSampler::sample_coordinate(const SamplingRange& c) {
   if (c.has_lower && c.has_upper) {
     const double margin = range_margin * (c.upper - c.lower);
-    const double anywhere = c.lower + margin + uniform() * (c.upper - c.lower - 2 * margin);
-    return c.center + spread_ * (anywhere - c.center);
+    const double drawn = c.lower + margin + uniform() * (c.upper - c.lower - 2 * margin);
+    return c.center + spread_ * (drawn - c.center);
   }
   if (c.has_lower || c.has_upper) {
     const double bound = c.has_lower ? c.lower : c.upper;

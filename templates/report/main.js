@@ -1,7 +1,7 @@
 // The page: the drawing with its controls, the live model or the recorded run, the plots.
 const data = JSON.parse(document.getElementById("motion").textContent);
 const stage = document.getElementById("stage"), view = document.createElement("div"), canvas = document.createElement("canvas");
-const bar = document.createElement("div"), tools = document.createElement("div"), told = document.createElement("p");
+const bar = document.createElement("div"), tools = document.createElement("div"), message = document.createElement("p");
 const live = data.live ? new Live(model, data.live, data) : null;
 const recorded = new Motion(data.t, data.x ? data.x.map((x) => Float64Array.from(x)) : null, data.y, live, data.events);
 let motion = recorded, pending = 0;
@@ -11,10 +11,10 @@ canvas.setAttribute("role", "img");
 canvas.setAttribute("aria-label", "the mechanism, moving");
 view.className = "view";
 bar.className = tools.className = "bar";
-told.className = "told quiet";
-told.id = "told";
-told.setAttribute("role", "status");
-view.append(canvas, bar, tools, told);
+message.className = "status quiet";
+message.id = "status";
+message.setAttribute("role", "status");
+view.append(canvas, bar, tools, message);
 stage.append(view);
 
 const scene = new Scene(canvas, data.parts, data.down), plots = new Plots(document.getElementById("plots"), data.panels, (t) => { player.play(false); player.jump(t); });
@@ -38,9 +38,9 @@ function run(play) {
   const integration = live.integration(500);
   const work = () => {
     if (mine !== pending) return;
-    if (!integration.advance(25)) { told.textContent = "running: t = " + integration.t.toPrecision(3) + " s"; setTimeout(work, 0); return; }
+    if (!integration.advance(25)) { message.textContent = "running: t = " + integration.t.toPrecision(3) + " s"; setTimeout(work, 0); return; }
     const steps = integration.steps + " steps in this page";
-    told.textContent = integration.outcome === "done" ? steps : steps + "; " + integration.outcome;
+    message.textContent = integration.outcome === "done" ? steps : steps + "; " + integration.outcome;
     if (integration.times.length > 1) {
       player.at = live.t0;
       take(new Motion(integration.times, integration.states, null, live, integration.found), false);
@@ -133,7 +133,7 @@ function panel() {
     ++pending;
     live.reset();
     sliders.forEach((set) => set());
-    told.textContent = "";
+    message.textContent = "";
     player.at = recorded.t[0];
     take(recorded, true);
     player.play(true);

@@ -97,8 +97,8 @@ TEST_CASE("cached certificates: commands work without a cache folder") {
   }
   ChildCommand call = command(folder, {"run", "p.toml"});
   call.environment["EOMGEN_CACHE_DIR"] = folder / "open";
-  const ChildResult told = Child(call).finish();
-  CHECK(told.status == 0);
-  CHECK(contains(told.err, "what is compiled now is kept in a private one"));
+  const ChildResult reply = Child(call).finish();
+  CHECK(reply.status == 0);
+  CHECK(contains(reply.err, "what is compiled now is kept in a private one"));
   CHECK(std::filesystem::is_empty(folder / "open"));
 }

@@ -134,9 +134,9 @@ TEST_CASE("a model name of 240 letters works or is reported") {
 TEST_CASE("run reports files and sizes; large sizes are announced, or refused unless confirmed") {
   const Folder folder;
   folder.write("p.toml", oscillator);
-  const ChildResult told = expect(0, folder, {"run", "p.toml", "--out", "a.csv", "--plot", "a.svg"});
-  CHECK(contains(told.out, "wrote             a.csv (501 rows, "));
-  CHECK(contains(told.out, "wrote             a.svg ("));
+  const ChildResult reply = expect(0, folder, {"run", "p.toml", "--out", "a.csv", "--plot", "a.svg"});
+  CHECK(contains(reply.out, "wrote             a.csv (501 rows, "));
+  CHECK(contains(reply.out, "wrote             a.svg ("));
   const Json run = document(folder, {"run", "p.toml", "--out", "a.csv", "--plot", "a.svg"});
   CHECK(run["files"][0]["path"] == "a.csv");
   CHECK(run["files"][0]["rows"] == 501);

@@ -167,9 +167,9 @@ async function look(entry) {
         range.value = entry.slider.value;
         range.dispatchEvent(new frame.contentWindow.Event("change"));
         const old = report.data.t.length;
-        at.ran = await wait(() => report.motion().x !== null && report.motion().t.length === 501 && page.getElementById("told").textContent.includes("steps in"));
+        at.ran = await wait(() => report.motion().x !== null && report.motion().t.length === 501 && page.getElementById("status").textContent.includes("steps in"));
         report.player.play(false);
-        at.told = page.getElementById("told").textContent;
+        at.status = page.getElementById("status").textContent;
         const x = report.motion().x[report.motion().x.length - 1];
         at.end = {};
         report.live.states.forEach((state, k) => { at.end[state.name] = x[k]; });

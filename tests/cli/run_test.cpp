@@ -64,10 +64,10 @@ TEST_CASE("--t-end, --rtol, --scene") {
 
 TEST_CASE("--max-steps ends a run with a remedy") {
   const Folder folder;
-  const Json told = document(folder, {"run", "P2_planar_pendulum", "--max-steps", "20"}, 3);
-  CHECK(told["outcome"] == "max_steps");
-  CHECK(told["steps"].get<int>() + told["rejected"].get<int>() == 20);
-  CHECK(contains(told["detail"].get<std::string>(), "--max-steps"));
+  const Json reply = document(folder, {"run", "P2_planar_pendulum", "--max-steps", "20"}, 3);
+  CHECK(reply["outcome"] == "max_steps");
+  CHECK(reply["steps"].get<int>() + reply["rejected"].get<int>() == 20);
+  CHECK(contains(reply["detail"].get<std::string>(), "--max-steps"));
   expect(2, folder, {"run", "P2_planar_pendulum", "--max-steps", "0"});
 }
 

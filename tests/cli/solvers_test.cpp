@@ -49,16 +49,16 @@ TEST_CASE("solvers: list shows the registry in its order, with the needs of each
   REQUIRE(solvers.size() == eom::methods().size());
   for (std::size_t k = 0; k < solvers.size(); ++k) {
     const eom::MethodInfo& method = eom::methods()[k];
-    const Json& told = solvers[k];
+    const Json& reply = solvers[k];
     CAPTURE(std::string(method.name));
-    CHECK(told["name"] == method.name);
-    CHECK(told["order"] == method.order);
-    CHECK(told["dense_order"] == method.dense_order);
-    CHECK(told["adaptive"] == method.adaptive);
-    CHECK(told["implicit"] == method.needs.used.has(eom::Feature::jacobian));
-    CHECK(told["series"] == method.needs.required.has(eom::Feature::series));
-    CHECK(told["variational"] == method.needs.required.has(eom::Feature::momenta));
-    CHECK(told["constrained"] == method.needs.required.has(eom::Feature::constraints));
+    CHECK(reply["name"] == method.name);
+    CHECK(reply["order"] == method.order);
+    CHECK(reply["dense_order"] == method.dense_order);
+    CHECK(reply["adaptive"] == method.adaptive);
+    CHECK(reply["implicit"] == method.needs.used.has(eom::Feature::jacobian));
+    CHECK(reply["series"] == method.needs.required.has(eom::Feature::series));
+    CHECK(reply["variational"] == method.needs.required.has(eom::Feature::momenta));
+    CHECK(reply["constrained"] == method.needs.required.has(eom::Feature::constraints));
   }
 }
 
@@ -119,16 +119,16 @@ TEST_CASE("solvers: rodas keeps its order in Euler parameters, which needs its J
 
 TEST_CASE("solvers: the schema of runs and the documentation name the methods of the registry") {
   const Json schema = Json::parse(text_of("docs/schema/run.schema.json"));
-  std::set<std::string> told;
-  for (const Json& name : schema["properties"]["solver"]["enum"]) CHECK(told.insert(name).second);
+  std::set<std::string> reply;
+  for (const Json& name : schema["properties"]["solver"]["enum"]) CHECK(reply.insert(name).second);
   const std::string format = text_of("docs/model-format.md"), runtime = text_of("docs/runtime.md");
   const std::size_t row = format.find("| `solver`,");
   REQUIRE(row != std::string::npos);
   const std::string of_scenes = format.substr(row, format.find('\n', row) - row);
-  CHECK(told.size() == eom::methods().size());
+  CHECK(reply.size() == eom::methods().size());
   for (const eom::MethodInfo& method : eom::methods()) {
     CAPTURE(std::string(method.name));
-    CHECK(told.contains(method.name));
+    CHECK(reply.contains(method.name));
     CHECK(contains(of_scenes, "`" + std::string(method.name) + "`"));
     CHECK(contains(runtime, "\n| `" + std::string(method.name) + "` |"));
   }

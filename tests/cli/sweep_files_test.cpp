@@ -108,8 +108,8 @@ TEST_CASE("merge: a table that ends in the middle of a line lacks that run; a si
   const std::string second = folder.read("2.csv");
   folder.write("2.csv", second.substr(0, second.size() - 5));
   const Words merge{"merge", "1.csv", "2.csv", "--out", "all.csv"};
-  const std::string told = expect(2, folder, merge).err;
-  CHECK(contains(told, "run 5 is missing, and 1 of 7 in all"));
+  const std::string reply = expect(2, folder, merge).err;
+  CHECK(contains(reply, "run 5 is missing, and 1 of 7 in all"));
   folder.write("2.csv", second.substr(0, second.size() - 5) + "\n");
   CHECK(contains(expect(2, folder, merge).err, "a line that is no run of that shard"));
   folder.write("2.csv", second + second.substr(offset_after_lines(second, 3)));

@@ -136,17 +136,17 @@ TEST_CASE("sweep by ranks: after one or all ranks are killed, other ranks contin
 TEST_CASE("sweep by ranks: an error is reported once") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
-  const auto told = [&](const Words& words, int status, const std::string& what) {
+  const auto reply = [&](const Words& words, int status, const std::string& what) {
     const ChildResult result = run_child(mpirun_command("3", folder, words));
     CAPTURE(result.err);
     CHECK(result.status == status);
     CHECK(times(result.err, what) == 1);
   };
-  told({"sweep", "oscillator.toml", "--grid", "kk=1,2"}, 2, "did you mean 'k'?");
-  told({"sweep", "oscillator.toml", "--grid", "m=-1,-2"}, 2, "no run of the grid can begin");
-  told({"sweep", "oscillator.toml", "--grid", "k=1,2", "--out", "-"}, 2, "several processes write one file");
-  told({"sweep", "oscillator.toml", "--grid", "k=1,2", "--jobs", "2"}, 2, "--jobs are threads of an ensemble here");
-  told({"derive", "oscillator.toml"}, 2, "derive");
+  reply({"sweep", "oscillator.toml", "--grid", "kk=1,2"}, 2, "did you mean 'k'?");
+  reply({"sweep", "oscillator.toml", "--grid", "m=-1,-2"}, 2, "no run of the grid can begin");
+  reply({"sweep", "oscillator.toml", "--grid", "k=1,2", "--out", "-"}, 2, "several processes write one file");
+  reply({"sweep", "oscillator.toml", "--grid", "k=1,2", "--jobs", "2"}, 2, "--jobs are threads of an ensemble here");
+  reply({"derive", "oscillator.toml"}, 2, "derive");
   CHECK(folder.names() == Words{"oscillator.toml"});
 }
 

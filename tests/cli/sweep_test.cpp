@@ -253,16 +253,16 @@ TEST_CASE("sweep: --basins counts the runs that end at each equilibrium, with an
   CHECK(runs == std::map<double, std::size_t>{{-1, 8}, {1, 4}});
   CHECK(contains(expect(0, folder, with(words, {"--basins", "1e-3"})).out, "8 runs at a = -1 phi = 0 (stable)"));
   CHECK(document(folder, with(words, {"--basins", "1e-3", "--t-end", "0.1"}))["basins"]["elsewhere"].get<int>() >= 8);
-  const std::string told = expect(2, folder, {"sweep", "wells.toml", "--grid", "c=1,2", "--basins", "1e-3"}).err;
-  CHECK(contains(told, "these move with 'c'"));
+  const std::string reply = expect(2, folder, {"sweep", "wells.toml", "--grid", "c=1,2", "--basins", "1e-3"}).err;
+  CHECK(contains(reply, "these move with 'c'"));
 }
 
 TEST_CASE("sweep: features without support in an ensemble are reported") {
   const Folder folder;
   const auto refused = [&](const Words& more, const std::string& what) {
     CAPTURE(what);
-    const std::string told = expect(2, folder, with(with({"sweep"}, more), {"--ensemble"})).err;
-    CHECK(contains(told, what));
+    const std::string reply = expect(2, folder, with(with({"sweep"}, more), {"--ensemble"})).err;
+    CHECK(contains(reply, what));
   };
   refused({"stick_slip_belt", "--grid", "m=1,2"}, "contacts with friction");
   refused({"bouncing_ball", "--grid", "m=1,2"}, "cannot be made side by side");
@@ -407,9 +407,9 @@ TEST_CASE("merge: shards give the bytes of the sweep in one call, interrupted or
   const std::size_t cut = whole.rfind('\n', whole.size() - 2) + 1;
   folder.write("2.csv", whole.substr(0, cut));
   const Words merge{"merge", "1.csv", "2.csv", "3.csv", "4.csv", "--out", "again.csv"};
-  const std::string told = expect(2, folder, merge).err;
-  CHECK(contains(told, "run 13 is missing, and 1 of 15 in all"));
-  CHECK(contains(told, "sweep --shard 2/4"));
+  const std::string reply = expect(2, folder, merge).err;
+  CHECK(contains(reply, "run 13 is missing, and 1 of 15 in all"));
+  CHECK(contains(reply, "sweep --shard 2/4"));
   CHECK(document(folder, with(sweep, {"--out", "2.csv", "--shard", "2/4"}), 3)["resumed"] == 3);
   expect(0, folder, merge);
   CHECK(folder.read("again.csv") == folder.read("whole.csv"));

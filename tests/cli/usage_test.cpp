@@ -168,9 +168,9 @@ TEST_CASE("a file name one letter away is suggested; messages name the page of t
     CHECK(contains(result.err, "pendulum.toml?"));
   }
   folder.write("none.toml", "format = \n");
-  const std::string told = expect(2, folder, {"check", "none.toml"}).err;
-  const std::size_t begin = told.find("docs/model-format.md is ") + 24;
-  CHECK(std::filesystem::is_regular_file(told.substr(begin, told.find('\n', begin) - begin)));
+  const std::string reply = expect(2, folder, {"check", "none.toml"}).err;
+  const std::size_t begin = reply.find("docs/model-format.md is ") + 24;
+  CHECK(std::filesystem::is_regular_file(reply.substr(begin, reply.find('\n', begin) - begin)));
 }
 
 TEST_CASE("-o and --out are the same option in every command that writes") {
@@ -202,12 +202,12 @@ TEST_CASE("emit: --print-name prints the name of the files for every target; --h
       CAPTURE(id);
       CAPTURE(target_name);
       CHECK(contains(help, target_name));
-      std::string told = expect(0, folder, {"emit", file, "--target", target_name, "--print-name"}).out;
-      REQUIRE(told.ends_with('\n'));
-      told.pop_back();
+      std::string reply = expect(0, folder, {"emit", file, "--target", target_name, "--print-name"}).out;
+      REQUIRE(reply.ends_with('\n'));
+      reply.pop_back();
       const Json files = document(folder, {"emit", file, "--target", target_name, "-o", target_name})["files"];
       CHECK(std::any_of(files.begin(), files.end(), [&](const Json& written) {
-        return std::filesystem::path(written.get<std::string>()).stem() == told;
+        return std::filesystem::path(written.get<std::string>()).stem() == reply;
       }));
     }
   }
@@ -308,10 +308,10 @@ TEST_CASE("a constraint without real solution is reported as such") {
   std::string text = pendulum_text("");
   text.replace(text.find("x^2 + y^2 - L^2"), 15, "x^2 + y^2 + L^2");
   folder.write("none.toml", text);
-  const std::string told = expect(2, folder, {"run", "none.toml"}).err;
-  CHECK(contains(told, "the start breaks constraint 'rod'"));
-  CHECK(contains(told, "no real solution"));
-  CHECK_FALSE(contains(told, "fix  by itself"));
+  const std::string reply = expect(2, folder, {"run", "none.toml"}).err;
+  CHECK(contains(reply, "the start breaks constraint 'rod'"));
+  CHECK(contains(reply, "no real solution"));
+  CHECK_FALSE(contains(reply, "fix  by itself"));
   text.replace(text.find("x^2 + y^2 + L^2"), 15, "(y + L)^2");
   folder.write("square.toml", text);
   CHECK(contains(expect(2, folder, {"check", "square.toml"}).err, "write \"y + L\""));

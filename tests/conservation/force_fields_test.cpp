@@ -34,10 +34,10 @@ TEST_CASE("fields: forces with velocities and inputs have no potential") {
 
 TEST_CASE("fields: dry friction has no potential, though no component of it is an applied force") {
   for (const char* law : {"static = 0.3, dynamic = 0.2", "dynamic = 0.2, law = \"smooth\", width = 0.01"}) {
-    const One rubs(cartesian, "dry = { coordinate = \"x\", normal = \"m\", " + std::string(law) + " }\n");
-    CHECK(rubs.found.conservative == conservation::ConservativeVerdict::no);
-    CHECK(rubs.found.reason == "it is friction");
-    CHECK_FALSE(rubs.found.potential.has_value());
+    const One dry(cartesian, "dry = { coordinate = \"x\", normal = \"m\", " + std::string(law) + " }\n");
+    CHECK(dry.found.conservative == conservation::ConservativeVerdict::no);
+    CHECK(dry.found.reason == "it is friction");
+    CHECK_FALSE(dry.found.potential.has_value());
   }
 }
 

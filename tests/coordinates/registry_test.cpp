@@ -79,7 +79,7 @@ double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
 }
 
 /// The documented singular places of a chart, parsed from "R = 0, phi = pi, cos(angle) = 0".
-std::vector<std::pair<std::string, double>> told(std::string_view singular) {
+std::vector<std::pair<std::string, double>> zeros_of(std::string_view singular) {
   std::vector<std::pair<std::string, double>> result;
   std::stringstream stream{std::string(singular)};
   for (std::string item; std::getline(stream, item, ',');) {
@@ -140,7 +140,7 @@ TEST_CASE("every system: the metric is singular exactly at the documented places
   for (const CoordinateSystem* system : coordinates::registry()) {
     CAPTURE(system->name);
     Charted chart(*system);
-    const auto sets = told(system->singular);
+    const auto sets = zeros_of(system->singular);
     for (const auto& [name, value] : sets) {
       const std::string set(name);
       CAPTURE(set);

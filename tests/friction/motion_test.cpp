@@ -67,13 +67,13 @@ TEST_CASE("friction: an oscillator with dry friction stops as in the closed form
 
 TEST_CASE("friction: of two masses on rough lines one may stick while the other slides") {
   const test::RoughProgram rough(test::rough_line, {1, 1.5, 10, 8, 0.3, 0.2, 9.81});
-  bool apart = false;  // at first A sticks with 2.6 of 2.94, B is pulled with 5.6 of 4.41
+  bool modes_differ = false;  // at first A sticks with 2.6 of 2.94, B is pulled with 5.6 of 4.41
   const eom::ModeResult end = run(rough, {1.3, 3.0, 0, 0}, 20, [&](const eom::StepView&, int mode) {
-    apart = apart || ((mode % 6 % 3 == 0) != (mode / 6 % 3 == 0));
+    modes_differ = modes_differ || ((mode % 6 % 3 == 0) != (mode / 6 % 3 == 0));
     return true;
   });
   CHECK(end.outcome == eom::Outcome::done);
-  CHECK(apart);
+  CHECK(modes_differ);
   // At the end both stick, within their cones.
   CHECK(end.mode % 3 == 0);
   CHECK(end.mode / 6 % 3 == 0);

@@ -69,7 +69,7 @@ touch "$scratch/source/pendulum.toml"
 grep -q 'p\[1\] = 2.0' "$generated" || refuse "the generated code does not have the changed parameter"
 "$scratch/consumer/pendulum" || refuse "the program of the changed model"
 touch "$prefix/bin/eomgen"
-due=$("$cmake" --build "$scratch/consumer" -- -n | grep -c 'Generating the equations of motion of ') # told, not made: all would be compiled again
+due=$("$cmake" --build "$scratch/consumer" -- -n | grep -c 'Generating the equations of motion of ') # documented, not made: all would be compiled again
 ((due == 4)) || refuse "a newer eomgen would not generate all code"
 
 echo "-- licences are installed with the files"
@@ -77,8 +77,8 @@ echo "-- licences are installed with the files"
 for page in commands.md model-format.md linking.md schema/run.schema.json; do
   [[ -s "$prefix/share/doc/eomgen/$page" ]] || refuse "the page $page is not installed"
 done
-told=$("$prefix/bin/eomgen" --help) # read to its end, or the pipe closes while it writes
-grep -qF "$prefix/share/doc/eomgen/commands.md" <<<"$told" || refuse "eomgen --help does not tell where the installed documentation is"
+documented=$("$prefix/bin/eomgen" --help) # read to its end, or the pipe closes while it writes
+grep -qF "$prefix/share/doc/eomgen/commands.md" <<<"$documented" || refuse "eomgen --help does not tell where the installed documentation is"
 
 echo "-- the program runs from the prefix, with its models"
 [[ -x $prefix/bin/eomgen ]] || refuse "there is no bin/eomgen"

@@ -117,14 +117,14 @@ TEST_CASE("eligibility: every method refuses a system without one of its require
       CAPTURE(std::string(eom::name(part)));
       const Features others = Features{Feature::series, Feature::momenta, Feature::constraints}.set(part, false);
       const eom::Eligibility found = eom::eligible(method, others);
-      const std::string told = refusal(method, others);
+      const std::string reason = refusal(method, others);
       CHECK(static_cast<bool>(found) == !method.needs.required.has(part));
-      CHECK(told.empty() == static_cast<bool>(found));
+      CHECK(reason.empty() == static_cast<bool>(found));
       if (found) continue;
       ++refused;
       CHECK(found.reason == Reason::missing);
       CHECK(found.feature == part);
-      CHECK(says(told, std::string(method.name) + " needs a right-hand side with " + eom::name(part)));
+      CHECK(says(reason, std::string(method.name) + " needs a right-hand side with " + eom::name(part)));
     }
   }
   CHECK(refused == 5);  // ggl, taylor, and three variational ones
@@ -144,9 +144,9 @@ TEST_CASE("eligibility: every method refuses a system with a feature on its list
       CHECK(found.feature == feature);
       CHECK(std::string(found.why) == expected->why);
       CHECK(!std::string(expected->why).empty());
-      const std::string told = refusal(method, required, {feature});
-      CHECK(says(told, std::string(method.name) + " takes no right-hand side with " + eom::name(feature)));
-      CHECK(says(told, expected->why));
+      const std::string reason = refusal(method, required, {feature});
+      CHECK(says(reason, std::string(method.name) + " takes no right-hand side with " + eom::name(feature)));
+      CHECK(says(reason, expected->why));
     }
   }
 }

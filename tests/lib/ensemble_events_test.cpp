@@ -63,17 +63,17 @@ WatchedAlone watched_alone(const char* method, const Rhs& rhs, std::size_t i, co
 template <class Rhs>
 void events_as_alone(const char* method, const Rhs& rhs, const eom::EnsembleOptions& options) {
   const std::vector<Watched> all = watched(method, rhs, 120, options);
-  std::size_t told = 0, stopped = 0;
+  std::size_t reported = 0, stopped = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     CAPTURE(std::string(method));
     CAPTURE(i);
     const WatchedAlone one = watched_alone(method, rhs, i, options);
     check_same(all[i].end, one.end);
     CHECK(all[i].seen == one.seen);
-    told += all[i].seen.size();
+    reported += all[i].seen.size();
     stopped += all[i].end.outcome == eom::Outcome::stopped_by_event ? 1 : 0;
   }
-  CHECK(told > 100);
+  CHECK(reported > 100);
   CHECK(stopped > 20);
 }
 

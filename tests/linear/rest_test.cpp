@@ -137,15 +137,15 @@ TEST_CASE("a true kink is reported with the line of its force by both commands, 
                          "[[force]]\nname = \"culprit\"\ngeneralized = { x = \"-abs(x_dot)\" }\n" + at_rest}}) {
     CAPTURE(c.name);
     const std::string path = file(c.name, c.text);
-    bool told = false;
+    bool is_refused = false;
     try {
       found(path);
     } catch (const Error& error) {
-      told = true;
+      is_refused = true;
       CHECK(error.message().find("'culprit' has no slope") != std::string::npos);
       CHECK(error.where().line == 13);
     }
-    CHECK(told);
+    CHECK(is_refused);
   }
 }
 

@@ -85,7 +85,7 @@ TEST_CASE("bilinear_oscillator: a start on the kink itself is no crossing") {
 }
 
 TEST_CASE("bilinear_oscillator: a branch without a value beyond its surface is left in time") {
-  // A ball on an elastic ground after Hertz: k x^(3/2) while it presses. Held at x < 0 it has no value
+  // A ball on an elastic ground after Hertz: k x^(3/2) while it is in contact. Held at x < 0 it has no value
   // above the ground, where the last trial step of each contact goes.
   const std::string path = variant("hertz", "-m*9.81[m/s^2] + 1e5[N/m]*max(0, -x)*sqrt(max(0, -x)/1[m])", "x = 0.2");
   const test::FinishedRun run = test::run_model(path, [](auto& request) {

@@ -15,7 +15,7 @@ constexpr int digits = 50;
 // A difference quotient with steps of 1e-12 in 50 digits is right to some 1e-24.
 constexpr double as_good_as_exact = 1e-18;
 
-program::Arguments<cln::cl_R> anywhere(const pipeline::DerivedModel& derived, const program::Program& program) {
+program::Arguments<cln::cl_R> random_arguments(const pipeline::DerivedModel& derived, const program::Program& program) {
   const cln::float_format_t precision = cln::float_format(digits);
   const auto value = [&](std::uint32_t k) {
     return cln::cl_float(symbolic::sample({symbolic::SymbolKind::auxiliary, k, 0}, 1), precision);
@@ -37,7 +37,7 @@ TEST_CASE(
     program::Request request;
     request.with = {"jac", "jac_p"};
     const program::Program program = pipeline::make_program(*derived, request);
-    const auto base = anywhere(*derived, program);
+    const auto base = random_arguments(*derived, program);
     const std::size_t n = base.x.size();
     const auto jac = program::interpret(program.functions[1], base, digits).results[0];
     const auto jac_p = program::interpret(program.functions[2], base, digits).results[0];

@@ -65,13 +65,13 @@ void MechanismBuilder::add_contacts() {
       default: {
         if (planar_ || !a.body || !a.free_position || !a.spatial_rotation || rolling_ || result_.constrained) break;
         rolling_ = true;
-        const bool apart = dice_.chance(40);
-        const std::string radius = apart ? dice_.decimal(1, 9) : value(20, 60);
+        const bool is_open = dice_.chance(40);
+        const std::string radius = is_open ? dice_.decimal(1, 9) : value(20, 60);
         contact("rough ball", std::string(dice_.chance(70) ? "rolling" : "sliding") + " = { body = \"" + a.name +
                                   "\", shape = { sphere = \"" + radius +
                                   "\" }, on = \"ground\" }\nfriction = { static = \"0.5\", dynamic = \"" +
-                                  dice_.decimal(10, 50) + "\" }\n" + (apart ? one_sided() : std::string()));
-        if (!apart) follows_.insert(height);
+                                  dice_.decimal(10, 50) + "\" }\n" + (is_open ? one_sided() : std::string()));
+        if (!is_open) follows_.insert(height);
       }
     }
   }

@@ -75,7 +75,7 @@ TEST_CASE("sqrt(x^2 S^-2) of a sum of squares S is |x|/S: S is never negative") 
 }
 
 TEST_CASE("a budget ends a calculation that exceeds it, also when nested; the outer budget is charged too") {
-  const auto spent = [](std::size_t outer, std::size_t inner, std::size_t operations) {
+  const auto exceeds_budget = [](std::size_t outer, std::size_t inner, std::size_t operations) {
     const work::Budget around(outer);
     bool over = false;
     try {
@@ -86,9 +86,9 @@ TEST_CASE("a budget ends a calculation that exceeds it, also when nested; the ou
     }
     return over;
   };
-  CHECK_FALSE(spent(100, 10, 10));
-  CHECK(spent(100, 10, 11));
-  CHECK(spent(5, 10, 6));
+  CHECK_FALSE(exceeds_budget(100, 10, 10));
+  CHECK(exceeds_budget(100, 10, 11));
+  CHECK(exceeds_budget(5, 10, 6));
   const work::Budget around(100);
   {
     const work::Budget budget(60);

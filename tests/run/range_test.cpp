@@ -92,10 +92,10 @@ TEST_CASE("clock: kinks in time are found at any distance, each to the last digi
   });
   CHECK(periodic.breakpoints.size() == 64);  // 32 maxima in 200 rad
   CHECK(!periodic.unresolved_from);
-  const eom::hybrid::TimeAnalysis touches =
+  const eom::hybrid::TimeAnalysis grazing =
       clock_of([](Dag& dag, Ref t) { return dag.call(Op::abs, dag.power(dag.sub(t, number(dag, 3)), 2)); });
-  CHECK(touches.breakpoints.empty());
-  CHECK(touches.bounds.empty());
+  CHECK(grazing.breakpoints.empty());
+  CHECK(grazing.bounds.empty());
 }
 
 TEST_CASE("clock: steps are limited where a smooth function of time is narrow, and nowhere else") {

@@ -189,8 +189,8 @@ TEST_CASE(
   // This is also a start of a scene without initial values.
   run::Overrides alone;
   alone.values["x"] = 2;
-  for (const std::string& told : resolve(rod, alone).solved_notes)
-    CHECK(told.find("no initial values") == std::string::npos);
+  for (const std::string& note : resolve(rod, alone).solved_notes)
+    CHECK(note.find("no initial values") == std::string::npos);
 }
 
 TEST_CASE("scene: a parameter that is declared positive stays positive") {

@@ -230,11 +230,11 @@ holds = "unilateral"
 t = [0, 1]
 )toml";
   const test::FinishedRun end = run_text("backlash", wheels);
-  const auto told = [&](const std::string& text) {
+  const auto has_note = [&](const std::string& text) {
     const std::vector<std::string>& all = end.simulation.scene.solved_notes;
     return std::any_of(all.begin(), all.end(), [&](const std::string& note) { return note.find(text) != note.npos; });
   };
-  CHECK(told("'forth', 'back' are apart: the start cannot be met while all touch"));
+  CHECK(has_note("'forth', 'back' are open: the start cannot be met while all are closed"));
   // phi1 = t^2 up to b, then both together with 2/3, after the loss of a third of the momentum.
   const double hit = std::sqrt(0.05), rest = 1 - hit;
   CHECK(std::abs(end.final("phi2") - (2 * hit / 3 * rest + rest * rest / 3)) <= closed_form);

@@ -24,13 +24,13 @@ for command in "${commands[@]}"; do
   fi
   # In the help, only flags at the beginning of a line are options; the rest is description.
   there=$("$program" "$command" --help | grep -E '^ +-' | sed -E 's/^ +//; s/(  ).*//' | options)
-  told=$(printf '%s\n%s\n' "$common" "$(section "$command" | grep -E '^\| `' | awk -F'|' '{ print $2 }' | options)" | LC_ALL=C sort -u)
+  documented=$(printf '%s\n%s\n' "$common" "$(section "$command" | grep -E '^\| `' | awk -F'|' '{ print $2 }' | options)" | LC_ALL=C sort -u)
   while read -r option; do
     [[ -z $option ]] || refuse "$command: the document does not tell of $option"
-  done < <(LC_ALL=C comm -23 <(echo "$there") <(echo "$told"))
+  done < <(LC_ALL=C comm -23 <(echo "$there") <(echo "$documented"))
   while read -r option; do
     [[ -z $option ]] || grep -qxF -- "$option" <<<"$common" || refuse "$command has no option $option"
-  done < <(LC_ALL=C comm -13 <(echo "$there") <(echo "$told"))
+  done < <(LC_ALL=C comm -13 <(echo "$there") <(echo "$documented"))
 done
 
 # Examples with shipped models: the output is as shown, except for blanks, digits beyond the sixth, the differences in the
@@ -72,4 +72,4 @@ for call in "$scratch"/*.call; do
 done
 ((examples >= 8)) || refuse "the page has $examples examples of shipped models only"
 ((failed == 0)) || exit 1
-echo "${#commands[@]} commands and $examples examples are told as they are"
+echo "${#commands[@]} commands and $examples examples are documented as they are"

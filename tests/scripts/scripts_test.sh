@@ -38,7 +38,7 @@ expect 2 "the ledger is of every test only" "$source/scripts/test" --time --only
 expect 2 "demo refuses an option" "$source/scripts/demo" --fast
 expect 2 "demo refuses two folders" "$source/scripts/demo" a b
 for script in setup test demo; do
-  expect 0 "$script tells how it is used" "$source/scripts/$script" --help
+  expect 0 "$script shows how it is used" "$source/scripts/$script" --help
   says "usage: scripts/$script"
 done
 

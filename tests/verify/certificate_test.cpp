@@ -124,11 +124,11 @@ TEST_CASE("certificate: a missing Christoffel term fails and is named") {
 }
 
 TEST_CASE("certificate: a missing force fails and is named") {
-  const auto forget = [](symbolic::Dag& dag, EquationSystem& s) {  // damping: c -> 0
+  const auto drop_damping = [](symbolic::Dag& dag, EquationSystem& s) {  // damping: c -> 0
     symbolic::Substitution undamped(dag, {{{SymbolKind::parameter, 4, 0}, dag.zero()}});
     for (Ref& f : s.f) f = undamped(f);
   };
-  check_only_failing(with_fault(cart_pendulum(), "lagrange", system::Approach::one, forget), "lagrange I");
+  check_only_failing(with_fault(cart_pendulum(), "lagrange", system::Approach::one, drop_damping), "lagrange I");
 }
 
 TEST_CASE("certificate: reactions of the wrong sign fail, eliminated or with a multiplier") {

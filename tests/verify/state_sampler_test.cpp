@@ -81,7 +81,7 @@ TEST_CASE("points: undefined states are rejected and counted; too many rejection
 }
 
 TEST_CASE("points: undefined numbers of a scene, an input or a parameter are reported with their position") {
-  const auto told = [](const auto& spoil) {
+  const auto refusal_of = [](const auto& spoil) {
     model::Model m = cart_pendulum();
     spoil(m, call(Fn::log, number(m, 0)).id);
     try {
@@ -93,15 +93,15 @@ TEST_CASE("points: undefined numbers of a scene, an input or a parameter are rep
     return std::string();
   };
   const std::string expected = "this has no value: log of a number that is not positive";
-  CHECK(told([](model::Model& m, model::NodeId bad) { m.scenes.front().t0 = bad; }) == expected);
-  CHECK(told([](model::Model& m, model::NodeId bad) {
+  CHECK(refusal_of([](model::Model& m, model::NodeId bad) { m.scenes.front().t0 = bad; }) == expected);
+  CHECK(refusal_of([](model::Model& m, model::NodeId bad) {
           m.scenes.front().t0 = number(m, 0).id;
           m.scenes.front().t1 = bad;
         }) == expected);
-  CHECK(told([](model::Model& m, model::NodeId bad) { m.scenes.front().parameters = {{0, bad}}; }) == expected);
-  CHECK(told([](model::Model& m, model::NodeId bad) { m.inputs.front().default_value = bad; }) == expected);
-  CHECK(told([](model::Model& m, model::NodeId bad) { m.parameters.front().value = bad; }) == expected);
-  CHECK(told([](model::Model& m, model::NodeId bad) { m.coordinates.front().lower = bad; }) == expected);
+  CHECK(refusal_of([](model::Model& m, model::NodeId bad) { m.scenes.front().parameters = {{0, bad}}; }) == expected);
+  CHECK(refusal_of([](model::Model& m, model::NodeId bad) { m.inputs.front().default_value = bad; }) == expected);
+  CHECK(refusal_of([](model::Model& m, model::NodeId bad) { m.parameters.front().value = bad; }) == expected);
+  CHECK(refusal_of([](model::Model& m, model::NodeId bad) { m.coordinates.front().lower = bad; }) == expected);
 }
 
 TEST_CASE("points: states keep a distance from kinks, contradictory constraints have no states") {

@@ -70,7 +70,7 @@ std::string heading_of(const print::PrintedFormula& item) {
   if (item.key == "reactions")
     return item.role.empty() ? "multipliers" : fmt::format("{} on '{}'", item.role, item.name);
   if (item.key == "friction") {  // some items describe the contact, not its friction
-    const bool of_contact = item.role.starts_with("touches") || item.role.starts_with("is apart") ||
+    const bool of_contact = item.role.starts_with("is closed") || item.role.starts_with("is open") ||
                             item.role == "impact" || item.role == "normal force";
     return fmt::format("{}, {}", named(of_contact ? "contact" : "friction at"), item.role);
   }

@@ -79,7 +79,7 @@ int execute(const Options& options, const CommonOptions& common) {
     return 0;
   }
   if (options.folder.empty())
-    throw Error("usage", {}, "-o is required: the folder for the sources", "eomgen emit --help tells how it is used");
+    throw Error("usage", {}, "-o is required: the folder for the sources", "eomgen emit --help shows how it is used");
   require_folder(options.folder);
   pipeline::require_target(options.target, {analysis::latex_document_target});
   const pipeline::EmissionRequest request{options.target,

@@ -90,7 +90,8 @@ std::string page_of_all(const Declaration& declared, const std::string& document
   text += ".SH SYNOPSIS\n\\fBeomgen\\fR \\fICOMMAND\\fR \\fIMODEL\\fR [\\fIoptions\\fR]\n.SH DESCRIPTION\n";
   text +=
       "A short text file describes a mechanical system. eomgen derives its equations of motion, holds them against an "
-      "independent oracle, shows them, writes C and C++, integrates, and tells how large the error is.\n.PP\nMODEL is "
+      "independent oracle, shows them, writes C and C++, integrates, and reports how large the error is.\n.PP\nMODEL "
+      "is "
       "a "
       "path, or the name of a model in a folder of models.\n.SH COMMANDS\n";
   std::string also;

@@ -184,10 +184,10 @@ Execute declare_stress(Arguments& app) {
   add_values(app, *options);
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
   app.add_list("--solver", options->solvers, "only these solvers").suggest_values(run::solver_names());
-  app.add_option("--steps", options->steps, "what takes more is ended, and told")
+  app.add_option("--steps", options->steps, "a run with more steps is ended and reported")
       .check(whole_number(100, 1'000'000'000))
       .show_default();
-  app.add_option("--seconds", options->seconds, "a guard: what takes longer is interrupted, and told")
+  app.add_option("--seconds", options->seconds, "a guard: a run that takes longer is interrupted and reported")
       .check(positive_number())
       .show_default();
   app.add_output_path("--plot", options->plot, "the verdicts, SVG or PNG by its ending; - draws them with characters");

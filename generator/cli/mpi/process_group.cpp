@@ -170,10 +170,10 @@ std::string MpiProcessGroup::agreed(const std::string& why) {
   if (least == size_) return "";
   int length = static_cast<int>(why.size());
   MPI_Bcast(&length, 1, MPI_INT, least, MPI_COMM_WORLD);
-  std::string told(static_cast<std::size_t>(length), ' ');
-  if (rank_ == least) told = why;
-  MPI_Bcast(told.data(), length, MPI_CHAR, least, MPI_COMM_WORLD);
-  return told;
+  std::string reason(static_cast<std::size_t>(length), ' ');
+  if (rank_ == least) reason = why;
+  MPI_Bcast(reason.data(), length, MPI_CHAR, least, MPI_COMM_WORLD);
+  return reason;
 }
 
 std::string MpiProcessGroup::write(const std::string& path, std::uint64_t begin,

@@ -51,7 +51,7 @@ inline void require_functions(const Problem& problem) {
   demand((code.contacts.empty() && code.kinks.empty() && problem.events.empty()) || code.events != nullptr,
          "the code has events, kinks or contacts, and no function events");
   demand(code.contacts.size() == problem.contacts.size() && code.contacts.size() <= problem.starts_open.size(),
-         "each contact of the code needs its outputs, and whether it is apart at the start");
+         "each contact of the code needs its outputs, and whether it is open at the start");
   demand(problem.start.size() >= 2 * code.free.size(), "the start has too few values");
   const MethodInfo& method = method_named(problem.solver);
   const bool moving = std::any_of(problem.inputs.begin(), problem.inputs.end(), is_time_dependent);

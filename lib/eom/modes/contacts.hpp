@@ -97,7 +97,7 @@ class Contacts {
   }
 
   /// The mode of a start. A contact with slip slides. Without slip it sticks if the static law allows, else it starts
-  /// to slide. Unilateral contacts that are open, or open at once, are open. `apart`: per contact; empty: all are
+  /// to slide. Unilateral contacts that are open, or open at once, are open. `open`: per contact; empty: all are
   /// closed. x changes if an impact occurs at the start.
   int start(double t, std::span<double> x, std::span<const bool> open = {}) {
     int mode = 0;
@@ -287,8 +287,8 @@ class Contacts {
     }
     if (!open && contact.dimensions > 0) mode.watched.push_back({first + 4, Direction::down});
     if (contact.surface || contact.unilateral) mode.watched.push_back({first + 3, Direction::down});
-    const char* state = open                                ? " is apart"
-                        : contact.dimensions == 0           ? " touches"
+    const char* state = open                                ? " is open"
+                        : contact.dimensions == 0           ? " is closed"
                         : !contact.sticks || digit % 3 != 0 ? " slides"
                         : contact.rolls                     ? " rolls"
                                                             : " sticks";
