@@ -11,6 +11,7 @@
 
 #include "cli/locate.hpp"
 #include "cli/usage.hpp"
+#include "cli/version.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::cli {
@@ -106,7 +107,7 @@ std::vector<std::string> DeclaredCommand::flags() const {
 Declaration::Declaration(const char* name, std::span<const Command> commands)
     : parser_(std::make_unique<Parser>(name)) {
   CLI::App& app = parser_->app;
-  app.set_version_flag("--version", EOMGEN_VERSION);
+  app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   app.formatter(std::make_shared<HelpPage>());
   for (const Command& command : commands) {

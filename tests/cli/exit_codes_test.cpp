@@ -4,6 +4,9 @@
 #include <sys/stat.h>
 
 #include <cmath>
+#include <eom/version.hpp>
+#include <regex>
+#include <string>
 
 #include "program.hpp"
 
@@ -18,6 +21,14 @@ TEST_CASE("exit code 0: results on standard output, nothing on standard error") 
     CHECK(result.err.empty());
     CHECK_FALSE(result.out.empty());
   }
+}
+
+TEST_CASE("--version shows the version of the runtime headers and a commit of twelve hexadecimal digits") {
+  const Folder folder;
+  const std::string line = expect(0, folder, {"--version"}).out;
+  const std::string version = std::to_string(EOM_VERSION_MAJOR) + '.' + std::to_string(EOM_VERSION_MINOR) + '.' +
+                              std::to_string(EOM_VERSION_PATCH);
+  CHECK(std::regex_match(line, std::regex("eomgen " + version + R"(( \(commit [0-9a-f]{12}\+?\))?\n)")));
 }
 
 TEST_CASE("exit code 1: verify detects a compiler that miscompiles") {
