@@ -101,7 +101,7 @@ class Parts {
       } else {  // this chart has no prepared values
         calls = call(*p, "rhs", abi_arguments("rhs"));
       }
-      if (prepared) offset += p->entries("prepare");
+      if (prepared) offset += p->result_size("prepare");
       body += fmt::format("    case {}: return {};\n", eom::charts_of(p->in_charts), calls);
     }
     return body + "    default: return 2;\n  }\n";
@@ -111,7 +111,7 @@ class Parts {
     std::string body = "  int code = 0;\n";
     std::size_t offset = 0;
     for (const Program* p = next(nullptr); p != nullptr; p = next(p)) {
-      const std::size_t entries = p->entries("prepare");
+      const std::size_t entries = p->result_size("prepare");
       if (entries == 0) continue;
       body += fmt::format("  if (code == 0) code = {}{}_prepare(p, w{});\n", prefix_, chart_name(p->in_charts),
                           offset > 0 ? fmt::format(" + {}", offset) : "");

@@ -95,7 +95,7 @@ RoughSolution rough_steady_state(const Flow& flow, const Symmetry& symmetry, con
   State<double>& z = end.z;
   try {
     for (int k = 0; k < most_steps; ++k) {
-      const auto move = step(equations(flow, symmetry, z, start, setting, held, targets), z, end.open);
+      const auto move = step(equations(flow, symmetry, z, start, setting, held, targets), z, end.is_slope_missing);
       if (!move || !move->allFinite()) return end;
       const double size = move->cwiseAbs().maxCoeff(), factor = std::min(1.0, longest_step / size);
       for (std::size_t i = 0; i + 1 < z.size(); ++i)

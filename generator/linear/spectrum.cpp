@@ -165,7 +165,7 @@ Eigenvalue rounded(const Root& r, const Precise& error) {
 
 }  // namespace
 
-bool Eigenvalue::is_reliable() const { return in_binary64 && error <= printed * std::hypot(re, im); }
+bool Eigenvalue::is_reliable() const { return is_in_binary64 && error <= printed * std::hypot(re, im); }
 bool Spectrum::is_reliable() const {
   return std::all_of(values.begin(), values.end(), [](const Eigenvalue& e) { return e.is_reliable(); });
 }

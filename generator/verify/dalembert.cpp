@@ -42,7 +42,7 @@ double relative_difference(const Real& difference, const Real& scale) {
   return quotient > cln::expt(cln::cl_RA(10), cln::cl_I(300)) ? 1e300 : cln::double_approx(quotient);
 }
 
-double Residual::relative() const { return verify::relative(value, scale); }
+double Residual::relative() const { return verify::relative_difference(value, scale); }
 
 Oracle::Oracle(const model::Model& model, int digits) : model_(model), digits_(digits), precision_(digits) {
   for (const model::Constraint& constraint : model.constraints) {
@@ -61,7 +61,7 @@ std::vector<Real> Oracle::default_parameters() const {
   std::vector<Real> values;
   for (std::size_t i = 0; i < model_.parameters.size(); ++i) {
     const bool number = is_independent_parameter(i);
-    values.push_back(number ? precision_.round(constant(model_.parameters[i].value, {})) : Real(0));
+    values.push_back(number ? precision_.round(evaluate_constant(model_.parameters[i].value, {})) : Real(0));
   }
   values = parameters(std::move(values));
   for (Real& value : values) value = precision_.round(value);
@@ -77,7 +77,7 @@ std::vector<Real> Oracle::parameters(std::vector<Real> given) const {
   for (std::size_t round = 0; round < given.size(); ++round) {
     for (std::size_t i = 0; i < given.size(); ++i) {
       if (known[i] || uses(model_, model_.parameters[i].value, unknown)) continue;
-      given[i] = constant(model_.parameters[i].value, given);
+      given[i] = evaluate_constant(model_.parameters[i].value, given);
       known[i] = true;
     }
   }
