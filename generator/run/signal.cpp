@@ -12,7 +12,7 @@ Signal::Signal(const symbolic::Dag& dag, symbolic::Ref expression, const std::ve
     if (s.kind == SymbolKind::time) return SymbolMeaning::of_variable(0);
     return s.kind == SymbolKind::parameter ? SymbolMeaning::of_parameter(s.index) : SymbolMeaning::of(0);
   });
-  parameters(values);
+  set_parameters(values);
 }
 
 Signal::Signal(std::vector<double> time, std::vector<double> value)
