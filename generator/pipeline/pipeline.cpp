@@ -19,10 +19,10 @@
 #include "print/printer.hpp"
 #include "print/render.hpp"
 #include "program/abi_values.hpp"
-#include "program/constrained_solve.hpp"
 #include "program/fingerprint.hpp"
 #include "program/interpret.hpp"
 #include "program/kinks.hpp"
+#include "program/null_space_solver.hpp"
 #include "reading/forms.hpp"
 
 namespace eomgen::pipeline {

@@ -60,7 +60,7 @@ bool all_finite(const std::vector<double>& list) {
 Auditor::Auditor(const mechanics::Mechanics& mechanics, const program::Program& program)
     : rhs_(program.functions.front()), divided_(rhs_) {
   divided_.results = {{"denominators", {}}};
-  divided_.places.clear();
+  divided_.result_indices.clear();
   for (const Divisor& d : list_divisors(rhs_, program, mechanics)) {
     divided_.results.front().entries.push_back(d.operand);
     audit_.denominators.push_back({d.expression, d.zero, d.test});
