@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "reading_of.hpp"
+#include "displayed_model.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
