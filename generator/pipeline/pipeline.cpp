@@ -66,7 +66,7 @@ void take_forms(DerivedModel& derived, FormChoice choice) {
     if (candidate.active.empty() || candidate.quasi || candidate.solution) continue;
     for (const system::Form form : {system::Form::nullspace, system::Form::chaplygin}) {
       if (choice && *choice != form) continue;
-      if (!program::form_applies(candidate, form, !choice)) continue;
+      if (!program::is_form_applicable(candidate, form, !choice)) continue;
       others.push_back(candidate);
       others.back().form = form;
     }
@@ -96,7 +96,7 @@ std::vector<program::Program> other_forms(const DerivedModel& derived, const pro
     one[0].form = form;
     one[0].quasi.reset();
     one[0].solution.reset();
-    if (!program::form_applies(one[0], form, false)) continue;
+    if (!program::is_form_applicable(one[0], form, false)) continue;
     program::Request request;
     request.optimise = false;
     request.fix = fixed;

@@ -166,7 +166,7 @@ TEST_CASE(
       if (second) constrain(system, k, "b", k.cos(k.q(0)) + k.q(1) * k.q(3) - k.q(2));
       for (const system::Form form : {system::Form::nullspace, system::Form::chaplygin}) {
         system.form = form;
-        REQUIRE(program::form_applies(system, form, false));
+        REQUIRE(program::is_form_applicable(system, form, false));
         check_against_eigen(system);
       }
     }
@@ -204,7 +204,7 @@ TEST_CASE("rows that are dependent everywhere on the constraints have no depende
   CHECK_FALSE(program::dependent_blocks(system).has_value());
   for (const system::Form form : {system::Form::nullspace, system::Form::chaplygin}) {
     system.form = form;
-    CHECK_FALSE(program::form_applies(system, form, false));
+    CHECK_FALSE(program::is_form_applicable(system, form, false));
     CHECK_THROWS_AS(program::make_linear_solver(system, program::Ties::ascending), Error);
   }
 }
@@ -216,14 +216,14 @@ TEST_CASE(
   const Scalar T = square(k.q(0, 1)) + square(k.q(1, 1)) + square(k.q(2, 1));
   system::EquationSystem two = lagrange(k, 3, T, k.number(0), {k.number(0), k.number(0), k.number(0)});
   constrain(two, k, "a", square(k.q(0)) + square(k.q(1)));
-  CHECK(program::form_applies(two, system::Form::nullspace, true));
-  CHECK_FALSE(program::form_applies(two, system::Form::chaplygin, true));
-  CHECK(program::form_applies(two, system::Form::chaplygin, false));
+  CHECK(program::is_form_applicable(two, system::Form::nullspace, true));
+  CHECK_FALSE(program::is_form_applicable(two, system::Form::chaplygin, true));
+  CHECK(program::is_form_applicable(two, system::Form::chaplygin, false));
   system::EquationSystem three = lagrange(k, 3, T, k.number(0), {k.number(0), k.number(0), k.number(0)});
   constrain(three, k, "a", square(k.q(0)) + square(k.q(1)) + square(k.q(2)));
-  CHECK_FALSE(program::form_applies(three, system::Form::nullspace, true));
+  CHECK_FALSE(program::is_form_applicable(three, system::Form::nullspace, true));
   system::EquationSystem linear = lagrange(k, 3, T, k.number(0), {k.number(0), k.number(0), k.number(0)});
   constrain(linear, k, "a", square(k.q(0)) + square(k.q(1)) + k.q(2));
-  CHECK(program::form_applies(linear, system::Form::nullspace, true));
-  CHECK(program::form_applies(linear, system::Form::chaplygin, true));
+  CHECK(program::is_form_applicable(linear, system::Form::nullspace, true));
+  CHECK(program::is_form_applicable(linear, system::Form::chaplygin, true));
 }
