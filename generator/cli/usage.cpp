@@ -62,7 +62,7 @@ void require_command(std::span<char* const> words, const std::vector<std::string
                             "run {0} integrates it",
                             word));
   }
-  std::string hint = choice_of(word, commands);
+  std::string hint = suggest_choice(word, commands);
   for (const auto& [other, meant] : other_words) {
     if (word == other) hint = fmt::format("did you mean '{}'? {}", meant, hint);
   }

@@ -57,7 +57,7 @@ std::vector<SurfaceLine> surfaces_at_start(const mechanics::Mechanics& m, const 
           (i < bound ? point.psi[i] : point.x[i - bound]) = found.value[static_cast<std::size_t>(i)];
           for (Index k = 0; k < n; ++k)
             (i < bound ? point.slope(i, k) : point.turn(i - bound, k)) =
-                found.slope(static_cast<std::size_t>(i), static_cast<std::size_t>(k));
+                found.jacobian(static_cast<std::size_t>(i), static_cast<std::size_t>(k));
         }
         return point;
       } catch (const std::domain_error&) {

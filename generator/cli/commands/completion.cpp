@@ -143,7 +143,8 @@ int execute(const std::string& name, const CommonOptions& common) {
     }
     return 0;
   }
-  throw Error("usage", {}, fmt::format("there is no completion for {}", model::quote(name)), choice_of(name, known));
+  throw Error("usage", {}, fmt::format("there is no completion for {}", model::quote(name)),
+              suggest_choice(name, known));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct Options {
 void require_format(const std::string& format) {
   const std::vector<std::string> known{"text", "latex", "mathml"};
   if (std::find(known.begin(), known.end(), format) != known.end()) return;
-  throw Error("derive", {}, fmt::format("there is no format {}", model::quote(format)), choice_of(format, known));
+  throw Error("derive", {}, fmt::format("there is no format {}", model::quote(format)), suggest_choice(format, known));
 }
 
 const std::string& in_format(const print::PrintedFormula& item, const std::string& format) {

@@ -117,7 +117,7 @@ int execute(const Options& options, const CommonOptions& common) {
   }
   if (!found) {
     throw Error("usage", {}, fmt::format("there is no command {}", model::quote(options.command)),
-                choice_of(options.command, declared.names()));
+                suggest_choice(options.command, declared.names()));
   }
   if (options.folder.empty()) {
     if (common.json) {

@@ -57,7 +57,8 @@ void require_names(const analysis::SweepPoints& points, const SweepOptions& opti
       std::vector<std::string> known;
       for (const model::Parameter& p : model.parameters) known.push_back(p.name);
       for (const model::Coordinate& c : model.coordinates) known.insert(known.end(), {c.name, c.name + "_dot"});
-      throw Error("sweep", {}, fmt::format("there is no parameter or coordinate '{}'", name), choice_of(name, known));
+      throw Error("sweep", {}, fmt::format("there is no parameter or coordinate '{}'", name),
+                  suggest_choice(name, known));
     }
     if (set.contains(name)) {
       throw Error("sweep", {}, fmt::format("'{}' is varied, and has a value by --set", name), "leave one of them out");
