@@ -206,7 +206,7 @@ linear::Linearisation linearise_at_state(const SteadyProblem& p, std::uint64_t s
   }
 }
 
-double shown(const Precise& x) {
+double display_value(const Precise& x) {
   constexpr int nothing = 40;  // exponent of values below any physical size
   return linear::magnitude(x) < linear::tiny<Precise>(nothing) ? 0.0 : linear::to_double(x);
 }
