@@ -20,7 +20,7 @@ struct ConstraintClass {
   std::string treatment, reason;        // treatment in the equations; reason for `integrable`
 };
 
-/// ConstraintClassification of one force.
+/// Classification of one force.
 struct ForceClass {
   std::string name, conservative;  // "yes", "no", "unknown"
   std::optional<Formula> potential;

@@ -194,7 +194,7 @@ TEST_CASE("drawing: a constraint on an angle is a moment on the body that does n
   const auto& list = start.forces.list();
   const auto found = std::find_if(list.begin(), list.end(), [](const auto& force) { return force.name == "no_spin"; });
   REQUIRE(found != list.end());
-  CHECK(found->turns);
+  CHECK(found->is_moment);
   CHECK(std::string_view(found->kind) == "constraint");
 }
 

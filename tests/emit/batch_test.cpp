@@ -37,7 +37,7 @@ std::vector<Example> in_single(std::vector<Example> all) {
 /// The failure of the batch of these files; empty if every state has the same bits as alone.
 std::string wrong(const std::string& folder, const Example& e, const Width& width, const std::string& modes) {
   const std::string name = emit::mangled_id(e.context.id), program = folder + "/use";
-  const auto has = [&](const char* function) { return e.program.entries(function) > 0; };
+  const auto has = [&](const char* function) { return e.program.result_size(function) > 0; };
   std::vector<std::string> command{EOMGEN_TEST_CC,
                                    "-std=gnu11",
                                    "-O1",

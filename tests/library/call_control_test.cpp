@@ -59,7 +59,7 @@ TEST_CASE("library: calls from two threads give the same results as sequential c
   const Model models[] = {Model::from(test::pendulum(), "pendulum"), Model::from(other, "pushed")};
   const auto answers = [](const Model& model) {
     return model.equations().text() + model.emit({.target = "c"}).files.front().text +
-           model.examine().constraints[0].use;
+           model.examine().constraints[0].treatment;
   };
   const std::string alone[] = {answers(models[0]), answers(models[1])};
   std::string together[2];

@@ -134,10 +134,10 @@ TEST_CASE("the document states the kind of every constraint, and which equations
 }
 
 TEST_CASE("words that are longer than a line may be broken at every letter") {
-  CHECK(print::words("short words & more") == "short words \\& more");
-  const std::string broken = print::words(std::string(40, 'x'));
+  CHECK(print::escape_user_text("short words & more") == "short words \\& more");
+  const std::string broken = print::escape_user_text(std::string(40, 'x'));
   CHECK(count(broken, "\\hspace{0pt}") == 39);
-  CHECK(count(print::words("\xc3\xa4" + std::string(30, 'x')), "\xc3\xa4\\hspace{0pt}") ==
+  CHECK(count(print::escape_user_text("\xc3\xa4" + std::string(30, 'x')), "\xc3\xa4\\hspace{0pt}") ==
         1);  // a letter of two bytes counts as one
 }
 

@@ -29,7 +29,7 @@ std::vector<std::vector<Number>> coefficients(const program::Taylor& taylor, con
   for (int k = 1; k < order; ++k) {
     program::Arguments<Number> next{k, c.back(), {}, {}};
     next.w = start[0];
-    for (std::size_t i = 0; i < taylor.products; ++i) {
+    for (std::size_t i = 0; i < taylor.product_count; ++i) {
       Number sum = 0;
       for (std::size_t j = 1; j < static_cast<std::size_t>(k); ++j)
         sum = sum + a[j][i] * b[static_cast<std::size_t>(k) - j][i];

@@ -82,7 +82,7 @@ TEST_CASE("numbers are compared correctly whether CLN stores them in the word or
       if (i == j) CHECK(hash_of(numbers[i]) == hash_of(other));
       CHECK(same(plus(numbers[i], numbers[j]), numbers[i] + numbers[j]));
       CHECK(times(numbers[i], numbers[j]) == numbers[i] * numbers[j]);
-      if (j != 0) CHECK(over(numbers[i], numbers[j]) == numbers[i] / numbers[j]);
+      if (j != 0) CHECK(quotient(numbers[i], numbers[j]) == numbers[i] / numbers[j]);
     }
   }
   CHECK(is_zero(half - half));

@@ -136,7 +136,7 @@ inline void force(model::Model& m, std::string kind, std::vector<model::Argument
 }
 using LoadType = model::Effect::LoadType;
 inline model::Effect effect(LoadType load_type, Formula value, Formula at = {}, Formula other = {}) {
-  return {acts, value.id, at.id, other.id, model::no_node, 0};
+  return {load_type, value.id, at.id, other.id, model::no_node, 0};
 }
 inline void gravity(model::Model& m, Formula g) {
   force(m, "gravity", {{"gravity", g.id}}, {effect(LoadType::acceleration, g)});
