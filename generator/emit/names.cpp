@@ -42,7 +42,7 @@ constexpr std::string_view macros[] = {
 // Prefixes under which headers define macros: M_PI, FP_NAN, DBL_MAX, INT32_MAX, FE_INVALID, ...
 constexpr std::string_view macro_prefixes[] = {"M_",   "FP_",   "DBL_", "FLT_",  "LDBL_", "INT", "UINT", "FE_",
                                                "LONG", "ULONG", "LLONG", "CHAR_", "SHRT_", "USHRT", "UCHAR", "SCHAR", "MATH_",
-                                               "PRI",  "SCN",   "SIG_", "BUILTIN"};
+                                               "PRI",  "SCN",   "SIG_", "BUILTIN", "EOM_VERSION"};
 
 // Types and namespaces of the emitted header.
 constexpr std::string_view own[] = {"Real", "State", "Parameter", "Input", "Output", "Reaction", "std", "eom"};

@@ -345,7 +345,7 @@ class Search {
 }  // namespace
 
 void SearchResult::record_failure(const std::string& why, State<double> at) {
-  if (++failed_starts > 0) return;
+  if (failed_starts++ > 0) return;
   reason = why;
   failure_point = std::move(at);
 }

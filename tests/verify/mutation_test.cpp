@@ -76,7 +76,7 @@ class Mutator {
  private:
   // From the line after the signature of a function to its end.
   void functions() {
-    const std::size_t last = source_.find("/* Whether values are off");
+    const std::size_t last = source_.find("/* Whether values differ");
     REQUIRE(last != std::string::npos);
     const std::regex head("\n(?:static |static inline )?int " + name_ + "_(\\w+)\\([^{]*\\)\n\\{\n");
     for (std::sregex_iterator it(source_.begin(), source_.end(), head), none; it != none; ++it) {
