@@ -99,7 +99,48 @@ console.log(JSON.stringify({size, whole: raw.length === row * size[1], white, bl
   }
 }
 
-TEST_CASE("plot: text fits into eighty columns and shows each curve with a letter of its own") {
+TEST_CASE("plot: a PNG with dashed curves ends, and their dashes and gaps have the stated lengths") {
+  const Folder folder;
+  std::string names, kinetic, potential, initial;
+  for (int i = 1; i <= 17; ++i) {  // the ninth and the seventeenth curve have the colour of the first, in dashes
+    const std::string x = "x" + std::to_string(i);
+    names += x + " = {}\n";
+    kinetic += (i > 1 ? " + " : "") + std::string("m*") + x + "_dot^2/2";
+    potential += (i > 1 ? " + " : "") + std::string("k*") + x + "^2/2";
+    initial += (i > 1 ? ", " : "") + x + " = " + std::to_string(i);
+  }
+  folder.write("a.toml", "format = 1\n[parameters]\nm = { value = 1, positive = true }\nk = 5e4\n[coordinates]\n" +
+                             names + "[energy]\nkinetic = \"" + kinetic + "\"\npotential = \"" + potential +
+                             "\"\n[scene.default]\nt = [0, 1]\ninitial = { " + initial + " }\n");
+  // Steep segments hold many dashes each; their lengths are rounded, and so is where each begins.
+  expect(0, folder, {"run", "a.toml", "--plot", "steep.png"});
+  CHECK(folder.read("steep.png").starts_with("\x89PNG"));
+  // With k = 0 curves are horizontal, in dashes of 14 of 22 and of 4 of 10 pixels; round ends add 3 pixels to each.
+  expect(0, folder, {"run", "a.toml", "--set", "k=0", "--plot", "flat.png"});
+  folder.write(
+      "read.js",
+      R"(const b = require('fs').readFileSync('flat.png'), zlib = require('zlib'); let at = 8, data = [], size = null;
+while (at < b.length) { const n = b.readUInt32BE(at), kind = b.toString('latin1', at + 4, at + 8); if (kind === 'IHDR') size = [b.readUInt32BE(at + 8), b.readUInt32BE(at + 12)]; if (kind === 'IDAT') data.push(b.subarray(at + 8, at + 8 + n)); at += 12 + n; }
+const raw = zlib.inflateSync(Buffer.concat(data)), row = 3 * size[0] + 1, p = Buffer.alloc(raw.length), most = [];
+for (let y = 0; y < size[1]; ++y) for (let i = 1; i < row; ++i) p[y * row + i] = raw[y * row + i] + (y > 0 ? p[(y - 1) * row + i] : 0);
+for (let y = 0, last = -9; y < size[1]; ++y) { let n = 0; for (let x = 0; x < size[0]; ++x) if (p[y * row + 1 + 3 * x] === 0x0b && p[y * row + 2 + 3 * x] === 0x6a) ++n; if (n > 300) { if (y - last > 5) most.push(n); else most[most.length - 1] = Math.max(n, most[most.length - 1]); last = y; } }
+console.log(JSON.stringify(most));)");
+  try {
+    const ChildResult result = run_child({{"node", "read.js"}, folder.path()});
+    CAPTURE(result.err);
+    REQUIRE(result.status == 0);
+    const Json drawn = Json::parse(result.out);  // from the top: 17, 9, 1
+    CAPTURE(result.out);
+    REQUIRE(drawn.size() == 3);
+    const double whole = drawn[2].get<double>();
+    CHECK(drawn[1].get<double>() / whole == doctest::Approx(17.0 / 22).epsilon(0.03));
+    CHECK(drawn[0].get<double>() / whole == doctest::Approx(7.0 / 10).epsilon(0.03));
+  } catch (const std::runtime_error&) {
+    MESSAGE("skipped: there is no node");
+  }
+}
+
+TEST_CASE("plot: characters fit into eighty columns and show each curve with a letter of its own") {
   const Folder folder;
   const std::string text =
       expect(0, folder, {"run", "S5_double_pendulum", "--plot", "-", "--plot-of", "theta1", "--plot-of", "theta2"}).out;

@@ -87,36 +87,38 @@ class Painter {
         centre.first - radius, centre.first + radius, centre.second - radius, centre.second + radius,
         [&](double x, double y) { return radius + 0.5 - std::hypot(x - centre.first, y - centre.second); }, colour);
   }
-  /// A dashed polyline; the pattern starts at its first point.
+  /// A polyline in dashes, the first pattern from its beginning. Segments longer than any picture, and dashes too short
+  /// to be seen, are drawn solid.
   void polyline(const std::vector<Point>& points, double width, const std::vector<double>& dashes,
                 const Colour& colour) {
     if (points.size() == 1) line(points[0], points[0], width, colour);
+    const bool dashed = !dashes.empty() && *std::min_element(dashes.begin(), dashes.end()) >= shortest_dash;
     std::size_t dash = 0;
-    double left = dashes.empty() ? 0 : dashes[0];
+    double left = dashed ? dashes[0] : 0;
     for (std::size_t i = 1; i < points.size(); ++i) {
       const double dx = points[i].first - points[i - 1].first, dy = points[i].second - points[i - 1].second,
                    length = std::hypot(dx, dy);
-      if (dashes.empty()) {
+      if (!dashed || !(length < farthest)) {
         line(points[i - 1], points[i], width, colour);
         continue;
       }
       const auto at = [&](double s) {
         return Point{points[i - 1].first + dx * s / length, points[i - 1].second + dy * s / length};
       };
-      for (double s = 0; s < length;) {
-        const double end = std::min(length, s + left);
-        if (dash % 2 == 0) line(at(s), at(end), width, colour);
-        left -= end - s;
-        s = end;
-        if (left > 0) continue;
+      double s = 0;
+      for (; left <= length - s; left = dashes[dash]) {  // each turn ends one dash, so rounding cannot stop it
+        if (dash % 2 == 0) line(at(s), at(s + left), width, colour);
+        s += left;
         dash = (dash + 1) % dashes.size();
-        left = dashes[dash];
       }
+      if (dash % 2 == 0 && s < length) line(at(s), at(length), width, colour);
+      left -= length - s;
     }
   }
 
  private:
-  static constexpr double farthest = 1e5;  // pixels; clamps invisible coordinates
+  static constexpr double farthest = 1e5;  // pixels; nothing beyond is seen
+  static constexpr double shortest_dash = 0.1;
   Point placed(Point p) const {
     return {std::clamp(p.first * scale_, -farthest, farthest),
             std::clamp((p.second + y_) * scale_, -farthest, farthest)};
