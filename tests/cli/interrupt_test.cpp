@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Interruption by signals.
 #include <doctest/doctest.h>
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -143,6 +145,24 @@ TEST_CASE("every command that derives stops on Ctrl-C immediately with exit code
     CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(1));  // 0.2 s on an idle machine
   }
   CHECK(folder.names() == Words{"a.toml"});
+}
+
+TEST_CASE("a second signal ends a command that does not see the first") {
+  for (const int second : {SIGINT, SIGTERM}) {
+    const Folder folder;
+    REQUIRE(::mkfifo((folder / "a.csv").c_str(), 0600) == 0);  // nobody reads: writing to it never ends
+    Child child(command(folder, {"run", "P2_planar_pendulum", "--every", "1e-4", "--out", "a.csv"}));
+    const int reader = ::open((folder / "a.csv").c_str(), O_RDONLY);  // returns once the command has opened it
+    REQUIRE(reader >= 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    child.signal(SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));  // beyond the patience of those who see it
+    child.signal(second);
+    const ChildResult result = child.finish();
+    CHECK(result.in_time);
+    CHECK(result.status == 128 + second);
+    ::close(reader);
+  }
 }
 
 TEST_CASE("equilibria that were found before Ctrl-C are shown") {
