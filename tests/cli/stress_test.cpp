@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "program.hpp"
 
@@ -49,9 +50,29 @@ TEST_CASE("stress: a start near a coordinate singularity satisfies the constrain
     CHECK_FALSE(contains(left["reason"].get<std::string>(), "constraints allow no start"));
 }
 
-// A stiff spring through its centre: for any number of steps the force reverses within a step, and some of the results
-// agree by chance.
-TEST_CASE("run: the estimate of fixed steps detects a force that reverses within a step") {
+TEST_CASE("stress: a constraint that is stated twice is refused, or recognised as one that follows from the first") {
+  const Folder folder;
+  for (const auto& [model, constraint, outcome] : {std::tuple{"R12_pinned_body", "pin", "accepted: "},
+                                                   {"R12_pinned_body", "tilt", "refused: "},
+                                                   {"R16_sphere_on_sphere", "contact", "accepted: "}}) {
+    const std::string of_constraint = constraint;
+    CAPTURE(of_constraint);
+    const Json found = document(folder, {"stress", model, "--quick", "--steps", "1000", "--seconds", "1e6", "--solver",
+                                         "dop853", "--t-end", "0.1"});
+    CHECK(found["undetected"] == 0);
+    int cases = 0;
+    for (const Json& left : found["left_out"]) {
+      if (left["case"] != "constraint " + of_constraint + " twice") continue;
+      CHECK(left["reason"].get<std::string>().starts_with(outcome));
+      ++cases;
+    }
+    CHECK(cases == 1);
+  }
+}
+
+// A stiff spring through its centre: whatever the number of steps, the force turns within one of them, and some of
+// these numbers agree by chance.
+TEST_CASE("run: the estimate of fixed steps sees a force that turns within one of them") {
   const Folder folder;
   const auto end = [&](const char* solver, const char* how, const char* much) {
     return document(folder, {"run", "P13_saddle_field", "--set", "K=9e12", "--t-end", "5.15473e-06", "--solver", solver,
