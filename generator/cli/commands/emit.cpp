@@ -129,7 +129,7 @@ int execute(const Options& options, const CommonOptions& common) {
   const auto with_form = [constrained](system::Form f) {
     return constrained ? fmt::format(", form {}", system::name(f)) : "";
   };
-  fmt::print("formulation       {}, approach {}{}\n", program.formulation, system::name(program.approach),
+  fmt::print("formulation {}, approach {}{}\n", program.formulation, system::name(program.approach),
              with_form(program.form));
   fmt::print("operations  {}\n", to_text(program.functions.front().operations));
   if (program.prepared_count() > 0) {
