@@ -130,7 +130,8 @@ class ContactReader {
            "{ .. }");
     }
     if (several) {
-      fail("several particles have the coordinates of '" + contact_.name + "', so that it is open which of them rubs",
+      fail("several particles have the coordinates of '" + contact_.name +
+               "', so that it is open which of them has the friction",
            "write the constraint in coordinates of one particle");
     }
   }
