@@ -32,7 +32,7 @@ function(eomgen_stage name)
     target_link_libraries(eomgen_${name} PUBLIC eomgen_${stage})
   endforeach()
   target_link_libraries(eomgen_${name} PUBLIC ${ARG_LINKS})
-  if(ARG_COLD)
+  if(ARG_UNOPTIMISED)
     target_compile_options(eomgen_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   if(ARG_NEEDS AND NOT ARG_OWN_HEADERS)  # stages without are tables
