@@ -43,6 +43,7 @@ const std::vector<std::pair<std::string, std::set<std::string>>> libraries = {
     {"nlohmann/", {"nlohmann_json::nlohmann_json"}},
     {"CLI/", {"CLI11::CLI11"}},
     {"toml++/", {"tomlplusplus::tomlplusplus"}},
+    {"pugixml.hpp", {"pugixml::pugixml"}},
 };
 
 std::string place(const fs::path& file, const Include& include) {

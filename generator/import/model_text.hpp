@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An assembly as the text of a model file. Axes of bodies are those of links; a constant rotation between two joints is
+// a [[frame]]. Positions start at the origin of the link before, so that the formulations over trees find the tree.
+#pragma once
+
+#include "import/assembly.hpp"
+#include "import/import.hpp"
+#include "import/names.hpp"
+
+namespace eomgen::import {
+
+/// Expressions in the model language, with names of links and joints.
+class ModelWriter {
+ public:
+  ModelWriter(const Robot& robot, const Tree& tree, const Assembly& assembly, const ImportOptions& options);
+  ImportedModel write();
+
+ private:
+  struct CoordinateText {
+    std::string name, unit, comment;
+    std::size_t joint = no_index;
+    Number start;
+  };
+
+  void name_coordinates();
+  void name_free_coordinates(const std::string& prefix, std::size_t joint, const std::string& comment);
+  void write_parts();
+  void write_root(const Part& part);
+  void write_joint(std::size_t index);
+  void write_body(std::size_t index, const std::string& rotation, const std::string& axes_of);
+  void write_fused(std::size_t index);
+  void write_shapes(std::size_t index);
+  void write_shape(const Shape& shape, const Pose& pose, const Vector& centre, std::vector<std::string>& texts);
+  void write_forces();
+  void write_drives();
+  void write_dissipation();
+  void write_constraints();
+  void write_stops(std::size_t joint, std::size_t& stops);
+  void write_scene();
+  std::string header() const;
+
+  /// A number with its unit as a value: "0.5 m", or the name of a new parameter.
+  std::string value(const Number& number, const std::string& unit, const std::string& name);
+  /// The same within an expression: 0.5[m].
+  std::string factor(const Number& number, const std::string& unit, const std::string& name);
+  /// " + 0.5[m]*B.e1 - ..", along axes such as "B.e" or "E".
+  std::string along(const Vector& v, const std::string& axes, const std::string& parameter);
+  std::string place_name(std::size_t part) const;
+  std::string axes_name(std::size_t part) const;
+  std::string rotation_of(const std::string& prefix, bool free) const;
+  bool is_actuated(std::size_t joint) const;
+  std::vector<std::size_t> moving_joints() const;
+
+  const Robot& robot_;
+  const Tree& tree_;
+  const Assembly& assembly_;
+  const ImportOptions& options_;
+  Names names_;
+  Findings findings_;
+  std::vector<std::string> joint_names_, link_names_;  // of joints: their coordinate or the stem of several
+  std::vector<std::string> origins_;                   // of parts: a place
+  std::vector<CoordinateText> coordinates_;
+  std::string parameters_, inputs_, body_, draw_;
+  ImportedModel result_;
+};
+
+/// "panda_link1" as in the file, in a comment: control characters replaced, shortened.
+std::string quoted(const std::string& name);
+std::string toml_text(const std::string& text);
+
+}  // namespace eomgen::import

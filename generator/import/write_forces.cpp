@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forces, constraints, the scene and the head of an imported model.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "import/model_text.hpp"
+#include "import/xml.hpp"
+#include "model/names.hpp"
+
+namespace eomgen::import {
+namespace {
+
+// At most three contacts of a model may have friction or be unilateral (docs/model-format.md).
+constexpr std::size_t most_contacts = 3;
+// The velocity below which the smooth law of friction is nearly linear.
+constexpr const char* friction_width_angle = "0.01[rad/s]";
+constexpr const char* friction_width_length = "0.001[m/s]";
+
+}  // namespace
+
+void ModelWriter::write_drives() {
+  std::string entries;
+  for (const std::size_t j : moving_joints()) {
+    if (!is_actuated(j)) continue;
+    const Joint& joint = robot_.joints[j];
+    const std::string input = names_.claim("u_" + joint_names_[j], "_input");
+    std::string comment = fmt::format("line {}", joint.where.line);
+    if (joint.transmission) comment = fmt::format("transmission {}", quoted(*joint.transmission));
+    if (joint.limits.effort) comment += fmt::format(", at most {}", to_text(*joint.limits.effort));
+    inputs_ += fmt::format("{} = {{ unit = \"{}\" }}  # {}\n", input, joint.type == JointType::prismatic ? "N" : "N*m",
+                           comment);
+    entries += fmt::format("{} = \"{}\"\n", joint_names_[j], input);
+    result_.inputs.push_back(input);
+  }
+  if (!entries.empty())
+    body_ += fmt::format("\n# Drives: an input for each joint.\n[[force]]\nname = \"{}\"\n[force.generalized]\n{}",
+                         names_.claim("drives", "_force"), entries);
+}
+
+void ModelWriter::write_dissipation() {
+  std::string damping, smooth, friction;
+  std::size_t dry = 0;
+  for (const std::size_t j : moving_joints()) {
+    const Joint& joint = robot_.joints[j];
+    const std::string& q = joint_names_[j];
+    const bool is_angle = joint.type != JointType::prismatic;
+    if (!joint.damping.is_zero())
+      damping +=
+          fmt::format("{} = \"-{}*{}_dot\"\n", q, factor(joint.damping, is_angle ? "N*m*s" : "N*s/m", "d_" + q), q);
+    if (joint.friction.is_zero()) continue;
+    if (options_.friction == FrictionLaw::none) {
+      findings_.add("friction", "it is left out on request", joint.where);
+      continue;
+    }
+    if (options_.friction == FrictionLaw::smooth) {
+      // Not a `dry` force, of which a model takes three.
+      findings_.add("friction", "it is written by a smooth law; --friction dry gives Coulomb's law", joint.where);
+      smooth += fmt::format("{} = \"-{}*{}_dot/sqrt({}_dot^2 + {}^2)\"\n", q,
+                            factor(joint.friction, is_angle ? "N*m" : "N", "f_" + q), q, q,
+                            is_angle ? friction_width_angle : friction_width_length);
+      continue;
+    }
+    if (++dry > most_contacts)
+      fail(joint.where,
+           fmt::format("more than {} joints have friction, which Coulomb's law takes at most", most_contacts),
+           "use --friction smooth");
+    friction += fmt::format(
+        "\n[[force]]\nname = \"{}\"\ndry = {{ coordinate = \"{}\", normal = \"{}\", static = 1, dynamic = 1 }}\n",
+        names_.claim("friction_" + q, "_force"), q, value(joint.friction, is_angle ? "N*m" : "N", "f_" + q));
+  }
+  if (!damping.empty())
+    body_ +=
+        fmt::format("\n[[force]]\nname = \"{}\"\n[force.generalized]\n{}", names_.claim("damping", "_force"), damping);
+  if (!smooth.empty())
+    body_ += fmt::format(
+        "\n# Friction by a smooth law: it creeps below {} or {}.\n[[force]]\nname = \"{}\"\n[force.generalized]\n{}",
+        friction_width_angle, friction_width_length, names_.claim("friction", "_force"), smooth);
+  body_ += friction;
+}
+
+void ModelWriter::write_forces() {
+  body_ += "\n[[force]]\ngravity = \"-g*E3\"\n";
+  write_drives();
+  write_dissipation();
+}
+
+void ModelWriter::write_stops(std::size_t j, std::size_t& stops) {
+  const Joint& joint = robot_.joints[j];
+  if (!joint.limits.lower)
+    fail(joint.where, fmt::format("the joint {} has no limits", model::quote(joint.name)),
+         "name joints with <limit lower=\"..\" upper=\"..\">");
+  stops += 2;
+  if (stops > most_contacts)
+    fail(joint.limits.where, fmt::format("a model has at most {} stops, and each joint needs two", most_contacts),
+         "name one joint in --stops; limits of the others stay comments");
+  const std::string& q = joint_names_[j];
+  const char* unit = joint.type == JointType::prismatic ? "m" : "rad";
+  body_ += fmt::format(
+      "\n# End stops of {} (line {})\n[[constraint]]\nname = \"{}\"\nholonomic = \"{} - ({}[{}])\"\nholds = "
+      "\"unilateral\"\n"
+      "[[constraint]]\nname = \"{}\"\nholonomic = \"{}[{}] - {}\"\nholds = \"unilateral\"\n",
+      quoted(joint.name), joint.limits.where.line, names_.claim(q + "_lower", "_stop"), q, to_text(*joint.limits.lower),
+      unit, names_.claim(q + "_upper", "_stop"), to_text(*joint.limits.upper), unit, q);
+  result_.constraints += 2;
+}
+
+void ModelWriter::write_constraints() {
+  for (const std::size_t j : moving_joints()) {
+    if (tree_.master[j] == no_index) continue;
+    const Joint& joint = robot_.joints[j];
+    const Joint& master = robot_.joints[tree_.master[j]];
+    const bool is_length = joint.type == JointType::prismatic, is_master_length = master.type == JointType::prismatic;
+    const char* unit = is_length == is_master_length ? "" : is_length ? "[m]" : "[1/m]";
+    const Number ratio = -joint.mimic->multiplier, offset = -joint.mimic->offset;
+    std::string text = joint_names_[j];
+    const auto add = [&](const Number& number, const std::string& rest) {
+      if (number.is_zero()) return;
+      const Number size = number.value < 0 ? -number : number;
+      text += fmt::format(" {} {}{}", number.value < 0 ? '-' : '+', to_text(size), rest);
+    };
+    const bool is_copy = std::fabs(ratio.value) == 1 && unit[0] == '\0';
+    const std::string& q = joint_names_[tree_.master[j]];
+    if (is_copy)
+      text += fmt::format(" {} {}", ratio.value < 0 ? '-' : '+', q);
+    else
+      add(ratio, fmt::format("{}*{}", unit, q));
+    add(offset, is_length ? "[m]" : "[rad]");
+    body_ += fmt::format("\n# Joint {} follows {} (line {}).\n[[constraint]]\nname = \"{}\"\nholonomic = \"{}\"\n",
+                         quoted(joint.name), quoted(master.name), joint.mimic->where.line,
+                         names_.claim(joint_names_[j] + "_mimic", "_constraint"), text);
+    ++result_.constraints;
+  }
+  std::size_t stops = 0;
+  for (const std::string& name : options_.stops) {
+    const auto found = std::find_if(robot_.joints.begin(), robot_.joints.end(),
+                                    [&](const Joint& joint) { return joint.name == name; });
+    const std::size_t j = static_cast<std::size_t>(found - robot_.joints.begin());
+    std::vector<std::string> known;
+    for (const std::size_t candidate : moving_joints()) known.push_back(robot_.joints[candidate].name);
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error("import", {}, fmt::format("there is no joint {} that moves", model::quote(name)),
+                  model::suggest_choice(name, known));
+    write_stops(j, stops);
+  }
+}
+
+void ModelWriter::write_scene() {
+  std::string initial;
+  for (const CoordinateText& coordinate : coordinates_) {
+    if (coordinate.joint != no_index && tree_.master[coordinate.joint] != no_index) continue;
+    initial += fmt::format("{} = {}\n", coordinate.name, to_text(coordinate.start));
+  }
+  body_ += "\n[scene.default]\nt = [0, 1]\noutputs = [\"energy\"]\n";
+  if (!initial.empty()) body_ += "[scene.default.initial]\n" + initial;
+}
+
+std::string ModelWriter::header() const {
+  const std::string file = std::filesystem::path(robot_.file).filename().string();
+  std::string text = fmt::format("# Written by eomgen import from {}. Lines are those of that file.\n", quoted(file));
+  for (const Finding& finding : findings_.entries())
+    text += fmt::format("# Not as in the file: {} ({} times, first in line {}): {}.\n", quoted(finding.what),
+                        finding.count, finding.first.line, finding.why);
+  if (findings_.unlisted() > 0) text += fmt::format("# {} further places are not listed.\n", findings_.unlisted());
+  for (const Renaming& renaming : result_.renamings)
+    text += fmt::format("# The {} {} is {} here.\n", renaming.kind, quoted(renaming.from), renaming.to);
+  text += fmt::format("format = 1\ntitle = {}\n\n[parameters]\ng = \"9.81 m/s^2\"\n{}",
+                      toml_text(robot_.name.substr(0, 200)), parameters_);
+  if (!inputs_.empty()) text += "\n[inputs]\n" + inputs_;
+  text += "\n[coordinates]\n";
+  for (const CoordinateText& coordinate : coordinates_)
+    text += fmt::format("{} = {}{}\n", coordinate.name, coordinate.unit.empty() ? "{}" : "\"" + coordinate.unit + "\"",
+                        coordinate.comment.empty() ? "" : "  # " + coordinate.comment);
+  return text;
+}
+
+ImportedModel ModelWriter::write() {
+  name_coordinates();
+  if (coordinates_.empty())
+    fail(robot_.where, "nothing moves: every joint is fixed", "give the robot a joint that moves, or use --floating");
+  write_parts();
+  write_forces();
+  write_constraints();
+  if (!draw_.empty()) body_ += "\n[draw]\n" + draw_;
+  write_scene();
+  result_.robot = robot_.name;
+  result_.links = robot_.links.size();
+  result_.joints = robot_.joints.size();
+  for (const CoordinateText& coordinate : coordinates_) result_.coordinates.push_back(coordinate.name);
+  result_.text = header() + body_;
+  result_.findings = findings_;
+  return std::move(result_);
+}
+
+}  // namespace eomgen::import

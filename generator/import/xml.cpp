@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The library parses in place: names and values are pointers into the buffer, which gives every attribute its column.
+#include "import/xml.hpp"
+
+#include <fmt/format.h>
+
+#include <pugixml.hpp>
+
+#include "model/names.hpp"
+
+namespace eomgen::import {
+namespace {
+
+/// Lines of a file by byte offset.
+class Lines {
+ public:
+  Lines(const std::string& file, const std::string& bytes) : file_(file), bytes_(bytes), starts_{0} {
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+      if (bytes[i] == '\n') starts_.push_back(i + 1);
+  }
+  SourceLocation where(std::size_t offset, std::size_t length) const {
+    offset = std::min(offset, bytes_.size());
+    const auto after = std::upper_bound(starts_.begin(), starts_.end(), offset);
+    const std::size_t line = static_cast<std::size_t>(after - starts_.begin());
+    const std::size_t start = starts_[line - 1];
+    std::string text = bytes_.substr(start, std::min<std::size_t>(bytes_.find('\n', start) - start, 1000));
+    if (!text.empty() && text.back() == '\r') text.pop_back();
+    return {file_, static_cast<std::uint32_t>(line), static_cast<std::uint32_t>(offset - start + 1),
+            static_cast<std::uint32_t>(length), std::move(text)};
+  }
+
+ private:
+  const std::string& file_;
+  const std::string& bytes_;
+  std::vector<std::size_t> starts_;
+};
+
+/// The length of the UTF-8 character at `at`; 0 if it is none or a control character.
+std::size_t character_length(const std::string& bytes, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u; };
+  const unsigned first = byte(at);
+  if (first < 0x80) return (first >= 0x20 && first != 0x7f) || first == '\n' || first == '\t' || first == '\r' ? 1 : 0;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(at + i) & 0xc0u) != 0x80) return 0;
+  const bool overlong = (first == 0xe0 && byte(at + 1) < 0xa0) || (first == 0xf0 && byte(at + 1) < 0x90);
+  const bool beyond = (first == 0xed && byte(at + 1) > 0x9f) || (first == 0xf4 && byte(at + 1) > 0x8f);
+  return overlong || beyond ? 0 : length;
+}
+
+void require_text(const Lines& lines, const std::string& bytes) {
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t length = character_length(bytes, at);
+    if (length == 0)
+      fail(lines.where(at, 1), fmt::format("byte 0x{:02x} is no text in UTF-8", static_cast<unsigned char>(bytes[at])),
+           "save the file as UTF-8 without control characters");
+    at += length;
+  }
+}
+
+/// The elements below a node of the library, without recursion beyond max_xml_depth.
+class Builder {
+ public:
+  Builder(const Lines& lines, const std::string& buffer) : lines_(lines), buffer_(buffer) {}
+
+  Element element(const pugi::xml_node& node, std::size_t depth) {
+    const SourceLocation where = place(node.name(), node.offset_debug());
+    if (depth > max_xml_depth)
+      fail(where, fmt::format("elements are nested more than {} deep", max_xml_depth),
+           "check that this is a robot file; a link or joint needs six levels");
+    if (++elements_ > max_xml_elements)
+      fail(where, fmt::format("the file has more than {} elements", max_xml_elements), "divide the robot into parts");
+    Element result{node.name(), node.text().get(), where, {}, {}};
+    for (const pugi::xml_attribute& attribute : node.attributes()) {
+      const SourceLocation at = place(attribute.name(), node.offset_debug());
+      if (result.find(attribute.name()) != nullptr)
+        fail(at, fmt::format("the attribute {} comes twice", model::quote(attribute.name())), "remove one of them");
+      result.attributes.push_back({attribute.name(), attribute.value(), at});
+    }
+    for (const pugi::xml_node& child : node.children())
+      if (child.type() == pugi::node_element) result.children.push_back(element(child, depth + 1));
+    return result;
+  }
+
+ private:
+  SourceLocation place(const char* name, std::ptrdiff_t otherwise) const {
+    const std::less<const char*> before;
+    const bool inside = !before(name, buffer_.data()) && before(name, buffer_.data() + buffer_.size());
+    const std::ptrdiff_t offset = inside ? name - buffer_.data() : std::max<std::ptrdiff_t>(otherwise, 0);
+    return lines_.where(static_cast<std::size_t>(offset), std::char_traits<char>::length(name));
+  }
+
+  const Lines& lines_;
+  const std::string& buffer_;
+  std::size_t elements_ = 0;
+};
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+[[noreturn]] void fail_number(const Attribute& attribute, std::string_view text) {
+  fail(attribute.where, fmt::format("{} is not a decimal number within 1e-300 .. 1e300", model::quote(text)),
+       text.find("${") != std::string_view::npos ? "expand macros first: xacro robot.urdf.xacro > robot.urdf"
+                                                 : fmt::format("write {}=\"0.5\", for example", attribute.name));
+}
+
+Number parse_number_of(const Attribute& attribute, std::string_view text) {
+  const std::optional<Number> number = parse_number(text);
+  if (!number) fail_number(attribute, text);
+  return *number;
+}
+
+}  // namespace
+
+void fail(const SourceLocation& where, std::string what, std::string remedy) {
+  throw Error("import", where, std::move(what), std::move(remedy));
+}
+
+const Attribute* Element::find(std::string_view attribute) const {
+  const auto found =
+      std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& a) { return a.name == attribute; });
+  return found == attributes.end() ? nullptr : &*found;
+}
+
+Element parse_xml(const std::string& file, const std::string& bytes) {
+  const SourceLocation whole{file, 0, 0, 1, ""};
+  if (bytes.size() > max_xml_bytes)
+    fail(whole, fmt::format("the file has more than {} bytes", max_xml_bytes),
+         "check that this is a robot file without meshes in it");
+  const Lines lines(file, bytes);
+  require_text(lines, bytes);
+  std::string buffer = bytes;
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed = document.load_buffer_inplace(
+      buffer.data(), buffer.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
+  if (!parsed)
+    fail(lines.where(static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0)), 1),
+         fmt::format("this is not XML: {}", parsed.description()), "close every element, and put values in quotes");
+  pugi::xml_node root;
+  for (const pugi::xml_node& node : document.children()) {
+    if (node.type() == pugi::node_doctype)
+      fail(lines.where(bytes.find("<!DOCTYPE"), 9), "a robot file has no document type", "remove <!DOCTYPE ..>");
+    if (node.type() != pugi::node_element) continue;
+    if (root)
+      fail(lines.where(static_cast<std::size_t>(node.offset_debug()), 1), "the file has several root elements",
+           "a file has one robot");
+    root = node;
+  }
+  if (!root) fail(whole, "the file has no element", "a robot file has <robot name=\"..\"> around links and joints");
+  return Builder(lines, buffer).element(root, 1);
+}
+
+const Attribute& require_attribute(const Element& element, std::string_view name) {
+  const Attribute* found = element.find(name);
+  if (found == nullptr || trimmed(found->value).empty())
+    fail(found == nullptr ? element.where : found->where, fmt::format("<{}> has no {}", element.name, name),
+         fmt::format("write <{} {}=\"..\">", element.name, name));
+  return *found;
+}
+
+Number number_of(const Attribute& attribute) { return parse_number_of(attribute, trimmed(attribute.value)); }
+
+Vector vector_of(const Attribute& attribute) {
+  Vector result;
+  std::string_view rest = trimmed(attribute.value);
+  std::size_t count = 0;
+  for (; !rest.empty(); ++count) {
+    const std::string_view word = rest.substr(0, rest.find_first_of(" \t\n\r"));
+    if (count < 3) result[count] = parse_number_of(attribute, word);
+    rest = trimmed(rest.substr(word.size()));
+  }
+  if (count != 3)
+    fail(attribute.where, fmt::format("'{}' has {} numbers", attribute.name, count),
+         fmt::format("write {}=\"0 0 1\": three numbers with blanks between them", attribute.name));
+  return result;
+}
+
+const Element* only_child(const Element& element, std::string_view name) {
+  const Element* found = nullptr;
+  for (const Element& child : element.children) {
+    if (child.name != name) continue;
+    if (found != nullptr)
+      fail(child.where, fmt::format("<{}> has <{}> twice", element.name, name), "remove one of them");
+    found = &child;
+  }
+  return found;
+}
+
+const Element& require_child(const Element& element, std::string_view name) {
+  const Element* found = only_child(element, name);
+  if (found == nullptr)
+    fail(element.where, fmt::format("<{}> has no <{}>", element.name, name), fmt::format("add <{} ../>", name));
+  return *found;
+}
+
+void report_unknown(const Element& element, const std::vector<std::string_view>& attributes,
+                    const std::vector<std::string_view>& children, Findings& findings) {
+  const auto has = [](const std::vector<std::string_view>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  for (const Attribute& attribute : element.attributes)
+    if (!has(attributes, attribute.name) && !attribute.name.starts_with("xmlns"))
+      findings.add(fmt::format("{}=\"..\" of <{}>", attribute.name, element.name), "it has no meaning in a model",
+                   attribute.where);
+  for (const Element& child : element.children)
+    if (!has(children, child.name))
+      findings.add(fmt::format("<{}> of <{}>", child.name, element.name), "it has no meaning in a model", child.where);
+}
+
+}  // namespace eomgen::import
