@@ -8,6 +8,7 @@ namespace eomgen::cli {
 std::span<const Command> commands() {
   static constexpr std::array entries{
       Command{"new", "write a commented starter model", declare_new},
+      Command{"import", "a robot file (URDF) as a model file", declare_import},
       Command{"list", "coordinates, formulations, solvers and targets that there are", declare_list},
       Command{"check", "read a model, classify its constraints and forces, check its units", declare_check},
       Command{"derive", "the equations of motion for reading", declare_derive},

@@ -9,6 +9,7 @@ using Execute = std::function<int(const CommonOptions&)>;
 
 Execute declare_new(Arguments& app);
 Execute declare_list(Arguments& app);
+Execute declare_import(Arguments& app);
 Execute declare_check(Arguments& app);
 Execute declare_derive(Arguments& app);
 Execute declare_verify(Arguments& app);

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Command import: writes a model file from a robot file of another program.
+#include "import/import.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "cli/commands/commands.hpp"
+#include "cli/output.hpp"
+#include "model/names.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+struct Options {
+  std::string file, out, attitude = "euler", friction = "smooth", actuators = "transmissions";
+  bool floating = false, parameters = false, exact_angles = false;
+  std::vector<std::string> stops;
+};
+
+/// A word of an option and the value that it stands for.
+template <typename T>
+struct Word {
+  const char* text;
+  T value;
+};
+
+constexpr std::array attitudes{Word{"euler", import::Attitude::euler},
+                               Word{"euler_parameters", import::Attitude::euler_parameters}};
+constexpr std::array frictions{Word{"smooth", import::FrictionLaw::smooth}, Word{"dry", import::FrictionLaw::dry},
+                               Word{"none", import::FrictionLaw::none}};
+constexpr std::array actuations{Word{"transmissions", import::Actuation::transmissions},
+                                Word{"all", import::Actuation::all}, Word{"none", import::Actuation::none}};
+
+template <typename Words>
+std::vector<std::string> texts_of(const Words& words) {
+  std::vector<std::string> result;
+  for (const auto& word : words) result.emplace_back(word.text);
+  return result;
+}
+
+template <typename Words>
+auto parse(const std::string& option, const std::string& text, const Words& words) {
+  for (const auto& word : words)
+    if (text == word.text) return word.value;
+  throw Error("import", {}, fmt::format("{} does not take {}", option, model::quote(text)),
+              model::suggest_choice(text, texts_of(words)));
+}
+
+import::ImportOptions import_options(const Options& options){import::ImportOptions result;
+result.floating = options.floating;
+result.attitude = parse("--attitude", options.attitude, attitudes);
+result.friction = parse("--friction", options.friction, frictions);
+result.actuation = parse("--actuators", options.actuators, actuations);
+result.stops = options.stops;
+result.parameters = options.parameters;
+result.exact_angles = options.exact_angles;
+return result;
+}  // namespace
+
+Json to_document(const import::ImportedModel& model, const Options& options) {
+  Json renamed = Json::array(), left_out = Json::array();
+  for (const import::Renaming& renaming : model.renamings)
+    renamed.push_back({{"kind", renaming.kind}, {"from", renaming.from}, {"to", renaming.to}});
+  for (const import::Finding& finding : model.findings.entries())
+    left_out.push_back(
+        {{"what", finding.what}, {"why", finding.why}, {"count", finding.count}, {"line", finding.first.line}});
+  Json document{{"format", 1},
+                {"source", options.file},
+                {"source_format", model.format},
+                {"robot", model.robot},
+                {"links", model.links},
+                {"joints", model.joints},
+                {"bodies", model.bodies},
+                {"constraints", model.constraints},
+                {"coordinates", model.coordinates},
+                {"inputs", model.inputs},
+                {"renamed", renamed},
+                {"left_out", left_out},
+                {"left_out_unlisted", model.findings.unlisted()}};
+  if (options.out.empty() || is_standard_output(options.out))
+    document["model"] = model.text;
+  else
+    document["file"] = options.out;
+  return document;
+}
+
+int execute(const Options& options, const CommonOptions& common) {
+  const bool has_file = !options.out.empty() && !is_standard_output(options.out);
+  if (has_file) require_writable_targets({{"--out", options.out, ".toml"}}, options.file, common.json);
+  const import::ImportedModel model = import::import_file(options.file, import_options(options));
+  for (const import::Finding& finding : model.findings.entries())
+    print_message(format_warning(
+        {finding.first,
+         fmt::format("not as in the file: {} ({} times): {}", model::quote(finding.what), finding.count, finding.why),
+         ""}));
+  if (model.findings.unlisted() > 0)
+    print_message(fmt::format("warning: {} further places are not listed\n", model.findings.unlisted()));
+  for (const import::Renaming& renaming : model.renamings)
+    print_message(fmt::format("note: the {} {} is {}\n", renaming.kind, model::quote(renaming.from), renaming.to));
+  if (has_file) write_text(options.out, model.text);
+  if (common.json) {
+    print_document(to_document(model, options));
+  } else if (has_file) {
+    fmt::print(
+        "robot       {}\nlinks       {}, of which {} bodies move\njoints      {}\ncoordinates {}\nwrote       {}\n",
+        model::quote(model.robot), model.links, model.bodies, model.joints, model.coordinates.size(), options.out);
+  } else {
+    write_text("-", model.text);
+  }
+  return 0;
+}
+
+}  // namespace eomgen::cli
+
+Execute declare_import(Arguments& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("FILE", options->file, "a robot file: URDF").required();
+  app.add_output_path("-o,--out", options->out, "the model, F.toml; - or without it standard output");
+  app.add_flag("--floating", options->floating, "the root link moves freely; without it, it is fixed to the ground");
+  app.add_option("--attitude", options->attitude, "coordinates of free rotations: euler (3-2-1) or euler_parameters")
+      .suggest_values(texts_of(attitudes));
+  app.add_option("--friction", options->friction, "friction of joints: smooth, dry (three joints at most) or none")
+      .suggest_values(texts_of(frictions));
+  app.add_option("--actuators", options->actuators, "joints with an input: transmissions, all or none")
+      .suggest_values(texts_of(actuations));
+  app.add_list("--stops", options->stops, "joints whose limits are end stops, by their names in the file");
+  app.add_flag("--parameters", options->parameters, "masses, centres, tensors, damping and friction as parameters");
+  app.add_flag("--exact-angles", options->exact_angles, "decimals of multiples of pi/12 stay decimals");
+  return [options](const CommonOptions& common) { return execute(*options, common); };
+}
+
+}  // namespace eomgen::cli
