@@ -241,6 +241,7 @@ TEST_CASE("the command line includes only registries and values of the computing
                                          "couplings/coupling.hpp",
                                          "derive/formulations.hpp",
                                          "forces/kind.hpp",
+                                         "import/import.hpp",
                                          "joints/joint.hpp",
                                          "rotations/rotation.hpp"};
   for (const fs::path& file : files_below(root / "generator" / "cli", {".cpp", ".hpp"})) {

@@ -81,3 +81,33 @@ TEST_CASE("invalid UTF-8 in a path does not break a document") {
   CHECK(emitted["files"].size() == 3);
   CHECK(folder.has("bad\xff/P2_planar_pendulum.c"));
 }
+
+TEST_CASE("import: the model of a robot can be checked, verified, run and emitted, and JSON has what was left out") {
+  const Folder folder;
+  folder.write("arm.urdf", R"(<robot name="arm">
+  <link name="base"/>
+  <link name="upper-arm"><inertial><origin xyz="0 0 0.3"/><mass value="2"/>
+    <inertia ixx="0.1" ixy="0.01" iyy="0.12" izz="0.03"/></inertial></link>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper-arm"/>
+    <origin xyz="0 0 1" rpy="0.1 0 1.5708"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9"/></joint>
+  <gazebo/>
+</robot>)");
+  const Json found = document(folder, {"import", "arm.urdf", "-o", "arm.toml", "--actuators", "all"});
+  CHECK(found["coordinates"] == Json::array({"shoulder"}));
+  CHECK(found["inputs"] == Json::array({"u_shoulder"}));
+  CHECK(found["renamed"][0]["to"] == "upper_arm");
+  CHECK(found["left_out"].size() == 2);  // <gazebo>, and 1.5708 as pi/2
+  CHECK(document(folder, {"check", "arm.toml"})["dof"] == 1);
+  expect(0, folder, {"verify", "arm.toml", "--points", "2", "--no-compile"});
+  CHECK(document(folder, {"run", "arm.toml"})["outcome"] == "done");
+  expect(0, folder, {"emit", "arm.toml", "-o", "code"});
+  const ChildResult printed = expect(0, folder, {"import", "arm.urdf", "--actuators", "all"});
+  CHECK(printed.out == folder.read("arm.toml"));
+  CHECK(contains(printed.err, "arm.urdf:7:4: warning: not as in the file"));
+  CHECK(
+      document(folder, {"import", "arm.urdf", "--floating", "--attitude", "euler_parameters"})["coordinates"].size() ==
+      8);
+  CHECK(contains(expect(2, folder, {"import", "arm.urdf", "--friction", "dri"}).err, "did you mean 'dry'?"));
+  CHECK(contains(expect(2, folder, {"import", "none.urdf"}).err, "there is no such file"));
+  CHECK(contains(expect(2, folder, {"import", "arm.urdf", "-o", "arm.urdf"}).err, "error"));
+}
