@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Curvilinear coordinate systems as data: a system is one file that defines a CoordinateSystem, and one line in
-// registry.cpp. The expressions are in the model language, in terms of the slot names and the system's own constant.
+// Curvilinear coordinate systems as data: a system is one file with a function that returns a CoordinateSystem, and
+// one line in registry.inc. The expressions are in the model language, in terms of the slot names and the system's own constant.
 // The model reader expands positions with them, so that no later stage depends on a coordinate system.
 #pragma once
 
@@ -34,7 +34,7 @@ struct CoordinateSystem {
   Constant constant;
 };
 
-std::span<const CoordinateSystem* const> registry();
+std::span<const CoordinateSystem> registry();
 const CoordinateSystem* find(std::string_view name);  // nullptr if there is none
 
 }  // namespace eomgen::coordinates

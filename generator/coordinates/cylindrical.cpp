@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coordinates/coordinate_system.hpp"
+#include "coordinates/kinds.hpp"
 
 namespace eomgen::coordinates {
 
-extern const CoordinateSystem cylindrical;
-const CoordinateSystem cylindrical{
-    .name = "cylindrical",
-    .title = "cylindrical polar coordinates r, theta, z",
-    .slots = {{{"r", "m", "0", ""}, {"theta", "rad", "", ""}, {"z", "m", "", ""}}},
-    .x = {"r*cos(theta)", "r*sin(theta)", "z"},
-    .e = {{{"cos(theta)", "sin(theta)", "0"}, {"-sin(theta)", "cos(theta)", "0"}, {"0", "0", "1"}}},
-    .singular = "r = 0",
-    .planar = true,
-    .constant = {},
-};
+CoordinateSystem cylindrical() {
+  return {
+      .name = "cylindrical",
+      .title = "cylindrical polar coordinates r, theta, z",
+      .slots = {{{"r", "m", "0", ""}, {"theta", "rad", "", ""}, {"z", "m", "", ""}}},
+      .x = {"r*cos(theta)", "r*sin(theta)", "z"},
+      .e = {{{"cos(theta)", "sin(theta)", "0"}, {"-sin(theta)", "cos(theta)", "0"}, {"0", "0", "1"}}},
+      .singular = "r = 0",
+      .planar = true,
+      .constant = {},
+  };
+}
 
 }  // namespace eomgen::coordinates

@@ -1,29 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// To add a coordinate system: one file like spherical.cpp, one declaration and one line here.
-#include <array>
+#include <vector>
 
-#include "coordinates/coordinate_system.hpp"
+#include "coordinates/kinds.hpp"
 
 namespace eomgen::coordinates {
-
-extern const CoordinateSystem cartesian;
-extern const CoordinateSystem cylindrical;
-extern const CoordinateSystem spherical;
-extern const CoordinateSystem parabolic;
-extern const CoordinateSystem helical;
-extern const CoordinateSystem oblique;
-
 namespace {
-constexpr std::array<const CoordinateSystem*, 6> systems{
-    &cartesian, &cylindrical, &spherical, &parabolic, &helical, &oblique,
-};
+
+const std::vector<CoordinateSystem>& all() {
+#define COORDINATES(name) name(),
+  static const std::vector<CoordinateSystem> systems{
+#include "coordinates/registry.inc"
+  };
+#undef COORDINATES
+  return systems;
+}
+
 }  // namespace
 
-std::span<const CoordinateSystem* const> registry() { return systems; }
+std::span<const CoordinateSystem> registry() { return all(); }
 
 const CoordinateSystem* find(std::string_view name) {
-  for (const CoordinateSystem* system : systems) {
-    if (system->name == name) return system;
+  for (const CoordinateSystem& system : registry()) {
+    if (system.name == name) return &system;
   }
   return nullptr;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kinds of joints as data: a kind is one file with a function that returns a Joint, and one line in registry.cpp. The
+// Kinds of joints as data: a kind is one file with a function that returns a Joint, and one line in registry.inc. The
 // formulas are in the model language. The model reader expands them for two bodies, so that no later stage depends on a
 // kind of joint.
 //

@@ -6,12 +6,9 @@
 
 namespace eomgen::joints {
 
-Joint ball();
-Joint pin();
-Joint slider();
-Joint cylindrical();
-Joint universal();
-Joint fixed();
+#define JOINT(name) Joint name();
+#include "joints/registry.inc"
+#undef JOINT
 
 std::vector<Equation> same_point();     // r_B = r_A, eq. (7.16)
 std::vector<Equation> point_on_axis();  // r_B is on the axis through r_A

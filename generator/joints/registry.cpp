@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// To add a kind of joint: a line here, and one file like pin.cpp.
+#include <vector>
+
 #include "joints/kinds.hpp"
 
 namespace eomgen::joints {
 namespace {
 
 const std::vector<Joint>& all() {
-  static const std::vector<Joint> joints{ball(), pin(), slider(), cylindrical(), universal(), fixed()};
+#define JOINT(name) name(),
+  static const std::vector<Joint> joints{
+#include "joints/registry.inc"
+  };
+#undef JOINT
   return joints;
 }
 

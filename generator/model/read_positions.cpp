@@ -51,9 +51,9 @@ const Entry& PositionsReader::system_entry(const Value& table) const {
   Keys keys{"a position",
             {"from", "axes", "custom", "x", "q"},
             {{"polar", "cylindrical coordinates may leave out z: write cylindrical = [\"r\", \"theta\"]"}}};
-  for (const coordinates::CoordinateSystem* system : coordinates::registry()) {
-    keys.known.push_back(system->name);
-    if (!system->constant.name.empty()) keys.known.push_back(system->constant.name);
+  for (const coordinates::CoordinateSystem& system : coordinates::registry()) {
+    keys.known.push_back(system.name);
+    if (!system.constant.name.empty()) keys.known.push_back(system.constant.name);
   }
   check_keys(table, keys);
   const Entry* found = nullptr;

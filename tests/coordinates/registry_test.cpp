@@ -98,9 +98,9 @@ std::vector<std::pair<std::string, double>> zeros_of(std::string_view singular) 
 }  // namespace
 
 TEST_CASE("every system: a_i are the derivatives of the position, a^i . a_k is the unit matrix") {
-  for (const CoordinateSystem* system : coordinates::registry()) {
-    CAPTURE(system->name);
-    Charted chart(*system);
+  for (const CoordinateSystem& system : coordinates::registry()) {
+    CAPTURE(system.name);
+    Charted chart(system);
     REQUIRE(chart.geometry.coordinates.size() == 3);
     for (int sample = 0; sample < 5; ++sample) {
       const Values at = chart.point();
@@ -123,12 +123,12 @@ TEST_CASE("every system: a_i are the derivatives of the position, a^i . a_k is t
 }
 
 TEST_CASE("every system: unit vectors are unit and along a_i") {
-  for (const CoordinateSystem* system : coordinates::registry()) {
-    CAPTURE(system->name);
-    Charted chart(*system);
+  for (const CoordinateSystem& system : coordinates::registry()) {
+    CAPTURE(system.name);
+    Charted chart(system);
     const Values at = chart.point();
     for (std::size_t i = 0; i < 3; ++i) {
-      if (system->e[i][0].empty()) continue;
+      if (system.e[i][0].empty()) continue;
       const auto e = chart.unit_vector(i, at), a = values(chart.geometry.covariant[i], at);
       CHECK(std::abs(dot(e, e) - 1) < exact);
       CHECK(std::abs(dot(e, a) / std::sqrt(dot(a, a)) - 1) < exact);
@@ -137,10 +137,10 @@ TEST_CASE("every system: unit vectors are unit and along a_i") {
 }
 
 TEST_CASE("every system: the metric is singular exactly at the documented places") {
-  for (const CoordinateSystem* system : coordinates::registry()) {
-    CAPTURE(system->name);
-    Charted chart(*system);
-    const auto sets = zeros_of(system->singular);
+  for (const CoordinateSystem& system : coordinates::registry()) {
+    CAPTURE(system.name);
+    Charted chart(system);
+    const auto sets = zeros_of(system.singular);
     for (const auto& [name, value] : sets) {
       const std::string set(name);
       CAPTURE(set);
@@ -171,19 +171,19 @@ TEST_CASE("every system: the metric is singular exactly at the documented places
 }
 
 TEST_CASE("every system: coordinates have the units of the slots, and a planar system has two") {
-  for (const CoordinateSystem* system : coordinates::registry()) {
-    CAPTURE(system->name);
-    Charted chart(*system);
+  for (const CoordinateSystem& system : coordinates::registry()) {
+    CAPTURE(system.name);
+    Charted chart(system);
     REQUIRE(chart.s.model.coordinates.size() == 3);
     for (std::size_t k = 0; k < 3; ++k) {
-      CHECK(chart.s.model.coordinates[k].name == system->slots[k].name);
-      CHECK(chart.s.model.coordinates[k].unit.text == system->slots[k].unit);
+      CHECK(chart.s.model.coordinates[k].name == system.slots[k].name);
+      CHECK(chart.s.model.coordinates[k].unit.text == system.slots[k].unit);
     }
-    if (!system->planar) {
-      CHECK_THROWS_AS(Charted(*system, true), Error);
+    if (!system.planar) {
+      CHECK_THROWS_AS(Charted(system, true), Error);
       continue;
     }
-    Charted planar(*system, true);
+    Charted planar(system, true);
     CHECK(planar.s.model.coordinates.size() == 2);
     const Values at = planar.point();
     CHECK(planar.position(at)[2] == 0);

@@ -20,11 +20,11 @@ namespace {
 Json registries() {
   Json result{{"format", 1}};
   Json coordinates = Json::array(), formulations = Json::array(), solvers = Json::array(), targets = Json::array();
-  for (const coordinates::CoordinateSystem* system : coordinates::registry()) {
+  for (const coordinates::CoordinateSystem& system : coordinates::registry()) {
     Json slots = Json::array();
-    for (const coordinates::Slot& slot : system->slots) slots.push_back(slot.name);
+    for (const coordinates::Slot& slot : system.slots) slots.push_back(slot.name);
     coordinates.push_back(
-        {{"name", system->name}, {"title", system->title}, {"slots", slots}, {"singular", system->singular}});
+        {{"name", system.name}, {"title", system.title}, {"slots", slots}, {"singular", system.singular}});
   }
   // Defined by the model itself, so not in that registry.
   coordinates.push_back({{"name", "custom"},
