@@ -1,5 +1,6 @@
 # cmake -DSOURCE=folder -DOUTPUT=header -P write_commit.cmake
 # Writes the commit of a source tree as a constant: "" if it is no git repository, a "+" behind it if tracked files differ.
+cmake_minimum_required(VERSION 3.25)
 set(commit "")
 find_program(GIT git)
 if(GIT AND EXISTS "${SOURCE}/.git")
