@@ -130,6 +130,20 @@ const std::map<std::string, json>& right_documents() {
           {"machine", {{"processor", "one"}, {"cores", 2}, {"compiler", "g++"}, {"code", "-O2"}}},
           {"advice", "for 1e-9 dop853"}}},
         {"inverse", {{"format", 1}, {"columns", {"t", "R", "R_dot", "force.R"}}, {"file", "P10_rocket_inverse.csv"}}},
+        {"import",
+         {{"format", 1},
+          {"source", "arm.urdf"},
+          {"source_format", "urdf"},
+          {"robot", "arm"},
+          {"links", 3},
+          {"joints", 2},
+          {"bodies", 2},
+          {"constraints", 0},
+          {"coordinates", {"shoulder", "elbow"}},
+          {"inputs", {"u_shoulder"}},
+          {"renamed", json::array({{{"kind", "joint"}, {"from", "elbow-1"}, {"to", "elbow"}}})},
+          {"left_out", json::array({{{"what", "<mesh>"}, {"why", "not read"}, {"count", 3}, {"line", 28}}})},
+          {"left_out_unlisted", 0}}},
     };
   }();
   return documents;
