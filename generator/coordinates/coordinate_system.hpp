@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Curvilinear coordinate systems as data: a system is one file with a function that returns a CoordinateSystem, and
-// one line in registry.inc. The expressions are in the model language, in terms of the slot names and the system's own constant.
-// The model reader expands positions with them, so that no later stage depends on a coordinate system.
+// one line in registry.inc. The expressions are in the model language, in terms of the slot names and the system's own
+// constant. The model reader expands positions with them, so that no later stage depends on a coordinate system.
 #pragma once
 
 #include <array>
