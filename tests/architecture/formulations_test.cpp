@@ -72,7 +72,7 @@ std::map<Names, Names> shared_files() {
   return shared;
 }
 
-/// The table of docs/architecture.md, "What formulations share".
+/// The table of docs/architecture.md, "What formulations share": the files of rows with the same formulations.
 std::map<Names, Names> documented_files() {
   const std::string text = read_text(derive.parent_path().parent_path() / "docs" / "architecture.md");
   const std::size_t begin = text.find("\n## What formulations share\n");
@@ -84,7 +84,7 @@ std::map<Names, Names> documented_files() {
     const std::size_t bar = line.find('|');
     const std::vector<std::string> formulations = matches(line.substr(0, bar), word),
                                    files = matches(line.substr(bar), word);
-    if (!files.empty()) rows[{formulations.begin(), formulations.end()}] = {files.begin(), files.end()};
+    if (!files.empty()) rows[{formulations.begin(), formulations.end()}].insert(files.begin(), files.end());
   }
   return rows;
 }
