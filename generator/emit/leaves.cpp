@@ -6,7 +6,7 @@
 #include <eom/modes/contact_state.hpp>
 #include <stdexcept>
 
-#include "abi/functions.hpp"
+#include "program/internal_functions.hpp"
 #include "program/kinks.hpp"
 
 namespace eomgen::emit {
@@ -70,17 +70,11 @@ std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context
   throw std::logic_error("this operand is no leaf");
 }
 
-/// Functions of the state without inputs in the ABI use the defaults.
-bool takes_inputs(const std::string& function) {
-  const abi::Function* found = abi::find(function);
-  return found == nullptr || found->has_input(abi::Input::inputs) || !found->has_input(abi::Input::state);
-}
-
 }  // namespace
 
 std::vector<LeafLoads> leaf_loads(const std::string& function, const Leaves& leaves, const ModelNames& names,
                                   const EmissionContext& context, const Dialect& dialect, const std::string& block) {
-  const bool lanes = !dialect.lane_prefix.empty(), inputs = takes_inputs(function);
+  const bool lanes = !dialect.lane_prefix.empty(), inputs = program::takes_inputs(function);
   std::vector<LeafLoads> result;
   for (const Slot slot :
        {Slot::time, Slot::prepared, Slot::state, Slot::parameter, Slot::contact, Slot::input, Slot::side}) {

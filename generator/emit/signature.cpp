@@ -7,21 +7,13 @@
 
 #include "abi/functions.hpp"
 #include "emit/text.hpp"
+#include "program/internal_functions.hpp"
 
 namespace eomgen::emit {
 
 using program::Slot;
 
 namespace {
-
-/// Inputs of ABI functions, and of internal functions of emitted code.
-std::vector<abi::Input> inputs_of(const std::string& function) {
-  using enum abi::Input;
-  if (const abi::Function* found = abi::find(function)) return found->inputs;
-  if (function == "taylor_next") return {time, state, prepared};
-  if (function == "to_second" || function == "to_own") return {state};
-  return abi::find("rhs")->inputs;  // taylor_start
-}
 
 Argument argument(abi::Input input, const ModelNames& names) {
   using Kind = Argument::Kind;
@@ -42,7 +34,7 @@ Argument argument(abi::Input input, const ModelNames& names) {
 
 std::vector<Argument> arguments(const std::string& function, const FunctionText& text, const ModelNames& names) {
   std::vector<Argument> list;
-  for (const abi::Input input : inputs_of(function)) list.push_back(argument(input, names));
+  for (const abi::Input input : program::inputs_of(function)) list.push_back(argument(input, names));
   for (const std::string& result : text.results) list.push_back({Argument::Kind::result, Slot::constant, result});
   return list;
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "abi/functions.hpp"
 #include "emit/expressions.hpp"
 #include "emit/leaves.hpp"
 #include "emit/names.hpp"
@@ -13,6 +12,7 @@
 #include "emit/text.hpp"
 #include "emit/uses.hpp"
 #include "emit/value_names.hpp"
+#include "program/internal_functions.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -322,10 +322,7 @@ class Printer {
     names.push_back(text_.work);
     return void_casts(names);
   }
-  bool may_be_null(std::size_t result) const {
-    const abi::Function* found = abi::find(function_.name);
-    return found != nullptr && result < found->results.size() && found->results[result].may_be_null;
-  }
+  bool may_be_null(std::size_t result) const { return program::may_be_null(function_.name, result); }
   std::string unused_arguments() const {
     return dialect_.is_typed ? void_casts(unread_arguments(function_, text_, names_, uses_.leaves[0])) : "";
   }

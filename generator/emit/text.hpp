@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "symbolic/dag.hpp"
+#include "program/numbers.hpp"
 
 namespace eomgen::emit {
 
@@ -19,8 +19,7 @@ std::string string_literal(const std::string& text, const std::string& indent);
 /// The shortest decimal that reads back as this number, with a decimal point or exponent: "9.81", "1e-07", "3.0".
 std::string decimal(double value);
 
-/// The double nearest to an exact number.
-double nearest_double(const symbolic::Rational& value);
+using program::nearest_double;
 
 /// Wraps at blanks to lines of at most `width` characters; continuation lines are indented by `indent`.
 std::string wrapped(const std::string& line, const std::string& indent, std::size_t width = 110);

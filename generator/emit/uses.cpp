@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "emit/expressions.hpp"
-#include "emit/parts.hpp"
+#include "program/parts.hpp"
 
 namespace eomgen::emit {
 
@@ -14,7 +14,7 @@ using program::Slot;
 
 Uses count_uses(const program::Function& function) {
   const std::vector<Instruction>& code = function.code;
-  Uses uses{assign_parts(function), {}, {}, {}};
+  Uses uses{program::assign_parts(function), {}, {}, {}};
   uses.count.assign(code.size(), 0);
   uses.needed_later.assign(code.size(), false);
   uses.leaves.resize(uses.part.empty() ? 1 : uses.part.back() + 1);

@@ -16,7 +16,7 @@ namespace eomgen::emit {
 using Leaves = std::set<std::pair<program::Slot, std::uint32_t>>;
 
 struct Uses {
-  std::vector<std::size_t> part;     // per instruction: its part (parts.hpp)
+  std::vector<std::size_t> part;     // per instruction: its part (program/parts.hpp)
   std::vector<std::uint32_t> count;  // per instruction: how often its value is printed
   std::vector<bool> needed_later;    // per instruction: whether a later part needs its value
   std::vector<Leaves> leaves;        // per part

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Functions that machine code calls. They compute what the emitted C computes with the helper functions that it brings
+// along, from the same text (templates/kernels) or in the same order of operations.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "jit/steps.hpp"
+
+namespace eomgen::jit {
+
+/// angles[count .. 2 count) = sines of the `count` angles, angles[2 count .. 3 count) = cosines.
+using SincosGroup = void (*)(double* angles, std::size_t count);
+SincosGroup sincos_group();
+
+/// The address of a function of the C library.
+const void* library_function(Library function);
+
+/// Writes values that `mode` determines to their places in the scratch array.
+void read_mode(int mode, const ModeValue* values, std::size_t count, double* scratch);
+
+using ChartFunction = int (*)(const double* x, double* y);
+/// What the function `chart` is made of (docs/abi.md, "Charts").
+struct ChartExchange {
+  std::size_t states = 0;
+  int first_bit = 0;
+  std::vector<ChartFunction> to_second, to_own;  // of each bit
+};
+int exchange_charts(const double* x, int mode, int to, double* y, const ChartExchange* charts);
+
+using PrepareFunction = int (*)(const double* p, double* w);
+/// What the function `prepare` is made of in code with several charts.
+struct PrepareInCharts {
+  std::vector<PrepareFunction> functions;
+  std::vector<std::size_t> offsets;  // in w
+};
+int prepare_in_charts(const double* p, double* w, const PrepareInCharts* charts);
+
+/// What the function `taylor` is made of (program/taylor.hpp).
+struct TaylorSeries {
+  int (*start)(double, const double*, const double*, const double*, int, double*, double*) = nullptr;
+  int (*next)(double, const double*, const double*, double*, double*, double*) = nullptr;
+  std::size_t states = 0, first_rate = 0, order_zero_count = 0, product_count = 0, workspace = 0;
+  int highest_order = 0;
+};
+int taylor_series(double t, const double* x, const double* p, const double* u, int mode, int order,
+                  double* coefficients, const TaylorSeries* series);
+
+}  // namespace eomgen::jit

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/internal_functions.hpp"
+
+namespace eomgen::program {
+
+std::vector<abi::Input> inputs_of(const std::string& function) {
+  using enum abi::Input;
+  if (const abi::Function* found = abi::find(function)) return found->inputs;
+  if (function == "taylor_next") return {time, state, prepared};
+  if (function == "to_second" || function == "to_own") return {state};
+  return abi::find("rhs")->inputs;  // taylor_start
+}
+
+bool takes_inputs(const std::string& function) {
+  const abi::Function* found = abi::find(function);
+  return found == nullptr || found->has_input(abi::Input::inputs) || !found->has_input(abi::Input::state);
+}
+
+bool may_be_null(const std::string& function, std::size_t result) {
+  const abi::Function* found = abi::find(function);
+  return found != nullptr && result < found->results.size() && found->results[result].may_be_null;
+}
+
+}  // namespace eomgen::program

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Arguments of the functions of a program: of the ABI (abi/functions.hpp), and internal ones of charts and of Taylor
+// series.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "abi/functions.hpp"
+
+namespace eomgen::program {
+
+/// The inputs of a function, in the order of its arguments.
+std::vector<abi::Input> inputs_of(const std::string& function);
+
+/// Whether a function reads inputs from an argument. Functions of the state without that argument use the defaults.
+bool takes_inputs(const std::string& function);
+
+/// Whether a caller may leave out a result array.
+bool may_be_null(const std::string& function, std::size_t result);
+
+}  // namespace eomgen::program
