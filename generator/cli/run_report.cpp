@@ -98,12 +98,17 @@ std::string watched(const pipeline::Simulation& simulation) {
                                 result.projection_velocity, result.projection_work));
 }
 
+/// When the C compiler made the code.
+const char* compiled_when(const pipeline::CompiledCode& code) {
+  if (code.tier() == pipeline::Tier::jit) return "never";
+  return code.cached() ? "from the cache" : "now";
+}
+
 }  // namespace
 
 Json RunReport::json() const {
-  const auto& [derived_model, scene, program, certificate, code, result, charts] = simulation;
+  const auto& [derived_model, scene, program, certificate, code, tier, result, charts] = simulation;
   const pipeline::DerivedModel& derived = *derived_model;
-  const emit::CompiledModel& compiled = code.compiled();
   const pipeline::Timings& seconds = derived.seconds;
   Json final = Json::object(), invariants = Json::object(), events = Json::array(), kinks = Json::array();
   for (const auto& [name, value] : result.final) {
@@ -136,11 +141,13 @@ Json RunReport::json() const {
       {"seconds",
        {{"derive", seconds.read + seconds.derive},
         {"emit", seconds.optimise + seconds.verify + seconds.print},
-        {"compile", compiled.seconds},
+        {"compile", code.seconds()},
         {"integrate", result.seconds_integrate},
         {"estimate", result.seconds_estimate},
         {"charts", charts ? charts->seconds() : 0.0}}},
-      {"compiled", compiled.cached ? "from the cache" : "now"},
+      {"tier", pipeline::name(tier.tier)},
+      {"tier_reason", tier.reason},
+      {"compiled", compiled_when(code)},
       {"final", final},
       {"invariants", invariants},
       {"power_balance", number(result.power_balance)},
@@ -183,9 +190,8 @@ Json RunReport::json() const {
 }
 
 std::string RunReport::text() const {
-  const auto& [derived_model, scene, program, certificate, code, result, charts] = simulation;
+  const auto& [derived_model, scene, program, certificate, code, tier, result, charts] = simulation;
   const pipeline::DerivedModel& derived = *derived_model;
-  const emit::CompiledModel& compiled = code.compiled();
   const pipeline::Timings& seconds = derived.seconds;
   std::string out =
       line("model", fmt::format("{}, scene {}, t = {} to {}", derived.model.id, scene.name, scene.t0, scene.t1));
@@ -197,6 +203,8 @@ std::string RunReport::text() const {
   const std::string accuracy =
       scene.step > 0 ? fmt::format("step {}", scene.step) : fmt::format("rtol {}, atol {}", scene.rtol, scene.atol);
   out += line("solver", fmt::format("{} ({}), {}", result.solver, run::to_text(result.reason), accuracy));
+  const bool is_jit = tier.tier == pipeline::Tier::jit;
+  out += line("code", fmt::format("{} ({})", is_jit ? "machine code in memory" : "compiled C", tier.reason));
   out += line("outcome", fmt::format("{} at t = {}{}{}", eom::name(result.outcome), result.t,
                                      result.detail.empty() ? "" : ": ", result.detail));
   for (std::size_t k = 0; k < result.reason.changes.size(); ++k) {
@@ -220,14 +228,13 @@ std::string RunReport::text() const {
   out += "\n" + final_values(simulation) + "\n" + watched(simulation);
   if (const auto open = undetermined(simulation); !open.empty())
     out += line("not determined", fmt::format("{}: by the motion", fmt::join(open, ", ")));
-  out +=
-      line("seconds",
-           fmt::format(
-               "derive {:.3f}, optimise {:.3f}, verify {:.3f}{}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}{}",
-               seconds.read + seconds.derive, seconds.optimise, seconds.verify,
-               derived.certificate_from_cache ? " (kept)" : "", compiled.seconds,
-               compiled.cached ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate,
-               charts && charts->seconds() > 0 ? fmt::format(", second charts {:.3f}", charts->seconds()) : ""));
+  out += line(
+      "seconds",
+      fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}{}, {} {:.3f}{}, integrate {:.6f}, estimate {:.6f}{}",
+                  seconds.read + seconds.derive, seconds.optimise, seconds.verify,
+                  derived.certificate_from_cache ? " (kept)" : "", is_jit ? "generate" : "compile", code.seconds(),
+                  code.cached() ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate,
+                  charts && charts->seconds() > 0 ? fmt::format(", second charts {:.3f}", charts->seconds()) : ""));
   for (const WrittenFile& file : files) {
     out += line("wrote", fmt::format("{} ({}{})", file.path, file.rows ? fmt::format("{} rows, ", *file.rows) : "",
                                      size_text(static_cast<double>(file.bytes))));

@@ -5,6 +5,7 @@
 
 #include "cli/assignments.hpp"
 #include "pipeline/pipeline.hpp"
+#include "pipeline/tier.hpp"
 #include "run/eligibility.hpp"
 
 namespace eomgen::cli {
@@ -57,6 +58,15 @@ void add_approach(Arguments& app, std::string& approach) {
 void add_form(Arguments& app, std::string& form) {
   const std::vector<std::string> words = pipeline::form_names();
   app.add_option("--form", form, fmt::format("{}: how constraints that stay are solved", fmt::join(words, ", ")))
+      .show_default()
+      .suggest_values(words);
+}
+
+void add_tier(Arguments& app, std::string& tier) {
+  const std::vector<std::string> words = pipeline::tier_names();
+  app.add_option("--tier", tier,
+                 fmt::format("{}: machine code in memory, or C through the compiler; the results are equal",
+                             fmt::join(words, ", ")))
       .show_default()
       .suggest_values(words);
 }

@@ -85,7 +85,7 @@ const run::Code& ChartLibrary::code_for(unsigned mask) {
   add_second_charts(own_, program_, charts_, mask, request_);
   known_.push_back(mask);
   context_.tests = test_vectors(program_, context_);
-  CompiledCode code = compile(program_, context_, true);
+  CompiledCode code = make_code(request_.tier, program_, context_, true);
   const run::Code functions = code.code_for_run();
   compiled_.push_back(std::make_unique<Compiled>(Compiled{std::move(code), functions}));
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

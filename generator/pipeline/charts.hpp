@@ -24,6 +24,7 @@ struct ChartRequest {
   ApproachChoice approach = ApproachChoice::automatic;
   FormChoice form = std::nullopt;
   std::uint64_t seed = 1;
+  Tier tier = Tier::compiled;  // of the code; never automatic
 };
 
 /// Derives, verifies and optimises the second charts of `mask`, and adds them to `program`. Throws

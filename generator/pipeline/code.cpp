@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/code.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <chrono>
 #include <stdexcept>
 
 #include "error.hpp"
+#include "jit/machine_code.hpp"
+#include "pipeline/self_test.hpp"
 #include "program/kinks.hpp"
 #include "program/taylor.hpp"
 #include "work.hpp"
@@ -37,14 +42,36 @@ run::Code describe_code(const program::Program& program) {
   return code;
 }
 
-CompiledCode::CompiledCode(emit::CompiledModel compiled, const program::Program& program)
-    : compiled_(std::move(compiled)), described_(describe_code(program)) {
+namespace {
+
+std::map<std::string, std::vector<std::size_t>> array_sizes(const program::Program& program) {
+  std::map<std::string, std::vector<std::size_t>> arrays;
   for (const program::Function& function : program.functions) {
     for (const auto& result : function.results) {
-      if (!result.is_test()) arrays_[function.name].push_back(result.entries.size());
+      if (!result.is_test()) arrays[function.name].push_back(result.entries.size());
     }
   }
-  if (program.taylor) arrays_["taylor"] = {};
+  if (program.taylor) arrays["taylor"] = {};
+  return arrays;
+}
+
+}  // namespace
+
+CompiledCode::CompiledCode(emit::CompiledModel compiled, const program::Program& program)
+    : seconds_(compiled.seconds),
+      cached_(compiled.cached),
+      described_(describe_code(program)),
+      arrays_(array_sizes(program)) {
+  const auto kept = std::make_shared<const emit::CompiledModel>(std::move(compiled));
+  functions_ = &kept->model;
+  owner_ = kept;
+}
+
+CompiledCode::CompiledCode(jit::MachineCode code, double seconds, const program::Program& program)
+    : tier_(Tier::jit), seconds_(seconds), described_(describe_code(program)), arrays_(array_sizes(program)) {
+  const auto kept = std::make_shared<const jit::MachineCode>(std::move(code));
+  functions_ = kept.get();
+  owner_ = kept;
 }
 
 namespace {
@@ -56,7 +83,7 @@ std::vector<double> rounded(const std::vector<verify::Real>& values) {
 }
 
 /// Calls a compiled function by name; nothing if it returns an error code.
-std::optional<std::vector<std::vector<double>>> called(const emit::LoadedModel& m, const std::string& function,
+std::optional<std::vector<std::vector<double>>> called(const abi::CompiledFunctions& m, const std::string& function,
                                                        const verify::AbiArguments& at,
                                                        const std::vector<std::size_t>& sizes, std::size_t prepared) {
   const double t = cln::double_approx(at.t);
@@ -76,7 +103,7 @@ std::optional<std::vector<std::vector<double>>> called(const emit::LoadedModel& 
 }  // namespace
 
 verify::CompiledForm CompiledCode::form() const {
-  const emit::LoadedModel* const model = &compiled_.model;
+  const abi::CompiledFunctions* const model = functions_;
   verify::CompiledForm form;
   form.name = "emitted code";
   form.call = [model, arrays = arrays_, prepared = described_.prepared](const std::string& function,
@@ -100,7 +127,7 @@ verify::CompiledForm CompiledCode::form() const {
 }
 
 run::Code CompiledCode::code_for_run() const {
-  const emit::LoadedModel& model = compiled_.model;
+  const abi::CompiledFunctions& model = *functions_;
   run::Code code = described_;
   const auto bind = [&](const auto& one) { one(code, model); };  // the functions of a run
 #define ABI_FUNCTION(name, takes, gives, comes, purpose)      \
@@ -128,6 +155,23 @@ CompiledCode compile(const program::Program& program, const emit::EmissionContex
                                "chmod 700 a folder of your own, or name one in EOMGEN_CACHE_DIR"}));
   }
   return {std::move(compiled), program};
+}
+
+CompiledCode assemble(const program::Program& program, const emit::EmissionContext& context) {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<double> inputs;
+  for (const emit::Quantity& input : context.inputs) inputs.push_back(input.value);
+  jit::MachineCode code(program, inputs);
+  if (const std::optional<std::size_t> failed = failed_test_vector(code, program, context)) {
+    throw Error("run", {}, fmt::format("machine code in memory fails its self test, vector {}", *failed + 1),
+                "please report the model; --tier compiled uses the C compiler", ErrorKind::tool);
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return {std::move(code), seconds, program};
+}
+
+CompiledCode make_code(Tier tier, const program::Program& program, const emit::EmissionContext& context, bool again) {
+  return tier == Tier::jit ? assemble(program, context) : compile(program, context, again);
 }
 
 std::vector<double> default_inputs(DerivedModel& derived) {

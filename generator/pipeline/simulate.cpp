@@ -211,6 +211,13 @@ program::Request functions_for_run(const DerivedModel& derived, const run::Scene
   return wanted;
 }
 
+namespace {
+
+/// The number of fixed steps; 0 if steps are chosen.
+double fixed_steps(const run::Scene& scene) { return scene.step > 0 ? (scene.t1 - scene.t0) / scene.step : 0; }
+
+}  // namespace
+
 Simulation simulate(const SimulationRequest& request) {
   std::unique_ptr<DerivedModel> derived = derive_model(request.model, request.approach, request.form);
   mechanics::Mechanics& mechanics = derived->mechanics;
@@ -240,11 +247,13 @@ Simulation simulate(const SimulationRequest& request) {
   const run::Scene defaults = run::resolve_scene(mechanics, system, derived->model.scene("default"), none);
   if (request.ready) request.ready();
   emit::EmissionContext context = emission_context(*derived, program, defaults, certificate);
-  CompiledCode code = compile(program, context);
+  const TierChoice tier = choose_tier(request.tier, program, fixed_steps(scene));
+  CompiledCode code = make_code(tier.tier, program, context);
   std::shared_ptr<ChartLibrary> charts;
   if (exchanges) {
-    charts = std::make_shared<ChartLibrary>(*derived, program, std::move(context),
-                                            ChartRequest{wanted, request.approach, request.form, request.seed});
+    charts =
+        std::make_shared<ChartLibrary>(*derived, program, std::move(context),
+                                       ChartRequest{wanted, request.approach, request.form, request.seed, tier.tier});
   }
 
   run::Code functions = code.code_for_run();
@@ -266,8 +275,8 @@ Simulation simulate(const SimulationRequest& request) {
     result.reason.charts_kept_for_jumps = keeps_charts == nullptr;
   }
   if (charts) result.seconds_integrate = std::max(0.0, result.seconds_integrate - charts->seconds());
-  return {std::move(derived), std::move(scene),  std::move(program), std::move(certificate),
-          std::move(code),    std::move(result), std::move(charts)};
+  return {std::move(derived), std::move(scene), std::move(program), std::move(certificate), std::move(code), tier,
+          std::move(result),  std::move(charts)};
 }
 
 run::RunResult rerun(const Simulation& simulation, const run::Overrides& overrides, bool estimate) {

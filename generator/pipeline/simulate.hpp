@@ -35,6 +35,7 @@ struct SimulationRequest {
   bool every_solver = false;      // the code has the functions for every eligible solver
   bool charts = true;             // the run may change to second charts near singularities
   std::uint64_t seed = 1;
+  Tier tier = Tier::compiled;
   /// Called after the derivation: may add outputs to every candidate, and returns those that the code must have.
   std::function<std::vector<std::string>(DerivedModel&)> prepare;
   /// Called after derivation and verification, before the compiler is called.
@@ -55,6 +56,7 @@ struct Simulation {
   program::Program program;
   verify::Certificate certificate;
   CompiledCode code;
+  TierChoice tier;
   run::RunResult result;
   std::shared_ptr<ChartLibrary> charts;  // if there are exchangeable charts
 };

@@ -21,7 +21,8 @@ using Json = nlohmann::ordered_json;
 constexpr double allowed = 1e-12;  // of the largest entry of an array
 
 /// Of every function the values that the compiled C has at the points of the self test.
-Json values_of_c(const emit::LoadedModel& c, const program::Program& program, const emit::EmissionContext& context) {
+Json values_of_c(const abi::CompiledFunctions& c, const program::Program& program,
+                 const emit::EmissionContext& context) {
   Json calls = Json::array();
   for (const emit::TestVector& at : context.tests) {
     for (const program::Function& function : program.functions) {
@@ -103,7 +104,7 @@ TEST_CASE(
     const emit::EmissionContext context = pipeline::emission_context(*derived, program, scene, {});
     const pipeline::CompiledCode code = pipeline::compile(program, context);
     files.push_back(emit::emit(program, context, "javascript").front());
-    all.push_back({{"file", files.back().name}, {"calls", values_of_c(code.compiled().model, program, context)}});
+    all.push_back({{"file", files.back().name}, {"calls", values_of_c(code.functions(), program, context)}});
     CHECK(all.back()["calls"].size() >= 6);
   }
   files.push_back({"calls.json", all.dump()});

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// run --tier: with and without a C compiler.
+#include <doctest/doctest.h>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+/// Whether this build has machine code in memory; without, it is refused by name.
+bool has_machine_code(const Folder& folder) {
+  const ChildResult result = eomgen::test::eomgen(folder, {"run", "P2_planar_pendulum", "--tier", "jit"});
+  if (result.status == 0) return true;
+  CHECK(result.status == 4);
+  CHECK(contains(result.err, "there is no machine code in memory: "));
+  CHECK(contains(result.err, "--tier compiled"));
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("--tier jit: a run needs no program beside eomgen, and its table has the bytes of compiled code") {
+  const Folder folder;
+  if (!has_machine_code(folder)) return;
+  for (const char* model : {"P2_planar_pendulum", "R3_rough_incline", "quarter_car"}) {
+    ChildCommand call = command(folder, {"run", model, "--tier", "jit", "--out", "jit.csv", "--json"});
+    call.environment["PATH"] = "/nonexistent";
+    call.environment["EOMGEN_CACHE_DIR"] = folder / "cache";
+    const ChildResult result = run_child(call);
+    CAPTURE(result.err);
+    REQUIRE(result.status == 0);
+    const Json run = Json::parse(result.out);
+    CHECK(run["tier"] == "jit");
+    CHECK(run["compiled"] == "never");
+    const Json compiled = document(folder, {"run", model, "--tier", "compiled", "--out", "compiled.csv"});
+    CHECK(compiled["tier"] == "compiled");
+    CHECK(compiled["tier_reason"] == "asked for");
+    CHECK(folder.read("jit.csv") == folder.read("compiled.csv"));
+    CHECK(run["final"] == compiled["final"]);
+  }
+}
+
+TEST_CASE("--tier: an unknown name is refused with the known ones") {
+  const Folder folder;
+  const ChildResult result = expect(2, folder, {"run", "P2_planar_pendulum", "--tier", "fast"});
+  CHECK(contains(result.err, "there is no tier 'fast'"));
+  CHECK(contains(result.err, "jit"));
+}
