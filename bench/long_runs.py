@@ -9,6 +9,7 @@ import math
 import pathlib
 import subprocess
 import sys
+import textwrap
 
 BEGIN, END = "<!-- tables: written by bench/long_runs -->", "<!-- end of the tables -->"
 COUNTS = [10**k for k in range(7)]
@@ -111,12 +112,17 @@ def scene_rows(eomgen, folder, limit, solvers, index):
 
 def table(rows, index):
     title, model, period, _, what = SCENES[index]
-    lines = [f"### {title}", "", f"`{' '.join(model)}`; a period is {period:.6g} s, {what}.", "",
+    lines = [f"### {title}", "", textwrap.fill(f"`{' '.join(model)}`; a period is {period:.6g} s, {what}.", 100, break_on_hyphens=False), "",
              "| solver | steps a period, or tolerance | energy: 1 | 1e2 | 1e4 | 1e6 periods | growth | momentum | growth | constraints | growth | periods | steps | s | ended by |",
              "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|"]
     lines += ["| " + " | ".join(row.cells()) + " |" for row in rows if row.runs]
     lines += [f"\n`{row.name}` ({row.setting}): {row.told}." for row in rows if not row.runs]
     return lines + [""]
+
+
+def short(title):
+    """The title of a scene as the head of a column."""
+    return title.removesuffix(" and two multipliers").removesuffix(" coordinates").replace("Spherical pendulum, two angles", "Spherical pendulum")
 
 
 def summary(tables):
@@ -127,7 +133,7 @@ def summary(tables):
             if row.runs:
                 kinds.setdefault((row.name, "fixed" if "steps" in row.setting else row.setting), {})[index] = growth(row.points(0))
     lines = ["### Growth of the energy's drift, all scenes", "", "Exponent a of drift ~ periods^a, fitted from 100 periods on.", "",
-             "| solver | tolerance | " + " | ".join(title for title, *_ in SCENES) + " |", "|---|---|" + "---:|" * len(SCENES)]
+             "| solver | tolerance | " + " | ".join(short(title) for title, *_ in SCENES) + " |", "|---|---|" + "---:|" * len(SCENES)]
     for (name, setting), found in kinds.items():
         lines.append(f"| {name} | {setting} | " + " | ".join(number(found.get(i), ".2f") for i in range(len(SCENES))) + " |")
     return lines + [""]
