@@ -107,6 +107,7 @@ pipeline::SimulationRequest simulation_request(const BenchmarkRequest& asked) {
   request.every_solver = true;
   request.integrate = false;
   request.seed = asked.seed;
+  request.tier = pipeline::Tier::compiled;  // solvers of other libraries call compiled code too
   return request;
 }
 

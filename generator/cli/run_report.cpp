@@ -204,7 +204,7 @@ std::string RunReport::text() const {
       scene.step > 0 ? fmt::format("step {}", scene.step) : fmt::format("rtol {}, atol {}", scene.rtol, scene.atol);
   out += line("solver", fmt::format("{} ({}), {}", result.solver, run::to_text(result.reason), accuracy));
   const bool is_jit = tier.tier == pipeline::Tier::jit;
-  out += line("code", fmt::format("{} ({})", is_jit ? "machine code in memory" : "compiled C", tier.reason));
+  if (!is_jit && !tier.was_asked) out += line("code", fmt::format("compiled C: {}", tier.reason));
   out += line("outcome", fmt::format("{} at t = {}{}{}", eom::name(result.outcome), result.t,
                                      result.detail.empty() ? "" : ": ", result.detail));
   for (std::size_t k = 0; k < result.reason.changes.size(); ++k) {
@@ -232,7 +232,7 @@ std::string RunReport::text() const {
       "seconds",
       fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}{}, {} {:.3f}{}, integrate {:.6f}, estimate {:.6f}{}",
                   seconds.read + seconds.derive, seconds.optimise, seconds.verify,
-                  derived.certificate_from_cache ? " (kept)" : "", is_jit ? "generate" : "compile", code.seconds(),
+                  derived.certificate_from_cache ? " (kept)" : "", is_jit ? "machine code" : "compile", code.seconds(),
                   code.cached() ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate,
                   charts && charts->seconds() > 0 ? fmt::format(", second charts {:.3f}", charts->seconds()) : ""));
   for (const WrittenFile& file : files) {

@@ -47,7 +47,8 @@ class CompiledCode {
 /// Emits C with `context` and compiles it (cached by content).
 CompiledCode compile(const program::Program& program, const emit::EmissionContext& context, bool again = false);
 
-/// The same functions as machine code in memory. Throws Error{ErrorKind::tool} if they fail the self test.
+/// The same functions as machine code in memory; `context` may be a code_context. Throws Error{ErrorKind::tool} if they
+/// fail the self test.
 CompiledCode assemble(const program::Program& program, const emit::EmissionContext& context);
 
 /// compile or assemble.

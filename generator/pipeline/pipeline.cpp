@@ -315,11 +315,31 @@ void require_pass(const verify::Certificate& certificate, const model::Model& mo
               ErrorKind::check);
 }
 
-emit::EmissionContext emission_context(DerivedModel& derived, const program::Program& program, const run::Scene& scene,
-                                       const verify::Certificate& certificate) {
+emit::EmissionContext code_context(const DerivedModel& derived, const program::Program& program,
+                                   const run::Scene& scene) {
   const model::Model& model = derived.model;
   emit::EmissionContext context;
   context.id = model.id;
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    const model::Parameter& p = model.parameters[i];
+    context.parameters.push_back({p.name, p.unit.text, p.note, scene.parameters[i]});
+  }
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    const model::Input& input = model.inputs[i];
+    context.inputs.push_back({input.name, input.unit.text, "", scene.inputs[i](scene.t0, scene.t0)});
+  }
+  context.start_time = scene.t0;
+  for (const std::uint32_t i : program.free) context.start.push_back(scene.q[i]);
+  for (const std::uint32_t i : program.free) context.start.push_back(scene.qdot[i]);
+  context.start.insert(context.start.end(), program.integrals.size(), 0.0);
+  context.tests = test_vectors(program, context);
+  return context;
+}
+
+emit::EmissionContext emission_context(DerivedModel& derived, const program::Program& program, const run::Scene& scene,
+                                       const verify::Certificate& certificate) {
+  const model::Model& model = derived.model;
+  emit::EmissionContext context = code_context(derived, program, scene);
   context.title = model.title;
   context.content_hash = model.content_hash;
   // Without the measured differences, whose last digits depend on the word size of the machine: the bytes are the same
@@ -328,18 +348,12 @@ emit::EmissionContext emission_context(DerivedModel& derived, const program::Pro
                                 certificate.options.digits, certificate.comparisons.size());
   for (const model::Coordinate& c : model.coordinates) context.coordinates.push_back({c.name, c.unit.text, "", 0});
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-    const model::Parameter& p = model.parameters[i];
-    context.parameters.push_back({p.name, p.unit.text, p.note, scene.parameters[i]});
     const symbolic::Ref formula = derived.mechanics.parameter_value[i];
     if (derived.mechanics.dag->symbols({formula}).empty()) continue;
-    if (const auto written = reading::as_written(model, p.value)) {
-      context.parameters.back().expression =
+    if (const auto written = reading::as_written(model, model.parameters[i].value)) {
+      context.parameters[i].expression =
           print::print(*written, print::Notation(derived.mechanics), print::Format::model_language);
     }
-  }
-  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    const model::Input& input = model.inputs[i];
-    context.inputs.push_back({input.name, input.unit.text, "", scene.inputs[i](scene.t0, scene.t0)});
   }
   for (const model::Event& event : model.events) {
     context.events.push_back({event.name, model::name(event.direction), event.stop ? "stop" : "record"});
@@ -347,15 +361,10 @@ emit::EmissionContext emission_context(DerivedModel& derived, const program::Pro
   for (const print::PrintedFormula& item : print::render_singular(derived.mechanics)) {
     if (item.left_out.empty()) context.singular.push_back(item.text);
   }
-  context.start_time = scene.t0;
-  for (const std::uint32_t i : program.free) context.start.push_back(scene.q[i]);
-  for (const std::uint32_t i : program.free) context.start.push_back(scene.qdot[i]);
-  context.start.insert(context.start.end(), program.integrals.size(), 0.0);
   for (const model::Integral& integral : model.integrals) {
     context.integrals.push_back({integral.name, integral.unit.text, "", 0});
   }
   if (model.start_time) context.start_parameter = model.parameters[*model.start_time].name;
-  context.tests = test_vectors(program, context);
   return context;
 }
 

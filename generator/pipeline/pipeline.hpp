@@ -75,7 +75,11 @@ verify::Certificate certify(DerivedModel& derived, const program::Program& progr
 /// Throws Error{ErrorKind::check} with the failures if the certificate is negative: such a model is not emitted.
 void require_pass(const verify::Certificate& certificate, const model::Model& model);
 
-/// The description of the model in the sources, with start and parameters of the default scene.
+/// What code in memory needs of the model: values of parameters, inputs and start, and the test vectors.
+emit::EmissionContext code_context(const DerivedModel& derived, const program::Program& program,
+                                   const run::Scene& scene);
+
+/// The same with the description of the model in the sources, with start and parameters of the default scene.
 emit::EmissionContext emission_context(DerivedModel& derived, const program::Program& program, const run::Scene& scene,
                                        const verify::Certificate& certificate);
 

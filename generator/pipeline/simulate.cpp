@@ -195,13 +195,13 @@ eom::Features wanted_features(const std::string& solver, bool every, eom::Featur
 program::Request functions_for_run(const DerivedModel& derived, const run::Scene& scene, const std::string& solver,
                                    bool every_solver) {
   const system::EquationSystem& system = derived.candidates.front();
-  const eom::Features features = run::features_of(system, program::has_kinks(system));
+  const bool has_kinks = program::has_kinks(system);
+  const eom::Features features = run::features_of(system, has_kinks);
   run::require_eligible(solver, features | run::features_of(scene));
   program::Request wanted;
   wanted.outputs = code_outputs(derived, scene, !energy_is_conserved(derived));
   if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
-  if (!derived.model.events.empty() || !system.contacts.empty() || program::has_kinks(system))
-    wanted.with.push_back("events");
+  if (!derived.model.events.empty() || !system.contacts.empty() || has_kinks) wanted.with.push_back("events");
   const eom::Features of_code = wanted_features(solver, every_solver, features);
   if (of_code.has(eom::Feature::jacobian)) wanted.with.push_back("jac");
   if (of_code.has(eom::Feature::series)) wanted.with.push_back("taylor");
@@ -246,8 +246,9 @@ Simulation simulate(const SimulationRequest& request) {
   // The sources contain the default scene, so that all scenes share one library.
   const run::Scene defaults = run::resolve_scene(mechanics, system, derived->model.scene("default"), none);
   if (request.ready) request.ready();
-  emit::EmissionContext context = emission_context(*derived, program, defaults, certificate);
   const TierChoice tier = choose_tier(request.tier, program, fixed_steps(scene));
+  emit::EmissionContext context = tier.tier == Tier::jit ? code_context(*derived, program, defaults)
+                                                         : emission_context(*derived, program, defaults, certificate);
   CompiledCode code = make_code(tier.tier, program, context);
   std::shared_ptr<ChartLibrary> charts;
   if (exchanges) {

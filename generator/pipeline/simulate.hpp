@@ -35,7 +35,7 @@ struct SimulationRequest {
   bool every_solver = false;      // the code has the functions for every eligible solver
   bool charts = true;             // the run may change to second charts near singularities
   std::uint64_t seed = 1;
-  Tier tier = Tier::compiled;
+  Tier tier = Tier::automatic;
   /// Called after the derivation: may add outputs to every candidate, and returns those that the code must have.
   std::function<std::vector<std::string>(DerivedModel&)> prepare;
   /// Called after derivation and verification, before the compiler is called.

@@ -43,15 +43,16 @@ TierChoice choose_tier(Tier asked, const program::Program& program, double steps
     throw Error("run", {}, "there is no machine code in memory: " + refusal, "--tier compiled uses the C compiler",
                 ErrorKind::tool);
   }
-  if (asked != Tier::automatic) return {asked, "asked for"};
-  if (!refusal.empty()) return {Tier::compiled, "no machine code in memory: " + refusal};
+  if (asked != Tier::automatic) return {asked, "asked for", true};
+  if (!refusal.empty()) return {Tier::compiled, "no machine code in memory: " + refusal, false};
   const program::Function& rhs = program.functions.front();
   const double work = steps * evaluations_per_step * static_cast<double>(rhs.code.size());
   const double cost = evaluations_that_pay * static_cast<double>(instructions(program));
   if (work > cost) {
-    return {Tier::compiled, fmt::format("{:.0f} steps: the compiler takes less time than its code saves", steps)};
+    return {Tier::compiled, fmt::format("{:.0f} steps: the compiler takes less time than its code saves", steps),
+            false};
   }
-  return {Tier::jit, "no compiler needed"};
+  return {Tier::jit, "no compiler needed", false};
 }
 
 }  // namespace eomgen::pipeline

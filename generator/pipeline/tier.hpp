@@ -22,6 +22,7 @@ Tier parse_tier(const std::string& text);  // from one of these names; throws Er
 struct TierChoice {
   Tier tier = Tier::compiled;  // never automatic
   std::string reason;
+  bool was_asked = false;  // the caller chose it
 };
 
 /// Resolves Tier::automatic. `steps`: the number of fixed steps of the run; 0 if steps are chosen. The choice depends

@@ -99,7 +99,7 @@ TEST_CASE("SIGTERM takes effect while the compiler hangs, and no files are left"
   const Folder folder;
   folder.write("cc", "#!/bin/sh\n[ \"$1\" = --version ] && exec echo slow\ntouch working\nsleep 1000\n");
   REQUIRE(::chmod((folder / "cc").c_str(), 0755) == 0);
-  ChildCommand call = command(folder, {"run", "P2_planar_pendulum"});
+  ChildCommand call = command(folder, {"run", "P2_planar_pendulum", "--tier", "compiled"});
   call.environment["EOMGEN_CC"] = folder / "cc";
   call.environment["EOMGEN_CACHE_DIR"] = folder / "cache";
   Child child(call);

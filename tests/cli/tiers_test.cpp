@@ -41,6 +41,22 @@ TEST_CASE("--tier jit: a run needs no program beside eomgen, and its table has t
   }
 }
 
+TEST_CASE("without --tier a run needs no compiler, and many fixed steps take it where it pays") {
+  const Folder folder;
+  if (!has_machine_code(folder)) return;
+  ChildCommand call = command(folder, {"run", "P2_planar_pendulum", "--json"});
+  call.environment["EOMGEN_CC"] = "/nonexistent";
+  call.environment["EOMGEN_CACHE_DIR"] = folder / "cache";
+  const ChildResult result = run_child(call);
+  CAPTURE(result.err);
+  REQUIRE(result.status == 0);
+  CHECK(Json::parse(result.out)["tier"] == "jit");
+  call.arguments.insert(call.arguments.end(), {"--step", "1e-10"});
+  const ChildResult long_run = run_child(call);
+  CHECK(long_run.status == 4);
+  CHECK(contains(long_run.err, "the C compiler `/nonexistent` does not run"));
+}
+
 TEST_CASE("--tier: an unknown name is refused with the known ones") {
   const Folder folder;
   const ChildResult result = expect(2, folder, {"run", "P2_planar_pendulum", "--tier", "fast"});

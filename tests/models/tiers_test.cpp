@@ -79,6 +79,7 @@ TEST_CASE("every shipped model: compiled code and machine code in memory give th
     CAPTURE(entry.path().string());
     pipeline::SimulationRequest request;
     request.model = model_at(entry.path().string());
+    request.tier = pipeline::Tier::compiled;
     request.integrate = false;
     request.charts = false;
     std::optional<pipeline::Simulation> simulation;
@@ -96,9 +97,8 @@ TEST_CASE("every shipped model: compiled code and machine code in memory give th
     const run::Scene defaults =
         run::resolve_scene(simulation->derived->mechanics, simulation->derived->candidates.front(),
                            simulation->derived->model.scene("default"), {});
-    const emit::EmissionContext context =
-        pipeline::emission_context(*simulation->derived, simulation->program, defaults, simulation->certificate);
-    simulation->code = pipeline::assemble(simulation->program, context);
+    simulation->code = pipeline::assemble(simulation->program,
+                                          pipeline::code_context(*simulation->derived, simulation->program, defaults));
     check_same(compiled, pipeline::rerun(*simulation, overrides, false));
   }
   CHECK(moving > 80);

@@ -24,7 +24,7 @@ namespace eomgen::cli {
 namespace {
 
 struct Options : SceneOptions {
-  std::string model, out, plot, approach = "auto", form = "auto", tier = "compiled";
+  std::string model, out, plot, approach = "auto", form = "auto", tier = "auto";
   std::vector<std::string> sensitivity, plot_of;
   std::size_t max_steps = 0;
   bool no_error_estimate = false, no_charts = false, yes = false;
