@@ -4,6 +4,7 @@
 #include <asmjit/x86.h>
 
 #include <array>
+#include <cstdlib>
 #include <eom/modes/chart_state.hpp>
 #include <stdexcept>
 
@@ -370,3 +371,13 @@ Encoder::Finished Encoder::finish() {
 const char* encoder_refusal() { return ""; }
 
 }  // namespace eomgen::jit
+
+// Debian has asmjit as a static library that was not compiled for shared ones. Only its diagnostics prevent that: they
+// refer to stderr directly. These definitions replace them in the archive.
+ASMJIT_BEGIN_NAMESPACE
+namespace DebugUtils {
+const char* errorAsString(Error) noexcept { return "an instruction that cannot be encoded"; }
+void debugOutput(const char*) noexcept {}
+[[noreturn]] void assertionFailed(const char*, int, const char*) noexcept { std::abort(); }
+}  // namespace DebugUtils
+ASMJIT_END_NAMESPACE
