@@ -191,6 +191,7 @@ int main(int argc, char** argv) {
   eomgen::pipeline::SimulationRequest request;
   request.model = std::make_shared<const eomgen::model::Model>(eomgen::model::read_model(EOM_BENCH_MODEL));
   request.integrate = false;
+  request.tier = eomgen::pipeline::Tier::compiled;  // as the batches of the ensemble
   const eomgen::pipeline::Simulation model = eomgen::pipeline::simulate(request);
   std::mt19937_64 random(17);
   std::vector<double> errors, errors_alone;

@@ -63,6 +63,7 @@ ByHand by_hand(const Problem& problem, const Values& p, const Values& start, Qua
 
 pipeline::Simulation prepare(const Problem& problem) {
   pipeline::SimulationRequest request;
+  request.tier = pipeline::Tier::compiled;  // as the libraries that it is compared with
   request.model = std::make_shared<const model::Model>(model::read_model(problem.model));
   request.scene = problem.scene;
   request.overrides.solver = "dop853";

@@ -106,15 +106,18 @@ class Body {
       a_.mov(x86::ptr(x86::rsp, offset_of(result_pointers_ + r)), argument_register(k++));
     a_.mov(numbers, reinterpret_cast<std::uint64_t>(constants_));
     if (function_.reads_time) a_.movsd(x86::ptr(x86::rsp, offset_of(function_.time)), x86::xmm0);
-    if (function_.mode_values.empty()) return;
-    if (has_mode)
-      a_.mov(x86::edi, mode);
-    else
-      a_.xor_(x86::edi, x86::edi);
-    a_.mov(x86::rsi, reinterpret_cast<std::uint64_t>(function_.mode_values.data()));
-    a_.mov(x86::edx, function_.mode_values.size());
-    a_.mov(x86::rcx, x86::rsp);
-    call(reinterpret_cast<const void*>(&read_mode));
+    for (const ModeValue& value : function_.mode_values) {
+      const ModeTable table = mode_table(value);
+      if (has_mode)
+        a_.mov(x86::eax, mode);
+      else
+        a_.xor_(x86::eax, x86::eax);
+      if (table.shift > 0) a_.shr(x86::eax, table.shift);
+      a_.and_(x86::eax, table.mask);
+      a_.mov(x86::r10, reinterpret_cast<std::uint64_t>(table.values));
+      a_.movsd(x86::xmm1, x86::qword_ptr(x86::r10, x86::rax, 3));
+      a_.movsd(x86::ptr(x86::rsp, offset_of(value.scratch)), x86::xmm1);
+    }
   }
 
   /// Touches a large frame page by page, so that it cannot step over the guard page.

@@ -15,21 +15,25 @@ namespace {
 
 #include "skeletons/sincos_kernel.inc"
 
+// As in emitted code: small angles first, all at once, since a branch after each pair would separate their operations.
 void group(double* angles, std::size_t count) {
   double* const sine = angles + count;
   double* const cosine = angles + 2 * count;
-  std::size_t i = 0;
-  for (; i + 1 < count; i += 2) kernel_sincos(angles[i], angles[i + 1], sine + i, cosine + i);
-  if (i == count) return;
+  kernel_lanes reach = {0};
   std::array<double, 2> s{}, c{};
-  kernel_sincos(angles[i], 0.0, s.data(), c.data());
-  sine[i] = s[0];
-  cosine[i] = c[0];
-}
-
-template <double (*function)(double)>
-double of_one(double x) {
-  return function(x);
+  std::size_t i = 0;
+  for (; i + 1 < count; i += 2) kernel_sincos_near(angles[i], angles[i + 1], sine + i, cosine + i, &reach);
+  if (i < count) {
+    kernel_sincos_near(angles[i], 0.0, s.data(), c.data(), &reach);
+    sine[i] = s[0];
+    cosine[i] = c[0];
+  }
+  if (kernel_is_near(&reach)) return;
+  for (i = 0; i < count; ++i) {
+    kernel_sincos(angles[i], 0.0, s.data(), c.data());
+    sine[i] = s[0];
+    cosine[i] = c[0];
+  }
 }
 
 }  // namespace
@@ -59,12 +63,18 @@ const void* library_function(Library function) {
   return two(std::atan2);
 }
 
-void read_mode(int mode, const ModeValue* values, std::size_t count, double* scratch) {
-  for (const ModeValue* value = values; value != values + count; ++value) {
-    const std::size_t bit = program::first_kink_bit + 2 * static_cast<std::size_t>(value->index);
-    scratch[value->scratch] =
-        value->is_side ? (mode >> bit & 1) - (mode >> (bit + 1) & 1) : eom::contact_sign(mode, value->index);
-  }
+ModeTable mode_table(const ModeValue& value) {
+  constexpr std::size_t signs = 2 * eom::max_contacts, modes = eom::contact_bits + 1;
+  static const auto contacts = [] {
+    std::array<std::array<double, modes>, signs> table{};
+    for (std::size_t i = 0; i < signs; ++i) {
+      for (std::size_t mode = 0; mode < modes; ++mode) table[i][mode] = eom::contact_sign(static_cast<int>(mode), i);
+    }
+    return table;
+  }();
+  static constexpr std::array<double, 4> sides{0, 1, -1, 0};  // by the bits: above the surface, below it
+  if (!value.is_side) return {contacts.at(value.index).data(), 0, eom::contact_bits};
+  return {sides.data(), static_cast<std::uint32_t>(program::first_kink_bit + 2 * std::size_t{value.index}), 3};
 }
 
 int exchange_charts(const double* x, int mode, int to, double* y, const ChartExchange* charts) {

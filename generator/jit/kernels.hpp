@@ -17,8 +17,13 @@ SincosGroup sincos_group();
 /// The address of a function of the C library.
 const void* library_function(Library function);
 
-/// Writes values that `mode` determines to their places in the scratch array.
-void read_mode(int mode, const ModeValue* values, std::size_t count, double* scratch);
+/// The values of a side of a kink or of a sign of a contact for all values of the bits of `mode` that determine it:
+/// values[mode >> shift & mask].
+struct ModeTable {
+  const double* values = nullptr;
+  std::uint32_t shift = 0, mask = 0;
+};
+ModeTable mode_table(const ModeValue& value);
 
 using ChartFunction = int (*)(const double* x, double* y);
 /// What the function `chart` is made of (docs/abi.md, "Charts").
