@@ -19,6 +19,8 @@ namespace {
 
 // Rejections before the search for states ends: a base number, and a number per state.
 constexpr std::size_t rejections_at_least = 200, rejections_per_point = 20;
+// Digits of states that cost little. A state takes longer with every digit, above all the quadrature of integrals.
+constexpr int usual_digits = 200;
 // Fewer digits prove nothing. Differences are stored as binary64, which ends at 1e-308.
 constexpr int least_digits = 10, most_digits = 300;
 
@@ -60,6 +62,12 @@ void note_uncompared(const Subjects& subjects, ComparisonTable& tally) {
   if (subjects.systems.empty()) return;
   for (const ProgramForm& form : subjects.programs) note(form.name, Arithmetic::precise);
   for (const CompiledForm& form : subjects.compiled) note(form.name, Arithmetic::binary64);
+}
+
+/// The rejections allowed for so many points: fewer at extreme numbers, whose states need many digits.
+std::size_t allowed_rejections(std::size_t points, int digits) {
+  const std::size_t usual = rejections_at_least + rejections_per_point * points;
+  return digits <= usual_digits ? usual : usual * usual_digits / static_cast<std::size_t>(digits);
 }
 
 }  // namespace
@@ -132,11 +140,12 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
     throw Error("verify", SourceLocation{}, fmt::format("{} digits cannot be compared", options.digits),
                 fmt::format("ask for {} to {}", least_digits, most_digits));
   const int range = options.extra_digits ? *options.extra_digits : required_extra_digits(mechanics);
-  Oracle oracle(*mechanics.model, options.digits + guard_digits + range);
+  const int digits = options.digits + guard_digits + range;
+  Oracle oracle(*mechanics.model, digits);
   for (std::uint32_t k = 0; k < mechanics.constraints.size(); ++k) {
     if (!mechanics.is_independent(k)) oracle.mark_implied(k);
   }
-  StateSampler points(oracle, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed,
+  StateSampler points(oracle, options.seed, allowed_rejections(options.points, digits), options.fixed,
                       unilateral_constraints(mechanics));
   ComparisonTable tally(options.digits);
   bool interrupted = false;
