@@ -75,7 +75,7 @@ verify::Certificate certify(DerivedModel& derived, const program::Program& progr
 /// Throws Error{ErrorKind::check} with the failures if the certificate is negative: such a model is not emitted.
 void require_pass(const verify::Certificate& certificate, const model::Model& model);
 
-/// What code in memory needs of the model: values of parameters, inputs and start, and the test vectors.
+/// The data of the model for code in memory: values of parameters, inputs and start, and the test vectors.
 emit::EmissionContext code_context(const DerivedModel& derived, const program::Program& program,
                                    const run::Scene& scene);
 
