@@ -21,24 +21,50 @@ struct AtomLess {
   bool operator()(const AtomPtr& a, const AtomPtr& b) const { return compare(*a, *b) < 0; }
 };
 
-/// PolynomialGraph over atoms as GiNaC polynomials over symbols.
+/// Polynomials over atoms as GiNaC polynomials over symbols. GiNaC orders symbols by hash values that differ between
+/// processes, and its factorisation starts from the first symbol: with some orders, it does not end within minutes.
+/// Therefore the n-th atom of the sum is given the n-th symbol of GiNaC's order.
 class Letters {
  public:
+  explicit Letters(const Sum& sum) {
+    std::set<AtomPtr, AtomLess> atoms;
+    for (const auto& [monomial, coefficient] : sum.terms()) {
+      for (const Factor& factor : monomial) atoms.insert(factor.atom);
+    }
+    std::set<ex, GiNaC::ex_is_less> symbols;
+    while (symbols.size() < atoms.size()) symbols.insert(GiNaC::symbol());
+    for (auto symbol = symbols.begin(); const AtomPtr& atom : atoms) {
+      letters_.emplace(atom, *symbol);
+      meaning_.emplace(*symbol++, atom);
+    }
+  }
+
   /// Empty if an exponent is negative or no integer.
-  std::optional<ex> polynomial(const Sum& sum) {
+  std::optional<ex> polynomial(const Sum& sum) const {
     ex result = 0;
     for (const auto& [monomial, coefficient] : sum.terms()) {
       ex term = GiNaC::numeric(coefficient);
       for (const Factor& factor : monomial) {
         if (!is_integer(factor.exponent) || cln::minusp(factor.exponent)) return std::nullopt;
-        term *= GiNaC::pow(letter(factor.atom), static_cast<long>(to_long(factor.exponent)));
+        term *= GiNaC::pow(letters_.at(factor.atom), static_cast<long>(to_long(factor.exponent)));
       }
       result += term;
     }
     return result;
   }
 
-  Sum sum(const ex& e) {
+  /// The symbols that the polynomial contains, those of the lowest degree first.
+  std::vector<ex> by_degree(const ex& polynomial) const {
+    std::vector<ex> result;
+    for (const auto& [atom, symbol] : letters_) {
+      if (polynomial.degree(symbol) > 0) result.push_back(symbol);
+    }
+    std::stable_sort(result.begin(), result.end(),
+                     [&](const ex& a, const ex& b) { return polynomial.degree(a) < polynomial.degree(b); });
+    return result;
+  }
+
+  Sum sum(const ex& e) const {
     if (GiNaC::is_a<GiNaC::numeric>(e)) return Sum(cln::the<cln::cl_RA>(GiNaC::ex_to<GiNaC::numeric>(e).to_cl_N()));
     if (GiNaC::is_a<GiNaC::symbol>(e)) return Sum(meaning_.at(e));
     if (GiNaC::is_a<GiNaC::power>(e)) return power(sum(e.op(0)), GiNaC::ex_to<GiNaC::numeric>(e.op(1)).to_long());
@@ -49,14 +75,6 @@ class Letters {
   }
 
  private:
-  const ex& letter(const AtomPtr& atom) {
-    auto found = letters_.find(atom);
-    if (found == letters_.end()) {
-      found = letters_.emplace(atom, GiNaC::symbol()).first;
-      meaning_.emplace(found->second, atom);
-    }
-    return found->second;
-  }
   std::map<AtomPtr, ex, AtomLess> letters_;
   std::map<ex, AtomPtr, GiNaC::ex_is_less> meaning_;
 };
@@ -72,6 +90,69 @@ void add_factor(Factorisation& result, Sum factor, long exponent) {
     }
   }
   result.factors.emplace_back(std::move(factor), exponent);
+}
+
+/// The polynomials whose product is `e`, each with its exponent, without numbers.
+std::vector<std::pair<ex, long>> powers_of(const ex& e) {
+  std::vector<std::pair<ex, long>> result;
+  const auto add = [&](const ex& factor) {
+    if (GiNaC::is_a<GiNaC::numeric>(factor)) return;
+    if (GiNaC::is_a<GiNaC::power>(factor)) {
+      result.emplace_back(factor.op(0), GiNaC::ex_to<GiNaC::numeric>(factor.op(1)).to_long());
+    } else {
+      result.emplace_back(factor, 1);
+    }
+  };
+  if (!GiNaC::is_a<GiNaC::mul>(e)) {
+    add(e);
+    return result;
+  }
+  for (std::size_t i = 0; i < e.nops(); ++i) add(e.op(i));
+  return result;
+}
+
+/// Whether a polynomial whose coefficients in x have no common divisor is shown to be irreducible: with numbers for the
+/// other symbols, it keeps its degree in x and is irreducible over the rational numbers. False means unknown.
+bool has_irreducible_image(const ex& polynomial, const ex& x, const std::vector<ex>& symbols) {
+  constexpr int images = 4;
+  for (int image = 1; image <= images; ++image) {
+    GiNaC::exmap numbers;
+    long number = image;
+    for (const ex& symbol : symbols) {
+      if (!symbol.is_equal(x)) numbers[symbol] = number;
+      number = number > 0 ? -number : image - number + 1;
+    }
+    const ex univariate = polynomial.subs(numbers).expand();
+    if (univariate.degree(x) != polynomial.degree(x)) continue;
+    const auto factors = powers_of(GiNaC::factor(univariate));
+    if (factors.size() == 1 && factors.front().second == 1) return true;
+  }
+  return false;
+}
+
+/// Adds the factors of an expanded polynomial. If it is a y + b with a symbol y that neither a nor b contains, then
+/// (a y + b) / gcd(a, b) has no further factor: it is primitive and of degree 1 in y. Lifting factors of an image to
+/// several symbols, which can take minutes, is left to polynomials that neither this nor an image settles.
+void add_factors(Factorisation& result, const Letters& letters, const ex& polynomial) {
+  const std::vector<ex> symbols = letters.by_degree(polynomial);
+  const auto common_divisor = [&](const ex& x) {
+    if (polynomial.degree(x) > 1) return polynomial.content(x);
+    return GiNaC::gcd(polynomial.coeff(x, 1), polynomial.coeff(x, 0));
+  };
+  const ex common = common_divisor(symbols.front()).expand();
+  if (!GiNaC::is_a<GiNaC::numeric>(common)) {
+    ex rest;
+    if (!GiNaC::divide(polynomial, common, rest)) throw std::logic_error("a common divisor does not divide");
+    add_factors(result, letters, common);
+    add_factors(result, letters, rest.expand());
+    return;
+  }
+  if (polynomial.degree(symbols.front()) == 1 || has_irreducible_image(polynomial, symbols.front(), symbols)) {
+    add_factor(result, letters.sum(polynomial), 1);
+    return;
+  }
+  for (const auto& [factor, exponent] : powers_of(GiNaC::factor(polynomial)))
+    add_factor(result, letters.sum(factor.expand()), exponent);
 }
 
 /// Whether a sum is irreducible as c x m + rest with the atom x in no other term: a divisor must divide m, and only 1
@@ -100,25 +181,14 @@ Factorisation factorise(const Sum& whole) {
     result.factors.emplace_back(primitive, 1);
     return result;
   }
-  Letters letters;
-  const std::optional<ex> polynomial = primitive.size() > factored_terms ? std::nullopt : letters.polynomial(primitive);
+  std::optional<ex> polynomial;
+  const Letters letters(primitive.size() <= factored_terms ? primitive : Sum(0));
+  if (primitive.size() <= factored_terms) polynomial = letters.polynomial(primitive);
   if (!polynomial) {
     result.factors.emplace_back(primitive, 1);
     return result;
   }
-  const ex factored = GiNaC::factor(*polynomial);
-  const auto add = [&](const ex& e) {
-    if (GiNaC::is_a<GiNaC::power>(e)) {
-      add_factor(result, letters.sum(e.op(0)), GiNaC::ex_to<GiNaC::numeric>(e.op(1)).to_long());
-    } else {
-      add_factor(result, letters.sum(e), 1);
-    }
-  };
-  if (GiNaC::is_a<GiNaC::mul>(factored)) {
-    for (std::size_t i = 0; i < factored.nops(); ++i) add(factored.op(i));
-  } else {
-    add(factored);
-  }
+  add_factors(result, letters, polynomial->expand());
   std::sort(result.factors.begin(), result.factors.end(),
             [](const auto& a, const auto& b) { return compare(a.first, b.first) < 0; });
   return result;
