@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "emit/shared_library/build.hpp"
 #include "error.hpp"
 #include "jit/machine_code.hpp"
 #include "model/names.hpp"
@@ -49,6 +50,10 @@ TierChoice choose_tier(Tier asked, const program::Program& program, double steps
   const double work = steps * evaluations_per_step * static_cast<double>(rhs.code.size());
   const double cost = evaluations_that_pay * static_cast<double>(instructions(program));
   if (work > cost) {
+    const std::string no_compiler = emit::compiler_refusal();
+    if (!no_compiler.empty())
+      return {Tier::jit, fmt::format("{:.0f} steps, for which compiled code is faster, but {}", steps, no_compiler),
+              false};
     return {Tier::compiled, fmt::format("{:.0f} steps: the compiler takes less time than its code saves", steps),
             false};
   }

@@ -26,8 +26,8 @@ struct TierChoice {
 };
 
 /// Resolves Tier::automatic. `steps`: the number of fixed steps of the run; 0 if steps are chosen. The choice depends
-/// on counts alone, so that every process makes the same one. Throws Error{ErrorKind::tool} if this build lacks
-/// Tier::jit and it is asked for.
+/// on counts alone, so that every process makes the same one, and on whether a C compiler runs. Throws
+/// Error{ErrorKind::tool} if this build lacks Tier::jit and it is asked for.
 TierChoice choose_tier(Tier asked, const program::Program& program, double steps);
 
 }  // namespace eomgen::pipeline

@@ -51,10 +51,17 @@ TEST_CASE("without --tier a run needs no compiler, and many fixed steps take it 
   CAPTURE(result.err);
   REQUIRE(result.status == 0);
   CHECK(Json::parse(result.out)["tier"] == "jit");
-  call.arguments.insert(call.arguments.end(), {"--step", "1e-10"});
+  call.arguments.insert(call.arguments.end(), {"--step", "1e-10", "--max-steps", "1000"});
   const ChildResult long_run = run_child(call);
-  CHECK(long_run.status == 4);
-  CHECK(contains(long_run.err, "the C compiler `/nonexistent` does not run"));
+  CAPTURE(long_run.err);
+  CHECK(long_run.status == 3);
+  const Json document = Json::parse(long_run.out);
+  CHECK(document["tier"] == "jit");
+  CHECK(contains(document["tier_reason"], "the C compiler `/nonexistent` does not run"));
+  call.arguments.insert(call.arguments.end(), {"--tier", "compiled"});
+  const ChildResult compiled = run_child(call);
+  CHECK(compiled.status == 4);
+  CHECK(contains(compiled.err, "the C compiler `/nonexistent` does not run"));
 }
 
 TEST_CASE("--tier: an unknown name is refused with the known ones") {

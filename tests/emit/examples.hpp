@@ -17,6 +17,7 @@
 #include "numeric/numbers.hpp"
 #include "program/systems.hpp"
 #include "program/values.hpp"
+#include "support/environment.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace test_systems {
@@ -72,25 +73,7 @@ inline std::vector<Example> examples() {
 
 using Folder = eomgen::test::TemporaryFolder;
 
-/// Sets an environment variable within a scope.
-struct ScopedEnvironmentVariable {
-  std::string name, before;
-  bool had;
-  ScopedEnvironmentVariable(const std::string& variable, const std::string& value) : name(variable) {
-    const char* old = ::getenv(name.c_str());
-    had = old != nullptr;
-    if (had) before = old;
-    ::setenv(name.c_str(), value.c_str(), 1);
-  }
-  ~ScopedEnvironmentVariable() {
-    if (had)
-      ::setenv(name.c_str(), before.c_str(), 1);
-    else
-      ::unsetenv(name.c_str());
-  }
-  ScopedEnvironmentVariable(const ScopedEnvironmentVariable&) = delete;
-  ScopedEnvironmentVariable& operator=(const ScopedEnvironmentVariable&) = delete;
-};
+using eomgen::test::ScopedEnvironmentVariable;
 
 inline std::string file_named(const std::vector<emit::EmittedFile>& files, const std::string& ending) {
   for (const auto& file : files) {

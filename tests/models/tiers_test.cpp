@@ -7,6 +7,7 @@
 
 #include "error.hpp"
 #include "jit/machine_code.hpp"
+#include "support/environment.hpp"
 #include "support/folders.hpp"
 #include "support/simulation.hpp"
 
@@ -140,6 +141,12 @@ TEST_CASE("auto takes machine code, and the compiler only where many fixed steps
   CHECK(choose(0) == pipeline::Tier::jit);
   CHECK(choose(1e6) == pipeline::Tier::jit);
   CHECK(choose(1e8) == pipeline::Tier::compiled);
+  {
+    const ScopedEnvironmentVariable none("EOMGEN_CC", "/no/compiler");
+    const pipeline::TierChoice choice = pipeline::choose_tier(pipeline::Tier::automatic, program, 1e8);
+    CHECK(choice.tier == pipeline::Tier::jit);
+    CHECK(choice.reason.find("the C compiler `/no/compiler` does not run") != std::string::npos);
+  }
   program.functions.emplace_back();  // a long function that is compiled along
   program.functions[1].code.resize(100000);
   CHECK(choose(1e8) == pipeline::Tier::jit);

@@ -52,7 +52,8 @@ bool runs(const std::vector<std::string>& command, std::string& version) {
   return finished.started && finished.status == 0;
 }
 
-Compiler find_compiler(const Recipe& recipe) {
+/// The first compiler of the recipe that runs; if none does, `refusal` is the reason and `remedy` what to do.
+std::optional<Compiler> search_compiler(const Recipe& recipe, std::string& refusal, std::string& remedy) {
   std::vector<std::string> candidates;
   std::string asked;
   for (const std::string& name : recipe.variables) {
@@ -66,14 +67,21 @@ Compiler find_compiler(const Recipe& recipe) {
   for (const std::string& candidate : candidates) {
     for (const std::vector<std::string>& command : {std::vector<std::string>{candidate}, words(candidate)}) {
       std::string version;
-      if (runs(command, version)) return {command, candidate, version};
+      if (runs(command, version)) return Compiler{command, candidate, version};
     }
   }
   std::string unset;
   for (const std::string& name : recipe.variables) unset += (unset.empty() ? "" : " and ") + name;
-  fail(asked.empty() ? "there is no " + recipe.language + " compiler"
-                     : "the " + recipe.language + " compiler `" + asked + "` does not run",
-       "sudo apt-get install " + recipe.package + (asked.empty() ? "" : ", or unset " + unset));
+  refusal = asked.empty() ? "there is no " + recipe.language + " compiler"
+                          : "the " + recipe.language + " compiler `" + asked + "` does not run";
+  remedy = "sudo apt-get install " + recipe.package + (asked.empty() ? "" : ", or unset " + unset);
+  return std::nullopt;
+}
+
+Compiler find_compiler(const Recipe& recipe) {
+  std::string refusal, remedy;
+  if (std::optional<Compiler> found = search_compiler(recipe, refusal, remedy)) return *found;
+  fail(refusal, remedy);
 }
 
 std::optional<std::string> read_file(const fs::path& path) {
@@ -168,6 +176,12 @@ BuiltLibrary build_library(const Recipe& recipe, const std::function<void(const 
   }
   built.cached = false;
   return built;
+}
+
+std::string compiler_refusal(const Recipe& recipe) {
+  std::string refusal, remedy;
+  search_compiler(recipe, refusal, remedy);
+  return refusal;
 }
 
 }  // namespace eomgen::emit

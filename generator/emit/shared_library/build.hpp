@@ -39,4 +39,7 @@ struct BuiltLibrary {
 /// (with its output).
 BuiltLibrary build_library(const Recipe& recipe, const std::function<void(const std::string& path)>& examine = {});
 
+/// The reason why no compiler of the recipe runs; empty if one does.
+std::string compiler_refusal(const Recipe& recipe = {});
+
 }  // namespace eomgen::emit
