@@ -4,6 +4,7 @@
 
 #include "reading/by_name.hpp"
 #include "reading/rational_function.hpp"
+#include "reading/small_matrix.hpp"
 #include "reading/trig.hpp"
 
 using namespace eomgen;
@@ -162,6 +163,28 @@ TEST_CASE("factors: sums of degree 1 in an atom are settled without lifting, in 
                     power(d, 3) * s - square(a) * c * r;
   // Each factorisation has new symbols. In some processes, GiNaC lifts its image for minutes.
   for (int i = 0; i < 200; ++i) REQUIRE(reading::factorise(force).factors.size() == 1);
+}
+
+TEST_CASE("matrices: diagonal blocks are inverted one by one, in any order of rows") {
+  System s = some_symbols();
+  const Sum x = s.symbol("x"), y = s.symbol("y"), m = s.symbol("m"), k = s.symbol("k");
+  // Rows 0 and 2 form a block, row 1 another.
+  const std::vector<Sum> matrix = {m, Sum(), x, Sum(), k, Sum(), y, Sum(), Sum(2)};
+  const Sum block = Sum(2) * m - x * y;
+  CHECK(reading::determinant(matrix, 3) == k * block);
+  const std::vector<Sum> inverse = reading::inverse_matrix(matrix, 3);
+  CHECK(inverse[0] == over(Sum(2), block));
+  CHECK(inverse[2] == over(-x, block));
+  CHECK(inverse[6] == over(-y, block));
+  CHECK(inverse[8] == over(m, block));
+  CHECK(inverse[4] == over(Sum(1), k));
+  for (const std::size_t zero : {1, 3, 5, 7}) CHECK(inverse[zero].is_zero());
+  // The masses of 60 free particles: without blocks, the cofactors take minutes.
+  constexpr std::size_t n = 180;
+  std::vector<Sum> masses(n * n);
+  for (std::size_t i = 0; i < n; ++i) masses[i * n + i] = m;
+  const std::vector<Sum> inverted = reading::inverse_matrix(masses, n);
+  for (std::size_t i = 0; i < n; ++i) REQUIRE(inverted[i * n + i] == over(Sum(1), m));
 }
 
 TEST_CASE("zero test: proven, numerical, no") {
