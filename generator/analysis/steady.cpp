@@ -42,6 +42,15 @@ void require_one_mode(const std::string& command, const DerivedModel& derived) {
       "linearise a copy of the model without the friction (or with the contact held) where it stays in one mode");
 }
 
+/// Rejects a motion that the constraints determine.
+void require_freedom(const std::string& command, const DerivedModel& derived) {
+  if (derived.mechanics.degrees_of_freedom() > 0) return;
+  const model::Model& model = derived.model;
+  throw Error(command, model.where(model.constraints.back().span),
+              "the constraints determine the motion: no other motion is near it",
+              "eomgen run integrates it, and eomgen inverse gives its forces");
+}
+
 std::string certified(DerivedModel& derived, std::uint64_t seed) {
   verify::Subjects subjects;
   subjects.systems = verify::all_formulations(derived.mechanics);
@@ -125,6 +134,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
   p.derived = pipeline::derive_model(model, ApproachChoice::two);
   DerivedModel& d = *p.derived;
   require_one_mode(command, d);
+  require_freedom(command, d);
   p.certificate = certified(d, seed);
   p.scene = run::resolve_scene(d.mechanics, p.system(), d.model.scene(scene), overrides);
   p.t = at.value_or(p.scene.t0);

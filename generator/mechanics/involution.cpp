@@ -31,10 +31,11 @@ cl_R dot(const Vector& a, const Vector& b) {
   return sum;
 }
 
-/// Adds the normalised part of a vector outside the span of orthonormal ones, unless it is 0.
+/// Adds the normalised part of a vector outside the span of orthonormal ones, unless it is 0. The fields and their
+/// samples are of the order of 1, so that a vector of this smallness is a rounding error.
 bool add_direction(std::vector<Vector>& basis, Vector v) {
   const cl_R length = cln::sqrt(dot(v, v));
-  if (cln::zerop(length)) return false;
+  if (length < small(regular_digits)) return false;
   for (int turn = 0; turn < 2; ++turn) {
     for (const Vector& e : basis) {
       const cl_R part = dot(e, v);

@@ -46,16 +46,18 @@ std::vector<system::Approach> approaches(const mechanics::Mechanics& m, Approach
   return {system::Approach::two, system::Approach::one};
 }
 
-// Rejects a model without degrees of freedom: no integration and no right-hand side, only constraint forces.
+// Rejects a model whose coordinates all follow from t by elimination: it has no right-hand side. Coordinates that
+// constraints determine together, and those that velocity constraints determine, are integrated.
 void require_freedom(const mechanics::Mechanics& m) {
-  if (m.degrees_of_freedom() > 0) return;
+  if (!m.free.empty() && m.degrees_of_freedom() >= 0) return;
   const model::Constraint& last = m.model->constraints.back();
-  throw Error(
-      "derive", m.model->where(last.span),
-      m.free.empty() ? "the constraints fix every coordinate: nothing is left to move"
-                     : "there are as many constraints as coordinates: nothing is left to move, unless constraints "
-                       "repeat one another",
-      "remove a constraint; eomgen inverse gives the forces of a motion that is prescribed, eomgen derive shows them");
+  if (!m.free.empty()) {
+    throw Error("derive", m.model->where(last.span),
+                "there are more constraints than coordinates, and they do not repeat one another",
+                "remove a constraint; eomgen derive shows them");
+  }
+  throw Error("derive", m.model->where(last.span), "the constraints fix every coordinate: nothing is left to integrate",
+              "eomgen inverse gives the motion and its forces; to integrate it, remove a constraint");
 }
 
 // Adds candidates in the requested forms.

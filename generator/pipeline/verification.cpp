@@ -22,15 +22,15 @@ program::Program with_every_function(DerivedModel& derived) {
   }
 }
 
-/// For a model without degrees of freedom, which has no code: compares the formulations and the display forms with the
-/// oracle, above all their constraint forces.
+/// For a model whose coordinates are all eliminated, which has no code: compares the formulations and the display forms
+/// with the oracle, above all their constraint forces.
 std::optional<verify::Certificate> certify_prescribed(const std::shared_ptr<const model::Model>& model,
                                                       const VerificationRequest& request) {
   std::size_t equations = 0;
   for (const model::Constraint& constraint : model->constraints) equations += constraint.psi.size();
   if (equations < model->coordinates.size()) return std::nullopt;
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
-  if (mechanics.degrees_of_freedom() > 0) return std::nullopt;
+  if (!mechanics.free.empty() && mechanics.degrees_of_freedom() >= 0) return std::nullopt;
   verify::Subjects subjects;
   subjects.systems = verify::all_formulations(mechanics, &subjects.left_out);
   add_display_forms(mechanics, subjects);

@@ -197,12 +197,21 @@ TEST_CASE("integrability: a car reaches every configuration with any number of t
   }
 }
 
-TEST_CASE("integrability: a wheel that cannot turn stays on its line, the trailer behind it does not") {
+TEST_CASE("integrability: a wheel that cannot turn stays on its line, and the trailer's angle follows from its place") {
   const Found found("x y th0 th1", {velocity("x_dot*sin(th0) - y_dot*cos(th0)"),
                                     velocity("x_dot*sin(th1) - y_dot*cos(th1) + R*th1_dot"), velocity("th0_dot")});
-  CHECK(found.verdicts() == "yes no yes");
+  // The trailer's curve is a tractrix: log tan((th1 - th0)/2) + s/R is constant, with the distance s along the line.
+  CHECK(found.verdicts() == "yes yes yes");
   CHECK(found.m.integrals.size() == 2);
   CHECK(found.worst_rate() < 1e-8);
+}
+
+TEST_CASE("integrability: velocity constraints that leave one direction of (q, t) are integrable together") {
+  const Found found("psi theta phi", {velocity("psi_dot*sin(theta)*sin(phi) + theta_dot*cos(phi) - 1"),
+                                      velocity("psi_dot*sin(theta)*cos(phi) - theta_dot*sin(phi) - k*t"),
+                                      velocity("psi_dot*cos(theta) + phi_dot - sin(t)")});
+  CHECK(found.verdicts() == "yes yes yes");
+  CHECK(found.m.integrals.empty());
 }
 
 TEST_CASE("redundancy: redundant and contradictory constraints are named") {

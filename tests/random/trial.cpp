@@ -18,11 +18,11 @@ using Json = nlohmann::json;
 // start. Any other message is a finding.
 const std::vector<std::string>& refusals() {
   static const std::vector<std::string> texts{
-      "nothing is left to move",      // locked
-      "more constraints than",        // a loop that cannot be closed
-      "contradict",                   // contradictory constraints
-      "follows from",                 // a redundant constraint
-      "the start breaks constraint",  // an assembly that cannot be closed from its guess
+      "nothing is left to integrate",  // locked
+      "more constraints than",         // a loop that cannot be closed
+      "contradict",                    // contradictory constraints
+      "follows from",                  // a redundant constraint
+      "the start breaks constraint",   // an assembly that cannot be closed from its guess
       "cannot be satisfied",
       "has no mass",  // a coordinate without inertia
       "no inertia",
