@@ -43,6 +43,27 @@ double by_runs(const Folder& folder, const std::string& model, const std::string
 
 constexpr double of_order_four = 1e-6;  // (1e-2)^4 times fifth derivatives of the order of 10 to 100
 
+/// A particle of mass 2 on a line, x'' = -4 x + F/2 from x = 0.3, with lines of its own.
+std::string line_text(const std::string& lines, const std::string& force, const std::string& scene) {
+  return "format = 1\n[parameters]\nm = 2\nk = 8\n" + lines +
+         "[coordinates]\nx = {}\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n"
+         "[[force]]\non = \"P\"\nforce = \"(" +
+         force + ")*E1\"\n[scene.default]\nrtol = 1e-11\natol = 1e-12\n" + scene;
+}
+
+/// A pendulum of length 1 on a support.
+std::string support_text(const std::string& support) {
+  return "format = 1\n[parameters]\nm = 1\ng = 9.81\ntau = 1\n[functions]\ns = \"" + support +
+         "\"\n[coordinates]\nth = {}\n[[particle]]\nname = \"P\"\nmass = \"m\"\n"
+         "position = [\"s + sin(th)\", \"-cos(th)\", 0]\n[[force]]\ngravity = \"-g*E2\"\n"
+         "[scene.default]\ninitial = { th = 0.4 }\nt = [0, 4.3]\nrtol = 1e-11\natol = 1e-12\n";
+}
+
+/// Derivatives by one value: one per state.
+Json derivatives(const Folder& folder, const std::string& by) {
+  return document(folder, {"run", "model.toml", "--sensitivity", by})["sensitivities"]["values"][by];
+}
+
 }  // namespace
 
 TEST_CASE("sensitivity: those of an oscillator agree with its closed form, within their estimates") {
@@ -112,6 +133,20 @@ t = [0, 1]
   CHECK(chain["sensitivities"]["outcome"] == "done");
 }
 
+TEST_CASE("sensitivity: everything that follows from a changed start or time changes with it") {
+  const Folder folder;
+  const double s = std::sin(6.0), c = std::cos(6.0);  // w t = 2 * 3
+  folder.write("model.toml", line_text("", "-k*(x - 0.4*initial(x))", "initial = { x = 0.3 }\nt = [0, 3]\n"));
+  // x = 0.4 x0 + 0.6 x0 cos(2 t)
+  CHECK(derivatives(folder, "x")["x"].get<double>() == doctest::Approx(0.4 + 0.6 * c).epsilon(1e-9));
+  folder.write("model.toml", line_text("", "-k*x", "initial = { x = 0.3, x_dot = \"x + 0.1\" }\nt = [0, 3]\n"));
+  CHECK(derivatives(folder, "x")["x"].get<double>() == doctest::Approx(c + s / 2).epsilon(1e-9));
+  CHECK(derivatives(folder, "x_dot")["x"].get<double>() == doctest::Approx(s / 2).epsilon(1e-9));
+  folder.write("model.toml", line_text("w = 2\n", "-k*x", "initial = { x = 0.3 }\nt = [\"1 - w\", \"2 + w/2\"]\n"));
+  // x = 0.3 cos(2 (1 + 3/2 w))
+  CHECK(derivatives(folder, "w")["x"].get<double>() == doctest::Approx(-0.9 * std::sin(8.0)).epsilon(1e-9));
+}
+
 TEST_CASE("sensitivity: values without derivative are refused with a remedy") {
   const Folder folder;
   folder.write("model.toml", oscillator);
@@ -122,4 +157,18 @@ TEST_CASE("sensitivity: values without derivative are refused with a remedy") {
   };
   refused({"run", "model.toml", "--sensitivity", "q"}, "there is no parameter or coordinate 'q'");
   refused({"run", "bouncing_ball", "--sensitivity", "g"}, "contacts and friction change the equations");
+  folder.write("model.toml", support_text("0.3*abs(t - tau)"));
+  refused({"run", "model.toml", "--sensitivity", "th"}, "the run has an impulse at t = 1");
+  const std::string input = "tau = 1\n[inputs]\nF = { default = 0 }\n";
+  const auto fed = [](const std::string& signal) {
+    return "initial = { x = 0.3 }\nt = [0, 3]\ninputs = { F = \"" + signal + "\" }\n";
+  };
+  folder.write("model.toml", line_text(input, "F - k*x", fed("if(t < tau, 1, -2)")));
+  refused({"run", "model.toml", "--sensitivity", "tau"}, "the kink at t = 0.9999999999999999 depends on tau");
+  folder.write("model.toml", line_text(input, "F - k*x", fed("k*sin(m*t)")));
+  refused({"run", "model.toml", "--sensitivity", "m"}, "an input depends on m");
+  // The run shortens its steps for a force that is narrow in the state, and the variational equations do not.
+  folder.write("model.toml",
+               line_text("w = 1e-3\n", "1000*exp(-((x - 3)/w)^2)", "initial = { x_dot = 1 }\nt = [0, 10]\n"));
+  refused({"run", "model.toml", "--sensitivity", "w"}, "something on the way is not differentiated");
 }
