@@ -67,6 +67,7 @@ class Lexer {
     if (c == '=') remedy = "an expression is a value, not an equation: write what is to be 0, such as \"R - d\"";
     if (c == '[')
       remedy = "a unit in brackets follows a number at once, as in 1.7e-5[m]; a vector is a TOML array of three";
+    if (text_.text.substr(at_, length) == "\xc2\xb0") remedy = "write degrees as deg, such as \"45 deg\"";
     fail(at_, length, fmt::format("{} cannot be used in an expression", quote(text_.text.substr(at_, length))), remedy);
   }
 

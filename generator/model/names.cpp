@@ -98,8 +98,9 @@ std::optional<std::string> nearest(std::string_view name, const std::vector<std:
     return result;
   };
   for (const std::string& candidate : candidates) {
-    if (candidate == name || (name.size() == 1 && candidate.size() == 1)) continue;
+    if (candidate == name) continue;
     if (candidate.size() == name.size() && lowered(candidate) == lowered(name)) return candidate;
+    if (name.size() == 1 && candidate.size() == 1) continue;
     const std::size_t distance = edit_distance(name, candidate, limit);
     if (distance < best_distance) {
       best_distance = distance;

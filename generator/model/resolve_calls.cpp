@@ -143,6 +143,12 @@ TypedNode Resolver::partial_derivative(const Syntax& syntax, const SyntaxNode& n
     source_.fail(node.span, "diff() of an integral by what its integrand may depend on is not supported",
                  "write the derivative of the integrand inside: integral(diff(e, p))");
   }
+  if (inner.dependencies & on_acceleration) {
+    source_.fail(node.span,
+                 "diff() would hold the accelerations fixed, though the equations of motion make them depend on this",
+                 "take derivatives of formulas without accelerations; eomgen linearize gives those of the equations of "
+                 "motion");
+  }
   TypedNode result = make(Op::partial_derivative, inner.vector, {inner, variable}, node.span);
   result.has_uncertain_dimension = inner.has_uncertain_dimension;
   if (inner.dimension && variable.dimension) result.dimension = quotient(*inner.dimension, *variable.dimension);

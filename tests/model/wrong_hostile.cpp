@@ -46,6 +46,8 @@ std::vector<WrongModel> wrong_hostile() {
        "choose another name"},
       {"a scene with the name of a path", pendulum({}, "[scene.\"../x\"]\nt = [0, 1]\n"), "12:8",
        "'../x' cannot be the name of a scene", "use letters, digits and underscores"},
+      {"a sign of degrees", pendulum({}, "[scene.default]\ninitial = { theta = \"45°\" }\n"), "13:24",
+       "'°' cannot be used in an expression", "write degrees as deg, such as \"45 deg\""},
       {"a sign that is no ASCII", pendulum({{"-g*E3", "−g*E3"}}), "11:12", "'−' cannot be used in an expression",
        "expressions are made of numbers, names, + - * / ^ ( ) and functions"},
       {"ten thousand open parentheses", pendulum({{"\"1 m\"", "\"" + std::string(10000, '(') + "\""}}), "5:262",

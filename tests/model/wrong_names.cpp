@@ -11,6 +11,8 @@ std::vector<WrongModel> wrong_names() {
        "value in [definitions]"},
       {"a misspelt parameter", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"R - LL\"\n"), "14:18",
        "the name 'LL' is not declared", "did you mean 'L'?"},
+      {"another case of a letter", pendulum({{"-g*E3", "-G*E3"}}), "11:13", "the name 'G' is not declared",
+       "did you mean 'g'?"},
       {"a misspelt velocity", pendulum({}, "[[force]]\non = \"P\"\nforce = \"-L*tehta_dot*E1\"\n"), "14:13",
        "the name 'tehta_dot' is not declared", "did you mean 'theta_dot'?"},
       {"an unknown key", pendulum({{"mass = ", "mas = "}}), "8:1", "[[particle]] has no key 'mas'",
