@@ -2,9 +2,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "model/units.hpp"
 #include "symbolic/decimal.hpp"
 
 namespace eomgen::cli {
@@ -12,9 +14,23 @@ namespace eomgen::cli {
 using symbolic::decimal_text;
 using symbolic::parse_decimal;
 
-/// Parses NAME=VALUE arguments of `option`; the last one of a name counts. Throws Error{stage `command`} for anything
-/// else.
-std::map<std::string, symbolic::Rational> parse_assignments(const std::string& command, const std::string& option,
-                                                            const std::vector<std::string>& assignments);
+/// A value in SI units, and the unit it was written in: "30 deg", "30deg", "0.5".
+struct Quantity {
+  symbolic::Rational value;
+  std::optional<model::MeasuredUnit> unit;
+};
+
+/// Parses a decimal number and a unit after it. `shown` stands in messages. Throws Error{stage "cli"}.
+Quantity parse_quantity(const std::string& text, const std::string& shown);
+
+/// Parses NAME=VALUE arguments of `option`, such as "theta=30deg"; the last one of a name counts. Throws Error{stage
+/// `command`} for anything else.
+std::map<std::string, Quantity> parse_assignments(const std::string& command, const std::string& option,
+                                                  const std::vector<std::string>& assignments);
+
+/// Requires units of the dimension that the model states for a parameter, or for a coordinate or rate at the start.
+/// Prints a warning where a parameter is stated in another unit than SI, such as "30 deg", and is set without one.
+std::map<std::string, symbolic::Rational> in_model_units(const std::string& command, const model::Model& model,
+                                                         const std::map<std::string, Quantity>& values);
 
 }  // namespace eomgen::cli

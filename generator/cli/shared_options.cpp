@@ -10,9 +10,9 @@
 
 namespace eomgen::cli {
 
-run::Overrides overrides_of(const std::string& command, const SceneOptions& options) {
+run::Overrides overrides_of(const std::string& command, const SceneOptions& options, const model::Model& model) {
   run::Overrides o;
-  o.values = parse_assignments(command, "--set", options.set);
+  o.values = in_model_units(command, model, parse_assignments(command, "--set", options.set));
   o.t_end = options.t_end;
   o.rtol = options.rtol;
   o.atol = options.atol;
@@ -30,7 +30,8 @@ void add_scene(Arguments& app, SceneOptions& options) {
 
 void add_values(Arguments& app, SceneOptions& options) {
   app.add_list("--set", options.set,
-               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
+               "NAME=VALUE of a parameter, or of a coordinate or rate at the start, in SI units or with a unit "
+               "(theta=30deg); may be repeated");
 }
 
 void add_solver(Arguments& app, SceneOptions& options) {

@@ -20,8 +20,8 @@ struct SceneOptions {
   std::optional<std::string> solver;
 };
 
-/// Throws Error{stage `command`} for an invalid assignment.
-run::Overrides overrides_of(const std::string& command, const SceneOptions& options);
+/// Throws Error{stage `command`} for an invalid assignment, and for units that are not those of the model.
+run::Overrides overrides_of(const std::string& command, const SceneOptions& options, const model::Model& model);
 
 void add_scene(Arguments& app, SceneOptions& options);       // --scene
 void add_values(Arguments& app, SceneOptions& options);      // --set

@@ -42,6 +42,43 @@ TEST_CASE("--set takes exact decimals, and the last of two values") {
   CHECK(length("0.30000000000000004") == 0.30000000000000004);
 }
 
+TEST_CASE("--set takes units of the dimension that the model states") {
+  const Folder folder;
+  const auto start = [&](const std::string& value) {
+    return angle(document(folder, {"run", "P2_planar_pendulum", "--set", value, "--t-end", "0"}));
+  };
+  CHECK(start("theta=30deg") == doctest::Approx(std::numbers::pi / 6).epsilon(1e-15));
+  CHECK(start("theta=-1e1 deg") == doctest::Approx(-std::numbers::pi / 18).epsilon(1e-15));
+  const Json run = document(folder, {"run", "P2_planar_pendulum", "--set", "L=50cm", "--t-end", "0.1"});
+  CHECK(run["final"]["r"] == 0.5);
+  CHECK(contains(expect(2, folder, {"run", "P2_planar_pendulum", "--set", "L=2kg"}).err,
+                 "'L' is set in kg, and the model has it in m"));
+  CHECK(contains(expect(2, folder, {"run", "P2_planar_pendulum", "--set", "L=2furlong"}).err,
+                 "ends with 'furlong', which is no unit"));
+}
+
+TEST_CASE("--set without a unit warns where the model states another unit than SI") {
+  const Folder folder;
+  folder.write("ramp.toml", R"toml(format = 1
+[parameters]
+alpha = "30 deg"
+L = "1 m"
+[[particle]]
+name = "P"
+mass = 1
+position = ["s*cos(alpha)", "-s*sin(alpha)", 0]
+[coordinates]
+s = {}
+[[force]]
+gravity = "-9.81[m/s^2]*E2"
+)toml");
+  const ChildResult bare = expect(0, folder, {"run", "ramp.toml", "--set", "alpha=45", "--set", "L=2"});
+  CHECK(contains(bare.err, "the model states alpha in deg, and --set takes 45 as rad"));
+  CHECK(contains(bare.err, "write --set alpha=45deg"));
+  CHECK_FALSE(contains(bare.err, "states L"));
+  CHECK_FALSE(contains(expect(0, folder, {"run", "ramp.toml", "--set", "alpha=45deg"}).err, "takes 45"));
+}
+
 TEST_CASE("--t-end, --rtol, --scene") {
   const Folder folder;
   const Json half = document(folder, {"run", "P2_planar_pendulum", "--t-end", "0.5"});

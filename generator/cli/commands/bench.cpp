@@ -46,7 +46,7 @@ int execute(const Options& options, const CommonOptions& common) {
   analysis::BenchmarkRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
-  request.overrides = overrides_of("bench", options);
+  request.overrides = overrides_of("bench", options, *request.model);
   request.approach = pipeline::parse_approach(options.approach);
   request.form = pipeline::parse_form(options.form);
   request.solvers = options.solvers;

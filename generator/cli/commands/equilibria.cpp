@@ -107,8 +107,9 @@ int execute(const Options& options, const CommonOptions& common) {
   analysis::SteadyRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
-  request.overrides = overrides_of("equilibria", options);
-  request.hold = parse_assignments("equilibria", "--hold", options.hold);
+  request.overrides = overrides_of("equilibria", options, *request.model);
+  for (const auto& [name, quantity] : parse_assignments("equilibria", "--hold", options.hold))
+    request.hold[name] = quantity.value;
   request.starts = options.starts;
   request.seed = common.seed;
   bool shown = false;

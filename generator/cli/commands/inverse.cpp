@@ -90,8 +90,6 @@ std::string readable(const Json& found) {
 
 int execute(const Options& options, const CommonOptions& common) {
   analysis::InverseRequest request;
-  request.overrides = overrides_of("inverse", options);
-  request.overrides.allow_empty_span = true;
   request.scene = options.scene;
   request.constraints = options.constraints;
   request.max_steps = options.max_steps;
@@ -100,6 +98,8 @@ int execute(const Options& options, const CommonOptions& common) {
   request.interrupt = &InterruptGuard::flag();
   request.model = load_model(options.model);
   const model::Model& model = *request.model;
+  request.overrides = overrides_of("inverse", options, model);
+  request.overrides.allow_empty_span = true;
   const std::string file = options.out.empty() ? model.id + "_inverse.csv" : options.out;
   require_writable_targets({{"--out", file, ".csv"}}, model.file, common.json);
   std::optional<Table> table;

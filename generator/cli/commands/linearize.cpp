@@ -131,9 +131,9 @@ std::string text(const Answer& a) {
 }
 
 int execute(const Options& options, const CommonOptions& common) {
-  const analysis::SteadyProblem problem =
-      analysis::steady_problem("linearize", load_model(options.model), options.scene,
-                               overrides_of("linearize", options), options.at, common.seed);
+  const std::shared_ptr<const model::Model> model = load_model(options.model);
+  const analysis::SteadyProblem problem = analysis::steady_problem(
+      "linearize", model, options.scene, overrides_of("linearize", options, *model), options.at, common.seed);
   const linear::Linearisation l = analysis::linearise_at_state(problem, common.seed);
   const Answer answer{problem, l};
   if (common.json) {

@@ -229,7 +229,7 @@ int execute(const Options& options, const CommonOptions& common) {
   request.model = load_model(options.model);
   request.scene = options.scene;
   request.seed = common.seed;
-  request.overrides = overrides_of("report", options);
+  request.overrides = overrides_of("report", options, *request.model);
   request.rows = rows_of_a_page(*request.model);
   request.with = {"mass"};  // dragging a point uses the mass matrix
   std::optional<analysis::Drawing> drawing;

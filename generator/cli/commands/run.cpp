@@ -135,7 +135,7 @@ int execute(const Options& options, const CommonOptions& common) {
   pipeline::SimulationRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
-  request.overrides = overrides_of("run", options);
+  request.overrides = overrides_of("run", options, *request.model);
   request.overrides.allow_empty_span = true;
   request.approach = pipeline::parse_approach(options.approach);
   request.form = pipeline::parse_form(options.form);

@@ -150,7 +150,7 @@ int execute(const Options& options, const CommonOptions& common) {
   analysis::StressRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
-  request.overrides = overrides_of("stress", options);
+  request.overrides = overrides_of("stress", options, *request.model);
   request.solvers = options.solvers;
   request.max_seconds = options.seconds;
   request.max_steps = options.steps;

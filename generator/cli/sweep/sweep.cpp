@@ -8,6 +8,7 @@
 #include <eom/outcome.hpp>
 #include <thread>
 
+#include "cli/assignments.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep/npz.hpp"
@@ -50,7 +51,7 @@ void require_basins(const analysis::SweepPoints& points, const SweepOptions& opt
 }
 
 void require_names(const analysis::SweepPoints& points, const SweepOptions& options, const model::Model& model) {
-  const std::map<std::string, symbolic::Rational> set = overrides_of("sweep", options).values;
+  const std::map<std::string, Quantity> set = parse_assignments("sweep", "--set", options.set);
   for (const std::string& name : points.names()) {
     const auto named = [&](const model::Parameter& p) { return p.name == name; };
     if (std::none_of(model.parameters.begin(), model.parameters.end(), named) && !run::find_start(model, name)) {
@@ -87,6 +88,7 @@ std::size_t threads_of(const SweepOptions& options) {
 
 Sweep::Sweep(const SweepOptions& options, const CommonOptions& common, const model::Model& model)
     : options_(options),
+      overrides_(overrides_of("sweep", options, model)),
       seed_(common.seed),
       points_(points_of(options, common.seed, points_hash_)),
       shard_(shard_of(options, points_, common.group != nullptr ? common.group->workers() : 1)),
@@ -106,7 +108,7 @@ Sweep::Sweep(const SweepOptions& options, const CommonOptions& common, const mod
                 fmt::format("{} is written by one process that makes the whole sweep", model::quote(file_)),
                 "write tables as .csv with --shard (1/1 for all), and join them by eomgen merge TABLES -o " + file_);
   }
-  if (options.ensemble) solver_ = pipeline::ensemble_solver(model.scene(options.scene), overrides_of("sweep", options));
+  if (options.ensemble) solver_ = pipeline::ensemble_solver(model.scene(options.scene), overrides_);
 }
 
 bool Sweep::run_alone() {
@@ -169,7 +171,7 @@ std::optional<analysis::BasinStatistics> Sweep::basins() const {
   analysis::SteadyRequest request;
   request.model = load_model(options_.model);
   request.scene = options_.scene;
-  request.overrides = overrides_of("sweep", options_);
+  request.overrides = overrides_;
   request.seed = seed_;
   analysis::BasinStatistics basins(analysis::steady_motions(request), *options_.basins);
   classify_runs(basins, checkpoint_.header(), [this](const auto& take) { for_each_row(take); });
@@ -190,7 +192,7 @@ void Sweep::for_each_row(const std::function<void(std::string_view row)>& take) 
 }
 
 run::Overrides Sweep::overrides_of_run(std::size_t run) const {
-  run::Overrides o = overrides_of("sweep", options_);
+  run::Overrides o = overrides_;
   o.allow_empty_span = true;
   if (options_.ensemble) o.solver = solver_;
   o.values.merge(points_.point(run));

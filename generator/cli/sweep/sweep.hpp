@@ -68,6 +68,7 @@ class Sweep {
   std::string compute_row(std::size_t run) const;
 
   const SweepOptions& options_;
+  run::Overrides overrides_;  // of every run, besides its point
   std::uint64_t seed_;
   std::string points_hash_;  // of the file of --points
   analysis::SweepPoints points_;
