@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analysis/prescribed_forces.hpp"
+#include "analysis/prescribed_friction.hpp"
 #include "conservation/conserved.hpp"
 #include "derive/formulations/lagrange.hpp"
 #include "model/names.hpp"
@@ -82,6 +83,7 @@ class Prescribed {
     pipeline::require_pass(certificate, model_);
     result.certificate = certificate.summary();
     system_ = derive::lagrange(m_, system::Approach::one);
+    friction_.emplace(system_, model_.file);
     result.forces = force_columns(m_, system_, chosen_constraints(m_, request.constraints));
     scene_ = run::resolve_scene(m_, system_, model_.scene(request.scene), request.overrides);
     const double every = pipeline::row_interval(scene_);
@@ -111,21 +113,29 @@ class Prescribed {
   }
 
  private:
-  std::vector<double> values_at(double t, const double* integrals,
-                                const std::vector<symbolic::Ref>& expressions) const {
+  std::vector<double> values_at(double t, const double* integrals, const std::vector<symbolic::Ref>& expressions,
+                                const std::vector<double>& phi = {}) const {
     const double side = std::nextafter(t, scene_.t1 + 1);
     return symbolic::evaluate(*m_.dag, expressions, [&](const symbolic::Symbol& s) -> double {
-      switch (s.kind) {
-        case symbolic::SymbolKind::time: return t;
-        case symbolic::SymbolKind::parameter: return scene_.parameters[s.index];
-        case symbolic::SymbolKind::input: return scene_.inputs[s.index](t, side);
-        default: break;
-      }
-      for (std::size_t i = 0; i < system_.integrals.size(); ++i) {
-        if (s.kind == symbolic::SymbolKind::integral && system_.integrals[i].integral == s.index) return integrals[i];
-      }
-      throw std::logic_error("a prescribed motion leaves a symbol open");
+      return value_at(t, side, integrals, phi, s);
     });
+  }
+
+  double value_at(double t, double side, const double* integrals, const std::vector<double>& phi,
+                  const symbolic::Symbol& s) const {
+    switch (s.kind) {
+      case symbolic::SymbolKind::time: return t;
+      case symbolic::SymbolKind::parameter: return scene_.parameters[s.index];
+      case symbolic::SymbolKind::input: return scene_.inputs[s.index](t, side);
+      case symbolic::SymbolKind::friction:
+        if (s.index < phi.size()) return phi[s.index];
+        break;
+      default: break;
+    }
+    for (std::size_t i = 0; i < system_.integrals.size(); ++i) {
+      if (s.kind == symbolic::SymbolKind::integral && system_.integrals[i].integral == s.index) return integrals[i];
+    }
+    throw std::logic_error("a prescribed motion leaves a symbol open");
   }
 
   /// Integrals over time without closed form.
@@ -173,7 +183,20 @@ class Prescribed {
   }
 
   void write_row(const InverseRequest& request, InverseDynamicsResult& result) const {
-    const std::vector<double> row = values_at(t_, integrals_.data(), values_);
+    const double side = std::nextafter(t_, scene_.t1 + 1);
+    const auto lookup = [&](const symbolic::Symbol& s) { return value_at(t_, side, integrals_.data(), {}, s); };
+    const std::optional<PrescribedFriction::Forces> friction = friction_->at(lookup);
+    if (!friction) {
+      result.outcome = eom::Outcome::friction_no_solution;
+      result.detail = fmt::format("at t = {} no friction forces that fit the motion were found: friction jams it", t_);
+      return;
+    }
+    if (result.detail.empty() && !friction->resting.empty()) {
+      result.detail = fmt::format(
+          "'{}' is at rest at t = {}, where friction up to the static limit is not determined: rows at rest have none",
+          friction->resting.front(), t_);
+    }
+    const std::vector<double> row = values_at(t_, integrals_.data(), values_, friction->phi);
     if (request.row) request.row(t_, row);
     if (std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); })) return;
     result.outcome = eom::Outcome::not_finite;
@@ -183,6 +206,7 @@ class Prescribed {
   const model::Model& model_;
   mechanics::Mechanics m_;
   system::EquationSystem system_;
+  std::optional<PrescribedFriction> friction_;
   run::Scene scene_;
   std::vector<symbolic::Ref> values_;
   double t_ = 0;

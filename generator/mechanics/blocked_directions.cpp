@@ -216,6 +216,7 @@ class Search {
 
 void find_blocked_directions(Mechanics& m) {
   if (std::none_of(m.contacts.begin(), m.contacts.end(), sticks)) return;
+  if (m.free.empty()) return;                   // the motion is prescribed, and friction acts against it
   if (m.free.size() < m.active.size()) return;  // reported elsewhere
   // Sample points on the constraints, if any are found: some directions are blocked only there.
   std::optional<Search> search;

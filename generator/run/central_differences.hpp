@@ -19,8 +19,8 @@ inline constexpr std::size_t difference_distances = 4;
 /// The offsets at which values are needed: h, -h, h/2, -h/2, ...
 std::vector<double> difference_offsets(double h);
 
-/// middle: values at the point; beside: values at each of the offsets; noise: absolute errors of the values, or empty if
-/// they have but their own rounding.
+/// middle: values at the point; beside: values at each of the offsets; noise: absolute errors of the values, or empty
+/// if they have but their own rounding.
 Slopes slopes(const std::vector<double>& middle, const std::vector<std::vector<double>>& beside, double h,
               const std::vector<double>& noise = {});
 

@@ -40,7 +40,8 @@ std::vector<double> table_values(const Scene& scene) {
 
 class DirectionFinder {
  public:
-  DirectionFinder(const ModelScene& of, const std::string& name) : of_(of), direction_{name, 1, 0, {}, {}, {}, 0, 0, {}, {}} {
+  DirectionFinder(const ModelScene& of, const std::string& name)
+      : of_(of), direction_{name, 1, 0, {}, {}, {}, 0, 0, {}, {}} {
     const std::optional<double> value = value_of(of.scene);
     if (!value) refuse(fmt::format("'{}' is no value of the start", name), "ask for a parameter or a coordinate");
     value_ = *value;
@@ -198,8 +199,7 @@ class DirectionFinder {
     symbolic::Dag& dag = *of_.mechanics.dag;
     std::map<symbolic::Symbol, Ref> seeds;
     for (std::uint32_t k = 0; k < direction_.dp.size(); ++k) {
-      if (direction_.dp[k] != 0)
-        seeds[{SymbolKind::parameter, k, 0}] = dag.constant(numeric::exact(direction_.dp[k]));
+      if (direction_.dp[k] != 0) seeds[{SymbolKind::parameter, k, 0}] = dag.constant(numeric::exact(direction_.dp[k]));
     }
     return symbolic::Derivation(dag, std::move(seeds))(signal);
   }
@@ -223,7 +223,8 @@ std::vector<eom::hybrid::Breakpoint> kink_times(const Scene& scene) {
   problem.inputs = input_signals(scene);
   problem.breakpoints = scene.clock.breakpoints;
   std::vector<eom::hybrid::Breakpoint> times;
-  for (const eom::hybrid::Segment& segment : eom::hybrid::segments(problem)) times.push_back({segment.end, segment.next});
+  for (const eom::hybrid::Segment& segment : eom::hybrid::segments(problem))
+    times.push_back({segment.end, segment.next});
   times.pop_back();
   return times;
 }

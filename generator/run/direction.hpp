@@ -13,14 +13,14 @@ namespace eomgen::run {
 
 struct Direction {
   std::string name;
-  double scale = 1;               // the size of the changed value: the error control sees derivatives times this
-  double step = 0;                // of the differences
-  std::vector<Scene> beside;      // the scene with the value changed by difference_offsets(step)
-  std::vector<double> dp;         // of the parameters of the model, dependent ones too
-  std::vector<double> dx;         // of the start, per state
-  double dt0 = 0, dt1 = 0;        // of the span
-  std::vector<double> dt;         // of the times at which something jumps or bends, as in kink_times()
-  std::vector<Signal> du;         // of the inputs at fixed t; empty: none depends on the value
+  double scale = 1;           // the size of the changed value: the error control sees derivatives times this
+  double step = 0;            // of the differences
+  std::vector<Scene> beside;  // the scene with the value changed by difference_offsets(step)
+  std::vector<double> dp;     // of the parameters of the model, dependent ones too
+  std::vector<double> dx;     // of the start, per state
+  double dt0 = 0, dt1 = 0;    // of the span
+  std::vector<double> dt;     // of the times at which something jumps or bends, as in kink_times()
+  std::vector<Signal> du;     // of the inputs at fixed t; empty: none depends on the value
 };
 
 /// What a direction refers to.

@@ -297,7 +297,8 @@ State in_mode(const EquationSystem& s, const SystemValues& at, const State& stat
   return result;
 }
 
-/// The possible modes of a state: contacts that are open in it are not closed.
+/// The possible modes of a state: contacts that are open in it are not closed. Where the motion is prescribed as a
+/// whole, sticking friction is not determined, and contacts slide.
 std::vector<int> modes_of(const EquationSystem& s, const State& state) {
   std::vector<eom::ContactShape> shapes;
   for (const system::Contact& contact : s.contacts) shapes.push_back(contact.shape());
@@ -308,6 +309,7 @@ std::vector<int> modes_of(const EquationSystem& s, const State& state) {
       if (shapes[j].unilateral && eom::contact_sign(state.mode, 2 * j + 1) < 0 &&
           eom::contact_sign(mode, 2 * j + 1) > 0)
         return true;
+      if (s.free.empty() && s.contacts[j].can_stick() && eom::contact_sign(mode, 2 * j) == 0) return true;
     }
     return false;
   });

@@ -170,6 +170,55 @@ TEST_CASE("freedom: a wheel that rolls along a prescribed path turns, and needs 
                 [&] { analysis::steady_problem("linearize", test::model_at(path), "default", {}, {}, 1); });
 }
 
+TEST_CASE("freedom: friction along a prescribed path counts in the force that the path needs") {
+  // A block of 1 kg on a rough floor moves as s(t) along x.
+  const auto force = [](const std::string& motion, const std::string& law, const auto& check) {
+    const std::string path = written("format = 1\n[functions]\ns = \"" + motion + R"toml("
+[[particle]]
+name = "B"
+mass = 1
+position = { cartesian = ["x", "z"] }
+[[force]]
+gravity = "-9.81*E2"
+[[constraint]]
+name = "floor"
+holonomic = "z"
+friction = { dynamic = 0.3, )toml" + law +
+                                     R"toml( }
+[[constraint]]
+name = "path"
+holonomic = "x - s"
+[scene.default]
+t = [0, 10]
+)toml");
+    analysis::InverseRequest request;
+    request.model = test::model_at(path);
+    std::size_t column = 0;
+    request.begin = [&](const run::Scene&, const std::vector<std::string>& names) {
+      column = static_cast<std::size_t>(std::find(names.begin(), names.end(), "force.x") - names.begin());
+      REQUIRE(column < names.size());
+    };
+    request.row = [&](double t, std::span<const double> row) {
+      CHECK(row[column] == doctest::Approx(check(t)).epsilon(1e-9));
+    };
+    return analysis::inverse_dynamics(request);
+  };
+  const double weight = 0.3 * 9.81;
+  const auto turning = [&](double t) { return std::sin(t) * -0.3 + std::copysign(weight, std::cos(t)); };
+  CHECK(force("0.3*sin(t)", "static = 0.4", turning).detail.empty());
+  const auto starting = [&](double t) { return 0.3 * std::cos(t) + std::copysign(weight, std::sin(t)); };
+  CHECK(force("0.3*(1 - cos(t))", "static = 0.4", starting).detail.empty());
+  const auto smooth = [&](double t) {
+    const double slip = 0.3 * std::cos(t);
+    return std::sin(t) * -0.3 + weight * slip / std::hypot(slip, 0.01);
+  };
+  CHECK(force("0.3*sin(t)", "law = \"smooth\", width = 0.01", smooth).outcome == eom::Outcome::done);
+  const auto waiting = [&](double t) { return t <= 2 ? 0 : 0.6 + weight; };
+  const analysis::InverseDynamicsResult rest = force("0.3*max(0, t - 2)^2", "static = 0.4", waiting);
+  CHECK(rest.outcome == eom::Outcome::done);
+  CHECK(rest.detail.find("'floor' is at rest at t = 0") != std::string::npos);
+}
+
 TEST_CASE("freedom: a driven slider-crank moves as its geometry demands, with forces whose power is that of energy") {
   const test::FinishedRun run = test::run_model(written(slider_crank));
   REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
