@@ -51,6 +51,27 @@ void require_freedom(const std::string& command, const DerivedModel& derived) {
               "eomgen run integrates it, and eomgen inverse gives its forces");
 }
 
+/// Puts the formulation first whose equations have the fewest operations: searches evaluate them thousands of times.
+/// One that solves the equations itself states them on the constraints only.
+void put_cheapest_first(DerivedModel& derived) {
+  const auto size = [&](const system::EquationSystem& s) {
+    std::vector<symbolic::Ref> roots = s.M;
+    for (const auto* list : {&s.f, &s.A, &s.gamma}) roots.insert(roots.end(), list->begin(), list->end());
+    return derived.mechanics.dag->reachable(roots).size();
+  };
+  std::size_t best = 0, least = size(derived.candidates.front());
+  for (std::size_t i = 1; i < derived.candidates.size(); ++i) {
+    const system::EquationSystem& s = derived.candidates[i];
+    if (s.solution || s.form != derived.candidates.front().form || s.approach != derived.candidates.front().approach)
+      continue;
+    const std::size_t own = size(s);
+    if (own >= least) continue;
+    best = i;
+    least = own;
+  }
+  std::swap(derived.candidates.front(), derived.candidates[best]);
+}
+
 std::string certified(DerivedModel& derived, std::uint64_t seed) {
   verify::Subjects subjects;
   subjects.systems = verify::all_formulations(derived.mechanics);
@@ -135,6 +156,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
   DerivedModel& d = *p.derived;
   require_one_mode(command, d);
   require_freedom(command, d);
+  put_cheapest_first(d);
   p.certificate = certified(d, seed);
   p.scene = run::resolve_scene(d.mechanics, p.system(), d.model.scene(scene), overrides);
   p.t = at.value_or(p.scene.t0);

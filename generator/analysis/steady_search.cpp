@@ -143,19 +143,21 @@ void name_attitudes(SteadyProblem& p, linear::SearchRequest& search) {
 }
 
 /// Whether a conserved quantity is constant along the symmetry directions that are not retained, so it can be held with
-/// the others.
+/// the others. One that the constraints fix is not held: its value at the start is that of rounding.
 bool can_be_held(const SteadyProblem& p, const std::vector<Neighbour>& neighbours, const linear::Symmetry& symmetry,
                  const Quantity& quantity) {
   const linear::Tape tape = p.flow->tape({quantity.expression});
+  bool varies = false;
   for (const auto& [z, setting, field] : neighbours) {
     const linear::Matrix<Precise> jacobian = p.flow->value_and_jacobian(tape, z, setting).jacobian;
     const linear::Matrix<Precise> along = jacobian * linear::tangent(field, symmetry.chart);
     for (std::size_t k = 0; k < along.cols; ++k) {
-      const bool kept = k < symmetry.retained.size() && symmetry.retained[k];
-      if (!kept && linear::magnitude(along(0, k)) > linear::tiny<Precise>(50)) return false;
+      if (linear::magnitude(along(0, k)) <= linear::tiny<Precise>(50)) continue;
+      varies = true;
+      if (k >= symmetry.retained.size() || !symmetry.retained[k]) return false;
     }
   }
-  return !neighbours.empty();
+  return varies;
 }
 
 /// The initial state, or a state near it if the equations are not differentiable there; the search is the same.

@@ -242,6 +242,13 @@ std::optional<State<Precise>> project_onto_constraints(const Flow& flow, const S
 
 std::optional<State<Precise>> project_onto_constraints(const Flow& flow, State<Precise> z,
                                                        const Setting<Precise>& setting, const Places& columns) {
+  std::optional<State<Precise>> found = move_onto_constraints(flow, std::move(z), setting, columns);
+  if (found) flow.at(*found, setting);  // throws
+  return found;
+}
+
+std::optional<State<Precise>> move_onto_constraints(const Flow& flow, State<Precise> z, const Setting<Precise>& setting,
+                                                    const Places& columns) {
   constexpr int most_steps = 60, exact = 120;
   for (int step = 0; step < most_steps; ++step) {
     const Field<Precise> field = flow.constraints_at(z, setting);
@@ -253,9 +260,7 @@ std::optional<State<Precise>> project_onto_constraints(const Flow& flow, State<P
       z[columns[i]] = z[columns[i]] - move(i, 0);
       done = done && magnitude(move(i, 0)) <= tiny<Precise>(exact) * (Precise(1) + magnitude(z[columns[i]]));
     }
-    if (!done) continue;
-    flow.at(z, setting);  // throws
-    return z;
+    if (done) return z;
   }
   return std::nullopt;
 }

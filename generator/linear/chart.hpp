@@ -36,8 +36,11 @@ struct Symmetry {
 /// The ignorable positions among the independent entries.
 std::vector<std::size_t> ignorable_positions(const Symmetry& symmetry);
 
-/// Projects a state onto the constraints by Newton's method in the entries `moving` of z. Empty if it does not
-/// converge.
+/// Moves a state onto the constraints by Newton's method in the entries `moving` of z. Empty if it does not converge.
+std::optional<State<Precise>> move_onto_constraints(const Flow& flow, State<Precise> z, const Setting<Precise>& setting,
+                                                    const std::vector<std::size_t>& moving);
+
+/// The same. Throws std::domain_error if the field has no value at the result.
 std::optional<State<Precise>> project_onto_constraints(const Flow& flow, State<Precise> z,
                                                        const Setting<Precise>& setting,
                                                        const std::vector<std::size_t>& moving);

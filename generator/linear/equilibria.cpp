@@ -65,39 +65,60 @@ class Search {
   void all_starts() {
     std::vector<double> targets;
     for (const Precise& t : held_->targets) targets.push_back(to_double(t));
-    struct End {
-      State<double> z;
-      bool leads;  // far away, with rates of 1e8, binary64 Newton steps may be small without a solution
-    };
-    std::vector<End> seen;
+    seen_.clear();
     for (std::size_t k = 0; k < r_.starts; ++k) {
       if (work::stop_requested()) {
         result_.interrupted = true;
         return;
       }
       if (r_.progress) r_.progress(static_cast<double>(k) / static_cast<double>(r_.starts));
-      const RoughSolution rough =
-          rough_steady_state(flow_, symmetry_, spread_start(r_, symmetry_, turns_, k), rough_, *held_, targets);
-      if (!rough.reason.empty()) result_.record_failure(rough.reason, rough.z);
-      if (!rough.found) continue;
-      State<double> named = rough.z;
-      select_representative(named, rough_, 1e-8, [&](State<double>& at, const State<double>& other) {
-        if (is_rough_steady_state(flow_, symmetry_, other, rough_, *held_, targets)) at = other;
-      });
-      State<Precise> z;
-      for (const double x : named) z.push_back(number<Precise>(numeric::exact(x)));
-      wrap(z);
-      const auto known = std::find_if(seen.begin(), seen.end(), [&](const End& s) { return is_same(s.z, z); });
-      if (known != seen.end()) {
-        result_.converged += known->leads ? 1 : 0;
-        continue;
-      }
-      const bool enough = rough.is_slope_missing && members_ >= (result_.held.empty() ? first_members : most_members);
-      result_.further_members += enough ? 1 : 0;
-      const bool leads = enough || is_steady(z);
-      result_.converged += leads ? 1 : 0;
-      seen.push_back({rounded(z), leads});
+      const State<double> start = spread_start(r_, symmetry_, turns_, k);
+      const Outcome plain = follow(start, targets, {});
+      result_.converged += plain == Outcome::nothing ? 0 : 1;
+      // A start whose iteration goes to a known point is used once more, to reach another one.
+      if (plain == Outcome::known) follow(start, targets, known_points());
     }
+  }
+
+  /// Where the iteration from a start ends.
+  enum class Outcome { nothing, known, added };
+
+  Outcome follow(const State<double>& start, const std::vector<double>& targets, const KnownPoints& away_from) {
+    RoughSolution rough = rough_steady_state(flow_, symmetry_, start, rough_, *held_, targets,
+                                             SteadyEquations::inertia_forces, away_from);
+    if (!rough.found && away_from.points.empty())
+      rough = rough_steady_state(flow_, symmetry_, start, rough_, *held_, targets, SteadyEquations::accelerations);
+    if (!rough.reason.empty() && away_from.points.empty()) result_.record_failure(rough.reason, rough.z);
+    if (!rough.found) return Outcome::nothing;
+    State<double> named = rough.z;
+    select_representative(named, rough_, 1e-8, [&](State<double>& at, const State<double>& other) {
+      if (is_rough_steady_state(flow_, symmetry_, other, rough_, *held_, targets)) at = other;
+    });
+    State<Precise> z;
+    for (const double x : named) z.push_back(number<Precise>(numeric::exact(x)));
+    wrap(z);
+    const auto known = std::find_if(seen_.begin(), seen_.end(), [&](const End& s) { return is_same(s.z, z); });
+    if (known != seen_.end()) {
+      if (known->point) ++result_.points[*known->point].reached;
+      return known->leads ? Outcome::known : Outcome::nothing;
+    }
+    const bool enough = rough.is_slope_missing && members_ >= (result_.held.empty() ? first_members : most_members);
+    result_.further_members += enough && away_from.points.empty() ? 1 : 0;
+    const std::size_t before = result_.points.size();
+    const std::optional<std::size_t> point = enough ? std::nullopt : steady_point(z);
+    seen_.push_back({rounded(z), enough || point, point});
+    if (enough) return Outcome::added;
+    if (!point) return Outcome::nothing;
+    return result_.points.size() > before ? Outcome::added : Outcome::known;
+  }
+
+  /// The isolated points found so far, as the iteration saw them.
+  KnownPoints known_points() const {
+    KnownPoints result{{}, turns_};
+    for (const End& s : seen_) {
+      if (s.point && result_.points[*s.point].family == 0) result.points.push_back(s.z);
+    }
+    return result;
   }
 
   std::optional<SteadyState> steady(const State<Precise>& z) const {
@@ -125,31 +146,35 @@ class Search {
     }
   }
 
-  bool is_steady(const State<Precise>& rough) {
+  /// The index of the steady motion at an end of the rough iteration, if there is one.
+  std::optional<std::size_t> steady_point(const State<Precise>& rough) {
     try {
       return polish(rough);
     } catch (const std::domain_error& error) {  // the coordinates are singular there, as angles at a pole
       result_.record_failure(error.what(), rough);
-      return false;
+      return std::nullopt;
     }
   }
 
-  /// Whether a steady motion exists within the ranges of the coordinates.
-  bool polish(State<Precise> rough) {
+  /// The same, within the ranges of the coordinates.
+  std::optional<std::size_t> polish(State<Precise> rough) {
     for (const std::size_t i : ignorable_positions(symmetry_)) rough[i] = r_.start[i];
     std::optional<SteadyState> found = steady(rough);
-    if (!found) return false;
+    if (!found) return std::nullopt;
     State<Precise>& z = found->z;
     normalise(z);
     for (std::size_t i = 0; i < n_; ++i) {
       const double q = to_double(z[i]);
-      if (!(q > r_.ranges[i].lower && q < r_.ranges[i].upper)) return false;
+      if (!(q > r_.ranges[i].lower && q < r_.ranges[i].upper)) return std::nullopt;
     }
-    const auto known = [&](const FoundPoint& p) { return is_same(rounded(p.z), z); };
-    if (std::any_of(result_.points.begin(), result_.points.end(), known)) return true;
+    for (std::size_t k = 0; k < result_.points.size(); ++k) {
+      if (!is_same(rounded(result_.points[k].z), z)) continue;
+      ++result_.points[k].reached;
+      return k;
+    }
     result_.points.push_back({z, found->parameter_change, family_directions(z).cols});
     if (result_.points.back().family > 0) ++members_;
-    return true;
+    return result_.points.size() - 1;
   }
 
   bool is_same(const State<double>& a, const State<Precise>& b) const {
@@ -338,11 +363,27 @@ class Search {
   };
   Setting<double> rough_;
   std::size_t members_ = 0;
+  struct End {  // of the rough iteration
+    State<double> z;
+    bool leads;  // far away, with rates of 1e8, binary64 Newton steps may be small without a solution
+    std::optional<std::size_t> point;  // in result_.points
+  };
+  std::vector<End> seen_;
   std::vector<bool> turns_;
   std::vector<Tape> regular_;
 };
 
 }  // namespace
+
+std::optional<double> SearchResult::new_point_probability() const {
+  std::size_t visits = further_members, single = 0;
+  for (const FoundPoint& point : points) {
+    visits += point.reached;
+    single += point.reached == 1 && point.family == 0 ? 1 : 0;
+  }
+  if (visits == 0) return std::nullopt;
+  return static_cast<double>(single) / static_cast<double>(visits);
+}
 
 void SearchResult::record_failure(const std::string& why, State<double> at) {
   if (failed_starts++ > 0) return;

@@ -38,6 +38,7 @@ struct FoundPoint {
   State<Precise> z;
   double parameter_change = 0;  // SteadyState::parameter_change
   std::size_t family = 0;       // dimension of its family of steady motions, before any quantity was held
+  std::size_t reached = 1;      // number of starts that led to it
 };
 
 struct SearchResult {
@@ -52,6 +53,10 @@ struct SearchResult {
   std::string reason;               // of the first failure
   State<double> failure_point;      // its state
   bool interrupted = false;         // before all starts were tried; results so far
+
+  /// The estimated probability that a further start leads to a new point: the share of the points' visits that were the
+  /// only one (Good 1953). Empty without visits.
+  std::optional<double> new_point_probability() const;
 
   /// Records a start whose iteration ended where the equations have no value or no derivative.
   void record_failure(const std::string& why, State<double> at);

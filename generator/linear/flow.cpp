@@ -2,6 +2,7 @@
 #include "linear/flow.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace eomgen::linear {
 
@@ -166,6 +167,18 @@ void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<
     for (std::size_t d = 0; d < 2 * n_ + 1; ++d) field.jacobian(n_ + i, d) = jacobian(i, d);
     for (std::size_t u = 0; u < inputs_; ++u) field.input_jacobian(n_ + i, u) = jacobian(i, 2 * n_ + 1 + u);
   }
+  if constexpr (std::is_same_v<T, double>) {
+    field.inertia_force = Matrix<T>(n_, 1);
+    field.inertia_force_jacobian = Matrix<T>(n_, 2 * n_ + 1);
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t j = 0; j < n_; ++j) {
+        field.inertia_force(i, 0) += s.value[i * n_ + j] * y(j, 0);
+        for (std::size_t d = 0; d < 2 * n_ + 1; ++d)
+          field.inertia_force_jacobian(i, d) +=
+              s.jacobian(i * n_ + j, d) * y(j, 0) + s.value[i * n_ + j] * jacobian(j, d);
+      }
+    }
+  }
 }
 
 template <class T>
@@ -203,6 +216,7 @@ void Flow::constrain(const ValueAndJacobian<T>& s, const Places& places, const S
 
 template Field<double> Flow::at(const State<double>&, const Setting<double>&) const;
 template Field<Precise> Flow::at(const State<Precise>&, const Setting<Precise>&) const;
+template Field<double> Flow::constraints_at(const State<double>&, const Setting<double>&) const;
 template Field<Precise> Flow::constraints_at(const State<Precise>&, const Setting<Precise>&) const;
 template std::vector<double> Flow::leaf(const State<double>&, const Setting<double>&) const;
 template std::vector<Precise> Flow::leaf(const State<Precise>&, const Setting<Precise>&) const;

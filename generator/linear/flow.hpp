@@ -27,11 +27,13 @@ struct Setting {
 
 template <class T>
 struct Field {
-  Matrix<T> X;               // 2n x 1: v, a
-  Matrix<T> jacobian;        // 2n x (2n + 1), with respect to z
-  Matrix<T> input_jacobian;  // 2n x inputs
-  Matrix<T> phi;             // constraints on positions (holonomic, then leaves), then on velocities
-  Matrix<T> phi_jacobian;    // by z
+  Matrix<T> X;                            // 2n x 1: v, a
+  Matrix<T> jacobian;                     // 2n x (2n + 1), with respect to z
+  Matrix<T> input_jacobian;               // 2n x inputs
+  Matrix<T> phi;                          // constraints on positions (holonomic, then leaves), then on velocities
+  Matrix<T> phi_jacobian;                 // by z
+  Matrix<T> inertia_force = {};           // M a, n x 1; in binary64 only
+  Matrix<T> inertia_force_jacobian = {};  // n x (2n + 1)
 };
 
 class Flow {

@@ -12,6 +12,8 @@ namespace {
 constexpr int most_steps = 80;
 constexpr double longest_step = 0.7;  // of an entry, relative to 1 and its magnitude
 constexpr double settled = 1e-11;
+constexpr int most_halvings = 5, most_restorations = 40;
+constexpr double restored = 1e-9;  // of the last step: the error is its square
 constexpr double rank_tolerance = 1e-9;
 constexpr double least_row = 1e-6;           // relative to the largest derivative
 constexpr std::size_t plain_attitudes = 81;  // Euler parameters of -1, 0, 1
@@ -28,11 +30,21 @@ void add(Equations& e, const Matrix<double>& value, const Matrix<double>& jacobi
 }
 
 Equations equations(const Flow& flow, const Symmetry& symmetry, const State<double>& z, const State<double>& start,
-                    const Setting<double>& setting, const HeldQuantities& held, const std::vector<double>& targets) {
+                    const Setting<double>& setting, const HeldQuantities& held, const std::vector<double>& targets,
+                    SteadyEquations kind) {
   const Field<double> field = flow.at(z, setting);
   Equations e;
   for (std::size_t i = 0; i < field.phi.rows; ++i) add(e, field.phi, field.phi_jacobian, i);
-  for (const std::size_t i : symmetry.constant) add(e, field.X, field.jacobian, i);
+  const std::size_t n = flow.coordinates();
+  const auto& constant = symmetry.constant;
+  const auto accelerations = std::count_if(constant.begin(), constant.end(), [n](std::size_t i) { return i >= n; });
+  const bool all = kind == SteadyEquations::inertia_forces && static_cast<std::size_t>(accelerations) == n;
+  for (const std::size_t i : constant) {
+    if (i < n || !all)
+      add(e, field.X, field.jacobian, i);
+    else
+      add(e, field.inertia_force, field.inertia_force_jacobian, i - n);
+  }
   for (const std::size_t i : ignorable_positions(symmetry)) {
     e.value.push_back(z[i] - start[i]);
     e.jacobian.emplace_back(z.size() - 1, 0.0);
@@ -74,6 +86,27 @@ std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z, 
   return std::move(found.x);
 }
 
+/// Moves z onto the constraints by least-norm steps. Leaves z as it is if they do not get there. Off the constraints, a
+/// closed loop has accelerations that are not determined.
+void restore_constraints(const Flow& flow, State<double>& z, const Setting<double>& setting) {
+  State<double> moved = z;
+  for (int k = 0; k < most_restorations; ++k) {
+    const Field<double> field = flow.constraints_at(moved, setting);
+    if (field.phi.rows == 0) return;
+    Equations e;
+    for (std::size_t i = 0; i < field.phi.rows; ++i) add(e, field.phi, field.phi_jacobian, i);
+    bool open = false;
+    const auto move = step(e, moved, open);
+    if (!move || !move->allFinite()) return;
+    const double size = move->cwiseAbs().maxCoeff(), factor = std::min(1.0, longest_step / size);
+    for (std::size_t i = 0; i + 1 < moved.size(); ++i)
+      moved[i] -= factor * (*move)(static_cast<Eigen::Index>(i)) * (1 + std::abs(moved[i]));
+    if (size > restored) continue;
+    z = std::move(moved);
+    return;
+  }
+}
+
 // All combinations of -1, 0, 1 first: they include the rotations that map axes to axes. Then random ones.
 void set_attitude(const SearchRequest& request, const std::array<std::size_t, 4>& e, std::size_t k, State<double>& z) {
   std::size_t code = k;
@@ -88,18 +121,58 @@ void set_attitude(const SearchRequest& request, const std::array<std::size_t, 4>
 
 }  // namespace
 
+// With m the product of 1 + 1/d_k^2 and the Newton step -J^-1 F = -s, the step of m F is -s/(1 + s . grad m/m).
+double KnownPoints::step_factor(const State<double>& z, const Eigen::VectorXd& scaled_step) const {
+  double along = 0;  // s . grad m / m
+  for (const State<double>& point : points) {
+    double distance = 0, rate = 0;  // of the square of the distance, along s
+    for (std::size_t i = 0; i + 1 < z.size(); ++i) {
+      const double s = scaled_step(static_cast<Eigen::Index>(i)) * (1 + std::abs(z[i])), apart = z[i] - point[i];
+      if (i < turns.size() && turns[i]) {
+        distance += 2 - 2 * std::cos(apart);
+        rate += 2 * std::sin(apart) * s;
+      } else {
+        distance += apart * apart;
+        rate += 2 * apart * s;
+      }
+    }
+    along -= rate / (distance * (1 + distance));
+  }
+  return 1 / (1 + along);
+}
+
 RoughSolution rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& start,
                                  const Setting<double>& setting, const HeldQuantities& held,
-                                 const std::vector<double>& targets) {
+                                 const std::vector<double>& targets, SteadyEquations kind, const KnownPoints& known) {
   RoughSolution end{start, false, false, {}};
   State<double>& z = end.z;
+  const auto at = [&](const State<double>& point) {
+    return equations(flow, symmetry, point, start, setting, held, targets, kind);
+  };
   try {
+    restore_constraints(flow, z, setting);
+    Equations here = at(z);
     for (int k = 0; k < most_steps; ++k) {
-      const auto move = step(equations(flow, symmetry, z, start, setting, held, targets), z, end.is_slope_missing);
+      auto move = step(here, z, end.is_slope_missing);
       if (!move || !move->allFinite()) return end;
-      const double size = move->cwiseAbs().maxCoeff(), factor = std::min(1.0, longest_step / size);
-      for (std::size_t i = 0; i + 1 < z.size(); ++i)
-        z[i] -= factor * (*move)(static_cast<Eigen::Index>(i)) * (1 + std::abs(z[i]));
+      *move *= known.step_factor(z, *move);
+      if (!move->allFinite()) return end;
+      const double size = move->cwiseAbs().maxCoeff();
+      double factor = std::min(1.0, longest_step / size);
+      for (int halving = 0;; ++halving, factor /= 2) {
+        State<double> next = z;
+        for (std::size_t i = 0; i + 1 < z.size(); ++i)
+          next[i] -= factor * (*move)(static_cast<Eigen::Index>(i)) * (1 + std::abs(z[i]));
+        try {
+          if (size >= settled) restore_constraints(flow, next, setting);
+          here = at(next);
+        } catch (const std::domain_error&) {  // no value there: a shorter step
+          if (halving == most_halvings) throw;
+          continue;
+        }
+        z = std::move(next);
+        break;
+      }
       end.found = size < settled;
       if (end.found) return end;
     }
@@ -115,7 +188,8 @@ bool is_rough_steady_state(const Flow& flow, const Symmetry& symmetry, const Sta
   constexpr double nearness = 1e-8;
   try {
     bool open = false;
-    const auto move = step(equations(flow, symmetry, z, z, setting, held, targets), z, open);
+    const auto move =
+        step(equations(flow, symmetry, z, z, setting, held, targets, SteadyEquations::accelerations), z, open);
     return move && move->allFinite() && move->cwiseAbs().maxCoeff() < nearness;
   } catch (const std::domain_error&) {
     return false;

@@ -56,11 +56,20 @@ struct Rank {
   int cutoff, floor;
 };
 
+/// Moves z onto the constraints. Off them, redundant constraints of a closed loop are independent, and accelerations
+/// are not determined.
+State<Precise> on_constraints(const Flow& flow, const State<Precise>& z, const Setting<Precise>& setting) {
+  std::vector<std::size_t> columns;
+  for (std::size_t i = 0; i + 1 < z.size(); ++i) columns.push_back(i);
+  return move_onto_constraints(flow, z, setting, columns).value_or(z);
+}
+
 std::optional<State<Precise>> newton(const Flow& flow, const Symmetry& symmetry, const State<Precise>& start,
                                      const Setting<Precise>& setting, const ExtraEquations& extra, const Rank& rank) {
   constexpr int most_steps = 40, exact = 120;
   State<Precise> z = start;
   for (int step = 0; step < most_steps; ++step) {
+    z = on_constraints(flow, z, setting);
     Equations e = steady_equations(flow, symmetry, z, start, setting, extra);
     for (std::size_t i = 0; i < e.jacobian.rows; ++i) e.jacobian(i, e.jacobian.cols - 1) = Precise(0);  // t stays
     const Matrix<Precise> move =

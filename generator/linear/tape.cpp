@@ -3,7 +3,9 @@
 
 #include <cln/exception.h>
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <type_traits>
 
@@ -215,6 +217,16 @@ Tape::Run<T> Tape::run(const std::function<T(const Symbol&)>& lookup, int edge, 
       if (!moves[i] || !needed[i]) continue;
       if (r.no_slope[k] == 0) r.no_slope[k] = r.no_slope[step.args[i]];
       if (is_zero(here.slope[i])) continue;
+      if constexpr (std::is_same_v<T, double>) {
+        if (std::isfinite(here.slope[i])) {
+          const auto row = [&](std::uint32_t place) {
+            return Eigen::Map<Eigen::ArrayXd>(r.jacobian.a.data() + place * directions_,
+                                              static_cast<Eigen::Index>(directions_));
+          };
+          row(step.place) += here.slope[i] * row(steps_[step.args[i]].place);
+          continue;
+        }
+      }
       for (std::size_t d = 0; d < directions_; ++d) {
         const T& inner = r.jacobian(steps_[step.args[i]].place, d);
         if (!is_zero(inner)) r.jacobian(step.place, d) = r.jacobian(step.place, d) + here.slope[i] * inner;

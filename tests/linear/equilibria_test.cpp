@@ -134,3 +134,69 @@ TEST_CASE("a degenerate equilibrium is not called stable by its linear terms") {
   REQUIRE(!all.points.empty());
   for (const analysis::SteadyMotion& point : all.points) CHECK(point.verdict.stability == Stability::unknown);
 }
+
+namespace {
+
+analysis::SteadyMotions found_in(const std::string& name, const std::string& text, std::uint64_t seed = 1) {
+  const std::string path = test::build_folder() + "/" + name + "_steady.toml";
+  write_text(path, text);
+  analysis::SteadyRequest request;
+  request.model = test::model_at(path);
+  request.seed = seed;
+  return analysis::steady_motions(request);
+}
+
+/// n particles of 1 kg on massless rods of 1 m, with the angles of the rods from the vertical.
+std::string chain_pendulum(int n) {
+  std::string coordinates = "[coordinates]\n", particles, x = "0", y = "0";
+  for (int k = 1; k <= n; ++k) {
+    coordinates += fmt::format("th{} = \"rad\"\n", k);
+    x += fmt::format(" + sin(th{})", k);
+    y += fmt::format(" - cos(th{})", k);
+    particles += fmt::format("[[particle]]\nname = \"p{}\"\nmass = 1\nposition = [\"{}\", \"{}\", 0]\n", k, x, y);
+  }
+  return "format = 1\n" + coordinates + particles + "[[force]]\ngravity = \"-9.81*E2\"\n";
+}
+
+}  // namespace
+
+TEST_CASE("a pendulum of six links has an equilibrium for each choice of up and down, and one of them is stable") {
+  const analysis::SteadyMotions all = found_in("six_links", chain_pendulum(6));
+  REQUIRE(all.points.size() == 64);
+  CHECK(all.search.converged == 300);
+  int stable = 0;
+  for (const analysis::SteadyMotion& point : all.points) stable += point.verdict.stability == Stability::stable ? 1 : 0;
+  CHECK(stable == 1);
+}
+
+TEST_CASE("a pendulum above three magnets has seven equilibria, whatever the seed") {
+  // U'(x) on the axis of symmetry y = 0 has three zeros: the centre, a saddle beside it and a well. Turned by 120
+  // degrees, the last two give three each.
+  const std::string text = R"toml(format = 1
+[coordinates]
+x = {}
+y = {}
+[energy]
+kinetic = "(x_dot^2 + y_dot^2)/2"
+potential = "(x^2 + y^2)/2 - 1/sqrt((x - 1)^2 + y^2 + 0.0625) - 1/sqrt((x + 0.5)^2 + (y - sqrt(3)/2)^2 + 0.0625) - 1/sqrt((x + 0.5)^2 + (y + sqrt(3)/2)^2 + 0.0625)"
+)toml";
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    const analysis::SteadyMotions all = found_in("magnets", text, seed);
+    CHECK(all.points.size() == 7);
+    CHECK(all.search.new_point_probability().value() < 0.02);
+  }
+}
+
+TEST_CASE("Sarrus' linkage: the plate rests where the spring carries it and half of the arms, z = l - (M + 2 m) g/k") {
+  analysis::SteadyRequest request;
+  request.model = test::model_at(model_path("six_bar_spatial"));
+  request.starts = 6;
+  const analysis::SteadyMotions all = analysis::steady_motions(request);
+  bool is_found = false;
+  for (std::size_t k = 0; k < all.points.size(); ++k) {
+    const bool folded = std::abs(value(all, k, "psi")) < 1e-9 && std::abs(value(all, k, "phi")) < 1e-9 &&
+                        std::abs(value(all, k, "x")) < 1e-9 && std::abs(value(all, k, "y")) < 1e-9;
+    is_found = is_found || (folded && std::abs(value(all, k, "z") - (0.8 - 2.3 * 9.81 / 150)) < 1e-12);
+  }
+  CHECK(is_found);
+}

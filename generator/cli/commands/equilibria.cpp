@@ -28,6 +28,19 @@ Json to_json(const linear::StabilityVerdict& verdict) {
   return verdict.stability == linear::Stability::stable;
 }
 
+Json to_json(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
+/// What the visits of the points say of points that were not found.
+std::string completeness(const linear::SearchResult& search) {
+  const std::optional<double> probability = search.new_point_probability();
+  if (!probability) return "";
+  if (*probability == 0) return "; each point was reached more than once";
+  return fmt::format(
+      "; some points were reached once, so that a further start finds a new one with a probability of "
+      "about {:.1g}: --starts makes more",
+      *probability);
+}
+
 Json to_json(const analysis::SteadyMotions& found, const Options& options) {
   const std::vector<std::string>& names = found.problem.flow->names();
   Json points = Json::array(), held = Json::array();
@@ -52,6 +65,7 @@ Json to_json(const analysis::SteadyMotions& found, const Options& options) {
           {"held_in_vain", found.search.held_in_vain},
           {"starts", options.starts},
           {"converged", found.search.converged},
+          {"new_point_probability", to_json(found.search.new_point_probability())},
           {"further_members", found.search.further_members},
           {"refused", found.search.failed_starts},
           {"interrupted", found.search.interrupted},
@@ -97,10 +111,11 @@ std::string text(const analysis::SteadyMotions& found, const Options& options) {
     out += fmt::format("\nrefused           {} of the starts ended where the equations have no slope: {}\n",
                        found.search.failed_starts, found.search.reason);
   }
-  return out + fmt::format(
-                   "\nsearch            {} starts, of which {} led to one; what a coordinate system does not cover is "
-                   "not found\ncertificate       {}\n",
-                   options.starts, found.search.converged, found.problem.certificate);
+  return out +
+         fmt::format(
+             "\nsearch            {} starts, of which {} led to one{}; what a coordinate system does not cover is "
+             "not found\ncertificate       {}\n",
+             options.starts, found.search.converged, completeness(found.search), found.problem.certificate);
 }
 
 int execute(const Options& options, const CommonOptions& common) {
