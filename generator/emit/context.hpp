@@ -39,6 +39,8 @@ struct TestVector {
   std::vector<FunctionValues> functions;  // rhs first
 };
 
+struct StartDescription;
+
 struct EventDescription {
   std::string name, direction, action;
 };
@@ -48,6 +50,7 @@ struct EventDescription {
 struct RunDescription {
   std::shared_ptr<const eom::hybrid::Problem> problem;
   std::vector<std::size_t> columns;
+  double rows = 0;  // intervals between rows in the span of the run; 0: the scene states their length
   std::vector<std::uint32_t> beyond_range = {};  // coordinates of the model that may leave their range
 };
 
@@ -67,6 +70,7 @@ struct EmissionContext {
   std::vector<double> start;  // x at the start of the default scene
   std::vector<TestVector> tests;
   std::shared_ptr<const RunDescription> run = {};  // if requested
+  std::shared_ptr<const StartDescription> start_functions = {};  // of NAME_start, if requested (start/start.hpp)
   std::optional<double> single_error = {};         // error in single precision, if requested (single_precision.hpp)
 };
 

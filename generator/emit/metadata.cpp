@@ -10,6 +10,7 @@
 
 #include "abi/functions.hpp"
 #include "emit/file_parts.hpp"
+#include "emit/start/start.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
 #include "program/kinks.hpp"
@@ -267,6 +268,12 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   if (!context.start_parameter.empty()) info["start_parameter"] = context.start_parameter;
   info["approach"] = system::name(program.approach);
   info["formulation"] = program.formulation;
+  if (context.start_functions) {
+    const std::vector<int>& initial = context.start_functions->initial;
+    for (std::size_t k = 0; k + 2 < initial.size(); k += 3)
+      info["initial_parameters"][context.parameters.at(static_cast<std::size_t>(initial[k])).name] =
+          states(program, context).at(static_cast<std::size_t>(initial[k + 1])).name;
+  }
   if (program.active_constraints > 0) info["form"] = system::name(program.form);
   info["verdict"] = context.verdict;
   info["singular"] = context.singular;

@@ -11,6 +11,7 @@
 
 #include "abi/functions.hpp"
 #include "emit/single_precision.hpp"
+#include "emit/start/start.hpp"
 #include "emit/text.hpp"
 #include "numeric/numbers.hpp"
 #include "program/abi_values.hpp"
@@ -149,6 +150,8 @@ class Body {
   std::string operator()() {
     points();
     defaults();
+    if (names_.start)
+      text_ += start_comparison(context_, program_.state_count(), names_.function_name(""), names_.null_pointer, real_);
     std::vector<std::pair<std::string, int>> keys;  // in order of first occurrence
     for (const TestVector& test : context_.tests) {
       for (const FunctionValues& f : test.functions) {

@@ -23,6 +23,7 @@ struct SelfTestNames {
   std::function<std::string(const std::string&)> function_name;  // name of a function of the ABI in code: "NAME_rhs"
   std::string comparison;                                        // name of the comparison function
   std::string null_pointer;
+  bool start = false;  // whether the file has the function start
 };
 
 std::string selftest_body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names,

@@ -13,6 +13,7 @@
 #include "pipeline/charts.hpp"
 #include "pipeline/run_text.hpp"
 #include "pipeline/simulate.hpp"
+#include "pipeline/start_description.hpp"
 #include "work.hpp"
 
 namespace eomgen::pipeline {
@@ -20,7 +21,7 @@ namespace eomgen::pipeline {
 const std::vector<std::string>& emitted_functions() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all = abi::optional_functions();
-    all.insert(all.end(), {"energy", "charts", "run"});
+    all.insert(all.end(), {"energy", "charts", "run", "start"});
     return all;
   }();
   return names;
@@ -46,7 +47,7 @@ program::Request request_of(const EmissionRequest& options, DerivedModel& derive
             "warning: the default scene asks for no outputs, so there is no function for them\n"
             "  remedy: name them: --output energy,..\n");
       }
-    } else if (name != "charts" && name != "run" && !has(request.with, name)) {
+    } else if (name != "charts" && name != "run" && name != "start" && !has(request.with, name)) {
       request.with.push_back(name);
     }
   }
@@ -106,6 +107,21 @@ void add_all_charts(DerivedModel& derived, program::Program& program, const Char
     add_second_charts(derived, program, charts, mask, request);
 }
 
+/// NAME_start: where it is requested, and for all that sets starts itself.
+void add_start(const EmissionRequest& request, DerivedModel& derived, emit::EmissionContext& context) {
+  const bool requested = has(request.with, "start");
+  if (!requested && !has(request.with, "run") && request.target != "python") return;
+  if (requested && request.target == "cuda")
+    throw Error("emit", {}, "the target cuda has no function start", "use the target c, or leave start out of --with");
+  context.start_functions = describe_start(derived, derived.model.scene("default"));
+  if (context.start_functions || !requested) return;
+  throw Error("emit", {},
+              fmt::format("the start has too many constraints for the function start, which keeps its "
+                          "matrices of at most {} entries on the stack",
+                          emit::max_start_entries),
+              "leave start out of --with, or choose coordinates with fewer constraints");
+}
+
 }  // namespace
 
 void require_target(const std::string& target, const std::vector<std::string>& beside) {
@@ -135,6 +151,7 @@ Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionReq
   result.certificate = certify(*derived, result.program, {50, emission_points, request.seed, nullptr, wanted.fix});
   require_pass(result.certificate, derived->model);
   emit::EmissionContext context = emission_context(*derived, result.program, scene, result.certificate);
+  add_start(request, *derived, context);
   if (has(request.with, "run")) context.run = run_text(*derived, scene, result.program);
   if (request.single) emit::convert_to_single(result.program, context);
   result.single_error = context.single_error;

@@ -7,6 +7,7 @@ std::vector<abi::Input> inputs_of(const std::string& function) {
   using enum abi::Input;
   if (const abi::Function* found = abi::find(function)) return found->inputs;
   if (function == "taylor_next") return {time, state, prepared};
+  if (function == "start_values" || function == "start_rows") return {time, state, parameters};
   if (function == "to_second" || function == "to_own") return {state};
   return abi::find("rhs")->inputs;  // taylor_start
 }

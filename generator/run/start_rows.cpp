@@ -46,7 +46,10 @@ bool StartRows::add_rolling() {
     if (s_.contacts[j].unilateral &&
         std::find(rows_[1].begin(), rows_[1].end(), *s_.contacts[j].unilateral) == rows_[1].end())
       continue;
-    for (const Ref slip : s_.contacts[j].slip) add_rate(slip, 0);
+    for (const Ref slip : s_.contacts[j].slip) {
+      add_rate(slip, 0);
+      rolling_contacts_.push_back(j);
+    }
   }
   return rows_[1].size() > before;
 }

@@ -26,6 +26,12 @@ class StartRows {
   const std::vector<std::size_t>& of_order(std::uint8_t order) const { return rows_[order]; }
   /// The number of the first row of the first given angular velocity.
   std::size_t first_angular_velocity_row() const { return m_ + s_.redundant.size(); }
+  /// The rows as expressions: A (by rows), psi of the position constraints and b.
+  const std::vector<symbolic::Ref>& A() const { return A_; }
+  const std::vector<symbolic::Ref>& psi() const { return psi_; }
+  const std::vector<symbolic::Ref>& b() const { return b_; }
+  /// The contact whose slip each row that add_rolling appended makes 0.
+  const std::vector<std::size_t>& rolling_contacts() const { return rolling_contacts_; }
   /// Removes a row from both orders.
   void drop(std::size_t number) {
     for (auto& rows : rows_) std::erase(rows, number);
@@ -55,6 +61,7 @@ class StartRows {
   const system::EquationSystem& s_;
   std::size_t n_, m_;
   std::vector<symbolic::Ref> A_, psi_, b_;
+  std::vector<std::size_t> rolling_contacts_;
   std::vector<double> target_;                    // of A qdot + b
   std::array<std::vector<std::size_t>, 2> rows_;  // order 0: position constraints; order 1: all constraints
 };

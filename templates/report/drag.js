@@ -30,8 +30,8 @@ class Drag {
     const saved = live.x;
     live.x = x;
     x.fill(0, n);
-    live.meetPositions(() => false);
-    live.meetRates(() => false);
+    live.meetPositions();
+    live.meetRates();
     live.x = saved;
     for (let i = 0; i < n; ++i) {  // limited to the range of a coordinate
       if (live.lower[i] !== null && x[i] <= live.lower[i]) x[i] = live.lower[i] + 1e-6;

@@ -35,6 +35,10 @@ function run(play) {
   const mine = ++pending;
   player.play(false);
   live.prepare();
+  if (live.refusal !== "") {
+    message.textContent = "no run with these values: " + live.refusal;
+    return;
+  }
   const integration = live.integration(500);
   const work = () => {
     if (mine !== pending) return;

@@ -40,17 +40,22 @@ class Motion {
   curve(of) { return of.state ? this.x.map((x) => x[of.at]) : this.drawn().map((y) => y[of.at]); }
 }
 
-// The current model: values chosen by the user, dependent values, and a start that satisfies the constraints.
+// Why a start is refused, by the code of `start`.
+const refusals = {5: "a value of the start is not finite", 7: "the start breaks a constraint", 8: "the start has a coordinate outside its range"};
+
+// The current model: values chosen by the user, and all that follows from them: parameters, times, a start on the
+// constraints. If nothing does, `refusal` says why, and the values before remain.
 class Live {
   constructor(code, description, data) {
     Object.assign(this, description);
     this.code = code;
-    this.t0 = data.t0;
-    this.t1 = data.t1;
     this.kinds = code.info.constraint_kinds || [];
     this.m = this.constraints;
     this.count = code.info.outputs.length;
+    this.end = null;
     this.reset();
+    if (Math.abs(this.t1 - data.t1) > 1e-12 * Math.abs(data.t1)) this.end = data.t1;  // the command line sets it
+    this.prepare();
   }
 
   reset() {
@@ -61,22 +66,34 @@ class Live {
   }
 
   prepare() {
-    const n = this.n;
-    this.p = Float64Array.from(this.chosen);
-    this.x = new Float64Array(2 * n);
-    this.sizes = new Float64Array(this.size_count);
-    const all = new Float64Array(this.p.length);
-    this.code.setup(this.t0, this.x, this.p, null, 0, all, this.x, this.sizes);
-    this.p = all;
-    this.starts_chosen.forEach((value, k) => { this.x[k] = value; });
-    if (this.placed) this.x.set(this.placed);
-    this.holdStarts();
-    const fixed = (k) => this.placed || this.starts_chosen.has(k) || this.given.includes(k);
-    this.meetPositions(fixed);
-    this.holdStarts();
-    this.meetRates(fixed);
+    this.refusal = this.follow(this.placed ? this.placed.entries() : [...this.set, ...this.starts_chosen]);
+    if (this.refusal === "" || !this.placed) return;
+    // A state that was placed by hand is moved onto the constraints.
+    this.refusal = this.follow(this.set);
+    if (this.refusal !== "") return;
+    this.x.set(this.placed);
+    if (this.meetPositions()) this.meetRates();
+    else this.refusal = "the constraints cannot be met near this place";
+    for (const [i, k] of this.starts) this.p[i] = this.x[k];
   }
-  holdStarts() { for (const [i, k] of this.starts) this.p[i] = this.x[k]; }
+
+  // Takes the start that follows from these initial values, pairs of a state and its value. Returns a refusal, or "".
+  follow(initial) {
+    const states = 2 * this.n, count = this.chosen.length, given = new Int32Array(states + count + 2);
+    const x = new Float64Array(states), p = Float64Array.from(this.chosen), t = Float64Array.of(0, this.end === null ? 0 : this.end);
+    for (const [k, value] of initial) {
+      given[k] = 1;
+      x[k] = value;
+    }
+    this.parameters.forEach((parameter, i) => { given[states + i] = parameter.moved ? 1 : 0; });
+    given[states + count + 1] = this.end === null ? 0 : 1;
+    const code = this.code.start(given, t, x, p, null);
+    if (code !== 0) return refusals[code];
+    if (!(t[1] > t[0])) return "the run would end at t = " + t[1].toPrecision(4) + " s, before its start at t = " + t[0].toPrecision(4) + " s";
+    Object.assign(this, {x, p, t0: t[0], t1: t[1], sizes: new Float64Array(this.size_count)});
+    this.code.setup(this.t0, x, p, null, 0, this.sizes);
+    return "";
+  }
 
   input(t) {
     if (this.inputs === 0) return null;
@@ -104,34 +121,25 @@ class Live {
     return Array.from({length: n}, (_, i) => Float64Array.from({length: n}, (_, j) => M[i + n * j]));
   }
   identity() { return Array.from({length: this.n}, (_, i) => Float64Array.from({length: this.n}, (_, j) => (i === j ? 1 : 0))); }
-  // The rows of A with fixed coordinates held.
-  holding(A, fixed) { return A.map((row) => row.map((a, i) => (fixed(i) ? 0 : a))); }
-
-  // Newton's method for the start, first with the given values held.
-  meetPositions(fixed) {
+  // Newton's method by the smallest changes; returns whether the constraints are met.
+  meetPositions() {
     const place = this.kinds.map((kind, k) => (kind === "holonomic" ? k : -1)).filter((k) => k >= 0);
-    if (place.length === 0) return true;
-    for (const held of [fixed, () => false]) {
-      for (let iteration = 0; iteration < 40; ++iteration) {
-        const {psi, A} = this.constraintsAt(this.t0, this.x), r = place.map((k) => -psi[k]);
-        if (r.every((value) => Math.abs(value) < 1e-13)) return true;
-        const d = smallestCorrection(this.identity(), this.holding(place.map((k) => A[k]), held), r);
-        const size = Math.hypot(...d);
-        for (let i = 0; i < this.n; ++i) this.x[i] += d[i] * Math.min(1, 1 / size);
-        if (size < 1e-14) return true;
-      }
+    const met = ({psi, A}, digits) => place.every((k) => Math.abs(psi[k]) <= digits * A[k].reduce((sum, a, i) => sum + Math.abs(a) * (1 + Math.abs(this.x[i])), 0));
+    for (let iteration = 0; iteration < 40 && place.length > 0; ++iteration) {
+      const at = this.constraintsAt(this.t0, this.x);
+      if (met(at, 1e-14)) break;
+      const d = smallestCorrection(this.identity(), place.map((k) => at.A[k]), place.map((k) => -at.psi[k])), size = Math.hypot(...d);
+      for (let i = 0; i < this.n; ++i) this.x[i] += d[i] * Math.min(1, 1 / size);
+      if (size < 1e-14) break;
     }
-    return false;
+    return met(this.constraintsAt(this.t0, this.x), 1e-10);
   }
-  meetRates(fixed) {
+  meetRates() {
     const {n, m} = this;
     if (m === 0) return;
     const {A, b} = this.constraintsAt(this.t0, this.x);
-    for (const held of [(i) => fixed(n + i), () => false]) {
-      const r = A.map((row, k) => -b[k] - row.reduce((sum, a, i) => sum + a * this.x[n + i], 0));
-      const d = smallestCorrection(this.identity(), this.holding(A, held), r);
-      for (let i = 0; i < n; ++i) this.x[n + i] += d[i];
-    }
+    const d = smallestCorrection(this.identity(), A, A.map((row, k) => -b[k] - row.reduce((sum, a, i) => sum + a * this.x[n + i], 0)));
+    for (let i = 0; i < n; ++i) this.x[n + i] += d[i];
   }
 
   // Projection onto the constraints after a step, by the smallest change in the mass norm.

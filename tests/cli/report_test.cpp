@@ -227,7 +227,7 @@ TEST_CASE(
   expect(0, folder, {"report", "R6_rolling_disk", "-o", "page.html", "--set", "J=0.01", "--t-end", "0.1"});
   const Json moving = motion(folder.read("page.html"));
   for (const Json& p : moving["live"]["parameters"]) CHECK(p["moved"] == (p["name"] != "J3"));
-  CHECK(contains(folder.read("page.html"), "p_all"));
+  CHECK(contains(folder.read("page.html"), "start_dependent"));
 }
 
 TEST_CASE("report: a page with many coordinates and outputs stays below 1 MB with fewer rows, and reports it") {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/page/live_model.hpp"
 
-#include <cln/dfloat.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "emit/targets.hpp"
 #include "mechanics/imposition.hpp"
-#include "numeric/numbers.hpp"
+#include "pipeline/start_description.hpp"
 #include "program/from_dag.hpp"
 #include "program/restrict.hpp"
 
@@ -19,8 +18,6 @@ using symbolic::Ref;
 using symbolic::SymbolKind;
 
 constexpr std::size_t largest_script = 400000;  // bytes; longer code takes too long to load
-
-Ref exact(symbolic::Dag& dag, double value) { return dag.constant(numeric::exact(value)); }
 
 class Live {
  public:
@@ -55,6 +52,11 @@ class Live {
     program.functions.push_back(signals());
     emit::EmissionContext context = pipeline::emission_context(derived_, s_.program, s_.scene, s_.certificate);
     context.tests.clear();
+    context.start_functions = pipeline::describe_start(derived_, model_scene());
+    if (!context.start_functions) {
+      live.reason = "its start has too many constraints for a page";
+      return live;
+    }
     const emit::EmittedFile file = emit::emit(program, context, "javascript").front();
     if (file.text.size() > largest_script) {
       live.reason = fmt::format("its code of {} kB is too long for a page", file.text.size() / 1000);
@@ -113,44 +115,8 @@ class Live {
   }
   bool overridden(std::size_t i) const { return set_.contains(derived_.model.parameters[i].name); }
 
-  symbolic::Substitution by_independent() {
-    std::map<symbolic::Symbol, Ref> formulas;
-    for (std::uint32_t i = 0; i < derived_.model.parameters.size(); ++i) {
-      if (is_dependent(i)) formulas[{SymbolKind::parameter, i, 0}] = m_.parameter_value[i];
-    }
-    return symbolic::Substitution(dag_, formulas);
-  }
-  /// Dependent parameters may depend on one another, without cycles.
-  Ref expanded(Ref expression) {
-    for (std::size_t round = 0; round <= derived_.model.parameters.size(); ++round) {
-      const Ref next = by_independent()(expression);
-      if (next == expression) return expression;
-      expression = next;
-    }
-    return expression;
-  }
-
-  /// All parameters, the given part of the initial state, and sizes of drawn parts, as functions of the parameters that
-  /// have a slider.
-  program::Function setup() {
-    std::vector<Ref> p, x, sizes;
-    for (std::uint32_t i = 0; i < derived_.model.parameters.size(); ++i)
-      p.push_back(expanded(dag_.symbol({SymbolKind::parameter, i, 0})));
-    const std::size_t n = m_.free.size();
-    symbolic::Substitution written = mechanics::time_function_substitution(m_);
-    for (std::size_t k = 0; k < 2 * n; ++k) {
-      const std::uint32_t c = m_.free[k % n];
-      Ref value = exact(dag_, k < n ? s_.scene.q[c] : s_.scene.qdot[c]);
-      for (const model::InitialValue& initial : model_scene().initial) {
-        if (initial.coordinate != c || initial.order != (k < n ? 0 : 1) || set_.contains(state_name(k))) continue;
-        const Ref formula = written(mechanics::lower_scalar(m_, initial.value));
-        if (depends_on_parameters_only(dag_, formula) && !dag_.symbols({formula}).empty()) value = expanded(formula);
-      }
-      x.push_back(value);
-    }
-    for (const Ref size : drawing_.sizes()) sizes.push_back(expanded(size));
-    return function("setup", {{"p_all", p}, {"x_start", x}, {"sizes", sizes}});
-  }
+  /// Sizes of drawn parts, as functions of the parameters.
+  program::Function setup() { return function("setup", {{"sizes", drawing_.sizes()}}); }
 
   /// Inputs of the scene over time.
   program::Function signals() {
@@ -168,18 +134,13 @@ class Live {
 
   LiveStart start() const {
     const model::Model& model = derived_.model;
-    const model::Scene& scene = model_scene();
     const std::size_t n = m_.free.size();
     LiveStart start;
     start.coordinates = n;
     for (std::size_t k = 0; k < 2 * n; ++k) {
       const std::uint32_t c = m_.free[k % n];
       const std::uint8_t order = k < n ? 0 : 1;
-      const auto same = [&](const auto& key) { return key.first == c && key.second == order; };
-      const bool stated = set_.contains(state_name(k)) ||
-                          std::any_of(scene.initial.begin(), scene.initial.end(),
-                                      [&](const auto& v) { return v.coordinate == c && v.order == order; });
-      if (stated && std::none_of(scene.solve.begin(), scene.solve.end(), same)) start.given.push_back(k);
+      if (set_.contains(state_name(k))) start.set.emplace_back(k, (order == 0 ? s_.scene.q : s_.scene.qdot)[c]);
       const std::string& unit = model.coordinates[c].unit.text;
       start.states.push_back({state_name(k), k < n ? unit : unit.empty() ? "" : unit == "1" ? "1/s" : unit + "/s"});
     }

@@ -34,7 +34,7 @@ struct LiveStart {
   std::size_t coordinates = 0;                              // n
   std::vector<LiveState> states;                            // 2 n
   std::vector<double> lower, upper;                         // n bounds of the coordinates; infinite: no bound
-  std::vector<std::size_t> given;                           // states whose initial values the scene gives
+  std::vector<std::pair<std::size_t, double>> set;          // (state, initial value) that the command line sets
   std::vector<LiveParameter> parameters;                    // all
   std::vector<std::pair<std::size_t, std::size_t>> starts;  // (parameter, coordinate whose initial value it is)
   std::size_t inputs = 0;

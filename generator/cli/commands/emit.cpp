@@ -161,7 +161,7 @@ Execute declare_emit(Arguments& app) {
   app.add_list(
          "--with", options->with,
          fmt::format("functions beside rhs: {} (outputs: the scene's), energy; charts: second ones; run: all that a "
-                     "run calls",
+                     "run calls; start: what follows from given values",
                      fmt::join(abi::optional_functions(), ", ")))
       .suggest_values(pipeline::emitted_functions());
   app.add_list("--output", options->outputs, "names for the function outputs");

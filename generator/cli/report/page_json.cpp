@@ -99,7 +99,10 @@ Json to_json(const analysis::LiveStart& start) {
                              })},
           {"lower", bounds(start.lower)},
           {"upper", bounds(start.upper)},
-          {"given", start.given},
+          {"set", list_of(start.set,
+                          [](const auto& s) {
+                            return Json::array({s.first, s.second});
+                          })},
           {"parameters", list_of(start.parameters,
                                  [](const analysis::LiveParameter& p) -> Json {
                                    return {{"name", p.name},   {"unit", p.unit},         {"note", p.note},

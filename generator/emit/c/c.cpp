@@ -11,6 +11,7 @@
 #include "emit/self_test.hpp"
 #include "emit/signature.hpp"
 #include "emit/single_precision.hpp"
+#include "emit/start/start.hpp"
 #include "emit/taylor.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
@@ -106,7 +107,13 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   const ModelNames names = model_names(program, context);
   std::vector<std::vector<std::pair<std::string, std::string>>> functions, declared;
   bool packs = false;
-  for (const FilePart& part : file_parts(program, name + "_", dialect.real)) {
+  std::vector<FilePart> parts = file_parts(program, name + "_", dialect.real);
+  if (context.start_functions) {
+    parts.push_back({"start_values", "Formulas of the default scene.", &context.start_functions->values, true, "", ""});
+    if (context.start_functions->row_count() > 0)
+      parts.push_back({"start_rows", "Equations of a start.", &context.start_functions->rows, true, "", ""});
+  }
+  for (const FilePart& part : parts) {
     const std::string full = fmt::format("{}_{}", name, part.name);
     std::string text;
     if (part.function == nullptr) {
@@ -126,7 +133,13 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
     functions.push_back({{"definition", text.definition}});
     declared.push_back({{"purpose", function_purpose("taylor")}, {"prototype", text.head}});
   }
-  const SelfTestNames test{[&name](const std::string& f) { return name + "_" + f; }, name + "_differs", "0"};
+  if (context.start_functions) {
+    functions.push_back({{"definition", start_text(*context.start_functions, context, program.state_count(),
+                                                   program.free.size(), {true, name + "_", single})}});
+    declared.push_back({{"purpose", start_purpose}, {"prototype", start_head(name + "_", dialect.real)}});
+  }
+  const SelfTestNames test{[&name](const std::string& f) { return name + "_" + f; }, name + "_differs", "0",
+                           context.start_functions != nullptr};
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", banner(program, context, "/* ", " * ", " */")},
       {"name", name},

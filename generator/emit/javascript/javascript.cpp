@@ -12,6 +12,7 @@
 #include "emit/names.hpp"
 #include "emit/signature.hpp"
 #include "emit/single_precision.hpp"
+#include "emit/start/start.hpp"
 #include "emit/straight_line.hpp"
 #include "emit/text.hpp"
 #include "emit/uses.hpp"
@@ -163,7 +164,19 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
         {{"purpose", function_purpose(function.name)}, {"definition", definition(function, text, names, dialect)}});
     list += ", " + function.name;
   }
+  std::string start;
+  if (context.start_functions) {
+    for (const program::Function* function : {&context.start_functions->values, &context.start_functions->rows}) {
+      if (function == &context.start_functions->rows && context.start_functions->row_count() == 0) continue;
+      const program::Function alone = without_packs(*function);
+      start += "\n" + definition(alone, print_function(alone, names, context, dialect), names, dialect);
+    }
+    start += "\n" + start_text(*context.start_functions, context, program.state_count(), program.free.size(),
+                               {false, "", context.single_error.has_value()});
+    list += ", start";
+  }
   const std::vector<std::pair<std::string, std::string>> values = {
+      {"start", start},
       {"banner", harmless(banner(program, context, "// ", "// ", ""))},
       {"name", name},
       {"info", literal(Json::parse(info_json(program, context)))},

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Starts that follow from changed parameters and initial values: on pages of `report` (through Node) and in the Python
+// target, against the first and last row of `run --set`. tests/models/start_test.cpp has every shipped scene.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <optional>
+
+#include "program.hpp"
+#include "support/folders.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+constexpr double allowed = 1e-12;  // relative: formulas are evaluated in another order
+
+// A spring whose length at rest is that of the start; a rate and the end that depend on it.
+const char* const begins_at_rest = R"(format = 1
+[parameters]
+m = 2
+k = 3
+c = "k/10"
+[coordinates]
+x = {}
+y = {}
+[[particle]]
+name = "P"
+mass = "m"
+position = ["x", "y", 0]
+[[force]]
+generalized = { x = "-k*(x - initial(x)) - c*x_dot" }
+[[constraint]]
+name = "curve"
+holonomic = "y - x^2 + 1"
+[scene.default]
+t = ["1/k", "10*m/k"]
+initial = { x = "1 + c", x_dot = "x*c" }
+)";
+
+struct Case {
+  const char* model;
+  std::map<std::string, double> set;
+  bool on_page = true;  // not: a page replays it, or has no slider for a value
+  bool to_end = true;   // whether an event ends it
+};
+
+const std::vector<Case>& cases() {
+  static const std::vector<Case> list{
+      {"leaving_sphere", {{"g", 10.791}}, true, false},
+      {"elastic_pendulum", {{"L", 0.8}}},
+      {"bilinear_oscillator", {{"m", 2.5}, {"k1", 40}}},
+      {"S5_double_pendulum_cartesian", {{"L2", 1.25}}},
+      {"S5_double_pendulum_cartesian", {{"L1", 1.125}, {"x1_dot", 0}}},
+      {"begins_at_rest.toml", {{"x", 2}}},
+      {"begins_at_rest.toml", {{"k", 4}}},
+      {"begins_at_rest.toml", {{"c", 0.5}, {"x_dot", -1}}, false},
+  };
+  return list;
+}
+
+struct Start {
+  double t0 = 0, t1 = 0;
+  std::map<std::string, double> values;
+};
+
+Start of_run(const Folder& folder, const Case& c) {
+  Words words{"run", c.model, "--out", "run.csv"};
+  for (const auto& [name, value] : c.set) words.insert(words.end(), {"--set", name + "=" + std::to_string(value)});
+  expect(0, folder, words);
+  const Table table = read_table(folder.read("run.csv"));
+  Start start{table.rows.front()[0], table.rows.back()[0], {}};
+  for (std::size_t k = 1; k < table.columns.size(); ++k) start.values[table.columns[k]] = table.rows.front()[k];
+  return start;
+}
+
+void check(const Json& found, const Start& expected) {
+  CHECK(found["t0"].get<double>() == doctest::Approx(expected.t0).epsilon(allowed));
+  CHECK(found["states"].size() > 1);
+  for (const auto& [name, value] : found["states"].items()) {
+    CAPTURE(name);
+    REQUIRE(expected.values.contains(name));
+    CHECK(std::abs(value.get<double>() - expected.values.at(name)) <=
+          allowed * (1 + std::abs(expected.values.at(name))));
+  }
+}
+
+Json in_json(const std::map<std::string, double>& set) {
+  Json result = Json::object();
+  for (const auto& [name, value] : set) result[name] = value;
+  return result;
+}
+
+std::string between(const std::string& text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  const std::size_t begin = at + from.size();
+  return text.substr(begin, text.find(to, begin) - begin);
+}
+
+const char* const on_page = R"(
+const data = JSON.parse(DATA), live = new Live(model, data.live, data), asked = JSON.parse(process.argv[2]);
+const names = live.states.map((s) => s.name), find = (name) => live.parameters.findIndex((p) => p.name === name);
+for (const name in asked) names.includes(name) ? live.starts_chosen.set(names.indexOf(name), asked[name]) : live.chosen[find(name)] = asked[name];
+live.prepare();
+const states = {}, parameters = {};
+names.forEach((name, k) => { states[name] = live.x[k]; });
+live.parameters.forEach((p, i) => { parameters[p.name] = live.p[i]; });
+console.log(JSON.stringify({refusal: live.refusal, t0: live.t0, t1: live.t1, states, parameters, psi: Array.from(live.constraintsAt(live.t0, live.x).psi)}));
+)";
+
+/// What the page has after these values were chosen; nothing without Node.
+std::optional<Json> page(const Folder& folder, const std::string& model, const std::map<std::string, double>& set,
+                         const Words& options = {}) {
+  expect(0, folder, with({"report", model, "-o", "page.html"}, options));
+  const std::string html = folder.read("page.html");
+  std::string script = "\"use strict\";\nconst DATA = " + Json(between(html, "id=\"motion\">", "</script>")).dump() +
+                       ";\nconst model = (() => {" +
+                       between(html, "const model = (() => {", "})();\nconst surfaceCode") + "})();\n";
+  for (const char* part : {"linear.js", "integrator.js", "motion.js"}) {
+    std::ifstream file(source_folder() + "/templates/report/" + part);
+    script.append(std::istreambuf_iterator<char>(file), {});
+  }
+  folder.write("page.js", script + on_page);
+  try {
+    const ChildResult result = run_child({{"node", "page.js", in_json(set).dump()}, folder.path()});
+    CAPTURE(result.err);
+    REQUIRE(result.status == 0);
+    return Json::parse(result.out);
+  } catch (const std::runtime_error&) {
+    MESSAGE("skipped: there is no node");
+    return std::nullopt;
+  }
+}
+
+// Prints the start of each case, and of the whole motion the final state.
+const char* const in_python = R"(import importlib, json, sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, ".")
+for case in json.load(open("cases.json")):
+    model = importlib.import_module(case["module"])
+    x0 = {name: value for name, value in case["set"].items() if name in model.states}
+    p = {name: value for name, value in case["set"].items() if name in model.params}
+    t0, t1, x, parameters, mode = model._begin(x0 or None, p or None)
+    end = [float(v) for v in model.simulate(t1, x0 or None, p or None).x[-1]]
+    print(json.dumps({"t0": t0, "t1": t1, "states": dict(zip(model.states, map(float, x))), "end": end,
+                      "parameters": dict(zip(model.params, map(float, parameters)))}))
+)";
+
+}  // namespace
+
+TEST_CASE("starts: on a page they follow from changed values as in run --set") {
+  const Folder folder;
+  folder.write("begins_at_rest.toml", begins_at_rest);
+  for (const Case& c : cases()) {
+    if (!c.on_page) continue;
+    CAPTURE(std::string(c.model));
+    CAPTURE(in_json(c.set).dump());
+    const Start expected = of_run(folder, c);
+    const std::optional<Json> found = page(folder, c.model, c.set);
+    if (!found) return;
+    CHECK((*found)["refusal"] == "");
+    check(*found, expected);
+    if (c.to_end) CHECK((*found)["t1"].get<double>() == doctest::Approx(expected.t1).epsilon(allowed));
+    for (const Json& psi : (*found)["psi"]) CHECK(std::abs(psi.get<double>()) < 1e-13);
+    if ((*found)["parameters"].contains("initial_x"))
+      CHECK((*found)["parameters"]["initial_x"] == (*found)["states"]["x"]);
+  }
+}
+
+TEST_CASE("starts: values that break a constraint are refused on the page, which keeps its motion") {
+  const Folder folder;
+  const std::optional<Json> before = page(folder, "S5_double_pendulum_cartesian", {});
+  if (!before) return;
+  CHECK((*before)["refusal"] == "");
+  const std::optional<Json> after = page(folder, "S5_double_pendulum_cartesian", {{"x1", 2}});
+  CHECK((*after)["refusal"] == "the start breaks a constraint");
+  CHECK((*after)["states"] == (*before)["states"]);
+  expect(2, folder, {"run", "S5_double_pendulum_cartesian", "--set", "x1=2"});
+}
+
+TEST_CASE("starts: values and an end of the command line stay on the page") {
+  const Folder folder;
+  folder.write("begins_at_rest.toml", begins_at_rest);
+  const Words options{"--set", "x=2", "--set", "c=0.25", "--t-end", "4"};
+  const std::optional<Json> found = page(folder, "begins_at_rest.toml", {{"k", 5}}, options);
+  if (!found) return;
+  CHECK((*found)["states"]["x"] == 2);
+  CHECK((*found)["states"]["y"] == 3);
+  CHECK((*found)["states"]["x_dot"] == 0.5);
+  CHECK((*found)["t0"] == 0.2);
+  CHECK((*found)["t1"] == 4);
+  CHECK((*found)["parameters"]["initial_x"] == 2);
+}
+
+TEST_CASE("starts: the Python target follows changed values as run --set, and simulates from there") {
+  const Folder folder;
+  if (run_child({{"sh", "-c", "python3 -c 'import ctypes'"}, folder.path()}).status != 0) {
+    MESSAGE("skipped: there is no python3");
+    return;
+  }
+  folder.write("begins_at_rest.toml", begins_at_rest);
+  Json list = Json::array();
+  std::vector<Start> expected;
+  std::vector<Json> ends;
+  for (const Case& c : cases()) {
+    std::string module = c.model;
+    module = module.substr(0, module.find('.'));
+    if (!folder.has(module + ".py")) expect(0, folder, {"emit", c.model, "--target", "python", "-o", "."});
+    list.push_back({{"module", module}, {"set", in_json(c.set)}});
+    expected.push_back(of_run(folder, c));
+    const Table table = read_table(folder.read("run.csv"));
+    Json end = Json::object();
+    for (std::size_t k = 1; k < table.columns.size(); ++k) end[table.columns[k]] = table.rows.back()[k];
+    ends.push_back(end);
+  }
+  folder.write("cases.json", list.dump());
+  folder.write("follow.py", in_python);
+  const ChildResult result = run_child({{"python3", "follow.py"}, folder.path()});
+  CAPTURE(result.err);
+  REQUIRE(result.status == 0);
+  std::size_t at = 0;
+  std::string rest = result.out;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    CAPTURE(list[k].dump());
+    const std::size_t end = rest.find('\n', at);
+    REQUIRE(end != std::string::npos);
+    const Json found = Json::parse(rest.substr(at, end - at));
+    at = end + 1;
+    check(found, expected[k]);
+    if (found["parameters"].contains("initial_x")) CHECK(found["parameters"]["initial_x"] == found["states"]["x"]);
+    if (!cases()[k].to_end) continue;
+    CHECK(found["t1"].get<double>() == doctest::Approx(expected[k].t1).epsilon(allowed));
+    std::size_t state = 0;
+    for (const auto& [name, value] : found["states"].items())
+      CHECK(found["end"][state++].get<double>() == doctest::Approx(ends[k][name].get<double>()).epsilon(1e-5));
+  }
+}
