@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "model/samples.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -23,6 +26,26 @@ struct DrawnShape {
 };
 constexpr std::array<DrawnShape, 6> shapes{
     {{"sphere", 1}, {"box", 3}, {"cylinder", 2}, {"disk", 1}, {"rod", 1}, {"arrow", 3}}};
+
+constexpr double same_point = 1e-9;  // of the largest distance between two points of a mesh
+
+using Point = std::array<double, 3>;
+Point between(const Point& a, const Point& b) { return {b[0] - a[0], b[1] - a[1], b[2] - a[2]}; }
+double length(const Point& a) { return std::hypot(a[0], a[1], a[2]); }
+
+/// Whether no three of the points span an area that counts in a mesh of this size.
+bool lie_on_a_line(const std::vector<Point>& points, double size) {
+  const auto farther = [&](const Point& a, const Point& b) {
+    return length(between(points[0], a)) < length(between(points[0], b));
+  };
+  const Point along = between(points[0], *std::max_element(points.begin(), points.end(), farther));
+  return std::all_of(points.begin(), points.end(), [&](const Point& p) {
+    const Point r = between(points[0], p);
+    const Point area{along[1] * r[2] - along[2] * r[1], along[2] * r[0] - along[0] * r[2],
+                     along[0] * r[1] - along[1] * r[0]};
+    return length(area) <= same_point * size * length(along);
+  });
+}
 
 }  // namespace
 
@@ -102,7 +125,10 @@ void DrawReader::read_mesh(ShapeSpec& drawn, const Value& points, const Value* f
     const std::vector<NodeId> lengths = drawn_lengths(point, 3, what, false);
     drawn.lengths.insert(drawn.lengths.end(), lengths.begin(), lengths.end());
   }
-  if (faces == nullptr) return;
+  if (faces == nullptr) {
+    require_extent(drawn, points, nullptr, what);
+    return;
+  }
   require_kind(Value::Kind::array, *faces, fmt::format("the faces in {}", what), faces_form);
   if (faces->items.empty() || faces->items.size() > most_faces)
     source_.fail(faces->span, fmt::format("{} has {} faces", what, faces->items.size()),
@@ -118,9 +144,56 @@ void DrawReader::read_mesh(ShapeSpec& drawn, const Value& points, const Value* f
       if (point < 1 || point > static_cast<long>(count))
         source_.fail(number.span, fmt::format("{} has no point {}", what, number.text),
                      fmt::format("its points are 1 to {}", count));
-      drawn.faces.back().push_back(static_cast<std::uint32_t>(point - 1));
+      std::vector<std::uint32_t>& corners = drawn.faces.back();
+      corners.push_back(static_cast<std::uint32_t>(point - 1));
+      if (std::count(corners.begin(), corners.end(), corners.back()) > 1)
+        source_.fail(number.span, fmt::format("a face in {} has point {} twice", what, point), faces_form);
     }
   }
+  require_extent(drawn, points, faces, what);
+}
+
+/// Rejects equal points, and meshes or faces whose points lie on a line, with the default parameters.
+void DrawReader::require_extent(const ShapeSpec& drawn, const Value& points, const Value* faces,
+                                const std::string& what) {
+  if (std::any_of(drawn.lengths.begin(), drawn.lengths.end(), [&](NodeId node) { return depends_on_start(node); }))
+    return;
+  Samples samples(model_);
+  std::vector<Point> at;
+  for (std::size_t k = 0; k < drawn.lengths.size(); k += 3)
+    at.push_back(
+        {samples.value(drawn.lengths[k]), samples.value(drawn.lengths[k + 1]), samples.value(drawn.lengths[k + 2])});
+  double size = 0;
+  for (const Point& p : at) size = std::max(size, length(between(at[0], p)));
+  for (std::size_t j = 1; j < at.size(); ++j) {
+    for (std::size_t i = 0; i < j; ++i) {
+      if (length(between(at[i], at[j])) <= same_point * size)
+        source_.fail(points.items[j].span, fmt::format("points {} and {} in {} are equal", i + 1, j + 1, what),
+                     "leave one of them out");
+    }
+  }
+  if (faces == nullptr) {
+    if (lie_on_a_line(at, size))
+      source_.fail(points.span, fmt::format("the points in {} lie on a line", what),
+                   "give points of a polygon or of a solid");
+    return;
+  }
+  for (std::size_t k = 0; k < drawn.faces.size(); ++k) {
+    std::vector<Point> corners;
+    for (const std::uint32_t point : drawn.faces[k]) corners.push_back(at[point]);
+    if (lie_on_a_line(corners, size))
+      source_.fail(faces->items[k].span, fmt::format("the points of a face in {} lie on a line", what), faces_form);
+  }
+}
+
+/// Whether an expression contains initial(q), whose value a run assigns.
+bool DrawReader::depends_on_start(NodeId id) const {
+  if (id == no_node) return false;
+  const Node& node = model_.arena[id];
+  if (node.op == Op::parameter)
+    return model_.parameters[node.index].initial_value_of.has_value() ||
+           depends_on_start(model_.parameters[node.index].value);
+  return std::any_of(std::begin(node.args), std::end(node.args), [&](NodeId arg) { return depends_on_start(arg); });
 }
 
 std::vector<NodeId> DrawReader::drawn_lengths(const Value& value, std::size_t count, const std::string& what,
@@ -131,6 +204,10 @@ std::vector<NodeId> DrawReader::drawn_lengths(const Value& value, std::size_t co
     const TypedNode typed = resolver_.value(item, context);
     if (positive && typed.constant && !cln::plusp(*typed.constant))
       source_.fail(item.span, fmt::format("a length in {} is not greater than 0", what), "give a length");
+    const double number = Samples(model_).value(typed.node);
+    if (!std::isfinite(number) && !depends_on_start(typed.node))
+      source_.fail(item.span, fmt::format("a length in {} has no value", what),
+                   "check the numbers that it is computed from");
     return typed.node;
   };
   if (count == 1) return {length(value)};
