@@ -47,6 +47,7 @@ std::string result_entry_name(const program::Function& function, const ModelName
   if (function.name == "rhs" && entry >= n && entry < 2 * n) return names.acceleration[entry - n];
   if (function.name == "jac" && result == 0 && entry % all == 0) return fmt::format("d/d {}", names.state[entry / all]);
   if (function.name == "jac_p" && entry % all == 0) return fmt::format("d/d {}", names.parameters[entry / all]);
+  if (function.name == "jac_u" && entry % all == 0) return fmt::format("d/d {}", names.inputs[entry / all]);
   if (function.name == "outputs") return names.outputs[entry];
   if (function.name == "reactions") return names.reactions[entry];
   return function.name == "events" ? names.events[entry] : "";

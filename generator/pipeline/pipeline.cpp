@@ -214,6 +214,7 @@ program::Program make_program(DerivedModel& derived, const program::Request& req
   Stopwatch watch;
   program::Request complete = request;
   complete.parameters = derived.model.parameters.size();
+  complete.inputs = derived.model.inputs.size();
   program::Program program = program::build_program(derived.candidates, complete);
   derived.seconds.optimise += watch.lap();
   return program;

@@ -221,12 +221,20 @@ FunctionExpressions AbiFunctions::jac() {
 }
 
 FunctionExpressions AbiFunctions::jac_p(std::size_t parameters) {
-  FunctionExpressions function = empty_function("jac_p");
-  auto& dfdp = function.results[0].entries;
-  for (std::uint32_t j = 0; j < parameters; ++j) {
-    dfdp.insert(dfdp.end(), n_, system_.dag->zero());
-    const std::vector<Ref> lower = derivative_column({SymbolKind::parameter, j, 0});
-    dfdp.insert(dfdp.end(), lower.begin(), lower.end());
+  return derivative_columns("jac_p", SymbolKind::parameter, parameters);
+}
+
+FunctionExpressions AbiFunctions::jac_u(std::size_t inputs) {
+  return derivative_columns("jac_u", SymbolKind::input, inputs);
+}
+
+FunctionExpressions AbiFunctions::derivative_columns(const char* name, SymbolKind kind, std::size_t count) {
+  FunctionExpressions function = empty_function(name);
+  auto& columns = function.results[0].entries;
+  for (std::uint32_t j = 0; j < count; ++j) {
+    columns.insert(columns.end(), n_, system_.dag->zero());
+    const std::vector<Ref> lower = derivative_column({kind, j, 0});
+    columns.insert(columns.end(), lower.begin(), lower.end());
   }
   add_solution(function);
   return function;

@@ -45,6 +45,7 @@ class AbiFunctions {
   FunctionExpressions rhs();
   FunctionExpressions jac();
   FunctionExpressions jac_p(std::size_t parameters);
+  FunctionExpressions jac_u(std::size_t inputs);
   FunctionExpressions mass();
   FunctionExpressions constraints();
   /// dT/dqdot and its time derivative without constraint forces and contact friction.
@@ -64,6 +65,7 @@ class AbiFunctions {
   void add_solution(FunctionExpressions& function);
   void label_matrices(FunctionExpressions& function);
   std::vector<Ref> derivative_column(symbolic::Symbol along);
+  FunctionExpressions derivative_columns(const char* name, symbolic::SymbolKind kind, std::size_t count);
   /// Substitutes the solution for qddot and the active multipliers. Sets `solved` to true if the expression contains
   /// any of them.
   Ref substitute_solution(Ref expression, bool& solved);

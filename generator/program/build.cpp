@@ -140,14 +140,14 @@ std::vector<CandidateCost> candidate_costs(const std::vector<Candidate>& candida
   return result;
 }
 
-std::size_t parameter_count(const system::EquationSystem& system) {
+std::size_t symbol_count(const system::EquationSystem& system, symbolic::SymbolKind kind) {
   std::size_t count = 0;
   std::vector<symbolic::Ref> roots;
   system::for_each_expression(system, [&roots](symbolic::Ref r, system::ExpressionRole part) {
     if (part != system::ExpressionRole::output) roots.push_back(r);
   });
   for (const symbolic::Symbol& symbol : system.dag->symbols(roots)) {
-    if (symbol.kind == symbolic::SymbolKind::parameter) count = std::max<std::size_t>(count, symbol.index + 1);
+    if (symbol.kind == kind) count = std::max<std::size_t>(count, symbol.index + 1);
   }
   return count;
 }
@@ -161,8 +161,11 @@ FunctionExpressions function_expressions(AbiFunctions& functions, const std::str
       {"reactions", &AbiFunctions::reactions},
       {"events", &AbiFunctions::events}};
   if (const auto found = formulas.find(name); found != formulas.end()) return (functions.*found->second)();
-  if (name == "jac_p")
-    return functions.jac_p(request.parameters > 0 ? request.parameters : parameter_count(functions.system()));
+  const auto count = [&](std::size_t in_model, symbolic::SymbolKind kind) {
+    return in_model > 0 ? in_model : symbol_count(functions.system(), kind);
+  };
+  if (name == "jac_p") return functions.jac_p(count(request.parameters, symbolic::SymbolKind::parameter));
+  if (name == "jac_u") return functions.jac_u(count(request.inputs, symbolic::SymbolKind::input));
   throw Error("program", {}, fmt::format("there is no function `{}`", name),
               fmt::format("available functions: {}", fmt::join(abi::optional_functions(), ", ")));
 }

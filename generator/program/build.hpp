@@ -13,11 +13,10 @@
 namespace eomgen::program {
 
 struct Request {
-  std::vector<std::string>
-      with;  // further functions: "jac", "jac_p", "mass", "momenta", "constraints", "reactions", "events", "taylor"
+  std::vector<std::string> with;     // further functions: abi::optional_functions()
   std::vector<std::string> outputs;  // names of EquationSystem::outputs; if not empty, "outputs" is built
   std::map<std::uint32_t, symbolic::Rational> fix;  // values that replace parameters
-  std::size_t parameters = 0;                       // count in the model, for jac_p; 0: those in the equations
+  std::size_t parameters = 0, inputs = 0;           // count in the model, for jac_p, jac_u; 0: those in the equations
   bool optimise = true;                             // false: code as derived (for tests and comparisons)
 };
 

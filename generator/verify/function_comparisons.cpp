@@ -52,11 +52,17 @@ class FunctionComparisons {
   /// The comparison for a function.
   static CheckFunction check_of(const std::string& function) {
     static const std::map<std::string_view, CheckFunction> statements{
-        {"rhs_prepared", &FunctionComparisons::prepared}, {"jac", &FunctionComparisons::jacobian},
-        {"jac_p", &FunctionComparisons::parameters},      {"mass", &FunctionComparisons::mass},
-        {"momenta", &FunctionComparisons::momenta},       {"constraints", &FunctionComparisons::constraints},
-        {"reactions", &FunctionComparisons::reactions},   {"outputs", &FunctionComparisons::outputs},
-        {"events", &FunctionComparisons::events},         {"taylor", &FunctionComparisons::taylor}};
+        {"rhs_prepared", &FunctionComparisons::prepared},
+        {"jac", &FunctionComparisons::jacobian},
+        {"jac_p", &FunctionComparisons::parameters},
+        {"jac_u", &FunctionComparisons::inputs},
+        {"mass", &FunctionComparisons::mass},
+        {"momenta", &FunctionComparisons::momenta},
+        {"constraints", &FunctionComparisons::constraints},
+        {"reactions", &FunctionComparisons::reactions},
+        {"outputs", &FunctionComparisons::outputs},
+        {"events", &FunctionComparisons::events},
+        {"taylor", &FunctionComparisons::taylor}};
     const auto found = statements.find(function);
     if (found == statements.end()) throw std::logic_error("nothing is said of the function '" + function + "'");
     return found->second;
@@ -194,6 +200,14 @@ class FunctionComparisons {
                                                : direction_component(j) * cln::rational(at_.p[j]));
     along("jac_p", values, 0, direction, slope("rhs", [&](AbiArguments& at, const Real& h) {
             for (std::size_t j = 0; j < direction.size(); ++j) at.p[j] = at.p[j] + h * direction[j];
+          }));
+  }
+
+  void inputs(const AbiResults& values) {
+    std::vector<Real> direction;
+    for (std::size_t j = 0; j < at_.u.size(); ++j) direction.push_back(direction_component(j));
+    along("jac_u", values, 0, direction, slope("rhs", [&](AbiArguments& at, const Real& h) {
+            for (std::size_t j = 0; j < direction.size(); ++j) at.u[j] = at.u[j] + h * direction[j];
           }));
   }
 

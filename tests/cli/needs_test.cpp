@@ -78,6 +78,7 @@ TEST_CASE("needs: a requested function adds its symbol and does not change the r
   for (const auto& [words, function] : {std::pair<Words, std::string>{{"--with", "reactions"}, "reactions"},
                                         {{"--with", "jac"}, "jac"},
                                         {{"--with", "jac_p"}, "jac_p"},
+                                        {{"--with", "jac_u"}, "jac_u"},
                                         {{"--with", "mass"}, "mass"},
                                         {{"--with", "constraints"}, "constraints"},
                                         {{"--output", "energy"}, "outputs"}}) {

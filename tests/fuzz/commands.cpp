@@ -141,7 +141,7 @@ const std::vector<Words>& derive_calls() {
       {"derive", "--show", "equations,constraints,reactions,friction,conserved,routh", "--approach", "I", "--format",
        "text"},
       {"verify", "--no-compile", "--points", "3", "--json"},
-      {"emit", "-o", "OUT", "--with", "jac,jac_p,mass,constraints,reactions,outputs,events,energy", "--json"},
+      {"emit", "-o", "OUT", "--with", "jac,jac_p,jac_u,mass,constraints,reactions,outputs,events,energy", "--json"},
       {"emit", "-o", "OUT", "--target", "python", "--approach", "I", "--json"},
       {"emit", "-o", "OUT", "--target", "latex", "--json"},
       {"emit", "-o", "OUT", "--target", "c", "--with", "taylor,momenta", "--json"},

@@ -15,7 +15,7 @@ namespace eomgen::emit {
 namespace {
 
 // Functions that the module wraps.
-constexpr const char* wrapped_functions[] = {"rhs",         "jac",       "jac_p",   "mass",
+constexpr const char* wrapped_functions[] = {"rhs",         "jac",       "jac_p",   "jac_u", "mass",
                                              "constraints", "reactions", "outputs", "events"};
 
 /// _rhs = _function("rhs", "daaaia"): one letter per argument type.

@@ -50,8 +50,9 @@ struct Code {
   int (*mass_in)(double, const double*, const double*, int, double*, double*) = nullptr;
   int (*constraints_in)(double, const double*, const double*, int, double*, double*, double*) = nullptr;
   std::vector<OwnOutputs> own_outputs = {};
-  // df/dp, for sensitivities.
+  // df/dp and df/du, for sensitivities.
   int (*jac_p)(double, const double*, const double*, const double*, int, double*) = nullptr;
+  int (*jac_u)(double, const double*, const double*, const double*, int, double*) = nullptr;
 };
 
 }  // namespace eom::hybrid
