@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/sensitivities.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "model/names.hpp"
@@ -32,6 +30,12 @@ void require_direction(const model::Model& model, const run::Code& code, const s
 
 }  // namespace
 
+std::vector<std::string> sensitivity_functions(const model::Model& model) {
+  std::vector<std::string> functions{"jac", "jac_p"};
+  if (!model.inputs.empty()) functions.emplace_back("jac_u");
+  return functions;
+}
+
 run::Sensitivities sensitivities(const pipeline::Simulation& simulation, const pipeline::SimulationRequest& request,
                                  const std::vector<std::string>& names) {
   const run::Code code = simulation.code.code_for_run();
@@ -39,13 +43,6 @@ run::Sensitivities sensitivities(const pipeline::Simulation& simulation, const p
   run::RunRequest run = pipeline::make_run_request(derived, simulation.scene, code, false);
   run.interrupt = request.interrupt;
   run.max_steps = request.max_steps;
-  for (const run::KinkCrossings& kink : simulation.result.kinks) {
-    if (kink.count > 0)
-      throw Error(
-          "run", {},
-          fmt::format("--sensitivity: the run crosses a kink ({}), where derivatives of the end may jump", kink.kink),
-          "shorten the run (--t-end), or smooth the law");
-  }
   const run::ModelScene scene{derived.mechanics,     derived.candidates.front(), derived.model.scene(request.scene),
                               request.overrides,     simulation.scene,           code.free,
                               run.state_names.size()};

@@ -8,7 +8,7 @@
 namespace eomgen::analysis {
 
 /// Generated functions that sensitivities need in addition to those of a run.
-inline constexpr const char* sensitivity_functions[] = {"jac", "jac_p"};
+std::vector<std::string> sensitivity_functions(const model::Model& model);
 
 /// `names`: parameters, coordinates (initial value) and NAME_dot (initial rate). Throws Error{stage "run"} for an
 /// unknown name, a dependent value, or an initial state that cannot be adjusted to the change.

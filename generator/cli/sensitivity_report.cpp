@@ -19,10 +19,12 @@ std::string text_of(const run::Sensitivities& found, const std::vector<std::stri
   std::string out = fmt::format("\nsensitivities     of the state at t = {}, by {}: {}\n", found.t, found.solver,
                                 eom::name(found.outcome));
   for (const run::Sensitivity& s : found.list) {
-    for (std::size_t i = 0; i < states.size(); ++i) {
-      out += fmt::format("  d {} / d {:<16} {:>24}{}\n", states[i], s.of, unsigned_zero(s.value[i]),
-                         s.error.empty() ? "" : fmt::format("   +- {:.1e}", s.error[i]));
-    }
+    const auto line = [&](const std::string& state, double value, double error) {
+      out += fmt::format("  d {} / d {:<16} {:>24}{}\n", state, s.of, unsigned_zero(value),
+                         s.error.empty() ? "" : fmt::format("   +- {:.1e}", error));
+    };
+    for (std::size_t i = 0; i < states.size(); ++i) line(states[i], s.value[i], s.error.empty() ? 0 : s.error[i]);
+    if (s.of_time != 0) line("t", s.of_time, s.error_of_time);
   }
   return found.estimate_note.empty() ? out : out + "  " + found.estimate_note + "\n";
 }
@@ -35,6 +37,9 @@ Json json_of(const run::Sensitivities& found, const std::vector<std::string>& st
       values[s.of][states[i]] = number(s.value[i]);
       if (!s.error.empty()) errors[s.of][states[i]] = number(s.error[i]), estimated = true;
     }
+    if (s.of_time == 0) continue;
+    values[s.of]["t"] = number(s.of_time);
+    if (!s.error.empty()) errors[s.of]["t"] = number(s.error_of_time);
   }
   return {{"method", found.solver},
           {"t", found.t},

@@ -143,8 +143,7 @@ int execute(const Options& options, const CommonOptions& common) {
   request.estimate = !options.no_error_estimate;
   request.charts =
       !options.no_charts && options.sensitivity.empty();  // derivatives refer to the model's own coordinates
-  if (!options.sensitivity.empty())
-    request.with.assign(std::begin(analysis::sensitivity_functions), std::end(analysis::sensitivity_functions));
+  if (!options.sensitivity.empty()) request.with = analysis::sensitivity_functions(*request.model);
   request.seed = common.seed;
   Progress progress;
   if (isatty(STDERR_FILENO) != 0) request.progress = [&progress](double fraction) { progress(fraction); };
