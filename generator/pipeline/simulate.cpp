@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <eom/modes/contacts.hpp>
+#include <eom/registry.hpp>
 #include <limits>
 
 #include "error.hpp"

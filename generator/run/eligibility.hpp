@@ -3,7 +3,8 @@
 // need or cannot handle (eom/features.hpp), and the messages about them.
 #pragma once
 
-#include <eom/registry.hpp>
+#include <eom/features.hpp>
+#include <eom/run_types.hpp>
 #include <string>
 #include <vector>
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <eom/automatic.hpp>
 #include <eom/hybrid/segments.hpp>
 #include <utility>
 

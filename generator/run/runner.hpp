@@ -6,7 +6,8 @@
 #include <atomic>
 #include <eom/hybrid/estimate_warning.hpp>
 #include <eom/hybrid/problem.hpp>
-#include <eom/ode.hpp>
+#include <eom/outcome.hpp>
+#include <eom/run_types.hpp>
 #include <functional>
 #include <limits>
 #include <string>

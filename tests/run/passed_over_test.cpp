@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <eom/registry.hpp>
 #include <numbers>
 
 #include "support/run_text.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "eom/modes/contacts.hpp"
+#include "eom/modes/contact_state.hpp"
 
 namespace eom::hybrid {
 

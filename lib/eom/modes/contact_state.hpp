@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,11 @@ struct ContactShape {
   bool unilateral = false;     // it can open
   bool sticks = true;          // Coulomb's law; false: no friction, or a smooth law
   bool rolls = false;          // sticking is rolling
+};
+
+struct Contact : ContactShape {
+  std::string name;
+  double restitution = 0;  // of impacts of a unilateral contact: speed after / speed before
 };
 
 /// The mode in which all unilateral contacts are open and all others stick. Forces are determined there. With all

@@ -30,11 +30,6 @@
 
 namespace eom {
 
-struct Contact : ContactShape {
-  std::string name;
-  double restitution = 0;  // of impacts of a unilateral contact: speed after / speed before
-};
-
 /// For contacts with one sliding direction that cannot open: velocities never change.
 struct ContactMotion {
   /// Velocities after an impact at contact j, with the closed contacts of `mode`. Returns a code of the ABI.
