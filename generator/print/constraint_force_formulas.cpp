@@ -4,6 +4,7 @@
 // (9.2), (9.84). Components along the dual bases are the derivatives of the constraint by the rates of coordinates and
 // angles.
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "print/formulas.hpp"
@@ -173,61 +174,140 @@ std::vector<Formula> vectors_of(const reading::Geometry& g) {
   return result;
 }
 
-void add_particle_force(const Mechanics& m, const Multipliers& multipliers, const reading::Geometry& g,
-                        std::size_t number, std::vector<Statement>& out) {
-  reading::Components force{};
-  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (!multipliers.holds(k)) continue;
-    const Sum lambda = reading::display_sum(m, m.dag->symbol({SymbolKind::multiplier, k, 0}));
-    for (std::size_t i = 0; i < g.coordinates.size(); ++i) {
-      const Sum slope = reading::display_sum(m, m.constraints[k].gradient[g.coordinates[i]]);
-      if (slope.is_zero()) continue;
-      if (multipliers.built_in(k)) return;
-      if (g.contravariant_unit.empty())
-        force[i] += lambda * slope;
-      else
-        for (std::size_t j = 0; j < 3; ++j)
-          force[j] = reading::simplify(force[j] + lambda * slope * g.contravariant_unit[i][j]);
-    }
-  }
-  if (std::all_of(force.begin(), force.end(), [](const Sum& s) { return s.is_zero(); })) return;
-  std::vector<Formula> sub;
-  if (m.masses.size() > 1) sub.push_back(reading::number(static_cast<long>(number)));
-  out.push_back({"reactions", g.name, "", "constraint force",
-                 reading::relation({mark("bold N", std::move(sub)), combination(force, vectors_of(g))})});
-}
+/// Constraint forces on particles that are moved only by their three coordinates, or by two in their plane, and on
+/// those that carry such particles along: the force on what they carry is taken off.
+class ParticleForces {
+ public:
+  ParticleForces(const Mechanics& m, const Multipliers& multipliers) : m_(m), multipliers_(multipliers) {}
 
-/// Constraint forces on particles that are moved only by their three coordinates, or by two in their plane.
-void add_particle_forces(const Mechanics& m, const Multipliers& multipliers, std::vector<Statement>& out) {
-  if (m.constraints.empty()) return;
-  std::vector<reading::LeftOut> unseen;
-  for (const reading::Geometry& g : reading::geometry(m, &unseen)) {
-    const auto mass = std::find_if(m.masses.begin(), m.masses.end(), [&](const mechanics::PointMass& p) {
-      return m.model->places[p.place].name == g.name;
-    });
-    if (mass == m.masses.end() || g.inverse.empty()) continue;
-    const auto& chart = m.model->places[mass->place].chart;
-    const std::size_t directions = chart && chart->planar ? 2 : 3;
-    const bool of_body = std::any_of(m.model->bodies.begin(), m.model->bodies.end(),
-                                     [&](const model::Body& b) { return b.place == mass->place; });
-    const auto shared = [&](std::uint32_t i) { return moves_others(m, i, mass->place, std::nullopt); };
-    if (of_body || g.coordinates.size() != directions ||
-        std::any_of(g.coordinates.begin(), g.coordinates.end(), shared))
-      continue;
-    try {
-      const work::Budget budget(reading::item_budget);
-      add_particle_force(m, multipliers, g, static_cast<std::size_t>(mass - m.masses.begin()) + 1, out);
-    } catch (const work::BudgetExceeded& over) {
-      out.push_back(left_out("reactions", g.name, "constraint force", over.what()));
+  void add(std::vector<Statement>& out) {
+    std::vector<reading::LeftOut> unseen;
+    const std::vector<reading::Geometry> geometries = reading::geometry(m_, &unseen);
+    // A particle is reached once the forces on all that it carries are known.
+    std::map<std::size_t, Statement> statements;
+    for (bool more = true; more;) {
+      more = false;
+      for (const reading::Geometry& g : geometries) {
+        const std::optional<std::size_t> mass = particle_of(g);
+        if (!mass || forces_.contains(*mass)) continue;
+        const std::optional<std::vector<std::size_t>> carried = carried_by(g, *mass);
+        if (!carried) continue;
+        more = true;
+        try {
+          const work::Budget budget(reading::item_budget);
+          if (auto statement = force_on(g, *mass, *carried)) statements.emplace(*mass, std::move(*statement));
+        } catch (const work::BudgetExceeded& over) {
+          forces_[*mass] = std::nullopt;
+          statements.emplace(*mass, left_out("reactions", g.name, "constraint force", over.what()));
+        }
+      }
     }
+    for (auto& [mass, statement] : statements) out.push_back(std::move(statement));
   }
-}
+
+ private:
+  /// The mass that a chart with as many directions as coordinates describes.
+  std::optional<std::size_t> particle_of(const reading::Geometry& g) const {
+    const auto mass = std::find_if(m_.masses.begin(), m_.masses.end(), [&](const mechanics::PointMass& p) {
+      return m_.model->places[p.place].name == g.name;
+    });
+    if (mass == m_.masses.end() || g.inverse.empty()) return std::nullopt;
+    const auto& chart = m_.model->places[mass->place].chart;
+    const std::size_t directions = chart && chart->planar ? 2 : 3;
+    const bool of_body = std::any_of(m_.model->bodies.begin(), m_.model->bodies.end(),
+                                     [&](const model::Body& b) { return b.place == mass->place; });
+    if (of_body || g.coordinates.size() != directions) return std::nullopt;
+    return static_cast<std::size_t>(mass - m_.masses.begin());
+  }
+
+  /// The other masses that its coordinates move, if each moves as the particle does along all of them and the force on
+  /// each is known.
+  std::optional<std::vector<std::size_t>> carried_by(const reading::Geometry& g, std::size_t p) const {
+    std::vector<std::size_t> result;
+    for (const std::uint32_t i : g.coordinates) {
+      symbolic::Derivation by = symbolic::partial_derivative(*m_.dag, {SymbolKind::coordinate, i, 1});
+      const auto moves = [&](Ref r) { return !m_.dag->is_zero(by(r)); };
+      for (const mechanics::BodyRotation& body : m_.body_rotations)
+        if (std::any_of(body.w.begin(), body.w.end(), moves)) return std::nullopt;
+      for (std::size_t other = 0; other < m_.masses.size(); ++other) {
+        const symbolic::Vec3& velocity = m_.masses[other].velocity;
+        if (other == p || std::none_of(velocity.begin(), velocity.end(), moves)) continue;
+        if (!moves_alike(by, m_.masses[p].velocity, velocity) || !is_known(other)) return std::nullopt;
+        if (std::find(result.begin(), result.end(), other) == result.end()) result.push_back(other);
+      }
+    }
+    for (const std::size_t other : result) {  // along all coordinates, or its force is no part of this one
+      for (const std::uint32_t i : g.coordinates) {
+        symbolic::Derivation by = symbolic::partial_derivative(*m_.dag, {SymbolKind::coordinate, i, 1});
+        if (!moves_alike(by, m_.masses[p].velocity, m_.masses[other].velocity)) return std::nullopt;
+      }
+    }
+    return result;
+  }
+
+  bool is_known(std::size_t mass) const {
+    const auto found = forces_.find(mass);
+    return found != forces_.end() && found->second.has_value();
+  }
+
+  bool moves_alike(symbolic::Derivation& by, const symbolic::Vec3& a, const symbolic::Vec3& b) const {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!m_.dag->is_zero(m_.dag->sub(by(a[k]), by(b[k])))) return false;
+    return true;
+  }
+
+  /// Stores the force; no statement if there is none, or if it contains multipliers that are no unknowns.
+  std::optional<Statement> force_on(const reading::Geometry& g, std::size_t p,
+                                    const std::vector<std::size_t>& carried) {
+    forces_[p] = std::nullopt;
+    reading::Components force{};
+    for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
+      if (!multipliers_.holds(k)) continue;
+      const Sum lambda = reading::display_sum(m_, m_.dag->symbol({SymbolKind::multiplier, k, 0}));
+      for (std::size_t i = 0; i < g.coordinates.size(); ++i) {
+        const Sum slope = reading::display_sum(m_, m_.constraints[k].gradient[g.coordinates[i]]);
+        if (slope.is_zero()) continue;
+        if (multipliers_.built_in(k)) return std::nullopt;
+        if (g.contravariant_unit.empty())
+          force[i] += lambda * slope;
+        else
+          for (std::size_t j = 0; j < 3; ++j)
+            force[j] = reading::simplify(force[j] + lambda * slope * g.contravariant_unit[i][j]);
+      }
+    }
+    Terms terms;
+    if (!std::all_of(force.begin(), force.end(), [](const Sum& s) { return s.is_zero(); }))
+      terms.push_back({false, combination(force, vectors_of(g))});
+    for (const std::size_t other : carried)
+      for (const auto& [minus, term] : *forces_.at(other)) terms.push_back({!minus, term});
+    forces_[p] = terms;
+    if (terms.empty()) return std::nullopt;
+    std::vector<Formula> sum, sub;
+    for (const auto& [minus, term] : terms) sum.push_back(minus ? negated(term) : term);
+    if (m_.masses.size() > 1) sub.push_back(reading::number(static_cast<long>(p + 1)));
+    return Statement{"reactions", g.name, "", "constraint force",
+                     reading::relation({mark("bold N", std::move(sub)), reading::sum(std::move(sum))})};
+  }
+
+  /// -term, term by term.
+  static Formula negated(Formula term) {
+    if (term.kind != reading::FormulaKind::sum) return reading::negative(std::move(term));
+    std::vector<Formula> terms;
+    for (Formula& part : term.args) terms.push_back(reading::negative(std::move(part)));
+    return reading::sum(std::move(terms));
+  }
+
+  using Terms = std::vector<std::pair<bool, Formula>>;  // negative, and the vector
+  const Mechanics& m_;
+  const Multipliers& multipliers_;
+  std::map<std::size_t, std::optional<Terms>> forces_;  // by mass; empty: not known
+};
 
 }  // namespace
 
 void add_constraint_forces(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
   const Multipliers multipliers(m, form);
-  add_particle_forces(m, multipliers, out);
+  if (!m.constraints.empty()) ParticleForces(m, multipliers).add(out);
   for (std::uint32_t body = 0; body < m.body_rotations.size(); ++body) BodyForces(m, multipliers, body, out).add();
 }
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "models/displayed_model.hpp"
+#include "print/render.hpp"
 #include "support/folders.hpp"
 #include "support/simulation.hpp"
 
@@ -149,4 +151,25 @@ TEST_CASE(
     CHECK(std::abs(value - two.final(key)) < tolerance * (1 + std::abs(value)));
   }
   CHECK(one.simulation.result.power_balance < 1e-9);
+}
+
+TEST_CASE("S5: the rod below acts on the particle between the rods too: N_1 = lambda_1 e_r1 - lambda_2 e_r2") {
+  const test::FinishedRun run = test::run_model("S5_double_pendulum", [](pipeline::SimulationRequest& request) {
+    request.overrides.t_end = 2;
+    request.overrides.outputs = {"P1.constraint_force1", "P1.constraint_force2", "reaction.rod1", "reaction.rod2"};
+  });
+  for (std::size_t i = 0; i < run.rows.size(); ++i) {
+    const double th1 = run.rows.at(i, "theta1"), th2 = run.rows.at(i, "theta2");
+    const double above = run.rows.at(i, "reaction.rod1"), below = run.rows.at(i, "reaction.rod2");
+    CHECK(run.rows.at(i, "P1.constraint_force1") ==
+          doctest::Approx(above * std::cos(th1) - below * std::cos(th2)).epsilon(1e-11));
+    CHECK(run.rows.at(i, "P1.constraint_force2") ==
+          doctest::Approx(above * std::sin(th1) - below * std::sin(th2)).epsilon(1e-11));
+  }
+  const test::DisplayedModel model("S5_double_pendulum");
+  const reading::DisplayForm one = reading::derive_display_form(model.s.mechanics, system::Approach::one);
+  std::vector<std::string> forces;
+  for (const print::PrintedFormula& item : print::render(model.s.mechanics, one, {"reactions"}))
+    if (item.role == "constraint force") forces.push_back(item.text);
+  CHECK(forces == std::vector<std::string>{"N_1 = lambda_1 e_r1 - lambda_2 e_r2", "N_2 = lambda_2 e_r2"});
 }
