@@ -324,6 +324,23 @@ void add_reactions(const DisplayForm& form, std::vector<Statement>& out) {
   }
 }
 
+/// Approach II does not close with friction: the law depends on the multiplier of a constraint that it eliminates,
+/// section 2.11.9 of the source.
+void note_normal_forces(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
+  if (form.approach != system::Approach::two) return;
+  for (const mechanics::Contact& contact : m.contacts) {
+    const auto eliminated = [&](const reading::DisplayConstraint& c) {
+      return c.fixes && std::find(contact.constraints.begin(), contact.constraints.end(), c.constraint) !=
+                            contact.constraints.end();
+    };
+    if (contact.dimensions() == 0 || std::none_of(form.constraints.begin(), form.constraints.end(), eliminated))
+      continue;
+    out.push_back(left_out("friction", contact.name, "multiplier",
+                           "approach II eliminates it, so that its equations do not close with friction; approach I "
+                           "gives it as a function of the motion"));
+  }
+}
+
 void add_statements(const Mechanics& m, const DisplayForm& form, const std::vector<std::string>& show,
                     std::vector<Statement>& out) {
   const auto wanted = [&](const char* key) {
@@ -344,7 +361,10 @@ void add_statements(const Mechanics& m, const DisplayForm& form, const std::vect
   add("equations", [&] { add_equations(m, form, out); });
   add("reactions", [&] { add_reactions(form, out); });
   add("reactions", [&] { add_constraint_forces(m, form, out); });
-  add("friction", [&] { add_contacts(m, out); });
+  add("friction", [&] {
+    add_contacts(m, out);
+    note_normal_forces(m, form, out);
+  });
   std::vector<std::string> of_geometry;
   for (const char* key : {"basis", "metric", "line_element", "christoffel"}) {
     if (wanted(key)) of_geometry.emplace_back(key);

@@ -2,7 +2,9 @@
 // The rough helix: (2.143), (2.145) with corrected indices, and quadratures of these.
 #include <doctest/doctest.h>
 
+#include "models/displayed_model.hpp"
 #include "models/rough.hpp"
+#include "print/render.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -103,4 +105,16 @@ TEST_CASE("P8: from rest it sticks if mu_s is at least alpha, and slides otherwi
     CHECK(std::abs(simpson([&](double w) { return 1 / h.acceleration(w - 1e-300); }, 0, rate) -
                    run.simulation.result.t) < integration_tolerance);
   }
+}
+
+TEST_CASE("P8: approach II says that it does not close with friction, since its law contains the multipliers") {
+  const test::DisplayedModel model("P8_rough_helix");
+  const auto reasons = [&](system::Approach approach) {
+    std::string all;
+    const reading::DisplayForm form = reading::derive_display_form(model.s.mechanics, approach);
+    for (const print::PrintedFormula& item : print::render(model.s.mechanics, form, {"friction"})) all += item.left_out;
+    return all;
+  };
+  CHECK(reasons(system::Approach::one).empty());
+  CHECK(reasons(system::Approach::two).find("approach I gives it as a function of the motion") != std::string::npos);
 }
