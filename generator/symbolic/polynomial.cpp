@@ -2,6 +2,7 @@
 #include "symbolic/polynomial.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "symbolic/small_numbers.hpp"
@@ -206,7 +207,23 @@ Ref Expander::rebuild_monomial(const Monomial& m, const Rational& coefficient) {
   return dag_.mul(dag_.constant(coefficient), dag_.div(above, below));
 }
 
-// Common factors of all terms are factored out.
+/// Whether a value that is finite in binary64 may have an infinite divisor: 1 - c/cosh(x) is 1 for large x, and
+/// (cosh(x) - c)/cosh(x) has no value.
+bool Expander::may_overflow(Ref atom) {
+  constexpr std::int32_t high_power = 8;
+  const auto [known, is_new] = may_overflow_.try_emplace(atom.id, false);
+  if (!is_new) return known->second;
+  const std::vector<Ref> parts = dag_.reachable({atom});
+  const bool result = std::any_of(parts.begin(), parts.end(), [this](Ref part) {
+    const Node& node = dag_[part];
+    return node.op == Op::exp || node.op == Op::cosh || node.op == Op::sinh || node.op == Op::pow ||
+           (node.op == Op::power && node.payload >= high_power);
+  });
+  return may_overflow_[atom.id] = result;
+}
+
+// Common factors of all terms are factored out, and terms are put over one denominator, except for divisors that may
+// overflow.
 Ref Expander::rebuild(const Polynomial& p) {
   if (p.empty()) return dag_.zero();
   std::map<Ref, std::int64_t> common;
@@ -221,6 +238,16 @@ Ref Expander::rebuild(const Polynomial& p) {
     for (const auto& [r, exponent] : here) {
       if (exponent < 0) common.try_emplace(r, 0).first->second = std::min(common[r], exponent);
     }
+  }
+  for (auto& [r, exponent] : common) {
+    if (exponent >= 0 || !may_overflow(r)) continue;
+    exponent = std::numeric_limits<std::int64_t>::min();  // the divisor that all terms have
+    for (const auto& term : p) {
+      const auto found = std::find_if(term.first.begin(), term.first.end(),
+                                      [atom = r](const Power& factor) { return factor.atom == atom; });
+      exponent = std::max(exponent, found == term.first.end() ? std::int64_t{0} : found->exponent);
+    }
+    exponent = std::min(exponent, std::int64_t{0});
   }
   Monomial front, inverse;
   for (const auto& [r, exponent] : common) {

@@ -57,11 +57,13 @@ class Expander {
   std::optional<Polynomial> replace_square(const Polynomial& p, Ref square, Ref other) const;
   Ref rebuild(const Polynomial& p);
   Ref rebuild_monomial(const Monomial& m, const Rational& coefficient);
+  bool may_overflow(Ref atom);
 
   Dag& dag_;
   std::size_t budget_;
   ProductBudget* effort_;
   std::unordered_map<std::uint32_t, Maybe> memo_;
+  std::unordered_map<std::uint32_t, bool> may_overflow_;
 };
 
 /// Expander::expand_or_keep for one expression.

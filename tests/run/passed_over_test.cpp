@@ -148,3 +148,19 @@ TEST_CASE(
     CHECK(pipeline::rerun(finished.simulation, fixed).estimate_note.find("narrow in the state") != std::string::npos);
   }
 }
+
+TEST_CASE("passed over: a quotient whose divisor overflows is the limit that it has as written") {
+  // x_ddot = -F, as 1 - c/cosh(1000) is 1.
+  for (const char* law : {"1 - c/cosh(z)", "1 - c/(1 + exp(z))", "1 - c*exp(-z) - c/exp(z)", "1 - c/(1 + (1000*z)^60)",
+                          "1 - c/sinh(z)^2 - c/sinh(z)"}) {
+    CAPTURE(std::string(law));
+    const test::FinishedRun finished = test::run_text(
+        "overflow",
+        std::string("[parameters]\nm = 1\nc = 0.5\nF = \"1 N\"\n[coordinates]\nx = \"m\"\n[definitions]\nz = "
+                    "\"x/(0.001[m])\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, "
+                    "0]\n[[force]]\non = \"P\"\nforce = [\"-F*(") +
+            law + ")\", 0, 0]\n[scene.default]\nt = [0, 1]\ninitial = { x = 1, x_dot = -0.1 }\n");
+    CHECK(finished.simulation.result.outcome == eom::Outcome::done);
+    CHECK(std::abs(finished.final("x") - 0.4) < 1e-9);
+  }
+}
