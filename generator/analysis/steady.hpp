@@ -39,7 +39,16 @@ struct NonsmoothTerm {
 };
 NonsmoothTerm find_nonsmooth_term(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
 
-/// Linearises at the state of the problem. Throws Error{stage "linearize"} if a term is not differentiable there.
+/// "the angles 321 of 'S' are singular at be = 1.5708" and what to do, if a chart of the model is singular at a state:
+/// the equations divide by a number that has no correct digit there. Empty if none is.
+struct SingularChart {
+  std::string what, remedy;
+  explicit operator bool() const { return !what.empty(); }
+};
+SingularChart find_singular_chart(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
+
+/// Linearises at the state of the problem. Throws Error{stage "linearize"} if a term is not differentiable there, or if
+/// the coordinates are singular.
 linear::Linearisation linearise_at_state(const SteadyProblem& problem, std::uint64_t seed);
 
 /// Rounds to binary64 for display. Values that vanish within the multiple-precision arithmetic become +0.

@@ -228,6 +228,11 @@ void require_not_ignored(const SteadyMotions& result, const SteadyRequest& reque
   }
 }
 
+/// Notes a chart that is singular where a start ended.
+void note_singular_chart(SteadyMotions& result, const linear::State<Precise>& z) {
+  if (!result.singular) result.singular = find_singular_chart(result.problem, z);
+}
+
 /// For a search without result: throws Error if the equations are undefined where its starts ended.
 void require_ends(const SteadyMotions& result) {
   const linear::SearchResult& search = result.search;
@@ -235,6 +240,12 @@ void require_ends(const SteadyMotions& result) {
   const SteadyProblem& p = result.problem;
   linear::State<Precise> z;
   for (const double x : search.failure_point) z.push_back(linear::number<Precise>(numeric::exact(x)));
+  if (result.singular) {
+    throw Error(command, p.derived->model.where(p.derived->model.scene(p.scene.name).span),
+                fmt::format("no equilibrium and no steady motion found: {} of the starts end where {}",
+                            search.failed_starts, result.singular.what),
+                result.singular.remedy);
+  }
   const NonsmoothTerm source = find_nonsmooth_term(p, z);
   throw Error(
       command, source.where,
@@ -246,7 +257,17 @@ void require_ends(const SteadyMotions& result) {
 void classify_stability(SteadyMotions& result, const SteadyRequest& request, const Kept& kept) {
   SteadyProblem& p = result.problem;
   const linear::StabilityTest test(*p.flow, *p.derived->mechanics.dag, kept.energies, kept.momenta);
+  if (result.search.failed_starts > 0) {
+    linear::State<Precise> z;
+    for (const double x : result.search.failure_point) z.push_back(linear::number<Precise>(numeric::exact(x)));
+    note_singular_chart(result, z);
+  }
   for (const linear::FoundPoint& point : result.search.points) {
+    if (const SingularChart chart = find_singular_chart(p, point.z)) {
+      note_singular_chart(result, point.z);
+      result.search.record_failure(chart.what, point.z);
+      continue;
+    }
     try {
       SteadyMotion motion{linear::linearise(*p.flow, point.z, p.setting, p.neighbours, request.seed), point.family, {}};
       if (motion.l.kind == linear::MotionKind::motion) continue;  // not steady in the coordinates of that point
@@ -262,7 +283,7 @@ void classify_stability(SteadyMotions& result, const SteadyRequest& request, con
 
 SteadyMotions steady_motions(const SteadyRequest& request) {
   SteadyMotions result{
-      steady_problem(command, request.model, request.scene, request.overrides, {}, request.seed), {}, {}, {}};
+      steady_problem(command, request.model, request.scene, request.overrides, {}, request.seed), {}, {}, {}, {}};
   SteadyProblem& p = result.problem;
   const model::Model& model = p.derived->model;
   try {

@@ -22,6 +22,10 @@ Precise singular<Precise>() {
   return tiny<Precise>(60);
 }
 
+/// A smaller pivot of M and A means that the coordinates are singular: it is the square of the distance from there, in
+/// units of the coordinates, and a state is known to 16 digits.
+constexpr int smallest_pivot_digits = 24;
+
 /// Most derivatives are 0.
 template <class T>
 void subtract(T& sum, const T& jacobian, const T& by) {
@@ -138,6 +142,10 @@ void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<
   }
   const Elimination<T> solver(K, singular<T>());
   require_domain(solver.rank() == n_ + Elimination<T>(A, singular<T>()).rank(), "the accelerations are not determined");
+  if constexpr (std::is_same_v<T, Precise>) {
+    require_domain(solver.smallest_pivot() > tiny<Precise>(smallest_pivot_digits),
+                   "the coordinates are singular there, or too close to where they are");
+  }
   const Matrix<T> y = solver.solve(right);
   std::vector<T> force;  // of the constraints, on the side of f
   for (std::size_t k = 0; k < m_; ++k) force.push_back(-y(n_ + k, 0));

@@ -68,3 +68,36 @@ TEST_CASE("linearize: nondifferentiable terms, contacts, unknown names and inval
   CHECK(contains(expect(2, folder, {"linearize", "cart_pendulum", "--at", "-1"}).err, "before the scene's start"));
   CHECK(contains(expect(2, folder, {"linearize", "cart_pendulum", "--at", "soon"}).err, "soon"));
 }
+
+TEST_CASE("linearize: a state at a singularity of its coordinates is refused, with other coordinates to take") {
+  const Folder folder;
+  // A satellite on a circle, held there by constraints that keep multipliers; axis e1 across the orbit at be = pi/2.
+  const auto satellite = [&](const std::string& rotation, const std::string& start) {
+    folder.write(
+        "satellite.toml",
+        "format = 1\n[[frame]]\nname = \"orbit\"\nrotation = { axis = \"E3\", angle = \"theta\" }\n[[body]]\nname = "
+        "\"S\"\nmass = 1\ninertia = { principal = [0.003, 0.004, 0.005] }\nposition = { spherical = [\"R\", \"phi\", "
+        "\"theta\"] }\nrotation = " +
+            rotation +
+            "\nrelative_to = \"orbit\"\n[[force]]\ncentral_gravity = { GM = 1, order = 2 }\n[[constraint]]\nname = "
+            "\"radius\"\nholonomic = \"R^2 - 1\"\n[[constraint]]\nname = \"plane\"\nholonomic = \"phi - pi/2 + "
+            "cos(phi)/10\"\n[[constraint]]\nname = \"rate\"\nvelocity = \"theta_dot - 1\"\n[scene.default]\ninitial = "
+            "{ " +
+            start + " }\n");
+  };
+  satellite("{ euler = \"321\", angles = [\"al\", \"be\", \"ga\"] }",
+            "R = 1, phi = \"pi/2\", theta_dot = 1, be = \"pi/2\"");
+  const std::string refused = expect(2, folder, {"linearize", "satellite.toml"}).err;
+  CHECK(contains(refused, "the angles 321 of 'S' are singular at be = 1.5708"));
+  CHECK(contains(refused, "such as euler = \"323\" or euler_parameters"));
+  // With these the same state has eigenvalues, and the entries of A are those of its inertia.
+  satellite("{ euler = \"323\", angles = [\"al\", \"be\", \"ga\"] }",
+            "R = 1, phi = \"pi/2\", theta_dot = 1, be = \"pi/2\"");
+  const Json other = document(folder, {"linearize", "satellite.toml"});
+  for (const Json& row : other["A"]) {
+    for (const Json& entry : row) CHECK(std::abs(entry.get<double>()) < 10);
+  }
+  satellite("{ euler = \"321\", angles = [\"al\", \"be\", \"ga\"] }", "R = 1, phi = \"pi/2\", theta_dot = 1, be = 1.5");
+  const Json found = document(folder, {"equilibria", "satellite.toml"});
+  for (const Json& point : found["points"]) CHECK(std::abs(std::cos(point["values"]["be"].get<double>())) > 1e-6);
+}

@@ -68,6 +68,7 @@ Json to_json(const analysis::SteadyMotions& found, const Options& options) {
           {"new_point_probability", to_json(found.search.new_point_probability())},
           {"further_members", found.search.further_members},
           {"refused", found.search.failed_starts},
+          {"singular", found.singular ? Json(found.singular.what) : Json(nullptr)},
           {"interrupted", found.search.interrupted},
           {"certificate", found.problem.certificate}};
 }
@@ -110,6 +111,10 @@ std::string text(const analysis::SteadyMotions& found, const Options& options) {
   if (found.search.failed_starts > 0) {
     out += fmt::format("\nrefused           {} of the starts ended where the equations have no slope: {}\n",
                        found.search.failed_starts, found.search.reason);
+  }
+  if (found.singular) {
+    out += fmt::format("\nnot examined      {}: motions there need other coordinates; {}\n", found.singular.what,
+                       found.singular.remedy);
   }
   return out +
          fmt::format(
