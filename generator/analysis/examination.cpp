@@ -10,6 +10,7 @@
 #include "conservation/conserved.hpp"
 #include "derive/formulations/lagrange.hpp"
 #include "pipeline/charts.hpp"
+#include "program/kinks.hpp"
 #include "reading/reading.hpp"
 #include "symbolic/decimal.hpp"
 #include "symbolic/evaluate.hpp"
@@ -21,6 +22,22 @@ print::PrintedFormula item_of(const mechanics::Mechanics& m, symbolic::Ref expre
   return print::render_expression(m, "", "", expression);
 }
 std::string shown(const mechanics::Mechanics& m, symbolic::Ref expression) { return item_of(m, expression).text; }
+
+/// Kinks that runs do not locate, because the modes have no place for them.
+void add_further_kinks(const mechanics::Mechanics& m, const system::EquationSystem& system, Examination& found) {
+  system::EquationSystem copy = system;
+  const program::FrozenKinks kinks = program::freeze_kink_branches(copy);
+  if (kinks.beyond.empty()) return;
+  std::string list;
+  for (const program::Kink& kink : kinks.beyond)
+    list += fmt::format("{}{} at {} = 0", list.empty() ? "" : ", ", program::name(kink), shown(m, kink.value));
+  found.left_out.push_back(
+      {"kinks in runs: " + list,
+       fmt::format("runs end their steps at {} surfaces of abs, sign, min, max and if at most, and the equations have "
+                   "{}; steps cross these, with more steps and less accuracy",
+                   program::max_kinks, kinks.frozen.size() + kinks.beyond.size()),
+       false});
+}
 
 std::string treatment_of(const mechanics::Mechanics& m, const mechanics::Constraint& c, bool joint) {
   std::string use = "keeps a multiplier";
@@ -170,6 +187,7 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
   for (const conservation::ConservedQuantity& c : conservation::conserved_quantities(m, system))
     found.conserved.push_back({c.name, c.title, item_of(m, c.expression), conservation::name(c.certainty)});
   add_singular(m, found);
+  add_further_kinks(m, system, found);
 }
 
 }  // namespace

@@ -330,7 +330,7 @@ FunctionExpressions AbiFunctions::events() {
   bool solved = false;
   for (const system::Event& event : system_.events)
     function.results[0].entries.push_back(substitute_solution(event.value, solved));
-  for (const Kink& kink : kinks_) function.results[0].entries.push_back(kink.value);
+  for (const Kink& kink : kinks()) function.results[0].entries.push_back(kink.value);
   for (const ContactIndicators& watch : friction_.indicators) {
     solved = true;
     for (const Ref value : {watch.slip, watch.above, watch.below, watch.hold, watch.margin})

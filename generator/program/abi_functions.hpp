@@ -57,7 +57,9 @@ class AbiFunctions {
   /// contact (friction.hpp).
   FunctionExpressions events();
 
-  const std::vector<Kink>& kinks() const { return kinks_; }
+  const std::vector<Kink>& kinks() const { return kinks_.frozen; }
+  /// Kinks beyond those whose branches can be frozen.
+  const std::vector<Kink>& further_kinks() const { return kinks_.beyond; }
 
   const system::EquationSystem& system() const { return system_; }
 
@@ -71,7 +73,7 @@ class AbiFunctions {
   Ref substitute_solution(Ref expression, bool& solved);
 
   system::EquationSystem system_;
-  std::vector<Kink> kinks_;
+  FrozenKinks kinks_;
   std::vector<Ref> modeless_M_, modeless_f_, modeless_A_;  // for functions without a mode argument
   std::size_t n_, m_;
   std::vector<Ref> qdot_, qddot_symbol_, lambda_symbol_;

@@ -2,9 +2,12 @@
 #include "program/kinks.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include "symbolic/calculus.hpp"
+#include "symbolic/polynomial.hpp"
 #include "system/expressions.hpp"
 
 namespace eomgen::program {
@@ -23,10 +26,13 @@ class KinkFreezing {
 
   /// New kinks are collected while `collects` is true; later expressions only share known kinks.
   bool collects = true;
-  std::vector<Kink> kinks;
+  FrozenKinks found;
 
   /// |value| and the like are no kinks of their own: the sign of value is monitored already.
-  void leave(Ref value) { left_.insert(left_.end(), {value, dag_.neg(value)}); }
+  void leave(Ref value) {
+    const auto [own, opposite] = both_signs(value);
+    left_.insert(left_.end(), {own, opposite});
+  }
 
   Ref operator()(Ref expression) {
     for (const Ref r : dag_.reachable({expression})) {
@@ -39,24 +45,43 @@ class KinkFreezing {
         changed = changed || a[i] != node.args[i];
       }
       Ref result = changed ? symbolic::with_operands(dag_, node, a) : r;
-      if (is_kink(node.op)) result = held(node.op, a, result);
+      if (is_kink(node.op)) result = held(node, a, result);
       memo_.emplace(r.id, result);
     }
     return memo_.at(expression.id);
   }
 
  private:
-  Ref held(Op op, const std::array<Ref, 4>& a, Ref live) {
-    const Ref value = op == Op::abs || op == Op::sign ? a[0] : dag_.sub(a[0], a[1]);
-    const auto known = std::find_if(kinks.begin(), kinks.end(), [&](const Kink& k) { return k.value == value; });
-    const auto index = static_cast<std::uint32_t>(known - kinks.begin());
-    if (known == kinks.end()) {
-      const bool left = std::find(left_.begin(), left_.end(), value) != left_.end();
-      if (!collects || left || kinks.size() == max_kinks || !moves(value)) return live;
-      kinks.push_back({op, value});
+  /// The value whose sign selects the branch.
+  Ref surface(Op op, Ref first, Ref second) {
+    return op == Op::abs || op == Op::sign ? first : dag_.sub(first, second);
+  }
+
+  Ref held(const Node& node, const std::array<Ref, 4>& a, Ref live) {
+    const Op op = node.op;
+    const Ref value = surface(op, a[0], a[1]);
+    const auto [own, opposite] = both_signs(value);
+    const auto of_value = [own = own, opposite = opposite](const Surface& s) {
+      return s.value == own || s.value == opposite;
+    };
+    auto known = std::find_if(surfaces_.begin(), surfaces_.end(), of_value);
+    if (known == surfaces_.end()) {
+      const bool left = std::find(left_.begin(), left_.end(), own) != left_.end();
+      if (!collects || left || !moves(value)) return live;
+      const bool fits = found.frozen.size() < max_kinks;
+      surfaces_.push_back({own, fits ? std::optional(found.frozen.size()) : std::nullopt});
+      if (fits)
+        found.frozen.push_back({op, value});
+      else
+        found.beyond.push_back({op, surface(op, node.args[0], node.args[1])});
+      known = surfaces_.end() - 1;
     }
+    if (!known->place) return live;
+    // The side of a surface is that of the value that was found first.
+    const auto index = static_cast<std::uint32_t>(*known->place);
     const Ref zero = dag_.zero(), side = dag_.symbol({SymbolKind::branch, index, 0});
-    const Ref chosen = dag_.select(side, zero, side, dag_.select(zero, side, side, value));
+    const Ref first = dag_.select(side, zero, side, dag_.select(zero, side, side, found.frozen[index].value));
+    const Ref chosen = known->value == own ? first : dag_.neg(first);
     switch (op) {
       case Op::abs: return dag_.select(chosen, zero, dag_.neg(a[0]), a[0]);
       case Op::sign: return dag_.call(Op::sign, chosen);
@@ -66,13 +91,24 @@ class KinkFreezing {
     }
   }
 
+  /// The expanded forms of a value and of its opposite, which are the same for all ways to write them.
+  std::pair<Ref, Ref> both_signs(Ref value) {
+    return {symbolic::expand_or_keep(dag_, value), symbolic::expand_or_keep(dag_, dag_.neg(value))};
+  }
+
   bool moves(Ref value) const {
     const std::vector<Symbol> symbols = dag_.symbols({value});
     return std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind != SymbolKind::parameter; });
   }
 
+  struct Surface {
+    Ref value;                         // expanded
+    std::optional<std::size_t> place;  // among the frozen kinks; nothing beyond the largest number of them
+  };
+
   Dag& dag_;
-  std::vector<Ref> left_;
+  std::vector<Ref> left_;  // expanded
+  std::vector<Surface> surfaces_;
   std::unordered_map<std::uint32_t, Ref> memo_;
 };
 
@@ -88,9 +124,9 @@ const char* name(const Kink& kink) {
   }
 }
 
-bool has_kinks(system::EquationSystem system) { return !freeze_kink_branches(system).empty(); }
+bool has_kinks(system::EquationSystem system) { return !freeze_kink_branches(system).frozen.empty(); }
 
-std::vector<Kink> freeze_kink_branches(system::EquationSystem& s) {
+FrozenKinks freeze_kink_branches(system::EquationSystem& s) {
   KinkFreezing hold(*s.dag);
   using system::ExpressionRole;
   system::for_each_expression(s, [&hold](Ref& r, ExpressionRole part) {
@@ -99,7 +135,7 @@ std::vector<Kink> freeze_kink_branches(system::EquationSystem& s) {
     r = hold(r);
     if (part == ExpressionRole::slip) hold.leave(r);
   });
-  return std::move(hold.kinks);
+  return std::move(hold.found);
 }
 
 }  // namespace eomgen::program

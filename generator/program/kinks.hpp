@@ -18,6 +18,13 @@ struct Kink {
   symbolic::Ref value;  // changes sign at the surface; may contain sides of earlier ones
 };
 
+/// Values of both signs (x - c, c - x) have one surface.
+struct FrozenKinks {
+  std::vector<Kink> frozen;  // at most max_kinks
+  std::vector<Kink> beyond;  // further ones, whose branches follow the state: steps of a run are not cut there; their
+                             // values contain no sides
+};
+
 /// The name of the function that has the kink: "abs", "sign", "min", "max", "if".
 const char* name(const Kink& kink);
 
@@ -30,6 +37,6 @@ bool has_kinks(system::EquationSystem system);
 /// Makes the branches of the equations of motion and of the contact laws depend on sides, and equal branches in
 /// reactions, outputs and events. Surfaces of parameters alone, surfaces of mode changes of contacts, and surfaces
 /// beyond max_kinks are unchanged.
-std::vector<Kink> freeze_kink_branches(system::EquationSystem& system);
+FrozenKinks freeze_kink_branches(system::EquationSystem& system);
 
 }  // namespace eomgen::program

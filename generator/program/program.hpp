@@ -157,6 +157,7 @@ struct Program {
   std::vector<std::string> events;     // events of the model; they precede others in the array g
   std::vector<std::string>
       kinks;  // "abs", "if": after them the surfaces whose branches `mode` can hold, then 5 per contact
+  std::vector<std::string> further_kinks;  // beyond the largest number of them: runs do not locate their surfaces
   std::size_t active_constraints = 0;
   std::vector<ContactInfo> contacts;
   std::optional<Taylor> taylor;         // if requested

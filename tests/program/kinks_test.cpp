@@ -93,6 +93,34 @@ TEST_CASE("kinks: a frozen branch continues beyond its surface, and so does its 
   }
 }
 
+TEST_CASE("kinks: x - c and c - x are one surface, however they are written") {
+  const auto system = one_mass([](symbolic::Dag& dag, Ref x, Ref v, Ref, Ref) {
+    const Ref half = dag.constant(symbolic::Rational(1) / 2);
+    // |x - 1/2| + 3 sign(1/2 - x) + 5 max(x, 1/2) + v if(1/2 - (v + x) + v < 0, 1, 2)
+    Ref f = dag.add(dag.call(Op::abs, dag.sub(x, half)), dag.mul(dag.integer(3), dag.call(Op::sign, dag.sub(half, x))));
+    f = dag.add(f, dag.mul(dag.integer(5), dag.call(Op::max, x, half)));
+    const Ref written = dag.add(dag.sub(half, dag.add(v, x)), v);
+    return dag.add(f, dag.mul(v, dag.select(written, dag.zero(), dag.one(), dag.integer(2))));
+  });
+  const auto held = build(system, {"events"});
+  REQUIRE(held.kinks.size() == 1);
+  auto arguments = arguments_at<cln::cl_R>(system, 1);
+  const cln::cl_R v = arguments.x[1], half = cln::cl_R(1) / 2;
+  const auto g = [&] { return program::interpret(held.functions[1], arguments, 60).results[0][0]; };
+  for (const int side : {-1, 1}) {
+    for (const cln::cl_RA& x : {cln::cl_RA("1/5"), cln::cl_RA("9/10")}) {
+      arguments.x[0] = x;
+      arguments.side = {};
+      const bool above = (g() > 0) == (x > half);  // whether the surface is positive above 1/2
+      arguments.side = {above ? side : -side};
+      const auto dx = program::interpret(held.functions[0], arguments, 60).results[0];
+      const cln::cl_R force =
+          side > 0 ? cln::cl_R(x - half - 3 + 5 * x + v) : cln::cl_R(half - x + 3 + 5 * half + 2 * v);
+      CHECK(difference({dx[1]}, {force}) < tolerances::same_value);
+    }
+  }
+}
+
 TEST_CASE("kinks: those beyond the bits of mode follow the state") {
   const auto system = one_mass([](symbolic::Dag& dag, Ref x, Ref, Ref, Ref) {
     Ref sum = dag.zero();
@@ -102,6 +130,7 @@ TEST_CASE("kinks: those beyond the bits of mode follow the state") {
   });
   const auto plain = build(system), held = build(system, {"events"});
   CHECK(held.kinks.size() == program::max_kinks);
+  CHECK(held.further_kinks == std::vector<std::string>(14 - program::max_kinks, "abs"));
   const auto arguments = arguments_at<cln::cl_R>(system, 3);
   CHECK(difference(program::interpret(held.functions[0], arguments, 60).results[0],
                    program::interpret(plain.functions[0], arguments, 60).results[0]) < tolerances::same_value);
@@ -123,7 +152,7 @@ TEST_CASE("kinks: those of a contact law are frozen, except the speed whose sign
   contact.dynamic_coefficient = dag.add(speed, rough);
   s.contacts = {contact};
   CHECK(program::has_kinks(s));
-  const std::vector<program::Kink> kinks = program::freeze_kink_branches(s);
+  const std::vector<program::Kink> kinks = program::freeze_kink_branches(s).frozen;
   REQUIRE(kinks.size() == 1);
   CHECK(dag.call(Op::abs, kinks[0].value) == rough);
   const auto uses_side = [&](Ref r) {
