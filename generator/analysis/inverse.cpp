@@ -165,6 +165,7 @@ class Prescribed {
                                    scene_.parameters, !scene_.clock.breakpoints.empty());
     if (!jumps.has_time_kinks()) return;
     for (const eom::hybrid::Breakpoint& at : scene_.clock.breakpoints) {
+      if (at.before <= scene_.t0 || at.after >= scene_.t1) continue;  // before or behind the motion
       std::vector<double> before, after, x = integrals_;
       const double side = (at.before + at.after) / 2;
       for (const run::Signal& input : scene_.inputs)

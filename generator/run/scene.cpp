@@ -119,10 +119,8 @@ std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene&
 }
 
 // Functions of time alone, and the jumps that they cause.
-void resolve_clock(const Mechanics& m, const system::EquationSystem& system,
-                   const std::vector<std::optional<Ref>>& expressions, Scene& result) {
+void resolve_clock(const Mechanics& m, const system::EquationSystem& system, Scene& result) {
   for (Signal& input : result.inputs) input.set_parameters(result.parameters);
-  result.time = time_functions(system, expressions);
   result.clock =
       eom::hybrid::analyse_time_functions(result.time, result.parameters, input_signals(result), result.t0, result.t1);
   eom::hybrid::JumpFunctions jumps = jump_functions(system);
@@ -275,11 +273,15 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
                            : guess != problem.guess.end() ? guess->second
                                                           : 0;
   }
+  for (Signal& input : result.inputs) input.set_parameters(result.parameters);
+  result.time = time_functions(system, inputs);
+  problem.t0 =
+      eom::hybrid::time_behind_start(result.time, result.parameters, input_signals(result), result.t0, result.t1);
   solve_start(problem);
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     if (const auto& start_of = m.model->parameters[i].initial_value_of) result.parameters[i] = problem.q[*start_of];
   }
-  resolve_clock(m, system, inputs, result);  // parameters may depend on the start
+  resolve_clock(m, system, result);  // parameters may depend on the start
   result.q = problem.q;
   result.qdot = problem.qdot;
   resolve_ranges(m, value, result);

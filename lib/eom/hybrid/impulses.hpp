@@ -44,7 +44,8 @@ inline Reason cross_impulse(RunContext& context, const Segment& before, Result& 
   const double* at_end = context.model.inputs(before.end);
   const std::vector<double> u(at_end, at_end + std::max<std::size_t>(1, problem.inputs.size()));
   const std::vector<double> x = total.x;
-  const double side = context.model.set_segment_time(std::nextafter(before.next, problem.t1));
+  const double side = context.model.segment_time();
+  if (before.next < problem.t1) context.model.set_segment_time(std::nextafter(before.next, problem.t1));
   const Impulse impulse = context.events.jumps().cross_time_kink({before.end, x, u.data()}, before.next,
                                                                  context.model.inputs(before.next), total.x);
   Reason open = impulse.undetermined;
@@ -72,7 +73,7 @@ inline Reason cross_impulse(RunContext& context, const Segment& before, Result& 
                            : !impulse.what.empty() ? impulse.what
                            : impulse.velocities    ? "constraints"
                                                    : "potential";
-  if (event) event({before.next, "impulse", what, done}, total.x);
+  if (event) event({std::min(before.next, problem.t1), "impulse", what, done}, total.x);
   return {};
 }
 

@@ -42,6 +42,8 @@ class Integration {
   const MethodChoice& choice() const { return choice_; }  // of the solver auto, with its changes in the run
   /// The reason for the end, if the outcome alone does not give it.
   const Reason& reason() const { return reason_; }
+  /// The time at which functions of time belong to the state of the end: that of the end, or beside a kink there.
+  double end_time() const { return end_time_; }
   /// The time at which fixed steps first skipped a force that is narrow in the state.
   std::optional<double> missed_narrow_force() const { return missed_narrow_force_; }
   /// The first time at which a narrow force in a step could not be excluded.
@@ -49,6 +51,7 @@ class Integration {
 
  private:
   bool start(Result& total, const OnEvent& event);
+  void cross_kink_at_end(const Segment& last, Result& total, const OnEvent& event);
   void integrate_until(double end, Options options, const Observer& observer, const OnEvent& event, Result& total);
   bool observe_step(const StepView& step, const Observer& observer, const OnEvent& event, bool fixed);
   bool step_over_singularity(const Result& from, double end, const Options& options, std::size_t& evaluations);
@@ -67,6 +70,7 @@ class Integration {
   MethodChoice choice_;
   std::optional<double> missed_narrow_force_;
   double fixed_step_ = 0;  // of the run
+  double end_time_ = 0;
   bool stopped_ = false, exchange_due_ = false;
   Reason jump_;                           // a jump with undetermined consequences
   Reason reason_;                         // of the end
@@ -123,20 +127,30 @@ inline Result Integration::run(const Options& options, const Observer& observer,
     reason_ = explain(context_, reason_, jump_, total);
     if (total.outcome != Outcome::done) break;
   }
+  if (total.outcome == Outcome::done) cross_kink_at_end(all.back(), total, event);
+  end_time_ = total.t;
+  if (total.outcome == Outcome::done) total.t = problem_.t1;
+  if (total.t == problem_.begin()) total.t = problem_.t0;
   total.detail = sentence(reason_);
   return total;
+}
+
+/// Applies the impulse of a kink in time at the end of the run. If its effect is undetermined, the run ends before it.
+inline void Integration::cross_kink_at_end(const Segment& last, Result& total, const OnEvent& event) {
+  if (last.next > last.end && !begin_segment(context_, last, total, event)) return;
+  total.t = last.end;
 }
 
 /// False: the run ends here.
 inline bool Integration::start(Result& total, const OnEvent& event) {
   total.x = context_.own_start();
-  total.t = problem_.t0;
+  total.t = problem_.begin();
   for (const std::string& whose : context_.start_charts(total.t, total.x)) {
-    if (event) event({total.t, "chart", whose}, total.x);
+    if (event) event({problem_.t0, "chart", whose}, total.x);
   }
   context_.rows.start(total.t, total.x.data(), context_.model.inputs(total.t));
   for (const ModeEvent& recorded : context_.start_contacts(total.t, total.x)) {
-    if (event) event({recorded.t, recorded.kind, recorded.name}, total.x);
+    if (event) event({problem_.t0, recorded.kind, recorded.name}, total.x);
   }
   if (context_.contacts && context_.contacts->start_code() != 0) {
     total.outcome = outcome_of_abi_code(context_.contacts->start_code());

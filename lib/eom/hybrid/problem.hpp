@@ -30,7 +30,9 @@ struct WatchedEvent {
   bool stop = false;
 };
 
-/// The two times between which a kink in time is crossed. They differ by rounding, and each is strictly on one side.
+/// The two times between which a kink in time is crossed. They differ by rounding, and each is strictly on one side. At
+/// a kink at the start of a run, `before` is the start, and the motion begins at `after`. At one at its end, `after` is
+/// the end or beyond it.
 struct Breakpoint {
   double before = 0, after = 0;
 };
@@ -148,7 +150,7 @@ struct Problem {
   std::vector<bool> starts_open = {};     // per contact: is open at the start
   std::vector<WatchedEvent> events = {};  // all events of the model
   TimeFunctions time = {};                // from these a run computes kink times and step bounds; empty: both are given
-  std::vector<Breakpoint> breakpoints = {};  // inside the span, ascending; without the jumps of tables
+  std::vector<Breakpoint> breakpoints = {};  // in the span, ascending; without the jumps of tables
   std::vector<StepBound> bounds = {};        // on steps, to resolve functions of time
   JumpFunctions jumps = {};
   BoundedFunctions bounded = {};
@@ -165,6 +167,11 @@ struct Problem {
   std::function<void(double t, std::span<const double> y)> row = {};
   std::function<void(double fraction)> progress = {};
   const std::atomic<bool>* interrupt = nullptr;
+
+  /// The time at which the motion begins: t0, or behind a kink there.
+  double begin() const {
+    return !breakpoints.empty() && breakpoints.front().before <= t0 ? breakpoints.front().after : t0;
+  }
 
   std::size_t n() const { return code->free.size(); }
   /// Length of the state: coordinates, rates, integrals, the work done since the start.

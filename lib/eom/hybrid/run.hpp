@@ -79,7 +79,7 @@ inline RunResult run(const Problem& problem) {
   RunResult result;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   result.reason = integration.reason();
-  monitor.finish(end, result.reason);
+  const double at = monitor.finish(end, moves ? integration.end_time() : problem.begin(), result.reason);
   monitor.report(result);
   result.choice = integration.choice();
   result.solver = result.choice.method != nullptr ? result.choice.method : problem.solver;
@@ -92,8 +92,8 @@ inline RunResult run(const Problem& problem) {
   result.projection_work = context.projection.work();
   result.impulse_work = context.impulse_work;
   result.outputs.resize(problem.code->output_names.size());
-  context.outputs(end.t, end.x.data(), result.outputs);
-  result.state = context.own_state(end.t, end.x);
+  context.outputs(at, end.x.data(), result.outputs);
+  result.state = context.own_state(at, end.x);
   require_parameters(problem, result);
   if (const std::optional<double> missed_narrow_force = integration.missed_narrow_force())
     result.error.warning = {EstimateWarning::Kind::missed_narrow_force, *missed_narrow_force};

@@ -34,7 +34,7 @@ struct RunContext {
         events(asked, model, contacts),
         start(own_start()),
         g(events.size()) {
-    start_charts(problem.t0, start);
+    start_charts(problem.begin(), start);
     if (problem.code->contacts.empty()) return;
     contacts = std::make_unique<ContactModes>(
         problem, model, rows, [this](double t, std::span<const double> before, std::span<const double> after) {
@@ -42,7 +42,7 @@ struct RunContext {
           impulse_work += outputs.energy(t, after.data()) - energy;
         });
     std::vector<double> x = start;
-    start_contacts(problem.t0, x);  // sets the mode for observers of the start
+    start_contacts(problem.begin(), x);  // sets the mode for observers of the start
   }
   RunContext(const RunContext&) = delete;
   RunContext& operator=(const RunContext&) = delete;

@@ -50,9 +50,11 @@ class RowWriter {
   /// Queues the row of an event until the remaining rows of its step are written.
   void event(double t, std::span<const double> x) { pending_.emplace_back(t, std::vector<double>(x.begin(), x.end())); }
 
-  void row(double t, const double* x) {
+  void row(double t, const double* x) { row(t, x, t); }
+  /// at: the time at which functions of time are evaluated, which differs from t beside a kink in time.
+  void row(double t, const double* x, double at) {
     if (!any() || !problem_.row) return;
-    context_.outputs(t, x, y_);
+    context_.outputs(at, x, y_);
     problem_.row(t, y_);
     last_ = t;
   }
@@ -87,8 +89,8 @@ class RunMonitor {
         shift_(problem.invariants.size()) {
     for (const Invariant& invariant : problem.invariants) drifts_.emplace_back(invariant.name);
     const std::vector<double> x = context.start;
-    observe(problem.t0, x.data());
-    rows_.row(problem.t0, x.data());
+    observe(problem.begin(), x.data());
+    rows_.row(problem.t0, x.data(), problem.begin());
   }
 
   bool step(const StepView& view) {
@@ -114,8 +116,9 @@ class RunMonitor {
   }
 
   /// Ends the result with the previous step if a coordinate left its range, or with the last row if the run was
-  /// interrupted between two rows. The end is the last row, unless it is already on the grid.
-  void finish(Result& end, Reason& reason) {
+  /// interrupted between two rows. The end is the last row, unless it is already on the grid. at: the time at which
+  /// functions of time are evaluated there. Returns that of the new end.
+  double finish(Result& end, double at, Reason& reason) {
     if (interrupted_) {
       end.outcome = Outcome::interrupted;
       reason = {Reason::Kind::rows, end_t_};
@@ -125,10 +128,11 @@ class RunMonitor {
       reason = *left_;
     }
     if (interrupted_ || left_) {
-      end.t = end_t_;
+      end.t = at = end_t_;
       end.x = end_x_;
     }
-    if (rows_.any() && end.t != rows_.last()) rows_.row(end.t, end.x.data());
+    if (rows_.any() && end.t != rows_.last()) rows_.row(end.t, end.x.data(), at);
+    return at;
   }
 
   void report(RunResult& result) const {

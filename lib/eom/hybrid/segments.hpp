@@ -30,7 +30,8 @@ inline std::vector<FinerSteps> finer_steps(const Problem& problem) {
 
 /// An interval between two times at which something jumps or fixed steps change their size.
 struct Segment {
-  double end, next;  // `next`: start of the following segment, beyond `end` by rounding at a kink in time
+  double end, next;  // `next`: start of the following segment, beyond `end` by rounding at a kink in time; of the last
+                     // segment beyond `end` if a kink lies at the end of the run
   double step;       // of fixed steps
 };
 
@@ -52,16 +53,16 @@ inline std::vector<Segment> segments(const Problem& problem) {
   std::sort(result.begin(), result.end(), [](const Segment& a, const Segment& b) { return a.end < b.end; });
   std::size_t kept = 0;
   for (const Segment& segment : result) {
-    if (segment.next >= problem.t1 || segment.end <= problem.t0) continue;
+    if (segment.end <= problem.begin() || segment.end >= problem.t1) continue;
     if (kept > 0 && segment.end <= result[kept - 1].next)
       result[kept - 1].next = std::max(result[kept - 1].next, segment.next);
     else
       result[kept++] = segment;
   }
   result.resize(kept);
-  result.push_back({problem.t1, problem.t1, problem.fixed_step});
+  if (result.empty() || result.back().next < problem.t1) result.push_back({problem.t1, problem.t1, problem.fixed_step});
   if (problem.fixed_step > 0) {
-    double from = problem.t0;
+    double from = problem.begin();
     for (Segment& segment : result) {
       for (const auto& [begin, end, step] : finer) {
         if (from < end && segment.end > begin) segment.step = std::min(segment.step, step);

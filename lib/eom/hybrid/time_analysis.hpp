@@ -22,7 +22,7 @@
 namespace eom::hybrid {
 
 struct TimeAnalysis {
-  std::vector<Breakpoint> breakpoints;         // inside the span, ascending; without the jumps of tables
+  std::vector<Breakpoint> breakpoints;         // in the span, ascending; without the jumps of tables
   std::vector<StepBound> bounds;               // empty: no function is narrow compared with the span
   std::optional<double> unresolved_from = {};  // from here on a condition on time changes too often to be resolved
 };
@@ -41,19 +41,20 @@ class TimeAnalyser {
 
   TimeAnalysis run() {
     if (functions_.empty()) return {};
-    for (const Signal& input : inputs_) {
-      for (const double t : input.times) {
-        if (t > t0_ && t < t1_) cuts_.push_back({t, t});
-      }
-    }
-    merge_overlapping(cuts_);
-    for (const expressions::Table& surface : functions_.surfaces) find_kinks(surface);
+    find_breakpoints();
     for (const expressions::Table& term : functions_.terms) bound_steps(expressions::Code(term, parameters_));
     const auto narrow =
         std::min_element(bounds_.begin(), bounds_.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
     if (narrow == bounds_.end() || narrow->step >= (t1_ - t0_) / 2) bounds_.clear();
     std::erase_if(cuts_, [&](const Breakpoint& b) { return b.before == b.after; });
     return {std::move(cuts_), std::move(bounds_), unresolved_from_};
+  }
+
+  /// The time at which the motion begins: t0, or behind a kink there.
+  double begin() {
+    if (functions_.surfaces.empty() || !(t1_ > t0_)) return t0_;
+    find_breakpoints();
+    return !cuts_.empty() && cuts_.front().before <= t0_ ? cuts_.front().after : t0_;
   }
 
  private:
@@ -71,6 +72,18 @@ class TimeAnalyser {
     double a, b, unresolved;
     bool operator<(const Cell& other) const { return unresolved < other.unresolved; }
   };
+
+  void find_breakpoints() {
+    for (const Signal& input : inputs_) {
+      for (const double t : input.times) {
+        if (t > t0_ && t < t1_) cuts_.push_back({t, t});
+      }
+    }
+    merge_overlapping(cuts_);
+    for (const expressions::Table& surface : functions_.surfaces) find_kinks(surface);
+    find_kink_at_start();
+    find_kink_at_end();
+  }
 
   static void merge_overlapping(std::vector<Breakpoint>& breakpoints) {
     std::sort(breakpoints.begin(), breakpoints.end(),
@@ -187,6 +200,70 @@ class TimeAnalyser {
     }
   }
 
+  /// The distance within which a kink coincides with time t. It is not 0 at t = 0, because powers of small times have
+  /// no binary64 value.
+  double coincidence(double t) const {
+    return std::max(4 * std::numeric_limits<double>::epsilon() * std::abs(t), 1e-30 * (t1_ - t0_));
+  }
+
+  /// The sign of a surface at t in the piece that contains `within`.
+  int sign_at(Code& code, double t, double within) {
+    code.freeze(at(within, within));
+    const std::size_t operands = code.roots();
+    double g = code.value(at(t, within), 0);
+    if (operands == 2) g -= code.value(at(t, within), 1);
+    return g > 0 ? 1 : g < 0 ? -1 : 0;
+  }
+
+  /// The time between `other` and `inside`, as close to `other` as possible, at which the surface has the sign that it
+  /// has at `inside`.
+  double nearest_with_sign(Code& code, double other, double inside, int sign) {
+    for (double good = inside;;) {
+      const double m = good + (other - good) / 2;
+      if (m == good || m == other || std::abs(good - other) < 1e-40 * (t1_ - t0_)) return good;
+      (sign_at(code, m, inside) == sign ? good : other) = m;
+    }
+  }
+
+  /// A kink at the start is crossed before the motion begins: the surfaces have the signs of the first piece.
+  void find_kink_at_start() {
+    const auto later = std::find_if(cuts_.begin(), cuts_.end(),
+                                    [&](const Breakpoint& b) { return b.before > t0_ + coincidence(t0_); });
+    const double from = later == cuts_.begin() ? t0_ : std::max(t0_, std::prev(later)->after);
+    const double inside = from + ((later == cuts_.end() ? t1_ : later->before) - from) / 2;
+    double begin = from;
+    for (const expressions::Table& surface : functions_.surfaces) {
+      Code code(surface, parameters_);
+      const int sign = sign_at(code, inside, inside);
+      if (sign == 0 || sign_at(code, from, inside) == sign) continue;
+      const double behind = nearest_with_sign(code, from, inside, sign);
+      if (behind <= from + coincidence(t0_)) begin = std::max(begin, behind);  // else the search for kinks was given up
+    }
+    cuts_.erase(cuts_.begin(), later);
+    if (begin > t0_) cuts_.insert(cuts_.begin(), {t0_, begin});
+  }
+
+  /// A kink at the end is part of the run.
+  void find_kink_at_end() {
+    const auto at_end = std::find_if(cuts_.begin(), cuts_.end(),
+                                     [&](const Breakpoint& b) { return b.after >= t1_ - coincidence(t1_); });
+    const double from = at_end == cuts_.begin() ? t0_ : std::prev(at_end)->after;
+    double before = at_end == cuts_.end() ? t1_ : at_end->before,
+           after = at_end == cuts_.end() ? t1_ : std::prev(cuts_.end())->after;
+    const double inside = from + (before - from) / 2, beyond = t1_ + coincidence(t1_);
+    for (const expressions::Table& surface : functions_.surfaces) {
+      Code code(surface, parameters_);
+      const int sign = sign_at(code, inside, inside), behind = sign_at(code, beyond, inside);
+      if (sign == 0 || behind * sign >= 0) continue;
+      const double last = nearest_with_sign(code, beyond, inside, sign);
+      if (last < t1_ - 2 * coincidence(t1_)) continue;  // the search for kinks was given up
+      before = std::min(before, last);
+      after = std::max(after, nearest_with_sign(code, inside, beyond, behind));
+    }
+    cuts_.erase(at_end, cuts_.end());
+    if (after > before) cuts_.push_back({std::min(before, std::nextafter(t1_, t0_)), std::max(after, t1_)});
+  }
+
   void record_unresolved(double t) {
     if (!unresolved_from_) unresolved_from_ = t;
   }
@@ -258,6 +335,12 @@ class TimeAnalyser {
   std::vector<double> at_;
   std::vector<SlopedInterval> box_;
 };
+
+/// The time at which a motion from t0 to t1 begins: t0, or behind a kink there.
+inline double time_behind_start(const TimeFunctions& functions, std::span<const double> parameters,
+                                const std::vector<Signal>& inputs, double t0, double t1) {
+  return TimeAnalyser(functions, parameters, inputs, t0, t1).begin();
+}
 
 /// Analyses functions of time with these parameters and inputs. Only inputs that are tables are variables; others are
 /// part of the functions.
