@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "analysis/impulse_in_digits.hpp"
 #include "bench/libraries.hpp"
 #include "error.hpp"
 #include "run/integration.hpp"
@@ -23,8 +24,9 @@ constexpr int fewest_digits = 8;    // required of the reference solution
   throw Error("bench", {}, "there is no reference for this scene: " + what, remedy);
 }
 
-/// Reports before any measurement if there can be no reference solution.
-void require_smooth(const Simulation& simulation, const run::RunRequest& request) {
+/// The run before any measurement: reports if there can be no reference solution. Returns the times at which supports
+/// give an impulse.
+std::vector<double> require_smooth(const Simulation& simulation, const run::RunRequest& request) {
   if (!simulation.program.contacts.empty())
     unsupported("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
   for (const run::Signal& signal : simulation.scene.inputs) {
@@ -36,50 +38,52 @@ void require_smooth(const Simulation& simulation, const run::RunRequest& request
   eom::Options options;
   options.fixed_step = simulation.scene.step;
   options.interrupt = request.interrupt;
-  const eom::Result end = trial.run(options, {});
-  for (const std::size_t crossings : trial.kink_crossings()) {
-    if (crossings > 0)
-      unsupported("the motion crosses a kink (abs, sign, min, max, if)",
-                  "shorten the run (--t-end), or smooth the law");
-  }
-  if (end.outcome == eom::Outcome::done) return;
+  std::vector<double> impulses;
+  const eom::Result end = trial.run(options, {}, [&](const eom::hybrid::Event& event, std::span<const double>) {
+    if (event.kind == "impulse") impulses.push_back(event.t);
+  });
+  if (trial.kink_crossings() > 0)
+    unsupported("the motion crosses a kink (abs, sign, min, max, if)", "shorten the run (--t-end), or smooth the law");
+  if (end.outcome == eom::Outcome::done) return impulses;
   throw Error("bench", {},
               fmt::format("the run ends at t = {} with '{}' {}", end.t, eom::name(end.outcome), end.detail),
               "give an end before that: --t-end",
               end.outcome == eom::Outcome::stopped_by_event ? ErrorKind::input : ErrorKind::numerical);
 }
 
+std::vector<double> inputs_at(const run::Scene& scene, double t) {
+  std::vector<double> u;
+  for (const run::Signal& signal : scene.inputs) u.push_back(signal(t, t));
+  return u;
+}
+
+/// impulses: times at which supports give one.
 reference::Problem make_problem(const Simulation& simulation, const run::RunRequest& request,
-                                const std::vector<double>& times) {
+                                const std::vector<double>& times, const std::vector<double>& impulses) {
   const run::Scene& scene = simulation.scene;
-  reference::Problem problem{simulation.program.functions.front(),
-                             run::Integration(request, "dop853").initial_state(),
-                             scene.parameters,
-                             scene.t0,
-                             {},
-                             times};
+  const run::Integration trial(request, "dop853");
+  const std::vector<eom::hybrid::Segment> segments = trial.segments();
+  reference::Problem problem{
+      simulation.program.functions.front(), trial.initial_state(), scene.parameters, trial.begin(), {}, times};
   problem.interrupt = request.interrupt;
   problem.coordinates = simulation.program.free.size();
   for (const program::Function& function : simulation.program.functions) {
     if (function.name == "constraints") problem.constraints = &function;
   }
-  std::vector<double> ends;
-  const double direction = scene.t1 < scene.t0 ? -1 : 1;
-  for (const run::Signal& signal : scene.inputs) {
-    for (const double t : signal.jumps()) {
-      if ((t - scene.t0) * direction > 0 && (scene.t1 - t) * direction > 0) ends.push_back(t);
-    }
+  double from = problem.t0;
+  std::vector<ImpulseInDigits::Kink> kinks;
+  for (const auto& [end, next, step] : segments) {
+    problem.segments.push_back({end, inputs_at(scene, (from + end) / 2), next});
+    if (!kinks.empty()) kinks.back().u_behind = problem.segments.back().u;
+    kinks.push_back({end, next, problem.segments.back().u, problem.segments.back().u});
+    from = next;
   }
-  std::sort(ends.begin(), ends.end(), [direction](double a, double b) { return a * direction < b * direction; });
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  ends.push_back(scene.t1);
-  double from = scene.t0;
-  for (const double end : ends) {
-    problem.segments.push_back({end, {}});
-    for (const run::Signal& signal : scene.inputs)
-      problem.segments.back().u.push_back(signal((from + end) / 2, (from + end) / 2));
-    from = end;
-  }
+  const auto impulse = std::make_shared<ImpulseInDigits>(simulation.derived->candidates.front(), scene.parameters);
+  problem.cross_kink = [=, t1 = scene.t1](std::size_t segment, std::vector<cln::cl_F>& x, int digits) {
+    const ImpulseInDigits::Kink& kink = kinks[segment];
+    if (std::find(impulses.begin(), impulses.end(), std::min(kink.behind, t1)) != impulses.end())
+      impulse->apply(kink, x, digits);
+  };
   return problem;
 }
 
@@ -129,14 +133,14 @@ Benchmark benchmark(const BenchmarkRequest& asked) {
   run::RunRequest request = pipeline::make_run_request(*simulation.derived, simulation.scene, code, false);
   request.watch_power = false;
   request.interrupt = asked.interrupt;
-  require_smooth(simulation, request);
+  const std::vector<double> impulses = require_smooth(simulation, request);
   const run::Scene& scene = simulation.scene;
   std::vector<double> times;
   for (std::size_t k = 1; k < looks; ++k)
     times.push_back(scene.t0 + (scene.t1 - scene.t0) * static_cast<double>(k) / looks);
   times.push_back(scene.t1);
 
-  reference::Problem problem = make_problem(simulation, request, times);
+  reference::Problem problem = make_problem(simulation, request, times, impulses);
   problem.progress = [&show](double fraction) { show(fmt::format("reference: {:.0f} %", 100 * fraction)); };
   const Clock::time_point start = Clock::now();
   result.reference = reference::solve(problem);

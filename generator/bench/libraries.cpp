@@ -145,6 +145,8 @@ std::string why_not(const Library& library, const std::string& said) {
 
 std::string does_not_fit(const run::RunRequest& request) {
   if (!request.scene.inputs.empty()) return "inputs that vary during the run need one of eomgen's own solvers";
+  if (!request.scene.clock.breakpoints.empty())
+    return "kinks in time (abs, sign, min, max, if) need one of eomgen's own solvers, whose steps end there";
   if (request.scene.t1 < request.scene.t0) return "runs backwards in time need one of eomgen's own solvers";
   return "";
 }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "error.hpp"
 #include "reference/consistent_start.hpp"
@@ -41,8 +42,12 @@ double log2_of(const std::vector<Number>& list) {
 
 class Run {
  public:
-  Run(const Problem& problem, const program::Taylor& taylor, Settings settings)
-      : problem_(problem), settings_(settings), expand_(taylor, settings.digits), t_(expand_.number(problem.t0)) {
+  Run(const Problem& problem, const program::Taylor& taylor, Settings settings, bool continues_in_gaps)
+      : problem_(problem),
+        settings_(settings),
+        continues_in_gaps_(continues_in_gaps),
+        expand_(taylor, settings.digits),
+        t_(expand_.number(problem.t0)) {
     for (const double x : problem.x) x_.push_back(expand_.number(x));
     if (problem.constraints != nullptr) {
       x_ = make_consistent(*problem.constraints, problem.coordinates, t_, std::move(x_), problem.p, settings.digits);
@@ -54,12 +59,22 @@ class Run {
       const double until = &segment == &problem_.segments.back() ? problem_.times.back() : segment.until;
       const Number end = expand_.number(until);
       while (t_ != end) step(segment, end);
+      if (segment.next != segment.until) cross_kink(segment);
     }
+    while (wanted_.size() < problem_.times.size()) wanted_.push_back(x_);
     return std::move(wanted_);
   }
   std::size_t steps() const { return steps_; }
 
  private:
+  void cross_kink(const InputSegment& segment) {
+    const Number next = expand_.number(segment.next);
+    if (continues_in_gaps_ && !last_.empty()) x_ = at(last_, next - last_t_);
+    t_ = next;
+    if (problem_.cross_kink)
+      problem_.cross_kink(static_cast<std::size_t>(&segment - problem_.segments.data()), x_, settings_.digits);
+  }
+
   void step(const InputSegment& segment, const Number& end) {
     if (problem_.interrupt != nullptr && *problem_.interrupt) fail(t_, "interrupted");
     if (++steps_ > most_steps) fail(t_, fmt::format("more than {} steps", most_steps));
@@ -82,7 +97,8 @@ class Run {
       wanted_.push_back(at(c, time - t_));
     }
     x_ = at(c, next - t_);
-    t_ = next;
+    last_t_ = std::exchange(t_, next);
+    last_ = std::move(c);
     if (problem_.progress)
       problem_.progress((cln::double_approx(t_) - problem_.t0) / (problem_.times.back() - problem_.t0));
   }
@@ -107,8 +123,10 @@ class Run {
 
   const Problem& problem_;
   Settings settings_;
+  bool continues_in_gaps_;
   TaylorExpansion expand_;
-  Number t_;
+  Number t_, last_t_ = t_;
+  States last_;  // coefficients of the last step, about last_t_
   std::vector<Number> x_;
   States wanted_;
   std::size_t steps_ = 0;
@@ -130,10 +148,10 @@ Solution solve(const Problem& problem, Settings first, Settings second) {
   const program::Taylor taylor = program::recurrences(problem.rhs);
   Problem quiet = problem;  // the first run is cheaper: it counts as the first third of the progress
   if (problem.progress) quiet.progress = [&](double fraction) { problem.progress(fraction / 3); };
-  Run rough(quiet, taylor, first);
+  Run rough(quiet, taylor, first, false);
   const States a = rough.run();
   if (problem.progress) quiet.progress = [&](double fraction) { problem.progress((1 + 2 * fraction) / 3); };
-  Run sharp(quiet, taylor, second);
+  Run sharp(quiet, taylor, second, true);
   const States b = sharp.run();
 
   Solution solution;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A motion in 30 digits and more: the program in CLN arithmetic with Taylor steps, twice, with different order and
-// precision. The reference claims the digits in which both agree. Parameters, starts and times are the exact values of
+// precision. The reference claims the digits in which both agree. The time of a kink is known to rounding: one run
+// continues across the gap, the other leaves it out. Parameters, starts and times are the exact values of
 // the binary64 numbers, except that starts satisfy the constraints in all digits.
 #pragma once
 
@@ -19,10 +20,11 @@ namespace eomgen::reference {
 struct InputSegment {
   double until;
   std::vector<double> u;
+  double next = until;  // start of the following segment, beyond `until` by rounding at a kink in time
 };
 
 struct Problem {
-  const program::Function& rhs;  // without branches that change during the motion
+  const program::Function& rhs;  // without branches that change within a segment
   std::vector<double> x, p;
   double t0 = 0;
   std::vector<InputSegment> segments;
@@ -30,6 +32,8 @@ struct Problem {
   const program::Function* constraints =
       nullptr;                  // the function of that name, if there is one: the start is projected onto them
   std::size_t coordinates = 0;  // number of its coordinates, first in x; their rates follow
+  /// Changes the state at the kink in time after a segment. Empty: no impulses.
+  std::function<void(std::size_t segment, std::vector<cln::cl_F>& x, int digits)> cross_kink = {};
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double fraction)> progress = {};
 };

@@ -18,15 +18,16 @@ Integration::Integration(const RunRequest& request, const std::string& solver)
     : bound_(std::make_unique<Bound>(request, solver)) {}
 Integration::~Integration() = default;
 
-eom::Result Integration::run(const eom::Options& options, const eom::hybrid::Observer& observer) {
-  return bound_->integration.run(options, observer);
+eom::Result Integration::run(const eom::Options& options, const eom::hybrid::Observer& observer,
+                             const eom::hybrid::OnEvent& event) {
+  return bound_->integration.run(options, observer, event);
 }
 
 const std::vector<double>& Integration::initial_state() const { return bound_->integration.context().start; }
+double Integration::begin() const { return bound_->problem.begin(); }
 int Integration::contact_mode() const { return bound_->integration.context().model.contact_mode(); }
-const std::vector<std::size_t>& Integration::kink_crossings() const {
-  return bound_->integration.context().kinks.crossings();
-}
+std::size_t Integration::kink_crossings() const { return bound_->integration.context().kinks.crossings_in_state(); }
+std::vector<eom::hybrid::Segment> Integration::segments() const { return eom::hybrid::segments(bound_->problem); }
 double Integration::constraint_defect(double t, const double* x) {
   return bound_->integration.context().constraint_defect(t, x);
 }

@@ -4,6 +4,7 @@
 
 #include <eom/hybrid/problem.hpp>
 #include <eom/hybrid/run_result.hpp>
+#include <eom/hybrid/segments.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,15 +21,20 @@ class Integration {
   Integration(const Integration&) = delete;
   Integration& operator=(const Integration&) = delete;
 
-  /// observer: called after each accepted step; may be empty. `run` may be called again.
-  eom::Result run(const eom::Options& options, const eom::hybrid::Observer& observer);
+  /// observer: called after each accepted step; event: for each event. Both may be empty. `run` may be called again.
+  eom::Result run(const eom::Options& options, const eom::hybrid::Observer& observer,
+                  const eom::hybrid::OnEvent& event = {});
 
   /// The initial state; in the second chart if the start is near a singularity of a chart.
   const std::vector<double>& initial_state() const;
+  /// The time at which it begins: t0, or behind a kink there.
+  double begin() const;
   /// The current contact mode of the run.
   int contact_mode() const;
-  /// Number of crossings in the last run, per kink.
-  const std::vector<std::size_t>& kink_crossings() const;
+  /// Number of crossings of kinks in the last run, without kinks in time.
+  std::size_t kink_crossings() const;
+  /// The segments of the run between jumps of inputs and kinks in time.
+  std::vector<eom::hybrid::Segment> segments() const;
   /// Largest |psi| or |f . qdot + b| of a state; 0 without active constraints.
   double constraint_defect(double t, const double* x);
   /// dx/dt in the contact mode of the start; returns an error code.

@@ -99,3 +99,34 @@ TEST_CASE("bench: scenes without reference solution and unknown solvers are repo
   refused({"bench", "bilinear_oscillator"}, "crosses a kink");
   refused({"bench", "P2_planar_pendulum", "--solver", "rk5"}, "there is no solver 'rk5'");
 }
+
+TEST_CASE("bench: the reference has the impulses and kinks in time of the run") {
+  const Folder folder;
+  const std::string pendulum =
+      "format = 1\n[parameters]\nm = 1\ng = 9.81\n[coordinates]\nth = \"1\"\n[functions]\ns = "
+      "\"SUPPORT\"\n[[particle]]\n"
+      "name = \"P\"\nmass = \"m\"\nposition = [\"s + sin(th)\", \"-cos(th)\", 0]\n[[force]]\ngravity = \"-g*E2\"\n"
+      "[scene.default]\nt = [0, 3]\ninitial = { th = 0.4 }\n";
+  for (const char* support : {"0.3*abs(t - 1)", "0.3*abs(sin(2*t))", "0.3*abs(t - 1)^3", "0.3*abs(t - 3)"}) {
+    CAPTURE(support);
+    std::string text = pendulum;
+    folder.write("support.toml", text.replace(text.find("SUPPORT"), 7, support));
+    const Json found = document(folder, {"bench", "support.toml", "--no-libraries"});
+    CHECK(found["reference"]["digits_at_end"].get<int>() >= 12);
+    const Json run =
+        document(folder, {"run", "support.toml", "--solver", "taylor", "--rtol", "1e-13", "--atol", "1e-15"});
+    for (const char* name : {"th", "th_dot"})
+      CHECK(std::abs(found["reference"]["end"][name].get<double>() - run["final"][name].get<double>()) < 1e-11);
+    std::map<std::string, double> least;
+    for (const Json& row : found["rows"]) {
+      REQUIRE(row["outcome"] == "done");
+      const auto at = least.emplace(row["solver"], 1).first;
+      at->second = std::min(at->second, row["error_along"].get<double>());
+    }
+    for (const auto& [solver, error] : least) {
+      CAPTURE(solver);
+      CHECK(error < (solver == "midpoint" || solver == "variational2" ? 1e-3 : 1e-5));
+    }
+    CHECK(least.at("dop853") < 1e-10);
+  }
+}

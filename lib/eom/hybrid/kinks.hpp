@@ -22,6 +22,7 @@ class Kinks {
   bool any() const { return !problem_.code->kinks.empty(); }
   void start() {
     crossings_.assign(size_.size(), 0);
+    in_state_ = 0;
     at_ = std::nan("");
   }
 
@@ -47,6 +48,7 @@ class Kinks {
 
   void flip_branch(double t, std::size_t k, bool up) {
     ++crossings_[k];
+    ++in_state_;
     last_ = k;
     at_ = t;
     model_.set_mode((model_.mode() & ~(3 << bit(k))) | 1 << (up ? bit(k) : bit(k) + 1));
@@ -61,6 +63,8 @@ class Kinks {
   }
 
   const std::vector<std::size_t>& crossings() const { return crossings_; }
+  /// Crossings of all kinks but those between two segments, which are kinks in time.
+  std::size_t crossings_in_state() const { return in_state_; }
   /// The kink crossed last, and the time; NaN if there was none.
   std::size_t last_crossed() const { return last_; }
   double last_crossing_time() const { return at_; }
@@ -73,6 +77,7 @@ class Kinks {
   Model& model_;
   std::vector<double> size_;  // largest |g| of each so far
   std::vector<std::size_t> crossings_;
+  std::size_t in_state_ = 0;
   std::size_t last_ = 0;
   double at_ = 0;
 };
