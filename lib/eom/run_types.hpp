@@ -100,6 +100,7 @@ struct Options {
   std::function<double(const StepView&)> step_limit = {};
   double fixed_step = 0;        // > 0: steps of this size without error control, for any method; required by rk4
   std::size_t event_parts = 1;  // number of equal steps up to a breaking event that ends a step
+  bool events_at_end = true;    // events at t1 belong to the run; false: to its continuation
   int series_order = 0;         // of `taylor`, and of `radau` (5, 9, 13); 0: chosen and adapted from step to step
   std::size_t max_steps = 50'000'000;            // accepted and rejected together
   std::size_t quadratures = 0;                   // trailing components of x that are excluded from the error norm

@@ -6,6 +6,9 @@
 // the crossing, and the crossing is corrected with the value found there until it moves by at most 1e-12 of the step.
 // State and time of an event therefore have the accuracy of the step, not of the dense output, and after_step (a
 // projection) has been applied to the state. The next step starts there.
+//
+// Events at the end t1 are applied. The errors of the steps may put such an event behind the end: one that follows
+// within rtol times the length of the run (1e-9 at most) counts as at the end.
 #pragma once
 
 #include <algorithm>
@@ -54,6 +57,7 @@ class Run {
       : method_(method),
         rhs_(rhs),
         g_(g),
+        t0_(t0),
         t1_(t1),
         options_(options),
         handler_(handler),
@@ -96,11 +100,7 @@ class Run {
     locator_.begin_step(view, g_);
     while (const std::optional<Crossing> crossing = locator_.next_crossing(view, g_)) {
       if (locator_.functions()[crossing->function].watch == Watch::breaking) {
-        cut_ = crossing;
-        cut_t_ = view.t0;
-        cut_h_ = view.t1 - view.t0;
-        std::copy(view.x0.begin(), view.x0.end(), cut_x_.begin());
-        view.interpolate(crossing->t, total_.x);  // used if the step cannot be repeated
+        cut(view, *crossing);
         return false;
       }
       Crossing exact = *crossing;
@@ -111,8 +111,25 @@ class Run {
       total_.statistics.steps = before.steps;
       handler_(EventPoint{exact.t, x, exact, locator_.functions()});
     }
+    if (view.t1 == t1_ && options_.events_at_end && !report_events_at_end(view)) return false;
     locator_.end_step();
     return observer_(view);
+  }
+
+  /// Events at the end belong to the run. False: a breaking one.
+  bool report_events_at_end(const StepView& view) {
+    const double near = std::max(8 * std::numeric_limits<double>::epsilon() * std::abs(t1_),
+                                 std::min(options_.rtol, most_at_end) * std::abs(t1_ - t0_));
+    while (const std::optional<Crossing> crossing = locator_.crossing_at_end(view, near)) {
+      if (locator_.functions()[crossing->function].watch == Watch::breaking) {
+        cut(view, *crossing);
+        return false;
+      }
+      std::vector<double> x(view.x1.begin(), view.x1.end());
+      double t = view.t1;
+      handler_(EventPoint{t, x, *crossing, locator_.functions()});
+    }
+    return true;
   }
 
   /// To be called after a piece has ended. False: the run has ended, with total(). Else the next piece begins there,
@@ -134,6 +151,14 @@ class Run {
   const Result& total() const { return total_; }
 
  private:
+  void cut(const StepView& view, const Crossing& crossing) {
+    cut_ = crossing;
+    cut_t_ = view.t0;
+    cut_h_ = view.t1 - view.t0;
+    std::copy(view.x0.begin(), view.x0.end(), cut_x_.begin());
+    view.interpolate(crossing.t, total_.x);  // used if the step cannot be repeated
+  }
+
   /// Integrates from (t0, x0) to the crossing in `parts` steps until the crossing converges. `last` receives the final
   /// steps; x is the state there.
   template <class Last>
@@ -166,7 +191,7 @@ class Run {
           const double move = -values_[i] / slope;
           final = !std::isfinite(move) || std::abs(move) <= limit || std::abs(move) > farthest * std::abs(h);
           if (!final) next = t + move;
-          if ((next - t0) * h <= 0) final = true;
+          if ((next - t0) * h <= 0 || (t1_ - next) * h < 0) final = true;
         }
         if (final && parts == 1) continues = last(view);
         return true;
@@ -239,12 +264,13 @@ class Run {
 
   static constexpr int most_corrections = 6;
   static constexpr double smallest_parts = 1e-13;  // of the time
+  static constexpr double most_at_end = 1e-9;      // of the run: later events are not those at its end
   static constexpr double farthest = 0.01;         // of the step: larger corrections are rejected
 
   std::string_view method_;
   F& rhs_;
   G& g_;
-  double t1_;
+  double t0_, t1_;
   const Options& options_;
   Handler& handler_;
   Observer& observer_;

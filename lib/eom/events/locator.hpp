@@ -132,6 +132,22 @@ class EventLocator {
     }
   }
 
+  /// A crossing at the end of the step: a function that falls to zero there, or would within the time `near` behind it.
+  /// Rounding and the errors of the steps decide whether the end is before or behind such a crossing.
+  std::optional<Crossing> crossing_at_end(const StepView& view, double near) {
+    for (std::size_t i = 0; i < functions_.size(); ++i) {
+      if (functions_[i].watch == Watch::off || side_[i] == 0 || position_[i] >= 1) continue;
+      const bool up = (side_[i] < 0) == (view.t1 > view.t0);
+      const Direction direction = functions_[i].direction;
+      if (direction != Direction::any && (direction == Direction::up) != up) continue;
+      if (!(time_to_zero(view, i) <= near)) continue;
+      side_[i] = -side_[i];
+      position_[i] = 1;
+      return Crossing{i, view.t1, up};
+    }
+    return std::nullopt;
+  }
+
   /// To be called after the step was accepted in full: determines the sides of functions that had none, or had no value
   /// somewhere in the step.
   void end_step() {
@@ -160,6 +176,7 @@ class EventLocator {
   static constexpr double crossed_rounding =
       1e-10;  // the same for a function that has just crossed: its root is corrected, not exact
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double least_slope = 0.6;    // at the end of a step, relative to the slope before
   static constexpr double dip_threshold = 0.5;  // of the smallest sample: a parabola with a lower vertex is examined
 
   /// The side from which a function with a direction may be crossed.
@@ -195,7 +212,7 @@ class EventLocator {
   }
 
   /// Determines the side of a function that starts on its surface: that of its first value beyond rounding. A value
-  /// that grows steadily over three decades of time is not rounding, however small it is.
+  /// that grows steadily over three decades of time is not rounding, however small it is, if it exceeds those before.
   template <class G>
   void find_side(const StepView& view, std::size_t i, G& g) {
     constexpr std::size_t decades = 12;
@@ -207,8 +224,11 @@ class EventLocator {
     }
     const auto grows = [&](std::size_t k) { return v[k] * v[k + 1] > 0 && std::abs(v[k + 1]) > 3 * std::abs(v[k]); };
     s = tolerance;
+    double noise = residual_[i];  // the largest value so far
     for (std::size_t k = 0; k < decades; ++k, s *= 10) {
-      if (!(std::abs(v[k]) > 4 * residual_[i])) continue;
+      const bool is_noise = !(std::abs(v[k]) > 4 * noise);
+      if (std::isfinite(v[k])) noise = std::max(noise, std::abs(v[k]));
+      if (is_noise) continue;
       if (exceeds_rounding(i, v[k]) || (k + 2 < decades && grows(k) && grows(k + 1)))
         return set_side(view, i, sign(v[k]), s);
     }
@@ -223,6 +243,24 @@ class EventLocator {
     const bool beyond_guard = functions_[i].guard && side != inner;
     side_[i] = beyond_guard ? inner : side;
     position_[i] = beyond_guard ? 0 : s;
+  }
+
+  /// The time after the end of the step at which a function reaches zero if it goes on as at the end; NaN if it does
+  /// not fall there by more than rounding. A function that only touches zero has a smaller slope at the end than
+  /// before.
+  double time_to_zero(const StepView& view, std::size_t i) {
+    const std::size_t last = places.size() - 1;
+    const double end = side_[i] * sample(last, i);
+    const auto slope = [&](std::size_t k) { return (side_[i] * sample(k, i) - end) / (places[last] - places[k]); };
+    if (!(end >= 0)) return none;
+    for (std::size_t k = last; k-- > 0;) {
+      const double fall = side_[i] * sample(k, i) - end;
+      if (places[k] < position_[i] || !std::isfinite(fall)) return none;
+      if (!exceeds_rounding(i, fall)) continue;
+      if (fall < 0 || (k > 0 && slope(k) < least_slope * slope(k - 1))) return none;
+      return end / slope(k) * std::abs(view.t1 - view.t0);
+    }
+    return none;
   }
 
   /// The first crossing after the function's position: by samples, or earlier if the function has bounds that do not

@@ -110,10 +110,9 @@ inline Result Integration::run(const Options& options, const Observer& observer,
   segment.choice = &choice_;
   segment.step_bounds = problem_.bounds;
   if (narrow_.any()) segment.step_limit = [this](const StepView& step) { return longest_step(step); };
-  // With sticking contacts the state may not change at all, and steps would not resolve the work of what moves the
-  // contacts.
-  segment.quadratures = problem_.power && problem_.code->contacts.empty() ? 1 : 0;
+  segment.quadratures = problem_.power && !context_.work_is_state() ? 1 : 0;
   Result total;
+  end_time_ = problem_.begin();
   if (!start(total, event)) return total;
   const std::vector<Segment> all = segments(problem_);
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -123,6 +122,7 @@ inline Result Integration::run(const Options& options, const Observer& observer,
         options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
     if (options.fixed_step > 0 && problem_.fixed_step > 0)
       segment.fixed_step = options.fixed_step * all[k].step / problem_.fixed_step;
+    segment.events_at_end = k + 1 == all.size();
     if (!jump_) integrate_until(all[k].end, segment, observer, event, total);
     reason_ = explain(context_, reason_, jump_, total);
     if (total.outcome != Outcome::done) break;
@@ -190,7 +190,7 @@ inline void Integration::integrate_until(double end, Options options, const Obse
     const double begin = total.t, length = singularity_step_length_;
     is_crossing_singularity_ = step_over_singularity(total, end, options, total.statistics.rhs_evaluations);
     Options now = slow_slip_.is_active() ? slow_slip_.refined_options(options) : options;
-    if (is_crossing_singularity_) now.fixed_step = std::abs(length);
+    if (is_crossing_singularity_) now.fixed_step = std::abs(length), now.events_at_end = false;
     const std::string method = is_crossing_singularity_ ? SingularityStep::solver
                                : slow_slip_.is_active() ? Automatic::name
                                                         : problem_.solver.c_str();

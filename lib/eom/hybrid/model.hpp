@@ -71,14 +71,18 @@ class Model {
     return motion(t, x, inputs(t), (mode_ & ~contact_bits) | contacts, dx);
   }
 
-  /// For the states without the work, which is a quadrature. The derivatives are partial, at fixed inputs. If inputs
-  /// vary between their jumps, df/dt is not available.
-  int jacobian(double t, const double* x, double* dfdx, double* dfdt) {
+  /// The derivatives are partial, at fixed inputs. If inputs vary between their jumps, df/dt is not available. `work`:
+  /// whether the work is a state here; else it is a quadrature, without row and column.
+  int jacobian(double t, const double* x, double* dfdx, double* dfdt, bool work) {
     if (code_->jac == nullptr) return no_jacobian_here;
+    const std::size_t n = 2 * n_ + code_->integrals;
+    if (work) dfdx_.resize(n * n);
     const double* u = inputs(t);
-    int code = code_->jac(t, x, parameters(), u, mode_, dfdx, dfdt);
+    double* const matrix = work ? dfdx_.data() : dfdx;
+    int code = code_->jac(t, x, parameters(), u, mode_, matrix, dfdt);
     if (code != 0 && mode_ != mode_without_branches())
-      code = code_->jac(t, x, parameters(), u, mode_without_branches(), dfdx, dfdt);
+      code = code_->jac(t, x, parameters(), u, mode_without_branches(), matrix, dfdt);
+    if (code == 0 && work) code = add_work(t, x, n, dfdx, dfdt);
     return code == 0 && inputs_move_ ? no_time_derivative_here : code;
   }
 
@@ -122,6 +126,37 @@ class Model {
     if (code_->prepare != nullptr && code_->prepare(parameters(), w_.data()) != 0) w_.clear();
   }
 
+  /// Copies df/dx of n states, and adds the row of the work: derivatives of the power, by central differences.
+  int add_work(double t, const double* x, std::size_t n, double* dfdx, double* dfdt) {
+    constexpr double part = 6e-6;  // the cube root of the rounding
+    const std::size_t m = n + 1;
+    for (std::size_t j = 0; j < n; ++j) std::copy_n(dfdx_.data() + n * j, n, dfdx + m * j);
+    std::fill_n(dfdx + m * n, m, 0.0);
+    x_.assign(x, x + m);
+    double largest = 0;
+    for (std::size_t j = 0; j < n; ++j) largest = std::max(largest, std::abs(x[j]));
+    const auto slope = [&](double& moved, const double& at, double size, double& result) {
+      const double middle = moved;
+      double power[2] = {0, 0}, place[2] = {0, 0};
+      int code = 0;
+      for (const int side : {0, 1}) {
+        moved = middle + (side == 0 ? -size : size);
+        place[side] = moved;
+        if (code == 0) code = outputs(at, x_.data(), y_.data());
+        power[side] = y_[*problem_.power];
+      }
+      moved = middle;
+      result = (power[1] - power[0]) / (place[1] - place[0]);
+      return code;
+    };
+    for (std::size_t j = 0; j < n; ++j) {
+      const double size = part * (x_[j] != 0 ? std::abs(x_[j]) : largest > 0 ? largest : 1);
+      if (const int code = slope(x_[j], t, size, dfdx[n + m * j]); code != 0) return code;
+    }
+    double at = t;
+    return slope(at, at, part * (t != 0 ? std::abs(t) : 1), dfdt[n]);
+  }
+
   int motion(double t, const double* x, const double* u, int mode, double* dx) {
     const int code = w_.empty() ? code_->rhs(t, x, parameters(), u, mode, dx)
                                 : code_->rhs_prepared(t, x, parameters(), w_.data(), u, mode, dx);
@@ -140,6 +175,7 @@ class Model {
   mutable std::vector<double> u_;
   bool inputs_move_;       // some input varies between its jumps
   std::vector<double> w_;  // output of Code::prepare
+  std::vector<double> dfdx_, x_;
   std::vector<double> h_, y_;
 };
 

@@ -18,7 +18,7 @@ struct Motion {
 
   int operator()(double t, const double* x, double* dx) const { return of.rhs(t, x, dx); }
   int jacobian(double t, const double* x, double* dfdx, double* dfdt) const {
-    return of.model.jacobian(t, x, dfdx, dfdt);
+    return of.model.jacobian(t, x, dfdx, dfdt, of.work_is_state());
   }
   int taylor(double t, const double* x, int order, double* coefficients) const {
     return of.model.taylor(t, x, order, coefficients);

@@ -100,6 +100,10 @@ struct RunContext {
     return x;
   }
 
+  /// Whether the work is integrated like the other states; else it is a quadrature. With sticking contacts the state
+  /// may not change at all, and steps would not resolve the work of what moves the contacts.
+  bool work_is_state() const { return problem.power && !problem.code->contacts.empty(); }
+
   /// Largest |psi|, |f . qdot + b| of a state; 0 without active constraints.
   double constraint_defect(double t, const double* x) { return rows.defect(t, x); }
 
