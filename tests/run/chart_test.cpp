@@ -62,3 +62,32 @@ TEST_CASE("run: a bead on a rotating wire passes through the centre, where its e
   CHECK(spring.simulation.result.outcome == eom::Outcome::chart_left);
   CHECK(spring.simulation.result.detail.find("give it a wider one in [coordinates]") != std::string::npos);
 }
+
+TEST_CASE("run: a pendulum that rotates through the poles of its coordinates has two azimuths, at every tolerance") {
+  // phi_dot^2 > 4 g: it goes over the top. With an azimuth rate it would not meet the poles.
+  for (const double start : {0.0, 0.3, -2.0}) {
+    for (const double rtol : {1e-6, 1e-9, 1e-11, 1e-13}) {
+      CAPTURE(start);
+      CAPTURE(rtol);
+      const std::string path = test::build_folder() + "/poles.toml";
+      test::write_text(
+          path,
+          "format = 1\n[parameters]\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { spherical "
+          "= [\"R\", \"phi\", \"theta\"] }\n[[force]]\ngravity = \"-g*E3\"\n[[constraint]]\nname = "
+          "\"rod\"\nholonomic = \"R - 1\"\n[scene.default]\nt = [0, 10]\ninitial = { phi = 1.5, phi_dot = 7, "
+          "theta = " +
+              std::to_string(start) + " }\n");
+      const test::FinishedRun finished = test::run_model(path, [&](pipeline::SimulationRequest& request) {
+        request.overrides.rtol = rtol;
+        request.overrides.atol = 1e-3 * rtol;
+      });
+      REQUIRE(finished.simulation.result.outcome == eom::Outcome::done);
+      int poles = 0;
+      for (const run::RunEvent& event : finished.simulation.result.events) poles += event.kind == "pole" ? 1 : 0;
+      CHECK(poles > 10);
+      const double pi = 3.14159265358979323846, turned = finished.final("theta") - start;
+      CHECK(std::abs(turned - (poles % 2 == 0 ? 0 : pi)) < 1e-5);
+      CHECK(finished.simulation.result.error_estimate.back().second < 1e-2);
+    }
+  }
+}

@@ -37,6 +37,13 @@ class ChartSwitch {
   /// Makes the pending exchange. Returns the names of the owners of the exchanged charts.
   std::vector<std::string> exchange(double t, std::span<double> x);
 
+  /// Passages of the last step through the singularity of an own chart, so close that the side is not determined.
+  struct Pole {
+    double t;
+    std::string of;
+  };
+  const std::vector<Pole>& poles() const { return poles_; }
+
   /// Converts a state of the last step to the own charts. Components without a value at the singularity are NaN.
   void to_own_charts(double t, const double* x, std::span<double> own) const;
   /// Whether a coordinate of the model currently has another meaning.
@@ -55,7 +62,10 @@ class ChartSwitch {
   static constexpr double forbidden = 0.02;  // of the angle: beyond the reach of one step from its initial chart
 
   static constexpr double turns_in_a_sample = 1;  // rad: largest change of an angle without a missed turn
-  static constexpr int deepest = 14;              // halvings of a step to achieve this
+  static constexpr int deepest = 48;              // halvings of a step to achieve this
+  // A passage closer to a pole than this many tolerances has no determined side.
+  static constexpr double unknown_side = 10;
+  static constexpr double half_turn = 0.5;  // rad: nearness to pi of the jump of an angle at a pole
 
   static double regular(bool at_sine, double angle) { return at_sine ? std::sin(angle) : std::cos(angle); }
 
@@ -67,6 +77,10 @@ class ChartSwitch {
   void set_guards(const double* x);
   unsigned target_charts(const double* x, const double* own) const;
   void sample(const StepView& step, double until, const double* x, int depth);
+  double unknown_distance() const { return unknown_side * std::max(problem_.rtol + problem_.atol, 1e-14); }
+  void keep_angles_at_pole(std::size_t j, const Sample& last, Sample& next) const;
+  double distance_from_pole(std::size_t j, const Sample& last, const Sample& next) const;
+  void pass_pole(const Sample& last, Sample& next);
   void make_continuous(std::size_t j, const std::vector<double>& near, std::span<double> own) const;
 
   const Problem& problem_;
@@ -75,6 +89,7 @@ class ChartSwitch {
   unsigned in_ = 0, due_ = 0;
   std::vector<double> floor_;    // per chart: the zero of its sine or cosine below the guarded angle
   std::vector<double> side_;     // 1 or -1: the sign of the own sine or cosine when the own chart was left
+  std::vector<Pole> poles_;      // of the last step
   std::vector<Sample> samples_;  // along the last step, while a chart is a second one
 };
 
@@ -129,6 +144,7 @@ inline bool ChartSwitch::start(double t, const double* x) {
 }
 
 inline bool ChartSwitch::observe_step(const StepView& step) {
+  poles_.clear();
   if (in_ == 0) {
     due_ = target_charts(step.x1.data(), step.x1.data());
     return due_ != in_;
@@ -146,13 +162,16 @@ inline void ChartSwitch::sample(const StepView& step, double until, const double
   Sample next{until, std::vector<double>(2 * n_ + problem_.code->integrals)};
   to_own_charts(until, x, next.x);
   double turned = 0;
+  bool known = true;
   for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
-    for (const std::size_t angle : problem_.charts[j].angles) {
-      if (is_second(j)) turned = std::max(turned, std::abs(next.x[angle] - last.x[angle]));
-    }
+    if (!is_second(j)) continue;
+    keep_angles_at_pole(j, last, next);
+    for (const std::size_t angle : problem_.charts[j].angles)
+      turned = std::max(turned, std::abs(next.x[angle] - last.x[angle]));
+    known = known && distance_from_pole(j, last, next) > unknown_distance();
   }
-  if (turned > turns_in_a_sample && depth < deepest) {
-    const double middle = last.t + (until - last.t) / 2;
+  const double middle = last.t + (until - last.t) / 2;
+  if (turned > turns_in_a_sample && known && depth < deepest && middle != last.t && middle != until) {
     std::vector<double> between(step.x0.size());
     step.interpolate(middle, between);
     sample(step, middle, between.data(), depth + 1);
@@ -162,7 +181,50 @@ inline void ChartSwitch::sample(const StepView& step, double until, const double
   for (std::size_t i = 0; i < next.x.size(); ++i) {
     if (!std::isfinite(next.x[i])) next.x[i] = i < last.x.size() ? last.x[i] : 0;  // exactly at the singularity
   }
+  if (turned > turns_in_a_sample) pass_pole(Sample(last), next);
   samples_.push_back(std::move(next));
+}
+
+/// Closest to a pole the angles have no value, within the errors of the state.
+inline void ChartSwitch::keep_angles_at_pole(std::size_t j, const Sample& last, Sample& next) const {
+  const ExchangedChart& chart = problem_.charts[j];
+  if (std::abs(regular(chart.at_sine, next.x[chart.angles[chart.guarded]])) > unknown_distance()) return;
+  for (std::size_t k = 0; k < chart.angles.size(); ++k) {
+    if (k != chart.guarded) next.x[chart.angles[k]] = last.x[chart.angles[k]];
+  }
+}
+
+/// The smallest distance of the path between two samples from the pole of the own chart: it is straight there.
+inline double ChartSwitch::distance_from_pole(std::size_t j, const Sample& last, const Sample& next) const {
+  const ExchangedChart& chart = problem_.charts[j];
+  double turn = 0;
+  for (std::size_t k = 0; k < chart.angles.size(); ++k) {
+    if (k != chart.guarded) turn = std::max(turn, std::abs(next.x[chart.angles[k]] - last.x[chart.angles[k]]));
+  }
+  const double a = std::abs(regular(chart.at_sine, last.x[chart.angles[chart.guarded]])),
+               b = std::abs(regular(chart.at_sine, next.x[chart.angles[chart.guarded]]));
+  if (!(turn > turns_in_a_sample)) return std::min(a, b);
+  const double way = std::sqrt(a * a + b * b - 2 * a * b * std::cos(turn));
+  return way > 0 ? a * b * std::abs(std::sin(turn)) / way : 0;
+}
+
+/// Through a pole an angle jumps by half a turn, in no determined direction. Of the two angles behind it, the one
+/// closer to the start value follows; the larger one if both are as close.
+inline void ChartSwitch::pass_pole(const Sample& last, Sample& next) {
+  for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
+    const ExchangedChart& chart = problem_.charts[j];
+    bool jumps = false;
+    for (std::size_t k = 0; k < chart.angles.size(); ++k) {
+      double& angle = next.x[chart.angles[k]];
+      const double jump = angle - last.x[chart.angles[k]];
+      if (!is_second(j) || k == chart.guarded || std::abs(std::abs(jump) - pi) > half_turn) continue;
+      jumps = true;
+      const double other = angle - std::copysign(2 * pi, jump), start = problem_.start[chart.angles[k]];
+      const double closer = std::abs(other - start) - std::abs(angle - start);
+      if (closer < -half_turn || (closer < half_turn && other > angle)) angle = other;
+    }
+    if (jumps) poles_.push_back({next.t, chart.of});
+  }
 }
 
 inline void ChartSwitch::to_own_charts(double t, const double* x, std::span<double> result) const {

@@ -24,15 +24,17 @@ namespace eom::hybrid {
 
 class EndErrorEstimator {
  public:
-  /// first: the run, in the model's own charts; adequacy: for fixed steps, else null; error: the output, which may
+  /// first: the run, in the model's own charts; adequacy: for fixed steps, else null; passes_pole:
+  /// whether it passed through the singularity of a chart; error: the output, which may
   /// already have a warning.
   EndErrorEstimator(const Problem& problem, const Result& first, const Options& options, StepAdequacy* adequacy,
-                    EndErrorEstimate& error)
+                    bool passes_pole, EndErrorEstimate& error)
       : problem_(problem),
         first_(first),
         options_(options),
         method_(method_named(problem.solver)),
         adequacy_(adequacy),
+        passes_pole_(passes_pole),
         error_(error),
         impulses_(problem.n(), problem.n()) {}
 
@@ -69,8 +71,10 @@ class EndErrorEstimator {
     error_.max = std::max(error_.max, error_.states[state]);
   }
 
-  /// Removes whole turns between two runs for angles that were read off another chart.
+  /// Removes whole turns between two runs for angles that were read off another chart. After a passage through a pole
+  /// they are part of the error.
   void align(const std::vector<double>& first, std::vector<double>& other) const {
+    if (passes_pole_) return;
     constexpr double turn = 2 * std::numbers::pi;
     for (const ExchangedChart& chart : problem_.charts) {
       for (const std::size_t angle : chart.angles)
@@ -169,6 +173,7 @@ class EndErrorEstimator {
   const Options& options_;
   const MethodInfo& method_;
   StepAdequacy* adequacy_;
+  bool passes_pole_;
   EndErrorEstimate& error_;
   UnresolvedImpulses impulses_;
   bool has_same_end_ = true;

@@ -208,6 +208,9 @@ inline bool Integration::observe_step(const StepView& step, const Observer& obse
   context_.projection.accept(step);
   last_step_ = step.t1 - step.t0;
   exchange_due_ = context_.charts.has_charts() && context_.charts.observe_step(step);
+  if (event && context_.charts.has_charts()) {
+    for (const ChartSwitch::Pole& pole : context_.charts.poles()) event({pole.t, "pole", pole.of}, step.x1);
+  }
   const bool wanted = !observer || observer(step);
   context_.freeze_branches(step.t1, step.x1.data(), false);
   if (context_.contacts) context_.contacts->update_min_slip(step.t1, step.x1.data());

@@ -178,7 +178,7 @@ struct Problem {
   std::size_t states() const { return 2 * n() + code->integrals + (power ? 1 : 0); }
 };
 
-/// An event of a run: "custom", "stop", "chart", "impulse", "singular_configuration", or an event of a contact.
+/// An event of a run: "custom", "stop", "chart", "pole", "impulse", "singular_configuration", or an event of a contact.
 struct Event {
   double t = 0;
   std::string kind, name;

@@ -102,7 +102,9 @@ inline RunResult run(const Problem& problem) {
   if (problem.estimate && ended && moves) {
     Result own = end;
     own.x = result.state;
-    EndErrorEstimator(problem, own, options, adequacy ? &*adequacy : nullptr, result.error).run();
+    const bool passes_pole = std::any_of(result.events.begin(), result.events.end(),
+                                         [](const Event& event) { return event.kind == "pole"; });
+    EndErrorEstimator(problem, own, options, adequacy ? &*adequacy : nullptr, passes_pole, result.error).run();
   }
   if (ended) require_balance(problem, result);
   result.detail = sentence(result.reason);
