@@ -162,6 +162,12 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
   for (std::uint32_t i = 0; i < model.coordinates.size(); ++i)
     found.coordinates.push_back({model.coordinates[i].name, unit_of(model.coordinates[i]), m.is_eliminated(i)});
   found.degrees_of_freedom = m.degrees_of_freedom();
+  for (std::uint32_t i = 0; i < model.states.size(); ++i) {
+    const model::State& state = model.states[i];
+    if (state.integral) continue;
+    found.states.push_back({state.name, unit_of(state), shown(m, m.dag->rates().at(mechanics::state_symbol(model, i))),
+                            state.energy != model::no_node});
+  }
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     const model::Parameter& p = model.parameters[i];
     found.parameters.push_back({p.name, unit_of(p),

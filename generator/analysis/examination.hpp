@@ -20,6 +20,13 @@ struct ExaminedCoordinate {
   bool eliminated = false;  // fixed by a constraint
 };
 
+/// A declared state of first order.
+struct ExaminedState {
+  std::string name, unit;
+  std::string rate;             // a formula
+  bool energy_counted = false;  // the model states the energy that it stores
+};
+
 /// A parameter, or an input with its default value.
 struct ExaminedValue {
   std::string name, unit;
@@ -78,6 +85,7 @@ struct ExaminedChart {
 struct Examination {
   std::vector<ExaminedCoordinate> coordinates;
   long degrees_of_freedom = 0;
+  std::vector<ExaminedState> states;
   std::vector<ExaminedValue> parameters, inputs;
   std::vector<ExaminedConstraint> constraints;
   std::vector<ExaminedJoint> joints;

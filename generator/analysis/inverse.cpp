@@ -53,10 +53,7 @@ std::vector<std::string> columns_of(const model::Model& model, const std::vector
   const auto add = [&](const std::string& name) {
     if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
   };
-  for (const model::Coordinate& c : model.coordinates) {
-    add(c.name);
-    add(c.name + "_dot");
-  }
+  for (const std::string& name : run::state_columns(model)) add(name);
   for (const std::string& name : forces) add(name);
   for (const std::string& name : scene.outputs) add(name);
   return columns;
@@ -96,7 +93,7 @@ class Prescribed {
       const bool nothing = conservation::zero_certainty(*m_.dag, {output->value}) != conservation::Certainty::no;
       values_.push_back(nothing ? m_.dag->zero() : output->value);
     }
-    integrals_.assign(system_.integrals.size(), 0.0);
+    states_ = scene_.z;
     for (std::uint64_t i = 0; result.outcome == eom::Outcome::done; ++i) {
       const double t = scene_.t0 + static_cast<double>(i) * every;
       const bool last = t >= scene_.t1 - 1e-9 * every;
@@ -113,15 +110,14 @@ class Prescribed {
   }
 
  private:
-  std::vector<double> values_at(double t, const double* integrals, const std::vector<symbolic::Ref>& expressions,
+  std::vector<double> values_at(double t, const double* states, const std::vector<symbolic::Ref>& expressions,
                                 const std::vector<double>& phi = {}) const {
     const double side = std::nextafter(t, scene_.t1 + 1);
-    return symbolic::evaluate(*m_.dag, expressions, [&](const symbolic::Symbol& s) -> double {
-      return value_at(t, side, integrals, phi, s);
-    });
+    return symbolic::evaluate(*m_.dag, expressions,
+                              [&](const symbolic::Symbol& s) -> double { return value_at(t, side, states, phi, s); });
   }
 
-  double value_at(double t, double side, const double* integrals, const std::vector<double>& phi,
+  double value_at(double t, double side, const double* states, const std::vector<double>& phi,
                   const symbolic::Symbol& s) const {
     switch (s.kind) {
       case symbolic::SymbolKind::time: return t;
@@ -132,18 +128,18 @@ class Prescribed {
         break;
       default: break;
     }
-    for (std::size_t i = 0; i < system_.integrals.size(); ++i) {
-      if (s.kind == symbolic::SymbolKind::integral && system_.integrals[i].integral == s.index) return integrals[i];
+    for (std::size_t i = 0; i < system_.states.size(); ++i) {
+      if (system_.states[i].symbol == s) return states[i];
     }
     throw std::logic_error("a prescribed motion leaves a symbol open");
   }
 
-  /// Integrals over time without closed form.
+  /// States of first order.
   void advance(double t, InverseDynamicsResult& result) {
     const double from = std::exchange(t_, t);
-    if (integrals_.empty()) return;
+    if (states_.empty()) return;
     std::vector<symbolic::Ref> rates;
-    for (const system::IntegralState& integral : system_.integrals) rates.push_back(integral.rate);
+    for (const system::FirstOrderState& state : system_.states) rates.push_back(state.rate);
     const auto f = [&](double at, const double* x, double* dx) {
       const std::vector<double> rate = values_at(at, x, rates);
       std::copy(rate.begin(), rate.end(), dx);
@@ -153,20 +149,20 @@ class Prescribed {
     if (scene_.max_step > 0) tolerances.max_step = scene_.max_step;
     tolerances.rtol = scene_.rtol;
     tolerances.atol = scene_.atol;
-    const eom::Result end = eom::integrate("dop853", f, from, integrals_, t, tolerances);
-    integrals_ = end.x;
+    const eom::Result end = eom::integrate("dop853", f, from, states_, t, tolerances);
+    states_ = end.x;
     result.outcome = end.outcome;
     result.detail = end.detail;
   }
 
   /// Warns of jumps of velocities: there the forces are impulses, which no row shows.
   void warn_of_jumps(InverseDynamicsResult& result) const {
-    const eom::hybrid::Jumps jumps(scene_.jumps, system_.free.size(), integrals_.size(), scene_.inputs.size(),
-                                   scene_.parameters, !scene_.clock.breakpoints.empty());
+    const eom::hybrid::Jumps jumps(scene_.jumps, system_.layout(), scene_.inputs.size(), scene_.parameters,
+                                   !scene_.clock.breakpoints.empty());
     if (!jumps.has_time_kinks()) return;
     for (const eom::hybrid::Breakpoint& at : scene_.clock.breakpoints) {
       if (at.before <= scene_.t0 || at.after >= scene_.t1) continue;  // before or behind the motion
-      std::vector<double> before, after, x = integrals_;
+      std::vector<double> before, after, x = states_;
       const double side = (at.before + at.after) / 2;
       for (const run::Signal& input : scene_.inputs)
         before.push_back(input(at.before, side)), after.push_back(input(at.after, side));
@@ -185,7 +181,7 @@ class Prescribed {
 
   void write_row(const InverseRequest& request, InverseDynamicsResult& result) const {
     const double side = std::nextafter(t_, scene_.t1 + 1);
-    const auto lookup = [&](const symbolic::Symbol& s) { return value_at(t_, side, integrals_.data(), {}, s); };
+    const auto lookup = [&](const symbolic::Symbol& s) { return value_at(t_, side, states_.data(), {}, s); };
     const std::optional<PrescribedFriction::Forces> friction = friction_->at(lookup);
     if (!friction) {
       result.outcome = eom::Outcome::friction_no_solution;
@@ -197,7 +193,7 @@ class Prescribed {
           "'{}' is at rest at t = {}, where friction up to the static limit is not determined: rows at rest have none",
           friction->resting.front(), t_);
     }
-    const std::vector<double> row = values_at(t_, integrals_.data(), values_, friction->phi);
+    const std::vector<double> row = values_at(t_, states_.data(), values_, friction->phi);
     if (request.row) request.row(t_, row);
     if (std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); })) return;
     result.outcome = eom::Outcome::not_finite;
@@ -211,7 +207,7 @@ class Prescribed {
   run::Scene scene_;
   std::vector<symbolic::Ref> values_;
   double t_ = 0;
-  std::vector<double> integrals_;
+  std::vector<double> states_;
 };
 
 /// Case that some coordinates are free: integrates the equations of motion.

@@ -82,9 +82,9 @@ std::string certified(DerivedModel& derived, std::uint64_t seed) {
   return certificate.summary();
 }
 
-/// Coordinates, rates and integrals over time at the end of a run, by indices of the model.
+/// Coordinates, rates and states of first order at the end of a run, by indices of the model.
 struct Reached {
-  std::vector<double> q, qdot, integrals;
+  std::vector<double> q, qdot, z;
 };
 
 Reached run_until(const std::string& command, SimulationRequest request, double t, const run::Scene& scene) {
@@ -93,10 +93,10 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
   request.prepare = [](DerivedModel& derived) {
     std::vector<std::string> names;
     for (system::EquationSystem& s : derived.candidates) {
-      for (const system::IntegralState& i : s.integrals) {
-        const std::string& name = derived.model.integrals[i.integral].name;
-        s.outputs.push_back({name, derived.mechanics.dag->symbol({symbolic::SymbolKind::integral, i.integral, 0}),
-                             system::OutputKind::time_integral, i.integral});
+      for (const system::FirstOrderState& state : s.states) {
+        const std::string& name = derived.model.states[state.symbol.index].name;
+        s.outputs.push_back(
+            {name, derived.mechanics.dag->symbol(state.symbol), system::OutputKind::time_integral, state.symbol.index});
         if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
       }
     }
@@ -123,7 +123,7 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
     reached.q.push_back(value(c.name));
     reached.qdot.push_back(value(c.name + "_dot"));
   }
-  for (const model::Integral& i : run.derived->model.integrals) reached.integrals.push_back(value(i.name));
+  for (const model::State& state : run.derived->model.states) reached.z.push_back(value(state.name));
   return reached;
 }
 
@@ -140,10 +140,9 @@ Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, c
   }
   for (const run::Signal& signal : p.scene.inputs)
     setting.inputs.push_back(linear::number<Precise>(numeric::exact(signal(p.t, p.t))));
-  for (std::size_t i = 0; i < d.model.integrals.size(); ++i) {
+  for (std::size_t i = 0; i < d.model.states.size(); ++i)
     setting.integrals.push_back(
-        linear::number<Precise>(numeric::exact(state.integrals.empty() ? 0.0 : state.integrals[i])));
-  }
+        linear::number<Precise>(numeric::exact(d.model.states[i].integral && !state.z.empty() ? state.z[i] : 0.0)));
   return setting;
 }
 
@@ -177,6 +176,11 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
   p.flow = std::make_unique<linear::Flow>(d.mechanics, p.system());
   for (const auto* values : {&state.q, &state.qdot}) {
     for (const std::uint32_t i : p.system().free) p.z.push_back(linear::number<Precise>(numeric::exact((*values)[i])));
+  }
+  for (std::size_t i = 0; i < p.system().states.size(); ++i) {
+    const symbolic::Symbol& symbol = p.system().states[i].symbol;
+    if (symbol.kind == symbolic::SymbolKind::state)
+      p.z.push_back(linear::number<Precise>(numeric::exact(state.z.empty() ? p.scene.z[i] : state.z[symbol.index])));
   }
   p.z.push_back(linear::number<Precise>(numeric::exact(p.t)));
   p.setting = setting_of(p, overrides, state, {});

@@ -186,7 +186,7 @@ Quantity output_named(const SteadyProblem& p, const std::string& name) {
       for (const symbolic::Symbol& s : p.derived->mechanics.dag->symbols({output.value})) {
         if (s.kind == SymbolKind::time) refuse_hold(name, "it depends on t");
         const bool of_state = (s.kind == SymbolKind::coordinate && s.order < 2) || s.kind == SymbolKind::parameter ||
-                              s.kind == SymbolKind::input;
+                              s.kind == SymbolKind::input || s.kind == SymbolKind::state;
         if (!of_state) refuse_hold(name, "it depends on accelerations or constraint forces");
       }
       return {name, output.value};
@@ -221,7 +221,7 @@ void hold(SteadyMotions& result, const SteadyRequest& request, const std::vector
 
 void require_not_ignored(const SteadyMotions& result, const SteadyRequest& request) {
   const linear::Symmetry& s = result.search.symmetry;
-  for (std::size_t k = 0; k < s.chart.positions; ++k) {
+  for (std::size_t k = 0; k < s.chart.independent.size(); ++k) {
     const std::string& name = result.problem.flow->names()[s.chart.independent[k]];
     if (!s.retained[k] && request.hold.contains(name))
       refuse_hold(name, "it is ignorable, and it advances in a steady motion");

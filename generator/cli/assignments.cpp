@@ -46,6 +46,7 @@ Stated stated_in(const model::Model& model, const std::string& name) {
     if (dimension && start->second == 1) dimension = model::quotient(*dimension, model::dimension_of("s"));
     return {dimension, std::nullopt};
   }
+  if (const auto state = run::find_state(model, name)) return {model.states[*state].unit.dimension, std::nullopt};
   const auto named = [&name](const model::Parameter& p) { return p.name == name; };
   const auto found = std::find_if(model.parameters.begin(), model.parameters.end(), named);
   if (found == model.parameters.end()) return {};

@@ -71,10 +71,13 @@ Json forces(const analysis::Examination& found) {
 
 Json to_json(const model::Model& model, const analysis::Examination& found) {
   Json result{{"format", 1}, {"model", model.id}, {"title", model.title}};
-  Json coordinates = Json::array(), contacts = Json::array(), conserved = Json::array(), singular = Json::array(),
-       charts = Json::array(), warnings = Json::array(), left_out = Json::array();
+  Json coordinates = Json::array(), states = Json::array(), contacts = Json::array(), conserved = Json::array(),
+       singular = Json::array(), charts = Json::array(), warnings = Json::array(), left_out = Json::array();
   for (const auto& c : found.coordinates)
     coordinates.push_back({{"name", c.name}, {"unit", c.unit}, {"eliminated", c.eliminated}});
+  for (const auto& z : found.states) {
+    states.push_back({{"name", z.name}, {"unit", z.unit}, {"rate", z.rate}, {"energy_counted", z.energy_counted}});
+  }
   for (const auto& c : found.contacts) {
     contacts.push_back(
         {{"name", c.name}, {"kind", c.kind}, {"law", c.law}, {"slip", list(c.slip)}, {"unilateral", c.unilateral}});
@@ -99,6 +102,7 @@ Json to_json(const model::Model& model, const analysis::Examination& found) {
   for (const work::LeftOut& l : found.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}});
   result["coordinates"] = coordinates;
   result["dof"] = found.degrees_of_freedom;
+  result["states"] = states;
   result["parameters"] = values(found.parameters, "value", true);
   result["inputs"] = values(found.inputs, "default", false);
   result["constraints"] = constraints(found);

@@ -29,7 +29,7 @@ bool is_final(const pipeline::Simulation& simulation, const std::string& name) {
   if (output == nullptr) return false;
   if (output->kind == OutputKind::acceleration) return simulation.scene.t1 == simulation.scene.t0;
   return output->kind == OutputKind::coordinate || output->kind == OutputKind::rate ||
-         output->kind == OutputKind::energy || system::is_reaction(output->kind);
+         output->kind == OutputKind::state || output->kind == OutputKind::energy || system::is_reaction(output->kind);
 }
 
 /// Reaction components of joints and constraints that the motion does not determine; they are not in `final`.

@@ -42,9 +42,12 @@ class Classifier {
   bool depends_on_place_only() {
     for (const Symbol& symbol : dag_.symbols(Q_)) {
       const bool velocity = symbol.kind == SymbolKind::coordinate && symbol.order > 0;
-      if (!velocity && symbol.kind != SymbolKind::input) continue;
+      const bool state = symbol.kind == SymbolKind::state;
+      if (!velocity && !state && symbol.kind != SymbolKind::input) continue;
       result_.conservative = ConservativeVerdict::no;
-      append_reason(velocity ? "it depends on velocities" : "it depends on an input");
+      append_reason(velocity ? "it depends on velocities"
+                    : state  ? "it depends on a state of first order"
+                             : "it depends on an input");
       return false;
     }
     return true;

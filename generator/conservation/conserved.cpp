@@ -80,7 +80,9 @@ std::vector<ConservedQuantity> conserved_quantities(Mechanics& m, system::Equati
   std::vector<Ref> power{s.power};
   for (const Ref surface : jump_surfaces(dag, {s.energy})) power.push_back(by_time(surface));
   if (const Certainty c = hit ? Certainty::no : zero_certainty(dag, power); c != Certainty::no)
-    result.push_back({"energy", "total energy T + U", s.energy, OutputKind::energy, 0, 0, c});
+    result.push_back({"energy",
+                      m.dag->is_zero(m.stored) ? "total energy T + U" : "total energy T + U and the energy of states",
+                      s.energy, OutputKind::energy, 0, 0, c});
   // The constrained Lagrangian, which Approach II differentiates: its cyclic coordinates are those of the motion.
   const Ref L = dag.sub(s.kinetic, s.potential);
   symbolic::Substitution imposed = constraint_substitution(m), written = time_function_substitution(m);

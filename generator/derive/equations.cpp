@@ -162,6 +162,11 @@ void add_outputs(Mechanics& m, EquationSystem& s) {
     add(c.name, m.q[i], OutputKind::coordinate, c.unit.text, i);
     add(c.name + "_dot", m.qdot[i], OutputKind::rate, system::per_second(c.unit.text), i);
   }
+  for (std::uint32_t i = 0; i < m.model->states.size(); ++i) {
+    const model::State& state = m.model->states[i];
+    if (!state.integral)
+      add(state.name, m.dag->symbol(mechanics::state_symbol(*m.model, i)), OutputKind::state, state.unit.text, i);
+  }
   add("energy", s.energy, OutputKind::energy, "J");
   add("kinetic", s.kinetic, OutputKind::kinetic, "J");
   add("potential", s.potential, OutputKind::potential, "J");
@@ -316,7 +321,7 @@ EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquat
   s.approach = approach;
   s.free = m.free;
   s.active = m.active;
-  s.integrals = integral_states(m);
+  s.states = first_order_states(m);
   const std::size_t all = m.q.size();
   if (motion != nullptr) {
     s.M = motion->M;
@@ -334,7 +339,7 @@ EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquat
   add_reactions(m, full, s);
   s.kinetic = m.kinetic;
   s.potential = m.potential;
-  s.energy = dag.add(m.kinetic, m.potential);
+  s.energy = dag.add(dag.add(m.kinetic, m.potential), m.stored);
   s.power = power(m, s);
   add_outputs(m, s);
   add_events(m, s);

@@ -14,11 +14,16 @@ using mechanics::Vec3;
 using symbolic::Dag;
 using symbolic::Ref;
 
-/// The integrals of functions of time without a closed form (time_function_substitution): states of the system.
-inline std::vector<system::IntegralState> integral_states(const Mechanics& mechanics) {
-  std::vector<system::IntegralState> states;
+/// The states of first order of the system: those that the model declares, then integrals of functions of time without
+/// a closed form (time_function_substitution).
+inline std::vector<system::FirstOrderState> first_order_states(const Mechanics& mechanics) {
+  symbolic::Substitution imposed = constraint_substitution(mechanics), written = time_function_substitution(mechanics);
+  std::vector<system::FirstOrderState> states;
+  for (const auto& [symbol, rate] : mechanics.dag->rates()) {
+    if (symbol.kind == symbolic::SymbolKind::state) states.push_back({symbol, written(imposed(rate))});
+  }
   for (const mechanics::NonelementaryIntegral& open : mechanics::nonelementary_integrals(mechanics))
-    states.push_back({open.integral, open.rate});
+    states.push_back({{symbolic::SymbolKind::integral, open.integral, 0}, open.rate});
   return states;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// dE/dt = -dL/dt|q,qdot + sum Q_i qdot_i - sum lambda_k dpsi_k/dt|q + d(T1 + 2 T0)/dt: docs/theory.md, "Power".
+// dE/dt = -dL/dt|q,qdot + sum Q_i qdot_i - sum lambda_k dpsi_k/dt|q + d(T1 + 2 T0)/dt + dW/dt, with the energy W that
+// states of first order store: docs/theory.md, "Power".
 #include "derive/equations.hpp"
 
 namespace eomgen::derive {
@@ -94,7 +95,7 @@ Ref power(Mechanics& m, const system::EquationSystem& s) {
     result = dag.sub(result, dag.mul(reaction.value, m.constraints[reaction.constraint].rate));
   }
   symbolic::Derivation ddt = symbolic::total_time_derivative(dag, m.q.size(), m.model->functions.size());
-  return dag.add(result, ddt(dag.add(masses.moving, given.moving)));
+  return dag.add(dag.add(result, ddt(dag.add(masses.moving, given.moving))), ddt(m.stored));
 }
 
 }  // namespace eomgen::derive

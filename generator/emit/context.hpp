@@ -62,16 +62,16 @@ struct EmissionContext {
   std::vector<Quantity> coordinates;  // all of the model, in declared order; those not in Program::free are eliminated
   std::vector<Quantity> parameters;   // all of the model, in declared order: the array p
   std::vector<Quantity> inputs;       // the array u
-  std::vector<Quantity> integrals;    // all of the model; those in Program::integrals are states after the velocities
-  std::string start_parameter;        // name of the parameter for the start time; empty if none
+  std::vector<Quantity> states;  // of first order, all of the model; those in Program::states follow the velocities
+  std::string start_parameter;   // name of the parameter for the start time; empty if none
   std::vector<EventDescription> events;  // all of the model, in declared order
   std::vector<std::string> singular;     // "sin(phi) = 0"
   double start_time = 0;
   std::vector<double> start;  // x at the start of the default scene
   std::vector<TestVector> tests;
-  std::shared_ptr<const RunDescription> run = {};  // if requested
+  std::shared_ptr<const RunDescription> run = {};                // if requested
   std::shared_ptr<const StartDescription> start_functions = {};  // of NAME_start, if requested (start/start.hpp)
-  std::optional<double> single_error = {};         // error in single precision, if requested (single_precision.hpp)
+  std::optional<double> single_error = {};  // error in single precision, if requested (single_precision.hpp)
 };
 
 /// NAME of the C ABI: the model's id as an identifier that no target reserves.

@@ -37,7 +37,7 @@ std::vector<Quantity> states(const program::Program& program, const EmissionCont
     rate.unit = rate_unit(rate.unit);
     result.push_back(std::move(rate));
   }
-  for (const std::uint32_t i : program.integrals) result.push_back(context.integrals.at(i));
+  for (const symbolic::Symbol& state : program.states) result.push_back(context.states.at(state.index));
   return result;
 }
 
@@ -316,7 +316,8 @@ void require_consistent(const program::Program& program, const EmissionContext& 
   };
   const std::size_t n = program.state_count();
   for (const std::uint32_t i : program.free) require(i < context.coordinates.size(), "coordinates");
-  for (const std::uint32_t i : program.integrals) require(i < context.integrals.size(), "integrals");
+  for (const symbolic::Symbol& state : program.states)
+    require(state.index < context.states.size(), "states of first order");
   require(n > 0, "no coordinate is free");
   require(program.events.empty() || program.events.size() == context.events.size(), "events");
   require(context.start.size() == n, "start values");

@@ -25,7 +25,8 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
   for (const std::uint32_t i : program.free) names.state.push_back(table.declare(context.coordinates.at(i).name));
   for (const std::uint32_t i : program.free)
     names.state.push_back(table.declare(context.coordinates.at(i).name + "_dot"));
-  for (const std::uint32_t i : program.integrals) names.state.push_back(table.declare(context.integrals.at(i).name));
+  for (const symbolic::Symbol& state : program.states)
+    names.state.push_back(table.declare(context.states.at(state.index).name));
   for (const std::uint32_t i : program.free) names.acceleration.push_back(context.coordinates.at(i).name + "_ddot");
   for (const program::ContactInfo& contact : program.contacts) {
     names.contacts.push_back(table.declare(identifier("slides_" + contact.name)));

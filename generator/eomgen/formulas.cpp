@@ -27,7 +27,8 @@ std::string symbol_name(const model::Model& model, const symbolic::Symbol& s) {
     case SymbolKind::parameter: return model.parameters[s.index].name;
     case SymbolKind::input: return model.inputs[s.index].name;
     case SymbolKind::function: return model.functions[s.index].name + std::string(s.order, '\'');
-    case SymbolKind::integral: return model.integrals[s.index].name;
+    case SymbolKind::integral:
+    case SymbolKind::state: return model.states[s.index].name;
     case SymbolKind::friction: return fmt::format("friction.{}", s.index + 1);
     default: return fmt::format("mode.{}.{}", s.index + 1, s.order);
   }

@@ -43,13 +43,9 @@ pipeline::SimulationRequest request_of(std::shared_ptr<const model::Model> model
   return request;
 }
 
-/// Columns of a motion: coordinates with their rates, then the outputs of the scene.
+/// Columns of a motion: coordinates with their rates, states of first order, then the outputs of the scene.
 std::vector<std::string> shown(const model::Model& model, const run::Scene& scene) {
-  std::vector<std::string> columns;
-  for (const model::Coordinate& c : model.coordinates) {
-    columns.push_back(c.name);
-    columns.push_back(c.name + "_dot");
-  }
+  std::vector<std::string> columns = run::state_columns(model);
   columns.insert(columns.end(), scene.outputs.begin(), scene.outputs.end());
   return columns;
 }

@@ -88,12 +88,14 @@ std::vector<Candidate> candidates(const Matrix<Precise>& block) {
   return result;
 }
 
-Chart chart_of(std::size_t n, const Places& positions, const Places& speeds) {
+Chart chart_of(const Flow& flow, const Places& positions, const Places& speeds) {
+  const std::size_t n = flow.coordinates();
   Chart chart;
   chart.dependent = positions;
   for (const std::size_t v : speeds) chart.dependent.push_back(n + v);
-  chart.independent = without(all_of(0, 2 * n), chart.dependent);
+  chart.independent = without(all_of(0, flow.entries()), chart.dependent);
   chart.positions = n - positions.size();
+  chart.first_order = flow.entries() - 2 * n;
   return chart;
 }
 
@@ -111,12 +113,13 @@ void join(Pattern<T>& pattern, const Matrix<T>& A, const T& small) {
   }
 }
 
-/// Drops positions and the time if no retained entry depends on them.
+/// Drops positions, pure integrals among the states of first order, and the time if no retained entry depends on them.
 template <class T>
-std::vector<bool> retained_of(const Pattern<T>& feels, std::size_t positions) {
+std::vector<bool> retained_of(const Pattern<T>& feels, std::size_t positions, std::size_t first_order) {
   const std::size_t size = feels.size();
   std::vector<bool> retained(size + 1, true);
   for (std::size_t k = 0; k < positions; ++k) retained[k] = false;
+  for (std::size_t k = size - first_order; k < size; ++k) retained[k] = feels[k][k];
   retained[size] = false;
   for (bool changed = true; changed;) {
     changed = false;
@@ -134,7 +137,7 @@ template <class T>
 std::vector<bool> retained_in(const std::vector<Field<T>>& fields, const Chart& chart, const T& small) {
   Pattern<T> feels;
   for (const Field<T>& field : fields) join(feels, reduced_jacobian(field, chart, tangent(field, chart)), small);
-  return retained_of<T>(feels, chart.positions);
+  return retained_of<T>(feels, chart.positions, chart.first_order);
 }
 
 Field<double> rounded(const Field<Precise>& f) {
@@ -170,13 +173,13 @@ Chart best_chart(const Flow& flow, const Field<Precise>& here, const std::vector
   std::vector<Field<double>> rough;
   for (const Field<Precise>& f : fields) rough.push_back(rounded(f));
   std::optional<std::tuple<std::size_t, std::size_t, double>> best;
-  Chart result = chart_of(n, positions.front().columns, speeds.front().columns);
+  Chart result = chart_of(flow, positions.front().columns, speeds.front().columns);
   if (positions.size() * speeds.size() == 1) return result;
   std::size_t tried = 0;
   for (const Candidate& a : positions) {
     for (const Candidate& b : speeds) {
       if (++tried > most_charts) return result;
-      const Chart chart = chart_of(n, a.columns, b.columns);
+      const Chart chart = chart_of(flow, a.columns, b.columns);
       try {
         const std::vector<bool> retained = retained_in<double>(rough, chart, 1e-9);
         const auto count = static_cast<std::size_t>(std::count(retained.begin(), retained.end(), true));
@@ -201,9 +204,9 @@ double random_number(std::uint64_t seed, std::uint64_t index) {
   return 2 * (static_cast<double>(hash_mix(hash_mix(seed) + index) >> 11) / 9007199254740992.0) - 1;
 }
 
-std::vector<std::size_t> ignorable_positions(const Symmetry& s) {
+std::vector<std::size_t> ignorable_entries(const Symmetry& s) {
   Places result;
-  for (std::size_t k = 0; k < s.chart.positions; ++k) {
+  for (std::size_t k = 0; k < s.chart.independent.size(); ++k) {
     if (!s.retained[k]) result.push_back(s.chart.independent[k]);
   }
   return result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Charts of the constraint manifold: entries of z = (q, v, t) that determine the others, and the entries that are
+// Charts of the constraint manifold: entries of z = (q, v, s, t) that determine the others, and the entries that are
 // ignorable.
 #pragma once
 
@@ -11,12 +11,14 @@
 namespace eomgen::linear {
 
 struct Chart {
-  std::vector<std::size_t> independent;  // indices into z, ascending: positions, then speeds
+  std::vector<std::size_t>
+      independent;  // indices into z, ascending: positions, then speeds, then states of first order
   std::vector<std::size_t> dependent;
-  std::size_t positions = 0;  // how many of `independent` are positions
+  std::size_t positions = 0;    // how many of `independent` are positions
+  std::size_t first_order = 0;  // how many are states of first order
 };
 
-/// dz/d(y, t) on the constraint manifold, (2n + 1) x (|y| + 1). Throws std::domain_error if the chart is singular.
+/// dz/d(y, t) on the constraint manifold, (N + 1) x (|y| + 1). Throws std::domain_error if the chart is singular.
 template <class T>
 Matrix<T> tangent(const Field<T>& field, const Chart& chart);
 
@@ -33,8 +35,8 @@ struct Symmetry {
       constant;  // entries of z that are constant in a steady motion: retained ones and those they determine
 };
 
-/// The ignorable positions among the independent entries.
-std::vector<std::size_t> ignorable_positions(const Symmetry& symmetry);
+/// The ignorable positions and states of first order among the independent entries.
+std::vector<std::size_t> ignorable_entries(const Symmetry& symmetry);
 
 /// Moves a state onto the constraints by Newton's method in the entries `moving` of z. Empty if it does not converge.
 std::optional<State<Precise>> move_onto_constraints(const Flow& flow, State<Precise> z, const Setting<Precise>& setting,
@@ -44,7 +46,7 @@ std::optional<State<Precise>> move_onto_constraints(const Flow& flow, State<Prec
 std::optional<State<Precise>> project_onto_constraints(const Flow& flow, State<Precise> z,
                                                        const Setting<Precise>& setting,
                                                        const std::vector<std::size_t>& moving);
-/// The same in all entries except t.
+/// The same in all positions and speeds.
 std::optional<State<Precise>> project_onto_constraints(const Flow& flow, const State<Precise>& z,
                                                        const Setting<Precise>& setting);
 

@@ -158,7 +158,7 @@ class Search {
 
   /// The same, within the ranges of the coordinates.
   std::optional<std::size_t> polish(State<Precise> rough) {
-    for (const std::size_t i : ignorable_positions(symmetry_)) rough[i] = r_.start[i];
+    for (const std::size_t i : ignorable_entries(symmetry_)) rough[i] = r_.start[i];
     std::optional<SteadyState> found = steady(rough);
     if (!found) return std::nullopt;
     State<Precise>& z = found->z;
@@ -179,7 +179,7 @@ class Search {
 
   bool is_same(const State<double>& a, const State<Precise>& b) const {
     constexpr double turn = 2 * 3.14159265358979323846;
-    for (std::size_t i = 0; i < 2 * n_; ++i) {
+    for (std::size_t i = 0; i < flow_.entries(); ++i) {
       double distance = std::abs(a[i] - to_double(b[i]));
       if (i < n_ && turns_[i]) distance = std::min(distance, std::abs(turn - distance));
       if (distance > same_point * (1 + std::abs(a[i]))) return false;
@@ -204,7 +204,7 @@ class Search {
         continue;
       }
     }
-    for (const std::size_t i : ignorable_positions(symmetry_)) turns_[i] = false;  // they keep their start values
+    for (const std::size_t i : ignorable_entries(symmetry_)) turns_[i] = false;  // they keep their start values
   }
 
   static bool equal(const Matrix<Precise>& A, const Matrix<Precise>& B) {
@@ -255,7 +255,7 @@ class Search {
         other[c] = z[c] + pi;
         other[n_ + b] = -z[n_ + b];
         if (!(sign(other) > T(0))) continue;
-        for (const std::size_t i : ignorable_positions(symmetry_)) other[i] = number<T>(r_.start[i]);
+        for (const std::size_t i : ignorable_entries(symmetry_)) other[i] = number<T>(r_.start[i]);
         take(z, other);
         break;
       }
@@ -273,7 +273,7 @@ class Search {
     const Field<Precise> field = flow_.at(z, r_.setting);
     Matrix<Precise> J = stacked(field.phi_jacobian, rows_of(field.jacobian, symmetry_.constant));
     J.cols = z.size();
-    for (const std::size_t i : ignorable_positions(symmetry_)) {
+    for (const std::size_t i : ignorable_entries(symmetry_)) {
       Matrix<Precise> row(1, z.size());
       row(0, i) = Precise(1);
       J = stacked(J, row);
@@ -345,7 +345,7 @@ class Search {
   }
 
   bool before(const State<Precise>& a, const State<Precise>& b) const {
-    for (std::size_t i = 0; i < 2 * n_; ++i) {
+    for (std::size_t i = 0; i < flow_.entries(); ++i) {
       const double difference = to_double(a[i] - b[i]);
       if (std::abs(difference) > same_point) return difference < 0;
     }

@@ -37,6 +37,9 @@ std::vector<Symbol> state_symbols(const system::EquationSystem& s) {
   for (const std::uint8_t order : {std::uint8_t{0}, std::uint8_t{1}}) {
     for (const std::uint32_t i : s.free) result.push_back({SymbolKind::coordinate, i, order});
   }
+  for (const system::FirstOrderState& state : s.states) {
+    if (state.symbol.kind == SymbolKind::state) result.push_back(state.symbol);
+  }
   result.push_back({SymbolKind::time, 0, 0});
   return result;
 }
@@ -51,6 +54,14 @@ Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s)
   for (const char* suffix : {"", "_dot"}) {
     for (const std::uint32_t i : s.free) names_.push_back(m.model->coordinates[i].name + suffix);
   }
+  state_place_.assign(m.model->states.size(), 0);
+  std::vector<Ref> rates;  // of the declared states of first order, which come first
+  for (const system::FirstOrderState& state : s.states) {
+    if (state.symbol.kind != SymbolKind::state) continue;
+    state_place_[state.symbol.index] = names_.size();
+    names_.push_back(m.model->states[state.symbol.index].name);
+    rates.push_back(state.rate);
+  }
   directions_ = state_symbols(s);
   symbols_.assign(directions_.begin(), directions_.end() - 1);
   for (const Symbol& symbol : symbols_) entries_.push_back(dag.symbol(symbol));
@@ -61,6 +72,7 @@ Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s)
     if (s.holonomic[k]) holonomic_.push_back(k);
   }
   for (const std::size_t k : holonomic_) roots.push_back(s.psi[k]);
+  roots.insert(roots.end(), rates.begin(), rates.end());
   for (const mechanics::ConstraintIntegral& integral : m.integrals) leaf_.push_back(integral.psi);
   for (const std::size_t k : holonomic_) phi_expressions_.push_back(s.psi[k]);
   phi_expressions_.insert(phi_expressions_.end(), leaf_.begin(), leaf_.end());
@@ -87,7 +99,8 @@ std::function<T(const Symbol&)> Flow::lookup(const State<T>& z, const Setting<T>
       case SymbolKind::parameter: return setting.parameters[s.index];
       case SymbolKind::input: return setting.inputs[s.index];
       case SymbolKind::integral: return setting.integrals[s.index];
-      case SymbolKind::time: return z[2 * n_];
+      case SymbolKind::state: return z[state_place_[s.index]];
+      case SymbolKind::time: return z[entries()];
       case SymbolKind::coordinate:
         if (s.order < 2) return z[place_[s.index] + (s.order == 0 ? 0 : n_)];
         break;
@@ -165,23 +178,29 @@ void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<
     }
   }
   const Matrix<T> jacobian = solver.solve(rates);
-  field.X = Matrix<T>(2 * n_, 1);
-  field.jacobian = Matrix<T>(2 * n_, 2 * n_ + 1);
-  field.input_jacobian = Matrix<T>(2 * n_, inputs_);
+  const std::size_t N = entries(), rates0 = gamma0 + 2 * m_ + holonomic_.size();
+  field.X = Matrix<T>(N, 1);
+  field.jacobian = Matrix<T>(N, N + 1);
+  field.input_jacobian = Matrix<T>(N, inputs_);
   for (std::size_t i = 0; i < n_; ++i) {
     field.X(i, 0) = z[n_ + i];
     field.X(n_ + i, 0) = y(i, 0);
     field.jacobian(i, n_ + i) = T(1);
-    for (std::size_t d = 0; d < 2 * n_ + 1; ++d) field.jacobian(n_ + i, d) = jacobian(i, d);
-    for (std::size_t u = 0; u < inputs_; ++u) field.input_jacobian(n_ + i, u) = jacobian(i, 2 * n_ + 1 + u);
+    for (std::size_t d = 0; d < N + 1; ++d) field.jacobian(n_ + i, d) = jacobian(i, d);
+    for (std::size_t u = 0; u < inputs_; ++u) field.input_jacobian(n_ + i, u) = jacobian(i, N + 1 + u);
+  }
+  for (std::size_t k = 0; 2 * n_ + k < N; ++k) {
+    field.X(2 * n_ + k, 0) = s.value[rates0 + k];
+    for (std::size_t d = 0; d < N + 1; ++d) field.jacobian(2 * n_ + k, d) = s.jacobian(rates0 + k, d);
+    for (std::size_t u = 0; u < inputs_; ++u) field.input_jacobian(2 * n_ + k, u) = s.jacobian(rates0 + k, N + 1 + u);
   }
   if constexpr (std::is_same_v<T, double>) {
     field.inertia_force = Matrix<T>(n_, 1);
-    field.inertia_force_jacobian = Matrix<T>(n_, 2 * n_ + 1);
+    field.inertia_force_jacobian = Matrix<T>(n_, N + 1);
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = 0; j < n_; ++j) {
         field.inertia_force(i, 0) += s.value[i * n_ + j] * y(j, 0);
-        for (std::size_t d = 0; d < 2 * n_ + 1; ++d)
+        for (std::size_t d = 0; d < N + 1; ++d)
           field.inertia_force_jacobian(i, d) +=
               s.jacobian(i * n_ + j, d) * y(j, 0) + s.value[i * n_ + j] * jacobian(j, d);
       }
@@ -193,7 +212,7 @@ template <class T>
 void Flow::constrain(const ValueAndJacobian<T>& s, const Places& places, const State<T>& z, const Setting<T>& setting,
                      Field<T>& field) const {
   const auto [A0, b0, psi0] = places;
-  const std::size_t width = 2 * n_ + 1;
+  const std::size_t width = entries() + 1;
   const std::size_t h = holonomic_.size(), rows = position_constraint_count() + m_;
   field.phi = Matrix<T>(rows, 1);
   field.phi_jacobian = Matrix<T>(rows, width);

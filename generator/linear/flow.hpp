@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The vector field of the equations of motion at a point and its Jacobian: (q, v) -> (v, a) with M a = f + A^T lambda
-// and A a + gamma = 0, differentiated with a and lambda as functions of the point. In: an EquationSystem without
-// contacts.
+// The vector field of the equations of motion at a point and its Jacobian: (q, v, s) -> (v, a, s') with M a = f + A^T
+// lambda and A a + gamma = 0, differentiated with a and lambda as functions of the point, and the rates s' of the
+// declared states of first order. In: an EquationSystem without contacts.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace eomgen::linear {
 
-/// z = (q, v, t) of the free coordinates.
+/// z = (q, v, s, t) of the free coordinates and the declared states of first order.
 template <class T>
 using State = std::vector<T>;
 
@@ -21,19 +21,19 @@ using State = std::vector<T>;
 template <class T>
 struct Setting {
   std::vector<T> parameters, inputs;
-  std::vector<T> integrals;  // of functions of time, per Model::integrals
+  std::vector<T> integrals;  // of functions of time, per Model::states; 0 for declared states
   std::vector<T> leaf;       // values of the integrals of constraints on velocities
 };
 
 template <class T>
 struct Field {
-  Matrix<T> X;                            // 2n x 1: v, a
-  Matrix<T> jacobian;                     // 2n x (2n + 1), with respect to z
-  Matrix<T> input_jacobian;               // 2n x inputs
+  Matrix<T> X;                            // N x 1: v, a, s'
+  Matrix<T> jacobian;                     // N x (N + 1), with respect to z
+  Matrix<T> input_jacobian;               // N x inputs
   Matrix<T> phi;                          // constraints on positions (holonomic, then leaves), then on velocities
   Matrix<T> phi_jacobian;                 // by z
   Matrix<T> inertia_force = {};           // M a, n x 1; in binary64 only
-  Matrix<T> inertia_force_jacobian = {};  // n x (2n + 1)
+  Matrix<T> inertia_force_jacobian = {};  // n x (N + 1)
 };
 
 class Flow {
@@ -41,6 +41,7 @@ class Flow {
   Flow(mechanics::Mechanics& mechanics, const system::EquationSystem& system);
 
   std::size_t coordinates() const { return n_; }
+  std::size_t entries() const { return symbols_.size(); }  // N: of z without t
   std::size_t inputs() const { return inputs_; }
   std::size_t position_constraint_count() const { return holonomic_.size() + leaf_.size(); }
   const std::vector<std::string>& names() const { return names_; }  // of z without t
@@ -90,8 +91,9 @@ class Flow {
   std::vector<std::string> names_;
   std::vector<Ref> entries_;
   std::vector<Symbol> symbols_;
-  std::vector<std::size_t> place_;  // index in z of a coordinate of the model
-  std::vector<Symbol> directions_;  // z, then inputs
+  std::vector<std::size_t> place_;        // index in z of a coordinate of the model
+  std::vector<std::size_t> state_place_;  // index in z of a declared state of the model
+  std::vector<Symbol> directions_;        // z, then inputs
   bool uses_integrals_ = false;
   std::unique_ptr<Tape> tape_, constraint_tape_, leaf_tape_;
 };

@@ -37,15 +37,16 @@ Equations equations(const Flow& flow, const Symmetry& symmetry, const State<doub
   for (std::size_t i = 0; i < field.phi.rows; ++i) add(e, field.phi, field.phi_jacobian, i);
   const std::size_t n = flow.coordinates();
   const auto& constant = symmetry.constant;
-  const auto accelerations = std::count_if(constant.begin(), constant.end(), [n](std::size_t i) { return i >= n; });
+  const auto accelerations =
+      std::count_if(constant.begin(), constant.end(), [n](std::size_t i) { return i >= n && i < 2 * n; });
   const bool all = kind == SteadyEquations::inertia_forces && static_cast<std::size_t>(accelerations) == n;
   for (const std::size_t i : constant) {
-    if (i < n || !all)
+    if (i < n || i >= 2 * n || !all)
       add(e, field.X, field.jacobian, i);
     else
       add(e, field.inertia_force, field.inertia_force_jacobian, i - n);
   }
-  for (const std::size_t i : ignorable_positions(symmetry)) {
+  for (const std::size_t i : ignorable_entries(symmetry)) {
     e.value.push_back(z[i] - start[i]);
     e.jacobian.emplace_back(z.size() - 1, 0.0);
     e.jacobian.back()[i] = 1;
@@ -204,13 +205,18 @@ State<double> spread_start(const SearchRequest& request, const Symmetry& symmetr
   if (k == 0) return z;
   double fastest = 1;
   for (std::size_t i = n; i < 2 * n; ++i) fastest = std::max(fastest, std::abs(z[i]));
-  std::vector<bool> kept(2 * n, false), ignored(2 * n, false);
+  const std::size_t entries = request.flow.entries();
+  std::vector<bool> kept(entries, false), ignored(entries, false);
   for (const std::size_t i : symmetry.constant) kept[i] = true;
-  for (const std::size_t i : ignorable_positions(symmetry)) ignored[i] = true;
+  for (const std::size_t i : ignorable_entries(symmetry)) ignored[i] = true;
   constexpr double pi = 3.14159265358979323846;
   const bool attitudes_only = !request.euler_parameters.empty() && k < plain_attitudes;
-  for (std::size_t i = 0; i < 2 * n; ++i) {
+  for (std::size_t i = 0; i < entries; ++i) {
     const double r = random_number(request.seed + 50000, 64 * k + i);
+    if (i >= 2 * n) {
+      if (!ignored[i] && !attitudes_only) z[i] += (1 + std::abs(z[i])) * 2 * r;
+      continue;
+    }
     if (i >= n) {
       // Entries that are constant in a steady motion have zero rates.
       z[i] = kept[i - n] ? 0 : attitudes_only ? z[i] : std::abs(z[i]) > 0 ? z[i] * (1 + 1.5 * r) : fastest * r;

@@ -78,7 +78,7 @@ StabilityTest::StabilityTest(const Flow& flow, symbolic::Dag& dag, const std::ve
 }
 
 StabilityTest::Slopes StabilityTest::slopes(const Function& function, const Linearisation& l) const {
-  const std::size_t size = 2 * flow_.coordinates();
+  const std::size_t size = flow_.entries();
   const ValueAndJacobian<Precise> s = flow_.value_and_jacobian(function.gradient, l.z, l.setting);
   Slopes result{Matrix<Precise>(1, size), Matrix<Precise>(size, size)};
   for (std::size_t i = 0; i < size; ++i) {
@@ -92,7 +92,7 @@ StabilityTest::Slopes StabilityTest::slopes(const Function& function, const Line
 // dF = sum kappa dphi.
 bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size_t>& columns,
                              const Function& energy) const {
-  const std::size_t size = 2 * flow_.coordinates();
+  const std::size_t size = flow_.entries();
   Matrix<Precise> whole(size, l.symmetry.chart.independent.size());
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t k = 0; k < whole.cols; ++k) whole(i, k) = l.tangent(i, k);

@@ -37,7 +37,7 @@ class StabilityTest {
     Tape gradient;  // its derivatives are the second derivatives
   };
   struct Slopes {
-    Matrix<Precise> first, second;  // 1 x 2n, 2n x 2n
+    Matrix<Precise> first, second;  // 1 x N, N x N
   };
   Slopes slopes(const Function& function, const Linearisation& l) const;
   bool definite(const Linearisation& l, const std::vector<std::size_t>& columns, const Function& energy) const;

@@ -21,7 +21,7 @@ Equations steady_equations(const Flow& flow, const Symmetry& symmetry, const Sta
   Equations e{field.phi, field.phi_jacobian};
   e.jacobian.cols = field.phi_jacobian.cols;
   add(e, rows_of(field.X, symmetry.constant), rows_of(field.jacobian, symmetry.constant));
-  for (const std::size_t i : ignorable_positions(symmetry)) {
+  for (const std::size_t i : ignorable_entries(symmetry)) {
     Matrix<Precise> value(1, 1), jacobian(1, field.jacobian.cols);
     value(0, 0) = z[i] - start[i];
     jacobian(0, i) = Precise(1);

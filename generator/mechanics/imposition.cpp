@@ -42,8 +42,13 @@ Values with_derivatives(Dag& dag, const std::vector<Ref>& value) {
   return values;
 }
 
+struct Integrand {
+  std::uint32_t integral;
+  Ref rate;
+};
+
 // All functions of time and their derivatives, as expressions of t, parameters and integrals; the integrands likewise.
-Values written_functions(const Mechanics& m, std::vector<Ref>& integrands) {
+Values written_functions(const Mechanics& m, std::vector<Integrand>& integrands) {
   Dag& dag = *m.dag;
   // Functions may use one another, without cycles: n rounds resolve the longest chain.
   std::vector<Ref> value = m.function_value;
@@ -59,7 +64,9 @@ Values written_functions(const Mechanics& m, std::vector<Ref>& integrands) {
     if (changed) values = with_derivatives(dag, value);
   }
   // The rates of integrals contain functions again.
-  for (const auto& [symbol, rate] : dag.rates()) integrands.push_back(rate);
+  for (const auto& [symbol, rate] : dag.rates()) {
+    if (symbol.kind == SymbolKind::integral) integrands.push_back({symbol.index, rate});
+  }
   for (bool changed = !integrands.empty(); changed;) {
     changed = false;
     symbolic::Substitution substitute(dag, values);
@@ -69,7 +76,7 @@ Values written_functions(const Mechanics& m, std::vector<Ref>& integrands) {
       r = next;
     };
     for (auto& [symbol, r] : values) replace(r);
-    for (Ref& r : integrands) replace(r);
+    for (Integrand& integrand : integrands) replace(integrand.rate);
   }
   return values;
 }
@@ -80,17 +87,17 @@ bool holds_integral(const Dag& dag, Ref expression) {
 }
 
 // Integrals with a closed form, inner ones first. The others become states.
-Values closed_integrals(const Mechanics& m, std::vector<Ref>& integrands) {
+Values closed_integrals(const Mechanics& m, std::vector<Integrand>& integrands) {
   Dag& dag = *m.dag;
   Values closed;
   if (integrands.empty()) return closed;
   const Ref start = dag.symbol({SymbolKind::parameter, *m.model->start_time, 0});
-  for (std::uint32_t i = 0; i < integrands.size(); ++i) {  // inner integrals come first
+  for (auto& [integral, rate] : integrands) {  // inner integrals come first
     symbolic::Substitution inner(dag, closed);
-    integrands[i] = inner(integrands[i]);
-    if (holds_integral(dag, integrands[i])) continue;
-    const auto found = symbolic::definite_integral(dag, integrands[i], {SymbolKind::time, 0, 0}, start);
-    if (found) closed[{SymbolKind::integral, i, 0}] = *found;
+    rate = inner(rate);
+    if (holds_integral(dag, rate)) continue;
+    const auto found = symbolic::definite_integral(dag, rate, {SymbolKind::time, 0, 0}, start);
+    if (found) closed[{SymbolKind::integral, integral, 0}] = *found;
   }
   return closed;
 }
@@ -98,7 +105,7 @@ Values closed_integrals(const Mechanics& m, std::vector<Ref>& integrands) {
 }  // namespace
 
 symbolic::Substitution time_function_substitution(const Mechanics& m) {
-  std::vector<Ref> integrands;
+  std::vector<Integrand> integrands;
   Values values = written_functions(m, integrands);
   const Values closed = closed_integrals(m, integrands);
   symbolic::Substitution substitute(*m.dag, closed);
@@ -108,12 +115,12 @@ symbolic::Substitution time_function_substitution(const Mechanics& m) {
 }
 
 std::vector<NonelementaryIntegral> nonelementary_integrals(const Mechanics& m) {
-  std::vector<Ref> integrands;
+  std::vector<Integrand> integrands;
   written_functions(m, integrands);
   const Values closed = closed_integrals(m, integrands);
   std::vector<NonelementaryIntegral> states;
-  for (std::uint32_t i = 0; i < integrands.size(); ++i) {
-    if (!closed.contains({SymbolKind::integral, i, 0})) states.push_back({i, integrands[i]});
+  for (const auto& [integral, rate] : integrands) {
+    if (!closed.contains({SymbolKind::integral, integral, 0})) states.push_back({integral, rate});
   }
   return states;
 }

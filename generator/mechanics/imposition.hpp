@@ -16,7 +16,7 @@ symbolic::Substitution time_function_substitution(const Mechanics& mechanics);
 /// An integral of a function of time that has no closed form. Its rate is an expression in t, parameters and such
 /// integrals.
 struct NonelementaryIntegral {
-  std::uint32_t integral;  // index into Model::integrals
+  std::uint32_t integral;  // index into Model::states
   Ref rate;
 };
 std::vector<NonelementaryIntegral> nonelementary_integrals(const Mechanics& mechanics);

@@ -90,6 +90,7 @@ Lowering::Value Lowering::lower(const model::Node& node) {
     case Op::definition:
     case Op::extension:
     case Op::integral:
+    case Op::state:
     case Op::reaction:
     case Op::slip:
     case Op::inertia: return lower_leaf(node);
@@ -121,6 +122,7 @@ Lowering::Value Lowering::lower_leaf(const model::Node& node) {
     case Op::coordinate: return of(dag_.symbol({SymbolKind::coordinate, node.index, node.order}));
     case Op::definition: return value(m_.model->definitions[node.index].expression);
     case Op::integral: return of(dag_.symbol({SymbolKind::integral, node.index, 0}));
+    case Op::state: return of(dag_.symbol({SymbolKind::state, node.index, 0}));
     case Op::reaction: return of(multiplier(node));
     case Op::slip: return of(slip_);
     case Op::inertia: return of(inertia(node.index, vector(node.args[0])));

@@ -45,9 +45,21 @@ void add_values(Mechanics& m, Lowering& lower) {
 // The rate of an integral must be known before an expression that contains it is differentiated, hence before the
 // Lowering is constructed. Inner integrals come first.
 void add_integrals(Mechanics& m) {
-  for (std::uint32_t i = 0; i < m.model->integrals.size(); ++i) {
-    const Ref integrand = Lowering(m).scalar(m.model->integrals[i].integrand);
-    m.dag->set_rate({SymbolKind::integral, i, 0}, integrand);
+  for (std::uint32_t i = 0; i < m.model->states.size(); ++i) {
+    const model::State& state = m.model->states[i];
+    if (state.integral) m.dag->set_rate(state_symbol(*m.model, i), Lowering(m).scalar(state.rate));
+  }
+}
+
+// The same for states of first order, whose rates have no derivatives of states.
+void add_states(Mechanics& m) {
+  Lowering lower(m);
+  m.stored = m.dag->zero();
+  for (std::uint32_t i = 0; i < m.model->states.size(); ++i) {
+    const model::State& state = m.model->states[i];
+    if (state.integral) continue;
+    m.dag->set_rate(state_symbol(*m.model, i), lower.scalar(state.rate));
+    m.stored = m.dag->add(m.stored, lower.scalar(state.energy));
   }
 }
 
@@ -136,8 +148,12 @@ Mechanics build_mechanics(std::shared_ptr<const model::Model> model) {
   m.dag = std::make_shared<Dag>();
   add_symbols(m);
   add_integrals(m);
+  {
+    Lowering lower(m);
+    add_assumptions(m, lower);
+  }
+  add_states(m);
   Lowering lower(m);
-  add_assumptions(m, lower);
   add_masses(m, lower);
   add_bodies(m, lower);
   add_forces(m, lower);
@@ -157,6 +173,10 @@ Mechanics build_mechanics(std::shared_ptr<const model::Model> model) {
   require_equations(m);
   classify_constraints(m);
   return m;
+}
+
+symbolic::Symbol state_symbol(const model::Model& model, std::uint32_t index) {
+  return {model.states[index].integral ? SymbolKind::integral : SymbolKind::state, index, 0};
 }
 
 Ref lower_scalar(Mechanics& mechanics, model::NodeId expression) { return Lowering(mechanics).scalar(expression); }

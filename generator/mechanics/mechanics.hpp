@@ -159,6 +159,7 @@ struct Mechanics {
   Ref kinetic_given;                         // of [energy], 0 if none
   Ref kinetic;                               // sum m/2 v.v + kinetic_given, with the unconstrained coordinates
   Ref potential;                             // of all conservative forces, and of [energy]
+  Ref stored;                                // energy of states of first order, as the model states it; 0 if none
   std::vector<Ref> potential_by_force;       // per Model::forces entry, 0 where the force is a Load
   std::vector<Load> loads;
   std::vector<std::vector<Ref>> force_components;  // per Model::forces entry: its Q_i without the potential, with loads
@@ -206,6 +207,9 @@ Ref rolling_friction(const Mechanics& mechanics, const Contact& contact, std::ui
 /// J v, and the angular momentum H = J w, along the axes of the rotation.
 std::array<Ref, 3> inertia_times(Dag& dag, const BodyRotation& spin, const std::array<Ref, 3>& v);
 std::array<Ref, 3> angular_momentum(Dag& dag, const BodyRotation& spin);
+
+/// The symbol of Model::states[index].
+symbolic::Symbol state_symbol(const model::Model& model, std::uint32_t index);
 
 /// Any expression of the model on the Dag of `mechanics` (scalars only).
 Ref lower_scalar(Mechanics& mechanics, model::NodeId expression);

@@ -31,7 +31,8 @@ enum class Op : std::uint8_t {
   coordinate,  // index into Model::coordinates, order = 0, 1, 2
   definition,  // index into Model::definitions; scalar or vector
   extension,   // extension of the spring to whose energy the expression belongs
-  integral,    // index into Model::integrals; args[0] is the integrand
+  integral,    // index into Model::states; args[0] is the integrand
+  state,       // of first order: index into Model::states
   reaction,    // reaction.NAME in an event: index into Model::constraints, order = equation (joint: component), from 0
   slip,        // slip speed of the contact to whose coefficient of friction the expression belongs
   inertia,     // v . J v of a vector v = args[0] and Model::bodies[index]; only in descriptions of forces

@@ -33,6 +33,7 @@ class Collector {
       if (force.dry) more({force.dry->normal}), law(force.dry->law), rubbed(force.dry->coordinate);
     }
     constraints();
+    for (const State& z : model_.states) add(fmt::format("the state '{}'", z.name), {z.rate, z.energy});
     for (const Event& event : model_.events) add(fmt::format("event '{}'", event.name), {event.when});
     for (const Coordinate& c : model_.coordinates) add(fmt::format("the range of '{}'", c.name), {c.lower, c.upper});
     return std::move(roots_);

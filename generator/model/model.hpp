@@ -43,11 +43,17 @@ struct Function {  // of time
   std::string tex;
   Span span;
 };
-struct Integral {    // integral(e) of a function of time, from the start of the run
-  std::string name;  // "integral_1", its name if it becomes a state; unique in the model
-  NodeId integrand = no_node;
+/// A state of first order: d/dt of it is `rate`. It is declared by [[state]], or it is integral(e) of a function of
+/// time from the start of the run, which is a state only if e has no antiderivative in closed form.
+struct State {
+  std::string name;  // of an integral "integral_1"; unique in the model
+  NodeId rate = no_node;
+  NodeId initial = no_node;  // its value at the start if a scene gives none; none: 0
+  NodeId energy = no_node;   // the energy that it stores, if stated
   Unit unit;
+  std::string tex;
   Span span;
+  bool integral = false;
 };
 struct Input {
   std::string name;
@@ -256,6 +262,11 @@ struct InitialValue {
   NodeId value;
   Span span;
 };
+struct InitialState {
+  std::uint32_t state;  // declared, in Model::states
+  NodeId value;         // may use coordinates and velocities at the start
+  Span span;
+};
 struct InitialAngularVelocity {  // "B.omega" = [..]: components along the axes of B
   std::uint32_t frame;
   std::array<NodeId, 3> value;
@@ -285,6 +296,7 @@ struct Scene {
   std::string name;
   NodeId t0 = no_node, t1 = no_node;
   std::vector<InitialValue> initial, guess;
+  std::vector<InitialState> states;
   std::vector<InitialAngularVelocity> rotations;
   std::vector<std::pair<std::uint32_t, std::uint8_t>> solve;  // (coordinate, order) of values that may be adjusted
   std::vector<std::pair<std::uint32_t, NodeId>> parameters;
@@ -313,7 +325,7 @@ struct Model {
   Arena arena;
   std::vector<Parameter> parameters;
   std::vector<Function> functions;
-  std::vector<Integral> integrals;  // inner integrals first
+  std::vector<State> states;  // declared ones, then integrals, inner ones first
   std::optional<std::uint32_t>
       start_time;  // the parameter (the last one) that holds t0 of the run; only with integrals
   std::vector<Input> inputs;

@@ -43,6 +43,9 @@ void ScenesReader::refuse_shadowed_outputs() {
                  fmt::format("give it another name, such as {}", output == name ? name + "_1" : name + "_body"));
   };
   for (const Coordinate& c : model_.coordinates) own(c.name, c.name, "coordinate", c.span);
+  for (const State& z : model_.states) {
+    if (!z.integral) own(z.name, z.name, "state", z.span);
+  }
   for (const Definition& d : model_.definitions) {
     if (!d.vector) own(d.name, d.name, "definition", d.span);
   }

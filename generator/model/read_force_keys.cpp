@@ -17,7 +17,7 @@ Dependencies allowed(forces::Dependency dependency) {
     case forces::Dependency::motion: return on_motion;
     case forces::Dependency::state: break;
   }
-  return on_time | on_input | on_coordinate | on_velocity;
+  return on_force_variables;
 }
 
 }  // namespace

@@ -10,8 +10,6 @@
 namespace eomgen::model {
 namespace {
 
-constexpr Dependencies on_state = on_time | on_input | on_coordinate | on_velocity;
-
 std::vector<std::string_view> kinds() {
   std::vector<std::string_view> names;
   for (const forces::Kind& kind : forces::registry()) names.push_back(kind.name);
@@ -156,8 +154,8 @@ void ForcesReader::read_components(Force& force, const Value& table, const std::
       source_.fail(entry.span, fmt::format("{} is not a coordinate", quote(entry.key)),
                    hint.empty() ? "the keys of 'generalized' are coordinates" : hint);
     }
-    Context component{fmt::format("the generalized force along '{}'", entry.key), on_state, Shape::scalar, std::nullopt,
-                      ""};
+    Context component{fmt::format("the generalized force along '{}'", entry.key), on_force_variables, Shape::scalar,
+                      std::nullopt, ""};
     const auto& dimension = model_.coordinates[symbol->index].unit.dimension;
     if (dimension) component.dimension = quotient(dimension_of("J"), *dimension);
     const NodeId value = resolver_.value(entry.value, component).node;

@@ -4,11 +4,7 @@
 #include <fmt/format.h>
 
 namespace eomgen::model {
-namespace {
-
-constexpr Dependencies on_state = on_time | on_input | on_coordinate | on_velocity;
-
-}  // namespace
+namespace {}  // namespace
 
 Friction FrictionReader::coefficients(const Value& table, const std::string& what, std::optional<Dimension> speed) {
   Friction law;
@@ -22,7 +18,7 @@ Friction FrictionReader::coefficients(const Value& table, const std::string& wha
     }
     TypedNode slip = resolver_.slip(value.span);
     if (speed) slip.dimension = *speed;
-    const Context context{fmt::format("the {} coefficient of {}", key, what), on_state, Shape::scalar,
+    const Context context{fmt::format("the {} coefficient of {}", key, what), on_force_variables, Shape::scalar,
                           dimension_of("1"),
                           "a coefficient of friction is made of parameters, slip, velocities, coordinates and t"};
     return resolver_.value_with_names(value, {{"slip", slip}}, context).node;
@@ -97,10 +93,11 @@ DryFriction FrictionReader::read_dry_friction(const Value& table, const std::str
   }
   DryFriction rubbing{symbol->index, no_node, {}};
   const Value& normal = require_value(table, "normal", what, "add normal = \"m*g\", the normal force");
-  rubbing.normal = resolver_
-                       .value(normal, Context{fmt::format("the normal force of {}", what), on_state, Shape::scalar,
-                                              std::nullopt, "a normal force is made of parameters, the state and t"})
-                       .node;
+  rubbing.normal =
+      resolver_
+          .value(normal, Context{fmt::format("the normal force of {}", what), on_force_variables, Shape::scalar,
+                                 std::nullopt, "a normal force is made of parameters, the state and t"})
+          .node;
   rubbing.law = coefficients(table, what, std::nullopt);
   for (const Force& before : model_.forces) {
     const std::optional<DryFriction>& other = before.dry;

@@ -10,6 +10,7 @@
 
 #include "model/read_bodies.hpp"
 #include "model/read_events.hpp"
+#include "model/read_states.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -185,13 +186,14 @@ Symbol& ScenesReader::coordinate_of_key(const Entry& entry, const std::string& w
   std::vector<std::string> candidates;
   for (const std::string& name : scope_.names(SymbolKind::coordinate))
     candidates.insert(candidates.end(), {name, name + "_dot"});
+  for (const std::string& name : scope_.names(SymbolKind::state)) candidates.push_back(name);
   const std::string hint = did_you_mean(entry.key, candidates);
   if (symbol != nullptr && symbol->kind == SymbolKind::coordinate) {
     source_.fail(entry.span, fmt::format("{} is an acceleration, which {} cannot state", quote(entry.key), what),
                  "accelerations follow from the equations");
   }
   source_.fail(entry.span, fmt::format("{} names {}, which is no coordinate or velocity", what, quote(entry.key)),
-               hint.empty() ? "the keys are coordinates q and their rates q_dot" : hint);
+               hint.empty() ? "the keys are coordinates q, their rates q_dot, and states of first order" : hint);
 }
 
 void ScenesReader::read_initial(Scene& scene, const std::vector<const Entry*>& entries, bool guess) {
@@ -202,6 +204,15 @@ void ScenesReader::read_initial(Scene& scene, const std::vector<const Entry*>& e
   }
   for (const Entry* entry : entries) {
     if (BodiesReader(context_).read_initial_angular_velocity(scene, *entry, guess)) continue;
+    if (const Symbol* state = scope_.find(entry->key); state != nullptr && state->kind == SymbolKind::state) {
+      if (guess) {
+        source_.fail(entry->span,
+                     fmt::format("'{}' is a state of first order, which no constraint determines", entry->key),
+                     "give it in 'initial'");
+      }
+      StatesReader(context_).read_initial(scene, *entry, *state);
+      continue;
+    }
     InitialValue initial{};
     const Symbol& symbol = coordinate_of_key(*entry, what, initial.order);
     initial.coordinate = symbol.index;

@@ -17,6 +17,7 @@
 #include "model/read_names.hpp"
 #include "model/read_places.hpp"
 #include "model/read_scenes.hpp"
+#include "model/read_states.hpp"
 #include "model/start_time.hpp"
 #include "model/units.hpp"
 
@@ -68,6 +69,7 @@ class Reader : private SectionReader {
 void Reader::read() {
   read_head();
   NamesReader(context_).declare();
+  StatesReader(context_).declare();
   PlacesReader(context_).declare();
   ConstraintsReader(context_).declare();
   JointsReader(context_).declare();
@@ -87,6 +89,7 @@ void Reader::read() {
   ForcesReader(context_).read();
   ConstraintsReader(context_).read();
   BodiesReader(context_).read_units();
+  StatesReader(context_).read();
   EventsReader(context_).read();
   DrawReader(context_).read();
   if (model_.particles.empty() && model_.bodies.empty() && model_.energy.kinetic == no_node) {
@@ -107,7 +110,7 @@ void Reader::read_head() {
   check_keys(root_,
              {"a model", {"format",      "title",      "notes",    "parameters", "functions", "inputs", "coordinates",
                           "definitions", "energy",     "particle", "body",       "frame",     "point",  "chain",
-                          "force",       "constraint", "joint",    "event",      "draw",      "scene"}});
+                          "force",       "constraint", "joint",    "event",      "state",     "draw",   "scene"}});
   const Value& format = require_value(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {
     source_.fail(format.span, fmt::format("the format {} is not known", quote(format.text)), "write format = 1");

@@ -113,6 +113,10 @@ TypedNode Resolver::conditional(const Syntax& syntax, const SyntaxNode& node) {
 TypedNode Resolver::time_derivative(const Syntax& syntax, const SyntaxNode& node) {
   arity(node, 1, 1);
   const TypedNode inner = this->node(syntax, node.children[0]);
+  if (inner.dependencies & on_state_rate) {
+    source_.fail(node.span, "second time derivatives of states of first order are not supported",
+                 "take ddt of the states only");
+  }
   if (inner.dependencies & on_input) {
     source_.fail(node.span, "an input has no time derivative", "declare the derivative as an input of its own");
   }
@@ -123,6 +127,7 @@ TypedNode Resolver::time_derivative(const Syntax& syntax, const SyntaxNode& node
   TypedNode result = make(Op::total_derivative, inner.vector, {inner}, node.span);
   if (inner.dependencies & on_coordinate) result.dependencies |= on_velocity;
   if (inner.dependencies & on_velocity) result.dependencies |= on_acceleration;
+  if (inner.dependencies & on_first_order) result.dependencies |= on_force_variables;
   if (inner.dimension) result.dimension = quotient(*inner.dimension, dimension_of("s"));
   require_allowed(result.dependencies, node.span, "ddt() here");
   return result;
@@ -134,10 +139,10 @@ TypedNode Resolver::partial_derivative(const Syntax& syntax, const SyntaxNode& n
   const SyntaxNode& by = syntax.nodes[node.children[1]];
   const TypedNode variable = this->node(syntax, node.children[1]);
   const Op op = model_.arena[variable.node].op;
-  if (by.kind != SyntaxKind::name ||
-      (op != Op::coordinate && op != Op::function && op != Op::parameter && op != Op::time && op != Op::input)) {
+  if (by.kind != SyntaxKind::name || (op != Op::coordinate && op != Op::function && op != Op::parameter &&
+                                      op != Op::time && op != Op::input && op != Op::state)) {
     source_.fail(by.span, "diff() takes a derivative with respect to a name",
-                 "write diff(e, x) with a coordinate, a velocity, a function, a parameter, an input or t");
+                 "write diff(e, x) with a coordinate, a velocity, a state, a function, a parameter, an input or t");
   }
   if ((op == Op::parameter || op == Op::function) && holds_integral(inner.node)) {
     source_.fail(node.span, "diff() of an integral by what its integrand may depend on is not supported",
@@ -203,12 +208,13 @@ TypedNode Resolver::integral(const Syntax& syntax, const SyntaxNode& node) {
   result.dependencies |= on_time;
   if (inner.dimension) result.dimension = product(*inner.dimension, dimension_of("s"));
   require_allowed(result.dependencies, node.span, "integral()");
-  model_.arena.nodes[result.node].index = static_cast<std::uint32_t>(model_.integrals.size());
-  Integral integral;
-  integral.integrand = inner.node;
+  model_.arena.nodes[result.node].index = static_cast<std::uint32_t>(model_.states.size());
+  State integral;
+  integral.rate = inner.node;
   integral.unit = unit_of(result.dimension);
   integral.span = node.span;
-  model_.integrals.push_back(std::move(integral));
+  integral.integral = true;
+  model_.states.push_back(std::move(integral));
   return result;
 }
 

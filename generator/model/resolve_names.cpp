@@ -212,12 +212,17 @@ TypedNode Resolver::leaf(Symbol& symbol, std::uint8_t order, Span span) {
   if (symbol.kind == SymbolKind::constraint || symbol.kind == SymbolKind::force || symbol.kind == SymbolKind::event ||
       symbol.kind == SymbolKind::frame) {
     source_.fail(span, fmt::format("'{}' is {}, not a value", symbol.name, kind_name(symbol.kind)),
-                 "name a parameter, coordinate, function, input, definition, particle or point");
+                 "name a parameter, coordinate, state, function, input, definition, particle or point");
   }
   if (symbol.kind == SymbolKind::coordinate) {
     TypedNode result = coordinate(symbol.index, order, span);
     const std::string name = symbol.name + (order == 0 ? "" : order == 1 ? "_dot" : "_ddot");
     require_allowed(result.dependencies, span, fmt::format("'{}'", name));
+    return result;
+  }
+  if (symbol.kind == SymbolKind::state) {
+    const TypedNode result = state(symbol.index, span);
+    require_allowed(result.dependencies, span, fmt::format("'{}'", symbol.name));
     return result;
   }
   if (symbol.kind == SymbolKind::place) {

@@ -29,6 +29,8 @@ std::string facts_text(Dependencies dependencies) {
   if (dependencies & on_input) words.emplace_back("inputs");
   if (dependencies & on_coordinate) words.emplace_back("coordinates");
   if (dependencies & on_velocity) words.emplace_back("velocities");
+  if (dependencies & on_first_order) words.emplace_back("states of first order");
+  if (dependencies & on_state_rate) words.emplace_back("rates of states");
   if (dependencies & on_acceleration) words.emplace_back("accelerations");
   if (dependencies & on_reaction) words.emplace_back("constraint forces");
   return fmt::format("{}", fmt::join(words, ", "));
@@ -135,8 +137,10 @@ void Resolver::require_allowed(Dependencies dependencies, Span span, std::string
   if (excess == 0) return;
   std::string remedy = context_->remedy;
   if (remedy.empty()) {
-    remedy = context_->allowed == 0 ? "use numbers and parameters only"
-                                    : fmt::format("use numbers, parameters and {} only", facts_text(context_->allowed));
+    auto named = static_cast<Dependencies>(context_->allowed & static_cast<Dependencies>(~on_state_rate));
+    if (model_.states.empty()) named = static_cast<Dependencies>(named & static_cast<Dependencies>(~on_first_order));
+    remedy = named == 0 ? "use numbers and parameters only"
+                        : fmt::format("use numbers, parameters and {} only", facts_text(named));
   }
   source_.fail(span, fmt::format("{} depends on {}, which {} cannot", what, facts_text(excess), context_->what),
                remedy);
@@ -209,6 +213,14 @@ TypedNode Resolver::coordinate(std::uint32_t index, std::uint8_t order, Span spa
   result.dependencies = order == 0 ? on_coordinate : order == 1 ? on_velocity : on_acceleration;
   result.dimension = model_.coordinates[index].unit.dimension;
   if (result.dimension) result.dimension = quotient(*result.dimension, raised(dimension_of("s"), order));
+  return result;
+}
+
+TypedNode Resolver::state(std::uint32_t index, Span span) {
+  TypedNode result = make(Op::state, false, {}, span);
+  model_.arena.nodes[result.node].index = index;
+  result.dependencies = on_first_order;
+  result.dimension = model_.states[index].unit.dimension;
   return result;
 }
 

@@ -23,8 +23,13 @@ inline constexpr int max_depth = 2000;            // of an expression with all t
 using Dependencies = std::uint8_t;
 inline constexpr Dependencies on_time = 1, on_input = 2, on_coordinate = 4, on_velocity = 8, on_acceleration = 16,
                               on_reaction = 32;
+inline constexpr Dependencies on_first_order = 64;  // on states of first order
+inline constexpr Dependencies on_state_rate = 128;  // on their rates, by ddt()
 inline constexpr Dependencies on_motion = on_time | on_coordinate;
-inline constexpr Dependencies on_anything = 31;
+/// The variables of a force. The rate of a state may depend on all but on_state_rate.
+inline constexpr Dependencies on_force_variables =
+    on_time | on_input | on_coordinate | on_velocity | on_first_order | on_state_rate;
+inline constexpr Dependencies on_anything = on_force_variables | on_acceleration;
 
 /// Coordinates and the order of their derivatives.
 using CoordinateSet = std::set<std::pair<std::uint32_t, std::uint8_t>>;
@@ -62,6 +67,7 @@ class Resolver {
 
   // Nodes created directly by the reader.
   TypedNode coordinate(std::uint32_t index, std::uint8_t order, Span span);
+  TypedNode state(std::uint32_t index, Span span);  // of first order
   TypedNode number(const Rational& value, Span span);
   TypedNode array_of(const std::array<TypedNode, 3>& components, Span span);
   TypedNode sum_of(const TypedNode& a, const TypedNode& b, Span span);

@@ -147,6 +147,7 @@ void ScenesReader::check_output(const Value& value) {
   if (parts.size() == 1 && symbol != nullptr) {
     const std::uint8_t order = split_derivative(value.text).order;
     if (symbol->kind == SymbolKind::coordinate) return;
+    if (symbol->kind == SymbolKind::state && order == 0) return;
     if (symbol->kind == SymbolKind::definition && order == 0) {
       if (!model_.definitions[symbol->index].vector) return;
       source_.fail(value.span, fmt::format("the definition '{}' is a vector, and an output is a scalar", value.text),
@@ -174,7 +175,7 @@ void ScenesReader::check_output(const Value& value) {
     }
   }
   for (const std::string& name : scope_.names(SymbolKind::constraint)) candidates.push_back("reaction." + name);
-  for (const SymbolKind kind : {SymbolKind::definition, SymbolKind::coordinate}) {
+  for (const SymbolKind kind : {SymbolKind::definition, SymbolKind::coordinate, SymbolKind::state}) {
     for (const std::string& name : scope_.names(kind)) candidates.push_back(name);
   }
   for (const std::string& name : scope_.names(SymbolKind::place))
@@ -182,7 +183,7 @@ void ScenesReader::check_output(const Value& value) {
   const std::string hint = did_you_mean(value.text, candidates);
   source_.fail(value.span, fmt::format("there is no output {}", quote(value.text)),
                hint.empty() ? "outputs are energy, kinetic, potential, power, P.position1, P.velocity1, reaction.NAME, "
-                              "scalar definitions, coordinates, all"
+                              "scalar definitions, coordinates, states, all"
                             : hint);
 }
 

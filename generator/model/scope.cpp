@@ -11,6 +11,7 @@ const char* kind_name(SymbolKind kind) {
     case SymbolKind::function: return "a function of time";
     case SymbolKind::input: return "an input";
     case SymbolKind::coordinate: return "a coordinate";
+    case SymbolKind::state: return "a state";
     case SymbolKind::definition: return "a definition";
     case SymbolKind::place: return "a particle or point";
     case SymbolKind::frame: return "a frame";

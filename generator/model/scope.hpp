@@ -31,7 +31,19 @@ struct TypedNode {
   std::optional<Rational> constant;      // of numbers and parameters that are numbers
 };
 
-enum class SymbolKind { parameter, function, input, coordinate, definition, place, frame, constraint, force, event };
+enum class SymbolKind {
+  parameter,
+  function,
+  input,
+  coordinate,
+  state,
+  definition,
+  place,
+  frame,
+  constraint,
+  force,
+  event
+};
 const char* kind_name(SymbolKind kind);
 
 struct Symbol {

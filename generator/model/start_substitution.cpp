@@ -70,6 +70,7 @@ NodeId StartSubstitution::replaced(NodeId id) {
       result = push(zero);
       break;
     }
+    case Op::state: throw Unknown{"it depends on states of first order"};
     case Op::total_derivative:
     case Op::partial_derivative:
     case Op::place_velocity:

@@ -14,7 +14,7 @@ std::string free_name(const Model& model, std::string name) {
   };
   while (taken(model.parameters) || taken(model.functions) || taken(model.inputs) || taken(model.coordinates) ||
          taken(model.definitions) || taken(model.places) || taken(model.frames) || taken(model.constraints) ||
-         taken(model.forces) || taken(model.events)) {
+         taken(model.forces) || taken(model.events) || taken(model.states)) {
     name += '_';
   }
   return name;
@@ -36,9 +36,11 @@ void name_start_values(Model& model) {
 }
 
 void add_start_time(Model& model, bool units_stated) {
-  if (model.integrals.empty()) return;
-  for (std::size_t i = 0; i < model.integrals.size(); ++i) {
-    model.integrals[i].name = free_name(model, "integral_" + std::to_string(i + 1));
+  const auto first =
+      std::find_if(model.states.begin(), model.states.end(), [](const State& state) { return state.integral; });
+  if (first == model.states.end()) return;
+  for (auto state = first; state != model.states.end(); ++state) {
+    state->name = free_name(model, "integral_" + std::to_string(state - first + 1));
   }
   Parameter start;
   start.name = free_name(model, "t_start");
@@ -46,7 +48,7 @@ void add_start_time(Model& model, bool units_stated) {
   if (units_stated) start.unit = unit_of(dimension_of("s"));
   start.tex = "t_{0}";
   start.note = "start of the run, from which integrals count";
-  start.span = model.integrals.front().span;
+  start.span = first->span;
   start.used = true;
   const auto index = static_cast<std::uint32_t>(model.parameters.size());
   model.parameters.push_back(std::move(start));

@@ -21,7 +21,7 @@ run::Code describe_code(const program::Program& program) {
   code.prepared = program.prepared_count();
   code.output_names = program.outputs;
   code.free = program.free;
-  code.integrals = program.integrals.size();
+  code.first_order = program.states.size();
   code.active_constraints = program.active_constraints;
   code.holonomic = program.holonomic;
   code.kinks = program.kinks;
@@ -110,7 +110,7 @@ verify::CompiledForm CompiledCode::form() const {
                                                                         const verify::AbiArguments& at) {
     return called(*model, function, at, arrays.at(function), prepared);
   };
-  const std::size_t size = 2 * described_.free.size() + described_.integrals;
+  const std::size_t size = described_.layout().size();
   form.rhs = [model, size, prepared = described_.prepared](double t, const std::vector<double>& x,
                                                            const std::vector<double>& p, const std::vector<double>& u,
                                                            int mode) -> std::optional<std::vector<double>> {

@@ -334,7 +334,7 @@ emit::EmissionContext code_context(const DerivedModel& derived, const program::P
   context.start_time = scene.t0;
   for (const std::uint32_t i : program.free) context.start.push_back(scene.q[i]);
   for (const std::uint32_t i : program.free) context.start.push_back(scene.qdot[i]);
-  context.start.insert(context.start.end(), program.integrals.size(), 0.0);
+  context.start.insert(context.start.end(), scene.z.begin(), scene.z.end());
   context.tests = test_vectors(program, context);
   return context;
 }
@@ -364,9 +364,7 @@ emit::EmissionContext emission_context(DerivedModel& derived, const program::Pro
   for (const print::PrintedFormula& item : print::render_singular(derived.mechanics)) {
     if (item.left_out.empty()) context.singular.push_back(item.text);
   }
-  for (const model::Integral& integral : model.integrals) {
-    context.integrals.push_back({integral.name, integral.unit.text, "", 0});
-  }
+  for (const model::State& state : model.states) context.states.push_back({state.name, state.unit.text, "", 0});
   if (model.start_time) context.start_parameter = model.parameters[*model.start_time].name;
   return context;
 }

@@ -49,10 +49,7 @@ std::vector<std::string> code_outputs(const DerivedModel& derived, const run::Sc
   const auto add = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
-  for (const model::Coordinate& c : derived.model.coordinates) {
-    add(c.name);
-    add(c.name + "_dot");
-  }
+  for (const std::string& name : run::state_columns(derived.model)) add(name);
   for (const char* name : {"energy", "kinetic", "potential"}) add(name);
   if (watch_power) add("power");
   const system::EquationSystem& system = derived.candidates.front();
@@ -110,9 +107,8 @@ std::vector<std::string> state_names(const DerivedModel& derived) {
   for (const char* suffix : {"", "_dot"}) {
     for (const std::uint32_t i : derived.mechanics.free) names.push_back(derived.model.coordinates[i].name + suffix);
   }
-  for (const system::IntegralState& integral : derived.candidates.front().integrals) {
-    names.push_back(derived.model.integrals[integral.integral].name);
-  }
+  for (const system::FirstOrderState& state : derived.candidates.front().states)
+    names.push_back(derived.model.states[state.symbol.index].name);
   return names;
 }
 

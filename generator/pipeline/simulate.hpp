@@ -72,7 +72,7 @@ Simulation simulate(const SimulationRequest& request);
 program::Request functions_for_run(const DerivedModel& derived, const run::Scene& scene, const std::string& solver,
                                    bool every_solver = false);
 
-/// Names of the states: free coordinates, their rates, integrals over time.
+/// Names of the states: free coordinates, their rates, states of first order.
 std::vector<std::string> state_names(const DerivedModel& derived);
 
 /// The request of a run with compiled code, without rows.

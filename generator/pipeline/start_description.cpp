@@ -29,6 +29,9 @@ class Description {
         begins_(dag_, integrals_at_start()) {}
 
   std::shared_ptr<const emit::StartDescription> operator()() {
+    // The values of declared states of first order may follow from the start that this function computes.
+    if (std::any_of(model_.states.begin(), model_.states.end(), [](const model::State& z) { return !z.integral; }))
+      return nullptr;
     times();
     parameters();
     initial_values();
@@ -44,7 +47,9 @@ class Description {
  private:
   std::map<Symbol, Ref> integrals_at_start() const {
     std::map<Symbol, Ref> zero;
-    for (std::uint32_t i = 0; i < model_.integrals.size(); ++i) zero[{SymbolKind::integral, i, 0}] = dag_.zero();
+    for (std::uint32_t i = 0; i < model_.states.size(); ++i) {
+      if (model_.states[i].integral) zero[{SymbolKind::integral, i, 0}] = dag_.zero();
+    }
     return zero;
   }
   Ref at_start(Ref expression) { return begins_(written_(expression)); }

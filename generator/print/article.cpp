@@ -38,7 +38,7 @@ bool uses_amssymb(const model::Model& model) {
   const auto in = [](const auto& list) {
     return std::any_of(list.begin(), list.end(), [](const auto& named) { return model::needs_amssymb(named.tex); });
   };
-  return in(model.parameters) || in(model.inputs) || in(model.functions) || in(model.coordinates);
+  return in(model.parameters) || in(model.inputs) || in(model.functions) || in(model.coordinates) || in(model.states);
 }
 
 }  // namespace

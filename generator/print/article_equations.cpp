@@ -63,6 +63,7 @@ class Equations {
     show(explicit_rows);
     parts(a_.one);
     if (a_.approaches_differ()) parts(a_.two);
+    states();
     decoupling();
   }
 
@@ -116,6 +117,15 @@ class Equations {
     if (formulas.empty()) return;
     out_.paragraph(form.approach == system::Approach::two ? "Here, by Approach II," : "Here, by Approach I,");
     out_.display(formulas);
+  }
+
+  void states() {
+    std::vector<Statement> all;
+    add_states(m_, all);
+    if (all.empty()) return;
+    out_.paragraph(all.size() == 1 ? "A state of first order belongs to the motion:"
+                                   : "States of first order belong to the motion:");
+    out_.display(a_.formulas(all));
   }
 
   bool same(const std::optional<Formula>& a, const std::optional<Formula>& b) const {

@@ -314,6 +314,16 @@ void add_equations(const Mechanics& m, const DisplayForm& form, std::vector<Stat
   for (const bool of_motion : {true, false}) add("explicit", of_motion, explicit_form);
 }
 
+void add_states(const Mechanics& m, std::vector<Statement>& out) {
+  for (const auto& [symbol, rate] : m.dag->rates()) {
+    if (symbol.kind != SymbolKind::state) continue;
+    const model::State& state = m.model->states[symbol.index];
+    const std::optional<Formula> written = reading::as_written(*m.model, state.rate);
+    out.push_back({"states", state.name, "", "state of first order",
+                   reading::relation({dotted(reading::symbol(symbol)), written ? *written : read_or_dots(m, rate)})});
+  }
+}
+
 void add_reactions(const DisplayForm& form, std::vector<Statement>& out) {
   for (const reading::DisplayReaction& reaction : form.reactions) {
     if (!reaction.value) continue;
@@ -359,6 +369,7 @@ void add_statements(const Mechanics& m, const DisplayForm& form, const std::vect
   add("energies", [&] { add_energies(m, form, out); });
   add("lagrangian", [&] { add_lagrangian(m, form, out); });
   add("equations", [&] { add_equations(m, form, out); });
+  add("equations", [&] { add_states(m, out); });
   add("reactions", [&] { add_reactions(form, out); });
   add("reactions", [&] { add_constraint_forces(m, form, out); });
   add("friction", [&] {

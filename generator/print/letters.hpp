@@ -17,7 +17,8 @@ inline std::string free_letter(const model::Model& model, const char* letter, co
     return std::any_of(list.begin(), list.end(),
                        [&](const auto& entry) { return split_name(entry.name).base == letter; });
   };
-  return taken(model.parameters) || taken(model.coordinates) || taken(model.functions) || taken(model.inputs)
+  return taken(model.parameters) || taken(model.coordinates) || taken(model.functions) || taken(model.inputs) ||
+                 taken(model.states)
              ? otherwise
              : letter;
 }

@@ -161,7 +161,12 @@ Glyph Notation::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::coordinate:
       return named(model_->coordinates[symbol.index].name, model_->coordinates[symbol.index].tex);
     case SymbolKind::multiplier: return multiplier(symbol.index);
-    case SymbolKind::integral: return split_name("I_" + std::to_string(symbol.index + 1));
+    case SymbolKind::integral: {
+      const auto before = std::count_if(model_->states.begin(), model_->states.begin() + symbol.index,
+                                        [](const model::State& state) { return state.integral; });
+      return split_name("I_" + std::to_string(before + 1));
+    }
+    case SymbolKind::state: return named(model_->states[symbol.index].name, model_->states[symbol.index].tex);
     case SymbolKind::friction: return split_name("F_f_" + std::to_string(symbol.index + 1));
     case SymbolKind::branch:
     case SymbolKind::contact_mode: break;
@@ -173,7 +178,7 @@ Glyph Notation::operator()(const symbolic::Symbol& symbol) const {
 }
 
 std::optional<reading::Formula> Notation::integrand(std::uint32_t integral) const {
-  return reading::as_written(*model_, model_->integrals[integral].integrand);
+  return reading::as_written(*model_, model_->states[integral].rate);
 }
 
 std::string latex(const Glyph& glyph) {

@@ -158,7 +158,7 @@ FunctionExpressions AbiFunctions::rhs() {
   auto& dx = function.results[0].entries;
   dx = qdot_;
   dx.insert(dx.end(), qddot_.begin(), qddot_.end());
-  for (const system::IntegralState& integral : system_.integrals) dx.push_back(integral.rate);
+  for (const system::FirstOrderState& state : system_.states) dx.push_back(state.rate);
   if (!friction_.existence.empty()) {
     function.results.push_back({"", friction_.existence, no_solution});
     function.results.push_back({"", friction_.uniqueness, many_solutions});
@@ -177,7 +177,7 @@ std::vector<Ref> AbiFunctions::derivative_column(Symbol along) {
   // itself satisfies M, f, A and gamma only on the constraints (Euler parameters of unit length).
   if (!system_.contacts.empty() || (system_.solution && m_ > 0)) {
     for (const Ref a : qddot_) r.push_back(d(a));
-    for (const system::IntegralState& integral : system_.integrals) r.push_back(d(integral.rate));
+    for (const system::FirstOrderState& state : system_.states) r.push_back(d(state.rate));
     return r;
   }
   for (std::size_t i = 0; i < n_; ++i) {
@@ -192,7 +192,7 @@ std::vector<Ref> AbiFunctions::derivative_column(Symbol along) {
     c.push_back(dag.neg(sum));
   }
   std::vector<Ref> lower = solve()(std::move(r), c).first;
-  for (const system::IntegralState& integral : system_.integrals) lower.push_back(d(integral.rate));
+  for (const system::FirstOrderState& state : system_.states) lower.push_back(d(state.rate));
   return lower;
 }
 
@@ -208,9 +208,9 @@ FunctionExpressions AbiFunctions::jac() {
       dfdx.insert(dfdx.end(), lower.begin(), lower.end());
     }
   }
-  for (const system::IntegralState& integral : system_.integrals) {
+  for (const system::FirstOrderState& state : system_.states) {
     dfdx.insert(dfdx.end(), n_, dag.zero());
-    const std::vector<Ref> lower = derivative_column({SymbolKind::integral, integral.integral, 0});
+    const std::vector<Ref> lower = derivative_column(state.symbol);
     dfdx.insert(dfdx.end(), lower.begin(), lower.end());
   }
   dfdt.assign(n_, dag.zero());

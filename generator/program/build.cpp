@@ -50,7 +50,7 @@ PolynomialGraph optimised(const std::vector<PolynomialGraph>& graphs) {
 
 PolynomialGraph as_derived(const AbiFunctions& functions, const FunctionExpressions& wanted) {
   const system::EquationSystem& system = functions.system();
-  return from_dag(*system.dag, wanted, system.free, system.integrals);
+  return from_dag(*system.dag, wanted, system.free, system.state_symbols());
 }
 
 /// The function as derived, and the function with small products expanded.
@@ -184,7 +184,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
 
   Program program;
   program.free = system.free;
-  for (const system::IntegralState& integral : system.integrals) program.integrals.push_back(integral.integral);
+  program.states = system.state_symbols();
   program.formulation = system.formulation;
   program.approach = system.approach;
   program.form = system.form;

@@ -18,7 +18,6 @@ Function exchange(const symbolic::Dag& dag, const std::string& name, const Progr
   // Symbols that occur in a formula exist in the graph; the others are created in a copy.
   symbolic::Dag graph = dag;
   FunctionExpressions wanted{name, {{"y", {}}}, {}, {}};
-  std::vector<system::IntegralState> integrals;
   for (std::uint8_t order = 0; order < 2; ++order) {
     for (const std::uint32_t q : program.free) {
       const auto angle = std::find(change.angles.begin(), change.angles.end(), q);
@@ -27,11 +26,8 @@ Function exchange(const symbolic::Dag& dag, const std::string& name, const Progr
           angle == change.angles.end() ? graph.symbol({symbolic::SymbolKind::coordinate, q, order}) : formulas[place]);
     }
   }
-  for (const std::uint32_t i : program.integrals) {
-    wanted.results[0].entries.push_back(graph.symbol({symbolic::SymbolKind::integral, i, 0}));
-    integrals.push_back({i, graph.zero()});
-  }
-  const PolynomialGraph result = flatten(from_dag(graph, wanted, program.free, integrals), false);
+  for (const symbolic::Symbol& state : program.states) wanted.results[0].entries.push_back(graph.symbol(state));
+  const PolynomialGraph result = flatten(from_dag(graph, wanted, program.free, program.states), false);
   return schedule(result, wanted.name, {{"y", wanted.results[0].entries.size()}});
 }
 
@@ -74,7 +70,7 @@ void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<sy
 }
 
 void add_chart_variant(Program& program, Program second, unsigned charts, const std::vector<std::uint32_t>& places) {
-  const bool fits = second.free == program.free && second.integrals == program.integrals &&
+  const bool fits = second.free == program.free && second.states == program.states &&
                     second.holonomic == program.holonomic && second.active_constraints == program.active_constraints &&
                     second.reactions == program.reactions && second.kinks.size() == program.kinks.size() &&
                     second.event_count() == program.event_count();

@@ -16,7 +16,8 @@ class Writer {
 
   void program(const Program& p) {
     list(p.free);
-    list(p.integrals);
+    words(p.states.size());
+    for (const symbolic::Symbol& state : p.states) words(static_cast<int>(state.kind), state.index);
     words(p.formulation, system::name(p.approach), system::name(p.form));
     for (const auto* names : {&p.reactions, &p.outputs, &p.events, &p.kinks}) {
       words(names->size());

@@ -14,8 +14,8 @@ using symbolic::SymbolKind;
 class Conversion {
  public:
   Conversion(const symbolic::Dag& dag, const std::vector<std::uint32_t>& free,
-             const std::vector<system::IntegralState>& integrals)
-      : dag_(dag), free_(free), integrals_(integrals) {}
+             const std::vector<symbolic::Symbol>& states)
+      : dag_(dag), free_(free), states_(states) {}
 
   PolynomialGraph run(const FunctionExpressions& wanted) {
     std::vector<Ref> roots;
@@ -93,12 +93,13 @@ class Conversion {
         return {Slot::state, place + symbol.order * static_cast<std::uint32_t>(free_.size()), false};
       }
       case SymbolKind::integral:
-        for (std::uint32_t i = 0; i < integrals_.size(); ++i) {
-          if (integrals_[i].integral == symbol.index) {
-            return {Slot::state, i + 2 * static_cast<std::uint32_t>(free_.size()), false};
-          }
-        }
-        break;
+      case SymbolKind::state: {
+        const auto found = std::find(states_.begin(), states_.end(), symbol);
+        if (found == states_.end()) break;
+        return {Slot::state,
+                static_cast<std::uint32_t>(2 * free_.size() + static_cast<std::size_t>(found - states_.begin())),
+                false};
+      }
       default: break;
     }
     throw Error("program", {}, "an expression contains a quantity that is not in the state",
@@ -107,7 +108,7 @@ class Conversion {
 
   const symbolic::Dag& dag_;
   const std::vector<std::uint32_t>& free_;
-  const std::vector<system::IntegralState>& integrals_;
+  const std::vector<symbolic::Symbol>& states_;
   PolynomialGraph graph_;
   std::vector<Term> value_;
   std::vector<bool> known_;
@@ -142,8 +143,8 @@ Monomial common_factor(const PolynomialGraph& graph, const Term& a, const Term& 
 }  // namespace
 
 PolynomialGraph from_dag(const symbolic::Dag& dag, const FunctionExpressions& wanted,
-                         const std::vector<std::uint32_t>& free, const std::vector<system::IntegralState>& integrals) {
-  return Conversion(dag, free, integrals).run(wanted);
+                         const std::vector<std::uint32_t>& free, const std::vector<symbolic::Symbol>& states) {
+  return Conversion(dag, free, states).run(wanted);
 }
 
 void reduce_pivots(PolynomialGraph& graph) {

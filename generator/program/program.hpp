@@ -131,8 +131,8 @@ struct Program {
   Program& operator=(Program&&) noexcept;
   ~Program();
 
-  std::vector<std::uint32_t> free;       // coordinates of the model; state x = (q_free, qdot_free, integrals)
-  std::vector<std::uint32_t> integrals;  // of the model
+  std::vector<std::uint32_t> free;       // coordinates of the model; state x = (q_free, qdot_free, states)
+  std::vector<symbolic::Symbol> states;  // of first order
   /// Number of entries of the first result of a function; 0 if the function does not exist.
   std::size_t result_size(std::string_view function_name) const {
     for (const Function& function : functions) {
@@ -146,7 +146,8 @@ struct Program {
     return count;
   }
   std::size_t event_count() const { return result_size("events"); }  // length of the array g
-  std::size_t state_count() const { return 2 * free.size() + integrals.size(); }
+  eom::StateLayout layout() const { return {free.size(), states.size()}; }
+  std::size_t state_count() const { return layout().size(); }
   std::string formulation;
   system::Approach approach = system::Approach::two;
   system::Form form = system::Form::multipliers;

@@ -62,6 +62,7 @@ class Writer {
       case Op::input: return of(SymbolKind::input);
       case Op::coordinate: return of(SymbolKind::coordinate);
       case Op::integral: return of(SymbolKind::integral);
+      case Op::state: return of(SymbolKind::state);
       case Op::definition: return (*this)(model_.definitions[node.index].expression);
       default: return std::nullopt;
     }

@@ -147,7 +147,8 @@ Sum GinacBridge::total_derivative(const Sum& sum) {
     const ex term = term_to_ginac(monomial, coefficient);
     for (const Symbol& s : held) {
       const bool moves = s.kind == SymbolKind::time || s.kind == SymbolKind::function ||
-                         s.kind == SymbolKind::coordinate || s.kind == SymbolKind::integral;
+                         s.kind == SymbolKind::coordinate || s.kind == SymbolKind::integral ||
+                         s.kind == SymbolKind::state;
       if (moves) slopes[s].push_back(term.diff(symbol(s)));
     }
   }
@@ -156,7 +157,7 @@ Sum GinacBridge::total_derivative(const Sum& sum) {
     const ex slope = GiNaC::add(terms);
     if (s.kind == SymbolKind::time) {
       result += slope;
-    } else if (s.kind == SymbolKind::integral) {
+    } else if (s.kind == SymbolKind::integral || s.kind == SymbolKind::state) {
       result += slope * from_dag(dag_.rates().at(s));
     } else {
       result += slope * symbol({s.kind, s.index, static_cast<std::uint8_t>(s.order + 1)});

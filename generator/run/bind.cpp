@@ -59,6 +59,7 @@ void bind_start(const RunRequest& request, Problem& problem) {
   const Scene& scene = request.scene;
   for (const std::uint32_t i : request.code.free) problem.start.push_back(scene.q[i]);
   for (const std::uint32_t i : request.code.free) problem.start.push_back(scene.qdot[i]);
+  problem.start.insert(problem.start.end(), scene.z.begin(), scene.z.end());
   for (std::size_t i = 0; i < scene.lower.size(); ++i) problem.ranges.push_back({scene.lower[i], scene.upper[i]});
   problem.starts_open = scene.open;
 }

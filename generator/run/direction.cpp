@@ -43,13 +43,14 @@ class DirectionFinder {
   DirectionFinder(const ModelScene& of, const std::string& name)
       : of_(of), direction_{name, 1, 0, {}, {}, {}, 0, 0, {}, {}} {
     const std::optional<double> value = value_of(of.scene);
-    if (!value) refuse(fmt::format("'{}' is no value of the start", name), "ask for a parameter or a coordinate");
+    if (!value)
+      refuse(fmt::format("'{}' is no value of the start", name), "ask for a parameter, a coordinate or a state");
     value_ = *value;
     direction_.scale = value_ != 0 ? std::abs(value_) : 1;
   }
 
   Direction find() {
-    is_start_ = find_start(*of_.mechanics.model, direction_.name).has_value();
+    is_start_ = is_start_value(*of_.mechanics.model, direction_.name);
     middle_ = is_start_ ? changed(0) : of_.scene;
     const std::vector<double> values = values_of(middle_);
     if (is_start_) require_same_start();
@@ -70,6 +71,11 @@ class DirectionFinder {
     const model::Model& model = *of_.mechanics.model;
     if (const auto start = find_start(model, direction_.name))
       return (start->second == 0 ? scene.q : scene.qdot)[start->first];
+    if (const auto state = find_state(model, direction_.name)) {
+      const std::vector<symbolic::Symbol> symbols = of_.system.state_symbols();
+      const auto place = std::find(symbols.begin(), symbols.end(), mechanics::state_symbol(model, *state));
+      return scene.z[static_cast<std::size_t>(place - symbols.begin())];
+    }
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
       if (model.parameters[i].name == direction_.name) return scene.parameters[i];
     }
@@ -81,7 +87,7 @@ class DirectionFinder {
     std::vector<double> values = scene.parameters;
     for (const std::uint32_t i : of_.free) values.push_back(scene.q[i]);
     for (const std::uint32_t i : of_.free) values.push_back(scene.qdot[i]);
-    values.resize(scene.parameters.size() + of_.states);  // integrals over time start at 0
+    values.insert(values.end(), scene.z.begin(), scene.z.end());
     values.insert(values.end(), {scene.t0, scene.t1});
     for (const auto& kink : kink_times(scene)) values.push_back(kink.before);
     const std::vector<double> tables = table_values(scene);
@@ -93,12 +99,14 @@ class DirectionFinder {
   std::vector<double> noise_of(const Scene& scene) const {
     constexpr double newton = 1e-13;
     std::vector<double> noise(scene.parameters.size(), 0.0);
-    for (const std::vector<double>* order : {&scene.q, &scene.qdot}) {
+    const auto add = [&](const std::vector<double>& list, std::size_t count) {
       double largest = 0;
-      for (const double v : *order) largest = std::max(largest, std::abs(v));
-      noise.insert(noise.end(), of_.free.size(), std::max(newton * largest, scene.atol / 10));
-    }
-    noise.resize(scene.parameters.size() + of_.states);
+      for (const double v : list) largest = std::max(largest, std::abs(v));
+      noise.insert(noise.end(), count, std::max(newton * largest, scene.atol / 10));
+    };
+    add(scene.q, of_.free.size());
+    add(scene.qdot, of_.free.size());
+    add(scene.z, scene.z.size());
     const double time = newton * std::max(std::abs(scene.t0), std::abs(scene.t1));
     noise.insert(noise.end(), 2 + kink_times(scene).size(), time);
     noise.resize(noise.size() + table_values(scene).size());

@@ -34,8 +34,8 @@ struct ModelScene {
   std::size_t states;
 };
 
-/// The direction of a parameter or of a value of the start ("theta", "theta_dot"). Throws Error{stage "run"} if the
-/// scene does not follow a change of it, or not smoothly.
+/// The direction of a parameter or of a value of the start ("theta", "theta_dot", a state of first order). Throws
+/// Error{stage "run"} if the scene does not follow a change of it, or not smoothly.
 Direction find_direction(const ModelScene& of, const std::string& name);
 
 /// Times inside the span of a scene at which an input or a function of time jumps or bends: before and after.

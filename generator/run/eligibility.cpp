@@ -30,7 +30,8 @@ const char* with(Feature feature) {
     case Feature::modes: return "the model has contacts with friction, or unilateral contacts";
     case Feature::velocity_constraints: return "the model has a constraint on velocities";
     case Feature::kinks: return "the equations have kinks (abs, sign, min, max, if)";
-    case Feature::other_states: return "an integral of a function of time is a state of this model";
+    case Feature::other_states:
+      return "the model has states of first order, or an integral of a function of time that is one";
     case Feature::moving_inputs: return "an input is an expression of t";
     default: return "the solver does not support a feature of the model";
   }
@@ -72,7 +73,7 @@ eom::Features features_of(const system::EquationSystem& system, bool kinks) {
       .set(Feature::velocity_constraints, on_velocities)
       .set(Feature::modes, !system.contacts.empty())
       .set(Feature::kinks, kinks)
-      .set(Feature::other_states, !system.integrals.empty());
+      .set(Feature::other_states, !system.states.empty());
 }
 
 eom::Features features_of(const Code& code) { return eom::hybrid::features_of(code); }

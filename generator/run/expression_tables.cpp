@@ -96,7 +96,7 @@ SymbolResolver run_variables(const system::EquationSystem& s) {
     switch (symbol.kind) {
       case SymbolKind::time: return SymbolMeaning::of_variable(0);
       case SymbolKind::parameter: return SymbolMeaning::of_parameter(symbol.index);
-      case SymbolKind::input: return SymbolMeaning::of_variable(1 + 2 * n + s.integrals.size() + symbol.index);
+      case SymbolKind::input: return SymbolMeaning::of_variable(1 + s.layout().size() + symbol.index);
       case SymbolKind::branch: return SymbolMeaning::of(0);
       case SymbolKind::coordinate: {
         const auto place = std::find(s.free.begin(), s.free.end(), symbol.index);
@@ -104,8 +104,9 @@ SymbolResolver run_variables(const system::EquationSystem& s) {
         return SymbolMeaning::of_variable(1 + symbol.order * n + static_cast<std::size_t>(place - s.free.begin()));
       }
       case SymbolKind::integral:
-        for (std::size_t i = 0; i < s.integrals.size(); ++i) {
-          if (s.integrals[i].integral == symbol.index) return SymbolMeaning::of_variable(1 + 2 * n + i);
+      case SymbolKind::state:
+        for (std::size_t i = 0; i < s.states.size(); ++i) {
+          if (s.states[i].symbol == symbol) return SymbolMeaning::of_variable(1 + s.layout().first_order_begin() + i);
         }
         return SymbolMeaning{};
       default: return SymbolMeaning{};

@@ -34,7 +34,7 @@ using SymbolResolver = std::function<SymbolMeaning(const symbolic::Symbol&)>;
 std::optional<Table> make_table(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& roots,
                                 const SymbolResolver& lookup);
 
-/// The variables of a run (eom/hybrid/problem.hpp): t, free coordinates, their rates, integrals, inputs.
+/// The variables of a run (eom/hybrid/problem.hpp): t, free coordinates, their rates, states of first order, inputs.
 SymbolResolver run_variables(const system::EquationSystem& system);
 
 }  // namespace eomgen::run

@@ -79,8 +79,9 @@ std::vector<Table> narrow_functions(const system::EquationSystem& s) {
   for (const auto* part : {&s.M, &s.f, &s.A, &s.b, &s.gamma}) roots.insert(roots.end(), part->begin(), part->end());
   const auto of_state = [&s](Ref r) {
     const std::vector<symbolic::Symbol> symbols = s.dag->symbols({r});
-    return std::any_of(symbols.begin(), symbols.end(),
-                       [](const symbolic::Symbol& symbol) { return symbol.kind == SymbolKind::coordinate; });
+    return std::any_of(symbols.begin(), symbols.end(), [](const symbolic::Symbol& symbol) {
+      return symbol.kind == SymbolKind::coordinate || symbol.kind == SymbolKind::state;
+    });
   };
   const SymbolResolver variables = run_variables(s);
   std::vector<Table> result;

@@ -48,7 +48,7 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
                                         const std::vector<model::OutputReference>& wanted) {
   // These are part of every table.
   const auto of_state = [](const system::Output& output) {
-    return output.kind == OutputKind::coordinate || output.kind == OutputKind::rate;
+    return output.kind == OutputKind::coordinate || output.kind == OutputKind::rate || output.kind == OutputKind::state;
   };
   const auto for_reader = [](const system::Output& output) {
     return system::audience(output.kind) == system::Audience::reader;

@@ -53,20 +53,20 @@ std::vector<Ref> parameter_formulas(Mechanics& m, const model::Scene& scene, con
   std::vector<Ref> formula = m.parameter_value;
   for (const auto& [index, value] : scene.parameters) formula[index] = mechanics::lower_scalar(m, value);
   for (const auto& [name, value] : overrides.values) {
-    if (find_start(*m.model, name)) continue;
+    if (is_start_value(*m.model, name)) continue;
     const auto found = std::find_if(m.model->parameters.begin(), m.model->parameters.end(),
                                     [&wanted = name](const model::Parameter& p) { return p.name == wanted; });
     if (found == m.model->parameters.end()) {
       std::vector<std::string> names;
       for (const model::Parameter& p : m.model->parameters) names.push_back(p.name);
-      std::vector<std::string> known = names;
-      for (const model::Coordinate& c : m.model->coordinates) known.insert(known.end(), {c.name, c.name + "_dot"});
+      std::vector<std::string> known = state_columns(*m.model);
+      known.insert(known.begin(), names.begin(), names.end());
       std::string hint = model::did_you_mean(name, known);
       for (const model::Input& input : m.model->inputs) {
         if (input.name == name) hint = fmt::format("it is an input: a scene gives it, as inputs = {{ {} = 2 }}", name);
       }
       if (hint.empty() && !names.empty()) hint = fmt::format("the parameters are {}", fmt::join(names, ", "));
-      if (hint.empty()) hint = "the model has none; the start of a coordinate can be set";
+      if (hint.empty()) hint = "the model has none; the start of a coordinate or state can be set";
       throw Error("scene", {}, fmt::format("there is no parameter {} to set", model::quote(name)), hint);
     }
     const auto index = static_cast<std::size_t>(found - m.model->parameters.begin());

@@ -42,8 +42,9 @@ class SceneEvaluator {
   void require_integrals(double t) {
     const cln::cl_R start = t0_;
     t0_ = numeric::exact(t);
-    for (std::uint32_t i = 0; i < m_.model->integrals.size(); ++i) {
-      number(m_.dag->symbol({SymbolKind::integral, i, 0}), m_.model->integrals[i].integrand, "the integral of this");
+    for (std::uint32_t i = 0; i < m_.model->states.size(); ++i) {
+      const model::State& state = m_.model->states[i];
+      if (state.integral) number(m_.dag->symbol({SymbolKind::integral, i, 0}), state.rate, "the integral of this");
     }
     t0_ = start;
   }
@@ -108,7 +109,7 @@ std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene&
     const Ref signal = written(mechanics::lower_scalar(m, id));
     for (const Symbol& symbol : m.dag->symbols({signal})) {
       if (symbol.kind != SymbolKind::integral) continue;
-      throw Error("scene", m.model->where(m.model->integrals[symbol.index].span),
+      throw Error("scene", m.model->where(m.model->states[symbol.index].span),
                   "this integral has no closed form, and a signal cannot carry a state of its own",
                   "put the integral where the input is used, as integral(f) with f in [functions]");
     }
@@ -124,8 +125,8 @@ void resolve_clock(const Mechanics& m, const system::EquationSystem& system, Sce
   result.clock =
       eom::hybrid::analyse_time_functions(result.time, result.parameters, input_signals(result), result.t0, result.t1);
   eom::hybrid::JumpFunctions jumps = jump_functions(system);
-  const eom::hybrid::Jumps found(jumps, system.free.size(), system.integrals.size(), m.model->inputs.size(),
-                                 result.parameters, !result.clock.breakpoints.empty());
+  const eom::hybrid::Jumps found(jumps, system.layout(), m.model->inputs.size(), result.parameters,
+                                 !result.clock.breakpoints.empty());
   if (!found.none()) result.jumps = std::move(jumps);
 }
 
@@ -170,10 +171,12 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
   constexpr double smallest_pivot = 1e-14;  // of M scaled to a unit diagonal; rounding leaves 1e-16 per operation
   if (!system.active.empty()) return;
   const auto n = static_cast<Eigen::Index>(system.free.size());
+  const std::vector<symbolic::Symbol> states = system.state_symbols();
   const std::vector<double> values = symbolic::evaluate(*system.dag, system.M, [&](const symbolic::Symbol& s) {
     if (s.kind == symbolic::SymbolKind::parameter) return start.parameters[s.index];
     if (s.kind == symbolic::SymbolKind::time) return start.t0;
-    if (s.kind == symbolic::SymbolKind::integral) return 0.0;
+    if (const auto found = std::find(states.begin(), states.end(), s); found != states.end())
+      return start.z[static_cast<std::size_t>(found - states.begin())];
     if (s.kind == symbolic::SymbolKind::coordinate) return (s.order == 0 ? start.q : start.qdot)[s.index];
     return std::nan("");
   });
@@ -192,7 +195,50 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
               "start elsewhere, or choose other coordinates or parameters; `check` lists the singular sets");
 }
 
+// The start of the states of first order, which may use coordinates and velocities there.
+void resolve_states(const Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
+                    const Overrides& overrides, SceneEvaluator& value, Scene& result) {
+  for (std::uint32_t i = 0; i < result.q.size(); ++i) {
+    value.give(i, 0, result.q[i]);
+    value.give(i, 1, result.qdot[i]);
+  }
+  for (const system::FirstOrderState& entry : system.states) {
+    const model::State& state = m.model->states[entry.symbol.index];
+    result.z.push_back(0);
+    if (state.integral) continue;
+    if (const auto set = overrides.values.find(state.name); set != overrides.values.end()) {
+      result.z.back() = cln::double_approx(set->second);
+      continue;
+    }
+    const auto given = std::find_if(scene.states.begin(), scene.states.end(), [&](const model::InitialState& initial) {
+      return initial.state == entry.symbol.index;
+    });
+    const model::NodeId start = given != scene.states.end() ? given->value : state.initial;
+    if (start != model::no_node) result.z.back() = value.number(start, "the start value of a state");
+  }
+}
+
 }  // namespace
+
+std::optional<std::uint32_t> find_state(const model::Model& model, const std::string& name) {
+  for (std::uint32_t i = 0; i < model.states.size(); ++i) {
+    if (!model.states[i].integral && model.states[i].name == name) return i;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> state_columns(const model::Model& model) {
+  std::vector<std::string> names;
+  for (const model::Coordinate& c : model.coordinates) names.insert(names.end(), {c.name, c.name + "_dot"});
+  for (const model::State& state : model.states) {
+    if (!state.integral) names.push_back(state.name);
+  }
+  return names;
+}
+
+bool is_start_value(const model::Model& model, const std::string& name) {
+  return find_start(model, name) || find_state(model, name);
+}
 
 std::optional<StartProblem::Key> find_start(const model::Model& model, const std::string& name) {
   for (std::uint32_t i = 0; i < model.coordinates.size(); ++i) {
@@ -284,6 +330,8 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   resolve_clock(m, system, result);  // parameters may depend on the start
   result.q = problem.q;
   result.qdot = problem.qdot;
+  for (std::size_t i = 0; i < rounded.size(); ++i) rounded[i] = numeric::exact(result.parameters[i]);
+  resolve_states(m, system, scene, overrides, value, result);
   resolve_ranges(m, value, result);
   require_ranges(m, scene, result);
   result.solved_notes = problem.solved_notes;

@@ -21,7 +21,7 @@ namespace eomgen::run {
 
 /// Values from the command line that replace those of the scene.
 struct Overrides {
-  std::map<std::string, symbolic::Rational> values;  // of parameters; initial values of coordinates and rates
+  std::map<std::string, symbolic::Rational> values;  // of parameters; initial values of coordinates, rates and states
   std::optional<double> t_end, rtol, atol, step, max_step, every;
   std::optional<std::string> solver;
   std::vector<std::string> outputs;  // replace those of the scene, unless empty
@@ -42,6 +42,7 @@ struct Scene {
   std::vector<double> parameters;  // all of the model, in order; dependent ones computed
   double t0 = 0, t1 = 0;
   std::vector<double> q, qdot;       // all coordinates of the model
+  std::vector<double> z;             // states of first order, per EquationSystem::states
   std::vector<double> lower, upper;  // open range of each coordinate; infinite if there is none
   std::string solver;                // as requested; may be "auto"
   double rtol = 1e-9, atol = 1e-12;
@@ -59,6 +60,14 @@ struct Scene {
 
 /// The coordinate (order 0) or rate (order 1) with this name, "theta" or "theta_dot".
 std::optional<std::pair<std::uint32_t, std::uint8_t>> find_start(const model::Model& model, const std::string& name);
+
+/// The declared state of first order with this name, in Model::states.
+std::optional<std::uint32_t> find_state(const model::Model& model, const std::string& name);
+/// Whether a value of this name sets the start: of a coordinate, a rate or a state.
+bool is_start_value(const model::Model& model, const std::string& name);
+
+/// Names of all coordinates, each followed by its rate, then of the declared states of first order.
+std::vector<std::string> state_columns(const model::Model& model);
 
 inline constexpr double start_tolerance = 1e-8;  // relative; the contract's
 

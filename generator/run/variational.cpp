@@ -22,7 +22,8 @@ using eom::hybrid::RunContext;
 
 /// The equations in one scene.
 struct Equations {
-  explicit Equations(Problem of, std::vector<Breakpoint> times) : problem(std::move(of)), kinks(std::move(times)), context(problem) {}
+  explicit Equations(Problem of, std::vector<Breakpoint> times)
+      : problem(std::move(of)), kinks(std::move(times)), context(problem) {}
   Equations(const Equations&) = delete;
   Equations& operator=(const Equations&) = delete;
 
@@ -243,11 +244,10 @@ class VariationalRun::Run {
     };
     Slopes by_scene = slopes(after, beside, direction.step);
     if (!by_scene.smooth) refuse(what());
-    const std::vector<double> by_state =
-        along(0, own, 0, sensitivity(x, d), what, [&](double, std::vector<double> at) {
-          cross(own_, at);
-          return at;
-        });
+    const std::vector<double> by_state = along(0, own, 0, sensitivity(x, d), what, [&](double, std::vector<double> at) {
+      cross(own_, at);
+      return at;
+    });
     for (std::size_t i = 0; i < n_; ++i) out[(d + 1) * n_ + i] = direction.scale * (by_state[i] + by_scene.value[i]);
   }
 

@@ -71,7 +71,7 @@ class Text {
 
   std::string state(std::uint32_t i) const {
     const std::size_t n = program_.free.size();
-    if (i >= 2 * n) return model_.integrals[program_.integrals[i - 2 * n]].name;
+    if (i >= 2 * n) return model_.states[program_.states[i - 2 * n].index].name;
     const std::string& name = model_.coordinates[program_.free[i % n]].name;
     return i < n ? name : name + "_dot";
   }

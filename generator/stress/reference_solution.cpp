@@ -158,6 +158,7 @@ run::Scene ReferenceSolver::scene_from(const State& x) const {
     scene.q[free[i]] = x[i];
     scene.qdot[free[i]] = x[free.size() + i];
   }
+  std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(2 * free.size()), scene.z.size(), scene.z.begin());
   return scene;
 }
 
@@ -174,7 +175,7 @@ bool ReferenceSolver::condition(ReferenceSolution& reference) {
 
 bool ReferenceSolver::follow_disturbed(ReferenceSolution& reference, const State& x0, int pattern, double sign) {
   State x = x0;
-  for (std::size_t i = 0; i < 2 * run_.code.free.size(); ++i) {
+  for (std::size_t i = 0; i < run_.code.layout().size(); ++i) {
     const bool against = pattern > 0 && ((i >> (pattern - 1)) & 1) != 0;
     x[i] += (against ? -sign : sign) * disturbance_ * reference.scale[i];
   }

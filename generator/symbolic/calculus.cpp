@@ -115,7 +115,10 @@ namespace {
 constexpr std::uint8_t highest_function_order = 6;
 
 std::map<Symbol, Ref> explicit_seeds(Dag& dag, std::size_t functions) {
-  std::map<Symbol, Ref> seeds = dag.rates();
+  std::map<Symbol, Ref> seeds;
+  for (const auto& [symbol, rate] : dag.rates()) {
+    if (symbol.kind == SymbolKind::integral) seeds[symbol] = rate;
+  }
   seeds[{SymbolKind::time, 0, 0}] = dag.one();
   for (std::uint32_t i = 0; i < functions; ++i) {
     for (std::uint8_t order = 0; order < highest_function_order; ++order) {
@@ -132,6 +135,7 @@ Derivation explicit_time_derivative(Dag& dag, std::size_t functions) { return {d
 
 Derivation total_time_derivative(Dag& dag, std::size_t coordinates, std::size_t functions, bool freeze_acceleration) {
   std::map<Symbol, Ref> seeds = explicit_seeds(dag, functions);
+  for (const auto& [symbol, rate] : dag.rates()) seeds[symbol] = rate;
   for (std::uint32_t i = 0; i < coordinates; ++i) {
     seeds[{SymbolKind::coordinate, i, 0}] = dag.symbol({SymbolKind::coordinate, i, 1});
     seeds[{SymbolKind::coordinate, i, 1}] =

@@ -52,8 +52,9 @@ enum class SymbolKind : std::uint8_t {
   friction,      // phi of a tangent of Mechanics::contacts: a component of a friction force
   contact_mode,  // mode of a contact: order 0: slip direction (0: it sticks), order 1: sign of the normal force
   auxiliary,     // an auxiliary variable of the caller (cut points of the solve, the extension of a spring)
-  integral,      // of a function of time, from the start of the run; set_rate defines its derivative
+  integral,      // of a function of time, from the start of the run, in Model::states; set_rate defines its derivative
   branch,        // branch at which a kink is held: -1 or 1, or 0 for none (program/kinks.hpp)
+  state,         // of first order, in Model::states; set_rate defines its derivative
 };
 
 struct Symbol {
@@ -103,8 +104,8 @@ class Dag {
   /// Declares a symbol positive, so that sqrt(x^2) becomes x: a length, or a radius inside its chart
   /// (docs/model-format.md, ranges).
   void assume_positive(Symbol symbol);
-  /// Defines d/dt of an integral, for all later derivatives with respect to time.
-  void set_rate(Symbol integral, Ref rate) { rates_[integral] = rate; }
+  /// Defines d/dt of an integral or a state of first order, for all later derivatives with respect to time.
+  void set_rate(Symbol state, Ref rate) { rates_[state] = rate; }
   const std::map<Symbol, Ref>& rates() const { return rates_; }
   /// True if the assumptions imply that it is positive wherever it is defined; false is no statement.
   bool is_positive(Ref r) const;

@@ -14,6 +14,12 @@ const char* name(Form form) {
   return "multipliers";
 }
 
+std::vector<symbolic::Symbol> EquationSystem::state_symbols() const {
+  std::vector<symbolic::Symbol> symbols;
+  for (const FirstOrderState& state : states) symbols.push_back(state.symbol);
+  return symbols;
+}
+
 EquationSystem::EquationSystem() = default;
 EquationSystem::EquationSystem(const EquationSystem&) = default;
 EquationSystem::EquationSystem(EquationSystem&&) noexcept = default;

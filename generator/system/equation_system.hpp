@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The equations of motion of the free coordinates, as every formulation of derive returns them,
 //   M(q,t) qddot = f(q,qdot,t,u) + A^T lambda,   A qddot + gamma = 0   (index-1 form, docs/theory.md),
-// as Dag expressions in t, q, qdot of the free coordinates, parameters and inputs only. Functions of time are expanded
-// and eliminated coordinates are substituted.
+// as Dag expressions in t, q, qdot of the free coordinates, states of first order, parameters and inputs only.
+// Functions of time are expanded and eliminated coordinates are substituted.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <eom/layout.hpp>
 #include <eom/modes/contact_state.hpp>
 #include <memory>
 #include <optional>
@@ -51,11 +52,11 @@ struct Solution {
   std::vector<symbolic::Pivot> pivots;
 };
 
-/// An integral of a function of time without a closed form: an additional state, 0 at the start, with derivative
-/// `rate`.
-struct IntegralState {
-  std::uint32_t integral;  // index into Model::integrals
-  Ref rate;                // of t, parameters and integrals that are states
+/// A state of first order, with derivative `rate`: declared by the model, or an integral of a function of time without
+/// a closed form.
+struct FirstOrderState {
+  symbolic::Symbol symbol;  // SymbolKind::state or integral; its index is that into Model::states
+  Ref rate;                 // of t, q, qdot, parameters, inputs and states of first order
 };
 
 struct Event {
@@ -126,10 +127,10 @@ struct EquationSystem {
   Approach approach = Approach::two;
   Form form = Form::multipliers;
 
-  std::vector<std::uint32_t> free;    // n coordinates of the model, ascending; state x = (q_free, qdot_free, integrals)
+  std::vector<std::uint32_t> free;    // n coordinates of the model, ascending; state x = (q_free, qdot_free, states)
   std::vector<std::uint32_t> active;  // m constraints with multipliers
 
-  std::vector<IntegralState> integrals;
+  std::vector<FirstOrderState> states;
   std::vector<Ref> M;           // n x n, row-major, symmetric
   std::vector<Ref> f;           // n
   std::vector<bool> holonomic;  // m: false for constraints on velocities, whose psi is 0
@@ -150,6 +151,9 @@ struct EquationSystem {
   std::vector<Output> outputs;            // all available outputs, in the order of docs/model-format.md
   std::vector<Event> events;              // in model order
   Ref energy, kinetic, potential, power;  // power: the expected dE/dt; may depend on multipliers and qddot
+
+  eom::StateLayout layout() const { return {free.size(), states.size()}; }
+  std::vector<symbolic::Symbol> state_symbols() const;  // of `states`
 };
 
 }  // namespace eomgen::system

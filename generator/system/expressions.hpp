@@ -10,7 +10,7 @@ namespace eomgen::system {
 
 /// The role of an expression.
 enum class ExpressionRole {
-  motion,       // M, f, A, gamma, the rates of integrals, the quasi-velocity equations, the solution
+  motion,       // M, f, A, gamma, the rates of states of first order, the quasi-velocity equations, the solution
   slip,         // slip of a contact: the mode of the contact changes at its sign changes
   contact,      // the rest of a contact's law
   constraints,  // psi and b, for initial states and projection
@@ -24,7 +24,7 @@ void for_each_expression(System& system, Visit&& visit) {
     for (auto& r : list) visit(r, part);
   };
   for (auto* list : {&system.M, &system.f, &system.A, &system.gamma}) all(*list, ExpressionRole::motion);
-  for (auto& integral : system.integrals) visit(integral.rate, ExpressionRole::motion);
+  for (auto& state : system.states) visit(state.rate, ExpressionRole::motion);
   if (system.quasi) {
     all(system.quasi->M, ExpressionRole::motion);
     all(system.quasi->f, ExpressionRole::motion);

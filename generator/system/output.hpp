@@ -18,6 +18,7 @@ enum class OutputKind : std::uint8_t {
   rate,
   acceleration,
   momentum,
+  state,  // of first order, of the model
   // of the whole system
   energy,
   kinetic,

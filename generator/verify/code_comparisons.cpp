@@ -22,7 +22,7 @@ using system::EquationSystem;
 double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, const EquationSystem& s,
                       const SystemValues& v, const std::vector<Real>& rounding = {}) {
   const std::size_t n = s.free.size();
-  if (a.size() != 2 * n + s.integrals.size() || b.size() != a.size()) return 1;
+  if (a.size() != s.layout().size() || b.size() != a.size()) return 1;
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     Real size = i < n || i >= 2 * n ? cln::abs(b[i]) : v.scale[s.free[i - n]];
@@ -50,7 +50,7 @@ State in_binary64(const State& state, const Oracle& oracle) {
   const auto exactly = [&](const Real& value) { return oracle.precision().round(exact(to_binary64(value))); };
   State at = state;
   at.t = exactly(at.t);
-  for (auto* part : {&at.q, &at.qdot, &at.parameters, &at.inputs, &at.integrals})
+  for (auto* part : {&at.q, &at.qdot, &at.parameters, &at.inputs, &at.z})
     for (Real& value : *part) value = exactly(value);
   return at;
 }

@@ -108,11 +108,11 @@ void compare_energies(const EquationSystem& s, const SystemValues& v, const Orac
   tally.record("energies of " + name, oracle_name, false,
                worst({relative_difference(v.kinetic - e.kinetic, e.scale),
                       relative_difference(v.potential - e.potential, e.scale),
-                      relative_difference(v.energy - e.kinetic - e.potential, e.scale)}));
+                      relative_difference(v.energy - e.kinetic - e.potential - e.stored, e.scale)}));
   Real scale = e.rate_scale + cln::abs(v.power);  // plus the power of every term of the equations
   for (std::size_t i = 0; i < v.rows.size(); ++i) scale = scale + cln::abs(v.state.qdot[i]) * v.rows[i].scale;
   tally.record("power of " + name, oracle_name, false,
-               relative_difference(v.power - e.kinetic_rate - e.potential_rate, scale));
+               relative_difference(v.power - e.kinetic_rate - e.potential_rate - e.stored_rate, scale));
   const Real rate = energy_rate(s, oracle, v, oracle.digits() - guard_digits);
   // The difference of two energies has no more digits than these.
   const Real noise = e.scale * cln::expt(cln::cl_RA(1) / 10, cln::cl_I(tally.digits()));
@@ -132,6 +132,9 @@ void compare_outputs(const EquationSystem& s, const SystemValues& v, const Oracl
   for (std::size_t i = 0; i < m.coordinates.size(); ++i) {
     expect(m.coordinates[i].name, v.state.q[i], cln::abs(v.state.q[i]));
     expect(m.coordinates[i].name + "_dot", v.state.qdot[i], cln::abs(v.state.qdot[i]));
+  }
+  for (std::size_t i = 0; i < m.states.size(); ++i) {
+    if (!m.states[i].integral) expect(m.states[i].name, v.state.z[i], cln::abs(v.state.z[i]));
   }
   for (std::uint32_t i = 1; i < m.places.size(); ++i) {
     const Vector r = later.place(i);
@@ -163,31 +166,6 @@ void compare_outputs(const EquationSystem& s, const SystemValues& v, const Oracl
   tally.record("outputs of " + system_name(s), oracle_name, false, largest);
 }
 
-/// Compares closed forms with quadrature, and the rates of integrals that are states with their integrands.
-void compare_integrals(const mechanics::Mechanics& mechanics, const EquationSystem& s, const SystemValues& v,
-                       const Oracle& oracle, ComparisonTable& tally) {
-  const model::Model& m = oracle.model();
-  if (m.integrals.empty()) return;
-  const SymbolValues lookup(oracle, v.state);
-  symbolic::Substitution written = derive::time_function_substitution(mechanics);
-  const Interpreter now = oracle.interpreter(v.state);
-  double largest = 0;
-  for (std::uint32_t i = 0; i < m.integrals.size(); ++i) {
-    const Ref form = written(mechanics.dag->symbol({symbolic::SymbolKind::integral, i, 0}));
-    const Real value = symbolic::evaluate(*mechanics.dag, {form}, lookup, oracle.digits())[0];
-    const Real span = v.state.t - v.state.parameters[*m.start_time];
-    const Real scale = cln::abs(span * now.environment().integrals[i][1].real());
-    largest =
-        std::max(largest, relative_difference(value - v.state.integrals[i], cln::abs(v.state.integrals[i]) + scale));
-  }
-  const std::vector<Real> rates = integral_rates(s, lookup, oracle.digits());
-  for (std::size_t k = 0; k < rates.size(); ++k) {
-    const Real expected = now.environment().integrals[s.integrals[k].integral][1].real();
-    largest = std::max(largest, relative_difference(rates[k] - expected, cln::abs(expected)));
-  }
-  tally.record("integrals of time", oracle_name, false, largest);
-}
-
 void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
   std::vector<Ref> open{r};
   while (!open.empty()) {
@@ -203,6 +181,41 @@ void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
       default: terms.push_back(here);
     }
   }
+}
+
+/// Compares closed forms of integrals with quadrature, and the rates of states of first order with those of the model.
+void compare_states(const mechanics::Mechanics& mechanics, const EquationSystem& s, const SystemValues& v,
+                    const Oracle& oracle, ComparisonTable& tally) {
+  const model::Model& m = oracle.model();
+  if (m.states.empty()) return;
+  const SymbolValues lookup(oracle, v.state);
+  symbolic::Substitution written = derive::time_function_substitution(mechanics);
+  const Interpreter now = oracle.interpreter(v.state);
+  double of_integrals = 0, of_rates = 0;
+  for (std::uint32_t i = 0; i < m.states.size(); ++i) {
+    if (!m.states[i].integral) continue;
+    const Ref form = written(mechanics.dag->symbol({symbolic::SymbolKind::integral, i, 0}));
+    const Real value = symbolic::evaluate(*mechanics.dag, {form}, lookup, oracle.digits())[0];
+    const Real span = v.state.t - v.state.parameters[*m.start_time];
+    const Real scale = cln::abs(span * now.environment().states[i][1].real());
+    of_integrals = std::max(of_integrals, relative_difference(value - v.state.z[i], cln::abs(v.state.z[i]) + scale));
+  }
+  for (const system::FirstOrderState& state : s.states) {
+    std::vector<Ref> roots{state.rate};
+    top_level_terms(*s.dag, state.rate, roots);
+    const std::vector<Real> value = symbolic::evaluate(*s.dag, roots, lookup, oracle.digits());
+    Real scale = 0;  // a rate may be 0 because its terms cancel
+    for (std::size_t k = 1; k < value.size(); ++k) scale = scale + cln::abs(value[k]);
+    double& largest = m.states[state.symbol.index].integral ? of_integrals : of_rates;
+    largest = std::max(largest,
+                       relative_difference(value[0] - now.environment().states[state.symbol.index][1].real(), scale));
+  }
+  const auto has = [&](bool integral) {
+    return std::any_of(m.states.begin(), m.states.end(),
+                       [=](const model::State& state) { return state.integral == integral; });
+  };
+  if (has(true)) tally.record("integrals of time", oracle_name, false, of_integrals);
+  if (has(false)) tally.record("rates of states of first order", oracle_name, false, of_rates);
 }
 
 /// The largest residual, each relative to the sum of the absolute values of its terms, with unknowns as large as their
@@ -360,7 +373,7 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
   }
   if (values.empty()) return;
   const EquationSystem& first = subjects.systems.front();
-  compare_integrals(mechanics, first, values.front(), oracle, tally);
+  compare_states(mechanics, first, values.front(), oracle, tally);
   if (first.contacts.empty()) return compare_code(subjects, values.front(), oracle, 0, tally);
   for (const int mode : modes_of(first, state)) {
     State lawful = in_mode(first, values.front(), state, mode);

@@ -50,7 +50,8 @@ Oracle::Oracle(const model::Model& model, int digits) : model_(model), digits_(d
     for (std::size_t k = 0; k < constraint.psi.size(); ++k) holonomic_.push_back(!constraint.is_velocity_equation(k));
   }
   constexpr int rounding = 5;  // digits that large sums may lose
-  if (!model.integrals.empty()) quadrature_.emplace(digits - rounding, precision_);
+  if (std::any_of(model.states.begin(), model.states.end(), [](const model::State& s) { return s.integral; }))
+    quadrature_.emplace(digits - rounding, precision_);
 }
 
 bool Oracle::is_independent_parameter(std::size_t index) const {
@@ -84,13 +85,13 @@ std::vector<Real> Oracle::parameters(std::vector<Real> given) const {
   return given;
 }
 
-void Oracle::add_functions(Environment& environment, const std::vector<Real>& integrals, std::size_t orders) const {
+void Oracle::add_functions(Environment& environment, const std::vector<Real>& z, std::size_t orders) const {
   environment.functions.assign(model_.functions.size(), {});
-  environment.integrals.assign(model_.integrals.size(), {});
+  environment.states.assign(model_.states.size(), {});
   // A function may use others, and integrals, declared before or after it.
   const auto unknown = [&](const model::Node& node) {
     return (node.op == model::Op::function && environment.functions[node.index].empty()) ||
-           (node.op == model::Op::integral && environment.integrals[node.index].empty());
+           (node.op == model::Op::integral && environment.states[node.index].empty());
   };
   bool progress = true;
   const auto add = [&](model::NodeId expression, std::vector<Jet>& known) {
@@ -113,12 +114,22 @@ void Oracle::add_functions(Environment& environment, const std::vector<Real>& in
     progress = false;
     for (std::size_t i = 0; i < model_.functions.size(); ++i)
       add(model_.functions[i].expression, environment.functions[i]);
-    for (std::size_t i = 0; i < integrals.size(); ++i) {
-      if (!environment.integrals[i].empty()) continue;
-      add(model_.integrals[i].integrand, environment.integrals[i]);  // its rate and further derivatives
-      if (!environment.integrals[i].empty())
-        environment.integrals[i].insert(environment.integrals[i].begin(), Jet(integrals[i]));
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      std::vector<Jet>& orders_of_state = environment.states[i];
+      if (!model_.states[i].integral || !orders_of_state.empty()) continue;
+      add(model_.states[i].rate, orders_of_state);  // its rate and further derivatives
+      if (!orders_of_state.empty()) orders_of_state.insert(orders_of_state.begin(), Jet(z[i]));
     }
+  }
+}
+
+void Oracle::add_states(Environment& environment, const std::vector<Real>& z, KinkMargin* margin) const {
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    if (!model_.states[i].integral) environment.states[i] = {Jet(z[i])};
+  }
+  Interpreter now(model_, environment, precision_, margin);
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    if (!model_.states[i].integral) environment.states[i].push_back(now.scalar(model_.states[i].rate));
   }
 }
 
@@ -127,12 +138,13 @@ Interpreter Oracle::interpreter(const State& state, KinkMargin* margin) const {
   environment.t = Jet(state.t);
   for (const Real& value : state.parameters) environment.parameters.emplace_back(value);
   for (const Real& value : state.inputs) environment.inputs.emplace_back(value);
-  const bool known = state.integrals.size() == model_.integrals.size();
-  add_functions(environment, known ? state.integrals : integrals(state), function_orders);
+  const std::vector<Real> z = state.z.size() == model_.states.size() ? state.z : with_integrals(state);
+  add_functions(environment, z, function_orders);
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     environment.coordinates.push_back({Jet(state.q[i]), Jet(state.qdot[i])});
     if (i < state.qddot.size()) environment.coordinates.back().emplace_back(state.qddot[i]);
   }
+  add_states(environment, z, margin);
   return Interpreter(model_, std::move(environment), precision_, margin);
 }
 
@@ -147,7 +159,7 @@ bool Oracle::needs_derivatives(model::NodeId expression) const {
     if (!seen.insert(id).second) continue;
     found = uses(model_, id, [&](const model::Node& node) {
       if (node.op == model::Op::function) open.push_back(model_.functions[node.index].expression);
-      if (node.op == model::Op::integral) open.push_back(model_.integrals[node.index].integrand);
+      if (node.op == model::Op::integral) open.push_back(model_.states[node.index].rate);
       return node.order > 0 || node.op == model::Op::total_derivative || node.op == model::Op::partial_derivative;
     });
   }
@@ -155,7 +167,7 @@ bool Oracle::needs_derivatives(model::NodeId expression) const {
 }
 
 Real Oracle::integral_value(std::uint32_t integral, const State& state) const {
-  const model::NodeId integrand = model_.integrals[integral].integrand;
+  const model::NodeId integrand = model_.states[integral].rate;
   const std::size_t orders = needs_derivatives(integrand) ? function_orders : 0;
   const auto value = [&](const Real& t) {
     State at = state;
@@ -163,22 +175,25 @@ Real Oracle::integral_value(std::uint32_t integral, const State& state) const {
     Environment environment;
     environment.t = Jet(t);
     for (const Real& parameter : state.parameters) environment.parameters.emplace_back(parameter);
-    at.integrals.assign(integral, Real(0));
+    at.z.assign(integral, Real(0));
     // Integrals inside of this one come before it.
     for (std::uint32_t i = 0; i < integral; ++i) {
       const auto inner = [i](const model::Node& node) { return node.op == model::Op::integral && node.index == i; };
-      if (uses(model_, integrand, inner)) at.integrals[i] = integral_value(i, at);
+      if (uses(model_, integrand, inner)) at.z[i] = integral_value(i, at);
     }
-    add_functions(environment, at.integrals, orders);
+    add_functions(environment, at.z, orders);
     return Interpreter(model_, std::move(environment), precision_).scalar(integrand).real();
   };
   return (*quadrature_)(value, state.parameters.at(*model_.start_time), state.t);
 }
 
-std::vector<Real> Oracle::integrals(const State& state) const {
-  std::vector<Real> values;
-  for (std::uint32_t i = 0; i < model_.integrals.size(); ++i) values.push_back(integral_value(i, state));
-  return values;
+std::vector<Real> Oracle::with_integrals(const State& state) const {
+  std::vector<Real> z = state.z;
+  z.resize(model_.states.size(), Real(0));
+  for (std::uint32_t i = 0; i < z.size(); ++i) {
+    if (model_.states[i].integral) z[i] = integral_value(i, state);
+  }
+  return z;
 }
 
 Real Oracle::evaluate(model::NodeId expression, const State& state) const {
@@ -207,7 +222,7 @@ bool same(const std::vector<Real>& a, const std::vector<Real>& b) {
 
 bool same_place(const State& a, const State& b) {
   return cln::equal(a.t, b.t) && same(a.q, b.q) && same(a.qdot, b.qdot) && same(a.parameters, b.parameters) &&
-         same(a.inputs, b.inputs) && same(a.integrals, b.integrals);
+         same(a.inputs, b.inputs) && same(a.z, b.z);
 }
 
 }  // namespace
@@ -324,6 +339,9 @@ EnergyValues Oracle::energy_values(const State& state) const {
     add(T, sum.kinetic, sum.kinetic_rate);
   }
   for (const Jet& term : potentials(model_, precision_, later)) add(term, sum.potential, sum.potential_rate);
+  for (const model::State& z : model_.states) {
+    if (z.energy != model::no_node) add(later.scalar(z.energy), sum.stored, sum.stored_rate);
+  }
   return sum;
 }
 

@@ -36,7 +36,7 @@ struct State {
   Real t = 0;
   std::vector<Real> q, qdot, qddot;  // every coordinate of the model
   std::vector<Real> parameters, inputs;
-  std::vector<Real> integrals;          // of functions of time, from the start of the run; empty: not computed yet
+  std::vector<Real> z;                  // per Model::states; empty: all are integrals, which are not computed yet
   std::vector<Real> phi;                // components of friction along the tangents
   std::vector<FrictionForce> friction;  // the forces that belong to phi
   int mode = 0;                         // of the contacts (eom/modes/contact_state.hpp)
@@ -60,9 +60,9 @@ struct ConstraintValues {
 };
 
 struct EnergyValues {
-  Real kinetic = 0, potential = 0;            // T; U of all forces that have a potential
-  Real kinetic_rate = 0, potential_rate = 0;  // along the path
-  Real scale = 0;                             // sum of the absolute values of their terms
+  Real kinetic = 0, potential = 0, stored = 0;  // T; U of all forces that have a potential; energy of states
+  Real kinetic_rate = 0, potential_rate = 0, stored_rate = 0;  // along the path
+  Real scale = 0;                                              // sum of the absolute values of their terms
   Real rate_scale = 0;
 };
 
@@ -103,14 +103,16 @@ class Oracle {
 
   /// Value of an expression of parameters alone. Throws UndefinedValue if it is undefined, such as log(0).
   Real evaluate_constant(model::NodeId expression, const std::vector<Real>& parameters) const;
-  /// Every integral of the model at the state's time and parameters, by quadrature of its integrand.
-  std::vector<Real> integrals(const State& state) const;
+  /// Values per Model::states: declared states as in `state`, integrals at its time and parameters, by quadrature.
+  std::vector<Real> with_integrals(const State& state) const;
 
   Interpreter interpreter(const State& state, KinkMargin* margin = nullptr) const;
 
  private:
-  /// Functions of time and integrals with `orders` derivatives; `integrals` holds the values of the latter.
-  void add_functions(Environment& environment, const std::vector<Real>& integrals, std::size_t orders) const;
+  /// Functions of time and integrals with `orders` derivatives; `z` holds the values of the latter.
+  void add_functions(Environment& environment, const std::vector<Real>& z, std::size_t orders) const;
+  /// Declared states with their rates, which may depend on everything else.
+  void add_states(Environment& environment, const std::vector<Real>& z, KinkMargin* margin) const;
   bool needs_derivatives(model::NodeId expression) const;
   Real integral_value(std::uint32_t integral, const State& state) const;
   void subtract_friction(const State& state, Interpreter& now, std::vector<Residual>& sums) const;

@@ -392,7 +392,7 @@ AbiArguments arguments_at(const EquationSystem& s, const State& state, int mode)
   AbiArguments at{state.t, {}, state.parameters, state.inputs, mode, 4};
   for (const std::uint32_t i : s.free) at.x.push_back(state.q[i]);
   for (const std::uint32_t i : s.free) at.x.push_back(state.qdot[i]);
-  for (const system::IntegralState& integral : s.integrals) at.x.push_back(state.integrals[integral.integral]);
+  for (const system::FirstOrderState& z : s.states) at.x.push_back(state.z[z.symbol.index]);
   return at;
 }
 

@@ -42,7 +42,7 @@ Interpreter& Interpreter::with_time_slope() {
   Environment later = environment_;
   const unsigned level = ++later.level;
   later.t = Jet::variable(level, later.t, 0);
-  for (auto* group : {&later.coordinates, &later.functions, &later.integrals})
+  for (auto* group : {&later.coordinates, &later.functions, &later.states})
     for (std::vector<Jet>& orders : *group) {
       for (std::size_t k = 0; k + 1 < orders.size(); ++k) orders[k] = Jet::on_level(level, orders[k], {orders[k + 1]});
       if (!orders.empty()) orders.pop_back();
@@ -93,16 +93,21 @@ Interpreter& Interpreter::by_leaf(const Node& node) {
     case Op::function: vary_order(seeded.functions[node.index]); break;
     case Op::parameter: vary(seeded.parameters[node.index]); break;
     case Op::input: vary(seeded.inputs[node.index]); break;
-    case Op::time:  // at fixed coordinates; functions of time vary
+    case Op::state: vary_order(seeded.states[node.index]); break;
+    case Op::time: {  // at fixed coordinates and declared states; functions of time vary
       vary(seeded.t);
-      for (auto* group : {&seeded.functions, &seeded.integrals})
-        for (std::vector<Jet>& orders : *group) {
-          for (std::size_t k = 0; k + 1 < orders.size(); ++k)
-            orders[k] = Jet::on_level(level, orders[k], {orders[k + 1]});
-          if (!orders.empty()) orders.pop_back();  // the function whose own formula is evaluated has none yet
-        }
+      const auto vary_in_time = [&](std::vector<Jet>& orders) {
+        for (std::size_t k = 0; k + 1 < orders.size(); ++k)
+          orders[k] = Jet::on_level(level, orders[k], {orders[k + 1]});
+        if (!orders.empty()) orders.pop_back();  // the function whose own formula is evaluated has none yet
+      };
+      for (std::vector<Jet>& orders : seeded.functions) vary_in_time(orders);
+      for (std::size_t i = 0; i < seeded.states.size(); ++i) {
+        if (model_.states[i].integral) vary_in_time(seeded.states[i]);
+      }
       break;
-    default: refuse(node, "diff is by a coordinate, a function, a parameter, an input or t");
+    }
+    default: refuse(node, "diff is by a coordinate, a function, a parameter, an input, a state or t");
   }
   kept = child(std::move(seeded));
   return *kept;
@@ -151,7 +156,8 @@ Jet Interpreter::leaf(const Node& node) {
     case Op::coordinate: return of_order(environment_.coordinates[node.index]);
     case Op::function: return of_order(environment_.functions[node.index]);
     case Op::definition: return scalar(model_.definitions[node.index].expression);
-    case Op::integral: return of_order(environment_.integrals[node.index]);
+    case Op::integral:
+    case Op::state: return of_order(environment_.states[node.index]);
     case Op::extension:
       if (spring_ != nullptr) return extension(*spring_);
       break;

@@ -33,7 +33,7 @@ struct Environment {
   Jet t;
   std::vector<std::vector<Jet>> coordinates;  // [coordinate][order], up to the highest known order
   std::vector<std::vector<Jet>> functions;    // [function][order]
-  std::vector<std::vector<Jet>> integrals;    // [integral]: its value, the integrand and the integrand's derivatives
+  std::vector<std::vector<Jet>> states;  // [state]: its value and rate; of an integral also the derivatives of its rate
   std::vector<Jet> parameters, inputs;
   unsigned level = 0;  // the highest level in use
 };

@@ -53,7 +53,7 @@ Real StateSampler::exact(double value) const { return oracle_.precision().round(
 void StateSampler::read_scene() {
   const model::Model& m = oracle_.model();
   State start;
-  start.integrals.assign(m.integrals.size(), Real(0));  // integrals begin at the start
+  start.z.assign(m.states.size(), Real(0));  // integrals begin at the start
   start.parameters = oracle_.default_parameters();
   const model::Scene* scene = m.scenes.empty() ? nullptr : &m.scenes.front();
   if (scene != nullptr)
@@ -87,6 +87,7 @@ void StateSampler::read_scene() {
                      // this time, as t^1.5 at 0
         }
       }
+  read_states(start, scene);
   read_ranges(start);
   read_scales();
   solve_start(std::move(start), given);
@@ -113,6 +114,25 @@ void StateSampler::solve_start(State start, const std::vector<bool>& given) {
   }
   for (std::size_t i = 0; i < sampling_ranges_.size(); ++i) sampling_ranges_[i].center = cln::double_approx(start.q[i]);
   read_scales();
+}
+
+void StateSampler::read_states(State& start, const model::Scene* scene) {
+  const model::Model& m = oracle_.model();
+  state_ranges_.resize(m.states.size());
+  for (std::uint32_t i = 0; i < m.states.size(); ++i) {
+    if (m.states[i].integral) continue;
+    model::NodeId initial = m.states[i].initial;
+    if (scene != nullptr)
+      for (const model::InitialState& given : scene->states)
+        if (given.state == i) initial = given.value;
+    try {
+      if (initial != model::no_node) start.z[i] = oracle_.evaluate(initial, start);
+    } catch (const std::domain_error&) {
+      continue;  // it depends on values that only the constraints determine
+    }
+    state_ranges_[i].center = cln::double_approx(start.z[i]);
+    if (!cln::zerop(start.z[i])) state_ranges_[i].scale = std::fabs(state_ranges_[i].center);
+  }
 }
 
 void StateSampler::read_ranges(const State& start) {
@@ -166,6 +186,8 @@ double StateSampler::max_decades_from_one() const {
   for (const double value : {t0_, t1_}) look_at(verify::exact(value));
   for (const SamplingRange& c : sampling_ranges_)
     for (const double value : {c.center, c.scale, c.rate_center, c.rate_scale}) look_at(verify::exact(value));
+  for (const SamplingRange& z : state_ranges_)
+    for (const double value : {z.center, z.scale}) look_at(verify::exact(value));
   for (const double value : input_defaults_) look_at(verify::exact(value));
   return largest;
 }
@@ -202,7 +224,12 @@ State StateSampler::sample_state() {
   apply_fixed(s.parameters);  // before: others depend on them; after: they may depend on others
   s.parameters = oracle_.parameters(std::move(s.parameters));
   apply_fixed(s.parameters);
-  s.integrals = oracle_.integrals(s);
+  for (std::size_t i = 0; i < m.states.size(); ++i) {
+    const SamplingRange& z = state_ranges_[i];
+    const double moved = m.states[i].integral ? 0 : spread_ * uniform_symmetric() * z.scale;
+    s.z.push_back(exact(z.center + moved));
+  }
+  s.z = oracle_.with_integrals(s);
   for (const double fallback : input_defaults_)
     s.inputs.push_back(exact(fallback + uniform_symmetric() * std::max(1.0, std::fabs(fallback))));
   for (std::size_t i = 0; i < sampling_ranges_.size(); ++i) {

@@ -70,6 +70,7 @@ class StateSampler {
   double uniform_symmetric();      // in (-1, 1)
   Real exact(double value) const;  // the same number at full precision
   void read_scene();
+  void read_states(State& start, const model::Scene* scene);
   void read_ranges(const State& start);
   void read_scales();
   void solve_start(State start, const std::vector<bool>& given);
@@ -98,6 +99,7 @@ class StateSampler {
   std::size_t turn_ = 0;
   std::set<std::size_t> open_;                  // implied constraints that positions are still projected onto
   std::vector<SamplingRange> sampling_ranges_;  // per coordinate
+  std::vector<SamplingRange> state_ranges_;     // per Model::states; unused for integrals
   std::vector<Real> defaults_;                  // of the parameters
   std::vector<double> input_defaults_;
   double t0_ = 0, t1_ = 1;

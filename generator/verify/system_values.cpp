@@ -215,7 +215,7 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
 
 SymbolValues::SymbolValues(const Oracle& of, State at)
     : oracle(of), state(std::move(at)), lambda(of.constraints().size(), Real(0)) {
-  if (state.integrals.empty()) state.integrals = oracle.integrals(state);
+  if (state.z.empty()) state.z = oracle.with_integrals(state);
   const Interpreter now = oracle.interpreter(state);
   for (const std::vector<Jet>& orders : now.environment().functions) {
     functions.emplace_back();
@@ -232,7 +232,8 @@ Real SymbolValues::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::parameter: return state.parameters.at(symbol.index);
     case SymbolKind::input: return state.inputs.at(symbol.index);
     case SymbolKind::multiplier: return lambda.at(symbol.index);
-    case SymbolKind::integral: return state.integrals.at(symbol.index);
+    case SymbolKind::integral:
+    case SymbolKind::state: return state.z.at(symbol.index);
     case SymbolKind::branch: return 0;  // branches depend on the state
     case SymbolKind::friction: return state.phi.at(symbol.index);
     case SymbolKind::contact_mode: return eom::contact_sign(state.mode, 2 * std::size_t{symbol.index} + symbol.order);
@@ -280,13 +281,13 @@ std::vector<Real> right_hand_side(const EquationSystem& s, const Oracle& oracle,
   std::vector<Real> dx;
   for (const std::uint32_t i : s.free) dx.push_back(state.qdot[i]);
   dx.insert(dx.end(), solved.qddot.begin(), solved.qddot.end());
-  for (const Real& rate : integral_rates(s, lookup, oracle.digits())) dx.push_back(rate);
+  for (const Real& rate : state_rates(s, lookup, oracle.digits())) dx.push_back(rate);
   return dx;
 }
 
-std::vector<Real> integral_rates(const EquationSystem& s, const SymbolValues& lookup, int digits) {
+std::vector<Real> state_rates(const EquationSystem& s, const SymbolValues& lookup, int digits) {
   std::vector<Ref> rates;
-  for (const system::IntegralState& integral : s.integrals) rates.push_back(integral.rate);
+  for (const system::FirstOrderState& z : s.states) rates.push_back(z.rate);
   return symbolic::evaluate(*s.dag, rates, lookup, digits);
 }
 
@@ -301,7 +302,7 @@ Real energy_rate(const EquationSystem& s, const Oracle& oracle, const SystemValu
   const Precision precision(more);
   const Real h =
       precision.round(cln::expt(cln::cl_RA(1) / 10, cln::cl_I(digits)) / cln::expt(cln::cl_RA(2), cln::cl_I(bits)));
-  const std::vector<Real> rates = integral_rates(s, SymbolValues(oracle, v.state), more);
+  const std::vector<Real> rates = state_rates(s, SymbolValues(oracle, v.state), more);
   const auto energy_at = [&](const Real& step) {
     SymbolValues lookup(oracle, v.state);
     State& at = lookup.state;
@@ -311,7 +312,7 @@ Real energy_rate(const EquationSystem& s, const Oracle& oracle, const SystemValu
       at.qdot[i] = precision.round(at.qdot[i]) + step * precision.round(at.qddot[i]);
     }
     for (std::size_t k = 0; k < rates.size(); ++k) {
-      Real& value = at.integrals[s.integrals[k].integral];
+      Real& value = at.z[s.states[k].symbol.index];
       value = precision.round(value) + step * precision.round(rates[k]);
     }
     return symbolic::evaluate(*s.dag, {s.energy}, lookup, more)[0];

@@ -46,10 +46,10 @@ SystemValues evaluate_system(const system::EquationSystem& system, const mechani
 /// `lookup`.
 void solve_accelerations(const system::EquationSystem& system, SymbolValues& lookup, int digits);
 
-/// Time derivatives of the integrals that are states.
-std::vector<Real> integral_rates(const system::EquationSystem& system, const SymbolValues& lookup, int digits);
+/// Time derivatives of the states of first order.
+std::vector<Real> state_rates(const system::EquationSystem& system, const SymbolValues& lookup, int digits);
 
-/// The right-hand side: qdot and qddot of the free coordinates, the rates of integrals.
+/// The right-hand side: qdot and qddot of the free coordinates, the rates of states of first order.
 std::vector<Real> right_hand_side(const system::EquationSystem& system, const Oracle& oracle, const State& state);
 
 /// dE/dt of the system's energy by central differences along the path of `values`, at three times the digits.

@@ -132,9 +132,9 @@ name = "integral_1"
 when = "x_dot"
 )toml",
                                       "names");
-  REQUIRE(model.integrals.size() == 2);
-  CHECK(model.integrals[0].name == "integral_1_");
-  CHECK(model.integrals[1].name == "integral_2_");
+  REQUIRE(model.states.size() == 2);
+  CHECK(model.states[0].name == "integral_1_");
+  CHECK(model.states[1].name == "integral_2_");
   REQUIRE(model.start_time);
   CHECK(model.parameters[*model.start_time].name == "t_start_");
 }

@@ -32,5 +32,6 @@ std::vector<WrongModel> wrong_scenes();
 std::vector<WrongModel> wrong_hostile();
 std::vector<WrongModel> wrong_bodies();
 std::vector<WrongModel> wrong_forces();
+std::vector<WrongModel> wrong_states();
 
 }  // namespace eomgen::model

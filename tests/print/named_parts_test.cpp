@@ -168,7 +168,7 @@ class Reader {
 };
 
 bool is_plain(const model::Model& model) {
-  return model.functions.empty() && model.inputs.empty() && model.integrals.empty() && !model.bodies.empty();
+  return model.functions.empty() && model.inputs.empty() && model.states.empty() && !model.bodies.empty();
 }
 
 }  // namespace

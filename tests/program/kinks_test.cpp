@@ -172,7 +172,7 @@ TEST_CASE("system: for_each_expression visits every expression once") {
   const auto next = [&] { return s.dag->symbol({SymbolKind::parameter, count++, 0}); };
   const auto some = [&] { return std::vector<Ref>{next(), next()}; };
   s.M = some(), s.f = some(), s.psi = some(), s.A = some(), s.b = some(), s.gamma = some();
-  s.integrals = {{0, next()}};
+  s.states = {{{SymbolKind::integral, 0, 0}, next()}};
   s.quasi = system::QuasiVelocityEquations{{}, some(), some()};
   s.solution = system::Solution{some(), some(), {{next(), next()}}};
   system::Contact contact;

@@ -49,7 +49,7 @@ initial = { x = 1, y = 0.3 }
   const model::Model model = model::read_model_text(text, "integral.toml");
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
   const verify::Certificate c = verify::verify(mechanics, {50, 2, 1});
-  Checked result{c.pass, 0, derive::integral_states(mechanics).size()};
+  Checked result{c.pass, 0, derive::first_order_states(mechanics).size()};
   for (const verify::Comparison& row : c.comparisons)
     result.worst = std::max(result.worst, row.max_relative_difference);
   return result;

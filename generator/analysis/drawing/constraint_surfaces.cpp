@@ -35,7 +35,8 @@ std::set<std::uint32_t> coordinates_of(const symbolic::Dag& dag, const std::vect
 bool is_moving(const symbolic::Dag& dag, const std::vector<Ref>& expressions) {
   const std::vector<Symbol> symbols = dag.symbols(expressions);
   return std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) {
-    return s.kind == SymbolKind::time || s.kind == SymbolKind::integral || s.kind == SymbolKind::function;
+    return s.kind == SymbolKind::time || s.kind == SymbolKind::integral || s.kind == SymbolKind::function ||
+           s.kind == SymbolKind::state;
   });
 }
 
@@ -198,8 +199,8 @@ void Drawing::surface(const Bound& one, const std::vector<Bound>& all_places) {
     return;
   if (std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::integral; })) {
     Vec3 integrals = symbolic::zero_vector(dag);
-    for (std::uint32_t k = 0; k < std::min<std::size_t>(3, model_.integrals.size()); ++k)
-      integrals[k] = dag.symbol({SymbolKind::integral, k, 0});
+    for (std::uint32_t k = 0; k < std::min<std::size_t>(3, model_.states.size()); ++k)
+      integrals[k] = dag.symbol(mechanics::state_symbol(model_, k));
     surface.integrals = vector(integrals);
   }
   parts_.surfaces.push_back(std::move(surface));

@@ -19,11 +19,7 @@ SurfaceCode surface_code(const pipeline::Simulation& simulation, const Drawing& 
   program.approach = simulation.program.approach;
   program.free.resize(model.coordinates.size());
   std::iota(program.free.begin(), program.free.end(), 0u);
-  std::vector<system::IntegralState> integrals;
-  for (std::uint32_t i = 0; i < model.integrals.size(); ++i) {
-    program.integrals.push_back(i);
-    integrals.push_back({i, dag.zero()});
-  }
+  for (std::uint32_t i = 0; i < model.states.size(); ++i) program.states.push_back(mechanics::state_symbol(model, i));
   for (std::size_t k = 0; k < surfaces.size(); ++k) {
     program::FunctionExpressions wanted;
     wanted.name = "surface_" + std::to_string(k + 1);
@@ -31,8 +27,8 @@ SurfaceCode surface_code(const pipeline::Simulation& simulation, const Drawing& 
     entries.insert(entries.end(), surfaces[k].position.begin(), surfaces[k].position.end());
     wanted.results = {{"surface", entries}};
     program.functions.push_back(
-        program::schedule(program::flatten(program::from_dag(dag, wanted, program.free, integrals), false), wanted.name,
-                          {{"surface", entries.size()}}));
+        program::schedule(program::flatten(program::from_dag(dag, wanted, program.free, program.states), false),
+                          wanted.name, {{"surface", entries.size()}}));
   }
   emit::EmissionContext context =
       pipeline::emission_context(derived, simulation.program, simulation.scene, simulation.certificate);

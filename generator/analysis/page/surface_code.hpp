@@ -15,7 +15,7 @@ struct SurfaceCode {
 };
 
 /// Generates a function surface_K for the K-th surface, K = 1, 2, ..: it returns psi, then the position. Its state
-/// consists of all coordinates of the model, their rates, and the integrals.
+/// consists of all coordinates of the model, their rates, and the states of first order.
 SurfaceCode surface_code(const pipeline::Simulation& simulation, const Drawing& drawing);
 
 }  // namespace eomgen::analysis

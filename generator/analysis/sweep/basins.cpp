@@ -9,7 +9,7 @@ namespace eomgen::analysis {
 
 BasinStatistics::BasinStatistics(const SteadyMotions& found, double within) : tolerance_(within) {
   const std::vector<std::string>& names = found.problem.flow->names();
-  const std::vector<std::size_t> ignored = linear::ignorable_positions(found.search.symmetry);
+  const std::vector<std::size_t> ignored = linear::ignorable_entries(found.search.symmetry);
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (std::find(ignored.begin(), ignored.end(), i) != ignored.end()) continue;

@@ -47,6 +47,11 @@ void print_readable(const Json& found) {
                c["eliminated"].get<bool>() ? "  (fixed by a constraint)" : "");
   }
   fmt::print("  {} degree{} of freedom\n", found["dof"].get<long>(), found["dof"] == 1 ? "" : "s");
+  if (!found["states"].empty()) heading("states of first order");
+  for (const Json& z : found["states"]) {
+    fmt::print("  {:<20} {:<10} rate {}{}\n", text(z["name"]), text(z["unit"]), text(z["rate"]),
+               z["energy_counted"].get<bool>() ? "" : "  (the energy counts none of it)");
+  }
   heading("parameters");
   for (const Json& p : found["parameters"]) fmt::print("  {:<20} {}\n", text(p["name"]), as_written(p));
   if (!found["inputs"].empty()) heading("inputs");

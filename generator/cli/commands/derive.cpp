@@ -78,6 +78,7 @@ std::string heading_of(const print::PrintedFormula& item) {
     return item.role == "both" ? "where both approaches fail" : fmt::format("where approach {} fails", item.role);
   if (item.key == "conserved") return "conserved, " + item.role;
   if (item.key == "parts") return "where";
+  if (item.key == "states") return "states of first order";
   if (item.role.empty()) return item.key;
   return item.key + ": " + item.role;
 }

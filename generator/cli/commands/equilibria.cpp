@@ -73,7 +73,9 @@ Json to_json(const analysis::SteadyMotions& found, const Options& options) {
           {"certificate", found.problem.certificate}};
 }
 
-std::string text(const analysis::SteadyMotion& point, const std::vector<std::string>& names) {
+std::string text(const analysis::SteadyMotion& point, const linear::Flow& flow) {
+  const std::vector<std::string>& names = flow.names();
+  const std::size_t n = flow.coordinates();
   std::string out = fmt::format("\n{}, {}: {}\n", linear::name(point.l.kind), linear::in_words(point.verdict.stability),
                                 point.verdict.reason);
   if (point.family_dimension > 0)
@@ -84,7 +86,7 @@ std::string text(const analysis::SteadyMotion& point, const std::vector<std::str
         "  but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one\n",
         point.l.parameter_change);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const bool rest = point.l.kind == linear::MotionKind::equilibrium && 2 * i >= names.size();  // rates, all 0
+    const bool rest = point.l.kind == linear::MotionKind::equilibrium && i >= n && i < 2 * n;  // rates, all 0
     if (!rest) out += fmt::format("  {:<24} {:>24}\n", names[i], display_value(point.l.z[i]));
   }
   out += "  eigenvalues";
@@ -103,7 +105,7 @@ std::string text(const analysis::SteadyMotions& found, const Options& options) {
                   found.points.empty() ? "no equilibrium and no steady motion"
                                        : fmt::format("{} equilibria and steady motions", found.points.size()));
   for (const analysis::HeldValue& h : found.held) out += fmt::format("  held: {} = {} ({})\n", h.name, h.value, h.why);
-  for (const analysis::SteadyMotion& point : found.points) out += text(point, found.problem.flow->names());
+  for (const analysis::SteadyMotion& point : found.points) out += text(point, *found.problem.flow);
   if (found.search.further_members > 0) {
     out += fmt::format("\nfurther           {} of the starts led to further members of families, which are not shown\n",
                        found.search.further_members);

@@ -36,13 +36,7 @@ struct Answer {
     for (const model::Input& input : problem.derived->model.inputs) result.push_back(input.name);
     return result;
   }
-  std::vector<std::string> ignorable() const {
-    std::vector<std::size_t> places;
-    for (std::size_t k = 0; k < l.symmetry.chart.positions; ++k) {
-      if (!l.symmetry.retained[k]) places.push_back(l.symmetry.chart.independent[k]);
-    }
-    return names(places);
-  }
+  std::vector<std::string> ignorable() const { return names(linear::ignorable_entries(l.symmetry)); }
   std::size_t accidental() const { return l.spectrum.zeros - l.structural_zeros; }
   std::string what() const {
     const std::string off =

@@ -36,10 +36,7 @@ class Rows {
   Rows(const std::string& csv, const std::vector<Panel>& panels, bool yes, const pipeline::DerivedModel& derived,
        const run::Scene& scene, const std::vector<std::string>& code) {
     if (!panels.empty()) plot_.emplace(panels, derived.candidates.front().outputs, code);
-    for (const model::Coordinate& c : derived.model.coordinates) {
-      columns_.push_back(c.name);
-      columns_.push_back(c.name + "_dot");
-    }
+    columns_ = run::state_columns(derived.model);
     columns_.insert(columns_.end(), scene.outputs.begin(), scene.outputs.end());
     for (const std::string& column : columns_) {
       index_.push_back(static_cast<std::size_t>(std::find(code.begin(), code.end(), column) - code.begin()));

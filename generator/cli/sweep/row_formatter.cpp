@@ -38,11 +38,8 @@ std::string number(double value) {
 RowFormatter::RowFormatter(std::vector<std::string> varied, const model::Model& model, const run::Scene& scene)
     : varied_(std::move(varied)) {
   for (const std::string& name : varied_)
-    titles_.push_back(run::find_start(model, name) ? "initial(" + name + ")" : name);
-  for (const model::Coordinate& c : model.coordinates) {
-    names_.push_back(c.name);
-    names_.push_back(c.name + "_dot");
-  }
+    titles_.push_back(run::is_start_value(model, name) ? "initial(" + name + ")" : name);
+  names_ = run::state_columns(model);
   if (std::find(scene.outputs.begin(), scene.outputs.end(), "energy") == scene.outputs.end())
     names_.emplace_back("energy");
   names_.insert(names_.end(), scene.outputs.begin(), scene.outputs.end());

@@ -44,7 +44,7 @@ analysis::Shard shard_of(const SweepOptions& options, const analysis::SweepPoint
 void require_basins(const analysis::SweepPoints& points, const SweepOptions& options, const model::Model& model) {
   if (!options.basins) return;
   for (const std::string& name : points.names()) {
-    if (run::find_start(model, name)) continue;
+    if (run::is_start_value(model, name)) continue;
     throw Error("sweep", {}, fmt::format("--basins asks which equilibrium is reached, and these move with '{}'", name),
                 "vary starts alone, with --set for parameters, one sweep for each of their values");
   }
@@ -54,11 +54,10 @@ void require_names(const analysis::SweepPoints& points, const SweepOptions& opti
   const std::map<std::string, Quantity> set = parse_assignments("sweep", "--set", options.set);
   for (const std::string& name : points.names()) {
     const auto named = [&](const model::Parameter& p) { return p.name == name; };
-    if (std::none_of(model.parameters.begin(), model.parameters.end(), named) && !run::find_start(model, name)) {
-      std::vector<std::string> known;
+    if (std::none_of(model.parameters.begin(), model.parameters.end(), named) && !run::is_start_value(model, name)) {
+      std::vector<std::string> known = run::state_columns(model);
       for (const model::Parameter& p : model.parameters) known.push_back(p.name);
-      for (const model::Coordinate& c : model.coordinates) known.insert(known.end(), {c.name, c.name + "_dot"});
-      throw Error("sweep", {}, fmt::format("there is no parameter or coordinate '{}'", name),
+      throw Error("sweep", {}, fmt::format("there is no parameter, coordinate or state '{}'", name),
                   suggest_choice(name, known));
     }
     if (set.contains(name)) {

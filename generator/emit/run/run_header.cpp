@@ -155,7 +155,7 @@ std::string code_text(const program::Program& program, const eom::hybrid::Code& 
   if (code.prepared > 0) s.set("prepared", code.prepared);
   s.list("output_names", code.output_names);
   s.list("free", code.free);
-  if (code.integrals > 0) s.set("integrals", code.integrals);
+  if (code.first_order > 0) s.set("first_order", code.first_order);
   if (code.active_constraints > 0) s.set("active_constraints", code.active_constraints);
   s.list("holonomic", code.holonomic);
   s.list("kinks", code.kinks);

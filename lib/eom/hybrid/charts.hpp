@@ -159,7 +159,7 @@ inline bool ChartSwitch::observe_step(const StepView& step) {
 /// the singularity of the own chart the motion is slow only in the second chart.
 inline void ChartSwitch::sample(const StepView& step, double until, const double* x, int depth) {
   const Sample& last = samples_.back();
-  Sample next{until, std::vector<double>(2 * n_ + problem_.code->integrals)};
+  Sample next{until, std::vector<double>(problem_.code->layout().size())};
   to_own_charts(until, x, next.x);
   double turned = 0;
   bool known = true;
@@ -254,7 +254,7 @@ inline void ChartSwitch::make_continuous(std::size_t j, const std::vector<double
 }
 
 inline std::vector<std::string> ChartSwitch::exchange(double t, std::span<double> x) {
-  std::vector<double> before(x.begin(), x.end()), own_x(2 * n_ + problem_.code->integrals);
+  std::vector<double> before(x.begin(), x.end()), own_x(problem_.code->layout().size());
   to_own_charts(t, before.data(), own_x);
   if (due_ != 0) code_ = &problem_.in_charts(due_);
   code_->chart(before.data(), mode(), mode_of_charts(due_), x.data());

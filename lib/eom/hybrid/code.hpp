@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "eom/layout.hpp"
 #include "eom/modes/contact_state.hpp"
 
 namespace eom::hybrid {
@@ -18,7 +19,7 @@ struct OwnOutputs {
   std::vector<std::uint32_t> outputs;
 };
 
-/// n: number of free coordinates; N = 2 n + integrals: length of x; m: active constraints. A null function was not
+/// n: number of free coordinates; N = 2 n + first_order: length of x; m: active constraints. A null function was not
 /// emitted. A run without constraints, events and contacts needs only `rhs` and `outputs`.
 struct Code {
   int (*rhs)(double, const double*, const double*, const double*, int, double*) = nullptr;
@@ -34,7 +35,7 @@ struct Code {
   int (*constraints)(double, const double*, const double*, double*, double*, double*) = nullptr;
   std::vector<std::string> output_names;  // entries of y, beginning with every coordinate of the model and its _dot
   std::vector<std::uint32_t> free;        // coordinates in the state, each with its rate
-  std::size_t integrals = 0;              // states after the rates: 0 at the start, never projected
+  std::size_t first_order = 0;            // states of first order, after the rates: never projected
   std::size_t active_constraints = 0;
   std::vector<bool> holonomic = {};     // per active constraint: false if it constrains velocities only
   std::vector<std::string> kinks = {};  // "abs", "max": their surfaces follow the model's events in g
@@ -53,6 +54,8 @@ struct Code {
   // df/dp and df/du, for sensitivities.
   int (*jac_p)(double, const double*, const double*, const double*, int, double*) = nullptr;
   int (*jac_u)(double, const double*, const double*, const double*, int, double*) = nullptr;
+
+  StateLayout layout() const { return {free.size(), first_order}; }
 };
 
 }  // namespace eom::hybrid

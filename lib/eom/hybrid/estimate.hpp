@@ -43,7 +43,7 @@ class EndErrorEstimator {
     ErrorEstimate estimate = repeat();
     if (adequacy_ != nullptr) add_rounding_error(estimate);
     if (method_.needs.required.has(Feature::momenta)) add_rate_rounding(estimate);
-    const std::size_t states = 2 * problem_.n() + problem_.code->integrals;
+    const std::size_t states = problem_.code->layout().size();
     error_.states.assign(estimate.x.begin(), estimate.x.begin() + static_cast<std::ptrdiff_t>(states));
     for (const double e : error_.states) error_.max = std::max(error_.max, e);
     if (first_.outcome == Outcome::stopped_by_event) error_.t = stop_;

@@ -21,10 +21,10 @@ namespace eom::hybrid {
 
 class Jumps {
  public:
-  /// n free coordinates, and the numbers of integrals and inputs. breaks: whether there are kinks in time in the span.
-  Jumps(const JumpFunctions& of, std::size_t n, std::size_t integrals, std::size_t inputs,
-        std::span<const double> parameters, bool breakpoints)
-      : of_(of), n_(n), integrals_(integrals), inputs_(inputs) {
+  /// layout: of the state. inputs: their number. breakpoints: whether there are kinks in time in the span.
+  Jumps(const JumpFunctions& of, const StateLayout& layout, std::size_t inputs, std::span<const double> parameters,
+        bool breakpoints)
+      : of_(of), n_(layout.coordinates), states_(layout.size()), inputs_(inputs) {
     if (of.functions.empty()) return;
     code_ = expressions::Code(of.values, parameters);
     for (std::size_t k = 0; k < code_.kinks(); ++k) {
@@ -40,7 +40,7 @@ class Jumps {
     if (has_time_kinks_) mass_ = expressions::Code(of.mass, parameters);
   }
   explicit Jumps(const Problem& problem)
-      : Jumps(problem.jumps, problem.n(), problem.code->integrals, problem.inputs.size(), problem.parameters,
+      : Jumps(problem.jumps, problem.code->layout(), problem.inputs.size(), problem.parameters,
               !problem.breakpoints.empty()) {}
 
   /// No function jumps, whatever the motion.
@@ -129,7 +129,7 @@ class Jumps {
 
   const std::vector<double>& variables(const MotionPoint& at) const {
     variables_.assign(1, at.t);
-    variables_.insert(variables_.end(), at.x.begin(), at.x.begin() + static_cast<std::ptrdiff_t>(2 * n_ + integrals_));
+    variables_.insert(variables_.end(), at.x.begin(), at.x.begin() + static_cast<std::ptrdiff_t>(states_));
     variables_.insert(variables_.end(), at.u, at.u + inputs_);
     return variables_;
   }
@@ -169,7 +169,7 @@ class Jumps {
   }
 
   const JumpFunctions& of_;
-  std::size_t n_, integrals_, inputs_;
+  std::size_t n_, states_, inputs_;
   bool has_time_kinks_ = false;
   expressions::Code code_, mass_;
   std::vector<std::size_t> surfaces_;  // kinks of code_, one per surface

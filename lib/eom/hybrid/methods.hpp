@@ -35,7 +35,7 @@ inline Features features_of(const Code& code) {
       .set(Feature::velocity_constraints, std::find(holonomic.begin(), holonomic.end(), false) != holonomic.end())
       .set(Feature::modes, !code.contacts.empty())
       .set(Feature::kinks, !code.kinks.empty())
-      .set(Feature::other_states, code.integrals > 0);
+      .set(Feature::other_states, code.first_order > 0);
 }
 
 /// Throws std::invalid_argument if the code lacks functions that the run calls, or the solver is not eligible.
@@ -52,7 +52,7 @@ inline void require_functions(const Problem& problem) {
          "the code has events, kinks or contacts, and no function events");
   demand(code.contacts.size() == problem.contacts.size() && code.contacts.size() <= problem.starts_open.size(),
          "each contact of the code needs its outputs, and whether it is open at the start");
-  demand(problem.start.size() >= 2 * code.free.size(), "the start has too few values");
+  demand(problem.start.size() >= code.layout().size(), "the start has too few values");
   const MethodInfo& method = method_named(problem.solver);
   const bool moving = std::any_of(problem.inputs.begin(), problem.inputs.end(), is_time_dependent);
   const Eligibility found = eligible(method, features_of(code).set(Feature::moving_inputs, moving));

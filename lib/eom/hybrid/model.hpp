@@ -162,7 +162,7 @@ class Model {
                                 : code_->rhs_prepared(t, x, parameters(), w_.data(), u, mode, dx);
     if (code != 0 || !problem_.power) return code;
     const int watched = code_->outputs(t, x, parameters(), u, mode, y_.data());
-    dx[2 * n_ + code_->integrals] = y_[*problem_.power];
+    dx[code_->layout().size()] = y_[*problem_.power];
     return watched;
   }
 

@@ -24,7 +24,7 @@ struct Motion {
     return of.model.taylor(t, x, order, coefficients);
   }
   int taylor_order() const { return of.model.code().taylor_order; }
-  std::size_t taylor_states() const { return 2 * of.problem.n() + of.problem.code->integrals; }
+  std::size_t taylor_states() const { return of.problem.code->layout().size(); }
   int momenta(double t, const double* x, double* p, double* rate) const { return of.model.momenta(t, x, p, rate); }
   int mass(double t, const double* x, double* M) const { return of.model.mass(t, x, M); }
   int constrain(double t, const double* x, double* psi, double* A, double* b) const {

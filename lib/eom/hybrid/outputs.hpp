@@ -37,7 +37,7 @@ class Outputs {
   void own_values(double t, const double* x, std::span<double> y) const {
     const Code& code = model_.code();
     const std::size_t n = problem_.n();
-    own_x_.resize(2 * n + code.integrals);
+    own_x_.resize(code.layout().size());
     charts_.to_own_charts(t, x, own_x_);
     for (std::size_t i = 0; i < n; ++i) {
       y[2 * code.free[i]] = own_x_[i];

@@ -87,7 +87,7 @@ struct Impulse {
 };
 
 /// Functions that may jump at kinks of the equations; compiled code does not provide them. Empty: nothing jumps.
-/// Variables of the expressions: t, free coordinates, their rates, integrals, inputs.
+/// Variables of the expressions: t, free coordinates, their rates, states of first order, inputs.
 struct JumpFunctions {
   enum class Quantity : std::uint8_t { potential, momentum, psi, row, rate, place, velocity };
   struct Function {
@@ -131,7 +131,7 @@ struct Problem {
   const Code* code = nullptr;
   std::vector<double> parameters;
   double t0 = 0, t1 = 0;
-  std::vector<double> start;    // free coordinates, then their rates, at t0: 2 n values; integrals start at 0
+  std::vector<double> start;    // at t0: free coordinates, their rates, states of first order
   std::vector<Signal> inputs;   // one per input of the model
   std::string solver = "auto";  // a method of eom::methods(), or auto
   double rtol = 1e-9, atol = 1e-12;
@@ -174,8 +174,8 @@ struct Problem {
   }
 
   std::size_t n() const { return code->free.size(); }
-  /// Length of the state: coordinates, rates, integrals, the work done since the start.
-  std::size_t states() const { return 2 * n() + code->integrals + (power ? 1 : 0); }
+  /// Length of the state: coordinates, rates, states of first order, the work done since the start.
+  std::size_t states() const { return code->layout().size() + (power ? 1 : 0); }
 };
 
 /// An event of a run: "custom", "stop", "chart", "pole", "impulse", "singular_configuration", or an event of a contact.

@@ -47,7 +47,7 @@ struct RunContext {
   RunContext(const RunContext&) = delete;
   RunContext& operator=(const RunContext&) = delete;
 
-  /// Free coordinates, rates, integrals, the work done since the start.
+  /// Free coordinates, rates, states of first order, the work done since the start.
   std::vector<double> own_start() const {
     std::vector<double> x = problem.start;
     x.resize(problem.states());
@@ -96,7 +96,7 @@ struct RunContext {
   /// The state at the end of a run in the model's own charts.
   std::vector<double> own_state(double t, const std::vector<double>& end) const {
     std::vector<double> x = end;
-    charts.to_own_charts(t, end.data(), std::span(x).first(2 * problem.n() + problem.code->integrals));
+    charts.to_own_charts(t, end.data(), std::span(x).first(problem.code->layout().size()));
     return x;
   }
 

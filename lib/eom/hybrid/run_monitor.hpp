@@ -163,7 +163,7 @@ class RunMonitor {
       last_[i] = y_[invariant.output];
       drifts_[i].observe(y_[invariant.output] - shift_[i], invariant.output == problem_.energy ? magnitude : terms);
     }
-    const double work = problem_.power ? x[2 * problem_.n() + problem_.code->integrals] : 0;
+    const double work = problem_.power ? x[problem_.code->layout().size()] : 0;
     balance_.observe(y_[problem_.energy] - context_.projection.work() - context_.impulse_work, work, magnitude);
     defect_ = std::max(defect_, context_.constraint_defect(t, x));
     for (const std::size_t i : problem_.redundant) defect_ = std::max(defect_, std::abs(y_[i]));

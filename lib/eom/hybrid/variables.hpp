@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Values of the variables of a run's expressions: t, free coordinates, their rates, integrals, inputs. In: points of
-// one step. Out: values at a point, and boxes that contain the path between three points.
+// Values of the variables of a run's expressions: t, free coordinates, their rates, states of first order, inputs.
+// In: points of one step. Out: values at a point, and boxes that contain the path between three points.
 #pragma once
 
 #include <algorithm>
@@ -65,7 +65,7 @@ class StepVariables {
 
 /// The variables of a model's expressions at points of its steps.
 inline StepVariables step_variables(const Problem& problem) {
-  return {2 * problem.n() + problem.code->integrals, problem.inputs.size()};
+  return {problem.code->layout().size(), problem.inputs.size()};
 }
 
 }  // namespace eom::hybrid
