@@ -107,8 +107,11 @@ const char* compiled_when(const pipeline::CompiledCode& code) {
 }  // namespace
 
 Json RunReport::json() const {
-  const auto& [derived_model, scene, program, certificate, code, tier, result, charts] = simulation;
-  const pipeline::DerivedModel& derived = *derived_model;
+  const auto& [program, certificate, code, tier, charts, surfaces, monitored] =
+      static_cast<const pipeline::Compilation&>(simulation);
+  const pipeline::DerivedModel& derived = *simulation.derived;
+  const run::Scene& scene = simulation.scene;
+  const run::RunResult& result = simulation.result;
   const pipeline::Timings& seconds = derived.seconds;
   Json final = Json::object(), invariants = Json::object(), events = Json::array(), kinks = Json::array();
   for (const auto& [name, value] : result.final) {
@@ -191,8 +194,11 @@ Json RunReport::json() const {
 }
 
 std::string RunReport::text() const {
-  const auto& [derived_model, scene, program, certificate, code, tier, result, charts] = simulation;
-  const pipeline::DerivedModel& derived = *derived_model;
+  const auto& [program, certificate, code, tier, charts, surfaces, monitored] =
+      static_cast<const pipeline::Compilation&>(simulation);
+  const pipeline::DerivedModel& derived = *simulation.derived;
+  const run::Scene& scene = simulation.scene;
+  const run::RunResult& result = simulation.result;
   const pipeline::Timings& seconds = derived.seconds;
   std::string out =
       line("model", fmt::format("{}, scene {}, t = {} to {}", derived.model.id, scene.name, scene.t0, scene.t1));

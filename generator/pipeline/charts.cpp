@@ -79,17 +79,18 @@ ChartLibrary::ChartLibrary(DerivedModel& own, program::Program program, emit::Em
       request_(std::move(request)),
       charts_(exchangeable_charts(list_charts(own.mechanics))) {}
 
-const run::Code& ChartLibrary::code_for(unsigned mask) {
-  if (std::find(known_.begin(), known_.end(), mask) != known_.end()) return compiled_.back()->functions;
+const run::Code& ChartLibrary::code_for(const std::vector<unsigned>& masks) {
+  if (const auto found = compiled_.find(masks); found != compiled_.end()) return found->second.functions;
   const auto start = std::chrono::steady_clock::now();
-  add_second_charts(own_, program_, charts_, mask, request_);
-  known_.push_back(mask);
-  context_.tests = test_vectors(program_, context_);
-  CompiledCode code = make_code(request_.tier, program_, context_, true);
+  const auto before = compiled_.find({masks.begin(), masks.end() - 1});
+  program::Program program = before != compiled_.end() ? before->second.program : program_;
+  add_second_charts(own_, program, charts_, masks.back(), request_);
+  context_.tests = test_vectors(program, context_);
+  CompiledCode code = make_code(request_.tier, program, context_, true);
   const run::Code functions = code.code_for_run();
-  compiled_.push_back(std::make_unique<Compiled>(Compiled{std::move(code), functions}));
+  const auto made = compiled_.emplace(masks, Compiled{std::move(program), std::move(code), functions}).first;
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return compiled_.back()->functions;
+  return made->second.functions;
 }
 
 }  // namespace eomgen::pipeline

@@ -3,6 +3,7 @@
 // model derived in its own charts. Out: the equations in second charts, derived, verified and added to the program.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,19 +33,22 @@ struct ChartRequest {
 void add_second_charts(DerivedModel& own, program::Program& program, const std::vector<model::ChartPair>& charts,
                        unsigned mask, const ChartRequest& request);
 
-/// Provides a run near a chart singularity with code for all charts that it has requested so far.
+/// Provides runs near chart singularities with code for the charts that each has requested so far. Several runs share
+/// the code; the code of one run does not depend on the others.
 class ChartLibrary {
  public:
   ChartLibrary(DerivedModel& own, program::Program program, emit::EmissionContext context, ChartRequest request);
 
   const std::vector<model::ChartPair>& charts() const { return charts_; }
-  /// Code with the charts of `mask`. Throws Error if a second chart cannot be derived or compiled.
-  const run::Code& code_for(unsigned mask);
+  /// Code with these second charts, in the order in which a run has requested them. Valid as long as the library.
+  /// Throws Error if a second chart cannot be derived or compiled.
+  const run::Code& code_for(const std::vector<unsigned>& masks);
   /// Seconds of derivation, verification and compilation.
   double seconds() const { return seconds_; }
 
  private:
   struct Compiled {
+    program::Program program;
     CompiledCode code;
     run::Code functions;
   };
@@ -54,8 +58,7 @@ class ChartLibrary {
   emit::EmissionContext context_;
   ChartRequest request_;
   std::vector<model::ChartPair> charts_;
-  std::vector<unsigned> known_;
-  std::vector<std::unique_ptr<Compiled>> compiled_;  // earlier ones may still be in use
+  std::map<std::vector<unsigned>, Compiled> compiled_;
   double seconds_ = 0;
 };
 

@@ -12,10 +12,9 @@ class GraphTrimmer {
  public:
   /// If charts may change, second charts stay in the graph, and it is not reset.
   explicit GraphTrimmer(const Simulation& first)
-      : graph_(*first.derived->mechanics.dag),
-        was_(graph_),
-        most_(2 * graph_.size() + room),
-        kept_(first.charts != nullptr) {}
+      : GraphTrimmer(*first.derived->mechanics.dag, first.charts != nullptr) {}
+  GraphTrimmer(symbolic::Dag& graph, bool charts_may_change)
+      : graph_(graph), was_(graph_), most_(2 * graph_.size() + room), kept_(charts_may_change) {}
   /// Resets a large graph; to be called between runs.
   void trim() {
     if (!kept_ && graph_.size() > most_) graph_ = was_;

@@ -10,6 +10,7 @@
 
 #include "error.hpp"
 #include "pipeline/beyond_range.hpp"
+#include "pipeline/bound_run.hpp"
 #include "program/kinks.hpp"
 #include "run/monitored_functions.hpp"
 
@@ -113,7 +114,7 @@ std::vector<std::string> state_names(const DerivedModel& derived) {
 }
 
 run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
-                                 bool estimate) {
+                                 bool estimate, const eom::hybrid::BoundedFunctions* monitored) {
   run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {},
                       {},   {}};
   const system::EquationSystem& system = derived.candidates.front();
@@ -128,7 +129,9 @@ run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& 
     if (output.kind == OutputKind::redundant) run.redundant.push_back(output.name);
   }
   run.contacts = contact_outputs(system);
-  run.bounded_functions = {bounded_events(derived, code), run::narrow_functions(system)};
+  run.bounded_functions = monitored != nullptr ? *monitored
+                                               : eom::hybrid::BoundedFunctions{bounded_events(derived, code),
+                                                                               run::narrow_functions(system)};
   run.holds_beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
     return equations_hold_beyond_range(derived, scene, code, coordinate, t, x);
   };
@@ -141,40 +144,6 @@ run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& 
   }
   return run;
 }
-
-namespace {
-
-/// The kink surfaces of a program as expressions.
-std::vector<symbolic::Ref> kink_values(const DerivedModel& derived, const program::Program& program) {
-  std::vector<symbolic::Ref> values;
-  for (const system::EquationSystem& candidate : derived.candidates) {
-    if (program.kinks.empty() || candidate.formulation != program.formulation ||
-        candidate.approach != program.approach || candidate.form != program.form)
-      continue;
-    system::EquationSystem held = candidate;
-    for (const program::Kink& kink : program::freeze_kink_branches(held).frozen) values.push_back(kink.value);
-    if (values.size() == program.kinks.size()) return values;
-    values.clear();
-  }
-  return values;
-}
-
-/// Allows the run to change to the charts of the library.
-void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& library) {
-  if (!library) return;
-  for (const model::ChartPair& chart : library->charts()) {
-    run::ExchangedChart exchanged{chart.of, {}, chart.angles, chart.guarded, chart.at_sine, true};
-    exchanged.second_at_sine = chart.kind == model::ChartPair::Kind::position || !chart.at_sine;
-    for (const std::uint32_t angle : chart.angles) {
-      const auto place = std::find(run.code.free.begin(), run.code.free.end(), angle);
-      exchanged.angles.push_back(static_cast<std::size_t>(place - run.code.free.begin()));
-    }
-    run.charts.push_back(std::move(exchanged));
-  }
-  run.code_for_charts = [library](unsigned charts) -> const run::Code& { return library->code_for(charts); };
-}
-
-}  // namespace
 
 namespace {
 
@@ -211,84 +180,105 @@ program::Request functions_for_run(const DerivedModel& derived, const run::Scene
 
 namespace {
 
-/// The number of fixed steps; 0 if steps are chosen.
-double fixed_steps(const run::Scene& scene) { return scene.step > 0 ? (scene.t1 - scene.t0) / scene.step : 0; }
+/// The kink surfaces of a program as expressions.
+std::vector<symbolic::Ref> kink_values(const DerivedModel& derived, const program::Program& program) {
+  std::vector<symbolic::Ref> values;
+  for (const system::EquationSystem& candidate : derived.candidates) {
+    if (program.kinks.empty() || candidate.formulation != program.formulation ||
+        candidate.approach != program.approach || candidate.form != program.form)
+      continue;
+    system::EquationSystem held = candidate;
+    for (const program::Kink& kink : program::freeze_kink_branches(held).frozen) values.push_back(kink.value);
+    if (values.size() == program.kinks.size()) return values;
+    values.clear();
+  }
+  return values;
+}
 
 }  // namespace
 
-Simulation simulate(const SimulationRequest& request) {
-  std::unique_ptr<DerivedModel> derived = derive_model(request.model, request.approach, request.form);
-  mechanics::Mechanics& mechanics = derived->mechanics;
-  const std::vector<std::string> prepared = request.prepare ? request.prepare(*derived) : std::vector<std::string>{};
-  const system::EquationSystem& system = derived->candidates.front();
-  const bool possible = request.charts && !exchangeable_charts(list_charts(mechanics)).empty();
-  run::Overrides overrides = request.overrides, none;
-  overrides.can_exchange_charts = none.can_exchange_charts = possible;
-  run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), overrides);
-  const std::string solver =
-      run::choose_solver(scene.solver, scene).first;  // reports a wrong name before the compilation
-  const eom::Refusal* const keeps_charts = run::get_method(solver).needs.refusal(eom::Feature::charts);
-  const bool exchanges = possible && scene.jumps.functions.empty() && keeps_charts == nullptr;
+double fixed_steps(const run::Scene& scene) { return scene.step > 0 ? (scene.t1 - scene.t0) / scene.step : 0; }
 
-  program::Request wanted = functions_for_run(*derived, scene, solver, request.every_solver);
-  for (const std::string& name : prepared) {
-    if (std::find(wanted.outputs.begin(), wanted.outputs.end(), name) == wanted.outputs.end())
-      wanted.outputs.push_back(name);
+RunPlan plan_run(DerivedModel& derived, const SimulationRequest& request, const std::vector<std::string>& outputs) {
+  mechanics::Mechanics& mechanics = derived.mechanics;
+  const system::EquationSystem& system = derived.candidates.front();
+  RunPlan plan;
+  const bool possible = request.charts && !exchangeable_charts(list_charts(mechanics)).empty();
+  plan.overrides = request.overrides;
+  plan.overrides.can_exchange_charts = possible;
+  plan.scene = run::resolve_scene(mechanics, system, derived.model.scene(request.scene), plan.overrides);
+  // Reports a wrong name before the compilation.
+  plan.solver = run::choose_solver(plan.scene.solver, plan.scene).first;
+  const eom::Refusal* const keeps_charts = run::get_method(plan.solver).needs.refusal(eom::Feature::charts);
+  plan.exchanges_charts = possible && plan.scene.jumps.functions.empty() && keeps_charts == nullptr;
+  if (possible && !plan.exchanges_charts) {
+    plan.charts_refused = keeps_charts;
+    plan.charts_kept_for_jumps = keeps_charts == nullptr;
   }
-  for (const std::string& name : request.with) {
-    if (std::find(wanted.with.begin(), wanted.with.end(), name) == wanted.with.end()) wanted.with.push_back(name);
-  }
-  program::Program program = make_program(*derived, wanted);
-  verify::Certificate certificate = certify(*derived, program, {50, emission_points, request.seed, nullptr});
-  require_pass(certificate, derived->model);
+  plan.functions = functions_for_run(derived, plan.scene, plan.solver, request.every_solver);
+  const auto add = [](const std::vector<std::string>& names, std::vector<std::string>& to) {
+    for (const std::string& name : names) {
+      if (std::find(to.begin(), to.end(), name) == to.end()) to.push_back(name);
+    }
+  };
+  add(outputs, plan.functions.outputs);
+  add(request.with, plan.functions.with);
+  return plan;
+}
+
+Compilation compile_run(DerivedModel& derived, const RunPlan& plan, const SimulationRequest& request) {
+  program::Program program = make_program(derived, plan.functions);
+  verify::Certificate certificate = certify(derived, program, {50, emission_points, request.seed, nullptr});
+  require_pass(certificate, derived.model);
   // The sources contain the default scene, so that all scenes share one library.
-  const run::Scene defaults = run::resolve_scene(mechanics, system, derived->model.scene("default"), none);
+  run::Overrides none;
+  none.can_exchange_charts = request.charts && !exchangeable_charts(list_charts(derived.mechanics)).empty();
+  const run::Scene defaults =
+      run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), none);
   if (request.ready) request.ready();
-  const TierChoice tier = choose_tier(request.tier, program, fixed_steps(scene));
-  emit::EmissionContext context = tier.tier == Tier::jit ? code_context(*derived, program, defaults)
-                                                         : emission_context(*derived, program, defaults, certificate);
+  const TierChoice tier = choose_tier(request.tier, program, fixed_steps(plan.scene));
+  emit::EmissionContext context = tier.tier == Tier::jit ? code_context(derived, program, defaults)
+                                                         : emission_context(derived, program, defaults, certificate);
   CompiledCode code = make_code(tier.tier, program, context);
   std::shared_ptr<ChartLibrary> charts;
-  if (exchanges) {
-    charts =
-        std::make_shared<ChartLibrary>(*derived, program, std::move(context),
-                                       ChartRequest{wanted, request.approach, request.form, request.seed, tier.tier});
+  if (plan.exchanges_charts) {
+    charts = std::make_shared<ChartLibrary>(
+        derived, program, std::move(context),
+        ChartRequest{plan.functions, request.approach, request.form, request.seed, tier.tier});
   }
+  run::Code described = code.code_for_run();
+  described.kink_values = kink_values(derived, program);
+  eom::hybrid::BoundedFunctions monitored{bounded_events(derived, described),
+                                          run::narrow_functions(derived.candidates.front())};
+  return {std::move(program), std::move(certificate),           std::move(code),     tier,
+          std::move(charts),  std::move(described.kink_values), std::move(monitored)};
+}
 
-  run::Code functions = code.code_for_run();
-  functions.kink_values = kink_values(*derived, program);
-  run::RunRequest run = make_run_request(*derived, scene, functions, request.estimate);
-  allow_charts(run, charts);
+Simulation simulate(const SimulationRequest& request) {
+  std::shared_ptr<DerivedModel> derived = derive_model(request.model, request.approach, request.form);
+  const std::vector<std::string> outputs = request.prepare ? request.prepare(*derived) : std::vector<std::string>{};
+  const RunPlan plan = plan_run(*derived, request, outputs);
+  Simulation simulation{compile_run(*derived, plan, request), derived, plan.scene, {}};
+  BoundRun bound(*derived, simulation, plan.scene, request.estimate);
+  run::RunRequest& run = bound.request();
   if (request.begin) {
-    run.every = request.rows ? std::max((scene.t1 - scene.t0) / *request.rows, std::numeric_limits<double>::min())
-                             : row_interval(scene);
-    request.begin(*derived, scene, functions.output_names);
+    run.every = request.rows
+                    ? std::max((plan.scene.t1 - plan.scene.t0) / *request.rows, std::numeric_limits<double>::min())
+                    : row_interval(plan.scene);
+    request.begin(*derived, plan.scene, bound.code().output_names);
   }
   run.row = request.row;
   run.progress = request.progress;
   run.interrupt = request.interrupt;
   run.max_steps = request.max_steps;
-  run::RunResult result = request.integrate ? run::integrate_scene(run) : run::RunResult{};
-  if (possible && !exchanges) {
-    result.reason.charts_refused = keeps_charts;
-    result.reason.charts_kept_for_jumps = keeps_charts == nullptr;
+  if (request.integrate) simulation.result = bound.integrate();
+  simulation.result.reason.charts_refused = plan.charts_refused;
+  simulation.result.reason.charts_kept_for_jumps = plan.charts_kept_for_jumps;
+  if (simulation.charts) {
+    double& seconds = simulation.result.seconds_integrate;
+    seconds = std::max(0.0, seconds - simulation.charts->seconds());
   }
-  if (charts) result.seconds_integrate = std::max(0.0, result.seconds_integrate - charts->seconds());
-  return {std::move(derived), std::move(scene), std::move(program), std::move(certificate), std::move(code), tier,
-          std::move(result),  std::move(charts)};
-}
-
-run::RunResult rerun(const Simulation& simulation, const run::Overrides& overrides, bool estimate) {
-  DerivedModel& derived = *simulation.derived;
-  run::Overrides allowed = overrides;
-  allowed.can_exchange_charts = simulation.charts != nullptr;
-  const run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(),
-                                              derived.model.scene(simulation.scene.name), allowed);
-  run::Code code = simulation.code.code_for_run();
-  code.kink_values = kink_values(derived, simulation.program);
-  run::RunRequest run = make_run_request(derived, scene, code, estimate);
-  allow_charts(run, simulation.charts);
-  return run::integrate_scene(run);
+  return simulation;
 }
 
 SimulationRequest::SimulationRequest() = default;

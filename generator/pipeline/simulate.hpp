@@ -50,16 +50,43 @@ struct SimulationRequest {
   const std::atomic<bool>* interrupt = nullptr;
 };
 
-struct Simulation {
-  std::unique_ptr<DerivedModel> derived;
-  run::Scene scene;
+/// The code of runs of a derived model, for any numbers. Immutable but for the charts, which runs request.
+struct Compilation {
   program::Program program;
   verify::Certificate certificate;
   CompiledCode code;
   TierChoice tier;
-  run::RunResult result;
-  std::shared_ptr<ChartLibrary> charts;  // if there are exchangeable charts
+  std::shared_ptr<ChartLibrary> charts;             // if runs may exchange charts
+  std::vector<symbolic::Ref> kink_values;           // surfaces of the kinks
+  eom::hybrid::BoundedFunctions bounded_functions;  // monitored by every run
 };
+
+struct Simulation : Compilation {
+  std::shared_ptr<DerivedModel> derived;
+  run::Scene scene;
+  run::RunResult result;
+};
+
+/// A scene in numbers and the code that its run needs.
+struct RunPlan {
+  run::Overrides overrides;
+  run::Scene scene;
+  std::string solver;
+  program::Request functions;
+  bool exchanges_charts = false;
+  const eom::Refusal* charts_refused = nullptr;  // the reason why charts that could be exchanged are not
+  bool charts_kept_for_jumps = false;
+};
+
+/// The number of fixed steps of a scene; 0 if steps are chosen.
+double fixed_steps(const run::Scene& scene);
+
+/// Resolves the scene of a request. `outputs`: that the code has in addition to those of the run. Throws Error if the
+/// scene or the solver is wrong.
+RunPlan plan_run(DerivedModel& derived, const SimulationRequest& request, const std::vector<std::string>& outputs = {});
+
+/// Optimises, verifies and compiles the code of a plan. Throws Error{ErrorKind::check} if the verification fails.
+Compilation compile_run(DerivedModel& derived, const RunPlan& plan, const SimulationRequest& request);
 
 /// Number of rows of a file or plot if no interval is given.
 inline constexpr double default_rows = 500;
@@ -75,9 +102,10 @@ program::Request functions_for_run(const DerivedModel& derived, const run::Scene
 /// Names of the states: free coordinates, their rates, states of first order.
 std::vector<std::string> state_names(const DerivedModel& derived);
 
-/// The request of a run with compiled code, without rows.
+/// The request of a run with compiled code, without rows. `monitored`: of the compilation, so that it is not made
+/// again.
 run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
-                                 bool estimate);
+                                 bool estimate, const eom::hybrid::BoundedFunctions* monitored = nullptr);
 
 /// Tables of the event functions of the code that depend on the state alone: events, kink surfaces, gaps of contacts.
 std::vector<eom::expressions::Table> bounded_events(const DerivedModel& derived, const run::Code& code);
