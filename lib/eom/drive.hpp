@@ -269,7 +269,12 @@ class Run {
     Statistics statistics = stepper_.statistics();
     statistics.steps = steps_;
     statistics.rejected = rejected_;
-    return {outcome_, t_, {stepper_.x0(), stepper_.x0() + stepper_.size()}, statistics, std::move(detail_)};
+    return {outcome_,
+            t_,
+            {stepper_.x0(), stepper_.x0() + stepper_.size()},
+            statistics,
+            std::move(detail_),
+            adaptive() ? h_ : 0.0};
   }
 
   static constexpr double epsilon = std::numeric_limits<double>::epsilon();

@@ -139,7 +139,8 @@ struct Result {
   double t = 0;           // the time reached; exactly t1 if the outcome is done
   std::vector<double> x;  // the state at t, the last accepted one
   Statistics statistics;
-  std::string detail;  // one sentence if the outcome is not done, else empty
+  std::string detail;    // one sentence if the outcome is not done, else empty
+  double next_step = 0;  // size of a step that would follow; 0 for fixed steps
 };
 
 /// Properties of a method in the registry. The dense output has an error of O(h^(dense_order + 1)) within one step.

@@ -141,6 +141,7 @@ class Run {
       total_.detail = part.detail;
       total_.t = part.t;
       total_.x = part.x;
+      total_.next_step = part.next_step;
       return false;
     }
     --total_.statistics.steps;  // the truncated step

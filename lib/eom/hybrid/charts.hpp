@@ -46,6 +46,15 @@ class ChartSwitch {
 
   /// Converts a state of the last step to the own charts. Components without a value at the singularity are NaN.
   void to_own_charts(double t, const double* x, std::span<double> own) const;
+  /// The charts and the branches of their angles, from which another run of the same problem continues.
+  struct State {
+    unsigned second = 0;
+    std::vector<double> sides = {}, own = {};  // own: the state in the own charts
+    double t = 0;
+  };
+  State save() const { return {in_, side_, samples_.empty() ? std::vector<double>{} : samples_.back().x, last_time()}; }
+  /// x: in the charts of `from`.
+  void restore(const State& from, const double* x);
   /// Whether a coordinate of the model currently has another meaning.
   bool has_exchanged(std::uint32_t coordinate) const;
   /// Outputs that the compiled code does not provide in the current charts.
@@ -74,6 +83,7 @@ class ChartSwitch {
     std::vector<double> x;  // in the own charts
   };
   bool is_second(std::size_t j) const { return (in_ >> j & 1) != 0; }
+  double last_time() const { return samples_.empty() ? 0 : samples_.back().t; }
   void set_guards(const double* x);
   unsigned target_charts(const double* x, const double* own) const;
   void sample(const StepView& step, double until, const double* x, int depth);
@@ -272,6 +282,14 @@ inline std::vector<std::string> ChartSwitch::exchange(double t, std::span<double
   samples_ = {{t, std::move(own_x)}};
   set_guards(x.data());
   return names;
+}
+
+inline void ChartSwitch::restore(const State& from, const double* x) {
+  in_ = due_ = from.second;
+  side_ = from.sides;
+  samples_ = {{from.t, from.own}};
+  if (in_ != 0) code_ = &problem_.in_charts(in_);
+  set_guards(x);
 }
 
 inline bool ChartSwitch::has_exchanged(std::uint32_t coordinate) const {

@@ -30,6 +30,14 @@ class ConstraintRows {
 
   /// Takes the constants of the integrals from this state; u: the inputs there.
   void start(double t, const double* x, const double* u);
+  std::vector<double> integral_constants() const {
+    std::vector<double> constants;
+    for (const Integral& integral : integrals_) constants.push_back(integral.constant);
+    return constants;
+  }
+  void set_integral_constants(const std::vector<double>& constants) {
+    for (std::size_t k = 0; k < integrals_.size(); ++k) integrals_[k].constant = constants[k];
+  }
   int operator()(double t, const double* x, const double* u, double* psi, double* A, double* b);
   /// Sets the mode of the contacts. set_all_sliding() treats all other closed contacts as sliding.
   void set_mode(int contacts) { mode_ = contacts, all_slide_ = false; }

@@ -34,6 +34,11 @@ class ContactModes {
   std::vector<ModeEvent> start(double t, std::span<double> x);
   /// Not 0: a function needed at the start has no value; a code of the ABI.
   int start_code() const { return start_code_; }
+
+  /// The modes and their history, from which another run of the same problem continues.
+  struct State;
+  State save() const;
+  void restore(const State& from);
   void watch(std::span<EventFunction> functions) const { switch_->watch(functions); }
   /// Transforms the functions into the monitored ones, and records the slip speeds.
   void shift_to_watched(double* g);
@@ -109,6 +114,32 @@ class ContactModes {
   std::optional<modes::ModeSwitch<Rule>> switch_;
   std::vector<ModeEvent> recorded_;  // of the last crossing
 };
+
+struct ContactModes::State {
+  int mode = 0;
+  modes::ChatterDetector chatter = {};
+  Rule::Hits hits = {};
+  ContactVelocities::ObservedSlip slip = {};
+  std::vector<double> restitution = {};
+  double largest_gap = 0;
+};
+
+inline ContactModes::State ContactModes::save() const {
+  return {mode(),       switch_ ? switch_->chatter() : modes::ChatterDetector{},
+          rule_.hits(), velocities_.observed_slip(),
+          restitution_, largest_gap_};
+}
+
+inline void ContactModes::restore(const State& from) {
+  velocities_.set_observed_slip(from.slip);
+  restitution_ = from.restitution;
+  for (std::size_t j = 0; j < restitution_.size(); ++j) rule_.set_restitution(j, restitution_[j]);
+  rule_.set_hits(from.hits);
+  largest_gap_ = from.largest_gap;
+  rows_.set_mode(from.mode);
+  switch_.emplace(rule_.table(), rule_, from.mode);
+  switch_->set_chatter(from.chatter);
+}
 
 inline ContactModes::ContactModes(const Problem& problem, Model& model, ConstraintRows& rows, Changed changed)
     : problem_(problem),

@@ -33,6 +33,13 @@ class ContactVelocities {
   /// Slip and gap speeds up to this value count as zero: within the tolerances of the run.
   double negligible_speed() const;
   void reset();
+  /// What has been observed of slip since the start of the run.
+  struct ObservedSlip {
+    double largest = 0;
+    std::vector<double> least;  // per contact: that counts
+  };
+  ObservedSlip observed_slip() const { return {largest_slip_, least_}; }
+  void set_observed_slip(const ObservedSlip& slip) { largest_slip_ = slip.largest, least_ = slip.least; }
   /// Tolerances of the steps of the run.
   void set_tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
   void record_slip_speed(double speed) { largest_slip_ = std::max(largest_slip_, speed); }

@@ -37,6 +37,20 @@ class Integration {
 
   /// observer and event may be empty. May be called again.
   Result run(const Options& options, const Observer& observer, const OnEvent& event = {});
+  /// Continues an earlier run or resume() in its modes, from its end x at the new t0 of the problem to the new t1.
+  /// Inputs that are tables may have other values.
+  Result resume(std::span<const double> x, const Options& options, const Observer& observer, const OnEvent& event = {});
+
+  /// The modes, from which another integration of the same problem can resume.
+  struct State {
+    std::optional<ContactModes::State> contacts = {};
+    ChartSwitch::State charts = {};
+    std::vector<double> largest_kink_values = {}, integral_constants = {};
+    MethodChoice choice = {};
+  };
+  State save() const;
+  /// x: the state at t in the charts of `from`.
+  void restore(double t, const std::vector<double>& x, const State& from);
 
   RunContext& context() { return context_; }
   const MethodChoice& choice() const { return choice_; }  // of the solver auto, with its changes in the run
@@ -52,6 +66,8 @@ class Integration {
  private:
   bool start(Result& total, const OnEvent& event);
   void cross_kink_at_end(const Segment& last, Result& total, const OnEvent& event);
+  void begin(const Options& options);
+  Result integrate_segments(Result total, const Options& options, const Observer& observer, const OnEvent& event);
   void integrate_until(double end, Options options, const Observer& observer, const OnEvent& event, Result& total);
   bool observe_step(const StepView& step, const Observer& observer, const OnEvent& event, bool fixed);
   bool step_over_singularity(const Result& from, double end, const Options& options, std::size_t& evaluations);
@@ -96,24 +112,64 @@ inline Integration::Integration(const Problem& problem)
 inline Result Integration::run(const Options& options, const Observer& observer, const OnEvent& event) {
   context_.projection.reset();
   context_.kinks.start();
+  choice_ = {};
+  missed_narrow_force_.reset();
+  begin(options);
+  Result total;
+  if (!start(total, event)) return total;
+  return integrate_segments(std::move(total), options, observer, event);
+}
+
+inline Result Integration::resume(std::span<const double> x, const Options& options, const Observer& observer,
+                                  const OnEvent& event) {
+  begin(options);
+  Result total;
+  total.t = problem_.begin();
+  total.x.assign(x.begin(), x.end());
+  return integrate_segments(std::move(total), options, observer, event);
+}
+
+inline Integration::State Integration::save() const {
+  State state{{}, context_.charts.save(), context_.kinks.largest_values(), context_.rows.integral_constants(), choice_};
+  if (context_.contacts) state.contacts = context_.contacts->save();
+  return state;
+}
+
+inline void Integration::restore(double t, const std::vector<double>& x, const State& from) {
+  context_.charts.restore(from.charts, x.data());
+  context_.model.set_code(context_.charts.code());
+  context_.model.set_mode(0);
+  context_.model.set_charts(context_.charts.mode());
+  context_.rows.set_charts(context_.charts.code(), context_.charts.mode());
+  context_.rows.set_integral_constants(from.integral_constants);
+  context_.kinks.set_largest_values(from.largest_kink_values);
+  if (from.contacts) {
+    context_.contacts->restore(*from.contacts);
+    context_.model.set_contact_mode(from.contacts->mode);
+  }
+  context_.freeze_branches(t, x.data(), true);
+  choice_ = from.choice;
+}
+
+inline void Integration::begin(const Options& options) {
   stopped_ = false;
   jump_ = {};
   reason_ = {};
   fixed_step_ = options.fixed_step;
+  end_time_ = problem_.begin();
   slow_slip_.start(fixed_step_);
   if (context_.contacts)
     context_.contacts->set_tolerances(fixed_step_ > 0 ? slow_slip_rtol : options.rtol,
                                       fixed_step_ > 0 ? slow_slip_atol : options.atol);
-  choice_ = {};
-  missed_narrow_force_.reset();
+}
+
+inline Result Integration::integrate_segments(Result total, const Options& options, const Observer& observer,
+                                              const OnEvent& event) {
   Options segment = options;
   segment.choice = &choice_;
   segment.step_bounds = problem_.bounds;
   if (narrow_.any()) segment.step_limit = [this](const StepView& step) { return longest_step(step); };
   segment.quadratures = problem_.power && !context_.work_is_state() ? 1 : 0;
-  Result total;
-  end_time_ = problem_.begin();
-  if (!start(total, event)) return total;
   const std::vector<Segment> all = segments(problem_);
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (k > 0) jump_ = begin_segment(context_, all[k - 1], total, event);

@@ -62,6 +62,10 @@ class Kinks {
     }
   }
 
+  /// The largest |g| of each so far.
+  const std::vector<double>& largest_values() const { return size_; }
+  void set_largest_values(const std::vector<double>& values) { size_ = values; }
+
   const std::vector<std::size_t>& crossings() const { return crossings_; }
   /// Crossings of all kinks but those between two segments, which are kinks in time.
   std::size_t crossings_in_state() const { return in_state_; }

@@ -81,6 +81,18 @@ class Contacts {
   /// earlier ones.
   void close_together(std::vector<std::size_t> contacts) { close_together_ = std::move(contacts); }
 
+  /// The most recent impacts.
+  struct Hits {
+    static constexpr std::size_t none = static_cast<std::size_t>(-1);
+    std::array<std::size_t, 8> contacts{none, none, none, none, none, none, none, none};
+    std::size_t count = 0;
+
+    void add(std::size_t contact) { contacts[count++ % contacts.size()] = contact; }
+    std::ptrdiff_t of(std::size_t contact) const { return std::count(contacts.begin(), contacts.end(), contact); }
+  };
+  const Hits& hits() const { return hits_; }
+  void set_hits(const Hits& hits) { hits_ = hits; }
+
   /// Transforms the functions into the monitored ones: the slip speed in two directions, minus the least one.
   void shift_to_watched(double* g) const {
     for (std::size_t j = 0; j < contacts_.size(); ++j) {
@@ -131,7 +143,7 @@ class Contacts {
     bool alone = true;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       constexpr std::ptrdiff_t turns = 3;
-      if (i == j || !contacts_[i].unilateral || std::count(hits_.begin(), hits_.end(), i) < turns) continue;
+      if (i == j || !contacts_[i].unilateral || hits_.of(i) < turns) continue;
       mode = with_contact_digit(mode, i, 0);
       alone = false;
     }
@@ -143,7 +155,6 @@ class Contacts {
   }
 
  private:
-  static constexpr std::size_t no_contact = static_cast<std::size_t>(-1);
   Transition failed(const ModePoint& point, int code) const { return {point.mode, "", "", outcome_of_abi_code(code)}; }
 
   double speed(const double* g, std::size_t j) const {
@@ -204,7 +215,7 @@ class Contacts {
 
   /// Handles an impact at contact j, which is open. It remains open if it bounces.
   Transition apply_impact(double t, std::span<double> x, int mode, std::size_t j, bool bounces = true) {
-    hits_[hit_++ % hits_.size()] = j;
+    hits_.add(j);
     if (const std::vector<std::size_t> all = std::exchange(close_together_, {}); !all.empty()) {
       const std::vector<double> before(x.begin(), x.end());
       int closed = mode;
@@ -303,9 +314,7 @@ class Contacts {
   std::vector<Contact> contacts_;
   std::vector<double> dx_, g_;
   std::vector<Mode> table_;
-  std::array<std::size_t, 8> hits_{no_contact, no_contact, no_contact, no_contact,
-                                   no_contact, no_contact, no_contact, no_contact};  // the most recent impacts
-  std::size_t hit_ = 0;
+  Hits hits_;
   std::vector<std::size_t> close_together_;
   Rhs rhs_;
   Functions functions_;

@@ -141,6 +141,9 @@ class ModeSwitch {
     return EventAction::stop;
   }
 
+  const ChatterDetector& chatter() const { return chatter_; }
+  void set_chatter(const ChatterDetector& chatter) { chatter_ = chatter; }
+
   int mode;
   std::vector<ModeEvent> events;
   std::size_t transitions = 0;
