@@ -26,16 +26,18 @@ thread_local std::size_t left = std::numeric_limits<std::size_t>::max();
 
 void request_stop() noexcept { stop.store(true, std::memory_order_relaxed); }
 
-DeferInterrupt::DeferInterrupt() noexcept {
-  ++keeping;
+DeferInterrupt::DeferInterrupt() noexcept
+    : count_(listener != nullptr && listener->stop_ != nullptr ? listener->deferred_ : keeping) {
+  ++count_;
   clear_line();
 }
-DeferInterrupt::~DeferInterrupt() { --keeping; }
+DeferInterrupt::~DeferInterrupt() { --count_; }
 
 bool stop_requested() noexcept {
-  const bool asked = stop.load(std::memory_order_relaxed) || (listener != nullptr && listener->stop_ != nullptr &&
-                                                              listener->stop_->load(std::memory_order_relaxed));
-  return asked && keeping.load(std::memory_order_relaxed) == 0;
+  const bool own = listener != nullptr && listener->stop_ != nullptr;
+  const bool asked = stop.load(std::memory_order_relaxed) || (own && listener->stop_->load(std::memory_order_relaxed));
+  return asked && keeping.load(std::memory_order_relaxed) == 0 &&
+         (!own || listener->deferred_.load(std::memory_order_relaxed) == 0);
 }
 
 Listener::Listener(const std::atomic<bool>* asked) noexcept : stop_(asked), around_(std::exchange(listener, this)) {}

@@ -30,13 +30,17 @@ struct BudgetExceeded : std::length_error {
 void request_stop() noexcept;
 
 /// Defers interruption while it exists: the owner handles a request to stop, work::spend does not throw for it, and no
-/// progress is shown.
+/// progress is shown. It concerns the work of the listener of this thread if that listener has a stop flag of its own,
+/// else the process. It ends in the thread that made it.
 class DeferInterrupt {
  public:
   DeferInterrupt() noexcept;
   ~DeferInterrupt();
   DeferInterrupt(const DeferInterrupt&) = delete;
   DeferInterrupt& operator=(const DeferInterrupt&) = delete;
+
+ private:
+  std::atomic<int>& count_;
 };
 /// Whether the current work must end: a stop was requested, and no object defers it.
 bool stop_requested() noexcept;
@@ -58,7 +62,9 @@ class Listener {
  private:
   friend bool stop_requested() noexcept;
   friend const std::atomic<bool>& stop_flag() noexcept;
+  friend class DeferInterrupt;
   const std::atomic<bool>* stop_;
+  std::atomic<int> deferred_{0};
   Listener* around_;
 };
 /// Sends a warning to the listener of this thread; without a listener it is discarded.

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <stop_token>
 #include <string>
+#include <utility>
 
 #include "eomgen/call_control.hpp"
 #include "eomgen/formulas.hpp"
@@ -24,8 +25,7 @@ std::recursive_mutex& library_mutex();
 /// Forwards progress and warnings of one call to its CallControl, and its stop request to the stages.
 class CallListener : public work::Listener {
  public:
-  explicit CallListener(const CallControl& control)
-      : Listener(&stopped_), control_(control), stop_callback_(control.stop, SetFlag{&stopped_}) {}
+  explicit CallListener(const CallControl& control);
 
   const std::atomic<bool>* stopped() const { return &stopped_; }
   std::function<void(double)> progress() const { return control_.on_progress; }
@@ -46,16 +46,23 @@ class CallListener : public work::Listener {
   std::stop_callback<SetFlag> stop_callback_;
 };
 
-/// Runs `work(call)` under the lock and returns its result. Throws Interrupted if the call was stopped.
+/// Runs `work(call)` and returns its result. Throws Interrupted if the call was stopped. `work` takes the lock itself
+/// where it needs it.
 template <class Work>
-auto with_lock(const CallControl& control, Work&& work) {
-  const std::scoped_lock lock(library_mutex());
+auto with_listener(const CallControl& control, Work&& work) {
   CallListener call(control);
   try {
     return work(call);
   } catch (const work::Interrupted&) {
     throw Interrupted();
   }
+}
+
+/// The same under the lock.
+template <class Work>
+auto with_lock(const CallControl& control, Work&& work) {
+  const std::scoped_lock lock(library_mutex());
+  return with_listener(control, std::forward<Work>(work));
 }
 
 pipeline::ApproachChoice approach_choice(Approach approach);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "analysis/shortest_decimal.hpp"
-#include "eomgen/call.hpp"
+#include "eomgen/prepared_runs.hpp"
 #include "model/model.hpp"
 
 namespace eomgen {
@@ -25,6 +25,9 @@ std::recursive_mutex& library_mutex() {
   static std::recursive_mutex mutex;
   return mutex;
 }
+
+CallListener::CallListener(const CallControl& control)
+    : Listener(&stopped_), control_(control), stop_callback_(control.stop, SetFlag{&stopped_}) {}
 
 pipeline::ApproachChoice approach_choice(Approach approach) {
   switch (approach) {
@@ -55,14 +58,17 @@ std::vector<LeftOut> omissions_of(const std::vector<work::LeftOut>& list) {
   return result;
 }
 
+Model::Model(model::Model read)
+    : read_(new model::Model(std::move(read)), LockedDelete{}), runs_(new PreparedRuns(read_), LockedDelete{}) {}
+
 Model Model::from_file(const std::string& path) {
   const std::scoped_lock lock(library_mutex());
-  return Model(std::make_shared<const model::Model>(model::read_model(path)));
+  return Model(model::read_model(path));
 }
 
 Model Model::from_text(const std::string& text, const std::string& name) {
   const std::scoped_lock lock(library_mutex());
-  return Model(std::make_shared<const model::Model>(model::read_model_text(text, name + ".toml")));
+  return Model(model::read_model_text(text, name + ".toml"));
 }
 
 Model Model::from(const Definition& definition, const std::string& name) { return from_text(definition.text(), name); }

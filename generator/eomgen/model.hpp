@@ -6,7 +6,8 @@
 // if the cause has a position there.
 //
 // Thread safety: any thread may call any function, on the same model or on different ones. The computer algebra is not
-// thread-safe, so one lock serialises all calls. A callback that runs inside a call may call the library again.
+// thread-safe, so one lock serialises all calls but the integration of run(). A callback that runs inside a call may
+// call the library again.
 #pragma once
 
 #include <memory>
@@ -16,6 +17,7 @@
 #include "eomgen/benchmark.hpp"
 #include "eomgen/call_control.hpp"
 #include "eomgen/certificate.hpp"
+#include "eomgen/compiled_model.hpp"
 #include "eomgen/definition.hpp"
 #include "eomgen/error.hpp"
 #include "eomgen/examination.hpp"
@@ -29,6 +31,8 @@ namespace eomgen {
 namespace model {
 struct Model;
 }
+
+class PreparedRuns;
 
 /// A model that was read and checked. Immutable; copies share the data.
 class Model {
@@ -63,9 +67,12 @@ class Model {
   Certificate verify(const VerifyOptions& options = {}, const CallControl& control = {}) const;
   /// Generates verified source code. Throws Error{ErrorKind::check} if the formulations disagree.
   Sources emit(const EmitOptions& options = {}, const CallControl& control = {}) const;
-  /// Derives, verifies, compiles and integrates a scene. Needs a C compiler; compiled code is cached by content.
-  /// A run that fails numerically returns its outcome and throws nothing.
+  /// Derives, verifies, compiles and integrates a scene. The model and its copies keep the equations and the code of
+  /// their latest runs, so that another run costs its integration, which takes no lock. A run that fails numerically
+  /// returns its outcome and throws nothing.
   Motion run(const RunOptions& options = {}, const CallControl& control = {}) const;
+  /// Derives, verifies and compiles the equations as functions that a program calls, with the numbers of a scene.
+  CompiledModel compile(const CompileOptions& options = {}, const CallControl& control = {}) const;
   /// Computes the forces that prescribed motions require. Throws Error{stage "inverse"} if no constraint prescribes a
   /// motion or a name is unknown.
   InverseDynamics inverse_dynamics(const InverseOptions& options = {}, const CallControl& control = {}) const;
@@ -82,8 +89,9 @@ class Model {
   StressTest stress_test(const StressOptions& options = {}, const CallControl& control = {}) const;
 
  private:
-  explicit Model(std::shared_ptr<const model::Model> read) : read_(std::move(read)) {}
+  explicit Model(model::Model read);
   std::shared_ptr<const model::Model> read_;
+  std::shared_ptr<PreparedRuns> runs_;
 };
 
 }  // namespace eomgen

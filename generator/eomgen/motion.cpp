@@ -5,9 +5,8 @@
 #include <stdexcept>
 
 #include "analysis/inverse.hpp"
-#include "eomgen/call.hpp"
 #include "eomgen/model.hpp"
-#include "pipeline/simulate.hpp"
+#include "eomgen/prepared_runs.hpp"
 
 namespace eomgen {
 namespace {
@@ -36,9 +35,8 @@ pipeline::SimulationRequest request_of(std::shared_ptr<const model::Model> model
   request.overrides.outputs = options.outputs;
   request.approach = approach_choice(options.approach);
   request.form = pipeline::parse_form(options.form);
-  request.estimate = options.error_estimate;
   request.charts = options.charts;
-  request.max_steps = options.max_steps;
+  request.tier = pipeline::parse_tier(options.tier);
   request.seed = options.seed;
   return request;
 }
@@ -48,6 +46,18 @@ std::vector<std::string> shown(const model::Model& model, const run::Scene& scen
   std::vector<std::string> columns = run::state_columns(model);
   columns.insert(columns.end(), scene.outputs.begin(), scene.outputs.end());
   return columns;
+}
+
+/// The columns of the rows with their units, and what is known before the run.
+void take_columns(const PreparedRun& run, Motion& to) {
+  to.columns = shown(run.derived->model, run.plan->scene);
+  for (const std::string& column : to.columns) {
+    const system::Output* const output = system::find(run.derived->candidates.front().outputs, column);
+    to.units.push_back(output != nullptr ? output->unit : "");
+  }
+  to.tier = pipeline::name(run.compilation->tier.tier);
+  to.tier_reason = run.compilation->tier.reason;
+  to.certificate = run.compilation->certificate.summary();
 }
 
 void take_result(const run::RunResult& from, Motion& to) {
@@ -77,31 +87,37 @@ double Motion::final_value(const std::string& name) const {
 }
 
 Motion Model::run(const RunOptions& options, const CallControl& control) const {
-  return with_lock(control, [&](CallListener& call) {
+  return with_listener(control, [&](CallListener& call) {
     Motion motion;
+    PreparedRun prepared;
+    std::shared_ptr<pipeline::BoundRun> run;
+    {
+      const std::scoped_lock lock(library_mutex());
+      prepared = runs_->prepare(request_of(read_, options));
+      run = prepared.bind(prepared.plan->scene, options.error_estimate);
+      take_columns(prepared, motion);
+    }
+    const std::vector<std::string>& names = run->code().output_names;
     std::vector<std::size_t> index;
-    std::vector<double> values;
-    pipeline::SimulationRequest request = request_of(read_, options);
-    std::optional<work::DeferInterrupt> kept;  // from the first step on, an interruption returns the partial motion
-    request.ready = [&kept] { kept.emplace(); };
-    request.interrupt = call.stopped();
-    request.progress = call.progress();
-    request.begin = [&](const pipeline::DerivedModel& derived, const run::Scene& scene,
-                        const std::vector<std::string>& names) {
-      motion.columns = shown(derived.model, scene);
-      for (const std::string& column : motion.columns)
-        index.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin()));
-      values.resize(index.size());
-    };
+    for (const std::string& column : motion.columns)
+      index.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin()));
+    std::vector<double> values(index.size());
+    run::RunRequest& request = run->request();
+    request.every = pipeline::row_interval(run->scene());
     request.row = [&](double t, std::span<const double> y) {
       for (std::size_t i = 0; i < index.size(); ++i) values[i] = y[index[i]];
       if (options.row) return options.row(t, values);
       motion.times.push_back(t);
       motion.rows.push_back(values);
     };
-    const pipeline::Simulation simulation = pipeline::simulate(request);
-    take_result(simulation.result, motion);
-    motion.certificate = simulation.certificate.summary();
+    request.progress = call.progress();
+    request.interrupt = call.stopped();
+    request.max_steps = options.max_steps;
+    const work::DeferInterrupt kept;  // from here on, an interruption returns the partial motion
+    run::RunResult result = run->integrate();
+    result.reason.charts_refused = prepared.plan->charts_refused;
+    result.reason.charts_kept_for_jumps = prepared.plan->charts_kept_for_jumps;
+    take_result(result, motion);
     return motion;
   });
 }

@@ -25,7 +25,10 @@ struct RunOptions {
   std::optional<std::string> solver = {};  // one of solvers(), or "auto"
   std::vector<std::string> outputs = {};   // in addition to coordinates; replace the scene's; "all": every output
   Approach approach = Approach::automatic;
-  std::string form = "auto";   // see EmitOptions::form
+  std::string form = "auto";  // see EmitOptions::form
+  /// "jit": machine code in memory; "compiled": emitted C through the C compiler; "auto": the faster one. The results
+  /// have the same bits.
+  std::string tier = "auto";
   std::size_t max_steps = 0;   // 0: the solver's default
   bool error_estimate = true;  // costs a second run
   bool charts = true;          // allow changes of angle coordinates near their singularities
@@ -51,8 +54,10 @@ struct Motion {
   std::string outcome;                                // "done", "stopped_by_event", or a failure (docs/runtime.md)
   std::string detail, solver;                         // solver: the last one used
   std::string solver_reason;                          // why this solver was chosen
+  std::string tier, tier_reason;                      // "jit" or "compiled", and why
   double t = 0;                                       // final time, s
   std::vector<std::string> columns;                   // every coordinate and its rate, then the outputs
+  std::vector<std::string> units;                     // of the columns, "m/s"; "" if unknown or a pure number
   std::vector<double> times;                          // of the rows, s
   std::vector<std::vector<double>> rows;              // times.size() rows of columns.size() values
   std::vector<std::pair<std::string, double>> final;  // values at the final time

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compiled equations of motion as functions of numbers (docs/abi.md). In: a model and one of its scenes. Out: values,
+// for any state, parameters and inputs.
+//
+// Any number of threads may call a CompiledModel at the same time. No call waits for another one, except
+// scene_values().
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eomgen/formulas.hpp"
+
+namespace eomgen {
+
+class Model;
+
+struct CompileOptions {
+  std::string scene = "default";
+  std::map<std::string, double> parameters = {};  // replace the scene's values and initial values; SI units
+  Approach approach = Approach::automatic;
+  std::string form = "auto";               // see EmitOptions::form
+  std::string tier = "auto";               // see RunOptions::tier
+  std::optional<std::string> solver = {};  // of simulations, one of solvers(); replaces the scene's
+  /// Functions beside rhs and outputs: "jac", "jac_p", "mass", "momenta", "constraints", "reactions", "events",
+  /// "taylor". None given: jac, mass, and for a model with constraints also constraints and reactions.
+  std::optional<std::vector<std::string>> functions = {};
+  std::vector<std::string> outputs = {};  // in addition to coordinates; replace the scene's; "all": every output
+  bool charts = true;                     // allow simulations to change charts near singularities
+  std::uint64_t seed = 1;
+};
+
+/// A state, a parameter, an input or an output.
+struct Quantity {
+  std::string name;
+  std::string unit;  // SI, "m/s"; "" if unknown or a pure number
+};
+
+/// The numbers of a scene.
+struct SceneValues {
+  double t_start = 0, t_end = 0;   // s
+  std::vector<double> parameters;  // P, with those that depend on others
+  std::vector<double> state;       // N, at t_start; satisfies the constraints
+};
+
+/// Verified and compiled equations with the numbers of one scene. Immutable; copies share the data.
+/// n free coordinates; N = 2 n + integrals states: coordinates, their rates, integrals over time; P parameters;
+/// U inputs; m constraints with multipliers; E events.
+class CompiledModel {
+ public:
+  const std::string& scene() const;
+  const std::vector<Quantity>& states() const;            // N
+  const std::vector<Quantity>& parameters() const;        // P
+  const std::vector<Quantity>& inputs() const;            // U
+  const std::vector<Quantity>& outputs() const;           // every coordinate and its rate first
+  const std::vector<std::string>& constraints() const;    // m, labels of the constraints with multipliers
+  const std::vector<std::string>& reactions() const;      // labels of all constraints, in the order of reactions()
+  const std::vector<std::string>& events() const;         // names of the model's events, the first of events()
+  std::size_t coordinate_count() const;                   // n
+  const std::string& certificate() const;                 // summary of the verification
+  const std::string& tier() const;                        // "jit" or "compiled"
+  bool has(const std::string& function) const;            // "rhs", "jac", ..
+
+  /// The numbers of the scene: the values of null arguments of the functions below.
+  const SceneValues& values() const;
+  /// The same with other values of parameters, initial coordinates and rates. Solves the constraints for the start, and
+  /// waits for other calls of the library. Throws Error{stage "scene"} if there is no such start.
+  SceneValues scene_values(const std::map<std::string, double>& replaced) const;
+  /// The scene's inputs at t; at a jump the values after it.
+  std::vector<double> input_values(double t) const;
+
+  struct Arguments {
+    double t = 0;
+    const double* x = nullptr;           // N
+    const double* parameters = nullptr;  // P; null: those of the scene
+    const double* inputs = nullptr;      // U; null: those of the scene at t
+    int mode = 0;                        // of contacts and kinks (docs/abi.md, "Modes")
+  };
+  // Each function returns a code of docs/abi.md: 0 if the results are valid, 2 at a singular state. A function that was
+  // not compiled returns not_compiled. Results must not overlap with arguments.
+  static constexpr int not_compiled = -1;
+  int rhs(const Arguments& at, double* dx) const;                    // N
+  int jac(const Arguments& at, double* dfdx, double* dfdt) const;    // N x N by columns; N, at fixed x, or null
+  int jac_p(const Arguments& at, double* dfdp) const;                // N x P by columns
+  int mass(const Arguments& at, double* M, double* h) const;         // M qddot + h = A^T lambda: n x n by columns; n
+  int momenta(const Arguments& at, double* p, double* rates) const;  // dL/d(qdot): n; rates without constraint forces
+  int constraints(const Arguments& at, double* psi, double* A, double* b) const;  // A qdot + b = 0: m; m x n; m
+  int reactions(const Arguments& at, double* lambda) const;  // multipliers of all constraints, eliminated ones too
+  int outputs(const Arguments& at, double* y) const;         // as many as outputs()
+  int events(const Arguments& at, double* g) const;          // E, then kinks, then five of each contact
+  std::size_t event_count() const;                           // length of g
+  /// coefficients[i + N k]: the k-th derivative of x_i over k!, k = 0 .. order, at constant inputs.
+  int taylor(const Arguments& at, int order, double* coefficients) const;
+
+  /// dx/dt of many states: t: count; x, dx: count x N, state after state; codes: count, or null. parameters, inputs: of
+  /// all states, or null. Rows with an error are NaN. Returns the first code that is not 0.
+  int rhs_batch(std::size_t count, const double* t, const double* x, const double* parameters, const double* inputs,
+                double* dx, int* codes = nullptr) const;
+
+  struct State;  // defined within the library
+
+ private:
+  friend class Model;
+  friend class Simulation;
+  explicit CompiledModel(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+  std::shared_ptr<const State> state_;
+};
+
+}  // namespace eomgen

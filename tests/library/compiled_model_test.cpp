@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compiled functions of models with known equations.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "library/example_definitions.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+/// q'' = -k sin q + u, with an output and an event.
+Definition driven_pendulum() {
+  Definition d("Driven pendulum");
+  d.parameter("k", "4").parameter("k2", "2*k");
+  d.set("coordinates", "q", Value::table({}));
+  d.set("inputs", "u", Value::table({{"default", 0.5}}));
+  d.set("energy", "kinetic", "1/2*q_dot^2").set("energy", "potential", "-k*cos(q)");
+  d.add("force", {{"generalized", Value::table({{"q", "u"}})}});
+  d.add("event", {{"name", "below"}, {"when", "q"}});
+  d.set("scene.default", "t", Value::list({0, 1}));
+  d.set("scene.default", "initial", Value::table({{"q", 0.3}}));
+  d.set("scene.default", "outputs", Value::list({"energy"}));
+  return d;
+}
+
+std::vector<std::string> names(const std::vector<Quantity>& list) {
+  std::vector<std::string> result;
+  for (const Quantity& q : list) result.push_back(q.name);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("library: compiled functions of a driven pendulum have their values, in both tiers") {
+  const Model model = Model::from(driven_pendulum(), "driven");
+  for (const char* tier : {"compiled", "auto"}) {
+    const CompiledModel f = model.compile(
+        {.tier = tier, .functions = std::vector<std::string>{"jac", "jac_p", "mass", "momenta", "events", "taylor"}});
+    CHECK(names(f.states()) == std::vector<std::string>{"q", "q_dot"});
+    CHECK(names(f.parameters()) == std::vector<std::string>{"k", "k2"});
+    CHECK(names(f.inputs()) == std::vector<std::string>{"u"});
+    CHECK(f.coordinate_count() == 1);
+    CHECK(f.values().parameters == std::vector<double>{4, 8});
+    CHECK(f.values().state == std::vector<double>{0.3, 0});
+    CHECK(f.values().t_end == 1);
+    CHECK(f.input_values(0.2) == std::vector<double>{0.5});
+    CHECK(f.events() == std::vector<std::string>{"below"});
+    CHECK_FALSE(f.certificate().empty());
+
+    const double x[] = {0.7, -1.1}, q = x[0];
+    double dx[2], J[4], Jt[2], Jp[4], M[1], h[1], p[1], rate[1];
+    CompiledModel::Arguments at{.x = x};
+    REQUIRE(f.rhs(at, dx) == 0);
+    CHECK(dx[0] == x[1]);
+    CHECK(dx[1] == doctest::Approx(-4 * std::sin(q) + 0.5).epsilon(1e-15));
+    REQUIRE(f.jac(at, J, Jt) == 0);
+    CHECK(J[0] == 0);
+    CHECK(J[2] == 1);
+    CHECK(J[1] == doctest::Approx(-4 * std::cos(q)).epsilon(1e-15));
+    CHECK(Jt[1] == 0);
+    CHECK(f.jac(at, J, nullptr) == 0);
+    REQUIRE(f.jac_p(at, Jp) == 0);
+    CHECK(Jp[1] == doctest::Approx(-std::sin(q)).epsilon(1e-15));
+    REQUIRE(f.mass(at, M, h) == 0);
+    CHECK(M[0] == 1);
+    CHECK(h[0] == doctest::Approx(4 * std::sin(q) - 0.5).epsilon(1e-15));
+    REQUIRE(f.momenta(at, p, rate) == 0);
+    CHECK(p[0] == x[1]);
+    std::vector<double> y(f.outputs().size()), g(f.event_count()), c(2 * 3);
+    REQUIRE(f.outputs(at, y.data()) == 0);
+    const auto energy = std::find_if(f.outputs().begin(), f.outputs().end(),
+                                     [](const Quantity& output) { return output.name == "energy"; });
+    CHECK(y[static_cast<std::size_t>(energy - f.outputs().begin())] ==
+          doctest::Approx(0.5 * x[1] * x[1] - 4 * std::cos(q)).epsilon(1e-14));
+    REQUIRE(f.events(at, g.data()) == 0);
+    CHECK(g == std::vector<double>{q});
+    REQUIRE(f.taylor(at, 2, c.data()) == 0);
+    CHECK(c[4] == doctest::Approx(dx[1] / 2).epsilon(1e-15));
+
+    // Arguments replace the numbers of the scene.
+    const double parameters[] = {9, 18}, inputs[] = {-2};
+    at.parameters = parameters;
+    at.inputs = inputs;
+    REQUIRE(f.rhs(at, dx) == 0);
+    CHECK(dx[1] == doctest::Approx(-9 * std::sin(q) - 2).epsilon(1e-15));
+    CHECK_FALSE(f.has("constraints"));
+    CHECK(f.constraints(at, dx, dx, dx) == CompiledModel::not_compiled);
+    CHECK(f.scene_values({{"k", 5}, {"q_dot", 2}}).parameters == std::vector<double>{5, 10});
+    CHECK(f.scene_values({{"k", 5}, {"q_dot", 2}}).state == std::vector<double>{0.3, 2});
+  }
+  CHECK_THROWS_AS(model.compile({.functions = std::vector<std::string>{"no_such"}}), Error);
+  CHECK_THROWS_AS(model.compile({.scene = "other"}), Error);
+}
+
+TEST_CASE("library: compiled functions of a constrained model give multipliers and constraint rows") {
+  Definition d("Pendulum in Cartesian coordinates");
+  d.parameter("m", "2 kg").parameter("L", "1.5 m").parameter("g", "9.81 m/s^2");
+  d.set("coordinates", "x", Value::table({{"unit", "m"}})).set("coordinates", "z", Value::table({{"unit", "m"}}));
+  d.add("particle", {{"name", "P"}, {"mass", "m"}, {"position", Value::list({"x", "0", "z"})}});
+  d.add("force", {{"gravity", "-g*E3"}});
+  d.add("constraint", {{"name", "rod"}, {"holonomic", "x^2 + z^2 - L^2"}});
+  d.set("scene.default", "t", Value::list({0, 1}));
+  d.set("scene.default", "initial", Value::table({{"x", 0}, {"z", -1.5}, {"x_dot", 2}}));
+  const CompiledModel f = Model::from(d, "rod").compile({.approach = Approach::one, .form = "multipliers"});
+  CHECK(f.constraints() == std::vector<std::string>{"rod"});
+  CHECK(f.reactions() == std::vector<std::string>{"rod"});
+  CHECK(f.states()[2].unit == "m/s");
+  double psi[1], A[2], b[1], lambda[1];
+  const CompiledModel::Arguments at{.x = f.values().state.data()};
+  REQUIRE(f.constraints(at, psi, A, b) == 0);
+  CHECK(psi[0] == 0);
+  CHECK(A[1] == doctest::Approx(-3).epsilon(1e-15));
+  REQUIRE(f.reactions(at, lambda) == 0);
+  // 2 lambda z = m (g + v^2/L)
+  CHECK(2 * lambda[0] * -1.5 == doctest::Approx(2 * (9.81 + 4 / 1.5)).epsilon(1e-14));
+}
+
+TEST_CASE("library: eight threads call compiled functions at once and get the values of one thread") {
+  Definition d = driven_pendulum();
+  d.set("scene.default", "inputs", Value::table({{"u", "sin(3*t)"}}));
+  const CompiledModel f = Model::from(d, "driven").compile();
+  CHECK(f.input_values(0.5)[0] == doctest::Approx(std::sin(1.5)).epsilon(1e-15));
+  constexpr std::size_t count = 2000;
+  std::vector<double> t(count), x(2 * count), alone(2 * count);
+  for (std::size_t k = 0; k < count; ++k) {
+    t[k] = 0.01 * static_cast<double>(k);
+    x[2 * k] = std::sin(static_cast<double>(k));
+    x[2 * k + 1] = std::cos(static_cast<double>(k));
+  }
+  REQUIRE(f.rhs_batch(count, t.data(), x.data(), nullptr, nullptr, alone.data()) == 0);
+  CHECK(alone[2 * 7 + 1] == doctest::Approx(-4 * std::sin(x[14]) + std::sin(0.21)).epsilon(1e-14));
+  std::vector<std::vector<double>> found(8, std::vector<double>(2 * count));
+  {
+    std::vector<std::jthread> threads;
+    for (std::vector<double>& dx : found) {
+      threads.emplace_back([&] {
+        double J[4], Jt[2];
+        for (std::size_t k = 0; k < count; ++k) {
+          const CompiledModel::Arguments at{.t = t[k], .x = &x[2 * k]};
+          if (f.rhs(at, &dx[2 * k]) != 0 || f.jac(at, J, Jt) != 0 || J[2] != 1) dx[2 * k] = -1e9;
+        }
+      });
+    }
+  }
+  for (const std::vector<double>& dx : found) CHECK(dx == alone);
+}
+
+TEST_CASE("library: a singular state in a batch has its code, and the other states have their values") {
+  const CompiledModel f = Model::from(test::pendulum(), "pendulum").compile();
+  const double t[] = {0, 0, 0}, x[] = {1, 0, 0, 2, 0, 0, 0, 1, 2, 0, 0, 2};
+  double dx[12];
+  int codes[3];
+  CHECK(f.rhs_batch(3, t, x, nullptr, nullptr, dx, codes) != 0);
+  CHECK(codes[0] == 0);
+  CHECK(codes[1] != 0);
+  CHECK(codes[2] == 0);
+  CHECK(std::isnan(dx[6]));
+  // L^2 phi'' = L^2 sin cos theta'^2 + g L sin, L = 2
+  CHECK(dx[10] == doctest::Approx(4 * std::sin(2.0) * std::cos(2.0) + 9.81 / 2 * std::sin(2.0)).epsilon(1e-14));
+}
+
+TEST_CASE("library: a compiled model lives on without its model") {
+  std::optional<CompiledModel> f;
+  {
+    const Model model = Model::from(driven_pendulum(), "driven");
+    f = model.compile();
+  }
+  double dx[2];
+  CHECK(f->rhs({.x = f->values().state.data()}, dx) == 0);
+  CHECK(f->scene_values({{"q", 1}}).state[0] == 1);
+}
