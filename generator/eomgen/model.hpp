@@ -23,6 +23,7 @@
 #include "eomgen/examination.hpp"
 #include "eomgen/formulas.hpp"
 #include "eomgen/motion.hpp"
+#include "eomgen/simulation.hpp"
 #include "eomgen/sources.hpp"
 #include "eomgen/steady.hpp"
 

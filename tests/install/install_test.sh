@@ -53,6 +53,8 @@ said=$(cd "$scratch/library/build" && EOMGEN_CACHE_DIR="$scratch/library-cache" 
 grep -qF '\frac{d}{dt}' <<<"$said" || refuse "the library's example printed no LaTeX: $said"
 grep -q '^done at t = 10: phi = ' <<<"$said" || refuse "the library's example did not run: $said"
 [[ -s $scratch/library/build/pendulum.c ]] || refuse "the library's example emitted no C"
+said=$(cd "$scratch/library/build" && EOMGEN_CACHE_DIR="$scratch/library-cache" ./controller) ||
+  refuse "the library's example of a controller: $said"
 
 echo "-- eom_generate runs again when the model or eomgen changes, and only then"
 generated="$scratch/consumer/pendulum_equations_eom/pendulum.c"
