@@ -68,8 +68,10 @@ std::string wrapped(const std::string& line, const std::string& indent, std::siz
     const std::size_t blank = rest.rfind(' ', width);
     const std::size_t first = rest.find_first_not_of(' ');
     if (blank == std::string::npos || blank <= first) break;
+    const bool in_comment = rest.find("//") < blank;
+    if (in_comment && rest.rfind("// ", blank) + 2 == blank) break;  // one word, longer than a line
     result += rest.substr(0, blank) + "\n";
-    rest = indent + rest.substr(blank + 1);
+    rest = indent + (in_comment ? "// " : "") + rest.substr(blank + 1);
   }
   return result + rest;
 }

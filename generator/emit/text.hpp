@@ -21,7 +21,8 @@ std::string decimal(double value);
 
 using program::nearest_double;
 
-/// Wraps at blanks to lines of at most `width` characters; continuation lines are indented by `indent`.
+/// Wraps at blanks to lines of at most `width` characters; continuation lines are indented by `indent`. A comment that
+/// begins with // stays one on every line.
 std::string wrapped(const std::string& line, const std::string& indent, std::size_t width = 110);
 
 }  // namespace eomgen::emit

@@ -77,3 +77,25 @@ TEST_CASE("text: long lines break at blanks and lose nothing") {
   }
   CHECK(without == line);
 }
+
+TEST_CASE("text: a comment to the end of the line stays a comment where it is wrapped") {
+  const std::string name(64, 'q'), code = "  dfdx[0] = " + std::string(30, 'a') + " + " + std::string(30, 'b') + ";";
+  for (const std::string& comment : {"d/d " + name, name + " of " + name + " and of " + name, std::string(200, 'n'),
+                                     "d/d " + std::string(200, 'n')}) {
+    CAPTURE(comment);
+    std::string rest = wrapped(code + "  // " + comment, "      ");
+    std::string seen;
+    bool in_comment = false;
+    for (std::size_t end = 0; end != std::string::npos;) {
+      end = rest.find('\n');
+      const std::string line = rest.substr(0, end);
+      rest = end == std::string::npos ? "" : rest.substr(end + 1);
+      const std::size_t at = line.find("// ");
+      if (in_comment) CHECK(line.find_first_not_of(' ') == at);
+      in_comment = in_comment || at != std::string::npos;
+      if (at != std::string::npos) seen += (seen.empty() ? "" : " ") + line.substr(at + 3);
+    }
+    CHECK(in_comment);
+    CHECK(seen == comment);
+  }
+}
