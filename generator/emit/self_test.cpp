@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <eom/modes/chart_state.hpp>
 #include <numbers>
@@ -68,7 +69,8 @@ std::optional<FunctionValues> rounded(const std::string& function, const program
     const double tolerance = single ? std::max({single_relative_tolerance * largest,
                                                 single_to_double_ulp * safety_factor * off, single_least_number})
                                     : std::max({relative_tolerance * largest, safety_factor * off, least_number});
-    values.tolerances.push_back(std::stod(fmt::format("{:.1e}", 1.05 * tolerance)));
+    const std::string text = fmt::format("{:.1e}", 1.05 * tolerance);
+    std::from_chars(text.data(), text.data() + text.size(), values.tolerances.emplace_back());
   }
   return values;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -29,7 +30,9 @@ class Tag {
   }
   double number(const std::string& key, double otherwise = 0) const {
     const std::string value = get(key);
-    return value.empty() ? otherwise : std::strtod(value.c_str(), nullptr);
+    double result = value.empty() ? otherwise : 0;
+    std::from_chars(value.data(), value.data() + value.size(), result);
+    return result;
   }
 
  private:
@@ -148,16 +151,12 @@ class Painter {
 
 std::vector<double> numbers(const std::string& text) {
   std::vector<double> result;
-  const char* at = text.c_str();
-  while (*at != '\0') {
-    char* end = nullptr;
-    const double value = std::strtod(at, &end);
-    if (end == at) {
-      ++at;
-      continue;
-    }
-    result.push_back(value);
-    at = end;
+  const char* const last = text.data() + text.size();
+  for (const char* at = text.data(); at != last;) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(at, last, value);
+    if (error == std::errc()) result.push_back(value);
+    at = end == at ? at + 1 : end;
   }
   return result;
 }

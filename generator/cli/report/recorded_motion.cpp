@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <eom/output/svg_plot.hpp>
 
 #include "cli/report/page_json.hpp"
@@ -18,7 +18,10 @@ constexpr int digits_of_states = 10, digits_of_screens = 6;
 
 // Rounds to the digits needed, to save bytes.
 double shortened(double x, int digits) {
-  return std::isfinite(x) ? std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr) : 0;
+  double result = 0;
+  const std::string text = std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "0";
+  std::from_chars(text.data(), text.data() + text.size(), result);
+  return result;
 }
 
 }  // namespace
