@@ -54,7 +54,7 @@ class Live {
     context.tests.clear();
     context.start_functions = pipeline::describe_start(derived_, model_scene());
     if (!context.start_functions) {
-      live.reason = "its start has too many constraints for a page";
+      live.reason = "its start cannot be computed on a page";
       return live;
     }
     const emit::EmittedFile file = emit::emit(program, context, "javascript").front();
