@@ -26,11 +26,9 @@ class Derivation {
 /// Partial derivative with respect to one symbol.
 Derivation partial_derivative(Dag& dag, Symbol symbol);
 
-/// Total time derivative: t -> 1, q -> qdot -> qddot, f -> f' for functions of time, integrals and states of first
-/// order
-/// -> their rates.
-/// Third derivatives of coordinates do not exist. `freeze_acceleration` seeds qdot with 0 instead of qddot (for bias
-/// terms).
+/// Total time derivative: t -> 1, q -> qdot -> qddot, f -> f' for functions of time; integrals and states of first
+/// order -> their rates. Third derivatives of coordinates do not exist. `freeze_acceleration` seeds qdot with 0 instead
+/// of qddot (for bias terms).
 Derivation total_time_derivative(Dag& dag, std::size_t coordinates, std::size_t functions,
                                  bool freeze_acceleration = false);
 
