@@ -2,6 +2,7 @@
 #include "eomgen/prepared_runs.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace eomgen {
 namespace {
