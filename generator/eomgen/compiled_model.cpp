@@ -2,6 +2,7 @@
 #include "eomgen/compiled_model.hpp"
 
 #include <algorithm>
+#include <eom/modes/contacts.hpp>
 #include <limits>
 
 #include "eomgen/compiled_state.hpp"
