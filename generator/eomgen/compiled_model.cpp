@@ -7,14 +7,14 @@
 
 #include "eomgen/compiled_state.hpp"
 #include "eomgen/model.hpp"
+#include "run/bind.hpp"
 
 namespace eomgen {
 namespace {
 
-SceneValues values_of(const run::Scene& scene, const std::vector<std::uint32_t>& free, std::size_t states) {
-  SceneValues values{scene.t0, scene.t1, scene.parameters, {}};
-  for (const std::uint32_t i : free) values.state.push_back(scene.q[i]);
-  for (const std::uint32_t i : free) values.state.push_back(scene.qdot[i]);
+SceneValues values_of(pipeline::BoundRun& run, const std::string& solver, std::size_t states) {
+  const run::Scene& scene = run.scene();
+  SceneValues values{scene.t0, scene.t1, scene.parameters, run::make_problem(run.request(), solver).start};
   values.state.resize(states);
   return values;
 }
@@ -61,18 +61,13 @@ CompiledModel::State::State(PreparedRun from, std::shared_ptr<PreparedRuns> cach
   const model::Model& model = derived.model;
   const system::EquationSystem& system = derived.candidates.front();
   states = quantities(pipeline::state_names(derived), system);
-  for (std::size_t i = 0; i < model.integrals.size(); ++i) {
-    for (Quantity& state : states) {
-      if (state.name == model.integrals[i].name) state.unit = model.integrals[i].unit.text;
-    }
-  }
   parameters = quantities(model.parameters);
   inputs = quantities(model.inputs);
   outputs = quantities(code().output_names, system);
   for (const std::uint32_t k : system.active) constraints.push_back(derived.mechanics.constraints[k].label);
   reactions = run.compilation->program.reactions;
   for (const model::Event& event : model.events) events.push_back(event.name);
-  values = values_of(scene(), code().free, states.size());
+  values = values_of(*bound, run.plan->solver, states.size());
   certificate = run.compilation->certificate.summary();
   tier = pipeline::name(run.compilation->tier.tier);
   const auto varies = [](const run::Signal& input) { return input.is_varying() || !input.jumps().empty(); };
@@ -114,7 +109,8 @@ SceneValues CompiledModel::scene_values(const std::map<std::string, double>& rep
   return with_lock({}, [&](CallListener&) {
     run::Overrides overrides;
     overrides.values = exact_rationals(replaced);
-    return values_of(state_->runs->scene(state_->run, overrides), state_->code().free, state_->states.size());
+    const PreparedRun& run = state_->run;
+    return values_of(*run.bind(state_->runs->scene(run, overrides), false), run.plan->solver, state_->states.size());
   });
 }
 
