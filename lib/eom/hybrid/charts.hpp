@@ -73,7 +73,7 @@ class ChartSwitch {
   static constexpr double turns_in_a_sample = 1;  // rad: largest change of an angle without a missed turn
   static constexpr int deepest = 48;              // halvings of a step to achieve this
   // A passage closer to a pole than this many tolerances has no determined side.
-  static constexpr double unknown_side = 10;
+  static constexpr double unknown_side = 1000;
   static constexpr double half_turn = 0.5;  // rad: nearness to pi of the jump of an angle at a pole
 
   static double regular(bool at_sine, double angle) { return at_sine ? std::sin(angle) : std::cos(angle); }
