@@ -33,7 +33,8 @@ std::vector<double> computed_torque(const eomgen::CompiledModel& f, double t, co
   f.mass({.t = t, .x = x.data()}, M, h);  // M qddot + h = 0 without torques
   for (int i = 0; i < 2; ++i) {
     const double feedforward = i == 0 ? -q[0] : std::cos(t) / 2;
-    a[i] = feedforward + 40 * (v[i] - x[static_cast<std::size_t>(2 + i)]) + 400 * (q[i] - x[static_cast<std::size_t>(i)]);
+    a[i] =
+        feedforward + 40 * (v[i] - x[static_cast<std::size_t>(2 + i)]) + 400 * (q[i] - x[static_cast<std::size_t>(i)]);
   }
   return {M[0] * a[0] + M[2] * a[1] + h[0], M[1] * a[0] + M[3] * a[1] + h[1]};
 }

@@ -54,17 +54,17 @@ struct SceneValues {
 class CompiledModel {
  public:
   const std::string& scene() const;
-  const std::vector<Quantity>& states() const;            // N
-  const std::vector<Quantity>& parameters() const;        // P
-  const std::vector<Quantity>& inputs() const;            // U
-  const std::vector<Quantity>& outputs() const;           // every coordinate and its rate first
-  const std::vector<std::string>& constraints() const;    // m, labels of the constraints with multipliers
-  const std::vector<std::string>& reactions() const;      // labels of all constraints, in the order of reactions()
-  const std::vector<std::string>& events() const;         // names of the model's events, the first of events()
-  std::size_t coordinate_count() const;                   // n
-  const std::string& certificate() const;                 // summary of the verification
-  const std::string& tier() const;                        // "jit" or "compiled"
-  bool has(const std::string& function) const;            // "rhs", "jac", ..
+  const std::vector<Quantity>& states() const;          // N
+  const std::vector<Quantity>& parameters() const;      // P
+  const std::vector<Quantity>& inputs() const;          // U
+  const std::vector<Quantity>& outputs() const;         // every coordinate and its rate first
+  const std::vector<std::string>& constraints() const;  // m, labels of the constraints with multipliers
+  const std::vector<std::string>& reactions() const;    // labels of all constraints, in the order of reactions()
+  const std::vector<std::string>& events() const;       // names of the model's events, the first of events()
+  std::size_t coordinate_count() const;                 // n
+  const std::string& certificate() const;               // summary of the verification
+  const std::string& tier() const;                      // "jit" or "compiled"
+  bool has(const std::string& function) const;          // "rhs", "jac", ..
 
   /// The numbers of the scene: the values of null arguments of the functions below.
   const SceneValues& values() const;

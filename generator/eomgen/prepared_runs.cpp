@@ -145,8 +145,7 @@ std::shared_ptr<const pipeline::Compilation> PreparedRuns::compile(Derivation& d
   if (!find_first(compilations_, wanted)) {
     std::shared_ptr<const pipeline::Compilation> made(
         new pipeline::Compilation(pipeline::compile_run(derived, plan, request)), LockedDelete{});
-    put_first(compilations_,
-              Compiled{&derived, plan.functions, plan.exchanges_charts, request.seed, std::move(made)},
+    put_first(compilations_, Compiled{&derived, plan.functions, plan.exchanges_charts, request.seed, std::move(made)},
               most_compilations);
     derivation.graph.reset();
   }

@@ -209,8 +209,8 @@ void Simulation::set_state(double t, std::span<const double> x) {
 }
 
 SimulationState Simulation::save() const {
-  return SimulationState(std::make_shared<const SimulationState::Data>(
-      SimulationState::Data{data_->model, data_->run.save()}));
+  return SimulationState(
+      std::make_shared<const SimulationState::Data>(SimulationState::Data{data_->model, data_->run.save()}));
 }
 
 void Simulation::restore(const SimulationState& from) {

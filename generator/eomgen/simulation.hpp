@@ -35,8 +35,8 @@ struct Advance {
   double t = 0;                 // time reached, s
   std::size_t steps = 0, rhs_evaluations = 0;
   std::vector<MotionEvent> events;
-  std::vector<double> times;               // of the rows, s: multiples of SimulationOptions::every after the start
-  std::vector<std::vector<double>> rows;   // CompiledModel::outputs()
+  std::vector<double> times;              // of the rows, s: multiples of SimulationOptions::every after the start
+  std::vector<std::vector<double>> rows;  // CompiledModel::outputs()
 
   /// Whether the end time was reached, or an event that stops the scene.
   bool is_complete() const { return outcome == "done" || outcome == "stopped_by_event"; }
@@ -67,11 +67,11 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
 
   const CompiledModel& model() const;
-  double t() const;                   // s
-  std::vector<double> state() const;  // N
-  std::vector<double> outputs() const;           // CompiledModel::outputs(); throws Error where they have no value
-  std::vector<double> inputs() const;            // U, at t()
-  const std::vector<double>& parameters() const; // P
+  double t() const;                               // s
+  std::vector<double> state() const;              // N
+  std::vector<double> outputs() const;            // CompiledModel::outputs(); throws Error where they have no value
+  std::vector<double> inputs() const;             // U, at t()
+  const std::vector<double>& parameters() const;  // P
 
   /// Integrates until t_end, or to an event that stops the scene. Throws Error if t_end lies before t(). It may be
   /// exceeded by rounding where a velocity jumps. An interruption returns what was reached.

@@ -19,7 +19,8 @@ void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& lib
     }
     run.charts.push_back(std::move(exchanged));
   }
-  run.code_for_charts = [library, visited = std::make_shared<std::vector<unsigned>>()](unsigned charts) -> const run::Code& {
+  run.code_for_charts = [library,
+                         visited = std::make_shared<std::vector<unsigned>>()](unsigned charts) -> const run::Code& {
     if (std::find(visited->begin(), visited->end(), charts) == visited->end()) visited->push_back(charts);
     return library->code_for(*visited);
   };

@@ -75,7 +75,7 @@ class Model {
   /// whether the work is a state here; else it is a quadrature, without row and column.
   int jacobian(double t, const double* x, double* dfdx, double* dfdt, bool work) {
     if (code_->jac == nullptr) return no_jacobian_here;
-    const std::size_t n = 2 * n_ + code_->integrals;
+    const std::size_t n = code_->layout().size();
     if (work) dfdx_.resize(n * n);
     const double* u = inputs(t);
     double* const matrix = work ? dfdx_.data() : dfdx;

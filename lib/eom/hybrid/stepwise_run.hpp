@@ -130,8 +130,7 @@ inline StepwiseRun::StepwiseRun(Problem problem)
 inline void StepwiseRun::analyse_time(double t_end) {
   if (functions_.empty() || t_end <= analysed_until_) return;
   analysed_until_ = std::max(t_end, t_ + span_);
-  TimeAnalysis found =
-      analyse_time_functions(functions_, problem_.parameters, problem_.inputs, t_, analysed_until_);
+  TimeAnalysis found = analyse_time_functions(functions_, problem_.parameters, problem_.inputs, t_, analysed_until_);
   problem_.breakpoints = std::move(found.breakpoints);
   problem_.bounds = std::move(found.bounds);
 }
@@ -177,7 +176,8 @@ inline Result StepwiseRun::advance(double t_end, const Piece& piece) {
     write_row(t_, integration_->context().start.data());
     ++next_row_;
   }
-  Result end = begun_ ? integration_->resume(x_, options, observe, record) : integration_->run(options, observe, record);
+  Result end =
+      begun_ ? integration_->resume(x_, options, observe, record) : integration_->run(options, observe, record);
   if (!left) reason_ = integration_->reason();
   begun_ = true;
   if (left) {
@@ -214,7 +214,7 @@ inline bool StepwiseRun::has_left_range(const StepView& view) {
       ranged_.erase(ranged_.begin() + static_cast<std::ptrdiff_t>(k--));
       continue;
     }
-    reason_ = {Reason::Kind::range, view.t0, 0, problem_.code->output_names[2 * i], i, view.t0, view.t1,
+    reason_ = {Reason::Kind::range, view.t0,    0, problem_.code->output_names[2 * i], i, view.t0, view.t1,
                range.lower,         range.upper};
     return true;
   }
@@ -310,8 +310,7 @@ inline std::vector<double> StepwiseRun::gaps(double t, std::span<const double> x
 }
 
 inline StepwiseRun::State StepwiseRun::save() const {
-  return {t_,      x_,        begun_,          next_step_,          origin_,
-          next_row_, problem_.inputs, problem_.parameters, integration_->save()};
+  return {t_, x_, begun_, next_step_, origin_, next_row_, problem_.inputs, problem_.parameters, integration_->save()};
 }
 
 inline void StepwiseRun::restore(const State& from) {
