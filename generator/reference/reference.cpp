@@ -56,7 +56,9 @@ class Run {
 
   States run() {
     for (const InputSegment& segment : problem_.segments) {
-      const double until = &segment == &problem_.segments.back() ? problem_.times.back() : segment.until;
+      // The last segment ends with the run, unless a kink at the end of the run is to be crossed.
+      const bool last = &segment == &problem_.segments.back() && segment.next == segment.until;
+      const double until = last ? problem_.times.back() : segment.until;
       const Number end = expand_.number(until);
       while (t_ != end) step(segment, end);
       if (segment.next != segment.until) cross_kink(segment);
