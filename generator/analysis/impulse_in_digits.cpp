@@ -37,9 +37,10 @@ std::vector<cl_R> ImpulseInDigits::values(const std::vector<Ref>& roots, double 
         const auto place = std::find(system_.free.begin(), system_.free.end(), symbol.index) - system_.free.begin();
         return x.at(static_cast<std::size_t>(place) + (symbol.order == 1 ? n : 0));
       }
+      case SymbolKind::state:
       case SymbolKind::integral:
-        for (std::size_t i = 0; i < system_.integrals.size(); ++i) {
-          if (system_.integrals[i].integral == symbol.index) return x.at(2 * n + i);
+        for (std::size_t i = 0; i < system_.states.size(); ++i) {
+          if (system_.states[i].symbol == symbol) return x.at(2 * n + i);
         }
         break;
       default: break;
