@@ -56,7 +56,7 @@ constexpr std::string_view runtime[] = {
     "Crossing", "CsvWriter", "Direction", "Drift", "Eligibility", "EnsembleEnd", "EnsembleOptions", "EnsembleRhs", "EnsembleStart", "ErrorEstimate", "EventFunction", "EventLocator", "EventPoint", "Feature", "Features", "Lu",
     "MethodChange", "MethodInfo", "Mode", "ModeEvent", "ModePoint", "ModeResult", "Needs", "NoObserver", "NoProjection", "Options",
     "Outcome", "Plot", "PlotMark", "PlotSeries", "PowerBalance", "Projection", "ProjectionOptions", "ProjectionResult", "Refusal", "Registry", "Result", "Rhs",
-    "Run", "Statistics", "StepEnds", "StepView", "System", "Transition", "Watch", "WatchedSurface", "WithJacobian", "WithTaylor", "all_features", "open_mode", "chart_bits",
+    "Run", "StateLayout", "Statistics", "StepEnds", "StepView", "System", "Transition", "Watch", "WatchedSurface", "WithJacobian", "WithTaylor", "all_features", "open_mode", "chart_bits",
     "charts_of", "code_jump", "code_no_convergence", "code_not_finite", "constrained", "is_contact_digit", "contact_bits",
     "contact_digit", "contact_sign", "contact_modes", "contact_states", "contact_values", "detail", "device", "divergence_bound",
     "eligible", "ensemble", "estimate_error", "events", "events_without_progress", "explicit_rk", "expressions", "find_method", "first_chart_bit", "hybrid", "implicit", "integrate",
