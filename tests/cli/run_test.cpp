@@ -189,13 +189,18 @@ TEST_CASE("run: the constraint force on a particle is mass times acceleration mi
     CHECK(value("P.constraint_force1") == doctest::Approx(m * value("x_ddot")));
     CHECK(value("P.constraint_force2") == doctest::Approx(m * (value("y_ddot") + g)));
   }
-  // Two particles on rods: only the second one has coordinates of its own; the force on the first acts on both.
+  // Two particles on rods: the second one has coordinates of its own, and hangs on the first.
   const Json rods =
       document(folder, {"run", "S5_double_pendulum", "--t-end", "0", "--output", "P2.constraint_force,reaction.rod2"});
   const double tension = rods["final"]["reaction.rod2"];
   CHECK(rods["final"]["P2.constraint_force1"].get<double>() == doctest::Approx(tension * std::cos(0.4)));
   CHECK(rods["final"]["P2.constraint_force2"].get<double>() == doctest::Approx(tension * std::sin(0.4)));
   CHECK(rods["final"]["P2.constraint_force3"] == 0);
-  CHECK(contains(expect(2, folder, {"run", "S5_double_pendulum", "--output", "P1.constraint_force"}).err,
-                 "there is no output 'P1.constraint_force'"));
+  // The same coordinates move both particles, so that the motion does not tell how they share the force.
+  folder.write("shared.toml",
+               "format = 1\n[coordinates]\nx = {}\ny = {}\n[[particle]]\nname = \"A\"\nmass = 1\nposition = [\"x\", "
+               "\"y\", 0]\n[[particle]]\nname = \"B\"\nmass = 1\nposition = [\"-x\", \"y\", 1]\n[[constraint]]\nname = "
+               "\"wire\"\nholonomic = \"y - x^2\"\n");
+  CHECK(contains(expect(2, folder, {"run", "shared.toml", "--output", "A.constraint_force"}).err,
+                 "there is no output 'A.constraint_force'"));
 }
