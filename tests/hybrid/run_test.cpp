@@ -8,69 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "hybrid/ball.hpp"
+
 using namespace eom::hybrid;
 
 namespace {
-
-constexpr double gravity = 10;
-
-/// A ball above the ground: q = z, psi = z, restitution p[0]. Outputs: z, z_dot, kinetic, potential, energy,
-/// restitution.
-namespace ball {
-
-bool is_open(int mode) { return eom::contact_digit(mode, 0) >= 3; }
-int rhs(double, const double* x, const double*, const double*, int mode, double* dx) {
-  const double acceleration = is_open(mode) ? -gravity : 0;
-  dx[0] = x[1];
-  dx[1] = acceleration;
-  return 0;
-}
-int outputs(double, const double* x, const double* p, const double*, int, double* y) {
-  y[0] = x[0], y[1] = x[1];
-  y[2] = x[1] * x[1] / 2, y[3] = gravity * x[0], y[4] = y[2] + y[3], y[5] = p[0];
-  return 0;
-}
-int events(double, const double* x, const double*, const double*, int mode, double* g) {
-  g[0] = g[1] = g[2] = 0;
-  g[3] = is_open(mode) ? x[0] : gravity;  // the gap; the normal force
-  g[4] = 1;
-  return 0;
-}
-int mass(double, const double*, const double*, double* M, double* h) {
-  M[0] = 1, h[0] = gravity;
-  return 0;
-}
-int constraints(double, const double* x, const double*, double* psi, double* A, double* b) {
-  psi[0] = x[0], A[0] = 1, b[0] = 0;
-  return 0;
-}
-
-Code code() {
-  Code code;
-  code.rhs = rhs, code.outputs = outputs, code.events = events, code.mass = mass, code.constraints = constraints;
-  code.output_names = {"z", "z_dot", "kinetic", "potential", "energy", "restitution"};
-  code.free = {0};
-  code.active_constraints = 1;
-  code.holonomic = {true};
-  code.contacts = {{{0, false, true, false, false}, "ground", 0}};
-  return code;
-}
-
-Problem problem(const Code& code, double restitution) {
-  Problem problem;
-  problem.code = &code;
-  problem.parameters = {restitution};
-  problem.t1 = 3;
-  problem.start = {1, 0};
-  problem.solver = "dop853";
-  problem.kinetic = 2, problem.potential = 3, problem.energy = 4;
-  problem.contacts = {{{}, {}, {}, 0, 5}};
-  problem.starts_open = {true};
-  problem.state_names = {"z", "z_dot"};
-  return problem;
-}
-
-}  // namespace ball
 
 /// x'' = -sign(x) with a frozen branch of the kink; g: an event at x_dot, then the kink.
 namespace corner {
@@ -137,22 +79,22 @@ TEST_CASE("hybrid: a ball bounces at the times of its closed form, and rests aft
   Problem problem = ball::problem(code, 0.5);
   const RunResult result = run(problem);
   REQUIRE(result.outcome == eom::Outcome::done);
-  const double fall = std::sqrt(2 / gravity);
-  double hit = fall, speed = gravity * fall;
+  const double fall = std::sqrt(2 / ball::gravity);
+  double hit = fall, speed = ball::gravity * fall;
   std::size_t seen = 0;
   for (const Event& event : result.events) {
     CHECK(event.kind == "contact");
     if (seen == 12) break;
     CHECK(event.t == doctest::Approx(hit).epsilon(1e-10));
     speed *= 0.5;
-    hit += 2 * speed / gravity;
+    hit += 2 * speed / ball::gravity;
     ++seen;
   }
   CHECK(seen == 12);
   CHECK(result.events.back().t == doctest::Approx(3 * fall).epsilon(1e-6));  // fall (1 + 2 e/(1 - e))
   CHECK(std::abs(result.state[0]) < 1e-12);
   CHECK(std::abs(result.state[1]) < 1e-12);
-  CHECK(result.impulse_work == doctest::Approx(-gravity));  // all of the energy
+  CHECK(result.impulse_work == doctest::Approx(-ball::gravity));  // all of the energy
 }
 
 TEST_CASE("hybrid: a ball without restitution does not bounce") {
@@ -161,7 +103,7 @@ TEST_CASE("hybrid: a ball without restitution does not bounce") {
   const RunResult result = run(problem);
   REQUIRE(result.outcome == eom::Outcome::done);
   REQUIRE(result.events.size() == 1);
-  CHECK(result.events[0].t == doctest::Approx(std::sqrt(2 / gravity)).epsilon(1e-12));
+  CHECK(result.events[0].t == doctest::Approx(std::sqrt(2 / ball::gravity)).epsilon(1e-12));
   CHECK(result.error.max < 1e-8);
 }
 

@@ -170,7 +170,10 @@ struct Problem {
 
   /// The time at which the motion begins: t0, or behind a kink there.
   double begin() const {
-    return !breakpoints.empty() && breakpoints.front().before <= t0 ? breakpoints.front().after : t0;
+    for (const Breakpoint& kink : breakpoints) {
+      if (kink.before <= t0 && t0 < kink.after) return kink.after;  // earlier ones are those of earlier pieces
+    }
+    return t0;
   }
 
   std::size_t n() const { return code->free.size(); }
