@@ -38,6 +38,7 @@ class Description {
     guesses();
     initial_parameters();
     fixed_coordinates();
+    find_time_kinks();
     ranges();
     if (!rows()) return nullptr;
     result_->values = function("start_values", {{"v", values_}});
@@ -140,6 +141,20 @@ class Description {
                               {add(given->second), add(at_start(order == 0 ? fixed.value : fixed.rate))});
       }
     }
+  }
+
+  void find_time_kinks() {
+    std::vector<Ref> roots;
+    for (const mechanics::Constraint& c : m_.constraints) {
+      roots.push_back(written_(c.holonomic() ? c.psi : m_.velocity_form(c)));
+    }
+    const std::vector<Symbol> symbols = dag_.symbols(roots);
+    const bool moves = std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) {
+      return s.kind == SymbolKind::time || s.kind == SymbolKind::input;
+    });
+    const std::vector<Ref> parts = dag_.reachable(roots);
+    const bool bends = std::any_of(parts.begin(), parts.end(), [this](Ref r) { return symbolic::is_kink(dag_[r].op); });
+    result_->has_time_kinks = moves && bends;
   }
 
   void ranges() {

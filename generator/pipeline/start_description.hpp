@@ -10,7 +10,8 @@
 
 namespace eomgen::pipeline {
 
-/// Null if the constraints are too many for a function that keeps its matrices on the stack.
+/// Null if the model declares states of first order, or if the constraints are too many for a function that keeps its
+/// matrices on the stack.
 std::shared_ptr<const emit::StartDescription> describe_start(DerivedModel& derived, const model::Scene& scene);
 
 }  // namespace eomgen::pipeline

@@ -251,8 +251,29 @@ void check_javascript(const std::string& folder, const std::vector<Scene>& scene
   CHECK(at == results.size());
 }
 
+/// A rod whose support turns back at the start: the rates are those behind the kink.
+constexpr const char* kink_at_start = R"toml(format = 1
+[parameters]
+v = 0.3
+[functions]
+s = "v*abs(t - 1)"
+[coordinates]
+x = {}
+y = {}
+[energy]
+kinetic = "(x_dot^2 + y_dot^2)/2"
+[[constraint]]
+name = "rod"
+holonomic = "(x - s)^2 + y^2 - 1"
+[scene.default]
+t = [1, 2]
+initial = { x = 0.6, x_dot = 0.1 }
+guess = { y = -0.8 }
+)toml";
+
 std::vector<std::string> shipped() {
-  std::vector<std::string> paths;
+  std::vector<std::string> paths{build_folder() + "/kink_at_start.toml"};
+  write_text(paths.front(), kink_at_start);
   for (const auto& entry : std::filesystem::directory_iterator(source_folder() + "/models"))
     if (entry.path().extension() == ".toml") paths.push_back(entry.path().string());
   std::sort(paths.begin(), paths.end());
@@ -261,7 +282,9 @@ std::vector<std::string> shipped() {
 
 }  // namespace
 
-TEST_CASE("starts: emitted C and JavaScript give what a run of every shipped scene gives for each changed value") {
+TEST_CASE(
+    "starts: emitted C and JavaScript give what a run of every shipped scene gives, and one at a kink, for each "
+    "changed value") {
   const TemporaryFolder folder;
   std::vector<emit::EmittedFile> files{{"run.js", program_of_node}};
   std::vector<Scene> scenes;

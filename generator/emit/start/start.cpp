@@ -72,7 +72,25 @@ class Text {
             {"head", c ? start_head(language_.prefix, real) : "function start(given, t, x, p, mode)"},
             {"work", c ? fmt::format("  {} work, *s = &work;", work) : "  const s = start_work();"},
             {"defaults", language_.prefix + "defaults"},
+            {"behind", behind()},
+            {"values_behind", values_behind()},
             {"purpose", start_purpose}};
+  }
+
+  std::string field(const char* name) const { return (language_.is_c ? "s->" : "s.") + std::string(name); }
+
+  /// The start of the motion: behind a kink in time at t0, by rounding.
+  std::string behind() const {
+    const std::string t0 = field("t[0]"), t1 = field("t[1]"), abs = language_.is_c ? "fabs" : "abs";
+    if (!start_.has_time_kinks) return t0;
+    const std::string part = number(language_.single ? 2.4e-7 : 4.5e-16);
+    return fmt::format("{0} + {1}*({2}({0}) + {2}({3} - {0}))", t0, part, abs, t1);
+  }
+
+  std::string values_behind() const {
+    if (!start_.has_time_kinks) return "";
+    return fmt::format("  if ({}values({}, {}, {}, {})) return 5;\n", prefix_, behind(), field("x"), field("p"),
+                       field("v"));
   }
 
   std::string number(double value) const { return decimal(value) + (language_.single ? "f" : ""); }
@@ -191,7 +209,7 @@ class Text {
 }  // namespace
 
 const char* const start_purpose =
-    "What follows from the values of x, p, t = {t0, t1} that `given` names, in this order; null: the default scene.";
+    "Completes x, p and t = {t0, t1} from the values that `given` names, in this order; null: the default scene.";
 
 std::string start_head(const std::string& prefix, const std::string& real) {
   return wrapped(fmt::format("int {0}start(const int* given, {1}* t, {1}* x, {1}* p, int* mode)", prefix, real),

@@ -18,6 +18,8 @@ struct StartDescription {
   program::Function values;  // "start_values": v, a function of t, x, p; v[0], v[1]: the span of the scene
   program::Function rows;    // "start_rows": A (by rows), psi, b of the equations of the start
 
+  bool has_time_kinks = false;  // constraints may have a kink in time: rates at one are those behind it
+
   std::vector<int> dependent;  // parameter, v
   std::vector<int> stated;     // state, v: initial values of the scene
   std::vector<int> initial;    // parameter that is the initial value of a state, state, v of its guess
