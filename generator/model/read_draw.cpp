@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "model/samples.hpp"
 
@@ -187,13 +188,22 @@ void DrawReader::require_extent(const ShapeSpec& drawn, const Value& points, con
 }
 
 /// Whether an expression contains initial(q), whose value a run assigns.
-bool DrawReader::depends_on_start(NodeId id) const {
-  if (id == no_node) return false;
-  const Node& node = model_.arena[id];
-  if (node.op == Op::parameter)
-    return model_.parameters[node.index].initial_value_of.has_value() ||
-           depends_on_start(model_.parameters[node.index].value);
-  return std::any_of(std::begin(node.args), std::end(node.args), [&](NodeId arg) { return depends_on_start(arg); });
+bool DrawReader::depends_on_start(NodeId root) const {
+  std::vector<NodeId> left{root};
+  std::set<NodeId> seen;  // parameters that name each other twice have exponentially many paths
+  while (!left.empty()) {
+    const NodeId id = left.back();
+    left.pop_back();
+    if (id == no_node || !seen.insert(id).second) continue;
+    const Node& node = model_.arena[id];
+    if (node.op == Op::parameter) {
+      if (model_.parameters[node.index].initial_value_of) return true;
+      left.push_back(model_.parameters[node.index].value);
+    } else {
+      left.insert(left.end(), std::begin(node.args), std::end(node.args));
+    }
+  }
+  return false;
 }
 
 std::vector<NodeId> DrawReader::drawn_lengths(const Value& value, std::size_t count, const std::string& what,

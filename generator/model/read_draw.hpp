@@ -15,7 +15,7 @@ class DrawReader : private SectionReader {
   ShapeSpec drawn_shape(std::uint32_t place, const Value& value);
   void read_mesh(ShapeSpec& drawn, const Value& points, const Value* faces, const std::string& what);
   void require_extent(const ShapeSpec& drawn, const Value& points, const Value* faces, const std::string& what);
-  bool depends_on_start(NodeId node) const;
+  bool depends_on_start(NodeId root) const;
   std::vector<NodeId> drawn_lengths(const Value& value, std::size_t count, const std::string& what, bool positive);
 };
 

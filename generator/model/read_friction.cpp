@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 namespace eomgen::model {
-namespace {}  // namespace
 
 Friction FrictionReader::coefficients(const Value& table, const std::string& what, std::optional<Dimension> speed) {
   Friction law;

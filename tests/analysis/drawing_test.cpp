@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Figure of a document: direction of view, shapes of bodies, and positions at the start.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -188,6 +189,12 @@ TEST_CASE("figure: a line of variable length is no rod; particles have shapes, w
   CHECK(
       particle("[draw]\nP = { mesh = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[1, 2, 3], [1, 2, 4]] }\n")
           .size() == 5);
+  // Parameters that name one another twice have 2^60 paths.
+  std::string halves = "[parameters]\na0 = \"1 m\"\n";
+  for (int i = 1; i <= 60; ++i) halves += fmt::format("a{0} = \"a{1}/2 + a{1}/2\"\n", i, i - 1);
+  CHECK(particle(halves +
+                 "[draw]\nP = { mesh = [[0, 0, 0], [\"a60\", 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[1, 2, 3]] }\n")
+            .size() == 3);
   // Two circles of 40 strokes for each pair of gears, and two straight lines of the belt.
   CHECK(strokes(*shipped("geared_hoist").figure, Figure::Weight::plain).size() >= 2 * 2 * 40 + 2);
 }
