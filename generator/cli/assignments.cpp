@@ -34,7 +34,7 @@ std::size_t number_length(const std::string& text) {
   return exponent;
 }
 
-/// What the model states for a name of --set: its dimension, if known, and its unit as written, if it is not SI.
+/// Statements of the model about a name of --set: its dimension, if known, and its unit as written, if it is not SI.
 struct Stated {
   std::optional<model::Dimension> dimension;
   std::optional<model::MeasuredUnit> unit;

@@ -72,7 +72,7 @@ PreparedRuns::Derivation& PreparedRuns::derive(const pipeline::SimulationRequest
     std::shared_ptr<pipeline::DerivedModel> derived(
         pipeline::derive_model(model_, request.approach, request.form).release(), LockedDelete{});
     put_first(derivations_, Derivation{request.approach, request.form, std::move(derived)}, most_derivations);
-    // What refers to an older derivation cannot be found any more.
+    // Entries of an older derivation cannot be found any more.
     const auto is_old = [this](const auto& entry) {
       return std::none_of(derivations_.begin(), derivations_.end(),
                           [&](const Derivation& d) { return d.derived.get() == entry.of; });
@@ -100,7 +100,7 @@ std::shared_ptr<const pipeline::RunPlan> PreparedRuns::plan(Derivation& derivati
   return plans_.front().plan;
 }
 
-/// Every scene adds its numbers to the graph. What compiled code refers to is kept.
+/// Every scene adds its numbers to the graph. Nodes that compiled code refers to are kept.
 void PreparedRuns::trim_graph(Derivation& derivation) {
   bool compiled = false, charts = false;
   for (const Compiled& c : compilations_) {

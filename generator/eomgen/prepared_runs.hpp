@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the calls of one model that integrate have in common: its equations, the code of its runs, and scenes in
+// Shared by the calls of one model that integrate: its equations, the code of its runs, and scenes in
 // numbers. A second run of an unchanged model therefore costs its integration. Not installed.
 #pragma once
 

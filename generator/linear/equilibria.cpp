@@ -80,7 +80,7 @@ class Search {
     }
   }
 
-  /// Where the iteration from a start ends.
+  /// The end of the iteration from a start.
   enum class Outcome { nothing, known, added };
 
   Outcome follow(const State<double>& start, const std::vector<double>& targets, const KnownPoints& away_from) {

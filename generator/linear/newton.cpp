@@ -128,13 +128,13 @@ double KnownPoints::step_factor(const State<double>& z, const Eigen::VectorXd& s
   for (const State<double>& point : points) {
     double distance = 0, rate = 0;  // of the square of the distance, along s
     for (std::size_t i = 0; i + 1 < z.size(); ++i) {
-      const double s = scaled_step(static_cast<Eigen::Index>(i)) * (1 + std::abs(z[i])), apart = z[i] - point[i];
+      const double s = scaled_step(static_cast<Eigen::Index>(i)) * (1 + std::abs(z[i])), offset = z[i] - point[i];
       if (i < turns.size() && turns[i]) {
-        distance += 2 - 2 * std::cos(apart);
-        rate += 2 * std::sin(apart) * s;
+        distance += 2 - 2 * std::cos(offset);
+        rate += 2 * std::sin(offset) * s;
       } else {
-        distance += apart * apart;
-        rate += 2 * apart * s;
+        distance += offset * offset;
+        rate += 2 * offset * s;
       }
     }
     along -= rate / (distance * (1 + distance));

@@ -23,7 +23,7 @@ struct Direction {
   std::vector<Signal> du;     // of the inputs at fixed t; empty: none depends on the value
 };
 
-/// What a direction refers to.
+/// The model and scene that a direction refers to.
 struct ModelScene {
   mechanics::Mechanics& mechanics;
   const system::EquationSystem& system;

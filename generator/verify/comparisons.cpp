@@ -310,7 +310,7 @@ State in_mode(const EquationSystem& s, const SystemValues& at, const State& stat
   return result;
 }
 
-/// The possible modes of a state: contacts that are open in it are not closed. Where the motion is prescribed as a
+/// The possible modes of a state: contacts that are open in it are not closed. If the motion is prescribed as a
 /// whole, sticking friction is not determined, and contacts slide.
 std::vector<int> modes_of(const EquationSystem& s, const State& state) {
   std::vector<eom::ContactShape> shapes;

@@ -112,7 +112,7 @@ live.parameters.forEach((p, i) => { parameters[p.name] = live.p[i]; });
 console.log(JSON.stringify({refusal: live.refusal, t0: live.t0, t1: live.t1, states, parameters, psi: Array.from(live.constraintsAt(live.t0, live.x).psi)}));
 )";
 
-/// What the page has after these values were chosen; nothing without Node.
+/// The contents of the page after these values were chosen; nothing without Node.
 std::optional<Json> page(const Folder& folder, const std::string& model, const std::map<std::string, double>& set,
                          const Words& options = {}) {
   expect(0, folder, with({"report", model, "-o", "page.html"}, options));

@@ -30,7 +30,7 @@ Json to_json(const linear::StabilityVerdict& verdict) {
 
 Json to_json(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
-/// What the visits of the points say of points that were not found.
+/// Estimates from the visits of the points how many were not found.
 std::string completeness(const linear::SearchResult& search) {
   const std::optional<double> probability = search.new_point_probability();
   if (!probability) return "";

@@ -33,7 +33,7 @@ class ContactVelocities {
   /// Slip and gap speeds up to this value count as zero: within the tolerances of the run.
   double negligible_speed() const;
   void reset();
-  /// What has been observed of slip since the start of the run.
+  /// Observations of slip since the start of the run.
   struct ObservedSlip {
     double largest = 0;
     std::vector<double> least;  // per contact: that counts
