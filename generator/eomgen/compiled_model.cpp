@@ -160,6 +160,7 @@ int CompiledModel::rhs(const Arguments& at, double* dx) const {
 }
 int CompiledModel::jac(const Arguments& at, double* dfdx, double* dfdt) const { return EOMGEN_CALL(jac, dfdx, dfdt); }
 int CompiledModel::jac_p(const Arguments& at, double* dfdp) const { return EOMGEN_CALL(jac_p, dfdp); }
+int CompiledModel::jac_u(const Arguments& at, double* dfdu) const { return EOMGEN_CALL(jac_u, dfdu); }
 int CompiledModel::mass(const Arguments& at, double* M, double* h) const { return EOMGEN_CALL(mass, M, h); }
 int CompiledModel::momenta(const Arguments& at, double* p, double* rates) const {
   return EOMGEN_CALL(momenta, p, rates);

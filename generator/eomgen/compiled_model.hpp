@@ -27,8 +27,8 @@ struct CompileOptions {
   std::string form = "auto";               // see EmitOptions::form
   std::string tier = "auto";               // see RunOptions::tier
   std::optional<std::string> solver = {};  // of simulations, one of solvers(); replaces the scene's
-  /// Functions beside rhs and outputs: "jac", "jac_p", "mass", "momenta", "constraints", "reactions", "events",
-  /// "taylor". None given: jac, mass, and for a model with constraints also constraints and reactions.
+  /// Functions beside rhs and outputs: "jac", "jac_p", "jac_u", "mass", "momenta", "constraints", "reactions",
+  /// "events", "taylor". None given: jac, mass, and for a model with constraints also constraints and reactions.
   std::optional<std::vector<std::string>> functions = {};
   std::vector<std::string> outputs = {};  // in addition to coordinates; replace the scene's; "all": every output
   bool charts = true;                     // allow simulations to change charts near singularities
@@ -87,6 +87,7 @@ class CompiledModel {
   int rhs(const Arguments& at, double* dx) const;                    // N
   int jac(const Arguments& at, double* dfdx, double* dfdt) const;    // N x N by columns; N, at fixed x, or null
   int jac_p(const Arguments& at, double* dfdp) const;                // N x P by columns
+  int jac_u(const Arguments& at, double* dfdu) const;                // N x U by columns
   int mass(const Arguments& at, double* M, double* h) const;         // M qddot + h = A^T lambda: n x n by columns; n
   int momenta(const Arguments& at, double* p, double* rates) const;  // dL/d(qdot): n; rates without constraint forces
   int constraints(const Arguments& at, double* psi, double* A, double* b) const;  // A qdot + b = 0: m; m x n; m

@@ -39,7 +39,8 @@ TEST_CASE("library: compiled functions of a driven pendulum have their values, i
   const Model model = Model::from(driven_pendulum(), "driven");
   for (const char* tier : {"compiled", "auto"}) {
     const CompiledModel f = model.compile(
-        {.tier = tier, .functions = std::vector<std::string>{"jac", "jac_p", "mass", "momenta", "events", "taylor"}});
+        {.tier = tier,
+         .functions = std::vector<std::string>{"jac", "jac_p", "jac_u", "mass", "momenta", "events", "taylor"}});
     CHECK(names(f.states()) == std::vector<std::string>{"q", "q_dot"});
     CHECK(names(f.parameters()) == std::vector<std::string>{"k", "k2"});
     CHECK(names(f.inputs()) == std::vector<std::string>{"u"});
@@ -52,7 +53,7 @@ TEST_CASE("library: compiled functions of a driven pendulum have their values, i
     CHECK_FALSE(f.certificate().empty());
 
     const double x[] = {0.7, -1.1}, q = x[0];
-    double dx[2], J[4], Jt[2], Jp[4], M[1], h[1], p[1], rate[1];
+    double dx[2], J[4], Jt[2], Jp[4], Ju[2], M[1], h[1], p[1], rate[1];
     CompiledModel::Arguments at{.x = x};
     REQUIRE(f.rhs(at, dx) == 0);
     CHECK(dx[0] == x[1]);
@@ -65,6 +66,9 @@ TEST_CASE("library: compiled functions of a driven pendulum have their values, i
     CHECK(f.jac(at, J, nullptr) == 0);
     REQUIRE(f.jac_p(at, Jp) == 0);
     CHECK(Jp[1] == doctest::Approx(-std::sin(q)).epsilon(1e-15));
+    REQUIRE(f.jac_u(at, Ju) == 0);
+    CHECK(Ju[0] == 0);
+    CHECK(Ju[1] == 1);
     REQUIRE(f.mass(at, M, h) == 0);
     CHECK(M[0] == 1);
     CHECK(h[0] == doctest::Approx(4 * std::sin(q) - 0.5).epsilon(1e-15));
