@@ -19,8 +19,7 @@ struct EmissionRequest {
 };
 
 /// The possible entries of `with`: functions other than rhs; "energy"; "outputs" of the default scene; "charts", second
-/// charts; "run", all functions that a run calls; "start", what follows from
-/// given parameters and initial values.
+/// charts; "run", all functions that a run calls; "start", the start for given parameters and initial values.
 const std::vector<std::string>& emitted_functions();
 
 /// Throws Error if the name is neither a target nor one of `beside`.

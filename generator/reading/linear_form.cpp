@@ -14,7 +14,7 @@ using mechanics::Mechanics;
 std::string obstacle(const Mechanics& m, const DisplayForm& form) {
   if (form.is_unexpanded) return form.unexpanded_reason;
   if (!m.model->states.empty())
-    return "integrals over time are states of their own: eomgen linearize gives A and B at a state";
+    return "there are states of first order beside the coordinates: eomgen linearize gives A and B at a state";
   if (!m.contacts.empty())
     return "contacts have modes, each with slopes of its own: eomgen linearize gives A and B at a state";
   for (const Equation& equation : form.equations) {
