@@ -29,6 +29,7 @@ constexpr int fewest_digits = 8;    // required of the reference solution
 std::vector<double> require_smooth(const Simulation& simulation, const run::RunRequest& request) {
   if (!simulation.program.contacts.empty())
     unsupported("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
+  if (request.has_resets()) unsupported("events or samples change the state", "eomgen run gives an error_estimate");
   for (const run::Signal& signal : simulation.scene.inputs) {
     if (signal.is_varying())
       unsupported("an input is an expression of t", "write it into the force, or give it as a table");

@@ -23,6 +23,32 @@ print::PrintedFormula item_of(const mechanics::Mechanics& m, symbolic::Ref expre
 }
 std::string shown(const mechanics::Mechanics& m, symbolic::Ref expression) { return item_of(m, expression).text; }
 
+/// A comparison, which the model holds as if(a < b, 1, 0) or if(a < b, 0, 1).
+std::string comparison(mechanics::Mechanics& m, model::NodeId condition) {
+  const model::Node node = m.model->arena[condition];
+  const auto side = [&](std::size_t k) { return shown(m, mechanics::lower_scalar(m, node.args[k])); };
+  const bool less = cln::plusp(m.model->arena[node.args[2]].value);
+  return less ? side(0) + " < " + side(1) : side(1) + " <= " + side(0);
+}
+
+void add_resets(mechanics::Mechanics& m, Examination& found) {
+  const auto add = [&](const std::string& name, model::NodeId when, bool sample, const model::Reset& reset) {
+    if (reset.set.empty() && reset.condition == model::no_node) return;
+    ExaminedReset one{name, shown(m, mechanics::lower_scalar(m, when)), "", {}, sample};
+    if (reset.condition != model::no_node) one.condition = comparison(m, reset.condition);
+    for (const model::Assignment& target : reset.set) {
+      using Target = model::Assignment::Target;
+      const std::string to =
+          target.target == Target::state ? m.model->states[target.index].name : m.model->coordinates[target.index].name;
+      one.set.emplace_back(to + (target.target == Target::velocity ? "_dot" : ""),
+                           shown(m, mechanics::lower_scalar(m, target.value)));
+    }
+    found.resets.push_back(std::move(one));
+  };
+  for (const model::Event& event : m.model->events) add(event.name, event.when, false, event.reset);
+  for (const model::Sample& sample : m.model->samples) add(sample.name, sample.every, true, sample.reset);
+}
+
 /// Kinks that runs do not locate, because the modes have no place for them.
 void add_further_kinks(const mechanics::Mechanics& m, const system::EquationSystem& system, Examination& found) {
   system::EquationSystem copy = system;
@@ -165,9 +191,14 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
   for (std::uint32_t i = 0; i < model.states.size(); ++i) {
     const model::State& state = model.states[i];
     if (state.integral) continue;
+    if (state.discrete) {
+      found.discrete.push_back({state.name, unit_of(state)});
+      continue;
+    }
     found.states.push_back({state.name, unit_of(state), shown(m, m.dag->rates().at(mechanics::state_symbol(model, i))),
                             state.energy != model::no_node});
   }
+  add_resets(m, found);
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     const model::Parameter& p = model.parameters[i];
     found.parameters.push_back({p.name, unit_of(p),

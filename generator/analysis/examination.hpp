@@ -27,6 +27,19 @@ struct ExaminedState {
   bool energy_counted = false;  // the model states the energy that it stores
 };
 
+struct ExaminedDiscrete {
+  std::string name, unit;
+};
+
+/// Changes of the state at an event or a sample.
+struct ExaminedReset {
+  std::string name;
+  std::string when;                                      // of an event: its function; of a sample: its period
+  std::string condition;                                 // "" if there is none
+  std::vector<std::pair<std::string, std::string>> set;  // names and formulas of new values
+  bool sample = false;
+};
+
 /// A parameter, or an input with its default value.
 struct ExaminedValue {
   std::string name, unit;
@@ -86,6 +99,8 @@ struct Examination {
   std::vector<ExaminedCoordinate> coordinates;
   long degrees_of_freedom = 0;
   std::vector<ExaminedState> states;
+  std::vector<ExaminedDiscrete> discrete;
+  std::vector<ExaminedReset> resets;
   std::vector<ExaminedValue> parameters, inputs;
   std::vector<ExaminedConstraint> constraints;
   std::vector<ExaminedJoint> joints;

@@ -127,6 +127,15 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
   return reached;
 }
 
+/// The value of a state at the start of the scene.
+double start_of(SteadyProblem& p, std::uint32_t state) {
+  const std::vector<system::FirstOrderState>& states = p.system().states;
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    if (states[k].symbol.index == state) return p.scene.z[k];
+  }
+  return 0;
+}
+
 Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, const Reached& state,
                             std::optional<std::uint64_t> moved) {
   DerivedModel& d = *p.derived;
@@ -140,9 +149,13 @@ Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, c
   }
   for (const run::Signal& signal : p.scene.inputs)
     setting.inputs.push_back(linear::number<Precise>(numeric::exact(signal(p.t, p.t))));
-  for (std::size_t i = 0; i < d.model.states.size(); ++i)
-    setting.integrals.push_back(
-        linear::number<Precise>(numeric::exact(d.model.states[i].integral && !state.z.empty() ? state.z[i] : 0.0)));
+  for (std::uint32_t i = 0; i < d.model.states.size(); ++i) {
+    const model::State& held = d.model.states[i];
+    double value = 0;
+    if ((held.integral || held.discrete) && !state.z.empty()) value = state.z[i];
+    if (held.discrete && state.z.empty()) value = start_of(p, i);
+    setting.held.push_back(linear::number<Precise>(numeric::exact(value)));
+  }
   return setting;
 }
 
@@ -177,7 +190,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
   for (const auto* values : {&state.q, &state.qdot}) {
     for (const std::uint32_t i : p.system().free) p.z.push_back(linear::number<Precise>(numeric::exact((*values)[i])));
   }
-  for (std::size_t i = 0; i < p.system().states.size(); ++i) {
+  for (std::size_t i = 0; i < p.system().layout().first_order; ++i) {  // discrete values are in the setting
     const symbolic::Symbol& symbol = p.system().states[i].symbol;
     if (symbol.kind == symbolic::SymbolKind::state)
       p.z.push_back(linear::number<Precise>(numeric::exact(state.z.empty() ? p.scene.z[i] : state.z[symbol.index])));

@@ -78,6 +78,17 @@ Json to_json(const model::Model& model, const analysis::Examination& found) {
   for (const auto& z : found.states) {
     states.push_back({{"name", z.name}, {"unit", z.unit}, {"rate", z.rate}, {"energy_counted", z.energy_counted}});
   }
+  Json discrete = Json::array(), resets = Json::array();
+  for (const auto& d : found.discrete) discrete.push_back({{"name", d.name}, {"unit", d.unit}});
+  for (const auto& r : found.resets) {
+    Json set = Json::object();
+    for (const auto& [name, value] : r.set) set[name] = value;
+    resets.push_back({{"name", r.name},
+                      {"kind", r.sample ? "sample" : "event"},
+                      {r.sample ? "every" : "when", r.when},
+                      {"condition", r.condition.empty() ? Json(nullptr) : Json(r.condition)},
+                      {"set", set}});
+  }
   for (const auto& c : found.contacts) {
     contacts.push_back(
         {{"name", c.name}, {"kind", c.kind}, {"law", c.law}, {"slip", list(c.slip)}, {"unilateral", c.unilateral}});
@@ -103,6 +114,8 @@ Json to_json(const model::Model& model, const analysis::Examination& found) {
   result["coordinates"] = coordinates;
   result["dof"] = found.degrees_of_freedom;
   result["states"] = states;
+  result["discrete"] = discrete;
+  result["resets"] = resets;
   result["parameters"] = values(found.parameters, "value", true);
   result["inputs"] = values(found.inputs, "default", false);
   result["constraints"] = constraints(found);

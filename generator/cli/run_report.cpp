@@ -87,7 +87,9 @@ std::string watched(const pipeline::Simulation& simulation) {
                                          i.max_relative_drift));
   }
   out += line("power balance", fmt::format("{:.1e} of the energies exchanged", result.power_balance));
-  if (result.contact_work != 0) out += line("impacts", fmt::format("did the work {:.6g}", result.contact_work));
+  if (result.contact_work != 0)
+    out += line(simulation.program.contacts.empty() ? "impulses" : "impacts",
+                fmt::format("did the work {:.6g}", result.contact_work));
   if (simulation.derived->mechanics.active.empty()) return out;
   const std::vector<bool>& holonomic = simulation.program.holonomic;
   const bool positions = std::find(holonomic.begin(), holonomic.end(), false) == holonomic.end();

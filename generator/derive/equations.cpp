@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/equations.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -197,12 +199,46 @@ void add_outputs(Mechanics& m, EquationSystem& s) {
   }
 }
 
+// The place of a target in x.
+std::size_t component(const Mechanics& m, const EquationSystem& s, const model::Assignment& target) {
+  const eom::StateLayout layout = s.layout();
+  if (target.target == model::Assignment::Target::state) {
+    const auto found = std::find_if(s.states.begin(), s.states.end(), [&](const system::FirstOrderState& state) {
+      return state.symbol.index == target.index;
+    });
+    return layout.first_order_begin() + static_cast<std::size_t>(found - s.states.begin());
+  }
+  const auto found = std::find(s.free.begin(), s.free.end(), target.index);
+  const bool rate = target.target == model::Assignment::Target::velocity;
+  if (found == s.free.end()) {
+    std::string free;
+    for (const std::uint32_t i : s.free)
+      free += (free.empty() ? "" : ", ") + m.model->coordinates[i].name + (rate ? "_dot" : "");
+    const std::string& name = m.model->coordinates[target.index].name;
+    throw Error("derive", m.model->where(target.span),
+                fmt::format("'{}{}' cannot be set: constraints determine the coordinate '{}', which is eliminated",
+                            name, rate ? "_dot" : "", name),
+                "set values that remain free: " + free);
+  }
+  return static_cast<std::size_t>(found - s.free.begin()) + (rate ? layout.rates_begin() : 0);
+}
+
+system::Reset lowered(Mechanics& m, const EquationSystem& s, const model::Reset& reset) {
+  system::Reset result;
+  for (const model::Assignment& assignment : reset.set)
+    result.set.push_back({component(m, s, assignment), mechanics::lower_scalar(m, assignment.value)});
+  if (reset.condition != model::no_node) result.condition = mechanics::lower_scalar(m, reset.condition);
+  return result;
+}
+
 // A multiplier in an event is the reaction of that constraint: an expression if the constraint is eliminated.
 void add_events(Mechanics& m, EquationSystem& s) {
   std::map<Symbol, Ref> forces;
   for (const system::Reaction& r : s.reactions) forces[{SymbolKind::multiplier, r.constraint, 0}] = r.value;
   symbolic::Substitution reacting(*m.dag, std::move(forces));
-  for (std::size_t i = 0; i < m.event.size(); ++i) s.events.push_back({m.model->events[i].name, reacting(m.event[i])});
+  for (std::size_t i = 0; i < m.event.size(); ++i)
+    s.events.push_back({m.model->events[i].name, reacting(m.event[i]), lowered(m, s, m.model->events[i].reset)});
+  for (const model::Sample& sample : m.model->samples) s.samples.push_back({sample.name, lowered(m, s, sample.reset)});
 }
 
 void add_contacts(Mechanics& m, EquationSystem& s, FinalSubstitution& finish) {
@@ -322,6 +358,8 @@ EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquat
   s.free = m.free;
   s.active = m.active;
   s.states = first_order_states(m);
+  s.discrete = static_cast<std::size_t>(std::count_if(m.model->states.begin(), m.model->states.end(),
+                                                      [](const model::State& state) { return state.discrete; }));
   const std::size_t all = m.q.size();
   if (motion != nullptr) {
     s.M = motion->M;
@@ -350,7 +388,15 @@ EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquat
   for (Ref& r : s.f) r = finish(r);
   for (system::Reaction& reaction : s.reactions) reaction.value = finish(reaction.value);
   for (system::Output& output : s.outputs) output.value = finish(output.value);
-  for (system::Event& event : s.events) event.value = finish(event.value);
+  const auto finish_reset = [&finish](system::Reset& reset) {
+    for (system::Reset::Entry& entry : reset.set) entry.value = finish(entry.value);
+    if (reset.condition) reset.condition = finish(*reset.condition);
+  };
+  for (system::Event& event : s.events) {
+    event.value = finish(event.value);
+    finish_reset(event.reset);
+  }
+  for (system::Sample& sample : s.samples) finish_reset(sample.reset);
   add_constraints(m, s, finish);
   add_redundant(m, s, finish);
   add_contacts(m, s, finish);

@@ -2,6 +2,8 @@
 // The names of mechanics that every formulation uses.
 #pragma once
 
+#include <algorithm>
+
 #include "mechanics/imposition.hpp"
 #include "system/equation_system.hpp"
 
@@ -14,8 +16,8 @@ using mechanics::Vec3;
 using symbolic::Dag;
 using symbolic::Ref;
 
-/// The states of first order of the system: those that the model declares, then integrals of functions of time without
-/// a closed form (time_function_substitution).
+/// The states of first order of the system in the order of Model::states: those that the model declares, integrals of
+/// functions of time without a closed form (time_function_substitution), discrete values.
 inline std::vector<system::FirstOrderState> first_order_states(const Mechanics& mechanics) {
   symbolic::Substitution imposed = constraint_substitution(mechanics), written = time_function_substitution(mechanics);
   std::vector<system::FirstOrderState> states;
@@ -24,6 +26,9 @@ inline std::vector<system::FirstOrderState> first_order_states(const Mechanics& 
   }
   for (const mechanics::NonelementaryIntegral& open : mechanics::nonelementary_integrals(mechanics))
     states.push_back({{symbolic::SymbolKind::integral, open.integral, 0}, open.rate});
+  std::sort(states.begin(), states.end(), [](const system::FirstOrderState& a, const system::FirstOrderState& b) {
+    return a.symbol.index < b.symbol.index;
+  });
   return states;
 }
 

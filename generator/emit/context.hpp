@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <eom/hybrid/reset_types.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,6 +44,7 @@ struct StartDescription;
 
 struct EventDescription {
   std::string name, direction, action;
+  eom::hybrid::Reset reset = {};
 };
 
 /// Data that a program needs to run the model as `run` does: the default scene, whose code is described, and the output
@@ -67,7 +69,10 @@ struct EmissionContext {
   std::vector<EventDescription> events;  // all of the model, in declared order
   std::vector<std::string> singular;     // "sin(phi) = 0"
   double start_time = 0;
-  std::vector<double> start;  // x at the start of the default scene
+  /// Whether an event or a sample changes the state.
+  bool has_resets() const;
+  std::vector<eom::hybrid::Sample> samples;  // with the periods of the default scene
+  std::vector<double> start;                 // x at the start of the default scene
   std::vector<TestVector> tests;
   std::shared_ptr<const RunDescription> run = {};                // if requested
   std::shared_ptr<const StartDescription> start_functions = {};  // of NAME_start, if requested (start/start.hpp)

@@ -176,6 +176,12 @@ void add_modes(const program::Program& program, json& info) {
   }
 }
 
+/// The entries of the array r that an event or sample sets.
+void add_reset(const eom::hybrid::Reset& reset, json& info) {
+  for (const eom::hybrid::Reset::Entry& entry : reset.set) info["set"].push_back({entry.component, entry.value});
+  if (reset.condition) info["condition"] = *reset.condition;
+}
+
 /// The exchangeable charts and their bits of `mode`.
 void add_charts(const program::Program& program, const EmissionContext& context, json& info) {
   const std::vector<Quantity> state = states(program, context);
@@ -244,6 +250,14 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   for (std::size_t i = 0; i < program.events.size(); ++i) {
     const EventDescription& event = context.events.at(i);
     info["events"].push_back({{"name", event.name}, {"direction", event.direction}, {"action", event.action}});
+    add_reset(event.reset, info["events"].back());
+  }
+  for (const eom::hybrid::Sample& sample : context.samples) {
+    json one{{"name", sample.name}, {"every", sample.every}, {"offset", sample.offset}};
+    for (const eom::hybrid::Noise& noise : sample.noise)
+      one["noise"].push_back({noise.component, noise.normal ? "normal" : "uniform", noise.seed});
+    add_reset(sample.reset, one);
+    info["samples"].push_back(std::move(one));
   }
   for (std::size_t k = 0; k < program.kinks.size(); ++k) {
     info["kinks"].push_back({{"of", program.kinks[k]}, {"bit", program::first_kink_bit + 2 * k}});
@@ -306,6 +320,11 @@ std::string defaults_body(const program::Program& program, const EmissionContext
 std::string function_purpose(const std::string& function) {
   const abi::Function* found = abi::find(function);
   return found == nullptr ? function : found->purpose;
+}
+
+bool EmissionContext::has_resets() const {
+  return !samples.empty() || std::any_of(events.begin(), events.end(),
+                                         [](const EventDescription& event) { return !event.reset.set.empty(); });
 }
 
 void require_consistent(const program::Program& program, const EmissionContext& context) {

@@ -32,7 +32,7 @@ class Search {
     find_turns();
     result_.is_angle = turns_;
     for (const EulerAngles& set : r_.euler_angles) regular_.push_back(flow_.tape({set.regular}));
-    rough_ = {rounded(r_.setting.parameters), rounded(r_.setting.inputs), rounded(r_.setting.integrals),
+    rough_ = {rounded(r_.setting.parameters), rounded(r_.setting.inputs), rounded(r_.setting.held),
               rounded(r_.setting.leaf)};
   }
 

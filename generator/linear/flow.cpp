@@ -2,6 +2,8 @@
 #include "linear/flow.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <span>
 #include <type_traits>
 
 namespace eomgen::linear {
@@ -26,10 +28,18 @@ Precise singular<Precise>() {
 /// units of the coordinates, and a state is known to 16 digits.
 constexpr int smallest_pivot_digits = 24;
 
+/// The place of a discrete value, which is no entry of the state.
+constexpr auto discrete = std::numeric_limits<std::size_t>::max();
+
 /// Most derivatives are 0.
 template <class T>
 void subtract(T& sum, const T& jacobian, const T& by) {
   if (!is_zero(jacobian)) sum = sum - jacobian * by;
+}
+
+/// States that move: discrete values, the last ones, stand still between events.
+std::span<const system::FirstOrderState> moving_states(const system::EquationSystem& s) {
+  return std::span(s.states).first(s.layout().first_order);
 }
 
 std::vector<Symbol> state_symbols(const system::EquationSystem& s) {
@@ -37,7 +47,7 @@ std::vector<Symbol> state_symbols(const system::EquationSystem& s) {
   for (const std::uint8_t order : {std::uint8_t{0}, std::uint8_t{1}}) {
     for (const std::uint32_t i : s.free) result.push_back({SymbolKind::coordinate, i, order});
   }
-  for (const system::FirstOrderState& state : s.states) {
+  for (const system::FirstOrderState& state : moving_states(s)) {
     if (state.symbol.kind == SymbolKind::state) result.push_back(state.symbol);
   }
   result.push_back({SymbolKind::time, 0, 0});
@@ -54,9 +64,9 @@ Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s)
   for (const char* suffix : {"", "_dot"}) {
     for (const std::uint32_t i : s.free) names_.push_back(m.model->coordinates[i].name + suffix);
   }
-  state_place_.assign(m.model->states.size(), 0);
+  state_place_.assign(m.model->states.size(), discrete);
   std::vector<Ref> rates;  // of the declared states of first order, which come first
-  for (const system::FirstOrderState& state : s.states) {
+  for (const system::FirstOrderState& state : moving_states(s)) {
     if (state.symbol.kind != SymbolKind::state) continue;
     state_place_[state.symbol.index] = names_.size();
     names_.push_back(m.model->states[state.symbol.index].name);
@@ -98,8 +108,9 @@ std::function<T(const Symbol&)> Flow::lookup(const State<T>& z, const Setting<T>
     switch (s.kind) {
       case SymbolKind::parameter: return setting.parameters[s.index];
       case SymbolKind::input: return setting.inputs[s.index];
-      case SymbolKind::integral: return setting.integrals[s.index];
-      case SymbolKind::state: return z[state_place_[s.index]];
+      case SymbolKind::integral: return setting.held[s.index];
+      case SymbolKind::state:
+        return state_place_[s.index] == discrete ? setting.held[s.index] : z[state_place_[s.index]];
       case SymbolKind::time: return z[entries()];
       case SymbolKind::coordinate:
         if (s.order < 2) return z[place_[s.index] + (s.order == 0 ? 0 : n_)];

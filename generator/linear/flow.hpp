@@ -21,8 +21,8 @@ using State = std::vector<T>;
 template <class T>
 struct Setting {
   std::vector<T> parameters, inputs;
-  std::vector<T> integrals;  // of functions of time, per Model::states; 0 for declared states
-  std::vector<T> leaf;       // values of the integrals of constraints on velocities
+  std::vector<T> held;  // per Model::states: integrals of functions of time, discrete values; 0 for other states
+  std::vector<T> leaf;  // values of the integrals of constraints on velocities
 };
 
 template <class T>

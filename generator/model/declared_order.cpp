@@ -35,6 +35,36 @@ std::vector<std::uint32_t> sort_by_place(std::vector<T>& items) {
   return moved;
 }
 
+// The layout of states has discrete values last. Integrals are found while expressions are read, behind them.
+void move_discrete_values_last(Model& model) {
+  std::vector<State> sorted;
+  std::vector<std::uint32_t> moved(model.states.size());
+  for (const bool discrete : {false, true}) {
+    for (std::uint32_t k = 0; k < model.states.size(); ++k) {
+      if (model.states[k].discrete != discrete) continue;
+      moved[k] = static_cast<std::uint32_t>(sorted.size());
+      sorted.push_back(model.states[k]);
+    }
+  }
+  model.states = std::move(sorted);
+  for (Node& node : model.arena.nodes) {
+    if (node.op == Op::state || node.op == Op::integral) node.index = moved[node.index];
+  }
+  for (Scene& scene : model.scenes) {
+    for (InitialState& initial : scene.states) initial.state = moved[initial.state];
+  }
+  const auto move = [&](Reset& reset) {
+    for (Assignment& assignment : reset.set) {
+      if (assignment.target == Assignment::Target::state) assignment.index = moved[assignment.index];
+    }
+  };
+  for (Event& event : model.events) move(event.reset);
+  for (Sample& sample : model.samples) {
+    move(sample.reset);
+    for (Noise& noise : sample.noise) noise.state = moved[noise.state];
+  }
+}
+
 }  // namespace
 
 void restore_declared_order(Model& model) {
@@ -49,6 +79,7 @@ void restore_declared_order(Model& model) {
   for (Scene& scene : model.scenes) {
     for (auto& override_value : scene.parameters) override_value.first = parameters[override_value.first];
   }
+  move_discrete_values_last(model);
 }
 
 }  // namespace eomgen::model

@@ -44,7 +44,8 @@ struct Function {  // of time
   Span span;
 };
 /// A state of first order: d/dt of it is `rate`. It is declared by [[state]], or it is integral(e) of a function of
-/// time from the start of the run, which is a state only if e has no antiderivative in closed form.
+/// time from the start of the run, which is a state only if e has no antiderivative in closed form. A discrete value
+/// ([discrete]) is a state with the rate 0, which events and samples change.
 struct State {
   std::string name;  // of an integral "integral_1"; unique in the model
   NodeId rate = no_node;
@@ -54,6 +55,7 @@ struct State {
   std::string tex;
   Span span;
   bool integral = false;
+  bool discrete = false;
 };
 struct Input {
   std::string name;
@@ -231,12 +233,41 @@ struct Joint {
   std::uint32_t constraint = 0;  // index into Model::constraints
   Span span;
 };
+/// A new value of a coordinate, a velocity, a state of first order or a discrete value.
+struct Assignment {
+  enum class Target { coordinate, velocity, state };
+  Target target = Target::state;
+  std::uint32_t index = 0;  // into Model::coordinates or Model::states
+  NodeId value = no_node;   // all values of a reset are those before it
+  Span span;
+};
+/// Simultaneous changes of the state, at an event or a sample.
+struct Reset {
+  std::vector<Assignment> set;
+  NodeId condition = no_node;  // 1 where the reset is made, 0 elsewhere; none: always
+};
 struct Event {  // a change of sign of `when`
   enum class Direction { any, up, down };
   std::string name;
   NodeId when = no_node;
   Direction direction = Direction::any;
   bool stop = false;  // action = "stop": the run ends there
+  Reset reset;        // its condition holds for the whole event
+  Span span;
+};
+/// A discrete value that receives a new random number at every sample, before `set` of the sample.
+struct Noise {
+  enum class Distribution { normal, uniform };  // mean 0 and deviation 1; from -1 to 1
+  std::uint32_t state = 0;                      // a discrete value
+  Distribution distribution = Distribution::normal;
+  std::uint32_t seed = 0;
+};
+/// Changes at the times offset + k every, for all integers k.
+struct Sample {
+  std::string name;
+  NodeId every = no_node, offset = no_node;  // of parameters; offset: none is 0
+  std::vector<Noise> noise;
+  Reset reset;
   Span span;
 };
 const char* name(Event::Direction direction);  // "any", "up", "down"
@@ -325,7 +356,7 @@ struct Model {
   Arena arena;
   std::vector<Parameter> parameters;
   std::vector<Function> functions;
-  std::vector<State> states;  // declared ones, then integrals, inner ones first
+  std::vector<State> states;  // declared ones, then integrals, inner ones first, then discrete values
   std::optional<std::uint32_t>
       start_time;  // the parameter (the last one) that holds t0 of the run; only with integrals
   std::vector<Input> inputs;
@@ -340,6 +371,7 @@ struct Model {
   std::vector<Constraint> constraints;
   std::vector<Joint> joints;
   std::vector<Event> events;
+  std::vector<Sample> samples;
   std::vector<ShapeSpec> drawn;
   std::vector<Scene> scenes;  // scenes[0] is "default" (generated if the file has none)
   std::vector<Warning> warnings;

@@ -21,10 +21,11 @@ class Parser {
  public:
   explicit Parser(const SourceText& text) : text_(text), tokens_(tokenize(text)) {}
 
-  Syntax all() {
+  /// comparison: whether it may be one, as an argument of a call may.
+  Syntax all(bool comparison = false) {
     if (now().kind == TokenKind::end)
       fail(now(), "an expression is missing", "write a number, a name or an expression");
-    syntax_.root = sum();
+    syntax_.root = comparison ? argument() : sum();
     if (now().kind != TokenKind::end) unexpected();
     const Token& last = tokens_[tokens_.size() - 2];
     syntax_.whole = text_.span(tokens_[0].at, last.at + last.length - tokens_[0].at);
@@ -242,6 +243,8 @@ bool ends_an_operand(char c) {
 }  // namespace
 
 Syntax parse_expression(const SourceText& text) { return Parser(text).all(); }
+
+Syntax parse_comparison(const SourceText& text) { return Parser(text).all(true); }
 
 namespace {
 

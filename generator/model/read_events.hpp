@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reader of [[event]] and of the events that end a scene.
+// Reader of [[event]], of [[sample]], and of the events that end a scene.
 #pragma once
 
 #include "model/section_reader.hpp"
@@ -12,6 +12,12 @@ class EventsReader : private SectionReader {
   void declare();
   void read();
   void read_stop(Scene& scene, const Value& value);
+
+ private:
+  void read_samples();
+  void read_reset(const Value& table, const std::string& what, Reset& reset);
+  Assignment read_assignment(const Entry& entry, const std::string& what);
+  Noise read_noise(const Entry& entry, const std::string& what);
 };
 
 }  // namespace eomgen::model

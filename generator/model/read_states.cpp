@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[state]]: states of first order, and their start values in scenes.
+// [[state]] and [discrete]: states of first order, discrete values, and their start values in scenes.
 #include "model/read_states.hpp"
 
 #include <fmt/format.h>
@@ -18,14 +18,42 @@ void StatesReader::declare() {
     const std::string what = fmt::format("the state '{}'", state.name);
     state.tex = tex_of(*table, what);
     if (const Value* unit = table->find("unit")) state.unit = si_unit(*unit, what);
-    if (model_.states.size() >= max_coordinates) {
-      source_.fail(state.span, fmt::format("the model has more than {} states", max_coordinates),
-                   "a model of this size cannot be handled");
+    add(std::move(state));
+  }
+}
+
+State& StatesReader::add(State state, const Entry* entry) {
+  if (model_.states.size() >= max_coordinates) {
+    source_.fail(state.span, fmt::format("the model has more than {} states", max_coordinates),
+                 "a model of this size cannot be handled");
+  }
+  Symbol& symbol = scope_.declare(SymbolKind::state, state.name, state.span, entry);
+  symbol.index = static_cast<std::uint32_t>(model_.states.size());
+  symbol.state = Symbol::State::resolved;
+  model_.states.push_back(std::move(state));
+  return model_.states.back();
+}
+
+void StatesReader::declare_discrete() {
+  const Value* table = section("discrete");
+  if (table == nullptr) return;
+  for (const Entry& entry : table->entries) {
+    State state;
+    state.name = entry.key;
+    state.span = entry.span;
+    state.discrete = true;
+    const std::string what = fmt::format("the discrete value '{}'", state.name);
+    const Value* initial = &entry.value;
+    if (entry.value.is(Value::Kind::table)) {
+      check_keys(entry.value, {what, {"initial", "unit", "tex"}, {{"value", "its value at the start is 'initial'"}}});
+      initial = entry.value.find("initial");
+      state.tex = tex_of(entry.value, what);
+      if (const Value* unit = entry.value.find("unit")) state.unit = si_unit(*unit, what);
     }
-    Symbol& symbol = scope_.declare(SymbolKind::state, state.name, state.span);
-    symbol.index = static_cast<std::uint32_t>(model_.states.size());
-    symbol.state = Symbol::State::resolved;
-    model_.states.push_back(std::move(state));
+    if (state.unit.text.empty() && initial != nullptr && initial->is(Value::Kind::text)) {
+      if (const std::optional<MeasuredUnit> unit = trailing_unit(initial->text)) state.unit = unit_of(unit->dimension);
+    }
+    add(std::move(state), &entry);
   }
 }
 
@@ -55,6 +83,16 @@ void StatesReader::read() {
       const NodeId start = start_value(model_.states[k], *initial);
       model_.states[k].initial = start;
     }
+  }
+  for (const Symbol* symbol : scope_.all(SymbolKind::state)) {
+    if (symbol->entry == nullptr) continue;  // of [[state]]
+    const std::uint32_t k = symbol->index;
+    model_.states[k].rate = resolver_.number(0, model_.states[k].span).node;
+    const Value& declared = symbol->entry->value;
+    const Value* initial = declared.is(Value::Kind::table) ? declared.find("initial") : &declared;
+    if (initial == nullptr) continue;
+    const NodeId start = start_value(model_.states[k], *initial);
+    model_.states[k].initial = start;
   }
 }
 

@@ -76,6 +76,7 @@ void Reader::read() {
   BodiesReader(context_).declare_units();
   ForcesReader(context_).declare();
   EventsReader(context_).declare();
+  StatesReader(context_).declare_discrete();
   PlacesReader(context_).declare_coordinates();
 
   for (const SymbolKind kind : {SymbolKind::parameter, SymbolKind::function, SymbolKind::input}) {
@@ -107,10 +108,10 @@ void Reader::read() {
 }
 
 void Reader::read_head() {
-  check_keys(root_,
-             {"a model", {"format",      "title",      "notes",    "parameters", "functions", "inputs", "coordinates",
-                          "definitions", "energy",     "particle", "body",       "frame",     "point",  "chain",
-                          "force",       "constraint", "joint",    "event",      "state",     "draw",   "scene"}});
+  check_keys(root_, {"a model",
+                     {"format", "title",    "notes", "parameters", "functions", "inputs", "coordinates", "definitions",
+                      "energy", "particle", "body",  "frame",      "point",     "chain",  "force",       "constraint",
+                      "joint",  "event",    "state", "discrete",   "sample",    "draw",   "scene"}});
   const Value& format = require_value(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {
     source_.fail(format.span, fmt::format("the format {} is not known", quote(format.text)), "write format = 1");

@@ -91,7 +91,7 @@ TypedNode Resolver::conditional(const Syntax& syntax, const SyntaxNode& node) {
   const SyntaxNode& test = syntax.nodes[node.children[0]];
   const bool comparison = test.kind == SyntaxKind::less || test.kind == SyntaxKind::less_equal ||
                           test.kind == SyntaxKind::greater || test.kind == SyntaxKind::greater_equal;
-  if (!comparison) source_.fail(test.span, "the first argument of if() is a comparison", "write if(a < b, x, y)");
+  if (!comparison) source_.fail(test.span, "a comparison is required here", "write a < b, as in if(a < b, x, y)");
   TypedNode a = this->node(syntax, test.children[0]);
   TypedNode b = this->node(syntax, test.children[1]);
   TypedNode x = this->node(syntax, node.children[1]);

@@ -210,7 +210,7 @@ TypedNode Resolver::plain_name(const SyntaxNode& node) {
 TypedNode Resolver::leaf(Symbol& symbol, std::uint8_t order, Span span) {
   symbol.used = true;
   if (symbol.kind == SymbolKind::constraint || symbol.kind == SymbolKind::force || symbol.kind == SymbolKind::event ||
-      symbol.kind == SymbolKind::frame) {
+      symbol.kind == SymbolKind::sample || symbol.kind == SymbolKind::frame) {
     source_.fail(span, fmt::format("'{}' is {}, not a value", symbol.name, kind_name(symbol.kind)),
                  "name a parameter, coordinate, state, function, input, definition, particle or point");
   }

@@ -79,6 +79,24 @@ TypedNode Resolver::value_with_names(const Value& value, const std::map<std::str
   }
 }
 
+TypedNode Resolver::condition(const Value& value, const Context& context) {
+  if (!value.is(Value::Kind::text))
+    source_.fail(value.span, fmt::format("{} is no comparison", context.what), "write a comparison: \"a < b\"");
+  Syntax syntax = parse_comparison(source_text(source_, value));
+  const auto add = [&syntax](SyntaxNode node) {
+    node.span = syntax.whole;
+    syntax.nodes.push_back(std::move(node));
+    return static_cast<std::uint32_t>(syntax.nodes.size() - 1);
+  };
+  SyntaxNode one, none, choice;
+  one.value = 1;
+  choice.kind = SyntaxKind::call;
+  choice.parts = {"if"};
+  choice.children = {syntax.root, add(one), add(none)};
+  syntax.root = add(choice);
+  return this->syntax(syntax, context);
+}
+
 TypedNode Resolver::text(std::string_view text, const std::map<std::string, TypedNode>& local, Span span,
                          const Context& context) {
   const Hold<const std::map<std::string, TypedNode>*> hold_local(local_, &local);

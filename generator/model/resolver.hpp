@@ -55,6 +55,8 @@ class Resolver {
 
   /// Resolves a TOML value (number, expression, expression with unit, array of three) as the context requires.
   TypedNode value(const Value& value, const Context& context);
+  /// Resolves a comparison, as in "a < b": 1 where it holds, else 0. The context's dimension is not used.
+  TypedNode condition(const Value& value, const Context& context);
   /// Resolves an internal expression (for example of a coordinate system) with names of its own.
   TypedNode text(std::string_view text, const std::map<std::string, TypedNode>& local, Span span,
                  const Context& context);

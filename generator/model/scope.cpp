@@ -18,6 +18,7 @@ const char* kind_name(SymbolKind kind) {
     case SymbolKind::constraint: return "a constraint";
     case SymbolKind::force: return "a force";
     case SymbolKind::event: return "an event";
+    case SymbolKind::sample: return "a sample";
   }
   return "a name";
 }

@@ -42,7 +42,8 @@ enum class SymbolKind {
   frame,
   constraint,
   force,
-  event
+  event,
+  sample
 };
 const char* kind_name(SymbolKind kind);
 

@@ -39,7 +39,7 @@ void add_start_time(Model& model, bool units_stated) {
   const auto first =
       std::find_if(model.states.begin(), model.states.end(), [](const State& state) { return state.integral; });
   if (first == model.states.end()) return;
-  for (auto state = first; state != model.states.end(); ++state) {
+  for (auto state = first; state != model.states.end() && state->integral; ++state) {
     state->name = free_name(model, "integral_" + std::to_string(state - first + 1));
   }
   Parameter start;

@@ -82,6 +82,8 @@ struct Syntax {
 
 /// Parses a whole expression. Throws Error.
 Syntax parse_expression(const SourceText& text);
+/// The same for a comparison, a < b; an expression that is none is parsed too.
+Syntax parse_comparison(const SourceText& text);
 /// The unit after the last blank, as in "9.81 m/s^2", if there is one.
 std::optional<MeasuredUnit> trailing_unit(std::string_view text);
 /// Like parse_expression, with an optional unit after a blank.

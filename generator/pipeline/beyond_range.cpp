@@ -107,7 +107,7 @@ bool holds_beyond(const DerivedModel& derived, const run::Scene& scene, const st
 
 bool equations_hold_beyond_range(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
                                  std::uint32_t coordinate, double t, std::span<const double> x) {
-  if (!code.contacts.empty() || code.first_order > 0) return false;
+  if (!code.contacts.empty() || code.layout().others() > 0) return false;
   const std::size_t n = code.free.size();
   std::vector<double> dx(x.size()), y(code.output_names.size()), u;
   for (const run::Signal& input : scene.inputs) u.push_back(input(t, t));

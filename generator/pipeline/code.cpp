@@ -21,8 +21,10 @@ run::Code describe_code(const program::Program& program) {
   code.prepared = program.prepared_count();
   code.output_names = program.outputs;
   code.free = program.free;
-  code.first_order = program.states.size();
+  code.first_order = program.layout().first_order;
+  code.discrete = program.layout().discrete;
   code.active_constraints = program.active_constraints;
+  code.reset_values = program.result_size("resets");
   code.holonomic = program.holonomic;
   code.kinks = program.kinks;
   code.first_kink_bit = program::first_kink_bit;

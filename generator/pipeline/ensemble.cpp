@@ -333,7 +333,9 @@ std::string ensemble_obstacle(const Simulation& first) {
   if (!code.kinks.empty()) return "the equations have kinks (abs, sign, min, max, if), which are located";
   if (code.active_constraints > 0) return "constraints keep multipliers, and each step is projected onto them";
   if (first.charts != nullptr) return "the run may change to second charts near singularities";
-  if (code.first_order > 0) return "the model has a state of first order, or an integral over time that is one";
+  if (code.layout().others() > 0)
+    return "the model has a state of first order, a discrete value, or an integral over time";
+  if (code.reset_values > 0) return "events or samples of the model change the state";
   if (const std::string name = ranged(first, code); !name.empty())
     return fmt::format("'{}' has a range, which is checked after every step", name);
   if (!run::narrow_functions(first.derived->candidates.front()).empty())

@@ -14,6 +14,7 @@
 #include "model/names.hpp"
 #include "numeric/numbers.hpp"
 #include "pipeline/certificate_cache.hpp"
+#include "pipeline/reset_places.hpp"
 #include "pipeline/self_test_states.hpp"
 #include "print/notation.hpp"
 #include "print/printer.hpp"
@@ -358,9 +359,13 @@ emit::EmissionContext emission_context(DerivedModel& derived, const program::Pro
           print::print(*written, print::Notation(derived.mechanics), print::Format::model_language);
     }
   }
-  for (const model::Event& event : model.events) {
-    context.events.push_back({event.name, model::name(event.direction), event.stop ? "stop" : "record"});
+  ResetPlaces resets = reset_places(derived, scene);
+  for (std::size_t i = 0; i < model.events.size(); ++i) {
+    const model::Event& event = model.events[i];
+    context.events.push_back(
+        {event.name, model::name(event.direction), event.stop ? "stop" : "record", std::move(resets.events[i])});
   }
+  context.samples = std::move(resets.samples);
   for (const print::PrintedFormula& item : print::render_singular(derived.mechanics)) {
     if (item.left_out.empty()) context.singular.push_back(item.text);
   }

@@ -11,6 +11,7 @@
 #include "error.hpp"
 #include "pipeline/beyond_range.hpp"
 #include "pipeline/bound_run.hpp"
+#include "pipeline/reset_places.hpp"
 #include "program/kinks.hpp"
 #include "run/monitored_functions.hpp"
 
@@ -142,6 +143,9 @@ run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& 
     if (event.direction == model::Event::Direction::up) run.events.back().direction = eom::Direction::up;
     if (event.direction == model::Event::Direction::down) run.events.back().direction = eom::Direction::down;
   }
+  ResetPlaces resets = reset_places(derived, scene);
+  for (std::size_t i = 0; i < run.events.size(); ++i) run.events[i].reset = std::move(resets.events[i]);
+  run.samples = std::move(resets.samples);
   return run;
 }
 
@@ -169,6 +173,9 @@ program::Request functions_for_run(const DerivedModel& derived, const run::Scene
   wanted.outputs = code_outputs(derived, scene, !energy_is_conserved(derived));
   if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
   if (!derived.model.events.empty() || !system.contacts.empty() || has_kinks) wanted.with.push_back("events");
+  if (!system.samples.empty() || std::any_of(system.events.begin(), system.events.end(),
+                                             [](const system::Event& event) { return !event.reset.empty(); }))
+    wanted.with.push_back("resets");
   const eom::Features of_code = wanted_features(solver, every_solver, features);
   if (of_code.has(eom::Feature::jacobian)) wanted.with.push_back("jac");
   if (of_code.has(eom::Feature::series)) wanted.with.push_back("taylor");
@@ -210,7 +217,8 @@ RunPlan plan_run(DerivedModel& derived, const SimulationRequest& request, const 
   // Reports a wrong name before the compilation.
   plan.solver = run::choose_solver(plan.scene.solver, plan.scene).first;
   const eom::Refusal* const keeps_charts = run::get_method(plan.solver).needs.refusal(eom::Feature::charts);
-  plan.exchanges_charts = possible && plan.scene.jumps.functions.empty() && keeps_charts == nullptr;
+  plan.exchanges_charts =
+      possible && plan.scene.jumps.functions.empty() && !system.has_resets() && keeps_charts == nullptr;
   if (possible && !plan.exchanges_charts) {
     plan.charts_refused = keeps_charts;
     plan.charts_kept_for_jumps = keeps_charts == nullptr;

@@ -318,6 +318,7 @@ void add_states(const Mechanics& m, std::vector<Statement>& out) {
   for (const auto& [symbol, rate] : m.dag->rates()) {
     if (symbol.kind != SymbolKind::state) continue;
     const model::State& state = m.model->states[symbol.index];
+    if (state.discrete) continue;  // its rate is 0
     const std::optional<Formula> written = reading::as_written(*m.model, state.rate);
     out.push_back({"states", state.name, "", "state of first order",
                    reading::relation({dotted(reading::symbol(symbol)), written ? *written : read_or_dots(m, rate)})});

@@ -340,4 +340,15 @@ FunctionExpressions AbiFunctions::events() {
   return function;
 }
 
+FunctionExpressions AbiFunctions::resets() {
+  FunctionExpressions function = empty_function("resets");
+  const auto add = [&](const system::Reset& reset) {
+    if (reset.condition) function.results[0].entries.push_back(*reset.condition);
+    for (const system::Reset::Entry& entry : reset.set) function.results[0].entries.push_back(entry.value);
+  };
+  for (const system::Event& event : system_.events) add(event.reset);
+  for (const system::Sample& sample : system_.samples) add(sample.reset);
+  return function;
+}
+
 }  // namespace eomgen::program

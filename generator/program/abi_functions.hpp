@@ -56,6 +56,8 @@ class AbiFunctions {
   /// The events of the model, then the surfaces of the frozen kinks, then slip, above, below, hold and margin of each
   /// contact (friction.hpp).
   FunctionExpressions events();
+  /// Per event of the model, then per sample: its condition if it has one, then the values that it sets.
+  FunctionExpressions resets();
 
   const std::vector<Kink>& kinks() const { return kinks_.frozen; }
   /// Kinks beyond those whose branches can be frozen.

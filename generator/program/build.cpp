@@ -159,7 +159,8 @@ FunctionExpressions function_expressions(AbiFunctions& functions, const std::str
       {"momenta", &AbiFunctions::momenta},
       {"constraints", &AbiFunctions::constraints},
       {"reactions", &AbiFunctions::reactions},
-      {"events", &AbiFunctions::events}};
+      {"events", &AbiFunctions::events},
+      {"resets", &AbiFunctions::resets}};
   if (const auto found = formulas.find(name); found != formulas.end()) return (functions.*found->second)();
   const auto count = [&](std::size_t in_model, symbolic::SymbolKind kind) {
     return in_model > 0 ? in_model : symbol_count(functions.system(), kind);
@@ -185,6 +186,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   Program program;
   program.free = system.free;
   program.states = system.state_symbols();
+  program.discrete = system.discrete;
   program.formulation = system.formulation;
   program.approach = system.approach;
   program.form = system.form;

@@ -16,7 +16,7 @@ class Writer {
 
   void program(const Program& p) {
     list(p.free);
-    words(p.states.size());
+    words(p.states.size(), p.discrete);
     for (const symbolic::Symbol& state : p.states) words(static_cast<int>(state.kind), state.index);
     words(p.formulation, system::name(p.approach), system::name(p.form));
     for (const auto* names : {&p.reactions, &p.outputs, &p.events, &p.kinks}) {

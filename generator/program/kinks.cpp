@@ -130,7 +130,8 @@ FrozenKinks freeze_kink_branches(system::EquationSystem& s) {
   KinkFreezing hold(*s.dag);
   using system::ExpressionRole;
   system::for_each_expression(s, [&hold](Ref& r, ExpressionRole part) {
-    if (part == ExpressionRole::constraints) return;  // start states and projections do not freeze branches
+    // Start states, projections and resets do not freeze branches.
+    if (part == ExpressionRole::constraints || part == ExpressionRole::reset) return;
     hold.collects = part != ExpressionRole::output;
     r = hold(r);
     if (part == ExpressionRole::slip) hold.leave(r);

@@ -132,7 +132,8 @@ struct Program {
   ~Program();
 
   std::vector<std::uint32_t> free;       // coordinates of the model; state x = (q_free, qdot_free, states)
-  std::vector<symbolic::Symbol> states;  // of first order
+  std::vector<symbolic::Symbol> states;  // of first order, then discrete values
+  std::size_t discrete = 0;              // how many of them are discrete values
   /// Number of entries of the first result of a function; 0 if the function does not exist.
   std::size_t result_size(std::string_view function_name) const {
     for (const Function& function : functions) {
@@ -146,7 +147,7 @@ struct Program {
     return count;
   }
   std::size_t event_count() const { return result_size("events"); }  // length of the array g
-  eom::StateLayout layout() const { return {free.size(), states.size()}; }
+  eom::StateLayout layout() const { return {free.size(), states.size() - discrete, discrete}; }
   std::size_t state_count() const { return layout().size(); }
   std::string formulation;
   system::Approach approach = system::Approach::two;

@@ -92,6 +92,7 @@ Problem make_problem(const RunRequest& request, const std::string& solver) {
   problem.max_step = scene.max_step;
   problem.max_steps = request.steps_allowed(scene.step > 0);
   problem.events = request.events;
+  problem.samples = request.samples;
   problem.charts = request.charts;
   problem.in_charts = request.code_for_charts;
   problem.beyond_range = request.holds_beyond_range;

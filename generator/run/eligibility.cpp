@@ -27,11 +27,12 @@ const char* without(Feature feature) {
 
 const char* with(Feature feature) {
   switch (feature) {
-    case Feature::modes: return "the model has contacts with friction, or unilateral contacts";
+    case Feature::modes:
+      return "the model has contacts with friction, unilateral contacts, or events that change the state";
     case Feature::velocity_constraints: return "the model has a constraint on velocities";
     case Feature::kinks: return "the equations have kinks (abs, sign, min, max, if)";
     case Feature::other_states:
-      return "the model has states of first order, or an integral of a function of time that is one";
+      return "the model has states of first order, discrete values, or an integral of a function of time";
     case Feature::moving_inputs: return "an input is an expression of t";
     default: return "the solver does not support a feature of the model";
   }
@@ -71,7 +72,7 @@ eom::Features features_of(const system::EquationSystem& system, bool kinks) {
   return eom::Features{Feature::jacobian, Feature::series, Feature::momenta}
       .set(Feature::constraints, !system.active.empty())
       .set(Feature::velocity_constraints, on_velocities)
-      .set(Feature::modes, !system.contacts.empty())
+      .set(Feature::modes, !system.contacts.empty() || system.has_resets())
       .set(Feature::kinks, kinks)
       .set(Feature::other_states, !system.states.empty());
 }

@@ -141,6 +141,11 @@ RunResult integrate_scene(const RunRequest& request) {
   return result;
 }
 
+bool RunRequest::has_resets() const {
+  return !samples.empty() ||
+         std::any_of(events.begin(), events.end(), [](const WatchedEvent& event) { return !event.reset.set.empty(); });
+}
+
 RunResult::RunResult() = default;
 RunResult::RunResult(const RunResult&) = default;
 RunResult::RunResult(RunResult&&) noexcept = default;

@@ -116,9 +116,12 @@ struct RunRequest {
   /// Whether the equations hold beyond the range of a coordinate; if empty, they do not.
   std::function<bool(std::uint32_t coordinate, double t, std::span<const double> x)> holds_beyond_range = {};
   std::vector<std::string> constraint_names = {};  // of Code::active_constraints
+  std::vector<eom::hybrid::Sample> samples = {};
   std::size_t max_steps = 0;  // accepted and rejected together; 0: the limit of eom::Options, and no limit for fixed
                               // steps, whose number is known
 
+  /// Whether an event or a sample changes the state.
+  bool has_resets() const;
   std::size_t steps_allowed(bool fixed) const {
     if (max_steps > 0) return max_steps;
     return fixed ? std::numeric_limits<std::size_t>::max() : eom::Options{}.max_steps;

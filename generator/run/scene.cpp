@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <eom/hybrid/jumps.hpp>
+#include <eom/hybrid/samples.hpp>
 #include <eom/hybrid/time_analysis.hpp>
 #include <limits>
 
@@ -218,6 +219,23 @@ void resolve_states(const Mechanics& m, const system::EquationSystem& system, co
   }
 }
 
+void resolve_samples(const Mechanics& m, SceneEvaluator& value, Scene& result) {
+  for (const model::Sample& sample : m.model->samples) {
+    const double every = value.number(sample.every, "the period of a sample");
+    const double offset = sample.offset == model::no_node ? 0 : value.number(sample.offset, "the offset of a sample");
+    const auto fail = [&](const std::string& what, const char* remedy) {
+      throw Error("scene", m.model->where(m.model->arena[sample.every].span), what, remedy);
+    };
+    if (!(every > 0))
+      fail(fmt::format("the period of '{}' is {}, not positive", sample.name, every), "choose a time greater than 0");
+    if ((result.t1 - result.t0) / every > eom::hybrid::most_samples)
+      fail(
+          fmt::format("'{}' would be taken more than {:.0e} times in this run", sample.name, eom::hybrid::most_samples),
+          "choose a longer period or a shorter run");
+    result.samples.emplace_back(every, offset);
+  }
+}
+
 }  // namespace
 
 std::optional<std::uint32_t> find_state(const model::Model& model, const std::string& name) {
@@ -343,6 +361,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.open = problem.open;
   for (const model::Event& event : m.model->events) result.ends_run.push_back(event.stop);
   for (const std::uint32_t i : scene.stop) result.ends_run[i] = true;
+  resolve_samples(m, value, result);
   if (!overrides.can_exchange_charts) require_regular(m, system, scene, result);
 
   std::vector<model::OutputReference> wanted = scene.outputs;

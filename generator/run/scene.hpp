@@ -46,16 +46,17 @@ struct Scene {
   std::vector<double> lower, upper;  // open range of each coordinate; infinite if there is none
   std::string solver;                // as requested; may be "auto"
   double rtol = 1e-9, atol = 1e-12;
-  double step = 0, every = 0;             // 0: not given
-  double max_step = 0;                    // of adaptive steps; 0: not bounded
-  std::vector<Signal> inputs;             // one per input of the model
-  eom::hybrid::TimeFunctions time;        // functions of time alone
-  eom::hybrid::TimeAnalysis clock;        // their properties in the span of the run
-  eom::hybrid::JumpFunctions jumps;       // functions that may jump; empty: none
-  std::vector<std::string> outputs;       // expanded, without the coordinates, each once
-  std::vector<bool> ends_run;             // per event of the model: whether it ends the run
-  std::vector<bool> open;                 // per contact: whether it is open at the start
-  std::vector<std::string> solved_notes;  // sentences about values that follow from the constraints
+  double step = 0, every = 0;                      // 0: not given
+  double max_step = 0;                             // of adaptive steps; 0: not bounded
+  std::vector<Signal> inputs;                      // one per input of the model
+  eom::hybrid::TimeFunctions time;                 // functions of time alone
+  eom::hybrid::TimeAnalysis clock;                 // their properties in the span of the run
+  eom::hybrid::JumpFunctions jumps;                // functions that may jump; empty: none
+  std::vector<std::string> outputs;                // expanded, without the coordinates, each once
+  std::vector<bool> ends_run;                      // per event of the model: whether it ends the run
+  std::vector<std::pair<double, double>> samples;  // per sample of the model: its period and offset, s
+  std::vector<bool> open;                          // per contact: whether it is open at the start
+  std::vector<std::string> solved_notes;           // sentences about values that follow from the constraints
 };
 
 /// The coordinate (order 0) or rate (order 1) with this name, "theta" or "theta_dot".

@@ -26,6 +26,7 @@ void require_smooth(const RunRequest& request, const RunResult& result) {
   const auto refuse = [](const std::string& what) { throw Error("run", {}, "--sensitivity: " + what, by_runs); };
   if (!request.code.contacts.empty())
     refuse("contacts and friction change the equations during the run, and derivatives of the end jump there");
+  if (request.has_resets()) refuse("events or samples change the state, and derivatives of the end jump with it");
   if (request.scene.clock.unresolved_from && *request.scene.clock.unresolved_from < result.t)
     refuse(fmt::format("a condition on time changes too often from t = {} on", *request.scene.clock.unresolved_from));
 }

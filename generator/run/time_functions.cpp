@@ -68,7 +68,7 @@ class Finder {
     depends_.see(roots);
     roots.clear();
     system::for_each_expression(system_, [&](Ref r, system::ExpressionRole part) {
-      if (part != system::ExpressionRole::output) roots.push_back(r);
+      if (part != system::ExpressionRole::output && part != system::ExpressionRole::reset) roots.push_back(r);
     });
     const std::size_t moving = roots.size();
     for (const Ref r : {system_.kinetic, system_.potential}) roots.push_back(r);

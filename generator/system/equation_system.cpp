@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "system/equation_system.hpp"
 
+#include <algorithm>
+
 namespace eomgen::system {
 
 const char* name(Approach approach) { return approach == Approach::one ? "I" : "II"; }
@@ -18,6 +20,11 @@ std::vector<symbolic::Symbol> EquationSystem::state_symbols() const {
   std::vector<symbolic::Symbol> symbols;
   for (const FirstOrderState& state : states) symbols.push_back(state.symbol);
   return symbols;
+}
+
+bool EquationSystem::has_resets() const {
+  return !samples.empty() ||
+         std::any_of(events.begin(), events.end(), [](const Event& event) { return !event.reset.set.empty(); });
 }
 
 EquationSystem::EquationSystem() = default;

@@ -59,9 +59,28 @@ struct FirstOrderState {
   Ref rate;                 // of t, q, qdot, parameters, inputs and states of first order
 };
 
+/// Simultaneous changes of the state x. Values depend on t, x, parameters and inputs before the change.
+struct Reset {
+  struct Entry {
+    std::size_t component;  // of x
+    Ref value;
+  };
+  std::vector<Entry> set = {};
+  std::optional<Ref> condition = {};  // 1 where the reset is made, else 0
+
+  bool empty() const { return set.empty() && !condition; }
+};
+
 struct Event {
   std::string name;
-  Ref value;  // the event occurs at its sign changes; may depend on qddot of free coordinates and multipliers
+  Ref value;         // the event occurs at its sign changes; may depend on qddot of free coordinates and multipliers
+  Reset reset = {};  // its condition holds for the whole event
+};
+
+/// A change at the times of Model::samples[i].
+struct Sample {
+  std::string name;
+  Reset reset;
 };
 
 /// A direction of a contact that another constraint blocks: phi has no component along it while the contact sticks and
@@ -150,9 +169,14 @@ struct EquationSystem {
   std::vector<Reaction> reactions;        // all constraints, in model order
   std::vector<Output> outputs;            // all available outputs, in the order of docs/model-format.md
   std::vector<Event> events;              // in model order
+  std::vector<Sample> samples;            // in model order
   Ref energy, kinetic, potential, power;  // power: the expected dE/dt; may depend on multipliers and qddot
 
-  eom::StateLayout layout() const { return {free.size(), states.size()}; }
+  std::size_t discrete = 0;  // how many of `states`, the last ones, are discrete values
+
+  eom::StateLayout layout() const { return {free.size(), states.size() - discrete, discrete}; }
+  /// Whether an event or a sample changes the state.
+  bool has_resets() const;
   std::vector<symbolic::Symbol> state_symbols() const;  // of `states`
 };
 

@@ -14,7 +14,8 @@ enum class ExpressionRole {
   slip,         // slip of a contact: the mode of the contact changes at its sign changes
   contact,      // the rest of a contact's law
   constraints,  // psi and b, for initial states and projection
-  output        // reactions, outputs, events, energies
+  output,       // reactions, outputs, events, energies
+  reset         // new values and conditions of resets, which are evaluated between two segments of the motion
 };
 
 /// Calls visit(expression, part) with references; `system` may be const.
@@ -49,7 +50,15 @@ void for_each_expression(System& system, Visit&& visit) {
   for (auto* list : {&system.psi, &system.b}) all(*list, ExpressionRole::constraints);
   for (auto& reaction : system.reactions) visit(reaction.value, ExpressionRole::output);
   for (auto& output : system.outputs) visit(output.value, ExpressionRole::output);
-  for (auto& event : system.events) visit(event.value, ExpressionRole::output);
+  const auto reset = [&visit](auto& of) {
+    for (auto& entry : of.set) visit(entry.value, ExpressionRole::reset);
+    if (of.condition) visit(*of.condition, ExpressionRole::reset);
+  };
+  for (auto& event : system.events) {
+    visit(event.value, ExpressionRole::output);
+    reset(event.reset);
+  }
+  for (auto& sample : system.samples) reset(sample.reset);
   for (auto* r : {&system.kinetic, &system.potential, &system.energy, &system.power}) visit(*r, ExpressionRole::output);
 }
 

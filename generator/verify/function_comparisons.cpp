@@ -62,6 +62,7 @@ class FunctionComparisons {
         {"reactions", &FunctionComparisons::reactions},
         {"outputs", &FunctionComparisons::outputs},
         {"events", &FunctionComparisons::events},
+        {"resets", &FunctionComparisons::resets},
         {"taylor", &FunctionComparisons::taylor}};
     const auto found = statements.find(function);
     if (found == statements.end()) throw std::logic_error("nothing is said of the function '" + function + "'");
@@ -271,6 +272,17 @@ class FunctionComparisons {
     std::vector<Ref> roots;
     for (const system::Event& event : s_.events) roots.push_back(event.value);
     if (!roots.empty()) note("events", system_name(s_), against(values, 0, roots, lookup_));
+  }
+
+  void resets(const AbiResults& values) {
+    std::vector<Ref> roots;
+    const auto add = [&roots](const system::Reset& reset) {
+      if (reset.condition) roots.push_back(*reset.condition);
+      for (const system::Reset::Entry& entry : reset.set) roots.push_back(entry.value);
+    };
+    for (const system::Event& event : s_.events) add(event.reset);
+    for (const system::Sample& sample : s_.samples) add(sample.reset);
+    if (!roots.empty()) note("resets", system_name(s_), against(values, 0, roots, lookup_));
   }
 
   /// Compares dL/dqdot along a direction of the rates, and the rates of the momenta along the path, which include

@@ -13,7 +13,7 @@ TEST_CASE("every wrong model is refused by the program, with the same message, i
   const Folder folder;
   std::size_t count = 0;
   for (const auto& table : {wrong_names(), wrong_structure(), wrong_units(), wrong_expressions(), wrong_scenes(),
-                            wrong_hostile(), wrong_bodies(), wrong_forces(), wrong_states()}) {
+                            wrong_hostile(), wrong_bodies(), wrong_forces(), wrong_resets(), wrong_states()}) {
     for (const WrongModel& wrong : table) {
       CAPTURE(wrong.name);
       folder.write("model.toml", wrong.text);

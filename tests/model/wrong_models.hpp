@@ -32,6 +32,7 @@ std::vector<WrongModel> wrong_scenes();
 std::vector<WrongModel> wrong_hostile();
 std::vector<WrongModel> wrong_bodies();
 std::vector<WrongModel> wrong_forces();
+std::vector<WrongModel> wrong_resets();
 std::vector<WrongModel> wrong_states();
 
 }  // namespace eomgen::model

@@ -43,6 +43,7 @@ TEST_CASE("wrong expressions are rejected with the exact message") { refuse_all(
 TEST_CASE("wrong scenes are rejected with the exact message") { refuse_all(wrong_scenes()); }
 TEST_CASE("wrong bodies and rotations are rejected with the exact message") { refuse_all(wrong_bodies()); }
 TEST_CASE("wrong forces are rejected with the exact message") { refuse_all(wrong_forces()); }
+TEST_CASE("wrong resets are rejected with the exact message") { refuse_all(wrong_resets()); }
 TEST_CASE("wrong states are rejected with the exact message") { refuse_all(wrong_states()); }
 TEST_CASE("hostile input is rejected with the exact message") { refuse_all(wrong_hostile()); }
 

@@ -75,7 +75,9 @@ class Live {
       return "its contacts stick, slide or open, and each mode has equations of its own";
     if (!s_.scene.jumps.functions.empty())
       return "a velocity jumps during the run, and the page does not compute impulses";
-    if (!s_.program.states.empty()) return "the model has a state of first order, or an integral over time that is one";
+    if (!s_.program.states.empty())
+      return "the model has a state of first order, a discrete value, or an integral over time";
+    if (derived_.candidates.front().has_resets()) return "events or samples of the model change the state";
     for (const model::SceneInput& input : model_scene().inputs) {
       if (std::holds_alternative<model::InputTable>(input.signal))
         return fmt::format("the input '{}' is a table of time", derived_.model.inputs[input.input].name);

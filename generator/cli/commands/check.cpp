@@ -52,6 +52,16 @@ void print_readable(const Json& found) {
     fmt::print("  {:<20} {:<10} rate {}{}\n", text(z["name"]), text(z["unit"]), text(z["rate"]),
                z["energy_counted"].get<bool>() ? "" : "  (the energy counts none of it)");
   }
+  if (!found["discrete"].empty()) heading("discrete values");
+  for (const Json& d : found["discrete"]) fmt::print("  {:<20} {}\n", text(d["name"]), text(d["unit"]));
+  if (!found["resets"].empty()) heading("changes of the state");
+  for (const Json& r : found["resets"]) {
+    const bool sample = r["kind"] == "sample";
+    fmt::print("  {:<20} {} {}{}\n", text(r["name"]), sample ? "every" : "sign change of",
+               text(r[sample ? "every" : "when"]),
+               r["condition"].is_null() ? "" : ", if " + r["condition"].get<std::string>());
+    for (const auto& [name, value] : r["set"].items()) fmt::print("  {:<20}   {} := {}\n", "", name, text(value));
+  }
   heading("parameters");
   for (const Json& p : found["parameters"]) fmt::print("  {:<20} {}\n", text(p["name"]), as_written(p));
   if (!found["inputs"].empty()) heading("inputs");

@@ -50,6 +50,10 @@ std::vector<EmittedFile> emit_cuda(const program::Program& program, const Emissi
   if (program.taylor)
     throw Error("emit", {}, "the target cuda does not support Taylor series",
                 "leave taylor out of --with, or use the target c or cpp");
+  if (context.has_resets())
+    throw Error("emit", {},
+                "the target cuda integrates without events, and events or samples of the model change the state",
+                "use the target cpp with --with run");
   if (!program.contacts.empty()) {
     throw Error("emit", {}, "the target cuda integrates without events, which contacts need for their changes of mode",
                 "use the target c or cpp with eom::integrate_modes, or take the contacts out");

@@ -64,7 +64,8 @@ std::vector<EmittedFile> emit_python(const program::Program& program, const Emis
   const std::string name = mangled_id(context.id);
   std::vector<std::pair<std::string, std::string>> values = {{"name", name},
                                                              {"banner", banner(program, context, "# ", "# ", "")},
-                                                             {"functions_of_c", c_function_declarations()}};
+                                                             {"functions_of_c", c_function_declarations()},
+                                                             {"resets", context.has_resets() ? "True" : "False"}};
   const std::vector<std::pair<std::string, std::string>> numbers = number_values(context.single_error.has_value());
   values.insert(values.end(), numbers.begin(), numbers.end());
   files.push_back({name + "_simulate.c", render_template(skeleton::python_simulate_c, values, {})});

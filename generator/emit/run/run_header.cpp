@@ -61,11 +61,26 @@ std::string text(const eom::Contact& c) {
   return fmt::format("{{{{{}, {}, {}, {}, {}}}, {}, 0.0}}", c.dimensions, c.surface, c.unilateral, c.sticks, c.rolls,
                      text(c.name));
 }
+std::string text(const eom::hybrid::Reset::Entry& entry) {
+  return fmt::format("{{{}, {}}}", entry.component, entry.value);
+}
+std::string text(const eom::hybrid::Reset& reset) {
+  return fmt::format("{{{}, {}}}", text(reset.set), text(reset.condition));
+}
+std::string text(const eom::hybrid::Noise& noise) {
+  return fmt::format("{{{}, {}, {}}}", noise.component, noise.normal, noise.seed);
+}
+std::string text(const eom::hybrid::Sample& sample) {
+  return fmt::format("{{{}, {}, {}, {}, {}}}", text(sample.name), number(sample.every), number(sample.offset),
+                     text(sample.noise), text(sample.reset));
+}
 std::string text(const eom::hybrid::WatchedEvent& event) {
   const char* direction = event.direction == eom::Direction::any  ? "any"
                           : event.direction == eom::Direction::up ? "up"
                                                                   : "down";
-  return fmt::format("{{{}, eom::Direction::{}, {}}}", text(event.name), direction, event.stop);
+  const bool plain = event.reset.set.empty() && !event.reset.condition;
+  return fmt::format("{{{}, eom::Direction::{}, {}{}}}", text(event.name), direction, event.stop,
+                     plain ? "" : ", " + text(event.reset));
 }
 std::string text(const eom::hybrid::Invariant& i) {
   return fmt::format("{{{}, {}, {}, {}}}", text(i.name), i.output, text(i.magnitude), i.energy);
@@ -156,6 +171,8 @@ std::string code_text(const program::Program& program, const eom::hybrid::Code& 
   s.list("output_names", code.output_names);
   s.list("free", code.free);
   if (code.first_order > 0) s.set("first_order", code.first_order);
+  if (code.discrete > 0) s.set("discrete", code.discrete);
+  if (code.reset_values > 0) s.set("reset_values", code.reset_values);
   if (code.active_constraints > 0) s.set("active_constraints", code.active_constraints);
   s.list("holonomic", code.holonomic);
   s.list("kinks", code.kinks);
@@ -194,6 +211,7 @@ std::string problem_text(const RunDescription& run) {
   s.list("contacts", p.contacts);
   s.list("starts_open", p.starts_open);
   s.list("events", p.events);
+  s.list("samples", p.samples);
   s.list("time.surfaces", p.time.surfaces);
   s.list("time.terms", p.time.terms);
   s.list("jumps.functions", p.jumps.functions);

@@ -40,7 +40,8 @@ struct EventPoint {
   double& t;
   std::span<double> x;
   Crossing crossing;
-  std::span<EventFunction> functions;  // of all events: which are monitored from here on
+  std::span<EventFunction> functions;              // of all events: which are monitored from here on
+  std::span<const std::size_t> simultaneous = {};  // at a breaking crossing: others that cross at the same point
 };
 
 /// This many breaking events in a row without progress in time end the run: the solution slides along a surface.
@@ -240,9 +241,11 @@ class Run {
     total_.t = crossing.t;
     const bool known = g_(total_.t, total_.x.data(), values_.data()) == 0 && std::isfinite(values_[crossing.function]);
     if (known) crossing.value = values_[crossing.function];
+    const std::vector<std::size_t> simultaneous =
+        known ? locator_.simultaneous(crossing.function, values_) : std::vector<std::size_t>{};
     events_without_progress_ =
         progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : events_without_progress_ + 1;
-    const EventAction answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions()});
+    const EventAction answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions(), simultaneous});
     if (!continues) return end(Outcome::stopped_by_event, answer == EventAction::stop ? "" : "stopped by the observer");
     if (answer == EventAction::stop) return end(Outcome::stopped_by_event, "");
     if (events_without_progress_ >= events_without_progress)

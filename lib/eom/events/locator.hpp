@@ -75,6 +75,7 @@ class EventLocator {
   /// that are as close to zero as at the crossing (a mode may give a function another meaning).
   template <class G>
   int start(double t, const double* x, G& g, bool forward = true, std::span<const Crossing> crossed = {}) {
+    forward_ = forward;
     if (functions_.empty()) return 0;
     const int code = g(t, x, values_.data());
     if (code != 0) return code;
@@ -146,6 +147,20 @@ class EventLocator {
       return Crossing{i, view.t1, up};
     }
     return std::nullopt;
+  }
+
+  /// Other monitored functions that reach zero at the crossing of one, up to rounding. values: at the crossing. The
+  /// samples are those of the step that contains it.
+  std::vector<std::size_t> simultaneous(std::size_t crossed, std::span<const double> values) {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < functions_.size(); ++i) {
+      const EventFunction& f = functions_[i];
+      if (i == crossed || f.watch == Watch::off || f.guard || side_[i] == 0) continue;
+      if (f.direction != Direction::any && side_[i] != inner_side(f, forward_)) continue;
+      const double near = crossed_rounding * size_[i], here = side_[i] * values[i];
+      if (here <= near && side_[i] * sample(0, i) > std::max(here, near)) found.push_back(i);
+    }
+    return found;
   }
 
   /// To be called after the step was accepted in full: determines the sides of functions that had none, or had no value
@@ -380,6 +395,7 @@ class EventLocator {
     return events::find_root(inward, left, at_left, right, at_right, tolerance);
   }
 
+  bool forward_ = true;
   std::vector<EventFunction> functions_;
   std::vector<int> side_;
   std::vector<double> position_;  // fraction of the step up to which crossings are known

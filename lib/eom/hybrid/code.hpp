@@ -19,8 +19,8 @@ struct OwnOutputs {
   std::vector<std::uint32_t> outputs;
 };
 
-/// n: number of free coordinates; N = 2 n + first_order: length of x; m: active constraints. A null function was not
-/// emitted. A run without constraints, events and contacts needs only `rhs` and `outputs`.
+/// n: number of free coordinates; N = 2 n + first_order + discrete: length of x; m: active constraints. A null function
+/// was not emitted. A run without constraints, events and contacts needs only `rhs` and `outputs`.
 struct Code {
   int (*rhs)(double, const double*, const double*, const double*, int, double*) = nullptr;
   // The right-hand side in two parts, null if it is not split: the part that depends on parameters only, and the rest.
@@ -29,6 +29,8 @@ struct Code {
   std::size_t prepared = 0;  // number of values that `prepare` writes
   int (*outputs)(double, const double*, const double*, const double*, int, double*) = nullptr;
   int (*events)(double, const double*, const double*, const double*, int, double*) = nullptr;
+  int (*resets)(double, const double*, const double*, const double*, int, double*) = nullptr;
+  std::size_t reset_values = 0;  // number of values that `resets` writes
   // For implicit solvers. They use differences if it is null, and for df/dt with inputs that vary in time.
   int (*jac)(double, const double*, const double*, const double*, int, double*, double*) = nullptr;
   int (*mass)(double, const double*, const double*, double*, double*) = nullptr;
@@ -36,6 +38,7 @@ struct Code {
   std::vector<std::string> output_names;  // entries of y, beginning with every coordinate of the model and its _dot
   std::vector<std::uint32_t> free;        // coordinates in the state, each with its rate
   std::size_t first_order = 0;            // states of first order, after the rates: never projected
+  std::size_t discrete = 0;               // discrete values, after them: their rate is 0, and only resets change them
   std::size_t active_constraints = 0;
   std::vector<bool> holonomic = {};     // per active constraint: false if it constrains velocities only
   std::vector<std::string> kinks = {};  // "abs", "max": their surfaces follow the model's events in g
@@ -55,7 +58,7 @@ struct Code {
   int (*jac_p)(double, const double*, const double*, const double*, int, double*) = nullptr;
   int (*jac_u)(double, const double*, const double*, const double*, int, double*) = nullptr;
 
-  StateLayout layout() const { return {free.size(), first_order}; }
+  StateLayout layout() const { return {free.size(), first_order, discrete}; }
 };
 
 }  // namespace eom::hybrid

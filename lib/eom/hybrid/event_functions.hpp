@@ -47,7 +47,7 @@ class EventFunctions {
   std::vector<EventFunction> watched() const {
     std::vector<EventFunction> functions;
     for (const WatchedEvent& event : problem_.events)
-      functions.push_back({event.direction, event.stop ? Watch::breaking : Watch::passing});
+      functions.push_back({event.direction, event.stop || !event.reset.set.empty() ? Watch::breaking : Watch::passing});
     functions.resize(size());
     if (contacts_) contacts_->watch(of_contacts(functions));
     return functions;

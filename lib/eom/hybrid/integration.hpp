@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -21,6 +22,7 @@
 #include "eom/hybrid/methods.hpp"
 #include "eom/hybrid/motion.hpp"
 #include "eom/hybrid/narrow_forces.hpp"
+#include "eom/hybrid/resets.hpp"
 #include "eom/hybrid/run_context.hpp"
 #include "eom/hybrid/segments.hpp"
 #include "eom/hybrid/singularity_step.hpp"
@@ -47,6 +49,7 @@ class Integration {
     ChartSwitch::State charts = {};
     std::vector<double> largest_kink_values = {}, integral_constants = {};
     MethodChoice choice = {};
+    std::vector<std::int64_t> samples_taken = {};
   };
   State save() const;
   /// x: the state at t in the charts of `from`.
@@ -73,6 +76,9 @@ class Integration {
   bool step_over_singularity(const Result& from, double end, const Options& options, std::size_t& evaluations);
   bool continue_after_event(const Result& part, double begin, double end, const OnEvent& event, Result& total);
   EventAction handle_event(const EventPoint& point, const OnEvent& event);
+  EventAction reset_at_event(const EventPoint& point, const OnEvent& event);
+  void end_by_reset(Result& total);
+  bool cross_boundary(const Segment* before, double until, Result& total, const OnEvent& event);
   EventAction change_contact(const EventPoint& point, const OnEvent& event);
   double longest_step(const StepView& step);
 
@@ -83,12 +89,14 @@ class Integration {
   std::unique_ptr<SingularityStep> singularity_step_;  // for constraints without contacts, which may lose rank
   Sampling sampling_;
   NarrowForces narrow_;
+  Resets resets_;
   MethodChoice choice_;
   std::optional<double> missed_narrow_force_;
   double fixed_step_ = 0;  // of the run
   double end_time_ = 0;
   bool stopped_ = false, exchange_due_ = false;
   Reason jump_;                           // a jump with undetermined consequences
+  Reason reset_failed_;                   // a reset without a valid result
   Reason reason_;                         // of the end
   double last_step_ = 0;                  // signed
   double singularity_step_length_ = 0;    // signed length of a pending step across a rank-deficient configuration
@@ -101,7 +109,8 @@ inline Integration::Integration(const Problem& problem)
       context_(problem),
       keeps_constraints_(method_named(problem.solver).needs.keeps_constraints),
       slow_slip_(context_),
-      narrow_(problem) {
+      narrow_(problem),
+      resets_(context_) {
   if (!context_.contacts && context_.rows.size() > 0 && !keeps_constraints_)
     singularity_step_ = std::make_unique<SingularityStep>(context_);
   sampling_ = {[this](double t) { return context_.model.inputs(t); },
@@ -112,6 +121,7 @@ inline Integration::Integration(const Problem& problem)
 inline Result Integration::run(const Options& options, const Observer& observer, const OnEvent& event) {
   context_.projection.reset();
   context_.kinks.start();
+  resets_.start();
   choice_ = {};
   missed_narrow_force_.reset();
   begin(options);
@@ -130,7 +140,8 @@ inline Result Integration::resume(std::span<const double> x, const Options& opti
 }
 
 inline Integration::State Integration::save() const {
-  State state{{}, context_.charts.save(), context_.kinks.largest_values(), context_.rows.integral_constants(), choice_};
+  State state{{},      context_.charts.save(), context_.kinks.largest_values(), context_.rows.integral_constants(),
+              choice_, resets_.taken()};
   if (context_.contacts) state.contacts = context_.contacts->save();
   return state;
 }
@@ -149,11 +160,13 @@ inline void Integration::restore(double t, const std::vector<double>& x, const S
   }
   context_.freeze_branches(t, x.data(), true);
   choice_ = from.choice;
+  if (!from.samples_taken.empty()) resets_.set_taken(from.samples_taken);
 }
 
 inline void Integration::begin(const Options& options) {
   stopped_ = false;
   jump_ = {};
+  reset_failed_ = {};
   reason_ = {};
   fixed_step_ = options.fixed_step;
   end_time_ = problem_.begin();
@@ -172,8 +185,7 @@ inline Result Integration::integrate_segments(Result total, const Options& optio
   segment.quadratures = problem_.power && !context_.work_is_state() ? 1 : 0;
   const std::vector<Segment> all = segments(problem_);
   for (std::size_t k = 0; k < all.size(); ++k) {
-    if (k > 0) jump_ = begin_segment(context_, all[k - 1], total, event);
-    context_.model.set_segment_time((total.t + all[k].end) / 2);
+    if (!cross_boundary(k > 0 ? &all[k - 1] : nullptr, all[k].end, total, event)) break;
     segment.max_steps =
         options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
     if (options.fixed_step > 0 && problem_.fixed_step > 0)
@@ -181,6 +193,7 @@ inline Result Integration::integrate_segments(Result total, const Options& optio
     segment.events_at_end = k + 1 == all.size();
     if (!jump_) integrate_until(all[k].end, segment, observer, event, total);
     reason_ = explain(context_, reason_, jump_, total);
+    if (reset_failed_) end_by_reset(total);
     if (total.outcome != Outcome::done) break;
   }
   if (total.outcome == Outcome::done) cross_kink_at_end(all.back(), total, event);
@@ -189,6 +202,36 @@ inline Result Integration::integrate_segments(Result total, const Options& optio
   if (total.t == problem_.begin()) total.t = problem_.t0;
   total.detail = sentence(reason_);
   return total;
+}
+
+/// Enters the segment that ends at `until`; before: the previous one, null at the start of the run. Crosses a kink in
+/// time, takes samples, and handles the events that these cause. False: the run ends here.
+inline bool Integration::cross_boundary(const Segment* before, double until, Result& total, const OnEvent& event) {
+  const double from = before != nullptr ? before->end : problem_.t0;
+  const bool watches = !problem_.events.empty() && resets_.any();
+  std::vector<int> sides(watches ? problem_.events.size() : 0, 0);
+  if (before == nullptr) context_.model.set_segment_time((total.t + until) / 2);
+  if (watches) resets_.crossed(sides, resets_.event_values(total.t, total.x.data()));
+  if (before != nullptr) jump_ = begin_segment(context_, *before, total, event);
+  context_.model.set_segment_time((total.t + until) / 2);
+  if (jump_ || !resets_.any()) return true;
+  reset_failed_ = resets_.take_samples(from, total.t, total.x, event);
+  if (!reset_failed_ && watches) {
+    const Resets::Changes made = resets_.occur(resets_.crossed(sides, resets_.event_values(total.t, total.x.data())),
+                                               sides, total.t, total.x, event);
+    reset_failed_ = made.failed;
+    if (made.stopped) total.outcome = Outcome::stopped_by_event;
+  }
+  if (reset_failed_) end_by_reset(total);
+  return total.outcome == Outcome::done;
+}
+
+inline void Integration::end_by_reset(Result& total) {
+  reason_ = reset_failed_;
+  using Kind = Reason::Kind;
+  total.outcome = reset_failed_.kind == Kind::event_chain           ? Outcome::step_too_small
+                  : reset_failed_.kind == Kind::reset_without_value ? Outcome::not_finite
+                                                                    : Outcome::jump_undetermined;
 }
 
 /// Applies the impulse of a kink in time at the end of the run. If its effect is undetermined, the run ends before it.
@@ -299,7 +342,9 @@ inline bool Integration::continue_after_event(const Result& part, double begin, 
   const bool passed = is_crossing_singularity_ && part.outcome == Outcome::done;
   const bool paused = (exchange_due_ || slow_slip_.is_switch_due() || singularity_step_length_ != 0) &&
                       part.outcome == Outcome::stopped_by_event;
-  if (stopped_ || jump_ || (context_.contacts && context_.contacts->end_outcome()) || !(passed || paused)) return false;
+  if (stopped_ || jump_ || reset_failed_ || (context_.contacts && context_.contacts->end_outcome()) ||
+      !(passed || paused))
+    return false;
   if (exchange_due_) {
     for (const std::string& whose : context_.exchange_charts(total.t, total.x)) {
       if (event) event({total.t, "chart", whose}, total.x);
@@ -326,13 +371,40 @@ inline EventAction Integration::handle_event(const EventPoint& point, const OnEv
   }
   if (i >= functions.first_contact()) return change_contact(point, event);
   if (i < functions.first_kink()) {
+    if (resets_.any()) return reset_at_event(point, event);
     const WatchedEvent& watched = problem_.events[i];
+    if (!resets_.occurs(i, point.t, point.x.data())) return EventAction::resume;
     if (event) event({point.t, watched.stop ? "stop" : "custom", watched.name}, point.x);
     stopped_ = stopped_ || watched.stop;
     return EventAction::stop;
   }
   context_.kinks.flip_branch(point.t, i - functions.first_kink(), point.crossing.up);
   return EventAction::resume;
+}
+
+/// Handles an event of a model whose events or samples change the state, and others that occur at the same time.
+inline EventAction Integration::reset_at_event(const EventPoint& point, const OnEvent& event) {
+  const std::size_t i = point.crossing.function;
+  if (problem_.events[i].reset.set.empty() && !problem_.events[i].stop) {  // a passing one
+    if (event && resets_.occurs(i, point.t, point.x.data()))
+      event({point.t, "custom", problem_.events[i].name}, point.x);
+    return EventAction::resume;
+  }
+  std::vector<std::size_t> occurred{i};
+  for (const std::size_t j : point.simultaneous) {
+    if (j < problem_.events.size()) occurred.push_back(j);
+  }
+  std::vector<int> sides(problem_.events.size(), 0);
+  resets_.crossed(sides, resets_.event_values(point.t, point.x.data()));
+  for (const std::size_t j : occurred) sides[j] = 0;
+  const Resets::Changes made = resets_.occur(occurred, sides, point.t, point.x, event);
+  reset_failed_ = made.failed;
+  stopped_ = stopped_ || made.stopped;
+  if (made.stopped || made.failed) return EventAction::stop;
+  if (!made.changed) return EventAction::resume;
+  context_.freeze_branches(point.t, point.x.data(), true);
+  slow_slip_.set_switch_due(slow_slip_.is_switch_due() || slow_slip_.must_switch(point.t, point.x.data()));
+  return slow_slip_.is_switch_due() ? EventAction::stop : EventAction::restart;
 }
 
 inline EventAction Integration::change_contact(const EventPoint& point, const OnEvent& event) {

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "eom/hybrid/problem.hpp"
+#include "eom/hybrid/samples.hpp"
 #include "eom/ode.hpp"
 
 namespace eom::hybrid {
@@ -35,7 +37,7 @@ inline Features features_of(const Code& code) {
       .set(Feature::velocity_constraints, std::find(holonomic.begin(), holonomic.end(), false) != holonomic.end())
       .set(Feature::modes, !code.contacts.empty())
       .set(Feature::kinks, !code.kinks.empty())
-      .set(Feature::other_states, code.first_order > 0);
+      .set(Feature::other_states, code.layout().others() > 0);
 }
 
 /// Throws std::invalid_argument if the code lacks functions that the run calls, or the solver is not eligible.
@@ -52,10 +54,23 @@ inline void require_functions(const Problem& problem) {
          "the code has events, kinks or contacts, and no function events");
   demand(code.contacts.size() == problem.contacts.size() && code.contacts.size() <= problem.starts_open.size(),
          "each contact of the code needs its outputs, and whether it is open at the start");
+  demand((problem.samples.empty() &&
+          std::all_of(problem.events.begin(), problem.events.end(),
+                      [](const WatchedEvent& event) { return event.reset.set.empty() && !event.reset.condition; })) ||
+             code.resets != nullptr,
+         "events or samples set values, and the code has no function resets");
+  for (const Sample& sample : problem.samples)
+    demand(sample.every > 0 && std::abs(problem.t1 - problem.t0) / sample.every <= most_samples,
+           "the period of a sample is not positive, or too short for the span");
   demand(problem.start.size() >= code.layout().size(), "the start has too few values");
   const MethodInfo& method = method_named(problem.solver);
   const bool moving = std::any_of(problem.inputs.begin(), problem.inputs.end(), is_time_dependent);
-  const Eligibility found = eligible(method, features_of(code).set(Feature::moving_inputs, moving));
+  const bool resets =
+      !problem.samples.empty() || std::any_of(problem.events.begin(), problem.events.end(),
+                                              [](const WatchedEvent& event) { return !event.reset.set.empty(); });
+  Features features = features_of(code).set(Feature::moving_inputs, moving);
+  if (resets) features = features.set(Feature::modes);
+  const Eligibility found = eligible(method, features);
   if (!found) eom::detail::throw_ineligible("eom::hybrid::run", method, found, "model", "eom/hybrid/code.hpp");
 }
 

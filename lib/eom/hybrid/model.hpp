@@ -113,6 +113,8 @@ class Model {
   int events(double t, const double* x, double* g) {
     return code_->events == nullptr ? 0 : code_->events(t, x, parameters(), inputs(t), mode_, g);
   }
+  /// Values that resets set, Code::reset_values of them.
+  int resets(double t, const double* x, double* r) { return code_->resets(t, x, parameters(), inputs(t), mode_, r); }
   int events_of(int contacts, double t, const double* x, double* g) {
     return code_->events(t, x, parameters(), inputs(t), (mode_ & ~contact_bits) | contacts, g);
   }

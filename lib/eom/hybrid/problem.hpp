@@ -18,6 +18,7 @@
 #include "eom/expressions/code.hpp"
 #include "eom/hybrid/code.hpp"
 #include "eom/hybrid/reason.hpp"
+#include "eom/hybrid/reset_types.hpp"
 #include "eom/hybrid/signal.hpp"
 #include "eom/run_types.hpp"
 
@@ -28,6 +29,7 @@ struct WatchedEvent {
   std::string name;
   Direction direction = Direction::any;
   bool stop = false;
+  Reset reset = {};  // its condition holds for the whole event
 };
 
 /// The two times between which a kink in time is crossed. They differ by rounding, and each is strictly on one side. At
@@ -149,7 +151,8 @@ struct Problem {
 
   std::vector<bool> starts_open = {};     // per contact: is open at the start
   std::vector<WatchedEvent> events = {};  // all events of the model
-  TimeFunctions time = {};                // from these a run computes kink times and step bounds; empty: both are given
+  std::vector<Sample> samples = {};
+  TimeFunctions time = {};  // from these a run computes kink times and step bounds; empty: both are given
   std::vector<Breakpoint> breakpoints = {};  // in the span, ascending; without the jumps of tables
   std::vector<StepBound> bounds = {};        // on steps, to resolve functions of time
   JumpFunctions jumps = {};
@@ -181,12 +184,15 @@ struct Problem {
   std::size_t states() const { return code->layout().size() + (power ? 1 : 0); }
 };
 
-/// An event of a run: "custom", "stop", "chart", "pole", "impulse", "singular_configuration", or an event of a contact.
+/// An event of a run: "custom", "stop", "reset", "chart", "pole", "impulse", "singular_configuration", or an event of a
+/// contact. "before_reset" and "sample" are not recorded: they show the state before a reset and after a sample.
 struct Event {
   double t = 0;
   std::string kind, name;
-  double work = 0;  // of an impulse
+  double work = 0;  // of an impulse or a reset: the change of the energy
 };
+
+inline bool is_recorded(const Event& event) { return event.kind != "before_reset" && event.kind != "sample"; }
 
 /// Called for each event: for a recorded one before the observer receives its step, for a stop after it, for a mode
 /// change of a contact after the step that ends there.

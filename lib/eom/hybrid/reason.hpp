@@ -24,6 +24,9 @@ struct Reason {
     friction_no_solution,     // the friction law at the contact `what` has no solution
     friction_many_solutions,  // the friction law at the contact `what` has several solutions
     surface,                  // the motion slides along a surface of the function `what`
+    reset_without_value,      // a value that the event or sample `what` sets has no value
+    reset_off_constraints,    // the event or sample `what` sets coordinates or velocities that no constraint allows
+    event_chain,              // events `what` cause one another without end
     slip,                     // slip starts and ends without progress in time
     chart,                    // a step leads beyond the singularity of the coordinates
     balance                   // the energy changes by the fraction `amount` more than the forces account for
@@ -72,6 +75,14 @@ inline std::string sentence(const Reason& reason) {
     case Kind::surface:
       return "the motion slides along a surface of " + reason.what + ": on both sides it leads back to it," + at +
              "; for dry friction use a constraint with friction, or a smooth law";
+    case Kind::reset_without_value: return "a new value that '" + reason.what + "' sets is not finite" + at;
+    case Kind::reset_off_constraints:
+      return "'" + reason.what + "' sets values" + at + " that violate the constraints" +
+             (reason.amount > 0 ? " (by a displacement of " + printed(reason.amount, 2) + ")" : "") +
+             ": set coordinates that satisfy them; velocities are made consistent by impulses of the constraints";
+    case Kind::event_chain:
+      return "events follow one another without end" + at + ": " + reason.what +
+             "; give them a direction or a condition (`if`), or a contact (unilateral = true) in place of bounces";
     case Kind::slip: return "slip starts and ends" + at + " without progress in time";
     case Kind::chart:
       return "a step just after t = " + printed(reason.t) +

@@ -93,7 +93,8 @@ inline Result run_from_perturbed_start(const Problem& problem, const Options& op
     moved.start[n + i] =
         x[n + i] - rounding::sign(i) * rounding::unit * std::abs(x[n + i]) + rates(static_cast<Eigen::Index>(i));
   }
-  for (std::size_t i = 2 * n; i < moved.start.size(); ++i)
+  const StateLayout layout = problem.code->layout();
+  for (std::size_t i = layout.first_order_begin(); i < layout.discrete_begin(); ++i)
     moved.start[i] = x[i] + rounding::sign(i) * rounding::unit * std::abs(x[i]);
   Integration integration(moved);
   Result end = integration.run(options, {});

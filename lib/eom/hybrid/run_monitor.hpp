@@ -108,11 +108,14 @@ class RunMonitor {
     return true;
   }
 
-  /// Records an event; a custom event also gets a row.
+  /// Records an event; a custom event also gets a row, a reset one before and one after it.
   void event(const Event& event, std::span<const double> x) {
-    events_.push_back(event);
-    if (event.kind == "impulse") shift_invariants(event.t, x.data());
+    if (is_recorded(event)) events_.push_back(event);
+    if (event.kind == "impulse") shift_invariants(event.t, x.data(), false);
+    if (event.kind == "reset" || event.kind == "sample") shift_invariants(event.t, x.data(), true);
     if (rows_.any() && event.kind == "custom") rows_.event(event.t, x);
+    if (event.kind == "reset" || (event.kind == "before_reset" && event.t != rows_.last()))
+      rows_.row(event.t, x.data());
   }
 
   /// Ends the result with the previous step if a coordinate left its range, or with the last row if the run was
@@ -169,11 +172,14 @@ class RunMonitor {
     for (const std::size_t i : problem_.redundant) defect_ = std::max(defect_, std::abs(y_[i]));
   }
 
-  // An energy is conserved only between the impulses of supports; momenta are conserved through them.
-  void shift_invariants(double t, const double* x) {
+  // An energy is conserved only between the impulses of supports; momenta are conserved through them. Resets change
+  // every invariant.
+  void shift_invariants(double t, const double* x, bool all) {
     context_.outputs(t, x, y_);
     for (std::size_t i = 0; i < drifts_.size(); ++i) {
-      if (problem_.invariants[i].energy) shift_[i] += y_[problem_.invariants[i].output] - last_[i];
+      const double now = y_[problem_.invariants[i].output];
+      if (all || problem_.invariants[i].energy) shift_[i] += now - last_[i];
+      last_[i] = now;
     }
   }
 

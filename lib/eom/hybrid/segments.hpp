@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Segments of a run that are known in advance. They end at jumps of inputs and at kinks in time, and fixed steps may be
-// shorter in some. In: a Problem. Out: the segments.
+// Segments of a run that are known in advance. They end at jumps of inputs, at kinks in time and at samples, and fixed
+// steps may be shorter in some. In: a Problem. Out: the segments.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "eom/hybrid/problem.hpp"
+#include "eom/hybrid/samples.hpp"
 
 namespace eom::hybrid {
 
@@ -35,6 +38,33 @@ struct Segment {
   double step;       // of fixed steps
 };
 
+/// Samples begin segments, but for those at the start and the end. Samples at equal times, and samples at other
+/// boundaries, begin one.
+inline void add_samples(const Problem& problem, std::vector<Segment>& result) {
+  if (problem.samples.empty()) return;
+  std::vector<double> times, others;
+  for (const Sample& sample : problem.samples) {
+    const double from = problem.begin() + 2 * equal_times(problem.begin()),
+                 until = problem.t1 - 2 * equal_times(problem.t1);
+    for (std::int64_t k = first_sample(sample, from); sample_time(sample, k) < until; ++k) {
+      if (sample_time(sample, k) > from) times.push_back(sample_time(sample, k));
+    }
+  }
+  for (const Segment& segment : result) others.insert(others.end(), {segment.end, segment.next});
+  std::sort(others.begin(), others.end());
+  std::sort(times.begin(), times.end());
+  const auto near_other = [&](double t) {
+    const auto next = std::lower_bound(others.begin(), others.end(), t - equal_times(t));
+    return next != others.end() && *next <= t + equal_times(t);
+  };
+  double last = -std::numeric_limits<double>::infinity();
+  for (const double t : times) {
+    if (t - last <= equal_times(t) || near_other(t)) continue;
+    result.push_back({t, t, problem.fixed_step});
+    last = t;
+  }
+}
+
 inline std::vector<Segment> segments(const Problem& problem) {
   std::vector<Segment> result;
   const std::vector<FinerSteps> finer = finer_steps(problem);
@@ -50,6 +80,7 @@ inline std::vector<Segment> segments(const Problem& problem) {
       if (end < problem.t1) result.push_back({end, end, problem.fixed_step});
     }
   }
+  add_samples(problem, result);
   std::sort(result.begin(), result.end(), [](const Segment& a, const Segment& b) { return a.end < b.end; });
   std::size_t kept = 0;
   for (const Segment& segment : result) {

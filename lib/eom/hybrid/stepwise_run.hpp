@@ -169,6 +169,7 @@ inline Result StepwiseRun::advance(double t_end, const Piece& piece) {
     return !piece.one_step;
   };
   const auto record = [&](const Event& event, std::span<const double> x) {
+    if (!is_recorded(event)) return;
     stopped = stopped || event.kind == "stop";
     if (piece.event) piece.event(event, x);
   };
