@@ -265,6 +265,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["active_constraints"] = program.active_constraints;
   for (const bool holonomic : program.holonomic)
     info["constraint_kinds"].push_back(holonomic ? "holonomic" : "velocity");
+  if (program.result_size("resets") > 0) info["reset_values"] = program.result_size("resets");
   info["prepared"] = program.prepared_count();
   if (program.taylor) info["taylor_order"] = program::taylor_order(*program.taylor);
   add_modes(program, info);

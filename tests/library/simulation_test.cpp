@@ -162,3 +162,34 @@ TEST_CASE("library: pieces cross the impulse of a support once, wherever they en
     CHECK(s.state()[1] == doctest::Approx(whole.final_value("th_dot")).epsilon(1e-9));
   }
 }
+
+TEST_CASE("library: pieces take each sample and each reset once, wherever they end, and a restored run continues") {
+  // A ball that a reset reflects, under a force that a sample sets every 0.1 s.
+  const Model model = Model::from_text(
+      "format = 1\n[coordinates]\nz = {}\n[[particle]]\nname = \"P\"\nmass = 1\nposition = \"z*E3\"\n[[force]]\n"
+      "generalized = { z = \"u\" }\n[discrete]\nu = -10\ncount = 0\nbounces = 0\n[[sample]]\nevery = 0.1\nset = { u = "
+      "\"-10 + 0.5*z\", count = \"count + 1\" }\n[[event]]\nname = \"floor\"\nwhen = \"z\"\ndirection = \"down\"\nset "
+      "= "
+      "{ z_dot = \"-0.9*z_dot\", bounces = \"bounces + 1\" }\n[scene.default]\nt = [0, 2]\ninitial = { z = 1, z_dot = "
+      "0 }\n",
+      "sampled");
+  const Motion whole = model.run({.rtol = 1e-12, .atol = 1e-14});
+  CHECK(whole.final_value("count") == 20);
+  CHECK(whole.final_value("bounces") == 3);
+  for (const double piece : {0.05, 0.1, 0.73}) {  // two of them end at samples
+    CAPTURE(piece);
+    Simulation s(model.compile(), {.rtol = 1e-11, .atol = 1e-13});
+    std::size_t resets = 0;
+    for (int k = 1; s.t() < 2; ++k) {
+      const SimulationState saved = s.save();
+      s.advance(std::min(2.0, piece * k));
+      s.restore(saved);
+      const Advance end = s.advance(std::min(2.0, piece * k));
+      REQUIRE(end.outcome == "done");
+      for (const MotionEvent& event : end.events) resets += event.kind == "reset" ? 1 : 0;
+    }
+    CHECK(resets == 3);
+    CHECK(s.state()[3] == 20);
+    CHECK(s.state()[0] == doctest::Approx(whole.final_value("z")).epsilon(1e-9));
+  }
+}

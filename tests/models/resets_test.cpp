@@ -27,10 +27,12 @@ test::FinishedRun run_tight(const std::string& name,
 /// A model of two free coordinates x, y of a particle of 1 kg, and `more`.
 test::FinishedRun run_text(const std::string& more, double rtol = tight) {
   const std::string path = (std::filesystem::temp_directory_path() / "eomgen_resets_test.toml").string();
-  test::write_text(path, "format = 1\n[coordinates]\nx = {}\ny = {}\n[[particle]]\nname = \"A\"\nmass = 1\nposition = \"x*E1 + y*E2\"\n" + more);
-  return test::run_model(path, [&](pipeline::SimulationRequest& request) {
-    request.overrides.rtol = request.overrides.atol = rtol;
-  });
+  test::write_text(
+      path,
+      "format = 1\n[coordinates]\nx = {}\ny = {}\n[[particle]]\nname = \"A\"\nmass = 1\nposition = \"x*E1 + y*E2\"\n" +
+          more);
+  return test::run_model(
+      path, [&](pipeline::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = rtol; });
 }
 
 std::vector<double> times_of(const test::FinishedRun& run, const std::string& name) {
@@ -94,13 +96,12 @@ TEST_CASE("clock_escapement: ticks come at half periods, and the rate after a ti
 }
 
 TEST_CASE("rimless_wheel: after some steps it rolls at the rate of the closed form") {
-  const test::FinishedRun run = run_tight("rimless_wheel", [](pipeline::SimulationRequest& request) {
-    request.overrides.t_end = 40;
-  });
+  const test::FinishedRun run =
+      run_tight("rimless_wheel", [](pipeline::SimulationRequest& request) { request.overrides.t_end = 40; });
   check_sound(run);
   const auto p = [&run](const char* name) { return run.parameter(name); };
-  const double a = p("alpha"), rate = std::sqrt(4 * p("g") / p("L") * std::sin(a) * std::sin(p("gamma"))) /
-                                      std::tan(2 * a);
+  const double a = p("alpha"),
+               rate = std::sqrt(4 * p("g") / p("L") * std::sin(a) * std::sin(p("gamma"))) / std::tan(2 * a);
   double last = 0;
   for (std::size_t i = 1; i < run.rows.size(); ++i) {
     if (run.rows.t[i] == run.rows.t[i - 1]) last = run.rows.at(i, "theta_dot");
@@ -202,7 +203,8 @@ TEST_CASE("velocities that a constraint forbids are made consistent by the impul
   CHECK(run.final("kicks") == 1);
   CHECK(std::hypot(run.final("x_dot"), run.final("y_dot")) < followed);
   const test::FinishedRun across = run_text(
-      "[[constraint]]\nname = \"rod\"\nholonomic = \"x^2 + y^2 - 1\"\n[[event]]\nname = \"kick\"\nwhen = \"t - 1\"\nset "
+      "[[constraint]]\nname = \"rod\"\nholonomic = \"x^2 + y^2 - 1\"\n[[event]]\nname = \"kick\"\nwhen = \"t - "
+      "1\"\nset "
       "= { x_dot = \"x_dot + 3\" }\n[scene.default]\nt = [0, 1.5]\ninitial = { x = 0.6, y = 0.8, x_dot = 0, y_dot = 0 "
       "}\n");
   CHECK(std::hypot(across.final("x_dot"), across.final("y_dot")) == doctest::Approx(3 * 0.8).epsilon(followed));
@@ -216,13 +218,17 @@ TEST_CASE("resets without a valid result end the run with their reason") {
     CHECK(run.simulation.result.detail.find(words) != std::string::npos);
   };
   const std::string scene = "[scene.default]\nt = [0, 2]\ninitial = { x = 0.6, y = 0.8, x_dot = 0, y_dot = 0 }\n";
-  ends("[[constraint]]\nname = \"rod\"\nholonomic = \"x^2 + y^2 - 1\"\n[[event]]\nname = \"jump\"\nwhen = \"t - 1\"\n"
-       "set = { x = \"x + 0.1\" }\n" + scene,
-       eom::Outcome::jump_undetermined, "that violate the constraints (by a displacement of 0.047)");
-  ends("[discrete]\na = 0\n[[event]]\nname = \"start\"\nwhen = \"t - 1\"\nset = { a = 1 }\n"
-       "[[event]]\nname = \"up\"\nwhen = \"a - 0.5\"\ndirection = \"up\"\nset = { a = 0 }\n"
-       "[[event]]\nname = \"down\"\nwhen = \"a - 0.5\"\ndirection = \"down\"\nset = { a = 1 }\n" + scene,
-       eom::Outcome::step_too_small, "up, down, up, down");
+  ends(
+      "[[constraint]]\nname = \"rod\"\nholonomic = \"x^2 + y^2 - 1\"\n[[event]]\nname = \"jump\"\nwhen = \"t - 1\"\n"
+      "set = { x = \"x + 0.1\" }\n" +
+          scene,
+      eom::Outcome::jump_undetermined, "that violate the constraints (by a displacement of 0.047)");
+  ends(
+      "[discrete]\na = 0\n[[event]]\nname = \"start\"\nwhen = \"t - 1\"\nset = { a = 1 }\n"
+      "[[event]]\nname = \"up\"\nwhen = \"a - 0.5\"\ndirection = \"up\"\nset = { a = 0 }\n"
+      "[[event]]\nname = \"down\"\nwhen = \"a - 0.5\"\ndirection = \"down\"\nset = { a = 1 }\n" +
+          scene,
+      eom::Outcome::step_too_small, "up, down, up, down");
   ends("[[event]]\nname = \"root\"\nwhen = \"t - 1\"\nset = { x_dot = \"sqrt(x - 1)\" }\n" + scene,
        eom::Outcome::not_finite, "'root' sets is not finite");
 }

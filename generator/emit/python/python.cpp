@@ -15,8 +15,8 @@ namespace eomgen::emit {
 namespace {
 
 // Functions that the module wraps.
-constexpr const char* wrapped_functions[] = {"rhs",         "jac",       "jac_p",   "jac_u", "mass",
-                                             "constraints", "reactions", "outputs", "events"};
+constexpr const char* wrapped_functions[] = {"rhs",         "jac",       "jac_p",   "jac_u",  "mass",
+                                             "constraints", "reactions", "outputs", "events", "resets"};
 
 /// _rhs = _function("rhs", "daaaia"): one letter per argument type.
 std::string c_function_declarations() {

@@ -191,8 +191,7 @@ class EventLocator {
   static constexpr double crossed_rounding =
       1e-10;  // the same for a function that has just crossed: its root is corrected, not exact
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  static constexpr double least_slope = 0.6;    // at the end of a step, relative to the slope before
-  static constexpr double dip_threshold = 0.5;  // of the smallest sample: a parabola with a lower vertex is examined
+  static constexpr double least_slope = 0.6;  // at the end of a step, relative to the slope before
 
   /// The side from which a function with a direction may be crossed.
   static int inner_side(const EventFunction& f, bool forward) {
@@ -316,7 +315,7 @@ class EventLocator {
         double dip = k > 1 && places[k - 2] >= position_[i]
                          ? find_dip({places[k - 2], side * sample(k - 2, i)}, b, c, d, inward)
                          : none;
-        if (!std::isfinite(dip)) dip = find_dip(inward, left, at_left, places[k], here, d.s, d.value);
+        if (!std::isfinite(dip)) dip = events::find_dip(inward, left, at_left, places[k], here, d.s, d.value);
         if (std::isfinite(dip)) return Candidate{i, root(inward, left, at_left, dip, inward(dip)), side};
       }
       left = places[k];
@@ -362,19 +361,6 @@ class EventLocator {
     if (m.value < b.value && m.value < c.value) return events::find_negative(inward, b.s, s, m.value, c.s, 1e-9);
     if (b.value < c.value) return events::find_negative(inward, a.s, b.s, b.value, s, 1e-9);
     return events::find_negative(inward, s, c.s, c.value, d.s, 1e-9);
-  }
-
-  /// A point at which the function is negative between three samples that are not, the middle one the lowest; else NaN.
-  template <class F>
-  double find_dip(F& inward, double a, double fa, double b, double fb, double c, double fc) {
-    if (!std::isfinite(fa)) fa = inward(a);
-    if (!(fb > 0 && fb <= fa && fb < fc)) return none;
-    const double left = (fb - fa) / (b - a), right = (fc - fb) / (c - b);
-    const double bend = (right - left) / (c - a);  // second divided difference, positive at a dip
-    const double slope = left + bend * (b - a);    // of the parabola at b
-    const double vertex = fb - slope * slope / (4 * bend);
-    if (!(vertex < dip_threshold * fb)) return none;
-    return events::find_negative(inward, a, b, fb, c, 1e-9);
   }
 
   /// The root between left (on the function's side, or its last crossing) and right (beyond it).

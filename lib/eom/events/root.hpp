@@ -56,4 +56,20 @@ double find_negative(F&& f, double a, double b, double fb, double c, double tole
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+/// A point at which f is negative between three samples that are not, the middle one the lowest; else NaN. fa may be
+/// unknown, NaN.
+template <class F>
+double find_dip(F& f, double a, double fa, double b, double fb, double c, double fc) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  constexpr double threshold = 0.5;  // of the smallest sample: a parabola with a lower vertex is examined
+  if (!std::isfinite(fa)) fa = f(a);
+  if (!(fb > 0 && fb <= fa && fb < fc)) return none;
+  const double left = (fb - fa) / (b - a), right = (fc - fb) / (c - b);
+  const double bend = (right - left) / (c - a);  // second divided difference, positive at a dip
+  const double slope = left + bend * (b - a);    // of the parabola at b
+  const double vertex = fb - slope * slope / (4 * bend);
+  if (!(vertex < threshold * fb)) return none;
+  return find_negative(f, a, b, fb, c, 1e-9);
+}
+
 }  // namespace eom::events

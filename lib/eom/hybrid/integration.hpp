@@ -204,36 +204,6 @@ inline Result Integration::integrate_segments(Result total, const Options& optio
   return total;
 }
 
-/// Enters the segment that ends at `until`; before: the previous one, null at the start of the run. Crosses a kink in
-/// time, takes samples, and handles the events that these cause. False: the run ends here.
-inline bool Integration::cross_boundary(const Segment* before, double until, Result& total, const OnEvent& event) {
-  const double from = before != nullptr ? before->end : problem_.t0;
-  const bool watches = !problem_.events.empty() && resets_.any();
-  std::vector<int> sides(watches ? problem_.events.size() : 0, 0);
-  if (before == nullptr) context_.model.set_segment_time((total.t + until) / 2);
-  if (watches) resets_.crossed(sides, resets_.event_values(total.t, total.x.data()));
-  if (before != nullptr) jump_ = begin_segment(context_, *before, total, event);
-  context_.model.set_segment_time((total.t + until) / 2);
-  if (jump_ || !resets_.any()) return true;
-  reset_failed_ = resets_.take_samples(from, total.t, total.x, event);
-  if (!reset_failed_ && watches) {
-    const Resets::Changes made = resets_.occur(resets_.crossed(sides, resets_.event_values(total.t, total.x.data())),
-                                               sides, total.t, total.x, event);
-    reset_failed_ = made.failed;
-    if (made.stopped) total.outcome = Outcome::stopped_by_event;
-  }
-  if (reset_failed_) end_by_reset(total);
-  return total.outcome == Outcome::done;
-}
-
-inline void Integration::end_by_reset(Result& total) {
-  reason_ = reset_failed_;
-  using Kind = Reason::Kind;
-  total.outcome = reset_failed_.kind == Kind::event_chain           ? Outcome::step_too_small
-                  : reset_failed_.kind == Kind::reset_without_value ? Outcome::not_finite
-                                                                    : Outcome::jump_undetermined;
-}
-
 /// Applies the impulse of a kink in time at the end of the run. If its effect is undetermined, the run ends before it.
 inline void Integration::cross_kink_at_end(const Segment& last, Result& total, const OnEvent& event) {
   if (last.next > last.end && !begin_segment(context_, last, total, event)) return;
@@ -382,31 +352,6 @@ inline EventAction Integration::handle_event(const EventPoint& point, const OnEv
   return EventAction::resume;
 }
 
-/// Handles an event of a model whose events or samples change the state, and others that occur at the same time.
-inline EventAction Integration::reset_at_event(const EventPoint& point, const OnEvent& event) {
-  const std::size_t i = point.crossing.function;
-  if (problem_.events[i].reset.set.empty() && !problem_.events[i].stop) {  // a passing one
-    if (event && resets_.occurs(i, point.t, point.x.data()))
-      event({point.t, "custom", problem_.events[i].name}, point.x);
-    return EventAction::resume;
-  }
-  std::vector<std::size_t> occurred{i};
-  for (const std::size_t j : point.simultaneous) {
-    if (j < problem_.events.size()) occurred.push_back(j);
-  }
-  std::vector<int> sides(problem_.events.size(), 0);
-  resets_.crossed(sides, resets_.event_values(point.t, point.x.data()));
-  for (const std::size_t j : occurred) sides[j] = 0;
-  const Resets::Changes made = resets_.occur(occurred, sides, point.t, point.x, event);
-  reset_failed_ = made.failed;
-  stopped_ = stopped_ || made.stopped;
-  if (made.stopped || made.failed) return EventAction::stop;
-  if (!made.changed) return EventAction::resume;
-  context_.freeze_branches(point.t, point.x.data(), true);
-  slow_slip_.set_switch_due(slow_slip_.is_switch_due() || slow_slip_.must_switch(point.t, point.x.data()));
-  return slow_slip_.is_switch_due() ? EventAction::stop : EventAction::restart;
-}
-
 inline EventAction Integration::change_contact(const EventPoint& point, const OnEvent& event) {
   Crossing crossing = point.crossing;
   crossing.function -= context_.events.first_contact();
@@ -433,3 +378,5 @@ inline double Integration::longest_step(const StepView& step) {
 }
 
 }  // namespace eom::hybrid
+
+#include "eom/hybrid/reset_events.hpp"  // the members that make resets

@@ -3,8 +3,8 @@
 // times of a boundary between two segments. Out: the state after all changes, recorded events, or a reason if a change
 // has no valid result.
 //
-// All values of one reset are those before it. Events that occur at the same time are handled in declared order. A reset
-// that moves another event function across zero makes that event occur too, at the same time.
+// All values of one reset are those before it. Events that occur at the same time are handled in declared order. A
+// reset that moves another event function across zero makes that event occur too, at the same time.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 #include <utility>
 #include <vector>
 
-#include "eom/hybrid/samples.hpp"
 #include "eom/hybrid/run_context.hpp"
+#include "eom/hybrid/samples.hpp"
 
 namespace eom::hybrid {
 
@@ -136,8 +136,7 @@ class Resets {
     for (const Noise& drawn : noise) x[drawn.component] = random_number(drawn, k);
     made = !noise.empty();
     if (!reset.set.empty()) {
-      if (context_.model.resets(t, x.data(), r_.data()) != 0)
-        return {Reason::Kind::reset_without_value, t, 0, name};
+      if (context_.model.resets(t, x.data(), r_.data()) != 0) return {Reason::Kind::reset_without_value, t, 0, name};
       if (!reset.condition || r_[*reset.condition] > 0.5) {
         made = true;
         const std::size_t others = problem_.code->layout().first_order_begin();

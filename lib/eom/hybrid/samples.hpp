@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Times of samples, and their random numbers. In: the period, a seed, the number of the sample. Out: the same numbers in
-// every run and on every machine: they depend on the seed and the number of the sample only.
+// Times of samples, and their random numbers. In: the period, a seed, the number of the sample. Out: the same numbers
+// in every run and on every machine: they depend on the seed and the number of the sample only.
 #pragma once
 
 #include <cmath>
