@@ -220,6 +220,8 @@ void resolve_states(const Mechanics& m, const system::EquationSystem& system, co
 }
 
 void resolve_samples(const Mechanics& m, SceneEvaluator& value, Scene& result) {
+  constexpr double most_periods = 1e14;  // from t = 0: times further away differ by too few units in the last place
+  double count = 0;
   for (const model::Sample& sample : m.model->samples) {
     const double every = value.number(sample.every, "the period of a sample");
     const double offset = sample.offset == model::no_node ? 0 : value.number(sample.offset, "the offset of a sample");
@@ -228,10 +230,15 @@ void resolve_samples(const Mechanics& m, SceneEvaluator& value, Scene& result) {
     };
     if (!(every > 0))
       fail(fmt::format("the period of '{}' is {}, not positive", sample.name, every), "choose a time greater than 0");
-    if ((result.t1 - result.t0) / every > eom::hybrid::most_samples)
-      fail(
-          fmt::format("'{}' would be taken more than {:.0e} times in this run", sample.name, eom::hybrid::most_samples),
-          "choose a longer period or a shorter run");
+    const double farthest = std::max({std::abs(result.t0), std::abs(result.t1), std::abs(offset)});
+    if (farthest / every > most_periods)
+      fail(fmt::format("the period {} of '{}' is not resolved at times of {}", every, sample.name, farthest),
+           "choose a longer period, or times and an offset nearer to 0");
+    count += (result.t1 - result.t0) / every;
+    if (count > eom::hybrid::most_samples)
+      fail(fmt::format("samples up to '{}' would be taken more than {:.0e} times in this run", sample.name,
+                       eom::hybrid::most_samples),
+           "choose a longer period or a shorter run");
     result.samples.emplace_back(every, offset);
   }
 }

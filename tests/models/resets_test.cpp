@@ -7,22 +7,12 @@
 #include <filesystem>
 #include <numbers>
 
-#include "support/simulation.hpp"
+#include "tight_run.hpp"
 
 using namespace eomgen;
+using namespace eomgen::test;
 
 namespace {
-
-constexpr double tight = 1e-11;    // tolerances of the runs
-constexpr double followed = 1e-8;  // errors at the end of some seconds at these tolerances
-
-test::FinishedRun run_tight(const std::string& name,
-                            const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
-  return test::run_model(name, [&](pipeline::SimulationRequest& request) {
-    request.overrides.rtol = request.overrides.atol = tight;
-    if (adjust) adjust(request);
-  });
-}
 
 /// A model of two free coordinates x, y of a particle of 1 kg, and `more`.
 test::FinishedRun run_text(const std::string& more, double rtol = tight) {
@@ -41,13 +31,6 @@ std::vector<double> times_of(const test::FinishedRun& run, const std::string& na
     if (event.name == name) times.push_back(event.t);
   }
   return times;
-}
-
-void check_sound(const test::FinishedRun& run) {
-  CHECK(run.simulation.result.outcome == eom::Outcome::done);
-  CHECK(run.simulation.certificate.pass);
-  CHECK(run.simulation.result.power_balance < followed);
-  CHECK(run.simulation.result.estimate_note.empty());
 }
 
 }  // namespace
@@ -113,7 +96,7 @@ TEST_CASE("rimless_wheel: after some steps it rolls at the rate of the closed fo
 TEST_CASE("simplest_walker: the gait of period one is the published one") {
   const test::FinishedRun run = run_tight("simplest_walker");
   check_sound(run);
-  constexpr double published = 1e-7;  // the start has ten digits, and the gait doubles an error in two steps
+  constexpr double published = 1e-7;  // the start has ten digits, and the feet have a mass
   const std::vector<double> strikes = times_of(run, "heel_strike");
   REQUIRE(strikes.size() == 5);
   CHECK(strikes[0] == doctest::Approx(3.8824637528).epsilon(1e-9));
@@ -231,4 +214,15 @@ TEST_CASE("resets without a valid result end the run with their reason") {
       eom::Outcome::step_too_small, "up, down, up, down");
   ends("[[event]]\nname = \"root\"\nwhen = \"t - 1\"\nset = { x_dot = \"sqrt(x - 1)\" }\n" + scene,
        eom::Outcome::not_finite, "'root' sets is not finite");
+}
+
+TEST_CASE("samples whose times cannot be told apart, or that are too many, are refused") {
+  const auto refused = [](const std::string& keys, const std::string& scene, const char* words) {
+    const std::string model =
+        "[discrete]\na = 0\n[[sample]]\nset = { a = \"a + 1\" }\n" + keys + "[scene.default]\n" + scene;
+    CHECK_THROWS_WITH_AS(run_text(model), doctest::Contains(words), Error);
+  };
+  refused("every = 1e-17\n", "t = [1, 1.00000000001]\n", "is not resolved at times of 1");
+  refused("every = 0.1\noffset = 1e300\n", "t = [0, 1]\n", "is not resolved at times of 1e+300");
+  refused("every = 1e-8\n", "t = [0, 1]\n", "more than 1e+07 times");
 }

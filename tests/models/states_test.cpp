@@ -7,22 +7,12 @@
 #include <cmath>
 #include <complex>
 
-#include "support/simulation.hpp"
+#include "tight_run.hpp"
 
 using namespace eomgen;
+using namespace eomgen::test;
 
 namespace {
-
-constexpr double tight = 1e-11;    // tolerances of the runs
-constexpr double followed = 1e-8;  // errors at the end of some seconds at these tolerances
-
-test::FinishedRun run_tight(const std::string& name,
-                            const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
-  return test::run_model(name, [&](pipeline::SimulationRequest& request) {
-    request.overrides.rtol = request.overrides.atol = tight;
-    if (adjust) adjust(request);
-  });
-}
 
 /// x(t) of x' = A x, by the eigenvectors of A.
 Eigen::VectorXd linear_motion(const Eigen::MatrixXd& A, const Eigen::VectorXd& start, double t) {
@@ -31,13 +21,6 @@ Eigen::VectorXd linear_motion(const Eigen::MatrixXd& A, const Eigen::VectorXd& s
   const Eigen::VectorXcd c = V.fullPivLu().solve(start.cast<std::complex<double>>());
   const Eigen::VectorXcd grown = (modes.eigenvalues() * t).array().exp();
   return (V * c.cwiseProduct(grown)).real();
-}
-
-void check_sound(const test::FinishedRun& run) {
-  CHECK(run.simulation.result.outcome == eom::Outcome::done);
-  CHECK(run.simulation.certificate.pass);
-  CHECK(run.simulation.result.power_balance < followed);
-  CHECK(run.simulation.result.estimate_note.empty());
 }
 
 }  // namespace

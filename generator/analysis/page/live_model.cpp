@@ -77,7 +77,11 @@ class Live {
       return "a velocity jumps during the run, and the page does not compute impulses";
     if (!s_.program.states.empty())
       return "the model has a state of first order, a discrete value, or an integral over time";
-    if (derived_.candidates.front().has_resets()) return "events or samples of the model change the state";
+    const system::EquationSystem& system = derived_.candidates.front();
+    if (system.has_resets()) return "events or samples of the model change the state";
+    if (std::any_of(system.events.begin(), system.events.end(),
+                    [](const system::Event& event) { return event.reset.condition.has_value(); }))
+      return "an event of the model has a condition";
     for (const model::SceneInput& input : model_scene().inputs) {
       if (std::holds_alternative<model::InputTable>(input.signal))
         return fmt::format("the input '{}' is a table of time", derived_.model.inputs[input.input].name);
