@@ -15,7 +15,7 @@ inline constexpr double tight = 1e-11;    // tolerances of the runs
 inline constexpr double followed = 1e-8;  // errors at the end of some seconds at these tolerances
 
 inline FinishedRun run_tight(const std::string& name,
-                            const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
+                             const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
   return run_model(name, [&](pipeline::SimulationRequest& request) {
     request.overrides.rtol = request.overrides.atol = tight;
     if (adjust) adjust(request);
