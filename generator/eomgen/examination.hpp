@@ -34,10 +34,19 @@ struct ConservedQuantity {
   bool proven = false;  // symbolically; false: confirmed numerically only
 };
 
+/// A coordinate, a parameter, or an input with its default value.
+struct ExaminedQuantity {
+  std::string name;
+  std::string unit;   // SI; "" if unknown
+  std::string value;  // a decimal, or an expression of other parameters; "" of coordinates
+};
+
 /// Result of `eomgen check`.
 struct Examination {
-  std::vector<std::string> coordinates;  // all
-  std::vector<std::string> eliminated;   // by constraints
+  std::vector<std::string> coordinates;            // all
+  std::vector<ExaminedQuantity> coordinate_units;  // of the same
+  std::vector<ExaminedQuantity> parameters, inputs;
+  std::vector<std::string> eliminated;  // by constraints
   long degrees_of_freedom = 0;
   std::vector<ConstraintClass> constraints;
   std::vector<ForceClass> forces;

@@ -76,8 +76,11 @@ Examination Model::examine(const CallControl& control) const {
     Examination result;
     for (const auto& c : found.coordinates) {
       result.coordinates.push_back(c.name);
+      result.coordinate_units.push_back({c.name, c.unit, ""});
       if (c.eliminated) result.eliminated.push_back(c.name);
     }
+    for (const auto& p : found.parameters) result.parameters.push_back({p.name, p.unit, p.value});
+    for (const auto& u : found.inputs) result.inputs.push_back({u.name, u.unit, u.value});
     result.degrees_of_freedom = found.degrees_of_freedom;
     for (const auto& c : found.constraints)
       result.constraints.push_back({c.name, c.kind, c.integrable, c.integral, c.redundant, c.treatment, c.reason});

@@ -86,4 +86,8 @@ std::vector<std::string> Model::warnings() const {
   return result;
 }
 
+std::vector<Warning> Model::reader_warnings() const { return read_->warnings; }
+
+std::string Model::text() const { return fmt::format("{}", fmt::join(read_->lines, "\n")); }
+
 }  // namespace eomgen

@@ -53,6 +53,9 @@ class Model {
   std::vector<std::string> scenes() const;       // names
   /// Warnings of the model reader, each with position and remedy.
   std::vector<std::string> warnings() const;
+  /// The same as values.
+  std::vector<Warning> reader_warnings() const;
+  std::string text() const;  // of the model file
 
   /// Classifies the model: degrees of freedom, constraints, forces, conserved quantities, singular sets.
   Examination examine(const CallControl& control = {}) const;

@@ -39,6 +39,13 @@ TEST_CASE("library: the spherical pendulum: examination, equations, compiled for
   const Examination found = model.examine();
   CHECK(found.degrees_of_freedom == 2);
   CHECK(found.eliminated == std::vector<std::string>{"r"});
+  REQUIRE(found.coordinate_units.size() == 3);
+  CHECK(found.coordinate_units[1].unit == "rad");
+  REQUIRE(found.parameters.size() == 3);
+  CHECK(found.parameters[0].name == "m");
+  CHECK(found.parameters[0].unit == "kg");
+  CHECK(found.parameters[0].value == "1");
+  CHECK(model.text() == test::pendulum().text());
   REQUIRE(found.constraints.size() == 1);
   CHECK(found.constraints[0].kind == "holonomic");
   CHECK(std::any_of(found.conserved.begin(), found.conserved.end(), [](const auto& c) { return c.name == "energy"; }));

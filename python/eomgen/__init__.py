@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Equations of motion of mechanical systems: derivation, verification, integration, code.
+
+>>> import eomgen
+>>> model = eomgen.Model.from_file("pendulum.toml")
+>>> print(model.derive())
+>>> motion = model.run(t_end=10)
+>>> motion["theta"]
+
+Quantities are in SI units everywhere, angles in radians. Arrays are NumPy arrays of float64.
+"""
+
+from ._core import solvers, targets
+from ._core import version as __version__
+from .errors import Error, Interrupted, ModelWarning
+from .model import Model
+
+__all__ = ["Error", "Interrupted", "Model", "ModelWarning", "solvers", "targets"]

@@ -1,0 +1,454 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The mechanical system and all analyses of it."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+
+from . import _core
+from .errors import ModelWarning, input_error
+from .records import (
+    Benchmark,
+    Certificate,
+    Equations,
+    Examination,
+    InverseDynamics,
+    Linearization,
+    Motion,
+    Record,
+    Sources,
+    SteadyMotions,
+    StressTest,
+    Sweep,
+)
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike
+
+Stage = Optional[Callable[[str], None]]
+Progress = Optional[Callable[[float], Optional[bool]]]
+Values = Optional[Mapping[str, float]]
+
+
+def _warn(text: str) -> None:
+    warnings.warn(text.rstrip("\n"), ModelWarning, stacklevel=3)
+
+
+def _callbacks(on_stage: Stage, on_progress: Progress) -> _core.Callbacks:
+    return _core.Callbacks(on_stage, on_progress, _warn)
+
+
+def _names(names: "Sequence[str] | str | None") -> List[str]:
+    return [names] if isinstance(names, str) else list(names or ())
+
+
+class ReaderWarning(Record):
+    """A warning of the model reader with its place in the file, counted from 1, and its remedy."""
+
+    file: str
+    line: int
+    column: int
+    source_line: str
+    message: str
+    remedy: str
+    report: str
+
+    def __str__(self) -> str:
+        return self.report.rstrip("\n")
+
+
+class Model:
+    """A model that was read and checked. It does not change, and any thread may use it.
+
+    All calls release the GIL. Derivations wait for one another; integrations do not. Ctrl-C ends every call with
+    KeyboardInterrupt. Calls take callbacks: ``on_stage(name)`` at each stage, ``on_progress(fraction)`` during long
+    ones. If ``on_progress`` returns False, the call ends: ``run``, ``sweep``, ``equilibria`` and ``verify`` return
+    partial results, which say so, and others raise Interrupted. Errors are eomgen.Error with the place in the model.
+    """
+
+    __slots__ = ("_core",)
+
+    def __init__(self, text: str, name: str = "model") -> None:
+        """Reads a model from text in the format of model files. ``name``: of the model, and of the file in errors."""
+        self._core = _core.Model.from_text(str(text), name)
+
+    @classmethod
+    def from_file(cls, path: "str | os.PathLike[str]") -> "Model":
+        """Reads a model file. Raises Error if it is not a valid model."""
+        model = cls.__new__(cls)
+        model._core = _core.Model.from_file(os.fspath(path))
+        return model
+
+    @classmethod
+    def from_text(cls, text: str, name: str = "model") -> "Model":
+        """Reads a model from text in the format of model files."""
+        return cls(text, name)
+
+    def __reduce__(self) -> Any:
+        return (type(self), (self.text, self.name))
+
+    def __repr__(self) -> str:
+        title = f": {self.title}" if self.title else ""
+        return f"<eomgen.Model {self.name}{title}>"
+
+    @property
+    def name(self) -> str:
+        """The base name of the file, or ``name`` of from_text."""
+        return self._core.id()
+
+    @property
+    def title(self) -> str:
+        """The title of the model, or ""."""
+        return self._core.title()
+
+    @property
+    def text(self) -> str:
+        """The text of the model file."""
+        return self._core.text()
+
+    @property
+    def coordinates(self) -> List[str]:
+        """Names of the coordinates, with those that constraints eliminate."""
+        return self._core.coordinates()
+
+    @property
+    def parameters(self) -> List[str]:
+        """Names of the parameters. ``check().parameters`` has units and values."""
+        return self._core.parameters()
+
+    @property
+    def inputs(self) -> List[str]:
+        """Names of the inputs."""
+        return self._core.inputs()
+
+    @property
+    def scenes(self) -> List[str]:
+        """Names of the scenes."""
+        return self._core.scenes()
+
+    @property
+    def warnings(self) -> List[ReaderWarning]:
+        """Warnings of the model reader."""
+        return [ReaderWarning(**w) for w in self._core.warnings()]
+
+    def check(self, *, on_stage: Stage = None) -> Examination:
+        """Classifies the model: degrees of freedom, constraints, forces, conserved quantities, singular sets."""
+        return Examination(**self._core.check(_callbacks(on_stage, None)))
+
+    def derive(
+        self,
+        approach: str = "auto",
+        show: "Sequence[str] | str | None" = None,
+        *,
+        on_stage: Stage = None,
+    ) -> Equations:
+        """Derives the equations of motion in display form, as text, LaTeX and MathML.
+
+        ``approach``: "I" (constraint forces appear), "II" (constraints are eliminated first) or "auto". ``show``: kinds
+        of formulas, as in ``eomgen derive --show``; by default "equations", "constraints", "reactions", "friction".
+        """
+        kinds = None if show is None else _names(show)
+        return Equations(**self._core.derive(approach, kinds, _callbacks(on_stage, None)))
+
+    def document(self, *, seed: int = 1, on_stage: Stage = None) -> str:
+        """Returns the whole derivation as a LaTeX document, checked against the independent oracle."""
+        return self._core.document(seed, _callbacks(on_stage, None))
+
+    def verify(
+        self,
+        *,
+        digits: int = 50,
+        points: int = 20,
+        compile: bool = True,
+        seed: int = 1,
+        on_stage: Stage = None,
+        on_progress: Progress = None,
+    ) -> Certificate:
+        """Checks all formulations against the independent oracle in multiple precision.
+
+        ``digits``: of the arithmetic, 20 to 300. ``points``: random states. ``compile``: also checks the emitted code,
+        which needs a C compiler. A failed check is a result (``passed`` is False), not an error.
+        """
+        callbacks = _callbacks(on_stage, on_progress)
+        return Certificate(**self._core.verify(digits, points, compile, seed, callbacks))
+
+    def emit(
+        self,
+        target: str = "cpp",
+        *,
+        functions: "Sequence[str] | str" = (),
+        outputs: "Sequence[str] | str" = (),
+        fixed: "Sequence[str] | str" = (),
+        approach: str = "auto",
+        form: str = "auto",
+        real: str = "double",
+        seed: int = 1,
+        on_stage: Stage = None,
+    ) -> Sources:
+        """Generates verified source code, under the MIT licence.
+
+        ``target``: one of eomgen.targets(). ``functions``: beside the right-hand side: "jac", "mass", .. ``fixed``:
+        parameters that are replaced by their numbers. ``real``: "double" or "float".
+        """
+        callbacks = _callbacks(on_stage, None)
+        found = self._core.emit(
+            target, approach, form, _names(functions), _names(outputs), _names(fixed), real, seed, callbacks
+        )
+        return Sources(**found)
+
+    def run(
+        self,
+        scene: str = "default",
+        parameters: Values = None,
+        *,
+        t_end: Optional[float] = None,
+        rtol: Optional[float] = None,
+        atol: Optional[float] = None,
+        step: Optional[float] = None,
+        max_step: Optional[float] = None,
+        every: Optional[float] = None,
+        solver: Optional[str] = None,
+        outputs: "Sequence[str] | str" = (),
+        approach: str = "auto",
+        form: str = "auto",
+        tier: str = "auto",
+        max_steps: int = 0,
+        error_estimate: bool = True,
+        charts: bool = True,
+        seed: int = 1,
+        row: "Optional[Callable[[float, np.ndarray], None]]" = None,
+        on_stage: Stage = None,
+        on_progress: Progress = None,
+    ) -> Motion:
+        """Integrates a scene and estimates the error of the result.
+
+        ``parameters`` replaces values of parameters and initial values of coordinates and rates. ``t_end``, ``step``
+        (fixed), ``max_step`` and ``every`` (interval of rows) are in s. ``outputs``: columns beside the coordinates;
+        "all": every output. ``solver``: one of eomgen.solvers(), or "auto". ``tier``: "jit" (machine code in memory),
+        "compiled" (the C compiler) or "auto". ``max_steps``: 0 is the solver's default. ``row(t, values)`` receives the
+        rows instead of the result. A run that fails numerically returns its outcome and raises nothing.
+        """
+        options = {
+            "scene": scene,
+            "parameters": parameters and dict(parameters),
+            "t_end": t_end,
+            "rtol": rtol,
+            "atol": atol,
+            "step": step,
+            "max_step": max_step,
+            "every": every,
+            "solver": solver,
+            "outputs": _names(outputs),
+            "approach": approach,
+            "form": form,
+            "tier": tier,
+            "max_steps": max_steps,
+            "error_estimate": error_estimate,
+            "charts": charts,
+            "seed": seed,
+        }
+        return Motion(**self._core.run(options, row, _callbacks(on_stage, on_progress)))
+
+    def sweep(
+        self,
+        points: "Optional[Mapping[str, ArrayLike]]" = None,
+        *,
+        grid: "Optional[Mapping[str, ArrayLike]]" = None,
+        jobs: Optional[int] = None,
+        on_progress: Progress = None,
+        **options: Any,
+    ) -> Sweep:
+        """Runs a scene for many values of parameters and initial values, in threads.
+
+        ``points``: arrays of the same length K; run k takes the k-th value of each. ``grid``: arrays whose combinations
+        are the runs, the last one varying fastest; with ``points`` each point goes with every combination. ``jobs``:
+        threads, by default one for each processor. ``options``: those of ``run``.
+        """
+        names, values = _sweep_points(dict(points or {}), dict(grid or {}))
+        known = {
+            "scene", "parameters", "t_end", "rtol", "atol", "step", "max_step", "solver", "outputs", "approach", "form",
+            "tier", "max_steps", "error_estimate", "charts", "seed",
+        }  # fmt: skip
+        for name in options:
+            if name not in known:
+                raise TypeError(f"sweep() has no option '{name}'; it takes points, grid, jobs, on_progress and of run() "
+                                f"{', '.join(sorted(known))}")  # fmt: skip
+        if "outputs" in options:
+            options["outputs"] = _names(options["outputs"])
+        found = self._core.sweep(options, names, values, jobs or os.cpu_count() or 1, _callbacks(None, on_progress))
+        return Sweep(**found)
+
+    def inverse(
+        self,
+        scene: str = "default",
+        parameters: Values = None,
+        *,
+        t_end: Optional[float] = None,
+        every: Optional[float] = None,
+        rtol: Optional[float] = None,
+        atol: Optional[float] = None,
+        constraints: "Sequence[str] | str" = (),
+        seed: int = 1,
+        on_stage: Stage = None,
+        on_progress: Progress = None,
+    ) -> InverseDynamics:
+        """Computes the forces that prescribed motions require, in N and N*m, over time.
+
+        ``constraints``: those whose forces are wanted, by default all that prescribe a coordinate.
+        """
+        callbacks = _callbacks(on_stage, on_progress)
+        values = dict(parameters or {})
+        found = self._core.inverse(scene, values, t_end, every, rtol, atol, _names(constraints), seed, callbacks)
+        return InverseDynamics(**found)
+
+    def linearize(
+        self,
+        scene: str = "default",
+        parameters: Values = None,
+        *,
+        time: Optional[float] = None,
+        seed: int = 1,
+        on_stage: Stage = None,
+    ) -> Linearization:
+        """Linearises the equations about a state of a scene: its start, or the state at ``time`` in s."""
+        callbacks = _callbacks(on_stage, None)
+        return Linearization(**self._core.linearize(scene, dict(parameters or {}), time, seed, callbacks))
+
+    def equilibria(
+        self,
+        scene: str = "default",
+        parameters: Values = None,
+        *,
+        hold: Values = None,
+        starts: int = 300,
+        seed: int = 1,
+        on_stage: Stage = None,
+        on_progress: Progress = None,
+    ) -> SteadyMotions:
+        """Searches equilibria and steady motions and classifies their stability.
+
+        ``hold``: outputs and the values at which they are held; by default the conserved momenta at the start.
+        ``starts``: initial guesses of the search.
+        """
+        callbacks = _callbacks(on_stage, on_progress)
+        found = self._core.equilibria(scene, dict(parameters or {}), dict(hold or {}), starts, seed, callbacks)
+        return SteadyMotions(**found)
+
+    def bench(
+        self,
+        scene: str = "default",
+        parameters: Values = None,
+        *,
+        t_end: Optional[float] = None,
+        solvers: "Sequence[str] | str" = (),
+        max_seconds: float = 10,
+        other_libraries: bool = False,
+        seed: int = 1,
+        on_stage: Stage = None,
+    ) -> Benchmark:
+        """Measures the error and the run time of solvers against a reference solution.
+
+        ``max_seconds``: the limit of a run.
+        """
+        callbacks = _callbacks(on_stage, None)
+        values, names = dict(parameters or {}), _names(solvers)
+        return Benchmark(
+            **self._core.bench(scene, values, t_end, names, max_seconds, other_libraries, seed, callbacks)
+        )
+
+    def stress(
+        self,
+        scene: str = "default",
+        parameters: Values = None,
+        *,
+        t_end: Optional[float] = None,
+        solvers: "Sequence[str] | str" = (),
+        max_seconds: float = 60,
+        max_steps: int = 20000,
+        quick: bool = False,
+        seed: int = 1,
+        on_stage: Stage = None,
+    ) -> StressTest:
+        """Runs solvers on stiff and extreme variations of a scene. ``quick``: few variations of each kind."""
+        callbacks = _callbacks(on_stage, None)
+        values, names = dict(parameters or {}), _names(solvers)
+        found = self._core.stress(scene, values, t_end, names, max_seconds, max_steps, quick, seed, callbacks)
+        return StressTest(**found)
+
+    def report(
+        self,
+        path: "str | os.PathLike[str] | None" = None,
+        scene: str = "default",
+        parameters: Values = None,
+        *,
+        t_end: Optional[float] = None,
+        solver: Optional[str] = None,
+    ) -> "Report":
+        """Makes one self-contained page: equations, verification, a run, plots, an animation.
+
+        Jupyter shows it inline. ``path``: also writes it there. It calls the program eomgen.
+        """
+        import tempfile
+
+        from .program import call_program
+
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, self.name + ".toml"), "w", encoding="utf-8") as file:
+                file.write(self.text)
+            arguments = ["report", self.name + ".toml", "--out", "page.html", "--scene", scene]
+            for name, value in dict(parameters or {}).items():
+                arguments += ["--set", f"{name}={float(value)!r}"]
+            if t_end is not None:
+                arguments += ["--t-end", repr(float(t_end))]
+            if solver is not None:
+                arguments += ["--solver", solver]
+            call_program(arguments, folder)
+            with open(os.path.join(folder, "page.html"), encoding="utf-8") as file:
+                page = Report(html=file.read())
+        if path is not None:
+            page.write(path)
+        return page
+
+
+class Report(Record):
+    """A page of HTML that needs no other file and no network. Jupyter shows it inline."""
+
+    html: str
+
+    def write(self, path: "str | os.PathLike[str]") -> None:
+        """Writes the page to a file."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.html)
+
+    def _repr_html_(self) -> str:
+        import html
+
+        return f'<iframe srcdoc="{html.escape(self.html)}" width="100%" height="700" style="border: 0"></iframe>'
+
+
+def _sweep_points(points: Dict[str, Any], grid: Dict[str, Any]) -> "Tuple[List[str], np.ndarray]":
+    """Names, and K x P values."""
+    import numpy as np
+
+    columns = {name: np.atleast_1d(np.asarray(values, dtype=float)) for name, values in points.items()}
+    axes = {name: np.atleast_1d(np.asarray(values, dtype=float)) for name, values in grid.items()}
+    if not columns and not axes:
+        raise input_error("a sweep has no points", "give points={'m': [1, 2]} or grid={'m': [1, 2], 'k': [3, 4]}")
+    for name, values in {**columns, **axes}.items():
+        if values.ndim != 1 or values.size == 0:
+            raise input_error(f"the values of '{name}' are no list of numbers", "give a list of at least one number")
+    both = sorted(columns.keys() & axes.keys())
+    if both:
+        raise input_error(f"'{both[0]}' is in points and in grid", "name it once")
+    lengths = {name: len(values) for name, values in columns.items()}
+    if len(set(lengths.values())) > 1:
+        raise input_error(f"the lengths of points differ: {lengths}", "give as many values of each name")
+    count = next(iter(lengths.values()), 1)
+    sizes = [count, *(len(values) for values in axes.values())]
+    places = np.indices(sizes).reshape(len(sizes), -1)
+    table = [values[places[0]] for values in columns.values()]
+    table += [values[place] for values, place in zip(axes.values(), places[1:])]
+    return [*columns, *axes], np.column_stack(table)

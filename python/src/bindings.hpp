@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The classes of the module, each of which adds itself.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <eomgen/eomgen.hpp>
+
+namespace eomgen::python {
+
+namespace py = pybind11;
+
+/// Destroys a value of the library without the GIL: it may wait for a call whose callback needs the GIL.
+template <class T>
+struct DeleteWithoutGil {
+  void operator()(T* value) const {
+    const py::gil_scoped_release released;
+    delete value;
+  }
+};
+
+template <class T>
+using Holder = std::unique_ptr<T, DeleteWithoutGil<T>>;
+
+void add_model(py::module_& module);
+
+Approach approach_named(const std::string& name);
+
+}  // namespace eomgen::python
