@@ -12,7 +12,9 @@ Quantities are in SI units everywhere, angles in radians. Arrays are NumPy array
 
 from ._core import solvers, targets
 from ._core import version as __version__
+from .compiled import CompiledModel
 from .errors import Error, Interrupted, ModelWarning
 from .model import Model
+from .simulation import Simulation
 
-__all__ = ["Error", "Interrupted", "Model", "ModelWarning", "solvers", "targets"]
+__all__ = ["CompiledModel", "Error", "Interrupted", "Model", "ModelWarning", "Simulation", "solvers", "targets"]

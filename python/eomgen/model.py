@@ -8,6 +8,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from . import _core
+from .compiled import CompiledModel
 from .errors import ModelWarning, input_error
 from .records import (
     Benchmark,
@@ -251,6 +252,41 @@ class Model:
             "seed": seed,
         }
         return Motion(**self._core.run(options, row, _callbacks(on_stage, on_progress)))
+
+    def compile(
+        self,
+        scene: str = "default",
+        parameters: Values = None,
+        *,
+        functions: "Sequence[str] | str | None" = None,
+        outputs: "Sequence[str] | str" = (),
+        approach: str = "auto",
+        form: str = "auto",
+        tier: str = "auto",
+        solver: Optional[str] = None,
+        charts: bool = True,
+        seed: int = 1,
+        on_stage: Stage = None,
+    ) -> CompiledModel:
+        """Compiles the equations as functions of numbers, with the numbers of a scene.
+
+        ``parameters`` replaces values of parameters and initial values. ``functions``: beside "rhs" and "outputs", of
+        "jac", "jac_p", "jac_u", "mass", "momenta", "constraints", "reactions", "events", "taylor"; by default "jac",
+        "mass", and for a model with constraints "constraints" and "reactions". ``solver``: of simulations.
+        """
+        options = {
+            "scene": scene,
+            "parameters": parameters and dict(parameters),
+            "functions": None if functions is None else _names(functions),
+            "outputs": _names(outputs),
+            "approach": approach,
+            "form": form,
+            "tier": tier,
+            "solver": solver,
+            "charts": charts,
+            "seed": seed,
+        }
+        return CompiledModel(self, options, _callbacks(on_stage, None))
 
     def sweep(
         self,

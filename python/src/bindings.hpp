@@ -23,7 +23,18 @@ template <class T>
 using Holder = std::unique_ptr<T, DeleteWithoutGil<T>>;
 
 void add_model(py::module_& module);
+void add_compiled_model(py::module_& module);
+void add_simulation(py::module_& module);
+
+/// Sets eomgen.Error as the exception of Python.
+void raise_error(const Error& error);
 
 Approach approach_named(const std::string& name);
+
+/// Takes an entry of a dictionary of options, if it is there and not None.
+template <class T>
+void take(const py::dict& given, const char* name, T& to) {
+  if (given.contains(name) && !given[name].is_none()) to = given[name].cast<T>();
+}
 
 }  // namespace eomgen::python

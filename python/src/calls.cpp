@@ -52,6 +52,8 @@ void start_watcher() {
   if (once) std::thread(watch_interrupts).detach();
 }
 
+bool is_given(const py::object& callback) { return callback && !callback.is_none(); }
+
 }  // namespace
 
 InterruptWatch::InterruptWatch() {
@@ -83,10 +85,10 @@ InterruptWatch::~InterruptWatch() {
 
 PythonControl::PythonControl(const Callbacks& callbacks) {
   control_.stop = watch_.token();
-  if (!callbacks.stage.is_none()) {
+  if (is_given(callbacks.stage)) {
     control_.on_stage = [this, f = py::handle(callbacks.stage)](const std::string& stage) { call([&] { f(stage); }); };
   }
-  if (!callbacks.progress.is_none()) {
+  if (is_given(callbacks.progress)) {
     control_.on_progress = [this, f = py::handle(callbacks.progress)](double fraction) {
       call([&] {
         if (f(fraction).ptr() != Py_False) return;
@@ -95,7 +97,7 @@ PythonControl::PythonControl(const Callbacks& callbacks) {
       });
     };
   }
-  if (!callbacks.warning.is_none()) {
+  if (is_given(callbacks.warning)) {
     control_.on_warning = [this, f = py::handle(callbacks.warning)](const std::string& text) {
       call([&] { f(text); });
     };

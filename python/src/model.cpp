@@ -135,27 +135,24 @@ py::dict emit(const Model& model, const std::string& target, const std::string& 
 
 RunOptions run_options(const py::dict& given) {
   RunOptions options;
-  const auto take = [&](const char* name, auto& to) {
-    if (given.contains(name) && !given[name].is_none()) to = given[name].cast<std::remove_reference_t<decltype(to)>>();
-  };
-  take("scene", options.scene);
-  take("parameters", options.parameters);
-  take("t_end", options.t_end);
-  take("rtol", options.rtol);
-  take("atol", options.atol);
-  take("step", options.step);
-  take("max_step", options.max_step);
-  take("every", options.every);
-  take("solver", options.solver);
-  take("outputs", options.outputs);
-  take("form", options.form);
-  take("tier", options.tier);
-  take("max_steps", options.max_steps);
-  take("error_estimate", options.error_estimate);
-  take("charts", options.charts);
-  take("seed", options.seed);
+  take(given, "scene", options.scene);
+  take(given, "parameters", options.parameters);
+  take(given, "t_end", options.t_end);
+  take(given, "rtol", options.rtol);
+  take(given, "atol", options.atol);
+  take(given, "step", options.step);
+  take(given, "max_step", options.max_step);
+  take(given, "every", options.every);
+  take(given, "solver", options.solver);
+  take(given, "outputs", options.outputs);
+  take(given, "form", options.form);
+  take(given, "tier", options.tier);
+  take(given, "max_steps", options.max_steps);
+  take(given, "error_estimate", options.error_estimate);
+  take(given, "charts", options.charts);
+  take(given, "seed", options.seed);
   std::string approach = "auto";
-  take("approach", approach);
+  take(given, "approach", approach);
   options.approach = approach_named(approach);
   return options;
 }

@@ -17,15 +17,15 @@ const char* name_of(ErrorKind kind) {
   return "input";
 }
 
-void raise(const Error& error) {
+}  // namespace
+
+void raise_error(const Error& error) {
   const py::object type = py::module_::import("eomgen.errors").attr("Error");
   const SourceLocation& where = error.where();
   const py::object value = type(error.what(), error.stage(), where.file, where.line, where.column, where.length,
                                 where.text, error.message(), error.remedy(), name_of(error.fault()));
   PyErr_SetObject(type.ptr(), value.ptr());
 }
-
-}  // namespace
 
 Approach approach_named(const std::string& name) {
   if (name == "auto") return Approach::automatic;
@@ -43,7 +43,7 @@ PYBIND11_MODULE(_core, module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const eomgen::Error& error) {
-      raise(error);
+      raise_error(error);
     } catch (const eomgen::Interrupted&) {
       PyErr_SetString(py::module_::import("eomgen.errors").attr("Interrupted").ptr(), "ended by its callback");
     }
@@ -52,4 +52,6 @@ PYBIND11_MODULE(_core, module) {
   module.def("solvers", &eomgen::solvers);
   module.def("targets", &eomgen::targets);
   add_model(module);
+  add_compiled_model(module);
+  add_simulation(module);
 }

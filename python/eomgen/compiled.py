@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Compiled equations of motion as functions of numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
+
+from . import _core
+from .records import Quantity
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from .model import Model
+    from .simulation import Simulation
+
+
+class SceneValues(NamedTuple):
+    """Numbers of a scene: its span in s, parameters (P,), and the state at its start (N,)."""
+
+    t_start: float
+    t_end: float
+    parameters: "np.ndarray"
+    state: "np.ndarray"
+
+
+class CompiledModel(_core.CompiledModel):
+    """Verified and compiled equations with the numbers of one scene: ``model.compile()``.
+
+    n free coordinates; N = 2 n + states of first order; P parameters; U inputs; m constraints with multipliers; Y
+    outputs. Its functions take t in s and x, (N,) or K of them, (K, N), in SI units. They release the GIL, take no
+    lock, and any number of threads may call them. For SciPy:
+
+    >>> solve_ivp(compiled.rhs, compiled.span, compiled.start, method="Radau", jac=compiled.jac)
+
+    A function that was not compiled raises Error, which names it: ``model.compile(functions=["jac_u"])``.
+    """
+
+    def __init__(self, model: "Model", options: Dict[str, Any], callbacks: _core.Callbacks) -> None:
+        super().__init__(model._core, options, callbacks)
+        self._model = model
+        self._options = options
+
+    def __reduce__(self) -> Any:
+        return (_compile, (self._model, self._options))
+
+    def __repr__(self) -> str:
+        return f"<eomgen.CompiledModel {self._model.name}, scene {self.scene}, {len(self.state_names)} states>"
+
+    @property
+    def model(self) -> "Model":
+        """The model."""
+        return self._model
+
+    @property
+    def scene(self) -> str:
+        """The name of the scene."""
+        return self._scene()
+
+    @property
+    def states(self) -> List[Quantity]:
+        """N names with units: coordinates, rates, states of first order."""
+        return [Quantity(*q) for q in self._states()]
+
+    @property
+    def state_names(self) -> List[str]:
+        """N names."""
+        return [name for name, _ in self._states()]
+
+    @property
+    def parameter_names(self) -> List[str]:
+        """P names."""
+        return [name for name, _ in self._parameters()]
+
+    @property
+    def input_names(self) -> List[str]:
+        """U names."""
+        return [name for name, _ in self._inputs()]
+
+    @property
+    def output_names(self) -> List[str]:
+        """Y names: every coordinate and its rate first."""
+        return [name for name, _ in self._outputs()]
+
+    @property
+    def constraint_names(self) -> List[str]:
+        """m labels of the constraints with multipliers."""
+        return self._constraints()
+
+    @property
+    def reaction_names(self) -> List[str]:
+        """Labels of all constraints, in the order of reactions()."""
+        return self._reactions()
+
+    @property
+    def event_names(self) -> List[str]:
+        """Names of the events of the model, the first values of events()."""
+        return self._events()
+
+    @property
+    def units(self) -> Dict[str, str]:
+        """SI units of states, parameters, inputs and outputs by name; "" if unknown or a pure number."""
+        return {name: unit for group in (self._outputs(), self._states(), self._parameters(), self._inputs()) for name, unit in group}
+
+    @property
+    def coordinate_count(self) -> int:
+        """n."""
+        return self._coordinate_count()
+
+    @property
+    def certificate(self) -> str:
+        """The verification in one sentence."""
+        return self._certificate()
+
+    @property
+    def tier(self) -> str:
+        """ "jit" (machine code in memory) or "compiled" (a C compiler)."""
+        return self._tier()
+
+    @property
+    def span(self) -> Tuple[float, float]:
+        """The start and the end of the scene in s."""
+        return self._values()[:2]
+
+    @property
+    def start(self) -> "np.ndarray":
+        """The state at the start of the scene: (N,)."""
+        return self._values()[3]
+
+    @property
+    def parameters(self) -> "np.ndarray":
+        """The parameters of the scene: (P,)."""
+        return self._values()[2]
+
+    def values(self, parameters: Optional[Mapping[str, float]] = None) -> SceneValues:
+        """The numbers of the scene with other parameters and initial values.
+
+        Parameters that depend on others follow, and the start satisfies the constraints.
+        """
+        return SceneValues(*(self._scene_values(dict(parameters)) if parameters else self._values()))
+
+    def input_values(self, t: float) -> "np.ndarray":
+        """The inputs of the scene at t in s: (U,)."""
+        return self._input_values(t)
+
+    def state(self, values: Optional[Mapping[str, float]] = None, **more: float) -> "np.ndarray":
+        """A state from names: (N,). The others are 0. Constraints are not solved; ``values()`` does that."""
+        import numpy as np
+
+        names = self.state_names
+        x = np.zeros(len(names))
+        for name, value in {**(values or {}), **more}.items():
+            if name not in names:
+                raise KeyError(f"there is no state '{name}'; there are: {', '.join(names)}")
+            x[names.index(name)] = value
+        return x
+
+    def taylor(
+        self, t: float, x: "np.ndarray", order: int, inputs: Any = None, parameters: Any = None, mode: Any = None
+    ) -> "np.ndarray":
+        """Coefficients of the power series of the motion at constant inputs: (order + 1, N)."""
+        return self._taylor(t, x, order, inputs, parameters, mode)
+
+    def simulate(self, **options: Any) -> "Simulation":
+        """A Simulation of these equations, with its options."""
+        from .simulation import Simulation
+
+        return Simulation(self, **options)
+
+
+def _compile(model: "Model", options: Dict[str, Any]) -> CompiledModel:
+    return CompiledModel(model, options, _core.Callbacks(None, None, None))

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The functions of a CompiledModel, against formulas written by hand, differences and SciPy."""
+
+import concurrent.futures
+import math
+import os
+import pickle
+import unittest
+
+import eomgen
+import numpy as np
+
+SOURCE = os.environ["EOMGEN_SOURCE"]
+
+
+def shipped(name):
+    return eomgen.Model.from_file(f"{SOURCE}/models/{name}.toml")
+
+
+M, m, l, g, c = 2.0, 0.5, 0.8, 9.81, 0.1  # of cart_pendulum
+
+
+def cart_rhs(x, F):
+    """The cart with its pendulum, solved by Cramer's rule."""
+    _, theta, v, w = x
+    A = np.array([[M + m, m * l * math.cos(theta)], [m * l * math.cos(theta), m * l**2]])
+    b = np.array([F - c * v + m * l * w**2 * math.sin(theta), -m * g * l * math.sin(theta)])
+    return np.concatenate([[v, w], np.linalg.solve(A, b)])
+
+
+class CompiledModelTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.model = shipped("cart_pendulum")
+        functions = ["jac", "jac_u", "jac_p", "mass", "momenta", "taylor"]
+        cls.f = cls.model.compile(functions=functions, outputs="all")
+
+    def states(self, count):
+        return np.random.default_rng(1).uniform(-2, 2, (count, 4))
+
+    def test_names_units_and_numbers_of_the_scene(self):
+        f = self.f
+        self.assertEqual(f.state_names, ["x", "theta", "x_dot", "theta_dot"])
+        self.assertEqual(f.states[3], ("theta_dot", "rad/s", ""))
+        self.assertEqual(f.units["F"], "N")
+        self.assertEqual(f.span, (0, 10))
+        self.assertEqual(f.start.tolist(), [0, 0.3, 0, 0])
+        self.assertEqual(f.parameters.tolist(), [2, 0.5, 0.8, 9.81, 0.1])
+        self.assertEqual(f.values({"theta": 1, "m": 3}).state.tolist(), [0, 1, 0, 0])
+        self.assertEqual(f.values({"m": 3}).parameters.tolist(), [2, 3, 0.8, 9.81, 0.1])
+        self.assertEqual(f.state(theta=0.5).tolist(), [0, 0.5, 0, 0])
+        self.assertEqual(f.input_values(0).tolist(), [0])
+        with self.assertRaises(KeyError):
+            f.state(phi=1)
+
+    def test_rhs_is_that_of_the_textbook(self):
+        for x in self.states(20):
+            np.testing.assert_allclose(self.f.rhs(0.0, x, [1.5]), cart_rhs(x, 1.5), rtol=1e-13, atol=1e-13)
+
+    def test_many_states_are_those_of_one(self):
+        X = self.states(50)
+        U = np.linspace(-1, 1, 50)[:, None]
+        for name in ("rhs", "jac", "jac_t", "jac_u", "jac_p", "outputs"):
+            function = getattr(self.f, name)
+            for inputs in (None, [0.7], U):
+                many = function(0.0, X, inputs)
+                for k in (0, 17, 49):
+                    u = U[k] if inputs is U else inputs
+                    np.testing.assert_array_equal(many[k], function(0.0, X[k], u), name)
+        masses, forces = self.f.mass(np.zeros(50), X)
+        self.assertEqual((masses.shape, forces.shape), ((50, 2, 2), (50, 2)))
+        np.testing.assert_array_equal(masses[3], self.f.mass(0, X[3])[0])
+
+    def test_lists_views_and_integers_are_arguments(self):
+        x = self.states(1)[0]
+        expected = self.f.rhs(0.0, x)
+        np.testing.assert_array_equal(self.f.rhs(0, list(x)), expected)
+        np.testing.assert_array_equal(self.f.rhs(np.float64(0), np.repeat(x, 2)[::2]), expected)
+        # Without parameters, what depends on them alone is computed once, in another order.
+        np.testing.assert_allclose(self.f.rhs(t=0.0, x=x, parameters=self.f.parameters), expected, rtol=1e-14)
+        np.testing.assert_array_equal(self.f.rhs(0.0, np.asfortranarray(np.tile(x, (3, 1))))[2], expected)
+        np.testing.assert_array_equal(self.f.rhs(0.0, np.array([0, 1, 2, 3])), self.f.rhs(0.0, [0.0, 1.0, 2.0, 3.0]))
+
+    def test_derivatives_are_those_of_differences(self):
+        x, u, p = self.states(1)[0], np.array([0.4]), self.f.parameters
+        for function, argument in (("jac", 0), ("jac_u", 1), ("jac_p", 2)):
+            J = getattr(self.f, function)(0.0, x, u, p)
+            arguments = [x, u, p]
+            for j in range(J.shape[1]):
+                d = 1e-6
+                up, down = [a.copy() for a in arguments], [a.copy() for a in arguments]
+                up[argument][j] += d
+                down[argument][j] -= d
+                slope = (self.f.rhs(0.0, *up) - self.f.rhs(0.0, *down)) / (2 * d)
+                np.testing.assert_allclose(J[:, j], slope, rtol=1e-6, atol=1e-7, err_msg=function)
+
+    def test_mass_and_bias_give_the_accelerations(self):
+        x = self.states(1)[0]
+        mass, bias = self.f.mass(0.0, x)
+        np.testing.assert_allclose(np.linalg.solve(mass, -bias), self.f.rhs(0.0, x)[2:], rtol=1e-12)
+        momenta, _ = self.f.momenta(0.0, x)
+        np.testing.assert_allclose(momenta, mass @ x[2:], rtol=1e-13)
+
+    def test_constraints_and_their_forces(self):
+        f = shipped("S5_double_pendulum_pfaffian").compile(approach="I")
+        x = f.start
+        psi, A, b = f.constraints(0.0, x)
+        n, constraints = f.coordinate_count, len(f.constraint_names)
+        self.assertEqual((psi.shape, A.shape, b.shape), ((constraints,), (constraints, n), (constraints,)))
+        np.testing.assert_allclose(A @ x[n : 2 * n] + b, 0, atol=1e-12)
+        mass, bias = f.mass(0.0, x)
+        acceleration = f.rhs(0.0, x)[n : 2 * n]
+        multipliers = f.reactions(0.0, x)
+        np.testing.assert_allclose(mass @ acceleration + bias, A.T @ multipliers[-constraints:], atol=1e-10)
+
+    def test_taylor_is_the_series_of_the_motion(self):
+        x = self.f.start
+        series = self.f.taylor(0.0, x, 20)
+        self.assertEqual(series.shape, (21, 4))
+        np.testing.assert_array_equal(series[0], x)
+        np.testing.assert_allclose(series[1], self.f.rhs(0.0, x), rtol=1e-14)
+        h = 0.05
+        end = self.model.run(t_end=h, rtol=1e-12, atol=1e-14).final
+        np.testing.assert_allclose(np.polynomial.polynomial.polyval(h, series)[1], end["theta"], rtol=1e-12)
+
+    def test_inputs_may_be_a_function_of_time_and_state(self):
+        x = self.states(1)[0]
+        feedback = lambda t, x: [t - 2 * x[..., 1]]
+        np.testing.assert_array_equal(self.f.rhs(0.5, x, feedback), self.f.rhs(0.5, x, [0.5 - 2 * x[1]]))
+        X = self.states(5)
+        many = self.f.rhs(0.5, X, lambda t, x: (t - 2 * x[:, 1])[:, None])
+        np.testing.assert_array_equal(many[4], self.f.rhs(0.5, X[4], feedback))
+
+        def fail(t, x):
+            raise ZeroDivisionError
+
+        with self.assertRaises(ZeroDivisionError):
+            self.f.rhs(0.5, x, fail)
+
+    def test_errors_name_the_argument(self):
+        x = self.f.start
+        for arguments, name in (
+            (([0.0], x), "t"),
+            ((0.0, x[:3]), "x"),
+            ((0.0, x, [1, 2]), "inputs"),
+            ((0.0, x, None, [1.0]), "parameters"),
+            ((0.0, np.zeros((3, 4)), np.zeros((2, 1))), "inputs"),
+        ):
+            with self.assertRaisesRegex(eomgen.Error, f"error: {name} has the shape"):
+                self.f.rhs(*arguments)
+        with self.assertRaises(TypeError):
+            self.f.rhs(0.0)
+        with self.assertRaises(TypeError):
+            self.f.rhs(0.0, x, nothing=1)
+        with self.assertRaises(TypeError):
+            self.f.rhs(0.0, "text")
+        with self.assertRaises(TypeError):
+            eomgen.CompiledModel.__new__(eomgen.CompiledModel).rhs(0.0, x)
+        with self.assertRaisesRegex(eomgen.Error, "compile\\(functions=\\['events'"):
+            self.f.events(0.0, x)
+
+    def test_singular_states_raise_and_are_nan_among_many(self):
+        f = shipped("P14_kepler_spherical").compile()
+        x = f.start
+        bad = x.copy()
+        bad[f.state_names.index(next(n for n in f.state_names if n in ("r", "R")))] = 0
+        with self.assertRaises(eomgen.Error) as caught:
+            f.rhs(0.0, bad)
+        self.assertEqual(caught.exception.kind, "numerical")
+        both = f.rhs(0.0, np.array([x, bad]))
+        np.testing.assert_array_equal(both[0], f.rhs(0.0, x))
+        self.assertTrue(np.isnan(both[1]).all())
+
+    def test_threads_get_the_same_bits(self):
+        X = self.states(20000)
+        expected = self.f.rhs(0.0, X)
+        with concurrent.futures.ThreadPoolExecutor(8) as pool:
+            for found in pool.map(lambda _: self.f.rhs(0.0, X), range(32)):
+                np.testing.assert_array_equal(found, expected)
+
+    def test_compiled_models_are_pickled(self):
+        again = pickle.loads(pickle.dumps(self.f))
+        x = self.states(1)[0]
+        np.testing.assert_array_equal(again.rhs(0.0, x), self.f.rhs(0.0, x))
+        self.assertTrue(again.has("jac_u"))
+
+    def test_scipy_integrates_with_rhs_and_jacobian(self):
+        try:
+            from scipy.integrate import solve_ivp
+        except ImportError:
+            self.skipTest("SciPy is not installed")
+        expected = self.model.run(t_end=2, rtol=1e-11, atol=1e-12).final
+        for method, jac in (("DOP853", None), ("Radau", self.f.jac)):
+            options = {} if jac is None else {"jac": jac}
+            found = solve_ivp(self.f.rhs, (0, 2), self.f.start, method=method, rtol=1e-9, atol=1e-11, **options)
+            np.testing.assert_allclose(found.y[1, -1], expected["theta"], rtol=1e-6)
+            controlled = solve_ivp(self.f.rhs, (0, 1), self.f.start, method=method, args=([2.0],), **options)
+            self.assertTrue(controlled.success)
+
+
+if __name__ == "__main__":
+    unittest.main()
