@@ -13,8 +13,47 @@ Quantities are in SI units everywhere, angles in radians. Arrays are NumPy array
 from ._core import solvers, targets
 from ._core import version as __version__
 from .compiled import CompiledModel
+from .definition import (
+    Body,
+    Chain,
+    Constraint,
+    Definition,
+    Event,
+    Force,
+    Frame,
+    Joint,
+    Particle,
+    Point,
+    Sample,
+    State,
+)
 from .errors import Error, Interrupted, ModelWarning
+from .expressions import Expression, if_, quantity
 from .model import Model
 from .simulation import Simulation
 
-__all__ = ["CompiledModel", "Error", "Interrupted", "Model", "ModelWarning", "Simulation", "solvers", "targets"]
+__all__ = [
+    "Body",
+    "Chain",
+    "CompiledModel",
+    "Constraint",
+    "Definition",
+    "Error",
+    "Event",
+    "Expression",
+    "Force",
+    "Frame",
+    "Interrupted",
+    "Joint",
+    "Model",
+    "ModelWarning",
+    "Particle",
+    "Point",
+    "Sample",
+    "Simulation",
+    "State",
+    "if_",
+    "quantity",
+    "solvers",
+    "targets",
+]

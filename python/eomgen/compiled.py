@@ -9,7 +9,7 @@ from . import _core
 from .records import Quantity
 
 if TYPE_CHECKING:
-    import numpy as np
+    from numpy.typing import NDArray
 
     from .model import Model
     from .simulation import Simulation
@@ -20,8 +20,8 @@ class SceneValues(NamedTuple):
 
     t_start: float
     t_end: float
-    parameters: "np.ndarray"
-    state: "np.ndarray"
+    parameters: "NDArray[Any]"
+    state: "NDArray[Any]"
 
 
 class CompiledModel(_core.CompiledModel):
@@ -123,12 +123,12 @@ class CompiledModel(_core.CompiledModel):
         return self._values()[:2]
 
     @property
-    def start(self) -> "np.ndarray":
+    def start(self) -> "NDArray[Any]":
         """The state at the start of the scene: (N,)."""
         return self._values()[3]
 
     @property
-    def parameters(self) -> "np.ndarray":
+    def parameters(self) -> "NDArray[Any]":
         """The parameters of the scene: (P,)."""
         return self._values()[2]
 
@@ -139,11 +139,11 @@ class CompiledModel(_core.CompiledModel):
         """
         return SceneValues(*(self._scene_values(dict(parameters)) if parameters else self._values()))
 
-    def input_values(self, t: float) -> "np.ndarray":
+    def input_values(self, t: float) -> "NDArray[Any]":
         """The inputs of the scene at t in s: (U,)."""
         return self._input_values(t)
 
-    def state(self, values: Optional[Mapping[str, float]] = None, **more: float) -> "np.ndarray":
+    def state(self, values: Optional[Mapping[str, float]] = None, **more: float) -> "NDArray[Any]":
         """A state from names: (N,). The others are 0. Constraints are not solved; ``values()`` does that."""
         import numpy as np
 
@@ -156,8 +156,8 @@ class CompiledModel(_core.CompiledModel):
         return x
 
     def taylor(
-        self, t: float, x: "np.ndarray", order: int, inputs: Any = None, parameters: Any = None, mode: Any = None
-    ) -> "np.ndarray":
+        self, t: float, x: "NDArray[Any]", order: int, inputs: Any = None, parameters: Any = None, mode: Any = None
+    ) -> "NDArray[Any]":
         """Coefficients of the power series of the motion at constant inputs: (order + 1, N)."""
         return self._taylor(t, x, order, inputs, parameters, mode)
 

@@ -26,8 +26,9 @@ from .records import (
 )
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
+
+    from .derivation import Derivation, SympyEquations
 
 Stage = Optional[Callable[[str], None]]
 Progress = Optional[Callable[[float], Optional[bool]]]
@@ -154,6 +155,16 @@ class Model:
         kinds = None if show is None else _names(show)
         return Equations(**self._core.derive(approach, kinds, _callbacks(on_stage, None)))
 
+    def derivation(self, approach: str = "II", *, on_stage: Stage = None) -> "Derivation":
+        """Derives the equations of motion as data: M qddot = f + A^T lambda. "auto" means approach II."""
+        from .derivation import Derivation
+
+        return Derivation(**self._core.derivation(approach, _callbacks(on_stage, None)))
+
+    def to_sympy(self, approach: str = "II", *, functions_of_time: bool = False) -> "SympyEquations":
+        """The equations of motion as expressions of SymPy: ``derivation(approach).to_sympy()``."""
+        return self.derivation(approach).to_sympy(functions_of_time)
+
     def document(self, *, seed: int = 1, on_stage: Stage = None) -> str:
         """Returns the whole derivation as a LaTeX document, checked against the independent oracle."""
         return self._core.document(seed, _callbacks(on_stage, None))
@@ -220,7 +231,7 @@ class Model:
         error_estimate: bool = True,
         charts: bool = True,
         seed: int = 1,
-        row: "Optional[Callable[[float, np.ndarray], None]]" = None,
+        row: "Optional[Callable[[float, NDArray[Any]], None]]" = None,
         on_stage: Stage = None,
         on_progress: Progress = None,
     ) -> Motion:
@@ -465,7 +476,7 @@ class Report(Record):
         return f'<iframe srcdoc="{html.escape(self.html)}" width="100%" height="700" style="border: 0"></iframe>'
 
 
-def _sweep_points(points: Dict[str, Any], grid: Dict[str, Any]) -> "Tuple[List[str], np.ndarray]":
+def _sweep_points(points: Dict[str, Any], grid: Dict[str, Any]) -> "Tuple[List[str], NDArray[Any]]":
     """Names, and K x P values."""
     import numpy as np
 

@@ -7,7 +7,7 @@ import os
 from typing import TYPE_CHECKING, Any, Dict, Iterator, List, NamedTuple, Optional
 
 if TYPE_CHECKING:
-    import numpy as np
+    from numpy.typing import NDArray
 
 
 class Record:
@@ -257,10 +257,10 @@ class Table(Record):
     """Columns over time. ``table["theta"]`` is a column."""
 
     columns: List[str]
-    times: "np.ndarray"
-    rows: "np.ndarray"
+    times: "NDArray[Any]"
+    rows: "NDArray[Any]"
 
-    def __getitem__(self, column: str) -> "np.ndarray":
+    def __getitem__(self, column: str) -> "NDArray[Any]":
         """The values of a column: K numbers, at ``times``."""
         if column == "t":
             return self.times
@@ -271,8 +271,9 @@ class Table(Record):
 
     def plot(self, *columns: str) -> Any:
         """Plots columns over time, by default all of them, with Matplotlib, and returns the axes."""
-        import matplotlib.pyplot as plt
+        from importlib import import_module
 
+        plt: Any = import_module("matplotlib.pyplot")
         _, axes = plt.subplots()
         for column in columns or self.columns:
             axes.plot(self.times, self[column], label=column)
@@ -348,16 +349,16 @@ class Sweep(Record):
     """
 
     parameters: List[str]
-    points: "np.ndarray"
+    points: "NDArray[Any]"
     columns: List[str]
     units: Dict[str, str]
-    final: "np.ndarray"
-    errors: "Optional[np.ndarray]"
+    final: "NDArray[Any]"
+    errors: "Optional[NDArray[Any]]"
     outcomes: List[str]
     details: List[str]
-    t: "np.ndarray"
+    t: "NDArray[Any]"
 
-    def __getitem__(self, name: str) -> "np.ndarray":
+    def __getitem__(self, name: str) -> "NDArray[Any]":
         """K values of a parameter or of a column."""
         if name in self.parameters:
             return self.points[:, self.parameters.index(name)]
@@ -369,7 +370,7 @@ class Sweep(Record):
         return len(self.outcomes)
 
     @property
-    def failed(self) -> "np.ndarray":
+    def failed(self) -> "NDArray[Any]":
         """The numbers of runs that did not reach their end."""
         import numpy as np
 
@@ -387,9 +388,9 @@ class Linearization(Record):
     kind: str
     states: List[str]
     inputs: List[str]
-    A: "np.ndarray"
-    B: "np.ndarray"
-    eigenvalues: "np.ndarray"
+    A: "NDArray[Any]"
+    B: "NDArray[Any]"
+    eigenvalues: "NDArray[Any]"
     structural_zeros: int
     certificate: str
 
@@ -401,7 +402,7 @@ class SteadyMotion(Record):
     state: Dict[str, float]
     stability: str
     reason: str
-    eigenvalues: "np.ndarray"
+    eigenvalues: "NDArray[Any]"
     family_dimension: int
 
 

@@ -9,8 +9,7 @@ from . import _core
 from .errors import input_error
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from .compiled import CompiledModel
 
@@ -74,7 +73,7 @@ class Simulation(_core.Simulation):
         """
         self._set_input(name, value)
 
-    def control(self, t: float, inputs: "Callable[[float, np.ndarray], ArrayLike]", every: float) -> Any:
+    def control(self, t: float, inputs: "Callable[[float, NDArray[Any]], ArrayLike]", every: float) -> Any:
         """Advances until t in s under a sampled controller, and returns the last Advance.
 
         ``inputs(t, x)`` is called every ``every`` seconds from here on and returns (U,), which is held until the next
