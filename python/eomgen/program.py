@@ -39,5 +39,8 @@ def call_program(arguments: List[str], folder: Optional[str] = None) -> str:
 
 def main() -> None:
     """The command line: ``python3 -m eomgen check pendulum.toml``."""
-    program = find_program()
+    try:
+        program = find_program()
+    except Error as error:
+        sys.exit(str(error))
     os.execv(program, [program, *sys.argv[1:]])
