@@ -28,7 +28,7 @@ constexpr std::size_t count = 64,
 constexpr double agreement = 1e-10;  // relative difference of two roundings of a linear solve of condition below 1e3
 
 using Prepare = int (*)(const double* p, double* w);
-using Prepared = int (*)(double t, const double* x, const double* p, const double* w, const double* u, int mode,
+using Prepared = int (*)(double t, const double* x, const double* p, const double* w, const double* u, const int* mode,
                          double* dx);
 using Batch = int (*)(std::size_t, std::size_t, const double*, const double*, const double*, const double*, const int*,
                       int, double*, int*);

@@ -30,7 +30,7 @@ int dense(double, const double* x, const double* p, const double*, int, double* 
 }
 
 template <int N, class Sines>
-int tensions(double t, const double* x, const double* p, const double* u, int mode, double* dx) {
+int tensions(double t, const double* x, const double* p, const double* u, const int* mode, double* dx) {
   double angle[room(N)] = {}, s[room(N)], c[room(N)], ds[N], dc[N];
 #pragma GCC unroll 32
   for (int i = 0; i < N; ++i) angle[i] = x[i];
@@ -45,7 +45,7 @@ int tensions(double t, const double* x, const double* p, const double* u, int mo
 }
 
 template <int N, class Sines>
-int differences(double t, const double* x, const double* p, const double* u, int mode, double* dx) {
+int differences(double t, const double* x, const double* p, const double* u, const int* mode, double* dx) {
   double angle[room(N)] = {}, s[room(N)], c[room(N)];
   angle[0] = x[0];
 #pragma GCC unroll 32

@@ -13,7 +13,7 @@
 
 namespace eomgen::bench {
 
-using Rhs = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dx);
+using Rhs = int (*)(double t, const double* x, const double* p, const double* u, const int* mode, double* dx);
 
 struct Handwritten {
   const char* name;

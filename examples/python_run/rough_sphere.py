@@ -29,7 +29,7 @@ assert "stick" in [kind for _, kind, _ in stops.events]
 
 # The functions depend on the mode: friction decelerates the sliding particle, but not away from the sphere.
 x = model.defaults["x"]
-assert list(model.rhs(0, x, mode=model.info["mode_numbers"][-1])) != list(model.rhs(0, x, mode=1))
+assert list(model.rhs(0, x, mode=model.info["mode_states"][-1])) != list(model.rhs(0, x, mode=[1]))
 
 apart = model.run(0.1, x0={"R": 1.5})  # above the sphere
 assert apart["mode.sphere"][0] == apart["mode.sphere"][-1] and apart["reaction.sphere"][0] == 0

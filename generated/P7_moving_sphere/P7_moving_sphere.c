@@ -151,7 +151,7 @@ static inline int P7_moving_sphere_is_near(const P7_moving_sphere_lanes* reach)
 
 int P7_moving_sphere_abi(void)
 {
-  return 1;
+  return 2;
 }
 
 #if defined(__GNUC__)
@@ -162,20 +162,20 @@ const char* P7_moving_sphere_info(void)
 {
   return
       "{\"model\":\"P7_moving_sphere\",\"title\":\"Particle on a moving sphere\",\"content_hash\":\"218"
-      "82b45b1cb5277745fe3e155be4ec7b9bcdb9ac2eb1b2e6e200dd73960e063\",\"abi\":1,\"states\":[\"phi\",\""
+      "82b45b1cb5277745fe3e155be4ec7b9bcdb9ac2eb1b2e6e200dd73960e063\",\"abi\":2,\"states\":[\"phi\",\""
       "theta\",\"phi_dot\",\"theta_dot\"],\"coordinates\":[\"R\",\"phi\",\"theta\"],\"eliminated\":[\"R"
       "\"],\"parameters\":[\"m\",\"g\",\"D\",\"d0\",\"a\",\"w\"],\"inputs\":[],\"outputs\":[\"energy\","
-      "\"reaction.sphere\"],\"reactions\":[\"sphere\"],\"active_constraints\":0,\"prepared\":0,\"modes\""
-      ":[\"smooth\"],\"units\":{\"phi\":\"rad\",\"theta\":\"rad\",\"phi_dot\":\"rad/s\",\"theta_dot\":\""
-      "rad/s\",\"R\":\"m\",\"m\":\"kg\",\"g\":\"m/s^2\",\"D\":\"N/m\",\"d0\":\"m\",\"a\":\"m\",\"w\":\""
-      "rad/s\"},\"defaults\":{\"t\":0.0,\"x\":[1.0,0.0,0.0,2.0],\"p\":[1.0,9.81,0.3,1.0,0.1,2.0],\"u\":"
-      "[]},\"approach\":\"II\",\"formulation\":\"christoffel\",\"verdict\":\"pass: 5 points at 50 digit"
-      "s, 103 comparisons\",\"singular\":[\"R = 0\",\"phi = 0, phi = pi\",\"d = 0\"],\"operations\":{\""
-      "rhs\":{\"add\":5,\"mul\":19,\"div\":2,\"sqrt\":0,\"trig\":4,\"other\":0},\"jac\":{\"add\":17,\"m"
-      "ul\":61,\"div\":3,\"sqrt\":0,\"trig\":4,\"other\":0},\"mass\":{\"add\":5,\"mul\":23,\"div\":0,\""
-      "sqrt\":0,\"trig\":4,\"other\":0},\"reactions\":{\"add\":4,\"mul\":10,\"div\":0,\"sqrt\":0,\"trig"
-      "\":3,\"other\":0},\"outputs\":{\"add\":9,\"mul\":21,\"div\":0,\"sqrt\":0,\"trig\":4,\"other\":0}"
-      "}}";
+      "\"reaction.sphere\"],\"reactions\":[\"sphere\"],\"active_constraints\":0,\"mode_size\":0,\"prepa"
+      "red\":0,\"modes\":[\"smooth\"],\"units\":{\"phi\":\"rad\",\"theta\":\"rad\",\"phi_dot\":\"rad/s\""
+      ",\"theta_dot\":\"rad/s\",\"R\":\"m\",\"m\":\"kg\",\"g\":\"m/s^2\",\"D\":\"N/m\",\"d0\":\"m\",\"a"
+      "\":\"m\",\"w\":\"rad/s\"},\"defaults\":{\"t\":0.0,\"x\":[1.0,0.0,0.0,2.0],\"p\":[1.0,9.81,0.3,1."
+      "0,0.1,2.0],\"u\":[]},\"approach\":\"II\",\"formulation\":\"christoffel\",\"verdict\":\"pass: 5 p"
+      "oints at 50 digits, 103 comparisons\",\"singular\":[\"R = 0\",\"phi = 0, phi = pi\",\"d = 0\"],\""
+      "operations\":{\"rhs\":{\"add\":5,\"mul\":19,\"div\":2,\"sqrt\":0,\"trig\":4,\"other\":0},\"jac\""
+      ":{\"add\":17,\"mul\":61,\"div\":3,\"sqrt\":0,\"trig\":4,\"other\":0},\"mass\":{\"add\":5,\"mul\""
+      ":23,\"div\":0,\"sqrt\":0,\"trig\":4,\"other\":0},\"reactions\":{\"add\":4,\"mul\":10,\"div\":0,\""
+      "sqrt\":0,\"trig\":3,\"other\":0},\"outputs\":{\"add\":9,\"mul\":21,\"div\":0,\"sqrt\":0,\"trig\""
+      ":4,\"other\":0}}}";
 }
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
@@ -199,8 +199,8 @@ void P7_moving_sphere_defaults(double* x, double* p)
 #if defined(__GNUC__)
 __attribute__((always_inline))
 #endif
-static inline int P7_moving_sphere_rhs_from(int guarded, double t, const double* x, const double* p, const double* u, int mode, double*
-                              dx)
+static inline int P7_moving_sphere_rhs_from(int guarded, double t, const double* x, const double* p, const double* u, const int* mode,
+                              double* dx)
 {
   (void)u; (void)mode;
   const double phi = x[0], phi_dot = x[2], theta_dot = x[3];
@@ -242,21 +242,22 @@ static inline int P7_moving_sphere_rhs_from(int guarded, double t, const double*
 #if defined(__GNUC__)
 __attribute__((cold, noinline))
 #endif
-static int P7_moving_sphere_rhs_far(double t, const double* x, const double* p, const double* u, int mode, double*
-                             dx)
+static int P7_moving_sphere_rhs_far(double t, const double* x, const double* p, const double* u, const int* mode,
+                             double* dx)
 {
   return P7_moving_sphere_rhs_from(1, t, x, p, u, mode, dx);
 }
 
-int P7_moving_sphere_rhs(double t, const double* x, const double* p, const double* u, int mode, double* dx)
+int P7_moving_sphere_rhs(double t, const double* x, const double* p, const double* u, const int* mode, double*
+                         dx)
 {
   const int code = P7_moving_sphere_rhs_from(0, t, x, p, u, mode, dx);
   return code >= 0 ? code : P7_moving_sphere_rhs_far(t, x, p, u, mode, dx);
 }
 
 
-int P7_moving_sphere_jac(double t, const double* x, const double* p, const double* u, int mode, double* dfdx,
-                         double* dfdt)
+int P7_moving_sphere_jac(double t, const double* x, const double* p, const double* u, const int* mode, double*
+                         dfdx, double* dfdt)
 {
   (void)u; (void)mode;
   const double phi = x[0], phi_dot = x[2], theta_dot = x[3];
@@ -358,8 +359,8 @@ int P7_moving_sphere_mass(double t, const double* x, const double* p, double* M,
 }
 
 
-int P7_moving_sphere_reactions(double t, const double* x, const double* p, const double* u, int mode, double*
-                               lambda)
+int P7_moving_sphere_reactions(double t, const double* x, const double* p, const double* u, const int* mode,
+                               double* lambda)
 {
   (void)u; (void)mode;
   const double phi = x[0], phi_dot = x[2], theta_dot = x[3];
@@ -382,7 +383,8 @@ int P7_moving_sphere_reactions(double t, const double* x, const double* p, const
 }
 
 
-int P7_moving_sphere_outputs(double t, const double* x, const double* p, const double* u, int mode, double* y)
+int P7_moving_sphere_outputs(double t, const double* x, const double* p, const double* u, const int* mode,
+                             double* y)
 {
   (void)u; (void)mode;
   const double phi = x[0], phi_dot = x[2], theta_dot = x[3];

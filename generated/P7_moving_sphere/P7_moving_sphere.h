@@ -41,13 +41,15 @@
 extern "C" {
 #endif
 
-/* The caller owns all arrays; two-dimensional ones are stored by columns. If u is NULL, inputs have their defaults.
+/* The caller owns all arrays; two-dimensional ones are stored by columns. If u is NULL, inputs have their defaults;
+ * if mode is NULL, its entries are 0.
  * Functions have no state and are thread-safe. They return 0, or 1: singular mass matrix, 2: outside the chart,
  * 3: friction law without a solution, 4: with several, 5: not finite. */
 enum {
   P7_moving_sphere_states = 4,
   P7_moving_sphere_parameters = 6,
   P7_moving_sphere_inputs = 0,
+  P7_moving_sphere_mode_size = 0,
   P7_moving_sphere_constraints_active = 0,
   P7_moving_sphere_reaction_count = 1,
   P7_moving_sphere_output_count = 2,
@@ -63,17 +65,19 @@ void P7_moving_sphere_defaults(double* x, double* p);
 /* Compares every function with embedded high-precision values. Returns 0, or the number of the first wrong state. */
 int P7_moving_sphere_selftest(void);
 /* dx = d/dt of the state x. */
-int P7_moving_sphere_rhs(double t, const double* x, const double* p, const double* u, int mode, double* dx);
+int P7_moving_sphere_rhs(double t, const double* x, const double* p, const double* u, const int* mode, double*
+                         dx);
 /* dfdx[i + N j] = d(dx_i)/d(x_j) with N entries of x; dfdt at fixed x. */
-int P7_moving_sphere_jac(double t, const double* x, const double* p, const double* u, int mode, double* dfdx,
-                         double* dfdt);
+int P7_moving_sphere_jac(double t, const double* x, const double* p, const double* u, const int* mode, double*
+                         dfdx, double* dfdt);
 /* M qddot + h = A^T lambda: M by columns, h. */
 int P7_moving_sphere_mass(double t, const double* x, const double* p, double* M, double* h);
 /* The multipliers of all constraints, in the order of the model. */
-int P7_moving_sphere_reactions(double t, const double* x, const double* p, const double* u, int mode, double*
-                               lambda);
+int P7_moving_sphere_reactions(double t, const double* x, const double* p, const double* u, const int* mode,
+                               double* lambda);
 /* The outputs asked for. */
-int P7_moving_sphere_outputs(double t, const double* x, const double* p, const double* u, int mode, double* y);
+int P7_moving_sphere_outputs(double t, const double* x, const double* p, const double* u, const int* mode,
+                             double* y);
 
 #ifdef __cplusplus
 }

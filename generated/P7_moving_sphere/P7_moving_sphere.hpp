@@ -50,7 +50,7 @@
 // or found by argument-dependent lookup.
 namespace eom::P7_moving_sphere {
 
-inline constexpr int abi = 1;
+inline constexpr int abi = 2;
 struct State { enum : std::size_t { phi, theta, phi_dot, theta_dot }; };
 inline constexpr std::size_t state_count = 4;
 struct Parameter { enum : std::size_t { m, g, D, d0, a, w }; };
@@ -60,6 +60,7 @@ struct Output { enum : std::size_t { energy, reaction_sphere }; };
 inline constexpr std::size_t output_count = 2;
 struct Reaction { enum : std::size_t { sphere }; };
 inline constexpr std::size_t reaction_count = 1;
+inline constexpr std::size_t mode_size = 0;
 inline constexpr std::size_t prepared_size = 0;
 
 #if defined(__GNUC__)
@@ -70,20 +71,20 @@ inline constexpr std::size_t prepared_size = 0;
 inline const char* info() {
   return
       "{\"model\":\"P7_moving_sphere\",\"title\":\"Particle on a moving sphere\",\"content_hash\":\"218"
-      "82b45b1cb5277745fe3e155be4ec7b9bcdb9ac2eb1b2e6e200dd73960e063\",\"abi\":1,\"states\":[\"phi\",\""
+      "82b45b1cb5277745fe3e155be4ec7b9bcdb9ac2eb1b2e6e200dd73960e063\",\"abi\":2,\"states\":[\"phi\",\""
       "theta\",\"phi_dot\",\"theta_dot\"],\"coordinates\":[\"R\",\"phi\",\"theta\"],\"eliminated\":[\"R"
       "\"],\"parameters\":[\"m\",\"g\",\"D\",\"d0\",\"a\",\"w\"],\"inputs\":[],\"outputs\":[\"energy\","
-      "\"reaction.sphere\"],\"reactions\":[\"sphere\"],\"active_constraints\":0,\"prepared\":0,\"modes\""
-      ":[\"smooth\"],\"units\":{\"phi\":\"rad\",\"theta\":\"rad\",\"phi_dot\":\"rad/s\",\"theta_dot\":\""
-      "rad/s\",\"R\":\"m\",\"m\":\"kg\",\"g\":\"m/s^2\",\"D\":\"N/m\",\"d0\":\"m\",\"a\":\"m\",\"w\":\""
-      "rad/s\"},\"defaults\":{\"t\":0.0,\"x\":[1.0,0.0,0.0,2.0],\"p\":[1.0,9.81,0.3,1.0,0.1,2.0],\"u\":"
-      "[]},\"approach\":\"II\",\"formulation\":\"christoffel\",\"verdict\":\"pass: 5 points at 50 digit"
-      "s, 103 comparisons\",\"singular\":[\"R = 0\",\"phi = 0, phi = pi\",\"d = 0\"],\"operations\":{\""
-      "rhs\":{\"add\":5,\"mul\":19,\"div\":2,\"sqrt\":0,\"trig\":4,\"other\":0},\"jac\":{\"add\":17,\"m"
-      "ul\":61,\"div\":3,\"sqrt\":0,\"trig\":4,\"other\":0},\"mass\":{\"add\":5,\"mul\":23,\"div\":0,\""
-      "sqrt\":0,\"trig\":4,\"other\":0},\"reactions\":{\"add\":4,\"mul\":10,\"div\":0,\"sqrt\":0,\"trig"
-      "\":3,\"other\":0},\"outputs\":{\"add\":9,\"mul\":21,\"div\":0,\"sqrt\":0,\"trig\":4,\"other\":0}"
-      "}}";
+      "\"reaction.sphere\"],\"reactions\":[\"sphere\"],\"active_constraints\":0,\"mode_size\":0,\"prepa"
+      "red\":0,\"modes\":[\"smooth\"],\"units\":{\"phi\":\"rad\",\"theta\":\"rad\",\"phi_dot\":\"rad/s\""
+      ",\"theta_dot\":\"rad/s\",\"R\":\"m\",\"m\":\"kg\",\"g\":\"m/s^2\",\"D\":\"N/m\",\"d0\":\"m\",\"a"
+      "\":\"m\",\"w\":\"rad/s\"},\"defaults\":{\"t\":0.0,\"x\":[1.0,0.0,0.0,2.0],\"p\":[1.0,9.81,0.3,1."
+      "0,0.1,2.0],\"u\":[]},\"approach\":\"II\",\"formulation\":\"christoffel\",\"verdict\":\"pass: 5 p"
+      "oints at 50 digits, 103 comparisons\",\"singular\":[\"R = 0\",\"phi = 0, phi = pi\",\"d = 0\"],\""
+      "operations\":{\"rhs\":{\"add\":5,\"mul\":19,\"div\":2,\"sqrt\":0,\"trig\":4,\"other\":0},\"jac\""
+      ":{\"add\":17,\"mul\":61,\"div\":3,\"sqrt\":0,\"trig\":4,\"other\":0},\"mass\":{\"add\":5,\"mul\""
+      ":23,\"div\":0,\"sqrt\":0,\"trig\":4,\"other\":0},\"reactions\":{\"add\":4,\"mul\":10,\"div\":0,\""
+      "sqrt\":0,\"trig\":3,\"other\":0},\"outputs\":{\"add\":9,\"mul\":21,\"div\":0,\"sqrt\":0,\"trig\""
+      ":4,\"other\":0}}}";
 }
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
@@ -220,7 +221,7 @@ inline int eom_is_near(const eom_lanes* reach)
 
 // dx = d/dt of the state x.
 template <class Real>
-int rhs(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* dx) {
+int rhs(Real t, const Real* x, const Real* p, const Real* u, const int* mode, Real* dx) {
   (void)u; (void)mode;
   const Real phi = x[0], phi_dot = x[2], theta_dot = x[3];
   const Real m = p[0], g = p[1], D = p[2], d0 = p[3], a = p[4], w = p[5];
@@ -254,7 +255,7 @@ int rhs(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* dx)
 
 // dfdx[i + N j] = d(dx_i)/d(x_j) with N entries of x; dfdt at fixed x.
 template <class Real>
-int jac(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* dfdx, Real* dfdt) {
+int jac(Real t, const Real* x, const Real* p, const Real* u, const int* mode, Real* dfdx, Real* dfdt) {
   (void)u; (void)mode;
   const Real phi = x[0], phi_dot = x[2], theta_dot = x[3];
   const Real m = p[0], g = p[1], D = p[2], d0 = p[3], a = p[4], w = p[5];
@@ -356,7 +357,7 @@ int mass(Real t, const Real* x, const Real* p, Real* M, Real* h) {
 
 // The multipliers of all constraints, in the order of the model.
 template <class Real>
-int reactions(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* lambda) {
+int reactions(Real t, const Real* x, const Real* p, const Real* u, const int* mode, Real* lambda) {
   (void)u; (void)mode;
   const Real phi = x[0], phi_dot = x[2], theta_dot = x[3];
   const Real m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
@@ -379,7 +380,7 @@ int reactions(Real t, const Real* x, const Real* p, const Real* u, int mode, Rea
 
 // The outputs asked for.
 template <class Real>
-int outputs(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* y) {
+int outputs(Real t, const Real* x, const Real* p, const Real* u, const int* mode, Real* y) {
   (void)u; (void)mode;
   const Real phi = x[0], phi_dot = x[2], theta_dot = x[3];
   const Real m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
@@ -445,7 +446,7 @@ inline int selftest() {
       const int state = at[k];
       const double* const point = points[state];
       double y1[4] = {0};
-      if (rhs<double>(point[0], point + 1, point + 5, nullptr, 0, y1) != 0) return state + 1;
+      if (rhs<double>(point[0], point + 1, point + 5, nullptr, nullptr, y1) != 0) return state + 1;
       if (eom_differs(4, y1, expected[k] + 0)) return state + 1;
     }
   }
@@ -466,7 +467,7 @@ inline int selftest() {
       const double* const point = points[state];
       double y1[16] = {0};
       double y2[4] = {0};
-      if (jac<double>(point[0], point + 1, point + 5, nullptr, 0, y1, y2) != 0) return state + 1;
+      if (jac<double>(point[0], point + 1, point + 5, nullptr, nullptr, y1, y2) != 0) return state + 1;
       if (eom_differs(16, y1, expected[k] + 0)) return state + 1;
       if (eom_differs(4, y2, expected[k] + 17)) return state + 1;
     }
@@ -499,7 +500,7 @@ inline int selftest() {
       const int state = at[k];
       const double* const point = points[state];
       double y1[1] = {0};
-      if (reactions<double>(point[0], point + 1, point + 5, nullptr, 0, y1) != 0) return state + 1;
+      if (reactions<double>(point[0], point + 1, point + 5, nullptr, nullptr, y1) != 0) return state + 1;
       if (eom_differs(1, y1, expected[k] + 0)) return state + 1;
     }
   }
@@ -513,7 +514,7 @@ inline int selftest() {
       const int state = at[k];
       const double* const point = points[state];
       double y1[2] = {0};
-      if (outputs<double>(point[0], point + 1, point + 5, nullptr, 0, y1) != 0) return state + 1;
+      if (outputs<double>(point[0], point + 1, point + 5, nullptr, nullptr, y1) != 0) return state + 1;
       if (eom_differs(2, y1, expected[k] + 0)) return state + 1;
     }
   }

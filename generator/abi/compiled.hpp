@@ -16,7 +16,8 @@ namespace eomgen::abi {
 struct CallArguments {
   double t = 0;
   const double *x = nullptr, *p = nullptr, *w = nullptr, *u = nullptr;
-  int mode = 0, order = 0, to = 0;
+  const int *mode = nullptr, *to = nullptr;
+  int order = 0;
   std::array<double*, 3> results{};
 };
 

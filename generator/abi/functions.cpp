@@ -68,9 +68,9 @@ std::string prototype(const Function& function, const std::string& name) {
   for (const Input input : function.inputs) {
     switch (input) {
       case Input::time: add("double ", abi::name(input)); break;
+      case Input::order: add("int ", abi::name(input)); break;
       case Input::mode:
-      case Input::order:
-      case Input::to: add("int ", abi::name(input)); break;
+      case Input::to: add("const int* ", abi::name(input)); break;
       default: add("const double* ", abi::name(input));
     }
   }

@@ -10,6 +10,9 @@
 
 namespace eomgen::abi {
 
+/// The version of the ABI that emitted code states (NAME_abi).
+inline constexpr int version = 2;
+
 /// An input of a function. The argument names are t, x, p, w, u, mode, order, to.
 enum class Input : std::uint8_t { time, state, parameters, prepared, inputs, mode, order, to };
 const char* name(Input input);

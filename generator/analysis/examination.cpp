@@ -10,7 +10,6 @@
 #include "conservation/conserved.hpp"
 #include "derive/formulations/lagrange.hpp"
 #include "pipeline/charts.hpp"
-#include "program/kinks.hpp"
 #include "reading/reading.hpp"
 #include "symbolic/decimal.hpp"
 #include "symbolic/evaluate.hpp"
@@ -47,22 +46,6 @@ void add_resets(mechanics::Mechanics& m, Examination& found) {
   };
   for (const model::Event& event : m.model->events) add(event.name, event.when, false, event.reset);
   for (const model::Sample& sample : m.model->samples) add(sample.name, sample.every, true, sample.reset);
-}
-
-/// Kinks that runs do not locate, because the modes have no place for them.
-void add_further_kinks(const mechanics::Mechanics& m, const system::EquationSystem& system, Examination& found) {
-  system::EquationSystem copy = system;
-  const program::FrozenKinks kinks = program::freeze_kink_branches(copy);
-  if (kinks.beyond.empty()) return;
-  std::string list;
-  for (const program::Kink& kink : kinks.beyond)
-    list += fmt::format("{}{} at {} = 0", list.empty() ? "" : ", ", program::name(kink), shown(m, kink.value));
-  found.left_out.push_back(
-      {"kinks in runs: " + list,
-       fmt::format("runs end their steps at {} surfaces of abs, sign, min, max and if at most, and the equations have "
-                   "{}; steps cross these, with more steps and less accuracy",
-                   program::max_kinks, kinks.frozen.size() + kinks.beyond.size()),
-       false});
 }
 
 std::string treatment_of(const mechanics::Mechanics& m, const mechanics::Constraint& c, bool joint) {
@@ -224,7 +207,6 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
   for (const conservation::ConservedQuantity& c : conservation::conserved_quantities(m, system))
     found.conserved.push_back({c.name, c.title, item_of(m, c.expression), conservation::name(c.certainty)});
   add_singular(m, found);
-  add_further_kinks(m, system, found);
 }
 
 }  // namespace

@@ -164,7 +164,6 @@ Json RunReport::json() const {
       {"contact_work", result.contact_work},
       {"events", events},
       {"kinks", kinks},
-      {"further_kinks", program.further_kinks},
       {"solved", scene.solved_notes},
       {"undetermined", undetermined(simulation)},
       {"formulation", program.formulation},
@@ -230,13 +229,6 @@ std::string RunReport::text() const {
   }
   for (const run::KinkCrossings& k : result.kinks)
     out += line("kink", fmt::format("of {}: crossed {} times", k.kink, k.count));
-  if (!program.further_kinks.empty()) {
-    out +=
-        line("kinks left out",
-             fmt::format("{} ({}): steps end at {} kinks at most and cross these, with more steps and less accuracy; "
-                         "`check` lists them",
-                         program.further_kinks.size(), fmt::join(program.further_kinks, ", "), result.kinks.size()));
-  }
   out += line("steps", fmt::format("{} accepted, {} rejected, {} evaluations", result.statistics.steps,
                                    result.statistics.rejected, result.statistics.rhs_evaluations));
   if (result.statistics.jacobians > 0 || run::uses_jacobian(run::get_method(result.solver)))

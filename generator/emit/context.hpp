@@ -27,7 +27,7 @@ struct Quantity {
 /// The result arrays of a function of the ABI at a test vector, each with a bound of its rounding error.
 struct FunctionValues {
   std::string function;
-  int to = 0;  // argument of `chart`
+  unsigned to = 0;  // of `chart`: the set of second charts
   std::vector<std::vector<double>> values;
   std::vector<double> tolerances;
 };
@@ -35,7 +35,7 @@ struct FunctionValues {
 /// A state for the self test (self_test.hpp).
 struct TestVector {
   double t = 0;
-  int mode = 0;
+  std::vector<int> mode;  // empty: all entries are 0
   std::vector<double> x, p, u;
   std::vector<FunctionValues> functions;  // rhs first
 };

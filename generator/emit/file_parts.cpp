@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <eom/modes/chart_state.hpp>
 
 #include "abi/functions.hpp"
 #include "emit/metadata.hpp"
@@ -22,9 +21,7 @@ const Function* find(const Program& program, const std::string& name) {
   return found == program.functions.end() ? nullptr : &*found;
 }
 
-std::string chart_name(int in_charts) {
-  return in_charts == 0 ? "own" : fmt::format("chart{}", eom::charts_of(in_charts));
-}
+std::string chart_name(unsigned in_charts) { return in_charts == 0 ? "own" : fmt::format("chart{}", in_charts); }
 
 bool is_without_mode(const std::string& name) { return !abi::find(name)->has_input(abi::Input::mode); }
 
@@ -90,8 +87,11 @@ class Parts {
   }
 
   std::string by_mode(const std::string& name, const std::vector<Argument>& list) {
-    std::string body =
-        fmt::format("  switch (mode >> {} & {}) {{\n", eom::first_chart_bit, eom::charts_of(eom::chart_bits));
+    std::string charts;
+    for (std::size_t j = 0; j < program_.charts.size(); ++j)
+      charts += fmt::format("{}(mode[{}] != 0){}", j > 0 ? " | " : "", program_.mode_layout().chart(j),
+                            j > 0 ? fmt::format(" << {}", j) : "");
+    std::string body = fmt::format("  switch (mode ? {} : 0) {{\n", charts);
     std::size_t offset = 0;
     for (const Program* p = next(nullptr); p != nullptr; p = next(p)) {
       const bool prepared = abi::find(name)->has_input(abi::Input::prepared);
@@ -102,7 +102,7 @@ class Parts {
         calls = call(*p, "rhs", abi_arguments("rhs"));
       }
       if (prepared) offset += p->result_size("prepare");
-      body += fmt::format("    case {}: return {};\n", eom::charts_of(p->in_charts), calls);
+      body += fmt::format("    case {}: return {};\n", p->in_charts, calls);
     }
     return body + "    default: return 2;\n  }\n";
   }
@@ -121,7 +121,7 @@ class Parts {
         body + "  return code;\n");
   }
 
-  /// Changes charts, one bit of `mode` at a time.
+  /// Changes charts, one at a time.
   void exchange() {
     std::string body =
         fmt::format("  int code = 0;\n  for (int i = 0; i < {}; ++i) y[i] = x[i];\n", program_.state_count());
@@ -133,11 +133,10 @@ class Parts {
                                       function == &chart.to ? chart.second : chart.own),
                           function, true, "", ""});
       }
-      const std::size_t bit = static_cast<std::size_t>(eom::first_chart_bit) + j;
       body += fmt::format(
-          "  if (code == 0 && ((mode ^ to) >> {0} & 1) != 0) code = (to >> {0} & 1) != 0 ? {1}to_second_{2}(y, y) : "
+          "  if (code == 0 && (mode && mode[{0}]) != (to && to[{0}])) code = to && to[{0}] ? {1}to_second_{2}(y, y) : "
           "{1}to_own_{2}(y, y);\n",
-          bit, prefix_, j + 1);
+          program_.mode_layout().chart(j), prefix_, j + 1);
     }
     add("chart", function_purpose("chart"), argument_list(abi_arguments("chart"), real_), body + "  return code;\n");
   }
@@ -157,11 +156,11 @@ std::vector<FilePart> file_parts(const Program& program, const std::string& pref
   return Parts(program, prefix, real).run();
 }
 
-std::string chart_title(const Program& program, int in_charts) {
+std::string chart_title(const Program& program, unsigned in_charts) {
   std::string title;
   for (std::size_t j = 0; j < program.charts.size(); ++j) {
     const program::ChartInfo& chart = program.charts[j];
-    const bool second = (eom::charts_of(in_charts) >> j & 1) != 0;
+    const bool second = (in_charts >> j & 1u) != 0;
     title += fmt::format("{}{} of {}", title.empty() ? "" : ", ", second ? chart.second : chart.own, chart.of);
   }
   return title;

@@ -22,6 +22,6 @@ struct FilePart {
 std::vector<FilePart> file_parts(const program::Program& program, const std::string& prefix, const std::string& real);
 
 /// The title of a chart for the banner and NAME_info: the objects that are in their second charts.
-std::string chart_title(const program::Program& program, int in_charts);
+std::string chart_title(const program::Program& program, unsigned in_charts);
 
 }  // namespace eomgen::emit

@@ -7,12 +7,16 @@
 #include <stdexcept>
 
 #include "program/internal_functions.hpp"
-#include "program/kinks.hpp"
 
 namespace eomgen::emit {
 namespace {
 
 using program::Slot;
+
+/// An entry of `mode`, which may be null.
+std::string mode_entry(const ModelNames& names, std::size_t entry) {
+  return fmt::format("({0} ? {0}[{1}] : 0)", names.mode, entry);
+}
 
 /// The value of a leaf from the arguments of one state. Without `takes_inputs`, inputs have their defaults.
 std::string leaf_value(const Dialect& dialect, const ModelNames& names, const EmissionContext& context, Slot slot,
@@ -21,22 +25,17 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
     case Slot::state: return dialect.rounded(fmt::format("{}[{}]", names.x, i));
     case Slot::parameter: return dialect.rounded(fmt::format("{}[{}]", names.p, i));
     case Slot::contact: {
-      std::string digit = fmt::format("({} & {})", names.mode, eom::contact_bits);
-      for (std::uint32_t j = 0; j < i / 2; ++j) digit += fmt::format("/{}", eom::contact_states);
-      if (!dialect.is_typed) digit = fmt::format("({} | 0)", digit);  // JavaScript has no integer division
-      const std::string one = dialect.constant(1);
-      if (i % 2 == 1)
-        return fmt::format("{0} % {1} < {2} ? {3} : -{3}", digit, eom::contact_states, eom::contact_states / 2, one);
-      return fmt::format("{0} % 3 == 2 ? -{1} : {0} % 3 == 1 ? {1} : {2}", digit, one, dialect.constant(0));
+      const std::string state = mode_entry(names, i / 2), one = dialect.constant(1);
+      if (i % 2 == 1) return fmt::format("{0} < {1} ? {2} : -{2}", state, eom::contact_states / 2, one);
+      return fmt::format("{0} % 3 == 2 ? -{1} : {0} % 3 == 1 ? {1} : {2}", state, one, dialect.constant(0));
     }
     case Slot::input: {
       const std::string standing = dialect.value(context.inputs.at(i).value);
       const std::string given = dialect.rounded(fmt::format("{}[{}]", names.u, i));
       return takes_inputs ? fmt::format("{} ? {} : {}", names.u, given, standing) : standing;
     }
-    case Slot::side: {  // two bits per kink: frozen above its surface, frozen below
-      const std::size_t bit = program::first_kink_bit + 2 * i;
-      const std::string side = fmt::format("(({0} >> {1} & 1) - ({0} >> {2} & 1))", names.mode, bit, bit + 1);
+    case Slot::side: {  // 1: frozen above the surface, -1: below it
+      const std::string side = mode_entry(names, names.first_kink + i);
       if (!dialect.is_typed) return side;
       return dialect.using_std ? dialect.real + side : fmt::format("({}){}", dialect.real, side);
     }
@@ -46,8 +45,8 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
 }
 
 /// The value of a leaf from the lanes of `block`.
-std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context, const std::string& block, Slot slot,
-                          std::uint32_t i, bool takes_inputs) {
+std::string leaf_of_lanes(const Dialect& dialect, const ModelNames& names, const EmissionContext& context,
+                          const std::string& block, Slot slot, std::uint32_t i, bool takes_inputs) {
   const auto entry = [&](int array) {
     return fmt::format("{}at({}, {}, {})", dialect.lane_prefix, block, array, i);
   };  // loads an entry of the arrays t, x, p, w, u
@@ -59,12 +58,9 @@ std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context
     case Slot::input:
       return takes_inputs ? entry(4)
                           : fmt::format("{}all({})", dialect.lane_prefix, dialect.value(context.inputs.at(i).value));
-    case Slot::contact: {
-      int power = 1;
-      for (std::uint32_t j = 0; j < i / 2; ++j) power *= eom::contact_states;
-      return fmt::format("{}{}({}, {})", dialect.lane_prefix, i % 2 == 1 ? "presses" : "slides", block, power);
-    }
-    case Slot::side: return fmt::format("{}side({}, {})", dialect.lane_prefix, block, program::first_kink_bit + 2 * i);
+    case Slot::contact:
+      return fmt::format("{}{}({}, {})", dialect.lane_prefix, i % 2 == 1 ? "presses" : "slides", block, i / 2);
+    case Slot::side: return fmt::format("{}side({}, {})", dialect.lane_prefix, block, names.first_kink + i);
     default: break;
   }
   throw std::logic_error("this operand is no leaf");
@@ -82,7 +78,7 @@ std::vector<LeafLoads> leaf_loads(const std::string& function, const Leaves& lea
     LeafLoads of{slot, {}};
     for (const auto& [leaf_slot, i] : leaves) {
       if (leaf_slot != slot) continue;
-      of.values.emplace_back(i, lanes ? leaf_of_lanes(dialect, context, block, slot, i, inputs)
+      of.values.emplace_back(i, lanes ? leaf_of_lanes(dialect, names, context, block, slot, i, inputs)
                                       : leaf_value(dialect, names, context, slot, i, inputs));
     }
     if (!of.values.empty()) result.push_back(std::move(of));

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <eom/modes/chart_state.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -146,7 +145,7 @@ const char* state_name(const program::ContactInfo& contact, int digit) {
   return digit % 3 == 0 ? (contact.rolls ? "rolls" : "sticks") : digit % 3 == 1 ? "slides along" : "slides against";
 }
 
-/// The contacts and their modes: names and numbers.
+/// The contacts and their modes: names and states.
 void add_modes(const program::Program& program, json& info) {
   info["modes"] = {"smooth"};
   if (program.contacts.empty()) return;
@@ -163,16 +162,16 @@ void add_modes(const program::Program& program, json& info) {
     shapes.push_back(contact);
   }
   info["modes"] = json::array();
-  for (const int mode : eom::contact_modes(shapes)) {
+  for (const std::vector<int>& mode : eom::contact_modes(shapes)) {
     std::string name;
     for (std::size_t j = 0; j < shapes.size(); ++j) {
-      const int digit = eom::contact_digit(mode, j);
+      const int digit = mode[j];
       name +=
           fmt::format("{}{} {}", j == 0 ? "" : ", ", program.contacts[j].name, state_name(program.contacts[j], digit));
       if (shapes[j].surface) name += digit < 3 ? ", pressed" : ", pulled";
     }
     info["modes"].push_back(name);
-    info["mode_numbers"].push_back(mode);
+    info["mode_states"].push_back(mode);
   }
 }
 
@@ -182,7 +181,7 @@ void add_reset(const eom::hybrid::Reset& reset, json& info) {
   if (reset.condition) info["condition"] = *reset.condition;
 }
 
-/// The exchangeable charts and their bits of `mode`.
+/// The exchangeable charts and their entries of `mode`.
 void add_charts(const program::Program& program, const EmissionContext& context, json& info) {
   const std::vector<Quantity> state = states(program, context);
   for (std::size_t j = 0; j < program.charts.size(); ++j) {
@@ -194,12 +193,17 @@ void add_charts(const program::Program& program, const EmissionContext& context,
                               {"second", chart.second},
                               {"angles", angles},
                               {"fails", chart.regular + " = 0"},
-                              {"bit", eom::first_chart_bit + j}});
+                              {"entry", program.mode_layout().chart(j)}});
   }
   if (program.charts.empty()) return;
-  info["chart_modes"] = {0};
+  const auto entries = [&program](unsigned charts) {
+    eom::ModeArray mode(program.mode_layout());
+    mode.set_charts(charts);
+    return mode.entries();
+  };
+  info["chart_modes"].push_back(entries(0));
   for (const program::Program& other : program.chart_variants) {
-    info["chart_modes"].push_back(other.in_charts);
+    info["chart_modes"].push_back(entries(other.in_charts));
     json operations = json::object();
     std::set<std::uint32_t> given;
     for (const program::Function& function : other.functions) {
@@ -224,7 +228,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["model"] = context.id;
   info["title"] = context.title;
   info["content_hash"] = context.content_hash;
-  info["abi"] = 1;
+  info["abi"] = abi::version;
   if (context.single_error) info["real"] = "float";
   json units = json::object();
   const auto named = [&units](const std::vector<Quantity>& list) {
@@ -260,12 +264,13 @@ std::string info_json(const program::Program& program, const EmissionContext& co
     info["samples"].push_back(std::move(one));
   }
   for (std::size_t k = 0; k < program.kinks.size(); ++k) {
-    info["kinks"].push_back({{"of", program.kinks[k]}, {"bit", program::first_kink_bit + 2 * k}});
+    info["kinks"].push_back({{"of", program.kinks[k]}, {"entry", program.mode_layout().kink(k)}});
   }
   info["active_constraints"] = program.active_constraints;
   for (const bool holonomic : program.holonomic)
     info["constraint_kinds"].push_back(holonomic ? "holonomic" : "velocity");
   if (program.result_size("resets") > 0) info["reset_values"] = program.result_size("resets");
+  info["mode_size"] = program.mode_layout().size();
   info["prepared"] = program.prepared_count();
   if (program.taylor) info["taylor_order"] = program::taylor_order(*program.taylor);
   add_modes(program, info);

@@ -40,6 +40,7 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
   names.w = table.declare("w");
   names.u = table.declare("u");
   names.mode = table.declare("mode");
+  names.first_kink = program.mode_layout().kink(0);
   for (std::size_t k = 0; k < program.kinks.size(); ++k)
     names.sides.push_back(table.declare("side_" + std::to_string(k + 1)));
   NameTable outputs, reactions, events;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <eom/modes/chart_state.hpp>
 #include <numbers>
 
 #include "abi/functions.hpp"
@@ -92,22 +91,25 @@ std::size_t entries(const program::Program& program, const std::string& function
   return count;
 }
 
+bool has_mode(const TestVector& test) {
+  return std::any_of(test.mode.begin(), test.mode.end(), [](int entry) { return entry != 0; });
+}
+
 bool is_held(std::size_t count, std::size_t index) { return (index + 1) * count <= max_values || index == 1; }
 
 /// The state in other charts, bit by bit as in NAME_chart.
 void add_charts(const program::Program& program, const program::AbiArguments& arguments, bool single,
                 TestVector& vector) {
-  for (unsigned mask = 0; mask < 1u << program.charts.size(); ++mask) {
-    const int to = eom::mode_of_charts(mask), from = arguments.at.mode & eom::chart_bits;
+  const unsigned from = program::program_in_charts(program, arguments.at.mode)->in_charts;
+  for (unsigned to = 0; to < 1u << program.charts.size(); ++to) {
     if (to == from) continue;
     program::Arguments<cln::cl_R> at = arguments.at;
     FunctionValues values{"chart", to, {}, {}};
     std::vector<double> off;
     try {
       for (std::size_t j = 0; j < program.charts.size(); ++j) {
-        const int bit = 1 << (eom::first_chart_bit + static_cast<int>(j));
-        if (((to ^ from) & bit) == 0) continue;
-        const program::Function& exchange = (to & bit) != 0 ? program.charts[j].to : program.charts[j].back;
+        if (((to ^ from) >> j & 1u) == 0) continue;
+        const program::Function& exchange = (to >> j & 1u) != 0 ? program.charts[j].to : program.charts[j].back;
         at.x = program::interpret(exchange, at, digits).results[0];
       }
     } catch (const std::domain_error&) {
@@ -154,10 +156,10 @@ class Body {
     defaults();
     if (names_.start)
       text_ += start_comparison(context_, program_.state_count(), names_.function_name(""), names_.null_pointer, real_);
-    std::vector<std::pair<std::string, int>> keys;  // in order of first occurrence
+    std::vector<std::pair<std::string, unsigned>> keys;  // in order of first occurrence
     for (const TestVector& test : context_.tests) {
       for (const FunctionValues& f : test.functions) {
-        const std::pair<std::string, int> key{f.function, f.to};
+        const std::pair<std::string, unsigned> key{f.function, f.to};
         if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
       }
     }
@@ -181,23 +183,36 @@ class Body {
       std::vector<double> all{test.t};
       for (const auto* part : {&test.x, &test.p, &test.u}) all.insert(all.end(), part->begin(), part->end());
       rows += wrapped("      {" + list(all) + "}", "       ") + ",\n";
-      modes += (modes.empty() ? "" : ", ") + std::to_string(test.mode);
+      modes += wrapped("      {" + integers(test.mode) + "}", "       ") + ",\n";
     }
     rows.erase(rows.size() - 2);
     text_ += fmt::format("  {}\n", comment(dialect_, "t, x, p, u of each state"));
     text_ += fmt::format("  static const {} points[{}][{}] = {{\n{}}};\n", real_, context_.tests.size(),
                          at_u_ + context_.inputs.size(), rows);
     with_modes_ = std::any_of(context_.tests.begin(), context_.tests.end(),
-                              [](const TestVector& test) { return test.mode != 0; });
-    if (with_modes_)
-      text_ +=
-          wrapped(fmt::format("  static const int modes[{}] = {{{}}};", context_.tests.size(), modes), "      ") + "\n";
+                              [](const TestVector& test) { return has_mode(test); });
+    if (with_modes_) {
+      modes.erase(modes.size() - 2);
+      text_ += fmt::format("  static const int modes[{}][{}] = {{\n{}}};\n", context_.tests.size(),
+                           program_.mode_layout().size(), modes);
+    }
     const TestVector& first = context_.tests.front();
-    starts_ = first.mode == 0 && same(first.t, context_.start_time) && first.x.size() == context_.start.size();
+    starts_ = !has_mode(first) && same(first.t, context_.start_time) && first.x.size() == context_.start.size();
     for (std::size_t i = 0; starts_ && i < first.x.size(); ++i) starts_ = same(first.x[i], context_.start[i]);
     for (std::size_t i = 0; i < first.p.size(); ++i)
       starts_ = starts_ && same(first.p[i], context_.parameters[i].value);
     for (std::size_t i = 0; i < first.u.size(); ++i) starts_ = starts_ && same(first.u[i], context_.inputs[i].value);
+  }
+
+  /// The entries of `mode`, all of them.
+  std::string integers(std::vector<int> mode) const {
+    mode.resize(program_.mode_layout().size());
+    return fmt::format("{}", fmt::join(mode, ", "));
+  }
+  std::string integers(unsigned charts) const {
+    eom::ModeArray mode(program_.mode_layout());
+    mode.set_charts(charts);
+    return integers(mode.entries());
   }
 
   bool same(double a, double b) const {
@@ -222,7 +237,7 @@ class Body {
     std::size_t state;
     const FunctionValues* values;
   };
-  std::vector<Row> rows_of(const std::string& function, int to) const {
+  std::vector<Row> rows_of(const std::string& function, unsigned to) const {
     std::vector<Row> rows;
     for (std::size_t k = 0; k < context_.tests.size(); ++k) {
       for (const FunctionValues& f : context_.tests[k].functions) {
@@ -232,7 +247,7 @@ class Body {
     return rows;
   }
 
-  void check_function(const std::string& function, int to) {
+  void check_function(const std::string& function, unsigned to) {
     const std::vector<Row> rows = rows_of(function, to);
     std::string numbers, states;
     for (const Row& row : rows) {
@@ -250,6 +265,11 @@ class Body {
     for (const auto& array : shape) width += 1 + array.size();
     text_ += fmt::format("  {{  {}\n", comment(dialect_, function + ": for each array the tolerance, then the values"));
     text_ += wrapped(fmt::format("    static const int at[{}] = {{{}}};", rows.size(), states), "        ") + "\n";
+    if (to != 0)
+      text_ +=
+          wrapped(fmt::format("    static const int to[{}] = {{{}}};", program_.mode_layout().size(), integers(to)),
+                  "        ") +
+          "\n";
     const bool empty = std::all_of(shape.begin(), shape.end(), [](const auto& array) { return array.empty(); });
     if (!empty)
       text_ += fmt::format("    static const {} expected[{}][{}] = {{\n{}}};\n", real_, rows.size(), width, numbers);
@@ -279,21 +299,21 @@ class Body {
     text_ += "    }\n  }\n";
   }
 
-  std::string arguments(const std::string& function, int to) const {
+  std::string arguments(const std::string& function, unsigned to) const {
     std::string list;
     for (const abi::Input input : abi::find(function)->inputs) list += (list.empty() ? "" : ", ") + argument(input, to);
     return list;
   }
 
-  std::string argument(abi::Input input, int to) const {
+  std::string argument(abi::Input input, unsigned to) const {
     switch (input) {
       case abi::Input::time: return "point[0]";
       case abi::Input::state: return "point + 1";
       case abi::Input::parameters: return fmt::format("point + {}", at_p_);
       case abi::Input::prepared: return "w";
-      case abi::Input::mode: return with_modes_ ? "modes[state]" : "0";
+      case abi::Input::mode: return with_modes_ ? "modes[state]" : names_.null_pointer;
       case abi::Input::order: return std::to_string(taylor_order);
-      case abi::Input::to: return std::to_string(to);
+      case abi::Input::to: return to == 0 ? names_.null_pointer : "to";
       case abi::Input::inputs: break;
     }
     // At the first state the inputs have their defaults, as with a null pointer.
@@ -318,7 +338,11 @@ class Body {
 std::optional<TestVector> test_vector(const program::Program& program, const EmissionContext& context, TestVector at,
                                       std::size_t index) {
   const program::AbiArguments arguments = arguments_of(at, context);
-  const bool smooth = (at.mode & ~eom::chart_bits) == 0, own = (at.mode & eom::chart_bits) == 0;
+  const program::Program* const here = program::program_in_charts(program, at.mode);
+  const std::size_t first_chart = std::min(at.mode.size(), program.mode_layout().chart(0));
+  const auto is_zero = [](int entry) { return entry == 0; };
+  const bool smooth = std::all_of(at.mode.begin(), at.mode.begin() + static_cast<std::ptrdiff_t>(first_chart), is_zero);
+  const bool own = here != nullptr && here->in_charts == 0;
   const bool single = context.single_error.has_value();
   at.functions.clear();
   const std::optional<FunctionValues> rhs = values_at(program, "rhs", arguments, single);

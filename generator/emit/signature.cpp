@@ -24,8 +24,8 @@ Argument argument(abi::Input input, const ModelNames& names) {
     case abi::Input::prepared: return {Kind::input, Slot::prepared, names.w};
     case abi::Input::inputs: return {Kind::input, Slot::input, names.u};
     case abi::Input::mode: return {Kind::mode, Slot::side, names.mode};
-    case abi::Input::order:
-    case abi::Input::to: break;
+    case abi::Input::to: return {Kind::mode, Slot::constant, abi::name(input)};
+    case abi::Input::order: break;
   }
   return {Kind::integer, Slot::constant, abi::name(input)};
 }
@@ -62,7 +62,7 @@ std::string argument_list(const std::vector<Argument>& arguments, const std::str
     switch (argument.kind) {
       case Argument::Kind::number: list += fmt::format("{} {}", real, argument.name); break;
       case Argument::Kind::input: list += fmt::format("const {}* {}", real, argument.name); break;
-      case Argument::Kind::mode:
+      case Argument::Kind::mode: list += fmt::format("const int* {}", argument.name); break;
       case Argument::Kind::integer: list += fmt::format("int {}", argument.name); break;
       case Argument::Kind::result: list += fmt::format("{}* {}", real, argument.name); break;
     }

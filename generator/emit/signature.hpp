@@ -11,7 +11,13 @@
 namespace eomgen::emit {
 
 struct Argument {
-  enum class Kind : std::uint8_t { number, input, mode, integer, result } kind;  // Real, const Real*, int, int, Real*
+  enum class Kind : std::uint8_t {
+    number,
+    input,
+    mode,
+    integer,
+    result
+  } kind;                                        // Real, const Real*, const int*, int, Real*
   program::Slot slot = program::Slot::constant;  // kind of leaf that is read from it; constant: none
   std::string name;
 };

@@ -51,6 +51,7 @@ struct ModelNames {
   std::vector<std::string> state;  // entries of x: coordinates, then velocities
   std::vector<std::string> parameters, inputs, outputs, reactions, events;
   std::vector<std::string> sides;            // kinks whose branches `mode` freezes
+  std::size_t first_kink = 0;                // entry of `mode`
   std::vector<std::string> contacts;         // per contact: slides_NAME, presses_NAME (eom/modes/contact_state.hpp)
   std::vector<std::string> acceleration;     // "theta_ddot", for the free coordinates
   std::vector<std::string> all_coordinates;  // with eliminated ones (for names that a Program suggests)

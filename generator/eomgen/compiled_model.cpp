@@ -100,6 +100,10 @@ const std::string& CompiledModel::certificate() const { return state_->certifica
 const std::string& CompiledModel::tier() const { return state_->tier; }
 bool CompiledModel::has(const std::string& function) const { return state_->functions().has(function); }
 const SceneValues& CompiledModel::values() const { return state_->values; }
+std::size_t CompiledModel::mode_size() const {
+  const run::Code& code = state_->code();
+  return eom::ModeLayout{code.contacts.size(), code.kinks.size(), 0}.size();
+}
 std::size_t CompiledModel::event_count() const {
   const run::Code& code = state_->code();
   return state_->events.size() + code.kinks.size() + eom::contact_values * code.contacts.size();
@@ -150,7 +154,7 @@ int call(const CompiledModel& model, Function function, const CompiledModel::Arg
 int CompiledModel::rhs(const Arguments& at, double* dx) const {
   const State& s = *state_;
   if (at.parameters != nullptr || !s.is_prepared) return EOMGEN_CALL(rhs, dx);
-  const auto prepared = [&s](double t, const double* x, const double* p, const double* u, int mode, double* to) {
+  const auto prepared = [&s](double t, const double* x, const double* p, const double* u, const int* mode, double* to) {
     return s.functions().rhs_prepared(t, x, p, s.prepared.data(), u, mode, to);
   };
   const double* const p = s.values.parameters.data();

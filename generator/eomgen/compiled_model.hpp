@@ -79,7 +79,7 @@ class CompiledModel {
     const double* x = nullptr;           // N
     const double* parameters = nullptr;  // P; null: those of the scene
     const double* inputs = nullptr;      // U; null: those of the scene at t
-    int mode = 0;                        // of contacts and kinks (docs/abi.md, "Modes")
+    const int* mode = nullptr;           // mode_size() (docs/abi.md, "Modes"); null: all entries are 0
   };
   // Each function returns a code of docs/abi.md: 0 if the results are valid, 2 at a singular state. A function that was
   // not compiled returns not_compiled. Results must not overlap with arguments.
@@ -95,6 +95,7 @@ class CompiledModel {
   int outputs(const Arguments& at, double* y) const;         // as many as outputs()
   int events(const Arguments& at, double* g) const;          // E, then kinks, then five of each contact
   std::size_t event_count() const;                           // length of g
+  std::size_t mode_size() const;                             // one entry per contact, then per kink
   /// coefficients[i + N k]: the k-th derivative of x_i over k!, k = 0 .. order, at constant inputs.
   int taylor(const Arguments& at, int order, double* coefficients) const;
 

@@ -5,7 +5,7 @@
 
 #include <array>
 #include <cstdlib>
-#include <eom/modes/chart_state.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "jit/kernels.hpp"
@@ -81,7 +81,7 @@ class Body {
     frame_ = offset_of((result_pointers_ + most_results + 1) / 2 * 2);
     make_frame();
     std::size_t k = 0;
-    x86::Gp mode = x86::eax;
+    x86::Gp mode = x86::rax;
     bool has_mode = false;
     for (const abi::Input input : function_.inputs) {
       if (!is_integer(input)) continue;
@@ -92,7 +92,7 @@ class Body {
         case abi::Input::prepared: a_.mov(prepared, from); break;
         case abi::Input::inputs: a_.mov(inputs, from); break;
         case abi::Input::mode:
-          mode = from.r32();
+          mode = from;
           has_mode = true;
           break;
         default: throw std::logic_error("this argument has no machine code");
@@ -106,18 +106,40 @@ class Body {
       a_.mov(x86::ptr(x86::rsp, offset_of(result_pointers_ + r)), argument_register(k++));
     a_.mov(numbers, reinterpret_cast<std::uint64_t>(constants_));
     if (function_.reads_time) a_.movsd(x86::ptr(x86::rsp, offset_of(function_.time)), x86::xmm0);
+    if (!function_.mode_values.empty()) load_mode(has_mode ? std::optional(mode) : std::nullopt);
+  }
+
+  /// Stores the values that `mode` determines. Without it, or if it is null, all entries are 0.
+  void load_mode(const std::optional<x86::Gp>& mode) {
+    const Label zeros = a_.newLabel(), end = a_.newLabel();
+    if (mode) {
+      a_.test(*mode, *mode);
+      a_.jz(zeros);
+      for (const ModeValue& value : function_.mode_values) {
+        const auto entry = x86::dword_ptr(*mode, static_cast<std::int32_t>(4 * value.entry));
+        if (value.is_side) {
+          a_.cvtsi2sd(x86::xmm1, entry);
+        } else {
+          a_.mov(x86::eax, entry);
+          a_.and_(x86::eax, contact_state_mask);
+          a_.mov(x86::r10, reinterpret_cast<std::uint64_t>(contact_signs(value.index % 2)));
+          a_.movsd(x86::xmm1, x86::qword_ptr(x86::r10, x86::rax, 3));
+        }
+        a_.movsd(x86::ptr(x86::rsp, offset_of(value.scratch)), x86::xmm1);
+      }
+      a_.jmp(end);
+    }
+    a_.bind(zeros);
     for (const ModeValue& value : function_.mode_values) {
-      const ModeTable table = mode_table(value);
-      if (has_mode)
-        a_.mov(x86::eax, mode);
-      else
-        a_.xor_(x86::eax, x86::eax);
-      if (table.shift > 0) a_.shr(x86::eax, table.shift);
-      a_.and_(x86::eax, table.mask);
-      a_.mov(x86::r10, reinterpret_cast<std::uint64_t>(table.values));
-      a_.movsd(x86::xmm1, x86::qword_ptr(x86::r10, x86::rax, 3));
+      if (value.is_side) {
+        a_.xorps(x86::xmm1, x86::xmm1);
+      } else {
+        a_.mov(x86::r10, reinterpret_cast<std::uint64_t>(contact_signs(value.index % 2)));
+        a_.movsd(x86::xmm1, x86::qword_ptr(x86::r10));
+      }
       a_.movsd(x86::ptr(x86::rsp, offset_of(value.scratch)), x86::xmm1);
     }
+    a_.bind(end);
   }
 
   /// Touches a large frame page by page, so that it cannot step over the guard page.
@@ -298,7 +320,7 @@ FunctionNumber Encoder::function(const FunctionSteps& steps, const double* const
 }
 
 FunctionNumber Encoder::choice(const std::vector<abi::Input>& inputs, std::size_t results,
-                               const std::vector<ChartCase>& cases, bool has_mode) {
+                               const eom::ModeLayout& layout, const std::vector<ChartCase>& cases, bool has_mode) {
   x86::Assembler& to = assembly_->to;
   to.align(asmjit::AlignMode::kCode, 16);
   assembly_->entries.push_back(to.newLabel());
@@ -310,9 +332,19 @@ FunctionNumber Encoder::choice(const std::vector<abi::Input>& inputs, std::size_
     count += is_integer(input) ? 1 : 0;
   }
   count += results;
-  to.mov(x86::eax, argument_register(mode).r32());
-  to.shr(x86::eax, eom::first_chart_bit);
-  to.and_(x86::eax, eom::charts_of(eom::chart_bits));
+  // The set of second charts, bit by bit; none if `mode` is null.
+  const Label chosen = to.newLabel();
+  to.xor_(x86::eax, x86::eax);
+  to.test(argument_register(mode), argument_register(mode));
+  to.jz(chosen);
+  for (std::size_t j = 0; j < layout.charts; ++j) {
+    to.xor_(x86::r10d, x86::r10d);
+    to.cmp(x86::dword_ptr(argument_register(mode), static_cast<std::int32_t>(4 * layout.chart(j))), 0);
+    to.setne(x86::r10b);
+    to.shl(x86::r10d, static_cast<std::uint32_t>(j));
+    to.or_(x86::eax, x86::r10d);
+  }
+  to.bind(chosen);
   const auto leave_out = [&](std::size_t k) {
     for (; k + 1 < count; ++k) to.mov(argument_register(k), argument_register(k + 1));
   };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <eom/modes/mode_array.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,7 +37,7 @@ using FunctionNumber = std::size_t;
 
 /// A case of a function that chooses by the charts of `mode`.
 struct ChartCase {
-  int charts = 0;
+  unsigned charts = 0;  // the set of second charts
   FunctionNumber function = 0;
   std::size_t prepared_offset = 0;  // added to the argument w
   bool without_prepared = false;    // the function has no argument w
@@ -53,8 +54,8 @@ class Encoder {
   FunctionNumber function(const FunctionSteps& steps, const double* constants, const double* default_inputs);
   /// Goes on in the function for the charts of `mode`; code 2 for other charts. `inputs`: of the function itself.
   /// `has_mode`: whether the functions of the cases have the argument `mode` too.
-  FunctionNumber choice(const std::vector<abi::Input>& inputs, std::size_t results, const std::vector<ChartCase>& cases,
-                        bool has_mode);
+  FunctionNumber choice(const std::vector<abi::Input>& inputs, std::size_t results, const eom::ModeLayout& layout,
+                        const std::vector<ChartCase>& cases, bool has_mode);
   /// Calls `driver` with the same arguments and `context` behind them. `arguments`: the number of integers and
   /// pointers.
   FunctionNumber with_context(const void* driver, const void* context, std::size_t arguments);

@@ -63,26 +63,25 @@ const void* library_function(Library function) {
   return two(std::atan2);
 }
 
-ModeTable mode_table(const ModeValue& value) {
-  constexpr std::size_t signs = 2 * eom::max_contacts, modes = eom::contact_bits + 1;
-  static const auto contacts = [] {
-    std::array<std::array<double, modes>, signs> table{};
-    for (std::size_t i = 0; i < signs; ++i) {
-      for (std::size_t mode = 0; mode < modes; ++mode) table[i][mode] = eom::contact_sign(static_cast<int>(mode), i);
+const double* contact_signs(std::size_t order) {
+  constexpr std::size_t states = contact_state_mask + 1;
+  static constexpr auto table = [] {
+    std::array<std::array<double, states>, 2> signs{};
+    for (std::size_t k = 0; k < signs.size(); ++k) {
+      for (std::size_t state = 0; state < states; ++state)
+        signs[k][state] = eom::contact_sign(static_cast<int>(state), k);
     }
-    return table;
+    return signs;
   }();
-  static constexpr std::array<double, 4> sides{0, 1, -1, 0};  // by the bits: above the surface, below it
-  if (!value.is_side) return {contacts.at(value.index).data(), 0, eom::contact_bits};
-  return {sides.data(), static_cast<std::uint32_t>(program::first_kink_bit + 2 * std::size_t{value.index}), 3};
+  return table.at(order).data();
 }
 
-int exchange_charts(const double* x, int mode, int to, double* y, const ChartExchange* charts) {
+int exchange_charts(const double* x, const int* mode, const int* to, double* y, const ChartExchange* charts) {
   for (std::size_t i = 0; i < charts->states; ++i) y[i] = x[i];
   for (std::size_t j = 0; j < charts->to_second.size(); ++j) {
-    const int bit = charts->first_bit + static_cast<int>(j);
-    if (((mode ^ to) >> bit & 1) == 0) continue;
-    const int code = ((to >> bit & 1) != 0 ? charts->to_second[j] : charts->to_own[j])(y, y);
+    const auto is_second = [&](const int* of) { return of != nullptr && of[charts->first_entry + j] != 0; };
+    if (is_second(mode) == is_second(to)) continue;
+    const int code = (is_second(to) ? charts->to_second[j] : charts->to_own[j])(y, y);
     if (code != 0) return code;
   }
   return 0;
@@ -96,7 +95,7 @@ int prepare_in_charts(const double* p, double* w, const PrepareInCharts* charts)
   return 0;
 }
 
-int taylor_series(double t, const double* x, const double* p, const double* u, int mode, int order,
+int taylor_series(double t, const double* x, const double* p, const double* u, const int* mode, int order,
                   double* coefficients, const TaylorSeries* series) {
   if (order < 0 || order > series->highest_order) return 6;
   const std::size_t n = series->states, products = series->product_count;

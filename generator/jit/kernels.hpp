@@ -17,22 +17,18 @@ SincosGroup sincos_group();
 /// The address of a function of the C library.
 const void* library_function(Library function);
 
-/// The values of a side of a kink or of a sign of a contact for all values of the bits of `mode` that determine it:
-/// values[mode >> shift & mask].
-struct ModeTable {
-  const double* values = nullptr;
-  std::uint32_t shift = 0, mask = 0;
-};
-ModeTable mode_table(const ModeValue& value);
+/// The signs of order 0 or 1 of all states of a contact (eom::contact_sign), for the last three bits of a state.
+inline constexpr std::uint32_t contact_state_mask = 7;
+const double* contact_signs(std::size_t order);
 
 using ChartFunction = int (*)(const double* x, double* y);
 /// What the function `chart` is made of (docs/abi.md, "Charts").
 struct ChartExchange {
   std::size_t states = 0;
-  int first_bit = 0;
-  std::vector<ChartFunction> to_second, to_own;  // of each bit
+  std::size_t first_entry = 0;                   // of `mode`
+  std::vector<ChartFunction> to_second, to_own;  // of each chart
 };
-int exchange_charts(const double* x, int mode, int to, double* y, const ChartExchange* charts);
+int exchange_charts(const double* x, const int* mode, const int* to, double* y, const ChartExchange* charts);
 
 using PrepareFunction = int (*)(const double* p, double* w);
 /// What the function `prepare` is made of in code with several charts.
@@ -44,12 +40,12 @@ int prepare_in_charts(const double* p, double* w, const PrepareInCharts* charts)
 
 /// What the function `taylor` is made of (program/taylor.hpp).
 struct TaylorSeries {
-  int (*start)(double, const double*, const double*, const double*, int, double*, double*) = nullptr;
+  int (*start)(double, const double*, const double*, const double*, const int*, double*, double*) = nullptr;
   int (*next)(double, const double*, const double*, double*, double*, double*) = nullptr;
   std::size_t states = 0, first_rate = 0, order_zero_count = 0, product_count = 0, workspace = 0;
   int highest_order = 0;
 };
-int taylor_series(double t, const double* x, const double* p, const double* u, int mode, int order,
+int taylor_series(double t, const double* x, const double* p, const double* u, const int* mode, int order,
                   double* coefficients, const TaylorSeries* series);
 
 }  // namespace eomgen::jit

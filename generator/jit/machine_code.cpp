@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <deque>
-#include <eom/modes/chart_state.hpp>
+#include <eom/modes/mode_array.hpp>
 #include <map>
 #include <stdexcept>
 
@@ -86,6 +86,9 @@ class Generation {
   void assign(const Function& function, std::size_t free_count) {
     number_of_[&function] = parts_.steps.size();
     parts_.steps.push_back(assign_registers(function, parts_.default_inputs, free_count, parts_.constants));
+    const eom::ModeLayout layout = program_.mode_layout();
+    for (ModeValue& value : parts_.steps.back().mode_values)
+      value.entry = static_cast<std::uint32_t>(value.is_side ? layout.kink(value.index) : value.index / 2);
   }
 
   void add(const Function& function) {
@@ -99,11 +102,12 @@ class Generation {
       numbers_[name] = encoder_.with_context(reinterpret_cast<const void*>(&prepare_in_charts), &parts_.prepare,
                                              count_pointers(shape.inputs) + shape.results.size());
     } else if (shape.has_input(abi::Input::mode)) {
-      numbers_[name] = encoder_.choice(shape.inputs, shape.results.size(), cases(name), true);
+      numbers_[name] = encoder_.choice(shape.inputs, shape.results.size(), program_.mode_layout(), cases(name), true);
     } else {
       numbers_[name] = number_of_.at(&function);
       const abi::Function& by_mode = *abi::find(name + "_in");
-      numbers_[by_mode.name] = encoder_.choice(by_mode.inputs, by_mode.results.size(), cases(name), false);
+      numbers_[by_mode.name] =
+          encoder_.choice(by_mode.inputs, by_mode.results.size(), program_.mode_layout(), cases(name), false);
     }
   }
 
@@ -113,7 +117,7 @@ class Generation {
     std::size_t offset = 0;
     for (const Program* one : programs_) {
       const Function* function = find(*one, name);
-      ChartCase entry{eom::charts_of(one->in_charts), 0, prepared ? offset : 0, false};
+      ChartCase entry{one->in_charts, 0, prepared ? offset : 0, false};
       if (function == nullptr) {
         if (!prepared) throw std::logic_error("a chart lacks the function " + name);
         function = find(*one, "rhs");  // this chart has no prepared values
@@ -129,7 +133,7 @@ class Generation {
 
   void add_chart() {
     parts_.charts.states = program_.state_count();
-    parts_.charts.first_bit = eom::first_chart_bit;
+    parts_.charts.first_entry = program_.mode_layout().chart(0);
     const abi::Function& shape = *abi::find("chart");
     numbers_["chart"] = encoder_.with_context(reinterpret_cast<const void*>(&exchange_charts), &parts_.charts,
                                               count_pointers(shape.inputs) + shape.results.size());

@@ -52,10 +52,12 @@ struct Step {
   std::uint32_t extra = 0;
 };
 
-/// A value that `mode` determines (eom/modes/contact_state.hpp), and its place in the scratch array.
+/// A value that an entry of `mode` determines (eom/modes/mode_array.hpp), and its place in the scratch array. `index`:
+/// the kink; of a contact 2 j + order, the sign of its state.
 struct ModeValue {
   bool is_side = false;  // of a kink, else of a contact
   std::uint32_t index = 0, scratch = 0;
+  std::uint32_t entry = 0;  // of `mode`
 };
 
 /// A function of one or two arguments of the C library.

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <eom/modes/chart_state.hpp>
+#include <eom/modes/mode_array.hpp>
 
 #include "derive/chart_change.hpp"
 #include "pipeline/self_test_states.hpp"

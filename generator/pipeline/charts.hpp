@@ -16,7 +16,7 @@ namespace eomgen::pipeline {
 
 /// All second charts, also those that the mechanics exclude, with the reason.
 std::vector<model::ChartPair> list_charts(const mechanics::Mechanics& mechanics);
-/// The exchangeable charts, at most as many as `mode` has bits for.
+/// The exchangeable charts, at most eom::max_charts.
 std::vector<model::ChartPair> exchangeable_charts(const std::vector<model::ChartPair>& charts);
 
 /// Options of the programs of one model, in any charts.

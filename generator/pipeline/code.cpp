@@ -10,7 +10,6 @@
 #include "error.hpp"
 #include "jit/machine_code.hpp"
 #include "pipeline/self_test.hpp"
-#include "program/kinks.hpp"
 #include "program/taylor.hpp"
 #include "work.hpp"
 
@@ -27,7 +26,6 @@ run::Code describe_code(const program::Program& program) {
   code.reset_values = program.result_size("resets");
   code.holonomic = program.holonomic;
   code.kinks = program.kinks;
-  code.first_kink_bit = program::first_kink_bit;
   for (const program::ContactInfo& contact : program.contacts) code.contacts.push_back({contact, contact.name, 0});
   if (program.taylor) code.taylor_order = static_cast<int>(program::taylor_order(*program.taylor));
   for (const program::Program& second : program.chart_variants) {
@@ -84,20 +82,28 @@ std::vector<double> rounded(const std::vector<verify::Real>& values) {
   return result;
 }
 
+/// The argument `mode` for states of the contacts.
+std::vector<int> mode_array(std::vector<int> contacts, const run::Code& code) {
+  contacts.resize(code.contacts.size() + code.kinks.size() + eom::max_charts);
+  return contacts;
+}
+
 /// Calls a compiled function by name; nothing if it returns an error code.
-std::optional<std::vector<std::vector<double>>> called(const abi::CompiledFunctions& m, const std::string& function,
-                                                       const verify::AbiArguments& at,
-                                                       const std::vector<std::size_t>& sizes, std::size_t prepared) {
+std::optional<std::vector<std::vector<double>>> called(const abi::CompiledFunctions& m, const run::Code& described,
+                                                       const std::string& function, const verify::AbiArguments& at,
+                                                       const std::vector<std::size_t>& sizes) {
   const double t = cln::double_approx(at.t);
   const std::vector<double> x = rounded(at.x), p = rounded(at.p), u = rounded(at.u);
   std::vector<std::vector<double>> y;
   for (const std::size_t size : sizes) y.emplace_back(std::max<std::size_t>(1, size));
   if (function == "taylor") y.emplace_back(x.size() * static_cast<std::size_t>(at.order + 1));
   y.resize(std::max<std::size_t>(3, y.size()));
-  std::vector<double> w(prepared + 1);
+  std::vector<double> w(described.prepared + 1);
   if (abi::find(function)->has_input(abi::Input::prepared) && m.prepare(p.data(), w.data()) != 0) return std::nullopt;
-  const abi::CallArguments given{
-      t, x.data(), p.data(), w.data(), u.data(), at.mode, at.order, 0, {y[0].data(), y[1].data(), y[2].data()}};
+  const std::vector<int> mode = mode_array(at.mode, described);
+  const abi::CallArguments given{t,        x.data(), p.data(),
+                                 w.data(), u.data(), mode.data(),
+                                 nullptr,  at.order, {y[0].data(), y[1].data(), y[2].data()}};
   if (m.call(function, given) != 0) return std::nullopt;
   return y;
 }
@@ -108,20 +114,20 @@ verify::CompiledForm CompiledCode::form() const {
   const abi::CompiledFunctions* const model = functions_;
   verify::CompiledForm form;
   form.name = "emitted code";
-  form.call = [model, arrays = arrays_, prepared = described_.prepared](const std::string& function,
-                                                                        const verify::AbiArguments& at) {
-    return called(*model, function, at, arrays.at(function), prepared);
+  form.call = [model, arrays = arrays_, described = described_](const std::string& function,
+                                                                const verify::AbiArguments& at) {
+    return called(*model, described, function, at, arrays.at(function));
   };
-  const std::size_t size = described_.layout().size();
-  form.rhs = [model, size, prepared = described_.prepared](double t, const std::vector<double>& x,
-                                                           const std::vector<double>& p, const std::vector<double>& u,
-                                                           int mode) -> std::optional<std::vector<double>> {
-    std::vector<double> dx(size), w(prepared);
+  form.rhs = [model, described = described_](double t, const std::vector<double>& x, const std::vector<double>& p,
+                                             const std::vector<double>& u,
+                                             const std::vector<int>& contacts) -> std::optional<std::vector<double>> {
+    std::vector<double> dx(described.layout().size()), w(described.prepared);
+    const std::vector<int> mode = mode_array(contacts, described);
     // The function that `run` integrates; the self test has compared it with `rhs`.
-    const int code = prepared == 0 ? model->rhs(t, x.data(), p.data(), u.data(), mode, dx.data())
+    const int code = w.empty() ? model->rhs(t, x.data(), p.data(), u.data(), mode.data(), dx.data())
                      : model->prepare(p.data(), w.data()) != 0
                          ? 1
-                         : model->rhs_prepared(t, x.data(), p.data(), w.data(), u.data(), mode, dx.data());
+                         : model->rhs_prepared(t, x.data(), p.data(), w.data(), u.data(), mode.data(), dx.data());
     if (code != 0) return std::nullopt;
     return dx;
   };

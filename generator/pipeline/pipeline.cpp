@@ -132,7 +132,7 @@ verify::ProgramForm program_form(const program::Program& program, int digits,
   verify::ProgramForm form{
       "optimised program",
       [&rhs, digits](const verify::Real& t, const std::vector<verify::Real>& x, const std::vector<verify::Real>& p,
-                     const std::vector<verify::Real>& u, int mode) {
+                     const std::vector<verify::Real>& u, const std::vector<int>& mode) {
         const auto values = program::interpret(rhs, program::Arguments<cln::cl_R>{t, x, p, u, {}, {}, mode}, digits);
         for (std::size_t i = 1; i < values.results.size(); ++i) {
           for (const cln::cl_R& code : values.results[i]) {

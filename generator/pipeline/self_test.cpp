@@ -3,26 +3,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <eom/modes/mode_array.hpp>
 
 namespace eomgen::pipeline {
 namespace {
 
 /// Whether a function has its values at a test vector. `inputs`: null if they are left out.
-bool satisfies(const abi::CompiledFunctions& functions, const emit::TestVector& at,
-               const emit::FunctionValues& expected, const double* inputs, std::size_t states, std::size_t prepared) {
+bool satisfies(const abi::CompiledFunctions& functions, const program::Program& program, const emit::TestVector& at,
+               const emit::FunctionValues& expected, const double* inputs) {
   if (!functions.has(expected.function)) return false;
   abi::CallArguments given;
   given.t = at.t;
   given.x = at.x.data();
   given.p = at.p.data();
   given.u = inputs;
-  given.mode = at.mode;
-  given.to = expected.to;
-  std::vector<double> w(prepared + 1);
+  std::vector<int> mode = at.mode;
+  mode.resize(program.mode_layout().size());
+  eom::ModeArray to(program.mode_layout());
+  to.set_charts(expected.to);
+  given.mode = mode.data();
+  given.to = to.data();
+  std::vector<double> w(program.prepared_count() + 1);
   given.w = w.data();
   if (abi::find(expected.function)->has_input(abi::Input::prepared) && functions.prepare(at.p.data(), w.data()) != 0)
     return false;
-  if (expected.function == "taylor") given.order = static_cast<int>(expected.values.at(0).size() / states) - 1;
+  if (expected.function == "taylor")
+    given.order = static_cast<int>(expected.values.at(0).size() / program.state_count()) - 1;
   std::vector<std::vector<double>> arrays;
   for (std::size_t r = 0; r < expected.values.size(); ++r) {
     arrays.emplace_back(std::max<std::size_t>(1, expected.values[r].size()));
@@ -41,7 +47,6 @@ bool satisfies(const abi::CompiledFunctions& functions, const emit::TestVector& 
 
 std::optional<std::size_t> failed_test_vector(const abi::CompiledFunctions& functions, const program::Program& program,
                                               const emit::EmissionContext& context) {
-  const std::size_t prepared = program.prepared_count();
   for (std::size_t k = 0; k < context.tests.size(); ++k) {
     const emit::TestVector& at = context.tests[k];
     // At the start inputs have their defaults.
@@ -49,7 +54,7 @@ std::optional<std::size_t> failed_test_vector(const abi::CompiledFunctions& func
                                         [](double u, const emit::Quantity& input) { return u == input.value; });
     for (const emit::FunctionValues& expected : at.functions) {
       const double* const inputs = at_defaults ? nullptr : at.u.data();
-      if (!satisfies(functions, at, expected, inputs, program.state_count(), prepared)) return k;
+      if (!satisfies(functions, program, at, expected, inputs)) return k;
     }
   }
   return std::nullopt;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/self_test_states.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <eom/modes/chart_state.hpp>
+#include <eom/modes/mode_array.hpp>
 #include <optional>
 
 #include "emit/self_test.hpp"
-#include "program/kinks.hpp"
 
 namespace eomgen::pipeline {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 /// so that neither vanishing nor interchanged terms go undetected. If a value is undefined, states closer to the start
 /// are used.
 std::optional<emit::TestVector> test_vector(const program::Program& program, const emit::EmissionContext& context,
-                                            int k, int mode, std::size_t index) {
+                                            int k, const std::vector<int>& mode, std::size_t index) {
   for (const double share : {1.0, 0.125, 0x1p-6, 0x1p-10}) {
     emit::TestVector at;
     at.t = context.start_time + 0.125 * k * share;
@@ -41,13 +41,13 @@ std::optional<emit::TestVector> test_vector(const program::Program& program, con
 }
 
 /// Whether a state of second charts is far enough from their singularities, where rounding errors dominate.
-bool far_from_failing(const program::Program& program, int in_charts, const std::vector<double>& x) {
+bool far_from_failing(const program::Program& program, unsigned in_charts, const std::vector<double>& x) {
   constexpr double far = 0.3;
   bool result = true;
   for (std::size_t j = 0; j < program.charts.size(); ++j) {
     const program::ChartInfo& chart = program.charts[j];
     const double angle = x[chart.guarded];
-    if ((eom::charts_of(in_charts) >> j & 1) != 0)
+    if ((in_charts >> j & 1u) != 0)
       result = result && std::abs(chart.second_at_sine ? std::sin(angle) : std::cos(angle)) > far;
   }
   return result;
@@ -58,24 +58,30 @@ bool far_from_failing(const program::Program& program, int in_charts, const std:
 std::vector<emit::TestVector> test_vectors(const program::Program& program, const emit::EmissionContext& context) {
   constexpr std::size_t most_modes = 12;
   std::vector<emit::TestVector> result;
-  const auto add = [&](int k, int mode) {
+  const auto add = [&](int k, const std::vector<int>& mode) {
     if (auto vector = test_vector(program, context, k, mode, result.size())) result.push_back(std::move(*vector));
   };
-  for (const int k : {0, 1, 2}) add(k, 0);
+  for (const int k : {0, 1, 2}) add(k, {});
   const std::vector<eom::ContactShape> shapes(program.contacts.begin(), program.contacts.end());
-  for (const int mode : eom::contact_modes(shapes, most_modes)) {
-    if (mode != 0) add(1, mode);
+  for (const std::vector<int>& states : eom::contact_modes(shapes, most_modes)) {
+    if (std::all_of(states.begin(), states.end(), [](int state) { return state == 0; })) continue;
+    std::vector<int> mode = states;
+    mode.resize(program.mode_layout().size());
+    add(1, mode);
   }
-  int above = 0, below = 0;  // modes with every kink on one side
-  for (std::size_t k = 0; k < program.kinks.size(); ++k) {
-    above |= 1 << (program::first_kink_bit + 2 * k);
-    below |= 2 << (program::first_kink_bit + 2 * k);
+  if (!program.kinks.empty()) {
+    for (const int side : {1, -1}) {  // every kink on one side
+      eom::ModeArray mode(program.mode_layout());
+      for (std::size_t k = 0; k < program.kinks.size(); ++k) mode.set_kink(k, side);
+      add(side > 0 ? 1 : 2, mode.entries());
+    }
   }
-  if (above != 0) add(1, above), add(2, below);
   for (const program::Program& other : program.chart_variants) {
     std::size_t count = 0;
+    eom::ModeArray mode(program.mode_layout());
+    mode.set_charts(other.in_charts);
     for (int k = 1; k < 9 && count < 2; ++k) {
-      std::optional<emit::TestVector> vector = test_vector(program, context, k, other.in_charts, result.size());
+      std::optional<emit::TestVector> vector = test_vector(program, context, k, mode.entries(), result.size());
       if (!vector || !far_from_failing(program, other.in_charts, vector->x)) continue;
       result.push_back(std::move(*vector));
       ++count;

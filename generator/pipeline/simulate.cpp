@@ -195,7 +195,7 @@ std::vector<symbolic::Ref> kink_values(const DerivedModel& derived, const progra
         candidate.approach != program.approach || candidate.form != program.form)
       continue;
     system::EquationSystem held = candidate;
-    for (const program::Kink& kink : program::freeze_kink_branches(held).frozen) values.push_back(kink.value);
+    for (const program::Kink& kink : program::freeze_kink_branches(held)) values.push_back(kink.value);
     if (values.size() == program.kinks.size()) return values;
     values.clear();
   }

@@ -59,9 +59,7 @@ class AbiFunctions {
   /// Per event of the model, then per sample: its condition if it has one, then the values that it sets.
   FunctionExpressions resets();
 
-  const std::vector<Kink>& kinks() const { return kinks_.frozen; }
-  /// Kinks beyond those whose branches can be frozen.
-  const std::vector<Kink>& further_kinks() const { return kinks_.beyond; }
+  const std::vector<Kink>& kinks() const { return kinks_; }
 
   const system::EquationSystem& system() const { return system_; }
 
@@ -75,7 +73,7 @@ class AbiFunctions {
   Ref substitute_solution(Ref expression, bool& solved);
 
   system::EquationSystem system_;
-  FrozenKinks kinks_;
+  std::vector<Kink> kinks_;
   std::vector<Ref> modeless_M_, modeless_f_, modeless_A_;  // for functions without a mode argument
   std::size_t n_, m_;
   std::vector<Ref> qdot_, qddot_symbol_, lambda_symbol_;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <eom/modes/chart_state.hpp>
 #include <functional>
 #include <limits>
 #include <stdexcept>
@@ -33,12 +32,12 @@ Arguments<Real> prepared_for(const Program& program, const std::string& function
   at.side.assign(program.kinks.size(), Real(0));
   if (!abi::find(function)->has_input(abi::Input::mode)) {
     at.u = defaults;
-    at.mode = 0;
+    at.mode.clear();
     return at;
   }
   for (std::size_t k = 0; k < at.side.size(); ++k) {
-    const std::size_t bit = first_kink_bit + 2 * k;
-    at.side[k] = Real((at.mode >> bit & 1) - (at.mode >> (bit + 1) & 1));
+    const std::size_t entry = program.mode_layout().kink(k);
+    if (entry < at.mode.size()) at.side[k] = Real(at.mode[entry]);
   }
   return at;
 }
@@ -150,10 +149,15 @@ std::vector<double> in_binary64(const std::vector<cl_R>& values) {
 
 }  // namespace
 
-const Program* program_in_charts(const Program& program, int mode) {
-  if (eom::charts_of(mode) == eom::charts_of(program.in_charts)) return &program;
+const Program* program_in_charts(const Program& program, const std::vector<int>& mode) {
+  unsigned charts = 0;
+  for (std::size_t j = 0; j < program.charts.size(); ++j) {
+    const std::size_t entry = program.mode_layout().chart(j);
+    if (entry < mode.size() && mode[entry] != 0) charts |= 1u << j;
+  }
+  if (charts == program.in_charts) return &program;
   for (const Program& other : program.chart_variants) {
-    if (eom::charts_of(mode) == eom::charts_of(other.in_charts)) return &other;
+    if (charts == other.in_charts) return &other;
   }
   return nullptr;
 }

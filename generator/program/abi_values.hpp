@@ -16,16 +16,15 @@ namespace eomgen::program {
 /// One list for each array that the function writes.
 using AbiResults = std::vector<std::vector<cln::cl_R>>;
 
-/// Arguments of a function of the ABI. `at.mode` is the mode of docs/abi.md, with the bits of kinks and charts.
-/// `at.side` and `at.w` are unused.
+/// Arguments of a function of the ABI. `at.side` and `at.w` are unused.
 struct AbiArguments {
   Arguments<cln::cl_R> at;
   std::vector<cln::cl_R> default_inputs;  // the inputs of mass and constraints
   int order = 0;                          // for taylor
 };
 
-/// The program for the charts of a mode; nullptr if there is none.
-const Program* program_in_charts(const Program& program, int mode);
+/// The program for the charts of a mode (docs/abi.md, "Modes"); nullptr if there is none.
+const Program* program_in_charts(const Program& program, const std::vector<int>& mode);
 
 /// Functions of the program: "rhs", "jac", .., "prepare", "rhs_prepared", "taylor".
 std::vector<std::string> abi_function_names(const Program& program);

@@ -211,8 +211,6 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
     if (name == "events") {
       for (const system::Event& event : system.events) program.events.push_back(event.name);
       for (const Kink& kink : chosen.functions->kinks()) program.kinks.emplace_back(program::name(kink));
-      for (const Kink& kink : chosen.functions->further_kinks())
-        program.further_kinks.emplace_back(program::name(kink));
     }
     if (name == "reactions") {
       for (const auto& reaction : system.reactions) program.reactions.push_back(reaction.label);

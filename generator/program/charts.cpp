@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <eom/modes/chart_state.hpp>
 
 #include "error.hpp"
 #include "program/from_dag.hpp"
@@ -50,11 +49,6 @@ std::vector<std::uint32_t> chart_independent_outputs(const std::vector<std::stri
 }
 
 void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<system::ChartChange>& changes) {
-  if (program.kinks.size() > max_kinks_with_charts) {
-    throw Error(
-        "program", {}, fmt::format("{} kinks leave no bits of `mode` for charts", program.kinks.size()),
-        fmt::format("at most {} kinks are possible with charts: omit the charts or the events", max_kinks_with_charts));
-  }
   for (const system::ChartChange& change : changes) {
     ChartInfo info{change.of, change.own, change.second, change.singularity, {}, 0, change.second_at_sine, {}, {}};
     for (const std::uint32_t angle : change.angles) {
@@ -79,7 +73,7 @@ void add_chart_variant(Program& program, Program second, unsigned charts, const 
         "program", {}, "the coordinates, constraints or kinks of this model differ in its second charts",
         "this is a defect of eomgen: please report it with the model; --no-charts leaves the second charts out");
   }
-  second.in_charts = eom::mode_of_charts(charts);
+  second.in_charts = charts;
   for (Function& function : second.functions) {
     if (function.name == "outputs") function.result_indices = places;
   }

@@ -8,9 +8,6 @@
 
 namespace eomgen::program {
 
-/// Limit of frozen kinks in a program with several charts: chart bits take part of `mode`.
-inline constexpr std::size_t max_kinks_with_charts = 10;
-
 /// Indices of the outputs that a program in second charts can compute with the same meaning. Excluded are momenta and
 /// accelerations of exchanged angles, and quantities that only the own charts conserve. `own`, `second`: outputs of the
 /// equations in these charts; `exchanged`: coordinates of the model.

@@ -56,7 +56,7 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, con
         case Slot::input: return arguments.u.at(operand.index);
         case Slot::prepared: return arguments.w.at(operand.index);
         case Slot::side: return operand.index < arguments.side.size() ? arguments.side[operand.index] : Real(0);
-        case Slot::contact: return Real(eom::contact_sign(arguments.mode, operand.index));
+        case Slot::contact: return Real(contact_sign(arguments, operand.index));
         case Slot::value: break;
       }
       return value[operand.index];

@@ -18,8 +18,14 @@ struct Arguments {
   std::vector<Real> x, p, u;
   std::vector<Real> w{};        // prepared values, from `prepare`
   std::vector<Real> side = {};  // sides of the kinks; empty: branches follow the state
-  int mode = 0;                 // mode of the friction contacts
+  std::vector<int> mode = {};   // docs/abi.md; only the states of contacts are read; empty: all are 0
 };
+
+/// The sign of a contact that the operand `index` of Slot::contact stands for (eom::contact_sign).
+template <class Real>
+int contact_sign(const Arguments<Real>& arguments, std::uint32_t index) {
+  return eom::contact_sign(arguments.mode, index / 2, index % 2);
+}
 
 template <class Real>
 struct Values {

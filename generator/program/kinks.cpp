@@ -2,7 +2,6 @@
 #include "program/kinks.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -26,7 +25,7 @@ class KinkFreezing {
 
   /// New kinks are collected while `collects` is true; later expressions only share known kinks.
   bool collects = true;
-  FrozenKinks found;
+  std::vector<Kink> found;
 
   /// |value| and the like are no kinks of their own: the sign of value is monitored already.
   void leave(Ref value) {
@@ -61,27 +60,22 @@ class KinkFreezing {
     const Op op = node.op;
     const Ref value = surface(op, a[0], a[1]);
     const auto [own, opposite] = both_signs(value);
-    const auto of_value = [own = own, opposite = opposite](const Surface& s) {
-      return s.value == own || s.value == opposite;
+    const auto of_value = [own = own, opposite = opposite](Ref surface) {
+      return surface == own || surface == opposite;
     };
     auto known = std::find_if(surfaces_.begin(), surfaces_.end(), of_value);
     if (known == surfaces_.end()) {
       const bool left = std::find(left_.begin(), left_.end(), own) != left_.end();
       if (!collects || left || !moves(value)) return live;
-      const bool fits = found.frozen.size() < max_kinks;
-      surfaces_.push_back({own, fits ? std::optional(found.frozen.size()) : std::nullopt});
-      if (fits)
-        found.frozen.push_back({op, value});
-      else
-        found.beyond.push_back({op, surface(op, node.args[0], node.args[1])});
+      surfaces_.push_back(own);
+      found.push_back({op, value});
       known = surfaces_.end() - 1;
     }
-    if (!known->place) return live;
     // The side of a surface is that of the value that was found first.
-    const auto index = static_cast<std::uint32_t>(*known->place);
+    const auto index = static_cast<std::uint32_t>(known - surfaces_.begin());
     const Ref zero = dag_.zero(), side = dag_.symbol({SymbolKind::branch, index, 0});
-    const Ref first = dag_.select(side, zero, side, dag_.select(zero, side, side, found.frozen[index].value));
-    const Ref chosen = known->value == own ? first : dag_.neg(first);
+    const Ref first = dag_.select(side, zero, side, dag_.select(zero, side, side, found[index].value));
+    const Ref chosen = *known == own ? first : dag_.neg(first);
     switch (op) {
       case Op::abs: return dag_.select(chosen, zero, dag_.neg(a[0]), a[0]);
       case Op::sign: return dag_.call(Op::sign, chosen);
@@ -101,14 +95,9 @@ class KinkFreezing {
     return std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind != SymbolKind::parameter; });
   }
 
-  struct Surface {
-    Ref value;                         // expanded
-    std::optional<std::size_t> place;  // among the frozen kinks; nothing beyond the largest number of them
-  };
-
   Dag& dag_;
-  std::vector<Ref> left_;  // expanded
-  std::vector<Surface> surfaces_;
+  std::vector<Ref> left_;      // likewise
+  std::vector<Ref> surfaces_;  // expanded
   std::unordered_map<std::uint32_t, Ref> memo_;
 };
 
@@ -124,9 +113,9 @@ const char* name(const Kink& kink) {
   }
 }
 
-bool has_kinks(system::EquationSystem system) { return !freeze_kink_branches(system).frozen.empty(); }
+bool has_kinks(system::EquationSystem system) { return !freeze_kink_branches(system).empty(); }
 
-FrozenKinks freeze_kink_branches(system::EquationSystem& s) {
+std::vector<Kink> freeze_kink_branches(system::EquationSystem& s) {
   KinkFreezing hold(*s.dag);
   using system::ExpressionRole;
   system::for_each_expression(s, [&hold](Ref& r, ExpressionRole part) {

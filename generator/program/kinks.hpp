@@ -18,25 +18,15 @@ struct Kink {
   symbolic::Ref value;  // changes sign at the surface; may contain sides of earlier ones
 };
 
-/// Values of both signs (x - c, c - x) have one surface.
-struct FrozenKinks {
-  std::vector<Kink> frozen;  // at most max_kinks
-  std::vector<Kink> beyond;  // further ones, whose branches follow the state: steps of a run are not cut there; their
-                             // values contain no sides
-};
-
 /// The name of the function that has the kink: "abs", "sign", "min", "max", "if".
 const char* name(const Kink& kink);
-
-/// Bits of `mode` for the sides: two per kink, from first_kink_bit on. Further kinks cannot be frozen.
-inline constexpr std::size_t first_kink_bit = 8, max_kinks = 11;
 
 /// Whether the equations of motion have kinks that can be frozen.
 bool has_kinks(system::EquationSystem system);
 
 /// Makes the branches of the equations of motion and of the contact laws depend on sides, and equal branches in
-/// reactions, outputs and events. Surfaces of parameters alone, surfaces of mode changes of contacts, and surfaces
-/// beyond max_kinks are unchanged.
-FrozenKinks freeze_kink_branches(system::EquationSystem& system);
+/// reactions, outputs and events. Surfaces of parameters alone and surfaces of mode changes of contacts are unchanged.
+/// Values of both signs (x - c, c - x) have one surface.
+std::vector<Kink> freeze_kink_branches(system::EquationSystem& system);
 
 }  // namespace eomgen::program

@@ -35,7 +35,7 @@ struct Operations {
   }
 };
 
-/// Source of an operand. side (of a kink) and contact (friction) are decoded from `mode`.
+/// Source of an operand. side (of a kink) and contact (friction) are entries of `mode`.
 enum class Slot : std::uint8_t { constant, pi, time, state, parameter, input, prepared, side, contact, value };
 struct Operand {
   Slot slot = Slot::value;
@@ -108,12 +108,12 @@ struct CandidateCost {
   Operations operations;
 };
 
-/// A contact with friction, or a unilateral contact: one digit of the mode.
+/// A contact with friction, or a unilateral contact: one entry of `mode`.
 struct ContactInfo : eom::ContactShape {
   std::string name;
 };
 
-/// A chart with an alternative second chart: one bit of `mode` from eom::first_chart_bit on.
+/// A chart with an alternative second chart: one entry of `mode`.
 struct ChartInfo {
   std::string of, own, second, regular;  // "B", "313", "312", "sin(theta)"
   std::vector<std::uint32_t> angles;     // indices in x
@@ -149,6 +149,7 @@ struct Program {
   std::size_t event_count() const { return result_size("events"); }  // length of the array g
   eom::StateLayout layout() const { return {free.size(), states.size() - discrete, discrete}; }
   std::size_t state_count() const { return layout().size(); }
+  eom::ModeLayout mode_layout() const { return {contacts.size(), kinks.size(), charts.size()}; }
   std::string formulation;
   system::Approach approach = system::Approach::two;
   system::Form form = system::Form::multipliers;
@@ -157,16 +158,14 @@ struct Program {
   std::vector<std::string> reactions;  // labels, in the order of the array lambda
   std::vector<std::string> outputs;    // names, in the order of the array y
   std::vector<std::string> events;     // events of the model; they precede others in the array g
-  std::vector<std::string>
-      kinks;  // "abs", "if": after them the surfaces whose branches `mode` can hold, then 5 per contact
-  std::vector<std::string> further_kinks;  // beyond the largest number of them: runs do not locate their surfaces
+  std::vector<std::string> kinks;      // "abs", "if": their surfaces follow in g, then 5 values per contact
   std::size_t active_constraints = 0;
   std::vector<ContactInfo> contacts;
   std::optional<Taylor> taylor;         // if requested
   std::vector<bool> holonomic;          // per active constraint; false if it constrains velocities only
   std::vector<ChartInfo> charts;        // exchangeable charts; empty if the code has one chart
   std::vector<Program> chart_variants;  // the same functions with second charts
-  int in_charts = 0;                    // for a variant in second charts: its bits of `mode`
+  unsigned in_charts = 0;               // for a variant in second charts: bit j for chart j
 };
 
 }  // namespace eomgen::program

@@ -25,7 +25,12 @@ eom::Result Integration::run(const eom::Options& options, const eom::hybrid::Obs
 
 const std::vector<double>& Integration::initial_state() const { return bound_->integration.context().start; }
 double Integration::begin() const { return bound_->problem.begin(); }
-int Integration::contact_mode() const { return bound_->integration.context().model.contact_mode(); }
+std::vector<int> Integration::contact_mode() const {
+  eom::ModeArray mode = bound_->integration.context().model.mode();
+  mode.release_branches();
+  mode.set_charts(0);
+  return mode.entries();
+}
 std::size_t Integration::kink_crossings() const { return bound_->integration.context().kinks.crossings_in_state(); }
 std::vector<eom::hybrid::Segment> Integration::segments() const { return eom::hybrid::segments(bound_->problem); }
 double Integration::constraint_defect(double t, const double* x) {

@@ -29,8 +29,8 @@ class Integration {
   const std::vector<double>& initial_state() const;
   /// The time at which it begins: t0, or behind a kink there.
   double begin() const;
-  /// The current contact mode of the run.
-  int contact_mode() const;
+  /// The argument `mode` of the code for the current states of the contacts. Branches of kinks follow the state.
+  std::vector<int> contact_mode() const;
   /// Number of crossings of kinks in the last run, without kinks in time.
   std::size_t kink_crossings() const;
   /// The segments of the run between jumps of inputs and kinks in time.

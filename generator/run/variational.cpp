@@ -119,7 +119,7 @@ class VariationalRun::Run {
     eom::hybrid::Model& model = own_.context.model;
     const double* u = model.inputs(t);
     std::copy(u, u + u_.size(), u_.begin());
-    if (const int code = derivatives(t, x, model.mode()); code != 0) {
+    if (const int code = derivatives(t, x, model.mode().data()); code != 0) {
       // As for f: a branch that is frozen beyond its surface may have no value there.
       if (derivatives(t, x, 0) != 0) return code;
     }
@@ -147,7 +147,7 @@ class VariationalRun::Run {
     return x;
   }
 
-  int derivatives(double t, const double* x, int mode) {
+  int derivatives(double t, const double* x, const int* mode) {
     const eom::hybrid::Code& code = *own_.problem.code;
     const double* p = scene_.parameters.data();
     if (const int bad = code.jac(t, x, p, u_.data(), mode, dfdx_.data(), dfdt_.data()); bad != 0) return bad;
@@ -282,9 +282,9 @@ class VariationalRun::Run {
     const int code = rhs(point.t, point.x.data(), before);
     const std::vector<double> x(point.x.begin(), point.x.end());
     std::vector<double> dt(directions_.size());
-    const int mode = context.model.mode();
+    const eom::ModeArray mode = context.model.mode();
     context.kinks.flip_branch(point.t, point.crossing.function - context.events.first_kink(), point.crossing.up);
-    const int flipped = context.model.mode();
+    const eom::ModeArray flipped = context.model.mode();
     if (code != 0 || rhs(point.t, point.x.data(), after) != 0) return true;  // the integration reports it
     double jump = 0;
     for (std::size_t i = 0; i < n_; ++i) jump = std::max(jump, std::abs(before[i] - after[i]));

@@ -133,7 +133,7 @@ void Auditor::audit_digits(const std::string& test, const run::Scene& scene, con
   for (const Sample* sample : samples) {
     const std::vector<double> u = inputs(scene, sample->t);
     std::vector<double> dx(sample->x.size());
-    if (code.rhs(sample->t, sample->x.data(), scene.parameters.data(), u.data(), sample->mode, dx.data()) != 0)
+    if (code.rhs(sample->t, sample->x.data(), scene.parameters.data(), u.data(), sample->mode.data(), dx.data()) != 0)
       continue;
     try {
       const program::Values<cln::cl_R> values = program::interpret(

@@ -129,7 +129,8 @@ ReferenceSolver::TightRun ReferenceSolver::run_tight(const std::string& solver, 
   return result;
 }
 
-void ReferenceSolver::sample(const eom::StepView& view, int mode, std::vector<Sample>& samples) const {
+void ReferenceSolver::sample(const eom::StepView& view, const std::vector<int>& mode,
+                             std::vector<Sample>& samples) const {
   while (samples.size() < sample_count) {
     const double part = static_cast<double>(samples.size() + 1) / static_cast<double>(sample_count);
     const double t = samples.size() + 1 == sample_count ? scene_.t1 : scene_.t0 + part * (scene_.t1 - scene_.t0);

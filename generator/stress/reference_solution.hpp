@@ -65,7 +65,7 @@ class ReferenceSolver {
     std::vector<Sample> samples;
   };
   TightRun run_tight(const std::string& solver, double rtol, const State* start, State* scale) const;
-  void sample(const eom::StepView& view, int mode, std::vector<Sample>& samples) const;
+  void sample(const eom::StepView& view, const std::vector<int>& mode, std::vector<Sample>& samples) const;
   void set_scale_floor(State& scale, const State& x0) const;
   run::Scene scene_from(const State& x) const;
   bool condition(ReferenceSolution& reference);

@@ -54,7 +54,7 @@ struct Row {
 struct Sample {
   double t;
   std::vector<double> x;
-  int mode;  // of contacts
+  std::vector<int> mode;  // of contacts (docs/abi.md, "Modes")
 };
 
 struct Request {

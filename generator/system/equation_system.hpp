@@ -8,7 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <eom/layout.hpp>
-#include <eom/modes/contact_state.hpp>
+#include <eom/modes/mode_array.hpp>
 #include <memory>
 #include <optional>
 #include <string>

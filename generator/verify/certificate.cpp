@@ -40,13 +40,12 @@ std::vector<std::size_t> unilateral_constraints(const mechanics::Mechanics& mech
   return result;
 }
 
-// The mode of the contacts that are open in this state.
-int mode_at(const mechanics::Mechanics& mechanics, const State& state) {
-  int mode = 0;
+// The states of the contacts: open ones and others.
+std::vector<int> mode_at(const mechanics::Mechanics& mechanics, const State& state) {
+  std::vector<int> mode(mechanics.contacts.size());
   for (std::size_t j = 0; j < mechanics.contacts.size(); ++j) {
     const mechanics::Contact& contact = mechanics.contacts[j];
-    if (contact.unilateral && state.open.contains(contact.constraints[0]))
-      mode = eom::with_contact_digit(mode, j, eom::contact_states / 2);
+    if (contact.unilateral && state.open.contains(contact.constraints[0])) mode[j] = eom::contact_states / 2;
   }
   return mode;
 }

@@ -42,7 +42,8 @@ struct DisplayForm {
 struct AbiArguments {
   Real t;
   std::vector<Real> x, p, u;
-  int mode = 0, order = 0;
+  std::vector<int> mode = {};  // states of the contacts; empty: all are 0
+  int order = 0;
 };
 /// The arrays that a function of the C ABI writes.
 using AbiResults = std::vector<std::vector<Real>>;
@@ -52,7 +53,7 @@ using AbiResults = std::vector<std::vector<Real>>;
 struct ProgramForm {
   std::string name;  // "program"
   std::function<std::vector<Real>(const Real& t, const std::vector<Real>& x, const std::vector<Real>& p,
-                                  const std::vector<Real>& u, int mode)>
+                                  const std::vector<Real>& u, const std::vector<int>& mode)>
       rhs;
   // Names of the ABI functions that the program has; none if they are not compared.
   std::vector<std::string> functions = {};
@@ -69,7 +70,7 @@ struct ProgramForm {
 struct CompiledForm {
   std::string name;  // "emitted code"
   std::function<std::optional<std::vector<double>>(double t, const std::vector<double>& x, const std::vector<double>& p,
-                                                   const std::vector<double>& u, int mode)>
+                                                   const std::vector<double>& u, const std::vector<int>& mode)>
       rhs;
   std::function<std::optional<std::vector<std::vector<double>>>(const std::string& function, const AbiArguments& at)>
       call = {};

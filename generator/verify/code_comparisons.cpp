@@ -76,7 +76,7 @@ bool overflows(const Subjects& subjects, const AbiArguments& at) {
 
 /// Compares code in binary64 with the system at the same binary64 numbers.
 double compiled_difference(const CompiledForm& form, const Subjects& subjects, State at, const SystemValues& v,
-                           const Oracle& oracle, int mode) {
+                           const Oracle& oracle, const std::vector<int>& mode) {
   const EquationSystem& s = subjects.systems.front();
   if (!s.contacts.empty()) at.phi = solve_friction_law(s, oracle, at);
   const std::vector<Real> reference = right_hand_side(s, oracle, at);
@@ -101,8 +101,8 @@ double compiled_difference(const CompiledForm& form, const Subjects& subjects, S
 }
 
 /// Compares compiled functions with those of the first program at the same binary64 numbers.
-void compare_compiled_functions(const Subjects& subjects, const State& rounded, const Oracle& oracle, int mode,
-                                ComparisonTable& tally) {
+void compare_compiled_functions(const Subjects& subjects, const State& rounded, const Oracle& oracle,
+                                const std::vector<int>& mode, ComparisonTable& tally) {
   if (subjects.programs.empty() || !subjects.programs.front().call) return;
   const ProgramForm& program = subjects.programs.front();
   const AbiArguments at = arguments_at(subjects.systems.front(), rounded, mode);
@@ -139,7 +139,7 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
 
 }  // namespace
 
-void compare_code(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode,
+void compare_code(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, const std::vector<int>& mode,
                   ComparisonTable& tally) {
   const EquationSystem& first = subjects.systems.front();
   bool undecided = false;  // the friction law has no solution here, or several

@@ -10,7 +10,7 @@ namespace eomgen::verify {
 
 /// Compares programs and compiled code with the first system, with the friction forces of the law in `mode`. Throws
 /// std::domain_error if the values exceed binary64.
-void compare_code(const Subjects& subjects, const SystemValues& values, const Oracle& oracle, int mode,
-                  ComparisonTable& tally);
+void compare_code(const Subjects& subjects, const SystemValues& values, const Oracle& oracle,
+                  const std::vector<int>& mode, ComparisonTable& tally);
 
 }  // namespace eomgen::verify

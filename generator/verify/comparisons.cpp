@@ -293,12 +293,12 @@ State with_any_friction(const mechanics::Mechanics& mechanics, const Oracle& ora
 
 /// The state in `mode`: open contacts are moved off their constraints, along the coordinate with the largest
 /// derivative.
-State in_mode(const EquationSystem& s, const SystemValues& at, const State& state, int mode) {
+State in_mode(const EquationSystem& s, const SystemValues& at, const State& state, const std::vector<int>& mode) {
   State result = state;
   result.mode = mode;
   for (std::size_t j = 0; j < s.contacts.size(); ++j) {
     const std::optional<std::uint32_t> k = s.contacts[j].unilateral;
-    if (!k || eom::contact_sign(mode, 2 * j + 1) > 0 || eom::contact_sign(state.mode, 2 * j + 1) < 0) continue;
+    if (!k || eom::contact_sign(mode, j, 1) > 0 || eom::contact_sign(state.mode, j, 1) < 0) continue;
     std::size_t steepest = 0;
     const auto slope = [&](std::size_t i) { return at.A[*k * s.free.size() + i]; };
     for (std::size_t i = 1; i < s.free.size(); ++i) {
@@ -312,17 +312,16 @@ State in_mode(const EquationSystem& s, const SystemValues& at, const State& stat
 
 /// The possible modes of a state: contacts that are open in it are not closed. If the motion is prescribed as a
 /// whole, sticking friction is not determined, and contacts slide.
-std::vector<int> modes_of(const EquationSystem& s, const State& state) {
+std::vector<std::vector<int>> modes_of(const EquationSystem& s, const State& state) {
   std::vector<eom::ContactShape> shapes;
   for (const system::Contact& contact : s.contacts) shapes.push_back(contact.shape());
   constexpr std::size_t enough = 40;
-  std::vector<int> modes = eom::contact_modes(shapes, state.open.empty() ? enough : 1000);
-  std::erase_if(modes, [&](int mode) {
+  std::vector<std::vector<int>> modes = eom::contact_modes(shapes, state.open.empty() ? enough : 1000);
+  std::erase_if(modes, [&](const std::vector<int>& mode) {
     for (std::size_t j = 0; j < shapes.size(); ++j) {
-      if (shapes[j].unilateral && eom::contact_sign(state.mode, 2 * j + 1) < 0 &&
-          eom::contact_sign(mode, 2 * j + 1) > 0)
+      if (shapes[j].unilateral && eom::contact_sign(state.mode, j, 1) < 0 && eom::contact_sign(mode, j, 1) > 0)
         return true;
-      if (s.free.empty() && s.contacts[j].can_stick() && eom::contact_sign(mode, 2 * j) == 0) return true;
+      if (s.free.empty() && s.contacts[j].can_stick() && eom::contact_sign(mode, j, 0) == 0) return true;
     }
     return false;
   });
@@ -374,8 +373,8 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
   if (values.empty()) return;
   const EquationSystem& first = subjects.systems.front();
   compare_states(mechanics, first, values.front(), oracle, tally);
-  if (first.contacts.empty()) return compare_code(subjects, values.front(), oracle, 0, tally);
-  for (const int mode : modes_of(first, state)) {
+  if (first.contacts.empty()) return compare_code(subjects, values.front(), oracle, {}, tally);
+  for (const std::vector<int>& mode : modes_of(first, state)) {
     State lawful = in_mode(first, values.front(), state, mode);
     set_friction(mechanics, oracle, lawful, solve_friction_law(first, oracle, lawful));
     const SystemValues in_mode = evaluate_system(first, mechanics, oracle, lawful);

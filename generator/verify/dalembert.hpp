@@ -39,7 +39,7 @@ struct State {
   std::vector<Real> z;                  // per Model::states; empty: all are integrals, which are not computed yet
   std::vector<Real> phi;                // components of friction along the tangents
   std::vector<FrictionForce> friction;  // the forces that belong to phi
-  int mode = 0;                         // of the contacts (eom/modes/contact_state.hpp)
+  std::vector<int> mode = {};           // state of each contact (eom/modes/contact_state.hpp); empty: all are 0
   std::set<std::size_t> open;           // scalar constraints that are open in this state: inactive and without force
 };
 

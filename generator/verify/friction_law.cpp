@@ -91,8 +91,8 @@ class Law {
     }
     for (std::size_t a = 0; a < rate.size(); ++a) result.push_back(phi[a]);
   }
-  int slides(std::size_t j) const { return eom::contact_sign(state_.mode, 2 * j); }
-  int normal_sign(std::size_t j) const { return eom::contact_sign(state_.mode, 2 * j + 1); }
+  int slides(std::size_t j) const { return eom::contact_sign(state_.mode, j, 0); }
+  int normal_sign(std::size_t j) const { return eom::contact_sign(state_.mode, j, 1); }
   Real root(const Real& x) const { return cln::realpart(cln::sqrt(oracle_.precision().round(x))); }
 
   Real normal_force(std::size_t j, const std::vector<Real>& gram, const Real& given,

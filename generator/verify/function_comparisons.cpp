@@ -23,8 +23,8 @@ using system::EquationSystem;
 
 class FunctionComparisons {
  public:
-  FunctionComparisons(const Subjects& subjects, const SystemValues& v, const Oracle& oracle, int mode,
-                      ComparisonTable& tally)
+  FunctionComparisons(const Subjects& subjects, const SystemValues& v, const Oracle& oracle,
+                      const std::vector<int>& mode, ComparisonTable& tally)
       : program_(subjects.programs.front()),
         v_(v),
         oracle_(oracle),
@@ -400,7 +400,7 @@ Real rounding_scale(double bound, const Precision& precision) {
   return precision.round(exact(bound) * cln::expt(cln::cl_RA(2), cln::cl_I(53)));
 }
 
-AbiArguments arguments_at(const EquationSystem& s, const State& state, int mode) {
+AbiArguments arguments_at(const EquationSystem& s, const State& state, const std::vector<int>& mode) {
   AbiArguments at{state.t, {}, state.parameters, state.inputs, mode, 4};
   for (const std::uint32_t i : s.free) at.x.push_back(state.q[i]);
   for (const std::uint32_t i : s.free) at.x.push_back(state.qdot[i]);
@@ -408,8 +408,8 @@ AbiArguments arguments_at(const EquationSystem& s, const State& state, int mode)
   return at;
 }
 
-void compare_functions(const Subjects& subjects, const SystemValues& values, const Oracle& oracle, int mode,
-                       ComparisonTable& tally) {
+void compare_functions(const Subjects& subjects, const SystemValues& values, const Oracle& oracle,
+                       const std::vector<int>& mode, ComparisonTable& tally) {
   if (subjects.programs.empty() || !subjects.programs.front().call) return;
   FunctionComparisons(subjects, values, oracle, mode, tally)();
 }

@@ -103,7 +103,7 @@ Solved solve_system(const EquationSystem& s, const SymbolValues& lookup, int dig
   }
   for (std::size_t j = 0; j < s.contacts.size(); ++j) {  // open contacts: lambda = 0 replaces the constraint
     const std::optional<std::uint32_t> k = s.contacts[j].unilateral;
-    if (!k || eom::contact_sign(lookup.state.mode, 2 * j + 1) > 0) continue;
+    if (!k || eom::contact_sign(lookup.state.mode, j, 1) > 0) continue;
     for (std::size_t i = 0; i < n; ++i) matrix[(n + *k) * size + i] = 0;
     matrix[(n + *k) * size + n + *k] = 1;
     right[n + *k] = 0;
@@ -236,7 +236,7 @@ Real SymbolValues::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::state: return state.z.at(symbol.index);
     case SymbolKind::branch: return 0;  // branches depend on the state
     case SymbolKind::friction: return state.phi.at(symbol.index);
-    case SymbolKind::contact_mode: return eom::contact_sign(state.mode, 2 * std::size_t{symbol.index} + symbol.order);
+    case SymbolKind::contact_mode: return eom::contact_sign(state.mode, symbol.index, symbol.order);
     case SymbolKind::auxiliary: break;
   }
   throw std::logic_error("verify: a symbol without a value");

@@ -153,14 +153,16 @@ TEST_CASE("abi: names are unique, and a call passes the arguments of the functio
   }
   CHECK(abi::find("nothing") == nullptr);
   abi::CompiledFunctions code;
-  code.jac = [](double t, const double* x, const double* p, const double* u, int mode, double* dfdx, double* dfdt) {
+  code.jac = [](double t, const double* x, const double* p, const double* u, const int* mode, double* dfdx,
+                double* dfdt) {
     *dfdx = t + 10 * *x + 100 * *p;
-    return mode + (u == nullptr ? 10 : 0) + (dfdt == nullptr ? 100 : 0);
+    return mode[1] + (u == nullptr ? 10 : 0) + (dfdt == nullptr ? 100 : 0);
   };
   const double x = 2, p = 3;
+  const int mode[] = {0, 4};
   double dfdx = 0;
   abi::CallArguments given;
-  given.t = 1, given.x = &x, given.p = &p, given.mode = 4, given.results[0] = &dfdx;
+  given.t = 1, given.x = &x, given.p = &p, given.mode = mode, given.results[0] = &dfdx;
   CHECK(code.call("jac", given) == 114);
   CHECK(dfdx == 321);
   CHECK(code.has("jac"));

@@ -24,6 +24,7 @@ enum {
   parameters = OF(_parameters) > 0 ? OF(_parameters) : 1,
   inputs = OF(_inputs) > 0 ? OF(_inputs) : 1,
   prepared = OF(_prepared_size) > 0 ? OF(_prepared_size) : 1,
+  mode_size = OF(_mode_size) > 0 ? OF(_mode_size) : 1,
   all = OF(_own_time) | OF(_own_parameters) | OF(_own_inputs) | OF(_own_modes) | OF(_own_prepared) | OF(_own_orders)
 };
 
@@ -36,7 +37,7 @@ static REAL within_one(void) /* -1 to 1 */
 
 static REAL t[stride], x[states * stride], p[parameters * stride], u[inputs * stride], w[prepared * stride],
     own_x[states], own_p[parameters], own_u[inputs], own_w[prepared];
-static int mode[stride], codes[stride];
+static int mode[mode_size * stride], own_mode[mode_size], codes[stride];
 #ifdef TAYLOR
 static int order[stride];
 #endif
@@ -62,6 +63,7 @@ static void take(int s, int own) {
   entries_of(p, parameters, s, own & OF(_own_parameters), own_p);
   entries_of(u, inputs, s, own & OF(_own_inputs), own_u);
   entries_of(w, prepared, s, own & OF(_own_prepared), own_w);
+  for (int i = 0; i < mode_size; ++i) own_mode[i] = (own & OF(_own_modes)) ? mode[i * stride + s] : mode[i];
 }
 
 #define CHECK_FUNCTION(entries, batch_call, alone_call)                                       \
@@ -89,7 +91,7 @@ static int compare(int own, int with_inputs) {
   const REAL* const inputs_of = with_inputs ? u : NULL;
   const REAL* const inputs_alone = with_inputs ? own_u : NULL;
 #define T (t[(own & OF(_own_time)) ? s : 0])
-#define MODE (mode[(own & OF(_own_modes)) ? s : 0])
+#define MODE own_mode
   CHECK_FUNCTION(states, OF(_rhs_batch)(count, stride, t, x, p, inputs_of, mode, own, batch, codes),
                  OF(_rhs)(T, own_x, own_p, inputs_alone, MODE, before));
 #ifdef PREPARED
@@ -141,13 +143,13 @@ static int compare(int own, int with_inputs) {
 int main(void) {
   static REAL kept[states * stride];
   REAL x0[states], p0[parameters];
-  int modes[] = {0, MODES};
+  static const int modes[][mode_size] = {{0}, MODES};
   const int mode_count = (int)(sizeof modes / sizeof modes[0]);
   if (OF(_batch_width)() != WIDTH) return 1;
   OF(_defaults)(x0, p0);
   for (int s = 0; s < count; ++s) {
     t[s] = within_one() / 2 + 1;
-    mode[s] = modes[(s * 7 + 1) % mode_count];
+    for (int i = 0; i < mode_size; ++i) mode[i * stride + s] = modes[(s * 7 + 1) % mode_count][i];
 #ifdef TAYLOR
     order[s] = s == 11 ? -1 : s == 20 ? OF(_taylor_order) + 1 : (s * 5 + 3) % (OF(_taylor_order) - 1);
 #endif
@@ -181,7 +183,8 @@ int main(void) {
     entries_of(kept, states, s, 1, own_x);
     entries_of(p, parameters, s, 1, own_p);
     memcpy(dx, own_x, sizeof dx);
-    OF(_rhs)(t[s], own_x, own_p, NULL, mode[s], dx);
+    for (int i = 0; i < mode_size; ++i) own_mode[i] = mode[i * stride + s];
+    OF(_rhs)(t[s], own_x, own_p, NULL, own_mode, dx);
     if (!same(x, dx, states, s)) return 2;
   }
   return 0;

@@ -63,7 +63,7 @@ std::string wrong(const std::string& folder, const Example& e, const Width& widt
   return finished.status == 0 ? "" : fmt::format("line {} of the harness: {}", finished.status, finished.output);
 }
 
-std::string wrong(const Example& e, const std::string& modes = "0") {
+std::string wrong(const Example& e, const std::string& modes = "{0}") {
   const Folder folder;
   emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
   for (const Width& width : widths(e)) {
@@ -125,10 +125,10 @@ TEST_CASE("batch: generic code selects the widest registers of the actual proces
       return widest;
     };
 #endif
-    CHECK(wrong(folder.path, e, {lanes(128), {}}, "0") == "");
+    CHECK(wrong(folder.path, e, {lanes(128), {}}, "{0}") == "");
 #if defined(__x86_64__) && defined(__GNUC__)
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-      CHECK(wrong(folder.path, e, {lanes(256), {"-mavx2", "-mfma"}}, "0") == "");
+      CHECK(wrong(folder.path, e, {lanes(256), {"-mavx2", "-mfma"}}, "{0}") == "");
 #endif
   }
 }
@@ -145,7 +145,7 @@ TEST_CASE("batch: a function with thousands of operations is split into parts") 
   REQUIRE(e.program.functions[0].code.size() > 3000);
   const Folder folder;
   emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
-  CHECK(wrong(folder.path, e, widths(e).back(), "0") == "");
+  CHECK(wrong(folder.path, e, widths(e).back(), "{0}") == "");
 }
 
 TEST_CASE("batch: hostile names, and every available compiler") {

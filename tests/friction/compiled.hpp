@@ -27,7 +27,10 @@ class RoughProgram {
 
  private:
   program::Arguments<double> arguments(double t, const double* x, int mode) const {
-    return {t, {x, x + states()}, p_, {}, {}, {}, mode};
+    std::vector<int> states_of_contacts;
+    for (std::size_t j = 0; j < program_.contacts.size(); ++j)
+      states_of_contacts.push_back(eom::contact_digit(mode, j));
+    return {t, {x, x + states()}, p_, {}, {}, {}, states_of_contacts};
   }
 
   model::Model model_;

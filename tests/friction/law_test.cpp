@@ -27,7 +27,7 @@ void check_formulations(const std::string& text) {
   const program::Function& rhs = program.functions[0];
   subjects.programs.push_back(
       {"program", [&](const verify::Real& t, const std::vector<verify::Real>& x, const std::vector<verify::Real>& p,
-                      const std::vector<verify::Real>& u, int mode) {
+                      const std::vector<verify::Real>& u, const std::vector<int>& mode) {
          const auto values = program::interpret(rhs, program::Arguments<cln::cl_R>{t, x, p, u, {}, {}, mode}, 40);
          return values.results[0];
        }});

@@ -13,19 +13,19 @@ using eom::hybrid::Problem;
 inline constexpr double gravity = 10;
 
 /// p[0]: restitution. Outputs: z, z_dot, kinetic, potential, energy, restitution.
-inline bool is_open(int mode) { return eom::contact_digit(mode, 0) >= 3; }
-inline int rhs(double, const double* x, const double*, const double* u, int mode, double* dx) {
+inline bool is_open(const int* mode) { return mode[0] >= 3; }
+inline int rhs(double, const double* x, const double*, const double* u, const int* mode, double* dx) {
   const double acceleration = is_open(mode) ? u[0] - gravity : 0;
   dx[0] = x[1];
   dx[1] = acceleration;
   return 0;
 }
-inline int outputs(double, const double* x, const double* p, const double*, int, double* y) {
+inline int outputs(double, const double* x, const double* p, const double*, const int*, double* y) {
   y[0] = x[0], y[1] = x[1];
   y[2] = x[1] * x[1] / 2, y[3] = gravity * x[0], y[4] = y[2] + y[3], y[5] = p[0];
   return 0;
 }
-inline int events(double, const double* x, const double*, const double* u, int mode, double* g) {
+inline int events(double, const double* x, const double*, const double* u, const int* mode, double* g) {
   g[0] = g[1] = g[2] = 0;
   g[3] = is_open(mode) ? x[0] : gravity - u[0];  // the gap; the normal force
   g[4] = 1;

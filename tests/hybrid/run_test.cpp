@@ -17,19 +17,18 @@ namespace {
 /// x'' = -sign(x) with a frozen branch of the kink; g: an event at x_dot, then the kink.
 namespace corner {
 
-int rhs(double, const double* x, const double*, const double*, int mode, double* dx) {
-  const int held = mode >> 8 & 3;
-  const double side = held == 1 ? 1 : held == 2 ? -1 : x[0] > 0 ? 1 : x[0] < 0 ? -1 : 0;
+int rhs(double, const double* x, const double*, const double*, const int* mode, double* dx) {
+  const double side = mode[0] != 0 ? mode[0] : x[0] > 0 ? 1 : x[0] < 0 ? -1 : 0;
   dx[0] = x[1];
   dx[1] = -side;
   return 0;
 }
-int outputs(double, const double* x, const double*, const double*, int, double* y) {
+int outputs(double, const double* x, const double*, const double*, const int*, double* y) {
   y[0] = x[0], y[1] = x[1];
   y[2] = x[1] * x[1] / 2, y[3] = std::abs(x[0]), y[4] = y[2] + y[3];
   return 0;
 }
-int events(double, const double* x, const double*, const double*, int, double* g) {
+int events(double, const double* x, const double*, const double*, const int*, double* g) {
   g[0] = x[1], g[1] = x[0];
   return 0;
 }
@@ -40,7 +39,6 @@ Code code() {
   code.output_names = {"x", "x_dot", "kinetic", "potential", "energy"};
   code.free = {0};
   code.kinks = {"sign"};
-  code.first_kink_bit = 8;
   return code;
 }
 
@@ -60,7 +58,7 @@ Problem problem(const Code& code) {
 }  // namespace corner
 
 /// x'' = u.
-int pushed(double, const double* x, const double*, const double* u, int, double* dx) {
+int pushed(double, const double* x, const double*, const double* u, const int*, double* dx) {
   const double force = u[0];
   dx[0] = x[1];
   dx[1] = force;
@@ -163,7 +161,7 @@ TEST_CASE("hybrid: df/dt is that of the code for constant or jumping inputs, and
   code.kinks.clear();
   code.events = nullptr;
   code.rhs = pushed;
-  code.jac = [](double, const double*, const double*, const double*, int, double* dfdx, double* dfdt) {
+  code.jac = [](double, const double*, const double*, const double*, const int*, double* dfdx, double* dfdt) {
     const double all[4] = {0, 0, 1, 0};
     std::copy(all, all + 4, dfdx);
     if (dfdt != nullptr) dfdt[0] = dfdt[1] = 0;

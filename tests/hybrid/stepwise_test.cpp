@@ -16,18 +16,18 @@ namespace {
 /// q'' = -q + u, with an event at q.
 namespace oscillator {
 
-int rhs(double, const double* x, const double* p, const double* u, int, double* dx) {
+int rhs(double, const double* x, const double* p, const double* u, const int*, double* dx) {
   const double acceleration = -p[0] * x[0] + u[0];
   dx[0] = x[1];
   dx[1] = acceleration;
   return 0;
 }
-int outputs(double, const double* x, const double* p, const double*, int, double* y) {
+int outputs(double, const double* x, const double* p, const double*, const int*, double* y) {
   y[0] = x[0], y[1] = x[1];
   y[2] = x[1] * x[1] / 2, y[3] = p[0] * x[0] * x[0] / 2, y[4] = y[2] + y[3];
   return 0;
 }
-int events(double, const double* x, const double*, const double*, int, double* g) {
+int events(double, const double* x, const double*, const double*, const int*, double* g) {
   g[0] = x[0];
   return 0;
 }

@@ -85,14 +85,17 @@ int compare(const Example& e, std::uint64_t seed, int points, bool may_leave_out
       CHECK(c.model.prepare(p.data(), w.data()) == direct.prepare(p.data(), w_direct.data()));
       for (std::size_t i = 0; i < w.size(); ++i) CHECK(same_bits(w[i], w_direct[i]));
     }
-    const int mode = point % 2 == 0 ? 0 : static_cast<int>(random() % 36 + ((random() % 16) << 8));
+    const eom::ModeLayout layout = e.program.mode_layout();
+    std::vector<int> mode(layout.size());
+    for (std::size_t k = 0; k < mode.size(); ++k)
+      mode[k] = k < layout.contacts ? static_cast<int>(random() % 6) : static_cast<int>(random() % 3) - 1;
     abi::CallArguments given;
     given.t = normal(random);
     given.x = x.data();
     given.p = p.data();
     given.w = w.data();
     given.u = may_leave_out && point % 3 == 0 ? nullptr : u.data();
-    given.mode = mode;
+    given.mode = point % 2 == 0 ? nullptr : mode.data();
     for (const abi::Function& function : abi::functions()) {
       CHECK(c.model.has(function.name) == direct.has(function.name));
       if (!c.model.has(function.name) || function.name == "prepare") continue;

@@ -31,12 +31,12 @@ eom::Options tight(const eom::MethodInfo& method) {
 
 /// A block on a belt in the form of emitted code: m = k = 1; p = (belt speed, static, dynamic friction force). Modes: 0
 /// sticks, 1 slides back (slower than the belt), 2 slides ahead of it.
-int belt_rhs(double, const double* x, const double* p, const double*, int mode, double* dx) {
+int belt_rhs(double, const double* x, const double* p, const double*, const int* mode, double* dx) {
   dx[0] = x[1];
-  dx[1] = mode == 0 ? 0 : -x[0] + (mode == 1 ? p[2] : -p[2]);
+  dx[1] = *mode == 0 ? 0 : -x[0] + (*mode == 1 ? p[2] : -p[2]);
   return 0;
 }
-int belt_events(double, const double* x, const double* p, const double*, int, double* g) {
+int belt_events(double, const double* x, const double* p, const double*, const int*, double* g) {
   g[0] = x[1] - p[0];  // slip speed
   g[1] = p[1] - x[0];  // margin of the static friction if the spring pulls back, and if it pushes
   g[2] = p[1] + x[0];
@@ -57,7 +57,7 @@ Transition belt_rule(const ModePoint& point, const std::array<double, 3>& p) {
 
 TEST_CASE("all methods: a block on a belt sticks for 5 and slips for 2(pi - atan 2.5), again and again") {
   const std::array<double, 3> p{0.2, 1, 0.5};
-  const eom::CompiledModel model{belt_rhs, belt_events, p.data(), nullptr};
+  const eom::CompiledModel model{belt_rhs, belt_events, p.data(), nullptr, nullptr, 1};
   const double slip = 2 * (pi - std::atan(2.5)), stick = 5;
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
@@ -80,13 +80,14 @@ TEST_CASE("all methods: a block on a belt sticks for 5 and slips for 2(pi - atan
 
 TEST_CASE("implicit methods: they receive df/dx of the current mode") {
   const std::array<double, 3> p{0.2, 1, 0.5};
-  const auto jacobian = [](double, const double*, const double*, const double*, int mode, double* dfdx, double* dfdt) {
+  const auto jacobian = [](double, const double*, const double*, const double*, const int* mode, double* dfdx,
+                           double* dfdt) {
     dfdx[0] = dfdx[3] = dfdt[0] = dfdt[1] = 0;
-    dfdx[1] = mode == 0 ? 0 : -1;
+    dfdx[1] = *mode == 0 ? 0 : -1;
     dfdx[2] = 1;
     return 0;
   };
-  eom::CompiledModel model{belt_rhs, belt_events, p.data(), nullptr, jacobian};
+  eom::CompiledModel model{belt_rhs, belt_events, p.data(), nullptr, jacobian, 1};
   for (const eom::MethodInfo& method : problems::methods()) {
     if (!method.needs.used.has(eom::Feature::jacobian)) continue;
     CAPTURE(std::string(method.name));
@@ -114,7 +115,7 @@ TEST_CASE("all methods: an oscillator with Coulomb friction stops as in the clos
   // x'' = -x -+ F, F = 0.3 both static and dynamic, from 4.1. Amplitudes about -+F decrease by 2F each half period:
   // 4.1, -3.5, 2.9, -2.3, 1.7, -1.1, 0.5. |0.5| > 0.3: -(0.5 - 2 * 0.3) = 0.1, at which it stops, after 7 pi.
   const std::array<double, 3> p{0, 0.3, 0.3};
-  const eom::CompiledModel model{belt_rhs, belt_events, p.data(), nullptr};
+  const eom::CompiledModel model{belt_rhs, belt_events, p.data(), nullptr, nullptr, 1};
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     const std::vector<double> start{4.1, 0};

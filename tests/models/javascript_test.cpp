@@ -32,14 +32,15 @@ Json values_of_c(const abi::CompiledFunctions& c, const program::Program& progra
       }
       y.resize(3);
       double *const a = y[0].data(), *const b = y[1].data(), *const d = y[2].data();
+      const int* const mode = at.mode.empty() ? nullptr : at.mode.data();
       const double *const x = at.x.data(), *const p = at.p.data(), *const u = at.u.empty() ? nullptr : at.u.data();
       int code = -1;
-      if (function.name == "rhs") code = c.rhs(at.t, x, p, u, at.mode, a);
-      if (function.name == "jac") code = c.jac(at.t, x, p, u, at.mode, a, b);
+      if (function.name == "rhs") code = c.rhs(at.t, x, p, u, mode, a);
+      if (function.name == "jac") code = c.jac(at.t, x, p, u, mode, a, b);
       if (function.name == "mass") code = c.mass(at.t, x, p, a, b);
       if (function.name == "constraints") code = c.constraints(at.t, x, p, a, b, d);
-      if (function.name == "outputs") code = c.outputs(at.t, x, p, u, at.mode, a);
-      if (function.name == "events") code = c.events(at.t, x, p, u, at.mode, a);
+      if (function.name == "outputs") code = c.outputs(at.t, x, p, u, mode, a);
+      if (function.name == "events") code = c.events(at.t, x, p, u, mode, a);
       if (code < 0) continue;
       calls.push_back({{"name", function.name},
                        {"t", at.t},
@@ -64,7 +65,7 @@ for (const {file, calls} of JSON.parse(fs.readFileSync("calls.json"))) {
   for (const c of calls) {
     const y = c.y.map((array) => new Float64Array(array.length)), u = c.u.length > 0 ? c.u : null;
     const of_state = c.name === "mass" || c.name === "constraints";
-    const code = of_state ? m[c.name](c.t, c.x, c.p, ...y) : m[c.name](c.t, c.x, c.p, u, c.mode, ...y);
+    const code = of_state ? m[c.name](c.t, c.x, c.p, ...y) : m[c.name](c.t, c.x, c.p, u, c.mode.length > 0 ? c.mode : null, ...y);
     if (code !== c.code) off = 1;
     if (code !== 0) continue;
     c.y.forEach((array, r) => {

@@ -15,12 +15,12 @@ namespace {
 
 double rate = 1;  // of the oscillator in the functions below
 
-int rhs(double, const double* x, const double*, const double*, int, double* dx) {
+int rhs(double, const double* x, const double*, const double*, const int*, double* dx) {
   dx[0] = x[1];
   dx[1] = -rate * rate * x[0];
   return std::isfinite(dx[1]) ? 0 : 5;
 }
-int outputs(double, const double* x, const double*, const double*, int, double* y) {
+int outputs(double, const double* x, const double*, const double*, const int*, double* y) {
   y[0] = x[0];
   y[1] = x[1];
   y[3] = x[1] * x[1] / 2;

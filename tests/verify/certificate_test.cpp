@@ -182,11 +182,11 @@ const Certificate& certificate_with(Certificate& keep, const model::Model& model
                                p[2] / (p[0] * s) - 2 * (ddot / d + x[2] * c / s) * x[3] + off};
   };
   subjects.compiled.push_back(
-      {"emitted code", [=](double t, const auto& x, const auto& p, const auto&, int) {
+      {"emitted code", [=](double t, const auto& x, const auto& p, const auto&, const auto&) {
          return std::optional(by_hand(
              t, x, p, [](double a) { return std::sin(a); }, [](double a) { return std::cos(a); }, error));
        }});
-  subjects.programs.push_back({"program", [=](const Real& t, const auto& x, const auto& p, const auto&, int) {
+  subjects.programs.push_back({"program", [=](const Real& t, const auto& x, const auto& p, const auto&, const auto&) {
                                  const Real off = cln::rational(
                                      Real(error));  // exact: a binary64 would reduce the precision of the sum
                                  return by_hand(
@@ -234,8 +234,9 @@ TEST_CASE("certificate: code that reports undecided friction at every state fail
   const std::string first =
       subjects.systems.front().formulation + " " + system::name(subjects.systems.front().approach);
   CHECK(certify(m, subjects, {50, 3, 1}).pass);
-  subjects.programs.push_back({"program", [](const Real&, const std::vector<Real>&, const std::vector<Real>&,
-                                             const std::vector<Real>&, int) { return std::vector<Real>{}; }});
+  subjects.programs.push_back(
+      {"program", [](const Real&, const std::vector<Real>&, const std::vector<Real>&, const std::vector<Real>&,
+                     const std::vector<int>&) { return std::vector<Real>{}; }});
   const Certificate found = certify(m, subjects, {50, 3, 1});
   CHECK_FALSE(found.pass);
   CHECK_FALSE(find(found, "program", first).pass);

@@ -233,7 +233,7 @@ bool differ(const verify::CompiledForm& a, const verify::CompiledForm& b, const 
   std::mt19937_64 engine(7);
   const auto random = [&engine] { return cln::cl_RA(static_cast<long>(engine() % 2001) - 1000) / 1000; };
   const std::vector<eom::ContactShape> shapes(s.program.contacts.begin(), s.program.contacts.end());
-  const std::vector<int> modes = eom::contact_modes(shapes, 12);
+  const std::vector<std::vector<int>> modes = eom::contact_modes(shapes, 12);
   for (std::size_t point = 0; point < 3 * modes.size(); ++point) {
     verify::AbiArguments at{
         numeric::exact(s.context.start_time) + random(), {}, {}, {}, modes[point % modes.size()], 4};

@@ -67,7 +67,7 @@ class File {
         {"name", name_},
         {"prefix", prefix_},
         {"library", library()},
-        {"contact_bits", std::to_string(eom::contact_bits)},
+        {"mode_room", std::to_string(std::max<std::size_t>(1, program_.mode_layout().size()))},
         {"contact_states", std::to_string(eom::contact_states)},
         {"sincos", packs_ ? sincos() : ""},
         {"names", named()}};
@@ -240,7 +240,9 @@ class File {
     }
     for (const Argument& a : list) {
       if (a.kind == Argument::Kind::mode)
-        fill += fmt::format("  call.mode = mode;\n  call.own_modes = mode && (own & {}_own_modes) != 0;\n", name_);
+        fill += fmt::format(
+            "  call.mode = mode;\n  call.modes = {};\n  call.own_modes = mode && (own & {}_own_modes) != 0;\n",
+            program_.mode_layout().size(), name_);
       if (a.kind == Argument::Kind::integer)
         fill += fmt::format("  call.order = order;\n  call.own_orders = (own & {}_own_orders) != 0;\n", name_);
     }

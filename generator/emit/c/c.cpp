@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "abi/functions.hpp"
 #include "emit/file_parts.hpp"
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
@@ -80,6 +81,7 @@ std::string sizes(const std::string& name, const program::Program& program, cons
   std::vector<std::pair<const char*, std::size_t>> entries = {{"states", program.state_count()},
                                                               {"parameters", context.parameters.size()},
                                                               {"inputs", context.inputs.size()},
+                                                              {"mode_size", program.mode_layout().size()},
                                                               {"constraints_active", program.active_constraints},
                                                               {"reaction_count", program.reactions.size()},
                                                               {"output_count", program.outputs.size()},
@@ -134,8 +136,8 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
     declared.push_back({{"purpose", function_purpose("taylor")}, {"prototype", text.head}});
   }
   if (context.start_functions) {
-    functions.push_back({{"definition", start_text(*context.start_functions, context, program.state_count(),
-                                                   program.free.size(), {true, name + "_", single})}});
+    functions.push_back(
+        {{"definition", start_text(*context.start_functions, context, program, {true, name + "_", single})}});
     declared.push_back({{"purpose", start_purpose}, {"prototype", start_head(name + "_", dialect.real)}});
   }
   const SelfTestNames test{[&name](const std::string& f) { return name + "_" + f; }, name + "_differs", "0",
@@ -148,6 +150,7 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
                                                        : "#include <math.h>",
                                single ? "\n#include <tgmath.h>" : "")},
       {"real", dialect.real},
+      {"abi", std::to_string(abi::version)},
       {"kernels", packs ? sincos_kernel(name + "_", "static inline", "", single) + "\n" : ""},
       {"sizes", sizes(name, program, context)},
       {"info", string_literal(info_json(program, context), "      ")},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/cpp/cpp.hpp"
 
+#include "abi/functions.hpp"
 #include "emit/c/c.hpp"
 #include "emit/cpp/templates.hpp"
 #include "emit/kernels.hpp"
@@ -32,7 +33,7 @@ const std::string prepared_struct = R"(
 template <class Real>
 struct Prepared {
   explicit Prepared(const Real* parameters) : p(parameters), code(prepare(parameters, w)) {}
-  int operator()(Real t, const Real* x, const Real* u, int mode, Real* dx) const {
+  int operator()(Real t, const Real* x, const Real* u, const int* mode, Real* dx) const {
     return code != 0 ? code : rhs_prepared(t, x, p, w, u, mode, dx);
   }
   const Real* p;
@@ -62,10 +63,11 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
            skeleton::cpp_model_hpp,
            {{"banner", banner(program, context, "// ", "// ", "")},
             {"name", name},
+            {"abi", std::to_string(abi::version)},
             {"includes", packs ? "#include <cfloat>\n#include <cmath>\n#include <cstddef>\n#include <cstring>"
                                : "#include <cmath>\n#include <cstddef>"},
             {"kernels", packs ? generic_sincos + sincos_kernel(template_kernel_prefix, "inline", "std::") : ""},
-            {"enums", index_names(names, program.prepared_count(), program.taylor)},
+            {"enums", index_names(names, program)},
             {"prepared", (program.prepared_count() > 0 ? prepared_struct : "") + taylor},
             {"info", string_literal(info_json(program, context), "      ")},
             {"defaults", defaults_body(program, context, dialect)},

@@ -50,7 +50,7 @@ Dialect template_dialect() {
   return dialect;
 }
 
-std::string index_names(const ModelNames& names, std::size_t prepared, const std::optional<program::Taylor>& taylor) {
+std::string index_names(const ModelNames& names, const program::Program& program) {
   std::string result;
   const auto add = [&result](const char* type, const char* count, const std::vector<std::string>& entries) {
     if (!entries.empty()) {
@@ -66,8 +66,10 @@ std::string index_names(const ModelNames& names, std::size_t prepared, const std
   add("Output", "output_count", names.outputs);
   add("Reaction", "reaction_count", names.reactions);
   if (!names.events.empty()) add("Event", "event_count", names.events);
-  result += fmt::format("inline constexpr std::size_t prepared_size = {};\n", prepared);
-  if (taylor) result += fmt::format("inline constexpr int taylor_order = {};\n", program::taylor_order(*taylor));
+  result += fmt::format("inline constexpr std::size_t mode_size = {};\n", program.mode_layout().size());
+  result += fmt::format("inline constexpr std::size_t prepared_size = {};\n", program.prepared_count());
+  if (program.taylor)
+    result += fmt::format("inline constexpr int taylor_order = {};\n", program::taylor_order(*program.taylor));
   result.pop_back();
   return result;
 }

@@ -17,7 +17,7 @@ inline const std::string template_kernel_prefix = "eom_";  // prefix of grouped 
 Dialect template_dialect();
 
 /// Enumerations of array indices: x[State::theta].
-std::string index_names(const ModelNames& names, std::size_t prepared, const std::optional<program::Taylor>& taylor);
+std::string index_names(const ModelNames& names, const program::Program& program);
 
 struct TemplateFunctions {
   std::vector<std::vector<std::pair<std::string, std::string>>> functions;  // purpose, head and body of each

@@ -66,7 +66,7 @@ std::vector<EmittedFile> emit_cuda(const program::Program& program, const Emissi
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", about},
       {"name", name},
-      {"enums", index_names(names, program.prepared_count(), {})},
+      {"enums", index_names(names, program)},
       {"kernels", packs ? sincos : ""},
       {"defaults", defaults_body(program, context, dialect)}};
   const std::vector<std::pair<std::string, std::string>> of_header = {

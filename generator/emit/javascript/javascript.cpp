@@ -114,14 +114,16 @@ program::Function without_packs(program::Function function) {
   return function;
 }
 
-std::string vectors(const EmissionContext& context) {
+std::string vectors(const program::Program& program, const EmissionContext& context) {
   Json tests = Json::array();
   for (const TestVector& test : context.tests) {
     Json functions = Json::array();
     for (const FunctionValues& f : test.functions)
       functions.push_back({{"name", f.function}, {"values", f.values}, {"allowed", f.tolerances}});
+    std::vector<int> mode = test.mode;
+    mode.resize(program.mode_layout().size());
     tests.push_back(
-        {{"t", test.t}, {"mode", test.mode}, {"x", test.x}, {"p", test.p}, {"u", test.u}, {"functions", functions}});
+        {{"t", test.t}, {"mode", mode}, {"x", test.x}, {"p", test.p}, {"u", test.u}, {"functions", functions}});
   }
   std::string text = "[";
   for (std::size_t i = 0; i < tests.size(); ++i) text += (i > 0 ? ",\n  " : "\n  ") + literal(tests[i]);
@@ -171,14 +173,15 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
       const program::Function alone = without_packs(*function);
       start += "\n" + definition(alone, print_function(alone, names, context, dialect), names, dialect);
     }
-    start += "\n" + start_text(*context.start_functions, context, program.state_count(), program.free.size(),
-                               {false, "", context.single_error.has_value()});
+    start +=
+        "\n" + start_text(*context.start_functions, context, program, {false, "", context.single_error.has_value()});
     list += ", start";
   }
   const std::vector<std::pair<std::string, std::string>> values = {
       {"start", start},
       {"banner", harmless(banner(program, context, "// ", "// ", ""))},
       {"name", name},
+      {"abi", std::to_string(abi::version)},
       {"info", literal(Json::parse(info_json(program, context)))},
       {"defaults", defaults_body(program, context, dialect)},
       {"list", list},
@@ -186,7 +189,7 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
       {"rounding", dialect.rounding_function.empty() ? "" : ", " + dialect.rounding_function},
       {"prepared", std::to_string(program.prepared_count())},
       {"without_inputs", without_inputs()},
-      {"vectors", vectors(context)}};
+      {"vectors", vectors(program, context)}};
   return {{name + ".js", render_template(skeleton::javascript_model_js, values, functions)}};
 }
 

@@ -25,7 +25,7 @@ std::string c_function_declarations() {
     const abi::Function& function = *abi::find(name);
     std::string types;
     for (const abi::Input input : function.inputs)
-      types += input == abi::Input::time ? 'd' : input == abi::Input::mode ? 'i' : 'a';
+      types += input == abi::Input::time ? 'd' : input == abi::Input::mode ? 'I' : 'a';
     types.append(function.results.size(), 'a');
     lines += fmt::format("{0}_{1} = _function(\"{1}\", \"{2}\")", lines.empty() ? "" : "\n", name, types);
   }

@@ -177,7 +177,6 @@ std::string code_text(const program::Program& program, const eom::hybrid::Code& 
   s.list("holonomic", code.holonomic);
   s.list("kinks", code.kinks);
   s.list("contacts", code.contacts);
-  if (!code.kinks.empty()) s.set("first_kink_bit", code.first_kink_bit);
   if (program.taylor) s.set("taylor_order", code.taylor_order);
   s.list("own_outputs", code.own_outputs);
   return s.done();
@@ -262,8 +261,8 @@ inline int {0}_set_start(eom::hybrid::Problem& problem, const int* given, const 
     std::copy_n(x, {0}_states + 0, state.begin());
     std::copy_n(p, {0}_parameters + 0, parameters.begin());
   }}
-  int mode = 0;
-  const int code = {0}_start(given, times, state.data(), parameters.data(), &mode);
+  int mode[{0}_mode_size + 1];
+  const int code = {0}_start(given, times, state.data(), parameters.data(), mode);
   if (code != 0) return code;
   problem.t0 = times[0];
   problem.t1 = times[1];

@@ -10,8 +10,6 @@
 namespace eomgen::emit {
 namespace {
 
-constexpr int abi_version = 1;
-
 [[noreturn]] void fail(const std::string& what) {
   throw Error("compile", {}, what, "remove the cache folder (EOMGEN_CACHE_DIR, or ~/.cache/eomgen) and try again",
               ErrorKind::tool);
@@ -41,7 +39,7 @@ LoadedModel::LoadedModel(const std::string& path, const std::string& name) {
   std::string wrong;
   if (abi == nullptr || selftest == nullptr || information == nullptr || defaults == nullptr || rhs == nullptr) {
     wrong = "compiled code lacks functions of the C ABI: " + path;
-  } else if (abi() != abi_version) {
+  } else if (abi() != eomgen::abi::version) {
     wrong = "compiled code has another version of the C ABI: " + path;
   } else if (const int vector = selftest(); vector != 0) {
     wrong = "compiled code fails its self test, vector " + std::to_string(vector) + ": " + path;

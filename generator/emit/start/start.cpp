@@ -29,12 +29,13 @@ struct Array {
 
 class Text {
  public:
-  Text(const StartDescription& start, const EmissionContext& context, std::size_t states, std::size_t coordinates,
+  Text(const StartDescription& start, const EmissionContext& context, const program::Program& program,
        const StartLanguage& language)
       : start_(start),
         context_(context),
-        states_(states),
-        n_(coordinates),
+        states_(program.state_count()),
+        n_(program.free.size()),
+        mode_size_(program.mode_layout().size()),
         language_(language),
         prefix_(language.prefix + "start_") {}
 
@@ -110,7 +111,7 @@ class Text {
     add("fixed_count", start_.fixed.size() / 2);
     add("inside_count", start_.inside.size());
     add("contact_count", start_.contacts.size());
-    add("contact_states", static_cast<std::size_t>(eom::contact_states));
+    add("mode_size", mode_size_);
     add("open_state", static_cast<std::size_t>(eom::contact_states) / 2);
     add("hold_held", start_.holds_angles ? 1 : 0);
     add("hold_loose", start_.tries_angles ? 1 : 0);
@@ -201,7 +202,7 @@ class Text {
 
   const StartDescription& start_;
   const EmissionContext& context_;
-  std::size_t states_, n_;
+  std::size_t states_, n_, mode_size_;
   const StartLanguage& language_;
   std::string prefix_;
 };
@@ -216,9 +217,9 @@ std::string start_head(const std::string& prefix, const std::string& real) {
                  std::string(prefix.size() + 10, ' '));
 }
 
-std::string start_text(const StartDescription& start, const EmissionContext& context, std::size_t states,
-                       std::size_t coordinates, const StartLanguage& language) {
-  return Text(start, context, states, coordinates, language)();
+std::string start_text(const StartDescription& start, const EmissionContext& context, const program::Program& program,
+                       const StartLanguage& language) {
+  return Text(start, context, program, language)();
 }
 
 std::string start_comparison(const EmissionContext& context, std::size_t states, const std::string& function,

@@ -52,8 +52,8 @@ struct StartLanguage {
 };
 
 /// The tables, the functions of the constraints and NAME_start. The functions start_values and start_rows precede it.
-std::string start_text(const StartDescription& start, const EmissionContext& context, std::size_t states,
-                       std::size_t coordinates, const StartLanguage& language);
+std::string start_text(const StartDescription& start, const EmissionContext& context, const program::Program& program,
+                       const StartLanguage& language);
 
 /// The prototype in C.
 std::string start_head(const std::string& prefix, const std::string& real);

@@ -14,11 +14,11 @@ struct CompiledBatch {
 
   Function rhs_function = nullptr;
   const double* u = nullptr;  // null: the defaults
-  int mode = 0;
+  const int* mode = nullptr;  // null: all entries are 0
 
   int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
                  int* codes) const {
-    return rhs_function(count, stride, t, x, p, u, &mode, own_time + own_parameters, dx, codes);
+    return rhs_function(count, stride, t, x, p, u, mode, own_time + own_parameters, dx, codes);
   }
 };
 
@@ -31,7 +31,7 @@ struct CompiledBatchJacobian : CompiledBatch {
 
   int jacobian(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dfdx,
                double* dfdt, int* codes) const {
-    return jacobian_function(count, stride, t, x, p, u, &mode, own_time + own_parameters, dfdx, dfdt, codes);
+    return jacobian_function(count, stride, t, x, p, u, mode, own_time + own_parameters, dfdx, dfdt, codes);
   }
 };
 
@@ -47,7 +47,7 @@ struct CompiledBatchSeries : CompiledBatch {
 
   int taylor(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p,
              const int* orders, double* coefficients, int* codes) const {
-    return series_function(count, stride, t, x, p, u, &mode, orders, own_time + own_parameters + own_orders,
+    return series_function(count, stride, t, x, p, u, mode, orders, own_time + own_parameters + own_orders,
                            coefficients, codes);
   }
   int taylor_order() const { return highest_order; }

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "eom/hybrid/problem.hpp"
-#include "eom/modes/chart_state.hpp"
+#include "eom/modes/mode_array.hpp"
 
 namespace eom::hybrid {
 
@@ -24,7 +24,6 @@ class ChartSwitch {
 
   bool has_charts() const { return !problem_.charts.empty(); }
   unsigned second_charts() const { return in_; }  // one bit per chart, set for a second chart
-  int mode() const;                               // bits of `mode`
   const Code& code() const { return *code_; }
 
   /// Sets the start state, in the own charts. Returns whether it has to be exchanged at once.
@@ -83,6 +82,12 @@ class ChartSwitch {
     std::vector<double> x;  // in the own charts
   };
   bool is_second(std::size_t j) const { return (in_ >> j & 1) != 0; }
+  /// The argument `mode` for these second charts.
+  ModeArray mode_in(unsigned charts) const {
+    ModeArray mode(problem_.mode_layout());
+    mode.set_charts(charts);
+    return mode;
+  }
   double last_time() const { return samples_.empty() ? 0 : samples_.back().t; }
   void set_guards(const double* x);
   unsigned target_charts(const double* x, const double* own) const;
@@ -109,8 +114,6 @@ inline ChartSwitch::ChartSwitch(const Problem& problem)
       n_(problem.code->free.size()),
       floor_(problem.charts.size()),
       side_(problem.charts.size(), 1) {}
-
-inline int ChartSwitch::mode() const { return mode_of_charts(in_); }
 
 inline void ChartSwitch::set_guards(const double* x) {
   for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
@@ -240,7 +243,7 @@ inline void ChartSwitch::pass_pole(const Sample& last, Sample& next) {
 inline void ChartSwitch::to_own_charts(double t, const double* x, std::span<double> result) const {
   std::copy_n(x, result.size(), result.begin());
   if (in_ == 0) return;
-  code_->chart(x, mode(), 0, result.data());
+  code_->chart(x, mode_in(in_).data(), nullptr, result.data());
   const auto nearest = std::min_element(samples_.begin(), samples_.end(), [t](const Sample& a, const Sample& b) {
     return std::abs(a.t - t) < std::abs(b.t - t);
   });
@@ -267,7 +270,7 @@ inline std::vector<std::string> ChartSwitch::exchange(double t, std::span<double
   std::vector<double> before(x.begin(), x.end()), own_x(problem_.code->layout().size());
   to_own_charts(t, before.data(), own_x);
   if (due_ != 0) code_ = &problem_.in_charts(due_);
-  code_->chart(before.data(), mode(), mode_of_charts(due_), x.data());
+  code_->chart(before.data(), mode_in(in_).data(), mode_in(due_).data(), x.data());
   std::vector<std::string> names;
   for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
     const ExchangedChart& chart = problem_.charts[j];
@@ -302,7 +305,7 @@ inline bool ChartSwitch::has_exchanged(std::uint32_t coordinate) const {
 
 inline std::span<const std::uint32_t> ChartSwitch::own_outputs() const {
   for (const OwnOutputs& own : code_->own_outputs) {
-    if (own.in_charts == mode()) return own.outputs;
+    if (own.in_charts == in_) return own.outputs;
   }
   return {};
 }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "eom/hybrid/problem.hpp"
-#include "eom/modes/contact_state.hpp"
+#include "eom/modes/mode_array.hpp"
 
 namespace eom::hybrid {
 
@@ -42,7 +42,7 @@ class ConstraintRows {
   /// Sets the mode of the contacts. set_all_sliding() treats all other closed contacts as sliding.
   void set_mode(int contacts) { mode_ = contacts, all_slide_ = false; }
   /// Sets the charts of all following states.
-  void set_charts(const Code& code, int bits) { code_ = &code, charts_ = bits; }
+  void set_charts(const Code& code, const ModeArray& mode) { code_ = &code, charts_ = mode; }
   void set_all_sliding(int contacts) { mode_ = contacts, all_slide_ = true; }
   /// Sets the value that a row has to reach instead of 0.
   void set_target(std::size_t row, double value) { targets_.at(row) = value; }
@@ -77,8 +77,9 @@ class ConstraintRows {
 
   const Problem& problem_;
   const Code* code_;
-  int charts_ = 0;
+  ModeArray charts_;  // no entries: the own charts
   std::size_t n_, holonomic_ = 0;
+  ModeArray open_;  // all contacts open
   int mode_ = 0;
   bool all_slide_ = false;
   std::vector<Slip> slips_;
@@ -90,8 +91,9 @@ class ConstraintRows {
 };
 
 inline ConstraintRows::ConstraintRows(const Problem& problem)
-    : problem_(problem), code_(problem.code), n_(problem.code->free.size()) {
+    : problem_(problem), code_(problem.code), n_(problem.code->free.size()), open_(problem.mode_layout()) {
   const Code& code = *problem.code;
+  open_.set_contacts(open_mode(code.contacts));
   for (const bool positions : {true, false}) {
     for (std::size_t k = 0; k < code.active_constraints; ++k) {
       if (code.holonomic[k] == positions) order_.push_back(k);
@@ -113,7 +115,7 @@ inline ConstraintRows::ConstraintRows(const Problem& problem)
 
 inline void ConstraintRows::start(double t, const double* x, const double* u) {
   if (integrals_.empty()) return;
-  const int code = problem_.code->outputs(t, x, problem_.parameters.data(), u, open_mode(code_->contacts), y_.data());
+  const int code = problem_.code->outputs(t, x, problem_.parameters.data(), u, open_.data(), y_.data());
   if (code != 0) std::fill(y_.begin(), y_.end(), std::numeric_limits<double>::quiet_NaN());  // no constant available
   for (Integral& integral : integrals_) integral.constant = y_[integral.psi];
 }
@@ -121,7 +123,7 @@ inline void ConstraintRows::start(double t, const double* x, const double* u) {
 inline bool ConstraintRows::is_open(std::size_t k) const {
   for (std::size_t j = 0; j < problem_.contacts.size(); ++j) {
     if (problem_.code->contacts[j].unilateral && problem_.contacts[j].constraint == k)
-      return contact_sign(mode_, 2 * j + 1) < 0;
+      return contact_sign(contact_digit(mode_, j), 1) < 0;
   }
   return false;
 }
@@ -139,8 +141,8 @@ inline std::size_t ConstraintRows::slip_row_of(std::size_t contact) const {
 
 inline int ConstraintRows::constraints(double t, const double* x) {
   const double* p = problem_.parameters.data();
-  if (charts_ == 0) return code_->constraints(t, x, p, psi_.data(), A_.data(), b_.data());
-  return code_->constraints_in(t, x, p, charts_, psi_.data(), A_.data(), b_.data());
+  if (charts_.charts() == 0) return code_->constraints(t, x, p, psi_.data(), A_.data(), b_.data());
+  return code_->constraints_in(t, x, p, charts_.data(), psi_.data(), A_.data(), b_.data());
 }
 
 inline int ConstraintRows::operator()(double t, const double* x, const double* u, double* psi, double* A, double* b) {
@@ -158,7 +160,7 @@ inline int ConstraintRows::operator()(double t, const double* x, const double* u
   }
   if (!integrals_.empty() || !slips_.empty()) {
     // Neither integrals nor slips depend on forces.
-    const int code = problem_.code->outputs(t, x, p, u, open_mode(code_->contacts), y_.data());
+    const int code = problem_.code->outputs(t, x, p, u, open_.data(), y_.data());
     if (code != 0) return code;
     fill_integrals(x, psi, A, b);
     fill_slips(x, psi, A, b);

@@ -59,7 +59,7 @@ class EventFunctions {
   /// The interval of a step in which function i first leaves its side although no sample shows it.
   std::optional<std::pair<double, double>> hidden_crossing(const StepView& step, std::size_t i, int side, double from,
                                                            double to, const Sampling& sampling) const {
-    if (charts_of(model_.mode()) != 0) return std::nullopt;
+    if (model_.mode().charts() != 0) return std::nullopt;
     if (i >= first_contact()) {
       const std::size_t j = (i - first_contact()) / contact_values;
       const bool open = j < problem_.code->contacts.size() && problem_.code->contacts[j].unilateral &&

@@ -60,6 +60,7 @@ class ContactVelocities {
   std::vector<double> least_;  // per contact
   double rtol_, atol_;
   double largest_slip_ = 0;
+  ModeArray open_;  // all contacts open
 };
 
 inline ContactVelocities::ContactVelocities(const Problem& problem, ConstraintRows& rows)
@@ -68,7 +69,10 @@ inline ContactVelocities::ContactVelocities(const Problem& problem, ConstraintRo
       projection_(problem.code->free.size(), rows.size(), 0),
       y_(problem.code->output_names.size()),
       rtol_(problem.rtol),
-      atol_(problem.atol) {}
+      atol_(problem.atol),
+      open_(problem.mode_layout()) {
+  open_.set_contacts(open_mode(problem.code->contacts));
+}
 
 inline double ContactVelocities::negligible_speed() const {
   constexpr double rounding = 1e-15, share = 1e-3, roundings = 1e-14;
@@ -78,8 +82,7 @@ inline double ContactVelocities::negligible_speed() const {
 inline int ContactVelocities::restitution(double t, const double* x, const double* u, std::size_t contact, double& e) {
   e = 0;
   if (!problem_.contacts[contact].restitution) return 0;
-  const int mode = open_mode(problem_.code->contacts);
-  const int code = problem_.code->outputs(t, x, problem_.parameters.data(), u, mode, y_.data());
+  const int code = problem_.code->outputs(t, x, problem_.parameters.data(), u, open_.data(), y_.data());
   if (code == 0) e = y_[*problem_.contacts[contact].restitution];
   return code;
 }
@@ -93,8 +96,7 @@ inline void ContactVelocities::reset() {
 inline void ContactVelocities::update_min_slip(double t, const double* x, const double* u) {
   constexpr double tolerances = 30;
   const std::size_t n = problem_.code->free.size();
-  const int mode = open_mode(problem_.code->contacts);
-  if (problem_.code->outputs(t, x, problem_.parameters.data(), u, mode, y_.data()) != 0) return;
+  if (problem_.code->outputs(t, x, problem_.parameters.data(), u, open_.data(), y_.data()) != 0) return;
   for (std::size_t j = 0; j < least_.size(); ++j) {
     if (problem_.contacts[j].slip.size() != 2) continue;
     double known = 0;
@@ -112,8 +114,7 @@ inline void ContactVelocities::update_min_slip(double t, const double* x, const 
 
 inline std::array<double, 2> ContactVelocities::slip(double t, const double* x, const double* u, std::size_t contact) {
   std::array<double, 2> w{};
-  const int mode = open_mode(problem_.code->contacts);
-  if (problem_.code->outputs(t, x, problem_.parameters.data(), u, mode, y_.data()) != 0) return w;
+  if (problem_.code->outputs(t, x, problem_.parameters.data(), u, open_.data(), y_.data()) != 0) return w;
   for (std::size_t a = 0; a < 2; ++a) w[a] = y_[problem_.contacts[contact].slip[a]];
   return w;
 }
@@ -175,7 +176,10 @@ inline int ContactVelocities::stick(double t, std::span<double> x, const double*
 // Sliding starts against the friction force of the sticking contact. If there is none, it starts along the sum of the
 // tangents: any direction is equally good.
 inline int ContactVelocities::slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact) {
-  if (const int code = problem_.code->outputs(t, x.data(), problem_.parameters.data(), u, mode, y_.data()); code != 0)
+  ModeArray now = open_;
+  now.set_contacts(mode);
+  if (const int code = problem_.code->outputs(t, x.data(), problem_.parameters.data(), u, now.data(), y_.data());
+      code != 0)
     return code;
   std::vector<double> direction;
   double length = 0;

@@ -80,7 +80,7 @@ inline Reason cross_impulse(RunContext& context, const Segment& before, Result& 
 /// Crosses the gap between two segments: counts changed sides of kinks and reports jumps. Returns an undetermined jump,
 /// or none.
 inline Reason begin_segment(RunContext& context, const Segment& before, Result& total, const OnEvent& event) {
-  const int sides = context.model.mode();
+  const ModeArray sides = context.model.mode();
   const bool kink = before.next > before.end;
   Reason open;
   if (kink && context.events.jumps().has_time_kinks()) open = cross_impulse(context, before, total, event);

@@ -149,9 +149,9 @@ inline Integration::State Integration::save() const {
 inline void Integration::restore(double t, const std::vector<double>& x, const State& from) {
   context_.charts.restore(from.charts, x.data());
   context_.model.set_code(context_.charts.code());
-  context_.model.set_mode(0);
-  context_.model.set_charts(context_.charts.mode());
-  context_.rows.set_charts(context_.charts.code(), context_.charts.mode());
+  context_.model.reset_mode();
+  context_.model.set_charts(context_.charts.second_charts());
+  context_.rows.set_charts(context_.charts.code(), context_.model.mode());
   context_.rows.set_integral_constants(from.integral_constants);
   context_.kinks.set_largest_values(from.largest_kink_values);
   if (from.contacts) {

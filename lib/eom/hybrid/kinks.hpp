@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Branches of kinks (abs, sign, min, max, if) during one run. A branch is frozen during a step, so that the right-hand
-// side is smooth there, and changes when its surface is crossed. In: values of the surfaces. Out: bits of `mode`,
-// counts of crossings.
+// side is smooth there, and changes when its surface is crossed. In: values of the surfaces. Out: entries of
+// `mode`, counts of crossings.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class Kinks {
   /// Whether every branch is frozen, so that no surface has to be evaluated.
   bool are_all_frozen() const {
     for (std::size_t k = 0; k < size_.size(); ++k)
-      if ((model_.mode() >> bit(k) & 3) == 0) return false;
+      if (model_.mode().kink(k) == 0) return false;
     return true;
   }
 
@@ -41,8 +41,8 @@ class Kinks {
       if (std::isfinite(g)) size_[k] = std::max(size_[k], std::abs(g));
       // A value that is small compared with earlier ones may be rounding, and its side may differ from that found by
       // the event locator.
-      if ((model_.mode() >> bit(k) & 3) != 0 || !(std::abs(g) > (anew ? 0 : beyond_rounding * size_[k]))) continue;
-      model_.set_mode(model_.mode() | 1 << (g > 0 ? bit(k) : bit(k) + 1));
+      if (model_.mode().kink(k) != 0 || !(std::abs(g) > (anew ? 0 : beyond_rounding * size_[k]))) continue;
+      model_.set_kink(k, g > 0 ? 1 : -1);
     }
   }
 
@@ -51,13 +51,13 @@ class Kinks {
     ++in_state_;
     last_ = k;
     at_ = t;
-    model_.set_mode((model_.mode() & ~(3 << bit(k))) | 1 << (up ? bit(k) : bit(k) + 1));
+    model_.set_kink(k, up ? 1 : -1);
   }
 
   /// Counts the changes between two segments, from the mode `before` to the current one.
-  void count_crossings(int before) {
+  void count_crossings(const ModeArray& before) {
     for (std::size_t k = 0; k < size_.size(); ++k) {
-      const int was = before >> bit(k) & 3, is = model_.mode() >> bit(k) & 3;
+      const int was = before.kink(k), is = model_.mode().kink(k);
       if (was != 0 && is != 0 && was != is) ++crossings_[k];
     }
   }
@@ -75,7 +75,6 @@ class Kinks {
 
  private:
   static constexpr double beyond_rounding = 1e-6;  // of the largest value so far
-  std::size_t bit(std::size_t k) const { return problem_.code->first_kink_bit + 2 * k; }
 
   const Problem& problem_;
   Model& model_;

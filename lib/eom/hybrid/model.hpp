@@ -12,8 +12,7 @@
 
 #include "eom/hybrid/inputs.hpp"
 #include "eom/hybrid/problem.hpp"
-#include "eom/modes/chart_state.hpp"
-#include "eom/modes/contact_state.hpp"
+#include "eom/modes/mode_array.hpp"
 #include "eom/with_jacobian.hpp"
 
 namespace eom::hybrid {
@@ -24,6 +23,8 @@ class Model {
       : problem_(problem),
         code_(problem.code),
         n_(problem.n()),
+        mode_(problem.mode_layout()),
+        other_(mode_),
         inputs_(problem),
         u_(std::max<std::size_t>(1, problem.inputs.size())),
         inputs_move_(std::any_of(problem.inputs.begin(), problem.inputs.end(), is_time_dependent)),
@@ -41,12 +42,15 @@ class Model {
     prepare();
   }
 
-  int mode() const { return mode_; }
-  int contact_mode() const { return mode_ & contact_bits; }
-  void set_mode(int mode) { mode_ = mode; }
-  void set_contact_mode(int contacts) { mode_ = (mode_ & ~contact_bits) | contacts; }
-  void set_charts(int bits) { mode_ = (mode_ & ~chart_bits) | bits; }
-  void release_branches() { mode_ &= contact_bits | chart_bits; }
+  const ModeArray& mode() const { return mode_; }
+  void set_mode(const ModeArray& mode) { mode_ = mode; }
+  void reset_mode() { mode_ = ModeArray(mode_.layout()); }
+  /// The number of the mode of the contacts.
+  int contact_mode() const { return mode_.contacts(); }
+  void set_contact_mode(int contacts) { mode_.set_contacts(contacts); }
+  void set_charts(unsigned set) { mode_.set_charts(set); }
+  void set_kink(std::size_t k, int side) { mode_.set_kink(k, side); }
+  void release_branches() { mode_.release_branches(); }
 
   /// A time inside the current segment of the inputs.
   double segment_time() const { return segment_time_; }
@@ -60,15 +64,15 @@ class Model {
 
   int rhs(double t, const double* x, double* dx) {
     const double* u = inputs(t);
-    const int code = motion(t, x, u, mode_, dx);
+    const int code = motion(t, x, u, mode_.data(), dx);
     // A branch that is frozen beyond its surface may have no value there (a root). The unfrozen expression always has
     // one.
-    return code != 0 && mode_ != mode_without_branches() ? motion(t, x, u, mode_without_branches(), dx) : code;
+    return code != 0 && mode_.has_frozen_branches() ? motion(t, x, u, mode_without_branches(), dx) : code;
   }
 
   /// In a given mode of the contacts.
   int rhs_of(int contacts, double t, const double* x, double* dx) {
-    return motion(t, x, inputs(t), (mode_ & ~contact_bits) | contacts, dx);
+    return motion(t, x, inputs(t), mode_with_contacts(contacts), dx);
   }
 
   /// The derivatives are partial, at fixed inputs. If inputs vary between their jumps, df/dt is not available. `work`:
@@ -79,8 +83,8 @@ class Model {
     if (work) dfdx_.resize(n * n);
     const double* u = inputs(t);
     double* const matrix = work ? dfdx_.data() : dfdx;
-    int code = code_->jac(t, x, parameters(), u, mode_, matrix, dfdt);
-    if (code != 0 && mode_ != mode_without_branches())
+    int code = code_->jac(t, x, parameters(), u, mode_.data(), matrix, dfdt);
+    if (code != 0 && mode_.has_frozen_branches())
       code = code_->jac(t, x, parameters(), u, mode_without_branches(), matrix, dfdt);
     if (code == 0 && work) code = add_work(t, x, n, dfdx, dfdt);
     return code == 0 && inputs_move_ ? no_time_derivative_here : code;
@@ -89,38 +93,56 @@ class Model {
   /// For the states without the work, which is integrated as a quadrature.
   int taylor(double t, const double* x, int order, double* coefficients) {
     const double* u = inputs(t);
-    const int code = code_->taylor(t, x, parameters(), u, mode_, order, coefficients);
-    return code != 0 && mode_ != mode_without_branches()
+    const int code = code_->taylor(t, x, parameters(), u, mode_.data(), order, coefficients);
+    return code != 0 && mode_.has_frozen_branches()
                ? code_->taylor(t, x, parameters(), u, mode_without_branches(), order, coefficients)
                : code;
   }
 
   int momenta(double t, const double* x, double* p, double* rate) {
-    return code_->momenta(t, x, parameters(), inputs(t), mode_, p, rate);
+    return code_->momenta(t, x, parameters(), inputs(t), mode_.data(), p, rate);
   }
 
   int mass(double t, const double* x, double* M) {
-    return charts_of(mode_) != 0 ? code_->mass_in(t, x, parameters(), mode_, M, h_.data())
-                                 : code_->mass(t, x, parameters(), M, h_.data());
+    return mode_.charts() != 0 ? code_->mass_in(t, x, parameters(), mode_.data(), M, h_.data())
+                               : code_->mass(t, x, parameters(), M, h_.data());
   }
 
   /// In second charts, entries that exist only in the own charts remain unchanged.
   int outputs(double t, const double* x, double* y) const {
-    return code_->outputs(t, x, parameters(), inputs(t), mode_, y);
+    return code_->outputs(t, x, parameters(), inputs(t), mode_.data(), y);
+  }
+  /// Of a state in the own charts.
+  int own_outputs(double t, const double* x, double* y) const {
+    other_ = mode_;
+    other_.set_charts(0);
+    return code_->outputs(t, x, parameters(), inputs(t), other_.data(), y);
   }
 
   /// Values of the model's events, kinks and contacts. Does nothing if there are none.
   int events(double t, const double* x, double* g) {
-    return code_->events == nullptr ? 0 : code_->events(t, x, parameters(), inputs(t), mode_, g);
+    return code_->events == nullptr ? 0 : code_->events(t, x, parameters(), inputs(t), mode_.data(), g);
   }
   /// Values that resets set, Code::reset_values of them.
-  int resets(double t, const double* x, double* r) { return code_->resets(t, x, parameters(), inputs(t), mode_, r); }
+  int resets(double t, const double* x, double* r) {
+    return code_->resets(t, x, parameters(), inputs(t), mode_.data(), r);
+  }
   int events_of(int contacts, double t, const double* x, double* g) {
-    return code_->events(t, x, parameters(), inputs(t), (mode_ & ~contact_bits) | contacts, g);
+    return code_->events(t, x, parameters(), inputs(t), mode_with_contacts(contacts), g);
   }
 
  private:
-  int mode_without_branches() const { return mode_ & (contact_bits | chart_bits); }
+  // Both are valid until the next call.
+  const int* mode_without_branches() {
+    other_ = mode_;
+    other_.release_branches();
+    return other_.data();
+  }
+  const int* mode_with_contacts(int contacts) {
+    other_ = mode_;
+    other_.set_contacts(contacts);
+    return other_.data();
+  }
 
   void prepare() {
     w_.assign(code_->prepare != nullptr ? code_->prepared : 0, 0.0);
@@ -159,7 +181,7 @@ class Model {
     return slope(at, at, part * (t != 0 ? std::abs(t) : 1), dfdt[n]);
   }
 
-  int motion(double t, const double* x, const double* u, int mode, double* dx) {
+  int motion(double t, const double* x, const double* u, const int* mode, double* dx) {
     const int code = w_.empty() ? code_->rhs(t, x, parameters(), u, mode, dx)
                                 : code_->rhs_prepared(t, x, parameters(), w_.data(), u, mode, dx);
     if (code != 0 || !problem_.power) return code;
@@ -171,7 +193,8 @@ class Model {
   const Problem& problem_;
   const Code* code_;
   std::size_t n_;
-  int mode_ = 0;  // of the current step: contacts, sides of kinks, charts
+  ModeArray mode_;           // of the current step
+  mutable ModeArray other_;  // of one call
   double segment_time_ = 0;
   Inputs inputs_;
   mutable std::vector<double> u_;

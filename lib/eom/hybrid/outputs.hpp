@@ -45,8 +45,7 @@ class Outputs {
     }
     if (charts_.own_outputs().empty()) return;
     own_y_.resize(y.size());
-    const int result = code.outputs(t, own_x_.data(), model_.parameters(), model_.inputs(t),
-                                    model_.mode() & ~chart_bits, own_y_.data());
+    const int result = model_.own_outputs(t, own_x_.data(), own_y_.data());
     for (const std::uint32_t i : charts_.own_outputs())
       y[i] = result == 0 ? own_y_[i] : std::numeric_limits<double>::quiet_NaN();
   }

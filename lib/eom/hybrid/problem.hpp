@@ -20,6 +20,7 @@
 #include "eom/hybrid/reason.hpp"
 #include "eom/hybrid/reset_types.hpp"
 #include "eom/hybrid/signal.hpp"
+#include "eom/modes/mode_array.hpp"
 #include "eom/run_types.hpp"
 
 namespace eom::hybrid {
@@ -180,6 +181,7 @@ struct Problem {
   }
 
   std::size_t n() const { return code->free.size(); }
+  ModeLayout mode_layout() const { return {code->contacts.size(), code->kinks.size(), charts.size()}; }
   /// Length of the state: coordinates, rates, states of first order, the work done since the start.
   std::size_t states() const { return code->layout().size() + (power ? 1 : 0); }
 };

@@ -71,17 +71,17 @@ struct RunContext {
   std::vector<std::string> exchange_charts(double t, std::span<double> x) {
     std::vector<std::string> recorded = charts.exchange(t, x);
     model.set_code(charts.code());
-    model.set_charts(charts.mode());
-    rows.set_charts(charts.code(), charts.mode());
+    model.set_charts(charts.second_charts());
+    rows.set_charts(charts.code(), model.mode());
     return recorded;
   }
 
   std::vector<ModeEvent> start_contacts(double t, std::span<double> x) {
     if (!contacts) return {};
     impulse_work = 0;
-    model.set_mode(0);  // a model with contacts does not exchange charts
+    model.reset_mode();  // a model with contacts does not exchange charts
     std::vector<ModeEvent> recorded = contacts->start(t, x);
-    model.set_mode(contacts->mode());
+    model.set_contact_mode(contacts->mode());
     return recorded;
   }
 

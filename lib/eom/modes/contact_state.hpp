@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The argument `mode` of the C ABI: one digit to the base 6 per contact, the first contact lowest, in bits 0 to 7
-// (docs/abi.md, "Modes"). digit % 3: 0 sticking, 1 sliding along the tangent, 2 sliding against it; with two
-// directions, 1 sliding. digit / 3: for a bilateral surface 0 for a positive multiplier, 1 for a negative one; for a
-// unilateral contact 0 closed, 1 open.
+// States of contacts: the entries of `mode` in the C ABI (docs/abi.md, "Modes"). state % 3: 0 sticking, 1 sliding along
+// the tangent, 2 sliding against it; with two directions, 1 sliding. state / 3: for a bilateral surface 0 for a
+// positive multiplier, 1 for a negative one; for a unilateral contact 0 closed, 1 open. The number of a mode of all
+// contacts has one digit to the base 6 per contact, the first contact lowest.
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,11 +14,9 @@
 namespace eom {
 
 inline constexpr int contact_states = 6;
-inline constexpr int contact_bits = 255;        // the sides of kinks are in higher bits
-inline constexpr std::size_t max_contacts = 3;  // 6^3 <= 256
+inline constexpr std::size_t max_contacts = 3;  // runs tabulate all modes
 
 constexpr int contact_digit(int mode, std::size_t contact) {
-  mode &= contact_bits;
   for (std::size_t j = 0; j < contact; ++j) mode /= contact_states;
   return mode % contact_states;
 }
@@ -26,11 +25,15 @@ constexpr int with_contact_digit(int mode, std::size_t contact, int digit) {
   for (std::size_t j = 0; j < contact; ++j) weight *= contact_states;
   return mode + (digit - contact_digit(mode, contact)) * weight;
 }
-/// Sign of leaf 2 contact + order in a mode. Order 0: 1 or -1 sliding, 0 sticking. Order 1: 1 or -1 by digit / 3.
-constexpr int contact_sign(int mode, std::size_t index) {
-  const int digit = contact_digit(mode, index / 2);
-  if (index % 2 == 1) return digit < 3 ? 1 : -1;
-  return digit % 3 == 2 ? -1 : digit % 3;
+/// Sign of a state. Order 0: 1 or -1 sliding, 0 sticking. Order 1: 1 or -1 by state / 3.
+constexpr int contact_sign(int state, std::size_t order) {
+  if (order == 1) return state < 3 ? 1 : -1;
+  return state % 3 == 2 ? -1 : state % 3;
+}
+
+/// The same for contact j of the states of all contacts. Missing entries are 0.
+inline int contact_sign(std::span<const int> states, std::size_t contact, std::size_t order) {
+  return contact_sign(contact < states.size() ? states[contact] : 0, order);
 }
 
 /// Properties of a contact that determine its modes.
@@ -66,20 +69,20 @@ constexpr bool is_contact_digit(const ContactShape& shape, int digit) {
   return digit % 3 < 2 || shape.dimensions == 1;
 }
 
-/// The possible modes of contacts of these shapes, ascending by the last contact; at most `most`.
-inline std::vector<int> contact_modes(const std::vector<ContactShape>& shapes, std::size_t most = 1000) {
-  std::vector<int> modes{0};
-  int weight = 1;
+/// The possible modes of contacts of these shapes, ascending by the last contact; at most `most`. Each has the state of
+/// every contact.
+inline std::vector<std::vector<int>> contact_modes(const std::vector<ContactShape>& shapes, std::size_t most = 1000) {
+  std::vector<std::vector<int>> modes{{}};
   for (const ContactShape& shape : shapes) {
-    std::vector<int> more;
-    for (int digit = 0; digit < contact_states; ++digit) {
-      if (!is_contact_digit(shape, digit)) continue;
-      for (const int mode : modes) {
-        if (more.size() < most) more.push_back(mode + digit * weight);
+    std::vector<std::vector<int>> more;
+    for (int state = 0; state < contact_states; ++state) {
+      if (!is_contact_digit(shape, state)) continue;
+      for (std::vector<int> mode : modes) {
+        mode.push_back(state);
+        if (more.size() < most) more.push_back(std::move(mode));
       }
     }
     modes = std::move(more);
-    weight *= contact_states;
   }
   return modes;
 }
