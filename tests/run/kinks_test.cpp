@@ -67,3 +67,82 @@ TEST_CASE("kinks: six, twelve and fifty steps of a force are all located, with t
     }
   }
 }
+
+namespace {
+
+std::vector<std::pair<std::string, double>> sliding_events(const test::FinishedRun& finished) {
+  std::vector<std::pair<std::string, double>> found;
+  for (const run::RunEvent& event : finished.simulation.result.events)
+    if (event.kind == "slide" || event.kind == "slide_end") found.emplace_back(event.kind, event.t);
+  return found;
+}
+
+/// Masses of 1 kg in one dimension each, under the given forces.
+std::string masses(const std::vector<std::string>& forces, const std::string& scene) {
+  std::string coordinates, particles;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const std::string x(1, static_cast<char>('x' + i));
+    coordinates += x + " = \"m\"\n";
+    particles += "[[particle]]\nname = \"P" + x + "\"\nmass = \"m\"\nposition = [\"" + x +
+                 "\", 0, 0]\n[[force]]\non = \"P" + x + "\"\nforce = [\"" + forces[i] + "\", 0, 0]\n";
+  }
+  return "[parameters]\nF = \"1 N\"\nm = \"1 kg\"\nc = \"0.5 1/s\"\nw = \"1 rad/s\"\n[coordinates]\n" + coordinates + particles + "[scene.default]\n" + scene;
+}
+
+}  // namespace
+
+TEST_CASE("sliding: a relay holds the state on its switching line, for explicit and implicit methods") {
+  // x'' = -2 sign(x' + x/2): on the line from t = sqrt(5) - 2 on, where x' = -x/2.
+  for (const char* solver : {"dop853", "radau5", "rodas", "rk4"}) {
+    CAPTURE(solver);
+    const std::string scene = "t = [0, 3]\ninitial = { x = 1, x_dot = 0 }\n";
+    const test::FinishedRun finished =
+        test::run_text("relay", masses({"-2*F*sign(x_dot + c*x)"}, scene), [&](pipeline::SimulationRequest& request) {
+          request.overrides.solver = solver;
+          request.overrides.rtol = 1e-10;
+          if (std::string(solver) == "rk4") request.overrides.step = 1e-3;
+        });
+    const double begins = std::sqrt(5) - 2, x = 1 - begins * begins;
+    CHECK(finished.simulation.result.outcome == eom::Outcome::done);
+    const auto events = sliding_events(finished);
+    REQUIRE(events.size() == 1);
+    CHECK(std::abs(events[0].second - begins) < 1e-9);
+    CHECK(std::abs(finished.final("x") - x * std::exp(-(3 - begins) / 2)) < 1e-9);
+    CHECK(std::abs(finished.final("x_dot") + finished.final("x") / 2) < 1e-12);
+  }
+}
+
+TEST_CASE("sliding: friction by sign holds a mass until its force exceeds it, also in two coordinates at once") {
+  // Rest until sin(t) = 1/2, then x' = cos(1/2-time) - cos(t) - (t - pi/6)/2 until it stops. The second mass is slower.
+  const std::string scene = "t = [0, 2]\ninitial = { x = 0, x_dot = 0, y = 0, y_dot = 0 }\n";
+  const test::FinishedRun finished =
+      test::run_text("two_blocks", masses({"F*sin(w*t) - F*sign(x_dot)/2", "F*sin(w*t)*9/10 - F*sign(y_dot)/2"}, scene),
+                     [&](pipeline::SimulationRequest& request) { request.overrides.rtol = 1e-11; });
+  CHECK(finished.simulation.result.outcome == eom::Outcome::done);
+  const double first = std::asin(0.5), second = std::asin(0.5 / 0.9);
+  const auto events = sliding_events(finished);
+  REQUIRE(events.size() == 4);
+  CHECK(events[0].second == 0);
+  CHECK(events[1].second == 0);
+  CHECK(std::abs(events[2].second - first) < 1e-9);
+  CHECK(std::abs(events[3].second - second) < 1e-9);
+  const auto speed = [](double A, double from, double t) {
+    return A * (std::cos(from) - std::cos(t)) - (t - from) / 2;
+  };
+  CHECK(std::abs(finished.final("x_dot") - speed(1, first, 2)) < 1e-9);
+  CHECK(std::abs(finished.final("y_dot") - speed(0.9, second, 2)) < 1e-9);
+}
+
+TEST_CASE("sliding: forces coupled by one mass matrix hold together, and a product of signs is refused") {
+  const std::string scene = "t = [0, 1]\ninitial = { x = 0, x_dot = 0, y = 0, y_dot = 0 }\n";
+  // Both are held: |0.3 - 0.2| and |0.4| are below the friction of 1.
+  const test::FinishedRun held =
+      test::run_text("held", masses({"F*(3/10 - 2/10*sign(y_dot) - sign(x_dot))", "F*(4/10 - sign(y_dot))"}, scene),
+                     [](pipeline::SimulationRequest&) {});
+  CHECK(held.simulation.result.outcome == eom::Outcome::done);
+  CHECK(std::abs(held.final("x")) + std::abs(held.final("y")) < 1e-12);
+  const test::FinishedRun product =
+      test::run_text("product", masses({"F*(sign(x_dot)*sign(y_dot)/2 - sign(x_dot))", "-F*sign(y_dot)"}, scene),
+                     [](pipeline::SimulationRequest&) {});
+  CHECK(product.simulation.result.outcome == eom::Outcome::step_too_small);
+}

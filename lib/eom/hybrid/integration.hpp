@@ -50,6 +50,7 @@ class Integration {
     std::vector<double> largest_kink_values = {}, integral_constants = {};
     MethodChoice choice = {};
     std::vector<std::int64_t> samples_taken = {};
+    std::vector<std::size_t> sliding = {};  // kinks along whose surfaces the state slides
   };
   State save() const;
   /// x: the state at t in the charts of `from`.
@@ -79,6 +80,9 @@ class Integration {
   EventAction reset_at_event(const EventPoint& point, const OnEvent& event);
   void end_by_reset(Result& total);
   bool cross_boundary(const Segment* before, double until, Result& total, const OnEvent& event);
+  EventAction change_side(const EventPoint& point, std::size_t kink, const OnEvent& event);
+  void report_sliding(const std::vector<std::size_t>& before, double t, std::span<const double> x,
+                      const OnEvent& event);
   EventAction change_contact(const EventPoint& point, const OnEvent& event);
   double longest_step(const StepView& step);
 
@@ -113,6 +117,8 @@ inline Integration::Integration(const Problem& problem)
       resets_(context_) {
   if (!context_.contacts && context_.rows.size() > 0 && !keeps_constraints_)
     singularity_step_ = std::make_unique<SingularityStep>(context_);
+  // Laws of contacts are not combined, and methods that need series or momenta have none of a combination.
+  context_.may_slide = !context_.contacts && !keeps_constraints_ && !requires_feature(problem.solver, Feature::series);
   sampling_ = {[this](double t) { return context_.model.inputs(t); },
                [this](double t, const double* x, double* dx) { return context_.rhs(t, x, dx); }, problem.rtol,
                problem.atol, requires_feature(problem.solver, Feature::series)};
@@ -141,7 +147,7 @@ inline Result Integration::resume(std::span<const double> x, const Options& opti
 
 inline Integration::State Integration::save() const {
   State state{{},      context_.charts.save(), context_.kinks.largest_values(), context_.rows.integral_constants(),
-              choice_, resets_.taken()};
+              choice_, resets_.taken(),        context_.model.sliding_kinks()};
   if (context_.contacts) state.contacts = context_.contacts->save();
   return state;
 }
@@ -154,6 +160,7 @@ inline void Integration::restore(double t, const std::vector<double>& x, const S
   context_.rows.set_charts(context_.charts.code(), context_.model.mode());
   context_.rows.set_integral_constants(from.integral_constants);
   context_.kinks.set_largest_values(from.largest_kink_values);
+  context_.model.set_sliding(from.sliding);
   if (from.contacts) {
     context_.contacts->restore(*from.contacts);
     context_.model.set_contact_mode(from.contacts->mode);
@@ -248,12 +255,17 @@ inline void Integration::integrate_until(double end, Options options, const Obse
   };
   const auto at = [&](const EventPoint& point) { return handle_event(point, event); };
   const auto after = [this](double t, double* x) {
-    return context_.rows.size() == 0 || keeps_constraints_ ? 0 : context_.projection(t, x);
+    if (context_.rows.size() > 0 && !keeps_constraints_) {
+      if (const int code = context_.projection(t, x); code != 0) return code;
+    }
+    return context_.model.correct_sliding(t, x);
   };
   stalled_restarts_ = 0;
   singularity_step_length_ = 0;
   while (true) {
+    const std::vector<std::size_t> sliding = context_.model.sliding_kinks();
     context_.freeze_branches(total.t, total.x.data(), true);
+    report_sliding(sliding, total.t, total.x, event);
     exchange_due_ = false;
     if (slow_slip_.must_switch(total.t, total.x.data())) slow_slip_.toggle();
     const double begin = total.t, length = singularity_step_length_;
@@ -348,8 +360,7 @@ inline EventAction Integration::handle_event(const EventPoint& point, const OnEv
     stopped_ = stopped_ || watched.stop;
     return EventAction::stop;
   }
-  context_.kinks.flip_branch(point.t, i - functions.first_kink(), point.crossing.up);
-  return EventAction::resume;
+  return change_side(point, i - functions.first_kink(), event);
 }
 
 inline EventAction Integration::change_contact(const EventPoint& point, const OnEvent& event) {
@@ -379,4 +390,5 @@ inline double Integration::longest_step(const StepView& step) {
 
 }  // namespace eom::hybrid
 
+#include "eom/hybrid/kink_events.hpp"   // the members that change sides of kinks
 #include "eom/hybrid/reset_events.hpp"  // the members that make resets

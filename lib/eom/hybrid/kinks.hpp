@@ -21,6 +21,7 @@ class Kinks {
 
   bool any() const { return !problem_.code->kinks.empty(); }
   void start() {
+    model_.clear_sliding();
     crossings_.assign(size_.size(), 0);
     in_state_ = 0;
     at_ = std::nan("");
@@ -37,6 +38,7 @@ class Kinks {
   /// of a segment, or after a change of mode. surfaces: their values.
   void freeze(const double* surfaces, bool anew) {
     for (std::size_t k = 0; k < size_.size(); ++k) {
+      if (model_.is_sliding(k)) continue;
       const double g = surfaces[k];
       if (std::isfinite(g)) size_[k] = std::max(size_[k], std::abs(g));
       // A value that is small compared with earlier ones may be rounding, and its side may differ from that found by
@@ -62,6 +64,8 @@ class Kinks {
     }
   }
 
+  /// Whether a value of a surface is zero up to rounding.
+  bool is_on_surface(std::size_t k, double value) const { return std::abs(value) <= surface_rounding * size_[k]; }
   /// The largest |g| of each so far.
   const std::vector<double>& largest_values() const { return size_; }
   void set_largest_values(const std::vector<double>& values) { size_ = values; }
@@ -74,7 +78,8 @@ class Kinks {
   double last_crossing_time() const { return at_; }
 
  private:
-  static constexpr double beyond_rounding = 1e-6;  // of the largest value so far
+  static constexpr double beyond_rounding = 1e-6;    // of the largest value so far
+  static constexpr double surface_rounding = 1e-12;  // likewise
 
   const Problem& problem_;
   Model& model_;

@@ -12,6 +12,7 @@
 
 #include "eom/hybrid/inputs.hpp"
 #include "eom/hybrid/problem.hpp"
+#include "eom/hybrid/sliding_surfaces.hpp"
 #include "eom/modes/mode_array.hpp"
 #include "eom/with_jacobian.hpp"
 
@@ -29,11 +30,16 @@ class Model {
         u_(std::max<std::size_t>(1, problem.inputs.size())),
         inputs_move_(std::any_of(problem.inputs.begin(), problem.inputs.end(), is_time_dependent)),
         h_(n_),
-        y_(problem.code->output_names.size()) {
+        y_(problem.code->output_names.size()),
+        sliding_(Branches{this}, Surfaces{this}, problem.code->layout().size(), problem.states(),
+                 problem.code->kinks.size()) {
     // Before the first segment: a time just inside it, so that a table returns its value right of t0.
     segment_time_ = std::nextafter(problem.t0, problem.t1);
     prepare();
   }
+
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
 
   const Code& code() const { return *code_; }  // includes all charts of the run so far
   void set_code(const Code& code) {
@@ -50,7 +56,67 @@ class Model {
   void set_contact_mode(int contacts) { mode_.set_contacts(contacts); }
   void set_charts(unsigned set) { mode_.set_charts(set); }
   void set_kink(std::size_t k, int side) { mode_.set_kink(k, side); }
-  void release_branches() { mode_.release_branches(); }
+  /// The state stays on surfaces along which it slides.
+  void release_branches() {
+    mode_.release_branches();
+    for (const std::size_t k : sliding_.kinks()) mode_.set_kink(k, 1);
+  }
+
+  /// The kinks along whose surfaces the state slides.
+  const std::vector<std::size_t>& sliding_kinks() const { return sliding_.kinks(); }
+  bool is_sliding(std::size_t kink) const { return sliding_.contains(kink); }
+  void clear_sliding() { sliding_.clear(); }
+  void set_sliding(const std::vector<std::size_t>& kinks) {
+    sliding_.clear();
+    for (const std::size_t k : kinks) sliding_.add(k), mode_.set_kink(k, 1);
+  }
+  /// Whether the state on the surface of a kink stays there, because both sides lead back to it. If so, it slides. Else
+  /// a kink without a side gets that to which both sides lead.
+  bool begin_sliding(std::size_t kink, double t, const double* x) {
+    const int side = mode_.kink(kink);
+    sliding_.add(kink);
+    std::vector<double> dx(problem_.states());
+    const bool known = sliding_.evaluate(mode_, t, x, dx.data()) == 0;
+    const bool slides = known && sliding_.hold() && sliding_.is_affine(t, x);
+    const int leaves = known ? sliding_.leaving_side(sliding_.kinks().size() - 1) : 0;
+    if (!slides) sliding_.remove(kink);
+    mode_.set_kink(kink, slides ? 1 : side != 0 ? side : leaves);
+    return slides;
+  }
+  /// Ends the sliding along a surface, on the side to which its weight has come.
+  void end_sliding(std::size_t kink, double t, const double* x) {
+    std::vector<double> dx(problem_.states());
+    int side = 1;
+    if (sliding_.evaluate(mode_, t, x, dx.data()) == 0) {
+      const std::vector<std::size_t>& all = sliding_.kinks();
+      const auto j = static_cast<std::size_t>(std::find(all.begin(), all.end(), kink) - all.begin());
+      side = sliding_.leaving_side(j);
+      if (side == 0) side = sliding_.weights()[j] > 0 ? 1 : -1;
+    }
+    sliding_.remove(kink);
+    mode_.set_kink(kink, side);
+  }
+  /// Ends the sliding along all surfaces that no longer hold the state.
+  void end_invalid_sliding(double t, const double* x) {
+    std::vector<double> dx(problem_.states());
+    for (std::size_t round = sliding_.kinks().size(); round-- > 0 && sliding_.any();) {
+      if (sliding_.evaluate(mode_, t, x, dx.data()) != 0) return sliding_.clear();
+      if (sliding_.hold()) return;
+      const std::vector<double>& w = sliding_.weights();
+      const auto farthest =
+          std::max_element(w.begin(), w.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+      end_sliding(sliding_.kinks()[static_cast<std::size_t>(farthest - w.begin())], t, x);
+    }
+  }
+  /// Removes the drift from the surfaces along which the state slides. Returns a code.
+  int correct_sliding(double t, double* x) {
+    if (!sliding_.any()) return 0;
+    std::vector<double> dx(problem_.states());
+    if (const int code = sliding_.evaluate(mode_, t, x, dx.data()); code != 0) return code;
+    return sliding_.correct(mode_, t, x);
+  }
+  /// The values of the surfaces of all kinks.
+  int surfaces(double t, const double* x, double* values) { return Surfaces{this}(mode_, x, t, values); }
 
   /// A time inside the current segment of the inputs.
   double segment_time() const { return segment_time_; }
@@ -63,6 +129,7 @@ class Model {
   const double* parameters() const { return problem_.parameters.data(); }
 
   int rhs(double t, const double* x, double* dx) {
+    if (sliding_.any()) return sliding_.evaluate(mode_, t, x, dx);
     const double* u = inputs(t);
     const int code = motion(t, x, u, mode_.data(), dx);
     // A branch that is frozen beyond its surface may have no value there (a root). The unfrozen expression always has
@@ -78,7 +145,7 @@ class Model {
   /// The derivatives are partial, at fixed inputs. If inputs vary between their jumps, df/dt is not available. `work`:
   /// whether the work is a state here; else it is a quadrature, without row and column.
   int jacobian(double t, const double* x, double* dfdx, double* dfdt, bool work) {
-    if (code_->jac == nullptr) return no_jacobian_here;
+    if (code_->jac == nullptr || sliding_.any()) return no_jacobian_here;
     const std::size_t n = code_->layout().size();
     if (work) dfdx_.resize(n * n);
     const double* u = inputs(t);
@@ -110,7 +177,13 @@ class Model {
 
   /// In second charts, entries that exist only in the own charts remain unchanged.
   int outputs(double t, const double* x, double* y) const {
-    return code_->outputs(t, x, parameters(), inputs(t), mode_.data(), y);
+    const auto in_mode = [&](const ModeArray& mode, double* values) {
+      return code_->outputs(t, x, parameters(), inputs(t), mode.data(), values);
+    };
+    if (!sliding_.any()) return in_mode(mode_, y);
+    std::vector<double> dx(problem_.states());
+    const int code = sliding_.evaluate(mode_, t, x, dx.data());
+    return code != 0 ? code : sliding_.combine(in_mode, y, y_.size());
   }
   /// Of a state in the own charts.
   int own_outputs(double t, const double* x, double* y) const {
@@ -119,9 +192,19 @@ class Model {
     return code_->outputs(t, x, parameters(), inputs(t), other_.data(), y);
   }
 
-  /// Values of the model's events, kinks and contacts. Does nothing if there are none.
+  /// Values of the model's events, kinks and contacts. Does nothing if there are none. A surface along which the state
+  /// slides has 1 - w^2 with its weight w, which is positive while it holds the state.
   int events(double t, const double* x, double* g) {
-    return code_->events == nullptr ? 0 : code_->events(t, x, parameters(), inputs(t), mode_.data(), g);
+    if (code_->events == nullptr) return 0;
+    const int code = code_->events(t, x, parameters(), inputs(t), mode_.data(), g);
+    if (code != 0 || !sliding_.any()) return code;
+    std::vector<double> dx(problem_.states());
+    if (const int bad = sliding_.evaluate(mode_, t, x, dx.data()); bad != 0) return bad;
+    for (std::size_t j = 0; j < sliding_.kinks().size(); ++j) {
+      const double w = sliding_.weights()[j];
+      g[problem_.events.size() + sliding_.kinks()[j]] = 1 - w * w;
+    }
+    return 0;
   }
   /// Values that resets set, Code::reset_values of them.
   int resets(double t, const double* x, double* r) {
@@ -132,6 +215,27 @@ class Model {
   }
 
  private:
+  /// The right-hand side for given branches of the kinks.
+  struct Branches {
+    Model* of;
+    int operator()(const ModeArray& mode, const double* x, double t, double* dx) const {
+      return of->motion(t, x, of->inputs(t), mode.data(), dx);
+    }
+  };
+  /// The values of the surfaces of all kinks.
+  struct Surfaces {
+    Model* of;
+    int operator()(const ModeArray& mode, const double* x, double t, double* values) const {
+      const Code& code = *of->code_;
+      const std::size_t first = of->problem_.events.size(), count = code.kinks.size();
+      of->g_.resize(first + count + values_per_contact * code.contacts.size());
+      const int result = code.events(t, x, of->parameters(), of->inputs(t), mode.data(), of->g_.data());
+      std::copy_n(of->g_.begin() + static_cast<std::ptrdiff_t>(first), count, values);
+      return result;
+    }
+  };
+  static constexpr std::size_t values_per_contact = 5;
+
   // Both are valid until the next call.
   const int* mode_without_branches() {
     other_ = mode_;
@@ -201,7 +305,8 @@ class Model {
   bool inputs_move_;       // some input varies between its jumps
   std::vector<double> w_;  // output of Code::prepare
   std::vector<double> dfdx_, x_;
-  std::vector<double> h_, y_;
+  std::vector<double> h_, y_, g_;
+  mutable SlidingSurfaces<Branches, Surfaces> sliding_;
 };
 
 }  // namespace eom::hybrid

@@ -186,8 +186,9 @@ struct Problem {
   std::size_t states() const { return code->layout().size() + (power ? 1 : 0); }
 };
 
-/// An event of a run: "custom", "stop", "reset", "chart", "pole", "impulse", "singular_configuration", or an event of a
-/// contact. "before_reset" and "sample" are not recorded: they show the state before a reset and after a sample.
+/// An event of a run: "custom", "stop", "reset", "chart", "pole", "impulse", "slide", "slide_end",
+/// "singular_configuration", or an event of a contact. "before_reset" and "sample" are not recorded: they show the
+/// state before a reset and after a sample.
 struct Event {
   double t = 0;
   std::string kind, name;

@@ -88,9 +88,32 @@ struct RunContext {
   /// Freezes each kink on the side of the state. anew: whether earlier sides are discarded.
   void freeze_branches(double t, const double* x, bool anew) {
     if (!kinks.any()) return;
-    if (anew) model.release_branches();
+    if (anew) {
+      leave_surfaces(t, x);
+      model.release_branches();
+    }
     if (kinks.are_all_frozen() || events(t, x, g.data()) != 0) return;
     kinks.freeze(g.data() + events.first_kink(), anew);
+    if (anew) slide_from_surfaces(t, x);
+  }
+
+  /// A state that a jump moved away from a surface slides along it no longer.
+  void leave_surfaces(double t, const double* x) {
+    if (model.sliding_kinks().empty() || model.surfaces(t, x, g.data()) != 0) return;
+    const std::vector<std::size_t> sliding = model.sliding_kinks();
+    std::vector<std::size_t> kept;
+    for (const std::size_t k : sliding)
+      if (kinks.is_on_surface(k, g[k])) kept.push_back(k);
+    model.set_sliding(kept);
+    model.end_invalid_sliding(t, x);
+  }
+
+  /// A state on the surface of a kink slides along it, or gets the side to which it leaves the surface.
+  void slide_from_surfaces(double t, const double* x) {
+    if (!may_slide || kinks.are_all_frozen() || model.surfaces(t, x, g.data()) != 0) return;
+    const std::vector<double> surfaces(g.begin(), g.begin() + static_cast<std::ptrdiff_t>(problem.code->kinks.size()));
+    for (std::size_t k = 0; k < surfaces.size(); ++k)
+      if (model.mode().kink(k) == 0 && kinks.is_on_surface(k, surfaces[k])) model.begin_sliding(k, t, x);
   }
 
   /// The state at the end of a run in the model's own charts.
@@ -118,6 +141,7 @@ struct RunContext {
   EventFunctions events;
   std::vector<double> start;  // in the second chart if the own one is near its singularity
   std::vector<double> g;      // event functions
+  bool may_slide = false;     // along surfaces of kinks
   double impulse_work = 0;    // of impacts, of supports, and of the start or end of sliding in two directions
 };
 
