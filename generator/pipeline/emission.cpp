@@ -115,12 +115,6 @@ void add_start(const EmissionRequest& request, DerivedModel& derived, emit::Emis
     throw Error("emit", {}, "the target cuda has no function start", "use the target c, or leave start out of --with");
   context.start_functions = describe_start(derived, derived.model.scene("default"));
   if (context.start_functions || !requested) return;
-  for (const model::State& state : derived.model.states) {
-    if (!state.integral)
-      throw Error("emit", derived.model.where(state.span),
-                  fmt::format("the function start does not set '{}', a state of first order", state.name),
-                  "leave start out of --with, and set the state in x");
-  }
   throw Error("emit", {},
               fmt::format("the start has too many constraints for the function start, which keeps its "
                           "matrices of at most {} entries on the stack",

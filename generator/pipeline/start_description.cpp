@@ -29,9 +29,6 @@ class Description {
         begins_(dag_, integrals_at_start()) {}
 
   std::shared_ptr<const emit::StartDescription> operator()() {
-    // The values of declared states of first order may follow from the start that this function computes.
-    if (std::any_of(model_.states.begin(), model_.states.end(), [](const model::State& z) { return !z.integral; }))
-      return nullptr;
     times();
     parameters();
     initial_values();
@@ -39,6 +36,7 @@ class Description {
     initial_parameters();
     fixed_coordinates();
     find_time_kinks();
+    states_of_first_order();
     ranges();
     if (!rows()) return nullptr;
     result_->values = function("start_values", {{"v", values_}});
@@ -155,6 +153,27 @@ class Description {
     const std::vector<Ref> parts = dag_.reachable(roots);
     const bool bends = std::any_of(parts.begin(), parts.end(), [this](Ref r) { return symbolic::is_kink(dag_[r].op); });
     result_->has_time_kinks = moves && bends;
+  }
+
+  /// Their values may use coordinates and velocities after the solution.
+  void states_of_first_order() {
+    std::map<Symbol, Ref> solved;
+    for (const mechanics::FixedCoordinate& fixed : m_.fixed) {
+      solved[{SymbolKind::coordinate, fixed.coordinate, 0}] = at_start(fixed.value);
+      solved[{SymbolKind::coordinate, fixed.coordinate, 1}] = at_start(fixed.rate);
+    }
+    symbolic::Substitution after(dag_, solved);
+    for (std::size_t k = 0; k < system_.states.size(); ++k) {
+      const std::uint32_t index = system_.states[k].symbol.index;
+      const model::State& state = model_.states[index];
+      if (state.integral) continue;
+      const auto given =
+          std::find_if(scene_.states.begin(), scene_.states.end(), [index](const auto& s) { return s.state == index; });
+      const model::NodeId start = given != scene_.states.end() ? given->value : state.initial;
+      const Ref value = start == model::no_node ? dag_.zero() : after(at_start(mechanics::lower_scalar(m_, start)));
+      result_->first_order.insert(result_->first_order.end(),
+                                  {static_cast<int>(2 * system_.free.size() + k), add(value)});
+    }
   }
 
   void ranges() {

@@ -108,6 +108,7 @@ class Text {
     add("initial_count", start_.initial.size() / 3);
     add("early_count", start_.early.size() / 2);
     add("late_count", start_.late.size() / 2);
+    add("first_order_count", start_.first_order.size() / 2);
     add("fixed_count", start_.fixed.size() / 2);
     add("inside_count", start_.inside.size());
     add("contact_count", start_.contacts.size());
@@ -125,7 +126,7 @@ class Text {
 
   std::string tables() const {
     std::vector<Table> list{{"dependent", &start_.dependent}, {"stated", &start_.stated}, {"initial", &start_.initial},
-                            {"early", &start_.early},         {"late", &start_.late},     {"fixed", &start_.fixed},
+                            {"early", &start_.early},         {"late", &start_.late},   {"first_order", &start_.first_order},     {"fixed", &start_.fixed},
                             {"inside", &start_.inside}};
     if (has_rows()) {
       list.insert(list.end(), {{"guess", &start_.guess},

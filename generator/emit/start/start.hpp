@@ -25,6 +25,7 @@ struct StartDescription {
   std::vector<int> initial;    // parameter that is the initial value of a state, state, v of its guess
   std::vector<int> early;      // parameter that is the initial value of an eliminated coordinate, v before the solution
   std::vector<int> late;       // the same, v after the solution
+  std::vector<int> first_order;  // state of first order or discrete value, v after the solution
   std::vector<int> fixed;      // v of a stated value, v of the value that a constraint fixes
   std::vector<int> inside;     // v that must be positive: distances to the ends of ranges
 
