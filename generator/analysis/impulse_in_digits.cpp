@@ -40,7 +40,7 @@ std::vector<cl_R> ImpulseInDigits::values(const std::vector<Ref>& roots, double 
       case SymbolKind::state:
       case SymbolKind::integral:
         for (std::size_t i = 0; i < system_.states.size(); ++i) {
-          if (system_.states[i].symbol == symbol) return x.at(2 * n + i);
+          if (system_.states[i].symbol == symbol) return x.at(system_.layout().first_order_begin() + i);
         }
         break;
       default: break;

@@ -77,7 +77,7 @@ print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion)
   print::SteadyFinding result;
   result.kind = linear::name(motion.l.kind);
   const std::vector<std::uint32_t>& free = p.system().free;
-  for (std::size_t i = 0; i < 2 * free.size(); ++i) {
+  for (std::size_t i = 0; i < p.system().layout().first_order_begin(); ++i) {
     const bool rate = i >= free.size();
     const double value = display_value(motion.l.z[i]);
     if (rate && value == 0) continue;  // all rates of an equilibrium

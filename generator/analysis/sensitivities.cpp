@@ -19,7 +19,7 @@ void require_direction(const model::Model& model, const run::Code& code, const s
     if (p.name == name) return;
   }
   const auto state = std::find(states.begin(), states.end(), name);
-  if (state - states.begin() < static_cast<std::ptrdiff_t>(2 * code.free.size())) return;
+  if (state - states.begin() < static_cast<std::ptrdiff_t>(code.layout().first_order_begin())) return;
   if (run::find_state(model, name)) return;
   if (state != states.end()) refuse(name + " is an integral over time, 0 at the start", "ask for a coordinate");
   if (run::find_start(model, name))

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <eom/layout.hpp>
 #include <tuple>
 
 namespace eomgen::linear {
@@ -95,7 +96,7 @@ Chart chart_of(const Flow& flow, const Places& positions, const Places& speeds) 
   for (const std::size_t v : speeds) chart.dependent.push_back(n + v);
   chart.independent = without(all_of(0, flow.entries()), chart.dependent);
   chart.positions = n - positions.size();
-  chart.first_order = flow.entries() - 2 * n;
+  chart.first_order = flow.entries() - eom::StateLayout{n}.first_order_begin();
   return chart;
 }
 
@@ -169,7 +170,8 @@ Chart best_chart(const Flow& flow, const Field<Precise>& here, const std::vector
   const std::vector<Candidate> positions =
       candidates(columns_of(rows_of(here.phi_jacobian, all_of(0, p)), all_of(0, n)));
   const std::vector<Candidate> speeds =
-      candidates(columns_of(rows_of(here.phi_jacobian, all_of(p, here.phi_jacobian.rows)), all_of(n, 2 * n)));
+      candidates(columns_of(rows_of(here.phi_jacobian, all_of(p, here.phi_jacobian.rows)),
+                            all_of(n, eom::StateLayout{n}.first_order_begin())));
   std::vector<Field<double>> rough;
   for (const Field<Precise>& f : fields) rough.push_back(rounded(f));
   std::optional<std::tuple<std::size_t, std::size_t, double>> best;

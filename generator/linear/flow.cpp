@@ -2,6 +2,7 @@
 #include "linear/flow.hpp"
 
 #include <algorithm>
+#include <eom/layout.hpp>
 #include <limits>
 #include <span>
 #include <type_traits>
@@ -200,10 +201,12 @@ void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<
     for (std::size_t d = 0; d < N + 1; ++d) field.jacobian(n_ + i, d) = jacobian(i, d);
     for (std::size_t u = 0; u < inputs_; ++u) field.input_jacobian(n_ + i, u) = jacobian(i, N + 1 + u);
   }
-  for (std::size_t k = 0; 2 * n_ + k < N; ++k) {
-    field.X(2 * n_ + k, 0) = s.value[rates0 + k];
-    for (std::size_t d = 0; d < N + 1; ++d) field.jacobian(2 * n_ + k, d) = s.jacobian(rates0 + k, d);
-    for (std::size_t u = 0; u < inputs_; ++u) field.input_jacobian(2 * n_ + k, u) = s.jacobian(rates0 + k, N + 1 + u);
+  const std::size_t first_order = eom::StateLayout{n_}.first_order_begin();
+  for (std::size_t k = 0; first_order + k < N; ++k) {
+    field.X(first_order + k, 0) = s.value[rates0 + k];
+    for (std::size_t d = 0; d < N + 1; ++d) field.jacobian(first_order + k, d) = s.jacobian(rates0 + k, d);
+    for (std::size_t u = 0; u < inputs_; ++u)
+      field.input_jacobian(first_order + k, u) = s.jacobian(rates0 + k, N + 1 + u);
   }
   if constexpr (std::is_same_v<T, double>) {
     field.inertia_force = Matrix<T>(n_, 1);

@@ -2,6 +2,7 @@
 #include "linear/newton.hpp"
 
 #include <algorithm>
+#include <eom/layout.hpp>
 #include <utility>
 
 #include "numeric/dense.hpp"
@@ -37,11 +38,12 @@ Equations equations(const Flow& flow, const Symmetry& symmetry, const State<doub
   for (std::size_t i = 0; i < field.phi.rows; ++i) add(e, field.phi, field.phi_jacobian, i);
   const std::size_t n = flow.coordinates();
   const auto& constant = symmetry.constant;
+  const eom::StateLayout layout{n};
   const auto accelerations =
-      std::count_if(constant.begin(), constant.end(), [n](std::size_t i) { return i >= n && i < 2 * n; });
+      std::count_if(constant.begin(), constant.end(), [layout](std::size_t i) { return layout.is_rate(i); });
   const bool all = kind == SteadyEquations::inertia_forces && static_cast<std::size_t>(accelerations) == n;
   for (const std::size_t i : constant) {
-    if (i < n || i >= 2 * n || !all)
+    if (!layout.is_rate(i) || !all)
       add(e, field.X, field.jacobian, i);
     else
       add(e, field.inertia_force, field.inertia_force_jacobian, i - n);
@@ -204,7 +206,8 @@ State<double> spread_start(const SearchRequest& request, const Symmetry& symmetr
   for (const Precise& x : request.start) z.push_back(to_double(x));
   if (k == 0) return z;
   double fastest = 1;
-  for (std::size_t i = n; i < 2 * n; ++i) fastest = std::max(fastest, std::abs(z[i]));
+  const eom::StateLayout layout{n};
+  for (std::size_t i = n; i < layout.first_order_begin(); ++i) fastest = std::max(fastest, std::abs(z[i]));
   const std::size_t entries = request.flow.entries();
   std::vector<bool> kept(entries, false), ignored(entries, false);
   for (const std::size_t i : symmetry.constant) kept[i] = true;
@@ -213,7 +216,7 @@ State<double> spread_start(const SearchRequest& request, const Symmetry& symmetr
   const bool attitudes_only = !request.euler_parameters.empty() && k < plain_attitudes;
   for (std::size_t i = 0; i < entries; ++i) {
     const double r = random_number(request.seed + 50000, 64 * k + i);
-    if (i >= 2 * n) {
+    if (i >= layout.first_order_begin()) {
       if (!ignored[i] && !attitudes_only) z[i] += (1 + std::abs(z[i])) * 2 * r;
       continue;
     }

@@ -172,7 +172,7 @@ class Description {
       const model::NodeId start = given != scene_.states.end() ? given->value : state.initial;
       const Ref value = start == model::no_node ? dag_.zero() : after(at_start(mechanics::lower_scalar(m_, start)));
       result_->first_order.insert(result_->first_order.end(),
-                                  {static_cast<int>(2 * system_.free.size() + k), add(value)});
+                                  {static_cast<int>(system_.layout().first_order_begin() + k), add(value)});
     }
   }
 

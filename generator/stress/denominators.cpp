@@ -70,8 +70,8 @@ class Text {
   }
 
   std::string state(std::uint32_t i) const {
-    const std::size_t n = program_.free.size();
-    if (i >= 2 * n) return model_.states[program_.states[i - 2 * n].index].name;
+    const std::size_t n = program_.free.size(), others = program_.layout().first_order_begin();
+    if (i >= others) return model_.states[program_.states[i - others].index].name;
     const std::string& name = model_.coordinates[program_.free[i % n]].name;
     return i < n ? name : name + "_dot";
   }

@@ -159,7 +159,8 @@ run::Scene ReferenceSolver::scene_from(const State& x) const {
     scene.q[free[i]] = x[i];
     scene.qdot[free[i]] = x[free.size() + i];
   }
-  std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(2 * free.size()), scene.z.size(), scene.z.begin());
+  std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(run_.code.layout().first_order_begin()), scene.z.size(),
+              scene.z.begin());
   return scene;
 }
 

@@ -22,7 +22,8 @@ class Start {
       x_[i] = scene.q[run.code.free[i]];
       x_[n_ + i] = scene.qdot[run.code.free[i]];
     }
-    std::copy(scene.z.begin(), scene.z.end(), x_.begin() + static_cast<std::ptrdiff_t>(2 * n_));
+    std::copy(scene.z.begin(), scene.z.end(),
+              x_.begin() + static_cast<std::ptrdiff_t>(run.code.layout().first_order_begin()));
     for (const run::Signal& signal : scene.inputs) u_.push_back(signal(scene.t0, scene.t0));
     rows_.start(scene.t0, x_.data(), u_.data());
   }

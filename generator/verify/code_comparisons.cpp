@@ -25,7 +25,7 @@ double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, co
   if (a.size() != s.layout().size() || b.size() != a.size()) return 1;
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    Real size = i < n || i >= 2 * n ? cln::abs(b[i]) : v.scale[s.free[i - n]];
+    Real size = s.layout().is_rate(i) ? v.scale[s.free[i - n]] : cln::abs(b[i]);
     if (!rounding.empty()) size = size + rounding[i];
     largest = std::max(largest, relative_difference(a[i] - b[i], size));
   }

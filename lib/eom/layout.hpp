@@ -16,6 +16,9 @@ struct StateLayout {
   constexpr std::size_t rates_begin() const { return coordinates; }
   constexpr std::size_t first_order_begin() const { return 2 * coordinates; }
   constexpr std::size_t discrete_begin() const { return first_order_begin() + first_order; }
+  constexpr bool is_rate(std::size_t component) const {
+    return component >= rates_begin() && component < first_order_begin();
+  }
   constexpr std::size_t size() const { return discrete_begin() + discrete; }
   /// Components that are neither coordinates nor rates.
   constexpr std::size_t others() const { return first_order + discrete; }

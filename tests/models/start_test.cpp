@@ -93,9 +93,8 @@ class Cases {
     for (std::size_t k = 0; k < states(); ++k) {
       const std::size_t n = system_.free.size();
       if (k >= 2 * n && derived_.model.states[system_.states[k - 2 * n].symbol.index].integral) continue;
-      const std::string name =
-          k < 2 * n ? derived_.model.coordinates[system_.free[k % n]].name + (k < n ? "" : "_dot")
-                    : derived_.model.states[system_.states[k - 2 * n].symbol.index].name;
+      const std::string name = k < 2 * n ? derived_.model.coordinates[system_.free[k % n]].name + (k < n ? "" : "_dot")
+                                         : derived_.model.states[system_.states[k - 2 * n].symbol.index].name;
       add(name + " is given", {{name, default_.x[k] + 0.0078125}}, {k});
     }
     return std::move(result_);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <eom/layout.hpp>
 
 #include "emit/targets.hpp"
 #include "mechanics/imposition.hpp"
@@ -143,7 +144,7 @@ class Live {
     const std::size_t n = m_.free.size();
     LiveStart start;
     start.coordinates = n;
-    for (std::size_t k = 0; k < 2 * n; ++k) {
+    for (std::size_t k = 0; k < eom::StateLayout{n}.first_order_begin(); ++k) {
       const std::uint32_t c = m_.free[k % n];
       const std::uint8_t order = k < n ? 0 : 1;
       if (set_.contains(state_name(k))) start.set.emplace_back(k, (order == 0 ? s_.scene.q : s_.scene.qdot)[c]);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <eom/layout.hpp>
+
 #include "analysis/steady_search.hpp"
 #include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
@@ -86,7 +88,7 @@ std::string text(const analysis::SteadyMotion& point, const linear::Flow& flow) 
         "  but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one\n",
         point.l.parameter_change);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const bool rest = point.l.kind == linear::MotionKind::equilibrium && i >= n && i < 2 * n;  // rates, all 0
+    const bool rest = point.l.kind == linear::MotionKind::equilibrium && eom::StateLayout{n}.is_rate(i);  // all are 0
     if (!rest) out += fmt::format("  {:<24} {:>24}\n", names[i], display_value(point.l.z[i]));
   }
   out += "  eigenvalues";

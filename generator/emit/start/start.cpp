@@ -125,9 +125,10 @@ class Text {
   }
 
   std::string tables() const {
-    std::vector<Table> list{{"dependent", &start_.dependent}, {"stated", &start_.stated}, {"initial", &start_.initial},
-                            {"early", &start_.early},         {"late", &start_.late},   {"first_order", &start_.first_order},     {"fixed", &start_.fixed},
-                            {"inside", &start_.inside}};
+    std::vector<Table> list{{"dependent", &start_.dependent}, {"stated", &start_.stated},
+                            {"initial", &start_.initial},     {"early", &start_.early},
+                            {"late", &start_.late},           {"first_order", &start_.first_order},
+                            {"fixed", &start_.fixed},         {"inside", &start_.inside}};
     if (has_rows()) {
       list.insert(list.end(), {{"guess", &start_.guess},
                                {"movable", &start_.movable},

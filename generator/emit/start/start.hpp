@@ -26,8 +26,8 @@ struct StartDescription {
   std::vector<int> early;      // parameter that is the initial value of an eliminated coordinate, v before the solution
   std::vector<int> late;       // the same, v after the solution
   std::vector<int> first_order;  // state of first order or discrete value, v after the solution
-  std::vector<int> fixed;      // v of a stated value, v of the value that a constraint fixes
-  std::vector<int> inside;     // v that must be positive: distances to the ends of ranges
+  std::vector<int> fixed;        // v of a stated value, v of the value that a constraint fixes
+  std::vector<int> inside;       // v that must be positive: distances to the ends of ranges
 
   std::vector<int> guess;      // per state: v
   std::vector<int> movable;    // per state: 1 if it may change although it is given

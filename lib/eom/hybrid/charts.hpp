@@ -150,7 +150,7 @@ inline unsigned ChartSwitch::target_charts(const double* x, const double* own) c
 
 inline bool ChartSwitch::start(double t, const double* x) {
   in_ = 0;
-  samples_ = {{t, {x, x + 2 * n_}}};
+  samples_ = {{t, {x, x + problem_.code->layout().size()}}};
   set_guards(x);
   due_ = target_charts(x, x);
   return due_ != in_;

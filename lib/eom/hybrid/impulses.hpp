@@ -25,11 +25,12 @@ inline bool has_closed_contact(const RunContext& context) {
 
 /// Names of the rates that an impulse changes between x and `end`; "" if it changes none.
 inline std::string changed_rates(const Problem& problem, const std::vector<double>& x, const Result& end) {
-  const std::size_t n = problem.n();
+  const StateLayout layout = problem.code->layout();
   std::string names;
   double largest = 0;
-  for (std::size_t i = n; i < 2 * n; ++i) largest = std::max(largest, std::abs(end.x[i] - x[i]));
-  for (std::size_t i = n; i < 2 * n; ++i) {
+  for (std::size_t i = layout.rates_begin(); i < layout.first_order_begin(); ++i)
+    largest = std::max(largest, std::abs(end.x[i] - x[i]));
+  for (std::size_t i = layout.rates_begin(); i < layout.first_order_begin(); ++i) {
     if (largest == 0 || std::abs(end.x[i] - x[i]) < 1e-9 * largest) continue;
     names += (names.empty() ? "" : ", ") + problem.state_names[i];
   }

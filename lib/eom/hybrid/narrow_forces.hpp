@@ -109,7 +109,8 @@ class NarrowForces {
     state(from, before_);
     state(to, after_);
     if (sampling.derivative(step.t0 + s * h, x_.data(), dx_.data()) != 0) return true;
-    for (std::size_t i = n_; i < 2 * n_; ++i) {
+    const StateLayout layout{n_};
+    for (std::size_t i = layout.rates_begin(); i < layout.first_order_begin(); ++i) {
       const double slope = (after_[i] - before_[i]) / ((to - from) * h);
       // For a one-sided difference the curvature of the path counts as part of the difference.
       const double size = std::max(std::abs(step.x0[i]), std::abs(step.x1[i]));

@@ -70,15 +70,15 @@ class SingularityStep {
 
  private:
   bool agree(const std::vector<double>& one, const std::vector<double>& other, const Options& options) const {
-    const std::size_t n = context_.problem.n();
+    const std::size_t moved = context_.problem.code->layout().first_order_begin();
     double largest = 0, sum = 0;
-    for (std::size_t i = 0; i < 2 * n; ++i) largest = std::max(largest, std::abs(one[i]));
-    for (std::size_t i = 0; i < 2 * n; ++i) {
+    for (std::size_t i = 0; i < moved; ++i) largest = std::max(largest, std::abs(one[i]));
+    for (std::size_t i = 0; i < moved; ++i) {
       const double part =
           (one[i] - other[i]) / (options.atol + options.rtol * std::abs(one[i]) + detector_.rounding() * largest);
       sum += one[i] == other[i] ? 0 : part * part;
     }
-    return sum <= static_cast<double>(2 * n);
+    return sum <= static_cast<double>(moved);
   }
 
   std::string name_of_row(std::size_t row) const {
