@@ -86,8 +86,7 @@ std::string masses(const std::vector<std::string>& forces, const std::string& sc
     particles += "[[particle]]\nname = \"P" + x + "\"\nmass = \"m\"\nposition = [\"" + x +
                  "\", 0, 0]\n[[force]]\non = \"P" + x + "\"\nforce = [\"" + forces[i] + "\", 0, 0]\n";
   }
-  return "[parameters]\nF = \"1 N\"\nm = \"1 kg\"\nc = \"0.5 1/s\"\nw = \"1 rad/s\"\n[coordinates]\n" + coordinates +
-         particles + "[scene.default]\n" + scene;
+  return "[parameters]\nF = \"1 N\"\nm = \"1 kg\"\nc = \"0.5 1/s\"\nw = \"1 rad/s\"\n[coordinates]\n" + coordinates + particles + "[scene.default]\n" + scene;
 }
 
 }  // namespace
@@ -136,6 +135,7 @@ TEST_CASE("sliding: friction by sign holds a mass until its force exceeds it, al
 
 TEST_CASE("sliding: forces coupled by one mass matrix hold together, and a product of signs is refused") {
   const std::string scene = "t = [0, 1]\ninitial = { x = 0, x_dot = 0, y = 0, y_dot = 0 }\n";
+  const std::string moving = "t = [0, 3]\ninitial = { x = 0, x_dot = 1, y = 0, y_dot = 0.5 }\n";
   // Both are held: |0.3 - 0.2| and |0.4| are below the friction of 1.
   const test::FinishedRun held =
       test::run_text("held", masses({"F*(3/10 - 2/10*sign(y_dot) - sign(x_dot))", "F*(4/10 - sign(y_dot))"}, scene),
@@ -143,7 +143,7 @@ TEST_CASE("sliding: forces coupled by one mass matrix hold together, and a produ
   CHECK(held.simulation.result.outcome == eom::Outcome::done);
   CHECK(std::abs(held.final("x")) + std::abs(held.final("y")) < 1e-12);
   const test::FinishedRun product =
-      test::run_text("product", masses({"F*(sign(x_dot)*sign(y_dot)/2 - sign(x_dot))", "-F*sign(y_dot)"}, scene),
+      test::run_text("product", masses({"F*(sign(x_dot)*sign(y_dot)/2 - sign(x_dot))", "-F*sign(y_dot)"}, moving),
                      [](pipeline::SimulationRequest&) {});
   CHECK(product.simulation.result.outcome == eom::Outcome::step_too_small);
 }
