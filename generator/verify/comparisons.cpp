@@ -218,6 +218,70 @@ void compare_states(const mechanics::Mechanics& mechanics, const EquationSystem&
   if (has(false)) tally.record("rates of states of first order", oracle_name, false, of_rates);
 }
 
+/// Compares the values of events, and those that resets set, with the expressions of the model.
+void compare_resets(const EquationSystem& s, const SystemValues& v, const Oracle& oracle, ComparisonTable& tally) {
+  const model::Model& m = oracle.model();
+  const SymbolValues lookup(oracle, v.state);
+  double of_events = 0, of_resets = 0;
+  const auto compare = [&](Ref form, model::NodeId written, double& largest) {
+    std::vector<Ref> roots{form};
+    top_level_terms(*s.dag, form, roots);
+    const std::vector<Real> value = symbolic::evaluate(*s.dag, roots, lookup, oracle.digits());
+    Real scale = 0;
+    for (std::size_t k = 1; k < value.size(); ++k) scale = scale + cln::abs(value[k]);
+    largest = std::max(largest, relative_difference(value[0] - oracle.evaluate(written, v.state), scale));
+  };
+  const auto place = [&](const model::Assignment& assignment) {
+    using Target = model::Assignment::Target;
+    const eom::StateLayout layout = s.layout();
+    if (assignment.target == Target::state) {
+      const auto found = std::find_if(s.states.begin(), s.states.end(),
+                                      [&](const auto& z) { return z.symbol.index == assignment.index; });
+      return layout.first_order_begin() + static_cast<std::size_t>(found - s.states.begin());
+    }
+    const auto found = std::find(s.free.begin(), s.free.end(), assignment.index);
+    return static_cast<std::size_t>(found - s.free.begin()) +
+           (assignment.target == Target::velocity ? layout.rates_begin() : 0);
+  };
+  // Accelerations and multipliers in an event function are those of the system, and not known to the oracle here.
+  const auto is_of_state = [&](Ref form) {
+    const std::vector<symbolic::Symbol> symbols = s.dag->symbols({form});
+    return std::all_of(symbols.begin(), symbols.end(), [](const symbolic::Symbol& symbol) {
+      using Kind = symbolic::SymbolKind;
+      return symbol.kind == Kind::time || symbol.kind == Kind::parameter || symbol.kind == Kind::input ||
+             symbol.kind == Kind::state || (symbol.kind == Kind::coordinate && symbol.order < 2);
+    });
+  };
+  bool resets = false, events = false;
+  const auto compare_reset = [&](const system::Reset& reset, const model::Reset& written) {
+    if (reset.condition.has_value() != (written.condition != model::no_node) || reset.set.size() != written.set.size())
+      of_resets = 1;
+    if (of_resets == 1) return;
+    resets = resets || !written.set.empty();
+    if (reset.condition) compare(*reset.condition, written.condition, of_resets);
+    for (const model::Assignment& assignment : written.set) {
+      const auto entry = std::find_if(reset.set.begin(), reset.set.end(),
+                                      [&](const auto& e) { return e.component == place(assignment); });
+      if (entry == reset.set.end())
+        of_resets = 1;
+      else
+        compare(entry->value, assignment.value, of_resets);
+    }
+  };
+  if (s.events.size() != m.events.size() || s.samples.size() != m.samples.size()) of_resets = 1;
+  for (std::size_t i = 0; of_resets < 1 && i < m.events.size(); ++i) {
+    if (is_of_state(s.events[i].value)) {
+      events = true;
+      compare(s.events[i].value, m.events[i].when, of_events);
+    }
+    compare_reset(s.events[i].reset, m.events[i].reset);
+  }
+  for (std::size_t i = 0; of_resets < 1 && i < m.samples.size(); ++i)
+    compare_reset(s.samples[i].reset, m.samples[i].reset);
+  if (events) tally.record("events", oracle_name, false, of_events);
+  if (resets || of_resets == 1) tally.record("resets", oracle_name, false, of_resets);
+}
+
 /// The largest residual, each relative to the sum of the absolute values of its terms, with unknowns as large as their
 /// scales.
 double largest_residual(const DisplayForm& form, const symbolic::Dag& dag, const SymbolValues& at, const Motion& motion,
@@ -373,6 +437,7 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
   if (values.empty()) return;
   const EquationSystem& first = subjects.systems.front();
   compare_states(mechanics, first, values.front(), oracle, tally);
+  compare_resets(first, values.front(), oracle, tally);
   if (first.contacts.empty()) return compare_code(subjects, values.front(), oracle, {}, tally);
   for (const std::vector<int>& mode : modes_of(first, state)) {
     State lawful = in_mode(first, values.front(), state, mode);

@@ -86,7 +86,8 @@ std::string masses(const std::vector<std::string>& forces, const std::string& sc
     particles += "[[particle]]\nname = \"P" + x + "\"\nmass = \"m\"\nposition = [\"" + x +
                  "\", 0, 0]\n[[force]]\non = \"P" + x + "\"\nforce = [\"" + forces[i] + "\", 0, 0]\n";
   }
-  return "[parameters]\nF = \"1 N\"\nm = \"1 kg\"\nc = \"0.5 1/s\"\nw = \"1 rad/s\"\n[coordinates]\n" + coordinates + particles + "[scene.default]\n" + scene;
+  return "[parameters]\nF = \"1 N\"\nm = \"1 kg\"\nc = \"0.5 1/s\"\nw = \"1 rad/s\"\n[coordinates]\n" + coordinates +
+         particles + "[scene.default]\n" + scene;
 }
 
 }  // namespace

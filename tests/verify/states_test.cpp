@@ -91,3 +91,49 @@ TEST_CASE("states: a wrong rate, a wrong force and a forgotten energy are found"
   CHECK_FALSE(certified([&](system::EquationSystem& s) { s.f[0] = dag.add(s.f[0], f); }).pass);
   CHECK_FALSE(certified([&](system::EquationSystem& s) { s.energy = dag.add(s.kinetic, s.potential); }).pass);
 }
+
+TEST_CASE("resets: values, conditions and event functions agree with the oracle, and a wrong one is found") {
+  const std::string with_resets = std::string(text).substr(0, std::string(text).find("[scene.default]")) + R"toml(
+[discrete]
+gear = { initial = 1 }
+[[event]]
+name = "hit"
+when = "x*y_dot - gear*w"
+if = "f + x_dot > 0"
+set = { x_dot = "-0.3*x_dot + norm(P)*u", gear = "gear + lag", f = "d_dot - f*x" }
+[[sample]]
+every = "0.1*T"
+set = { gear = "y_dot*lag" }
+[scene.default]
+t = [0.2, 2]
+initial = { x = 1.2, y = 0.3, w = "x/2" }
+)toml";
+  mechanics::Mechanics m = mechanics::build_mechanics(model::read_model_text(with_resets, "resets.toml"));
+  symbolic::Dag& dag = *m.dag;
+  const auto certified = [&](const auto& change) {
+    verify::Subjects subjects;
+    subjects.systems = {verify::all_formulations(m).front()};
+    change(subjects.systems.front());
+    return verify::certify(m, subjects, {50, 2, 1});
+  };
+  const verify::Certificate right = certified([](system::EquationSystem&) {});
+  CHECK(right.pass);
+  for (const char* name : {"events", "resets"}) {
+    REQUIRE(row(right, name) != nullptr);
+    CHECK_FALSE(row(right, name)->shares_code);
+    CHECK(row(right, name)->digits_agreed >= 45);
+  }
+  const auto off = [&dag](symbolic::Ref value) { return dag.mul(value, dag.constant(cln::cl_RA(1000001) / 1000000)); };
+  CHECK_FALSE(row(certified([&](auto& s) { s.events[0].value = off(s.events[0].value); }), "events")->pass);
+  for (std::size_t k = 0; k < 3; ++k) {
+    CAPTURE(k);
+    const auto wrong =
+        certified([&](auto& s) { s.events[0].reset.set[k].value = off(s.events[0].reset.set[k].value); });
+    CHECK_FALSE(row(wrong, "resets")->pass);
+  }
+  const auto condition = certified([&](auto& s) { s.events[0].reset.condition = off(*s.events[0].reset.condition); });
+  CHECK_FALSE(row(condition, "resets")->pass);
+  const auto sample =
+      certified([&](auto& s) { s.samples[0].reset.set[0].value = off(s.samples[0].reset.set[0].value); });
+  CHECK_FALSE(row(sample, "resets")->pass);
+}

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Motion along surfaces at which the right-hand side jumps and whose two sides lead back to them (Filippov 1988, chapter
-// 2). The right-hand side is the convex combination of those of the sides that keeps the state on the surfaces. In: the
-// right-hand side for given branches, the surfaces. Out: the combination, its weights, the correction of a state. With
-// several surfaces the right-hand side must be affine in each branch alone, as for a sum of forces.
+// Motion along surfaces at which the right-hand side jumps and whose two sides lead back to them (Filippov 1988,
+// chapter 2). The right-hand side is the convex combination of those of the sides that keeps the state on the surfaces.
+// In: the right-hand side for given branches, the surfaces. Out: the combination, its weights, the correction of a
+// state. With several surfaces the right-hand side must be affine in each branch alone, as for a sum of forces.
 #pragma once
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,8 +13,6 @@
 #include <optional>
 #include <utility>
 #include <vector>
-
-#include <Eigen/LU>
 
 #include "eom/modes/mode_array.hpp"
 
@@ -102,8 +101,8 @@ class SlidingSurfaces {
     return true;
   }
 
-  /// The side to which the state leaves surface j of kinks() after evaluate(): 1 or -1 if the right-hand side jumps there
-  /// and both sides lead there, else 0.
+  /// The side to which the state leaves surface j of kinks() after evaluate(): 1 or -1 if the right-hand side jumps
+  /// there and both sides lead there, else 0.
   int leaving_side(std::size_t j) const {
     if (j >= weights_.size() || !is_step(j) || std::abs(weights_[j]) <= 1) return 0;
     return (weights_[j] > 0) == (jumps_(index(j), index(j)) < 0) ? 1 : -1;
@@ -127,7 +126,8 @@ class SlidingSurfaces {
     return result;
   }
 
-  /// Moves x, after evaluate() there or nearby, onto the surfaces along the jumps of the right-hand side. Returns a code.
+  /// Moves x, after evaluate() there or nearby, onto the surfaces along the jumps of the right-hand side. Returns a
+  /// code.
   int correct(const ModeArray& mode, double t, double* x) {
     if (const int code = g_(mode, x, t, values_.data()); code != 0) return code;
     Eigen::VectorXd off(index(kinks_.size()));
@@ -143,7 +143,7 @@ class SlidingSurfaces {
   static constexpr int not_determined = 1;
 
  private:
-  static constexpr double affine = 1e-9;     // of the terms
+  static constexpr double affine = 1e-9;      // of the terms
   static constexpr double least_step = 1e-8;  // of a component: smaller jumps are those of a continuous function
   static Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
