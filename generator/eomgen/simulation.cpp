@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#define EOM_HYBRID_INTEGRATION_ELSEWHERE  // run/integration.cpp
 #include "eomgen/simulation.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#define EOM_HYBRID_INTEGRATION_HERE
 #include "run/integration.hpp"
 
 #include <eom/hybrid/run.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs of emitted code with only the runtime produce the bytes of `eomgen run`, also if they evaluate expressions:
 // inputs, functions of time, jumps, bounds along a step.
+#define EOM_HYBRID_INTEGRATION_ELSEWHERE  // run_test.cpp
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs of handwritten models in the form of the C ABI: the runtime without the generator.
+#define EOM_HYBRID_INTEGRATION_HERE
 #include <doctest/doctest.h>
 
 #include <algorithm>

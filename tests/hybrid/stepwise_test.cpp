@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs in pieces of handwritten models with closed forms.
+#define EOM_HYBRID_INTEGRATION_ELSEWHERE  // run_test.cpp
 #include <doctest/doctest.h>
 
 #include <cmath>

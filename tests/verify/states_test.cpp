@@ -131,7 +131,8 @@ initial = { x = 1.2, y = 0.3, w = "x/2" }
         certified([&](auto& s) { s.events[0].reset.set[k].value = off(s.events[0].reset.set[k].value); });
     CHECK_FALSE(row(wrong, "resets")->pass);
   }
-  const auto condition = certified([&](auto& s) { s.events[0].reset.condition = off(*s.events[0].reset.condition); });
+  const auto condition =
+      certified([&](auto& s) { s.events[0].reset.condition = dag.sub(dag.one(), *s.events[0].reset.condition); });
   CHECK_FALSE(row(condition, "resets")->pass);
   const auto sample =
       certified([&](auto& s) { s.samples[0].reset.set[0].value = off(s.samples[0].reset.set[0].value); });
