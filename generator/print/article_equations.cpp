@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lagrange's equations by both approaches, and how they decouple.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -64,6 +66,7 @@ class Equations {
     parts(a_.one);
     if (a_.approaches_differ()) parts(a_.two);
     states();
+    resets();
     decoupling();
   }
 
@@ -126,6 +129,21 @@ class Equations {
     out_.paragraph(all.size() == 1 ? "A state of first order belongs to the motion:"
                                    : "States of first order belong to the motion:");
     out_.display(a_.formulas(all));
+  }
+
+  void resets() {
+    std::vector<Statement> all;
+    add_resets(m_, all);
+    for (std::size_t first = 0; first < all.size();) {
+      std::size_t end = first;
+      while (end < all.size() && all[end].name == all[first].name && all[end].role == all[first].role) ++end;
+      const std::vector<Statement> group(all.begin() + static_cast<std::ptrdiff_t>(first),
+                                         all.begin() + static_cast<std::ptrdiff_t>(end));
+      out_.paragraph(fmt::format("At the {} {} the values on the left follow from those before it:", group[0].role,
+                                 escape_user_text(group[0].name)));
+      out_.display(a_.formulas(group));
+      first = end;
+    }
   }
 
   bool same(const std::optional<Formula>& a, const std::optional<Formula>& b) const {

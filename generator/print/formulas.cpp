@@ -325,6 +325,24 @@ void add_states(const Mechanics& m, std::vector<Statement>& out) {
   }
 }
 
+void add_resets(const Mechanics& m, std::vector<Statement>& out) {
+  using Target = model::Assignment::Target;
+  const auto add = [&](const std::string& name, const char* role, const model::Reset& reset) {
+    for (const model::Assignment& set : reset.set) {
+      const Formula target = set.target == Target::state
+                                 ? reading::symbol({SymbolKind::state, set.index, 0})
+                                 : coordinate(set.index, set.target == Target::velocity ? 1 : 0);
+      const std::optional<Formula> value = reading::as_written(*m.model, set.value);
+      if (value)
+        out.push_back({"resets", name, "", role, reading::relation({target, *value})});
+      else
+        out.push_back(left_out("resets", name, role, "its formula has no display form"));
+    }
+  };
+  for (const model::Event& event : m.model->events) add(event.name, "event", event.reset);
+  for (const model::Sample& sample : m.model->samples) add(sample.name, "sample", sample.reset);
+}
+
 void add_reactions(const DisplayForm& form, std::vector<Statement>& out) {
   for (const reading::DisplayReaction& reaction : form.reactions) {
     if (!reaction.value) continue;
@@ -370,7 +388,10 @@ void add_statements(const Mechanics& m, const DisplayForm& form, const std::vect
   add("energies", [&] { add_energies(m, form, out); });
   add("lagrangian", [&] { add_lagrangian(m, form, out); });
   add("equations", [&] { add_equations(m, form, out); });
-  add("equations", [&] { add_states(m, out); });
+  add("equations", [&] {
+    add_states(m, out);
+    add_resets(m, out);
+  });
   add("reactions", [&] { add_reactions(form, out); });
   add("reactions", [&] { add_constraint_forces(m, form, out); });
   add("friction", [&] {

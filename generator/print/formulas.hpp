@@ -53,6 +53,8 @@ void add_equations(const mechanics::Mechanics& mechanics, const reading::Display
                    std::vector<Statement>& out);
 /// The rates of the declared states of first order, as the model states them.
 void add_states(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
+/// The values that events and samples set, as the model states them: new values in terms of those before.
+void add_resets(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
 /// The letter of a mass: its parameter if that is a single letter, else m with the index of its place.
 reading::Formula mass_letter(const mechanics::Mechanics& mechanics, const mechanics::PointMass& mass);
 /// Equations that are too long to write out, in terms of named parts. The definitions of the parts have the key

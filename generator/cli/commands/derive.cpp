@@ -79,6 +79,7 @@ std::string heading_of(const print::PrintedFormula& item) {
   if (item.key == "conserved") return "conserved, " + item.role;
   if (item.key == "parts") return "where";
   if (item.key == "states") return "states of first order";
+  if (item.key == "resets") return fmt::format("new values at {} '{}', from those before", item.role, item.name);
   if (item.role.empty()) return item.key;
   return item.key + ": " + item.role;
 }

@@ -10,8 +10,9 @@ namespace eom::hybrid {
 #ifndef EOM_HYBRID_INTEGRATION_HERE
 inline
 #endif
-    void Integration::integrate_until(double end, Options options, const Observer& observer, const OnEvent& event,
-                                         Result& total) {
+    void
+    Integration::integrate_until(double end, Options options, const Observer& observer, const OnEvent& event,
+                                 Result& total) {
   const Motion f{context_, keeps_constraints_};
   const BoundedEvents g{context_, sampling_};
   const auto observe = [&](const StepView& step) {
