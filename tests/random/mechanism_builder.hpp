@@ -138,13 +138,18 @@ class MechanismBuilder {
   void contact(const std::string& kind, const std::string& lines);
   void add_contacts();
 
+  // mechanism_states.cpp
+  std::string free_coordinate();
+  void add_states();
+  void add_resets(const std::string& q, const std::vector<std::string>& states);
+
   Mechanism finish();
 
   RandomSource dice_;
   Mechanism result_;
   bool contacts_ = false, planar_ = false, equal_ = false, rolling_ = false;
   bool between_ = false;
-  bool small_ = false;
+  bool small_ = false, states_ = false;
   int named_parameters_ = 50, parameters_ = 0, functions_ = 0, inputs_ = 0, constraints_ = 0, joints_ = 0;
   std::vector<Place> places_;
   std::vector<std::string> coordinates_, spins_;
@@ -152,7 +157,7 @@ class MechanismBuilder {
   std::set<std::string> dry_;                                // slide dry
   std::set<std::string> follows_;                            // from a constraint
   std::string parameter_lines_, function_lines_, input_lines_, coordinate_lines_, energy_, place_lines_, force_lines_,
-      constraint_lines_, joint_lines_, start_, guess_;
+      constraint_lines_, joint_lines_, discrete_lines_, event_lines_, start_, guess_;
 };
 
 }  // namespace eomgen::random_models

@@ -10,7 +10,8 @@ namespace {
 // First seeds with newer kinds of models. The models of smaller seeds stay the same, since findings are identified by
 // their seeds.
 constexpr std::uint64_t first_with_contacts = 1001, first_with_forces_between_bodies = 2001,
-                        first_small = 10001;  // one or two places, otherwise the same: many models in a short time
+                        first_small = 10001,  // one or two places, otherwise the same: many models in a short time
+                        first_with_states = 20001;  // small ones with states and resets in place of contacts
 
 }  // namespace
 
@@ -18,7 +19,8 @@ MechanismBuilder::MechanismBuilder(std::uint64_t seed)
     : dice_(seed),
       contacts_(seed >= first_with_contacts),
       between_(seed >= first_with_forces_between_bodies),
-      small_(seed >= first_small) {}
+      small_(seed >= first_small),
+      states_(seed >= first_with_states) {}
 
 Mechanism MechanismBuilder::build() {
   planar_ = dice_.chance(35);
@@ -38,7 +40,7 @@ Mechanism MechanismBuilder::build() {
   add_constraints();
   if (contacts_) {
     if (dice_.chance(35)) add_joint_of_all_axes();
-    if (dice_.chance(75)) add_contacts();
+    if (!states_ && dice_.chance(75)) add_contacts();
   }
   if (between_) {
     std::vector<std::string> turning;
@@ -47,6 +49,7 @@ Mechanism MechanismBuilder::build() {
     }
     force_lines_ += forces_between(dice_, turning, planar_, result_.features);
   }
+  if (states_) add_states();
   return finish();
 }
 
@@ -61,7 +64,8 @@ Mechanism MechanismBuilder::finish() {
   section("inputs", input_lines_);
   section("coordinates", coordinate_lines_);
   section("energy", energy_);
-  t += place_lines_ + force_lines_ + constraint_lines_ + joint_lines_;
+  section("discrete", discrete_lines_);
+  t += place_lines_ + force_lines_ + constraint_lines_ + joint_lines_ + event_lines_;
   t += "[scene.default]\nt = [0, 0.3]\n";
   for (std::size_t i = 0; i < coordinates_.size(); ++i) {
     const auto& [value, rate] = starts_[i];
