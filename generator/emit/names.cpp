@@ -54,13 +54,13 @@ constexpr std::string_view runtime[] = {
     "STDERR_FILENO", "STDIN_FILENO", "STDOUT_FILENO", "StepBound", "AtomicFile",
     "EventAction", "Automatic", "ChangeReason", "MethodChoice", "CompiledBatch", "CompiledBatchJacobian", "CompiledBatchSeries", "CompiledModel", "Complex", "Contact", "ContactMotion", "ContactShape", "Contacts",
     "Crossing", "CsvWriter", "Direction", "Drift", "Eligibility", "EnsembleEnd", "EnsembleOptions", "EnsembleRhs", "EnsembleStart", "ErrorEstimate", "EventFunction", "EventLocator", "EventPoint", "Feature", "Features", "Lu",
-    "MethodChange", "MethodInfo", "Mode", "ModeEvent", "ModePoint", "ModeResult", "Needs", "NoObserver", "NoProjection", "Options",
+    "MethodChange", "MethodInfo", "Mode", "ModeArray", "ModeEntries", "ModeEvent", "ModeLayout", "ModePoint", "ModeResult", "Needs", "NoObserver", "NoProjection", "Options",
     "Outcome", "Plot", "PlotMark", "PlotSeries", "PowerBalance", "Projection", "ProjectionOptions", "ProjectionResult", "Refusal", "Registry", "Result", "Rhs",
-    "Run", "StateLayout", "Statistics", "StepEnds", "StepView", "System", "Transition", "Watch", "WatchedSurface", "WithJacobian", "WithTaylor", "all_features", "open_mode", "chart_bits",
-    "charts_of", "code_jump", "code_no_convergence", "code_not_finite", "constrained", "is_contact_digit", "contact_bits",
+    "Run", "StateLayout", "Statistics", "StepEnds", "StepView", "System", "Transition", "Watch", "WatchedSurface", "WithJacobian", "WithTaylor", "all_features", "open_mode", 
+    "code_jump", "code_no_convergence", "code_not_finite", "constrained", "is_contact_digit", 
     "contact_digit", "contact_sign", "contact_modes", "contact_states", "contact_values", "detail", "device", "divergence_bound",
-    "eligible", "ensemble", "estimate_error", "events", "events_without_progress", "explicit_rk", "expressions", "find_method", "first_chart_bit", "hybrid", "implicit", "integrate",
-    "integrate_ensemble", "integrate_ensemble_events", "integrate_events", "integrate_modes", "max_charts", "max_contacts", "methods", "mode_of_charts", "modes", "name",
+    "eligible", "ensemble", "estimate_error", "events", "events_without_progress", "explicit_rk", "expressions", "find_method", "hybrid", "implicit", "integrate",
+    "integrate_ensemble", "integrate_ensemble_events", "integrate_events", "integrate_modes", "max_charts", "max_contacts", "methods", "modes", "name",
     "no_jacobian_here", "no_time_derivative_here", "outcome_of_abi_code", "plot", "keeps_sliding", "smallest_step_in_ulps", "svg",
     "system_of", "taylor", "to_text", "variational", "with_contact_digit"};
 

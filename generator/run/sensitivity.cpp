@@ -26,7 +26,16 @@ void require_smooth(const RunRequest& request, const RunResult& result) {
   const auto refuse = [](const std::string& what) { throw Error("run", {}, "--sensitivity: " + what, by_runs); };
   if (!request.code.contacts.empty())
     refuse("contacts and friction change the equations during the run, and derivatives of the end jump there");
-  if (request.has_resets()) refuse("events or samples change the state, and derivatives of the end jump with it");
+  if (!request.samples.empty())
+    refuse("samples change the state at times of their own, with which derivatives of the end jump");
+  for (std::size_t i = 0; i < request.events.size(); ++i) {
+    if (request.events[i].stop && !request.events[i].reset.set.empty())
+      refuse(fmt::format("the event '{}' ends the run and changes the state there", request.events[i].name));
+  }
+  const auto slides = [](const RunEvent& event) { return event.kind == "slide"; };
+  if (const auto at = std::find_if(result.events.begin(), result.events.end(), slides); at != result.events.end())
+    refuse(fmt::format("the motion slides along a surface of {} from t = {} on, and derivatives jump there", at->name,
+                       at->t));
   if (request.scene.clock.unresolved_from && *request.scene.clock.unresolved_from < result.t)
     refuse(fmt::format("a condition on time changes too often from t = {} on", *request.scene.clock.unresolved_from));
 }

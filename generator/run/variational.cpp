@@ -7,6 +7,7 @@
 #include <cmath>
 #include <eom/events/integrate.hpp>
 #include <eom/hybrid/impulses.hpp>
+#include <eom/hybrid/resets.hpp>
 #include <eom/hybrid/run_context.hpp>
 #include <functional>
 
@@ -23,7 +24,7 @@ using eom::hybrid::RunContext;
 /// The equations in one scene.
 struct Equations {
   explicit Equations(Problem of, std::vector<Breakpoint> times)
-      : problem(std::move(of)), kinks(std::move(times)), context(problem) {}
+      : problem(std::move(of)), kinks(std::move(times)), context(problem), resets(context) {}
   Equations(const Equations&) = delete;
   Equations& operator=(const Equations&) = delete;
 
@@ -35,6 +36,7 @@ struct Equations {
   Problem problem;
   std::vector<Breakpoint> kinks;
   RunContext context;
+  eom::hybrid::Resets resets;
 };
 
 Problem problem_in(const Scene& scene, Problem problem) {
@@ -169,10 +171,16 @@ class VariationalRun::Run {
     RunContext& context = own_.context;
     std::vector<eom::EventFunction> watched(context.events.size(), {eom::Direction::any, eom::Watch::off});
     const std::size_t first = context.events.first_kink();
+    for (std::size_t i = 0; i < first; ++i) {
+      const eom::hybrid::WatchedEvent& event = own_.problem.events[i];
+      if (!event.reset.set.empty()) watched[i] = {event.direction, eom::Watch::breaking};
+    }
     for (std::size_t k = first; k < context.events.first_contact(); ++k) watched[k].watch = eom::Watch::breaking;
     const auto surfaces = [&](double t, const double* x, double* g) { return context.events(t, x, g); };
     const auto cross = [&](const eom::EventPoint& point) {
-      return cross_surface(point) ? eom::EventAction::restart : eom::EventAction::resume;
+      const bool changed =
+          point.crossing.function < own_.context.events.first_kink() ? reset(point) : cross_surface(point);
+      return changed ? eom::EventAction::restart : eom::EventAction::resume;
     };
     return eom::integrate_events(solver_, *this, from.t, from.x, end, options, surfaces, std::move(watched), cross);
   }
@@ -273,6 +281,66 @@ class VariationalRun::Run {
       if (found.smooth) return found.value;
     }
     refuse(what());
+  }
+
+  /// The state after event i and the events that its reset causes.
+  static void apply_reset(Equations& in, std::size_t i, double t, std::vector<double>& x) {
+    const eom::ModeArray mode = in.context.model.mode();
+    std::vector<int> sides(in.problem.events.size(), 0);
+    in.resets.crossed(sides, in.resets.event_values(t, x.data()));
+    sides[i] = 0;
+    const eom::hybrid::Resets::Changes made = in.resets.occur({i}, sides, t, x, {});
+    in.context.model.set_mode(mode);
+    if (made.failed) refuse(fmt::format("the event '{}' at t = {} is undetermined", in.problem.events[i].name, t));
+  }
+
+  /// At an event that changes the state. False: its condition does not hold.
+  bool reset(const eom::EventPoint& point) {
+    const std::size_t i = point.crossing.function;
+    const double t = point.t;
+    const std::string& name = own_.problem.events[i].name;
+    std::vector<double> x(point.x.begin(), point.x.end()), own(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n_));
+    if (!own_.resets.occurs(i, t, own.data())) return false;
+    for (const std::size_t j : point.simultaneous) {
+      if (j < own_.problem.events.size())
+        refuse(fmt::format("the events '{}' and '{}' occur at the same time t = {}, and their order changes", name,
+                           own_.problem.events[j].name, t));
+    }
+    std::vector<double> before(n_), behind(n_), after = own;
+    if (rhs(t, own.data(), before) != 0) return true;  // the integration reports it
+    apply_reset(own_, i, t, after);
+    std::vector<double> s_after, times;
+    for (std::size_t d = 0; d < directions_.size(); ++d) {
+      const Direction& direction = directions_[d];
+      const auto what = [&] {
+        return fmt::format("the event '{}' at t = {} does not change smoothly with {}", name, t, direction.name);
+      };
+      times.push_back(time_change(i, t, x, d));
+      std::vector<std::vector<double>> beside;
+      for (const auto& neighbour : neighbours(d)) {
+        neighbour->enter(segment_);
+        neighbour->context.model.set_mode(own_.context.model.mode());
+        beside.push_back(own);
+        apply_reset(*neighbour, i, t, beside.back());
+      }
+      const Slopes by_scene = slopes(after, beside, direction.step);
+      if (!by_scene.smooth) refuse(what());
+      std::vector<double> s = sensitivity(x, d);
+      for (std::size_t k = 0; k < n_; ++k) s[k] += before[k] * times[d];
+      const std::vector<double> by_state = along(t, own, times[d], s, what, [&](double at, std::vector<double> state) {
+        apply_reset(own_, i, at, state);
+        return state;
+      });
+      for (std::size_t k = 0; k < n_; ++k) s_after.push_back(direction.scale * (by_state[k] + by_scene.value[k]));
+    }
+    std::copy(after.begin(), after.end(), point.x.begin());
+    own_.context.freeze_branches(t, after.data(), true);
+    if (rhs(t, after.data(), behind) != 0) return true;
+    for (std::size_t d = 0; d < directions_.size(); ++d) {
+      const double by = directions_[d].scale * times[d];
+      for (std::size_t k = 0; k < n_; ++k) point.x[(d + 1) * n_ + k] = s_after[d * n_ + k] - by * behind[k];
+    }
+    return true;
   }
 
   /// At a kink whose surface depends on the state. False: x and s go on unchanged.

@@ -20,11 +20,12 @@ void MechanismBuilder::add_states() {
   for (std::size_t k = 0; k < count; ++k) {
     feature("state");
     const std::string z = "z" + std::to_string(k + 1);
-    const std::string driven = dice_.pick<std::string>({q + "_dot", "sin(" + q + ")", scalar_of_time(), "abs(" + q + ")"});
+    const std::string driven =
+        dice_.pick<std::string>({q + "_dot", "sin(" + q + ")", scalar_of_time(), "abs(" + q + ")"});
     const std::string coupled = states.empty() ? "" : " + " + value(10, 50) + "*" + dice_.pick(states) + "^2";
-    place_lines_ += "[[state]]\nname = \"" + z + "\"\nrate = \"(" + driven + " - " + z + ")/" + value(20, 200) + coupled +
-                    "\"\n" + (dice_.chance(30) ? "energy = \"" + z + "^2/2\"\n" : "") + "initial = " +
-                    dice_.decimal(-100, 100) + "\n";
+    place_lines_ += "[[state]]\nname = \"" + z + "\"\nrate = \"(" + driven + " - " + z + ")/" + value(20, 200) +
+                    coupled + "\"\n" + (dice_.chance(30) ? "energy = \"" + z + "^2/2\"\n" : "") +
+                    "initial = " + dice_.decimal(-100, 100) + "\n";
     states.push_back(z);
     force("generalized = { " + q + " = \"-" + value(20, 200) + "*" + z + "\" }");
   }

@@ -11,7 +11,7 @@ namespace {
 // their seeds.
 constexpr std::uint64_t first_with_contacts = 1001, first_with_forces_between_bodies = 2001,
                         first_small = 10001,  // one or two places, otherwise the same: many models in a short time
-                        first_with_states = 20001;  // small ones with states and resets in place of contacts
+    first_with_states = 20001;                // small ones with states and resets in place of contacts
 
 }  // namespace
 

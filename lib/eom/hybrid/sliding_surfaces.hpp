@@ -5,7 +5,6 @@
 // state. With several surfaces the right-hand side must be affine in each branch alone, as for a sum of forces.
 #pragma once
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "eom/linalg/lu.hpp"
 #include "eom/modes/mode_array.hpp"
 
 namespace eom::hybrid {
@@ -66,29 +66,32 @@ class SlidingSurfaces {
     for (const std::size_t k : kinks_) branches_.set_kink(k, 1);
     above_.resize(n_);
     if (const int code = f_(branches_, x, t, above_.data()); code != 0) return code;
-    rates_.resize(static_cast<Eigen::Index>(m));
-    jumps_.resize(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(m));
+    rates_.assign(m, 0.0);
+    jumps_.assign(m * m, 0.0);
     steps_.assign(m, std::vector<double>(n_));
     if (const int code = rates_along(t, x, above_); code != 0) return code;
-    for (std::size_t i = 0; i < m; ++i) rates_[index(i)] = along_[kinks_[i]];
+    for (std::size_t i = 0; i < m; ++i) rates_[i] = along_[kinks_[i]];
     for (std::size_t j = 0; j < m; ++j) {
       branches_.set_kink(kinks_[j], -1);
       const int code = f_(branches_, x, t, steps_[j].data());
       branches_.set_kink(kinks_[j], 1);
       if (code != 0) return code;
       if (const int bad = rates_along(t, x, steps_[j]); bad != 0) return bad;
-      for (std::size_t i = 0; i < m; ++i) jumps_(index(i), index(j)) = rates_[index(i)] - along_[kinks_[i]];
+      for (std::size_t i = 0; i < m; ++i) jumps_[i + m * j] = rates_[i] - along_[kinks_[i]];
       for (std::size_t i = 0; i < n_; ++i) steps_[j][i] = above_[i] - steps_[j][i];
     }
-    // Below the surface j the right-hand side is smaller by steps_[j], and the rate of surface i by jumps_(i, j).
-    solver_.compute(jumps_);
-    const Eigen::VectorXd below = solver_.solve(rates_);
-    if (!below.allFinite()) return not_determined;
+    // Below the surface j the right-hand side is smaller by steps_[j], and the rate of surface i by jumps_[i + m j].
+    solver_ = Lu<double>(m);
+    for (std::size_t k = 0; k < m * m; ++k) solver_(k % m, k / m) = jumps_[k];
+    if (!solver_.factor()) return not_determined;
+    std::vector<double> below = rates_;
+    solver_.solve(below.data());
+    if (!std::all_of(below.begin(), below.end(), [](double w) { return std::isfinite(w); })) return not_determined;
     for (std::size_t i = 0; i < n_; ++i) {
       dx[i] = above_[i];
-      for (std::size_t j = 0; j < m; ++j) dx[i] -= below[index(j)] * steps_[j][i];
+      for (std::size_t j = 0; j < m; ++j) dx[i] -= below[j] * steps_[j][i];
     }
-    for (std::size_t j = 0; j < m; ++j) weights_.push_back(1 - 2 * below[index(j)]);
+    for (std::size_t j = 0; j < m; ++j) weights_.push_back(1 - 2 * below[j]);
     return 0;
   }
 
@@ -96,7 +99,7 @@ class SlidingSurfaces {
   bool hold() const {
     if (weights_.size() != kinks_.size()) return false;
     for (std::size_t j = 0; j < weights_.size(); ++j) {
-      if (!(std::abs(weights_[j]) <= 1) || !(jumps_(index(j), index(j)) < 0) || !is_step(j)) return false;
+      if (!(std::abs(weights_[j]) <= 1) || !(jumps_[j * (weights_.size() + 1)] < 0) || !is_step(j)) return false;
     }
     return true;
   }
@@ -105,7 +108,7 @@ class SlidingSurfaces {
   /// there and both sides lead there, else 0.
   int leaving_side(std::size_t j) const {
     if (j >= weights_.size() || !is_step(j) || std::abs(weights_[j]) <= 1) return 0;
-    return (weights_[j] > 0) == (jumps_(index(j), index(j)) < 0) ? 1 : -1;
+    return (weights_[j] > 0) == (jumps_[j * (weights_.size() + 1)] < 0) ? 1 : -1;
   }
 
   /// Whether the right-hand side is affine in the branches, at the state of evaluate().
@@ -130,12 +133,12 @@ class SlidingSurfaces {
   /// code.
   int correct(const ModeArray& mode, double t, double* x) {
     if (const int code = g_(mode, x, t, values_.data()); code != 0) return code;
-    Eigen::VectorXd off(index(kinks_.size()));
-    for (std::size_t i = 0; i < kinks_.size(); ++i) off[index(i)] = values_[kinks_[i]];
-    const Eigen::VectorXd by = solver_.solve(off);
-    if (!by.allFinite()) return 0;
+    std::vector<double> by;
+    for (const std::size_t k : kinks_) by.push_back(values_[k]);
+    solver_.solve(by.data());
+    if (!std::all_of(by.begin(), by.end(), [](double value) { return std::isfinite(value); })) return 0;
     for (std::size_t i = 0; i < states_; ++i) {
-      for (std::size_t j = 0; j < kinks_.size(); ++j) x[i] -= by[index(j)] * steps_[j][i];
+      for (std::size_t j = 0; j < kinks_.size(); ++j) x[i] -= by[j] * steps_[j][i];
     }
     return 0;
   }
@@ -145,7 +148,6 @@ class SlidingSurfaces {
  private:
   static constexpr double affine = 1e-9;      // of the terms
   static constexpr double least_step = 1e-8;  // of a component: smaller jumps are those of a continuous function
-  static Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
   bool is_step(std::size_t j) const {
     for (std::size_t i = 0; i < n_; ++i) {
@@ -178,9 +180,8 @@ class SlidingSurfaces {
   std::vector<std::size_t> kinks_;
   std::vector<double> weights_, above_, values_, along_, moved_;
   std::vector<std::vector<double>> steps_;  // above minus below, of each surface
-  Eigen::VectorXd rates_;
-  Eigen::MatrixXd jumps_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> solver_;
+  std::vector<double> rates_, jumps_;       // jumps_: by columns
+  Lu<double> solver_{0};
   ModeArray branches_;
 };
 
