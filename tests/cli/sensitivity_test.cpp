@@ -254,6 +254,102 @@ TEST_CASE("sensitivity: surfaces in the state, and events that end the run") {
   CHECK_FALSE(stop["b"].contains("t"));
 }
 
+TEST_CASE("sensitivity: a reset at an event changes them by the change of its time and of its values") {
+  const Folder folder;
+  // A ball from the height h, with one bounce: v = e sqrt(2 g h) at t1 = sqrt(2 h/g).
+  folder.write("model.toml", R"toml(format = 1
+[parameters]
+g = 10
+h = 1
+e = 0.8
+[coordinates]
+z = {}
+[discrete]
+bounces = { initial = 0 }
+[[particle]]
+name = "P"
+mass = 1
+position = [0, 0, "z"]
+[[force]]
+gravity = "-g*E3"
+[[event]]
+name = "bounce"
+when = "z"
+direction = "down"
+set = { z_dot = "-e*z_dot", bounces = "bounces + 1" }
+[scene.default]
+initial = { z = "h" }
+t = [0, 1]
+rtol = 1e-11
+atol = 1e-12
+)toml");
+  const double g = 10, h = 1, e = 0.8, t1 = std::sqrt(2 * h / g), v = std::sqrt(2 * g * h), after = 1 - t1;
+  const Json by_e = derivatives(folder, "e"), by_h = derivatives(folder, "h"), by_g = derivatives(folder, "g");
+  CHECK(std::abs(by_e["z"].get<double>() - v * after) < 1e-8);
+  CHECK(std::abs(by_e["z_dot"].get<double>() - v) < 1e-8);
+  CHECK(std::abs(by_h["z_dot"].get<double>() - (e * g / v + g / v)) < 1e-8);
+  CHECK(std::abs(by_h["z"].get<double>() - (e * g / v * after - (e * v - g * after) / v)) < 1e-8);
+  // z = e v s - g s^2/2, s = 1 - t1, dv/dg = h/v, dt1/dg = -t1/(2 g).
+  CHECK(std::abs(by_g["z"].get<double>() -
+                 (e * h / v * after - after * after / 2 + (e * v - g * after) * t1 / (2 * g))) < 1e-8);
+  CHECK(by_g["bounces"].get<double>() == 0);
+}
+
+TEST_CASE("sensitivity: resets with constraints, conditions and chains agree with differences of runs") {
+  const Folder folder;
+  // A pendulum in x, y that is struck where x = c; the second event follows from the state that the first one sets.
+  folder.write("struck.toml", R"toml(format = 1
+[parameters]
+g = 9.81
+L = 1.1
+c = 0.2
+k = 0.7
+[[particle]]
+name = "P"
+mass = 1
+position = { cartesian = ["x", "y"] }
+[[constraint]]
+name = "rod"
+holonomic = "x^2 + y^2 - L^2"
+use = "multiplier"
+[[state]]
+name = "w"
+rate = "x - w"
+initial = 0.1
+[[force]]
+gravity = "-g*E2"
+[[force]]
+on = "P"
+force = "-w*E1"
+[[event]]
+name = "strike"
+when = "x - c"
+direction = "down"
+if = "w > 0"
+set = { x_dot = "-k*x_dot", w = "w - 1" }
+[[event]]
+name = "follows"
+when = "w + 1/2"
+direction = "down"
+set = { w = "w/2 + c*x_dot" }
+[scene.default]
+initial = { x = 0.8 }
+guess = { y = -0.7 }
+t = [0, 1.3]
+rtol = 1e-11
+atol = 1e-12
+)toml");
+  for (const auto& [name, value] : {std::pair{"g", 9.81}, {"c", 0.2}, {"k", 0.7}, {"L", 1.1}}) {
+    CAPTURE(std::string(name));
+    const Json found = document(folder, {"run", "struck.toml", "--sensitivity", name})["sensitivities"]["values"][name];
+    for (const char* state : {"x", "x_dot", "y_dot", "w"}) {
+      CAPTURE(std::string(state));
+      const double expected = by_runs(folder, "struck.toml", name, value, state);
+      CHECK(std::abs(found[state].get<double>() - expected) < of_order_four * (1 + std::abs(expected)));
+    }
+  }
+}
+
 TEST_CASE("sensitivity: values without derivative are refused with a remedy") {
   const Folder folder;
   folder.write("model.toml", oscillator);
@@ -264,6 +360,7 @@ TEST_CASE("sensitivity: values without derivative are refused with a remedy") {
   };
   refused({"run", "model.toml", "--sensitivity", "q"}, "there is no parameter or coordinate 'q'");
   refused({"run", "bouncing_ball", "--sensitivity", "g"}, "contacts and friction change the equations");
+  refused({"run", "sampled_cart_pole", "--sensitivity", "g"}, "samples change the state");
   // The run shortens its steps for a force that is narrow in the state, and the variational equations do not.
   folder.write("model.toml",
                line_text("w = 1e-3\n", "1000*exp(-((x - 3)/w)^2)", "initial = { x_dot = 1 }\nt = [0, 10]\n"));
