@@ -311,7 +311,6 @@ position = { cartesian = ["x", "y"] }
 [[constraint]]
 name = "rod"
 holonomic = "x^2 + y^2 - L^2"
-use = "multiplier"
 [[state]]
 name = "w"
 rate = "x - w"
