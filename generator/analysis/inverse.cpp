@@ -14,6 +14,7 @@
 #include "conservation/conserved.hpp"
 #include "derive/formulations/lagrange.hpp"
 #include "model/names.hpp"
+#include "run/methods.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::analysis {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#define EOM_HYBRID_INTEGRATION_ELSEWHERE  // run/integration.cpp
 #include "eomgen/simulation.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "model/names.hpp"
 #include "run/bind.hpp"
 #include "run/eligibility.hpp"
+#include "run/methods.hpp"
 #include "run/monitored_functions.hpp"
 
 namespace eomgen {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#define EOM_HYBRID_INTEGRATION_HERE
 #include "run/integration.hpp"
 
 #include <eom/hybrid/run.hpp>
 
 #include "run/bind.hpp"
+#include "run/methods.hpp"
 
 namespace eomgen::run {
 

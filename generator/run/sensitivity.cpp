@@ -8,6 +8,7 @@
 #include <eom/error_estimate.hpp>
 #include <eom/ode.hpp>
 
+#include "run/methods.hpp"
 #include "run/variational.hpp"
 
 namespace eomgen::run {

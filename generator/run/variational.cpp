@@ -13,6 +13,7 @@
 
 #include "run/bind.hpp"
 #include "run/central_differences.hpp"
+#include "run/methods.hpp"
 
 namespace eomgen::run {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs of emitted code with only the runtime produce the bytes of `eomgen run`, also if they evaluate expressions:
 // inputs, functions of time, jumps, bounds along a step.
-#define EOM_HYBRID_INTEGRATION_ELSEWHERE  // run_test.cpp
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "driven_run.hpp"
+#include "lib/compiled.hpp"
 #include "step_run.hpp"
 #include "support_run.hpp"
 #include "wire_run.hpp"

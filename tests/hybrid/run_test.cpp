@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs of handwritten models in the form of the C ABI: the runtime without the generator.
-#define EOM_HYBRID_INTEGRATION_HERE
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "hybrid/ball.hpp"
+#include "lib/compiled.hpp"
 
 using namespace eom::hybrid;
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs in pieces of handwritten models with closed forms.
-#define EOM_HYBRID_INTEGRATION_ELSEWHERE  // run_test.cpp
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "hybrid/ball.hpp"
+#include "lib/compiled.hpp"
 
 using namespace eom::hybrid;
 
