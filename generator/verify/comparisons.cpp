@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
 
 #include "derive/imposition.hpp"
 #include "symbolic/evaluate.hpp"
@@ -226,10 +228,21 @@ void compare_resets(const EquationSystem& s, const SystemValues& v, const Oracle
   const auto compare = [&](Ref form, model::NodeId written, double& largest) {
     std::vector<Ref> roots{form};
     top_level_terms(*s.dag, form, roots);
-    const std::vector<Real> value = symbolic::evaluate(*s.dag, roots, lookup, oracle.digits());
+    // A value need not exist at every state, but then neither side has it.
+    const auto value_of = [](const auto& evaluate) -> std::optional<std::vector<Real>> {
+      try {
+        return evaluate();
+      } catch (const std::domain_error&) {
+        return std::nullopt;
+      }
+    };
+    const auto value = value_of([&] { return symbolic::evaluate(*s.dag, roots, lookup, oracle.digits()); });
+    const auto expected = value_of([&] { return std::vector<Real>{oracle.evaluate(written, v.state)}; });
+    if (value.has_value() != expected.has_value()) largest = 1;
+    if (!value || !expected) return;
     Real scale = 0;
-    for (std::size_t k = 1; k < value.size(); ++k) scale = scale + cln::abs(value[k]);
-    largest = std::max(largest, relative_difference(value[0] - oracle.evaluate(written, v.state), scale));
+    for (std::size_t k = 1; k < value->size(); ++k) scale = scale + cln::abs((*value)[k]);
+    largest = std::max(largest, relative_difference((*value)[0] - (*expected)[0], scale));
   };
   const auto place = [&](const model::Assignment& assignment) {
     using Target = model::Assignment::Target;
