@@ -16,9 +16,10 @@
 namespace eomgen::analysis {
 
 const std::vector<std::string>& equation_keys() {
-  static const std::vector<std::string> keys{
-      "basis",       "metric",    "christoffel", "line_element", "frenet",   "energies", "lagrangian", "equations",
-      "constraints", "reactions", "friction",    "conserved",    "singular", "routh",    "linear",     "all"};
+  static const std::vector<std::string> keys{"kinematics", "basis",    "metric",     "christoffel", "line_element",
+                                             "frenet",     "energies", "lagrangian", "equations",   "constraints",
+                                             "reactions",  "friction", "conserved",  "singular",    "routh",
+                                             "linear",     "all"};
   return keys;
 }
 

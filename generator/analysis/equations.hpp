@@ -15,7 +15,7 @@ namespace eomgen::analysis {
 
 struct EquationsRequest {
   pipeline::ApproachChoice approach = pipeline::ApproachChoice::automatic;
-  /// Keys out of equation_keys(). "all": every key except "linear" and "routh".
+  /// Keys out of equation_keys(). "all": every key except "kinematics", "linear" and "routh".
   std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
 };
 

@@ -33,7 +33,7 @@ struct Multiplier {
 
 struct EquationsOptions {
   Approach approach = Approach::automatic;
-  /// Formula keys, as in `eomgen derive --show`. "all": every key except "linear" and "routh".
+  /// Formula keys, as in `eomgen derive --show`. "all": every key except "kinematics", "linear" and "routh".
   std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
 };
 

@@ -403,6 +403,7 @@ void add_statements(const Mechanics& m, const DisplayForm& form, const std::vect
     if (wanted(key)) of_geometry.emplace_back(key);
   }
   if (!of_geometry.empty()) add_geometry(m, of_geometry, out);
+  if (std::find(show.begin(), show.end(), "kinematics") != show.end()) add_kinematics(m, out);
   add("frenet", [&] { add_frenet(m, std::find(show.begin(), show.end(), "frenet") != show.end(), out); });
   add("singular", [&] { add_singular(m, out); });
 }

@@ -69,6 +69,8 @@ void add_constraint_forces(const mechanics::Mechanics& mechanics, const reading:
                            std::vector<Statement>& out);
 /// The linear combination x e_1 + y e_2 + z e_3.
 reading::Formula combination(const reading::Components& components, const std::vector<reading::Formula>& vectors);
+/// Kinematics of every particle, body, point, frame and definition.
+void add_kinematics(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
 void add_geometry(const mechanics::Mechanics& mechanics, const std::vector<std::string>& keys,
                   std::vector<Statement>& out);
 

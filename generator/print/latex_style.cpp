@@ -175,6 +175,7 @@ class LatexStyle final : public Style {
     if (word.starts_with("det ")) return "\\det(" + word.substr(4) + "_{ik})";
     if (word == "...") return "\\ldots";
     if (word == "a" || word == "e" || word == "E" || word == "r" || word == "v") return "\\mathbf{" + word + "}";
+    if (word == "e'") return "\\mathbf{e}'";
     if (word == "ds^2") return "ds^{2}";
     if (word == "metric a") return "a";
     if (!greek(word).empty()) return "\\" + word;

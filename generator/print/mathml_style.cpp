@@ -226,6 +226,7 @@ class MathmlStyle final : public Style {
     if (word == "...") return op("…");
     if (word == "metric a") return "<mi>a</mi>";
     if (word == "a" || word == "e" || word == "E" || word == "r" || word == "v") return "<mi>" + bold(word) + "</mi>";
+    if (word == "e'") return row("<mi>" + bold("e") + "</mi>" + op("′"));
     if (word == "ds^2") return "<mi>d</mi><msup><mi>s</mi><mn>2</mn></msup>";
     if (const std::string_view symbol = greek(word); !symbol.empty()) return "<mi>" + std::string(symbol) + "</mi>";
     return "<mi>" + word + "</mi>";

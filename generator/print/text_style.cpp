@@ -99,6 +99,7 @@ class TextStyle final : public Style {
     return (word[4] == 'T'   ? "kinetic"
             : word[4] == 'U' ? "potential"
             : word[4] == 'R' ? "Routhian"
+            : word[4] == 'E' ? "E"
                              : "Lagrangian") +
            rest;
   }

@@ -94,6 +94,9 @@ class Place(Section, Expression):
             return Expression(f"{self._text}.{part}")
         raise AttributeError(f"'{self._text}' has no part '{part}'")
 
+    def __bool__(self) -> bool:
+        return True
+
     def axis(self, k: int, after: int = 0) -> Expression:
         """The axis k of a body after the first (1) or second (2) of its Euler angles; after all of them: 0."""
         return Expression(f"{self._text}.e{k}" + "'" * after)

@@ -340,7 +340,7 @@ class InverseDynamics(Table):
 
 
 class Sweep(Record):
-    """Runs of one scene with other values.
+    """Runs of one scene with other values. ``sweep["theta"]`` are ends, ``sweep.given("theta")`` are starts.
 
     ``points``: K x P, values of ``parameters``. ``final``: K x C, the values of ``columns`` at the end of each run;
     NaN where a run failed. ``errors``: K, the largest estimated error of a state of each run, or None. ``outcomes``: K
@@ -359,12 +359,16 @@ class Sweep(Record):
     t: "NDArray[Any]"
 
     def __getitem__(self, name: str) -> "NDArray[Any]":
-        """K values of a parameter or of a column."""
-        if name in self.parameters:
-            return self.points[:, self.parameters.index(name)]
-        if name in self.columns:
-            return self.final[:, self.columns.index(name)]
-        raise KeyError(f"there is no '{name}'; there are: {', '.join(self.parameters + self.columns)}")
+        """The values of a column at the ends: (K,)."""
+        if name not in self.columns:
+            raise KeyError(f"there is no column '{name}'; there are: {', '.join(self.columns)}")
+        return self.final[:, self.columns.index(name)]
+
+    def given(self, name: str) -> "NDArray[Any]":
+        """The values of a parameter or of an initial value: (K,)."""
+        if name not in self.parameters:
+            raise KeyError(f"'{name}' was not varied; these were: {', '.join(self.parameters)}")
+        return self.points[:, self.parameters.index(name)]
 
     def __len__(self) -> int:
         return len(self.outcomes)

@@ -139,14 +139,17 @@ class ModelTest(unittest.TestCase):
     def test_sweep_equals_single_runs(self):
         found = self.model.sweep(grid={"l": [0.5, 0.7], "theta": [0.1, 0.2, 0.3]}, t_end=2, jobs=3)
         self.assertEqual(len(found), 6)
-        np.testing.assert_array_equal(found["theta"], [0.1, 0.2, 0.3] * 2)
+        np.testing.assert_array_equal(found.given("theta"), [0.1, 0.2, 0.3] * 2)
         for k in range(6):
-            one = self.model.run(parameters={"l": found["l"][k], "theta": found["theta"][k]}, t_end=2)
+            one = self.model.run(parameters={"l": found.given("l")[k], "theta": found.given("theta")[k]}, t_end=2)
             self.assertEqual(found.final[k].tolist(), [one.final[name] for name in found.columns])
             self.assertEqual(found.errors[k], one.error_estimate["max"])
         both = self.model.sweep({"m": [1, 2]}, grid={"l": [1, 2]}, t_end=0.1, error_estimate=False)
         self.assertEqual(both.points.tolist(), [[1, 1], [1, 2], [2, 1], [2, 2]])
         self.assertIsNone(both.errors)
+        self.assertEqual(found["theta"].tolist(), found.final[:, found.columns.index("theta")].tolist())
+        with self.assertRaises(KeyError):
+            found["l"]
         with self.assertRaises(eomgen.Error):
             self.model.sweep({"nothing": [1, 2]})
         with self.assertRaises(TypeError):

@@ -73,8 +73,8 @@ TEST_CASE("derive: one key per kind of formula, in three formats") {
       CHECK_FALSE(shown["equations"].empty());
     }
   }
-  for (const char* key :
-       {"basis", "metric", "christoffel", "line_element", "energies", "lagrangian", "constraints", "singular"}) {
+  for (const char* key : {"kinematics", "basis", "metric", "christoffel", "line_element", "energies", "lagrangian",
+                          "constraints", "singular"}) {
     CAPTURE(key);
     const Json shown = document(folder, {"derive", "P7_moving_sphere", "--show", key});
     has_keys(shown, {key, "equations", "reactions"});

@@ -35,8 +35,8 @@ Json to_json(const std::vector<print::PrintedFormula>& items, const std::string&
   Json result{{"format", 1}, {"approach", approach}, {"equations", Json::array()}, {"reactions", Json::array()}};
   const bool all = std::find(show.begin(), show.end(), "all") != show.end();
   for (const std::string& key : analysis::equation_keys()) {
-    const bool wanted =
-        std::find(show.begin(), show.end(), key) != show.end() || (all && key != "linear" && key != "routh");
+    const bool wanted = std::find(show.begin(), show.end(), key) != show.end() ||
+                        (all && key != "linear" && key != "routh" && key != "kinematics");
     if (wanted && key != "all") result[key] = Json::array();  // present even if there is nothing to show
   }
   for (const print::PrintedFormula& item : items) {
@@ -77,6 +77,7 @@ std::string heading_of(const print::PrintedFormula& item) {
   if (item.key == "singular")
     return item.role == "both" ? "where both approaches fail" : fmt::format("where approach {} fails", item.role);
   if (item.key == "conserved") return "conserved, " + item.role;
+  if (item.key == "kinematics") return fmt::format("'{}', {}", item.name, item.role);
   if (item.key == "parts") return "where";
   if (item.key == "states") return "states of first order";
   if (item.key == "resets") return fmt::format("new values at {} '{}', from those before", item.role, item.name);
