@@ -199,6 +199,22 @@ void refuse_bare_value(const Source& source, std::size_t at) {
               fmt::format("write it in quotes: \"{}\"", value));
 }
 
+// theta. = 1: a dot without a name after it.
+void refuse_dotted_key(const Source& source, std::size_t at) {
+  const std::string& text = source.text();
+  if (at >= text.size() || (text[at] != '=' && text[at] != ' ' && text[at] != '\t')) return;
+  std::size_t end = at;
+  while (end > 0 && (text[end - 1] == ' ' || text[end - 1] == '\t')) --end;
+  if (end == 0 || text[end - 1] != '.') return;
+  std::size_t begin = end - 1;
+  const auto in_key = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; };
+  while (begin > 0 && in_key(text[begin - 1])) --begin;
+  const std::string key = text.substr(begin, end - 1 - begin);
+  if (key.empty()) return;
+  source.fail(source.span(begin, end - begin), fmt::format("the key {} ends with a dot", quote(key + '.')),
+              fmt::format("write {0} = ..; the time derivative of a coordinate {0} is {0}_dot", key));
+}
+
 }  // namespace
 
 Value read_document(const Source& source) {
@@ -209,6 +225,7 @@ Value read_document(const Source& source) {
     return root;
   } catch (const toml::parse_error& error) {
     const std::size_t at = offset_of(source, error.source().begin);
+    refuse_dotted_key(source, at);
     refuse_bare_value(source, at);
     source.fail(
         source.span(at, 1), clean_description(error.description()),

@@ -286,9 +286,7 @@ void BodiesReader::read() {
     const TypedNode mass = resolver_.value(
         value, {fmt::format("the mass of {}", what), 0, Shape::scalar, dimension_of("kg"),
                 "the mass of a body is made of numbers and parameters; that of a [[particle]] may depend on time"});
-    if (mass.constant && !cln::plusp(*mass.constant)) {
-      source_.fail(value.span, fmt::format("the mass of {} is not positive", what), "a mass is greater than 0");
-    }
+    resolver_.require_positive_mass(mass, value.span, what);
     body.mass = mass.node;
     InertiaReader(context_).read(body, *source.table);
     model_.bodies.push_back(body);

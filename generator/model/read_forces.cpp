@@ -65,6 +65,24 @@ void ForcesReader::declare() {
 void ForcesReader::read() {
   std::size_t index = 0;
   for (const Value* table : sections("force")) read_force(model_.forces[index++], *table);
+  warn_of_repeated_weight();
+}
+
+// A weight in [energy] potential acts once more by gravity.
+void ForcesReader::warn_of_repeated_weight() const {
+  if (model_.energy.potential == no_node || (model_.particles.empty() && model_.bodies.empty())) return;
+  const std::set<std::uint32_t> of_potential = resolver_.parameters_in(model_.energy.potential);
+  for (const Force& force : model_.forces) {
+    if (force.acceleration() == no_node) continue;
+    for (const std::uint32_t parameter : resolver_.parameters_in(force.acceleration())) {
+      if (!of_potential.contains(parameter)) continue;
+      resolver_.warn(force.span,
+                     fmt::format("gravity and the potential of [energy] both contain '{}': both act",
+                                 model_.parameters[parameter].name),
+                     "leave out one of them if the potential is that of the weights");
+      break;
+    }
+  }
 }
 
 const Entry& ForcesReader::kind_of(const Value& table) const {

@@ -27,6 +27,7 @@ class ForcesReader : private SectionReader {
   };
   // read_forces.cpp
   const Entry& kind_of(const Value& table) const;
+  void warn_of_repeated_weight() const;
   void read_force(Force& force, const Value& table);
   void read_components(Force& force, const Value& table, const std::string& what);
   void check_rules(const ForceDraft& open) const;

@@ -123,10 +123,7 @@ void PlacesReader::read_particles() {
     if (where.chain == 0) require_value(*where.table, "mass", what, "add mass = \"m\" or a value such as \"2 kg\"");
     const TypedNode mass = where.chain > 0 ? ChainsReader(context_).entry(*where.table, "mass", where.link, context)
                                            : resolver_.value(*where.table->find("mass"), context);
-    if (mass.constant && !cln::plusp(*mass.constant)) {
-      source_.fail(where.table->find("mass")->span, fmt::format("the mass of {} is not positive", what),
-                   "a mass is greater than 0");
-    }
+    resolver_.require_positive_mass(mass, where.table->find("mass")->span, what);
     particle.mass = mass.node;
     model_.particles.push_back(particle);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Function calls: scalar functions, if, derivatives, and functions of vectors and places.
+#include <cln/rational.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,6 +60,8 @@ TypedNode Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, co
                       fmt::format("{}() takes a pure number, and this is in {}", function.name, text_of(*a.dimension)),
                       a.has_uncertain_dimension || a.is_bare_time);
     }
+    if (function.fn == Fn::sin || function.fn == Fn::cos || function.fn == Fn::tan)
+      warn_of_degrees(a.node, function.name);
     if (k == 0 && arguments.size() > 1) continue;
     // min and max of several arguments become nested pairs.
     TypedNode next =
@@ -84,6 +87,28 @@ TypedNode Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, co
     result.has_uncertain_dimension = result.literal = result.is_bare_time = false;
   }
   return result;
+}
+
+void Resolver::warn_of_degrees(NodeId argument, std::string_view function) {
+  const Rational one_turn = Rational(cln::cl_I(63)) / 10;  // the least decimal above 2 pi
+  const Node& node = model_.arena[argument];
+  if (node.op == Op::add || node.op == Op::subtract || node.op == Op::negate) {
+    for (const NodeId child : node.args) {
+      if (child != no_node) warn_of_degrees(child, function);
+    }
+  }
+  if (node.op != Op::parameter || !parameters_in_angles_.insert(node.index).second) return;
+  for (const Symbol* symbol : scope_.all(SymbolKind::parameter)) {
+    if (symbol->state != Symbol::State::resolved || symbol->index != node.index) continue;
+    const TypedNode& value = symbol->typed;
+    if (value.dimension || !value.constant || cln::abs(*value.constant) < one_turn) return;
+    const std::string& written = model_.parameters[node.index].written;
+    warn(
+        symbol->entry->value.span,
+        fmt::format("the parameter '{}' is {} without a unit, and {}() takes radians", symbol->name, written, function),
+        fmt::format("write {0} = \"{1} deg\" if degrees are meant, or {0} = \"{1} rad\"", symbol->name, written));
+    return;
+  }
 }
 
 TypedNode Resolver::conditional(const Syntax& syntax, const SyntaxNode& node) {

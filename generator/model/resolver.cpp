@@ -126,12 +126,37 @@ TypedNode Resolver::check_context(TypedNode typed, Span span, const Context& con
                  "take dot(a, b), norm(a), or a component dot(a, E1)");
   }
   if (context.dimension && typed.dimension && !same(*context.dimension, *typed.dimension)) {
-    report_mismatch(span,
-                    fmt::format("{} must be in {}, and this is in {}", context.what, text_of(*context.dimension),
-                                text_of(*typed.dimension)),
-                    typed.has_uncertain_dimension);
+    const std::string mismatch = fmt::format("{} must be in {}, and this is in {}", context.what,
+                                             text_of(*context.dimension), text_of(*typed.dimension));
+    const Symbol* parameter = lone_parameter(typed);
+    if (parameter != nullptr && units_stated_ && !typed.has_uncertain_dimension) {
+      source_.fail(span, "the units clash: " + mismatch,
+                   fmt::format("use another name here, or correct the unit of '{}' in line {}", parameter->name,
+                               source_.where(parameter->span).line));
+    }
+    report_mismatch(span, mismatch, typed.has_uncertain_dimension);
   }
   return typed;
+}
+
+const Symbol* Resolver::lone_parameter(const TypedNode& value) {
+  const Node& node = model_.arena[value.node];
+  if (node.op != Op::parameter) return nullptr;
+  for (const Symbol* symbol : scope_.all(SymbolKind::parameter)) {
+    if (symbol->state == Symbol::State::resolved && symbol->index == node.index) return symbol;
+  }
+  return nullptr;
+}
+
+void Resolver::require_positive_mass(const TypedNode& mass, Span span, const std::string& what) {
+  if (!mass.constant || cln::plusp(*mass.constant)) return;
+  const Symbol* parameter = lone_parameter(mass);
+  if (parameter != nullptr && parameter->entry != nullptr) {
+    source_.fail(parameter->entry->value.span,
+                 fmt::format("the mass of {}, the parameter '{}', is not positive", what, parameter->name),
+                 "a mass is greater than 0");
+  }
+  source_.fail(span, fmt::format("the mass of {} is not positive", what), "a mass is greater than 0");
 }
 
 void Resolver::report_mismatch(Span span, std::string what, bool loose) {
@@ -305,6 +330,22 @@ bool Resolver::uses_parameters(NodeId root) const {
     for (const NodeId child : model_.arena[id].args) stack.push_back(child);
   }
   return false;
+}
+
+std::set<std::uint32_t> Resolver::parameters_in(NodeId root) const {
+  std::set<std::uint32_t> found;
+  std::set<NodeId> seen;
+  std::vector<NodeId> stack{root};
+  while (!stack.empty()) {
+    const NodeId id = stack.back();
+    stack.pop_back();
+    if (id == no_node || !seen.insert(id).second) continue;
+    const Node& node = model_.arena[id];
+    if (node.op == Op::parameter) found.insert(node.index);
+    if (node.op == Op::definition) stack.push_back(model_.definitions[node.index].expression);
+    for (const NodeId child : node.args) stack.push_back(child);
+  }
+  return found;
 }
 
 const CoordinateSet& Resolver::coordinates_of(NodeId reference) {

@@ -104,8 +104,16 @@ class Resolver {
   void set_units_stated(bool stated) { units_stated_ = stated; }
   bool units_stated() const { return units_stated_; }
   void warn(Span span, std::string message, std::string remedy);
+  /// Throws Error if a mass is a number that is not positive. `what`: the name of the particle or body, in quotes.
+  void require_positive_mass(const TypedNode& mass, Span span, const std::string& what);
+  /// Parameters that an expression contains, also through definitions.
+  std::set<std::uint32_t> parameters_in(NodeId node) const;
 
  private:
+  /// The parameter that an expression consists of; nullptr if it is none.
+  const Symbol* lone_parameter(const TypedNode& value);
+  /// Warns of parameters above one turn without a unit in the argument of a trigonometric function.
+  void warn_of_degrees(NodeId argument, std::string_view function);
   TypedNode syntax(const Syntax& syntax, const Context& context);
   TypedNode node(const Syntax& syntax, std::uint32_t id);
   TypedNode number_node(const SyntaxNode& node);
@@ -156,6 +164,7 @@ class Resolver {
   const Context* context_ = nullptr;
   const std::map<std::string, TypedNode>* local_ = nullptr;
   std::map<NodeId, CoordinateSet> coordinates_of_;  // of places and definitions
+  std::set<std::uint32_t> parameters_in_angles_;    // whose unit was checked
   std::vector<std::string> open_;                   // names being resolved, for detecting cycles
 };
 

@@ -165,3 +165,38 @@ TEST_CASE("a file whose only units are angles counts as a file without units") {
   other.replace(other.find("m = 1"), 5, "m = \"1 kg\"");
   CHECK_THROWS(read(other));
 }
+
+TEST_CASE("a parameter above one turn without a unit warns where a trigonometric function takes it") {
+  const auto warnings = [](const std::string& value) {
+    const Model model = with_parameters("alpha = " + value + "\nb = \"cos(alpha)\"\nc = \"sin(b - alpha)\"");
+    std::vector<std::string> found;
+    for (const eomgen::Warning& warning : model.warnings) {
+      if (!warning.message.ends_with("is not used")) found.push_back(warning.message + ": " + warning.remedy);
+    }
+    return found;
+  };
+  REQUIRE(warnings("30").size() == 1);
+  CHECK(warnings("30")[0] ==
+        "the parameter 'alpha' is 30 without a unit, and cos() takes radians: write alpha = \"30 deg\" if degrees are "
+        "meant, or alpha = \"30 rad\"");
+  CHECK(warnings("\"30 deg\"").empty());
+  CHECK(warnings("\"30 rad\"").empty());
+  CHECK(warnings("0.5").empty());
+  CHECK(warnings("6.28").empty());
+}
+
+TEST_CASE("gravity beside a potential with the same parameter warns") {
+  const auto warnings = [](const std::string& potential) {
+    const Model model = read(particle("[energy]\npotential = \"" + potential + "\"\n"));
+    std::vector<std::string> found;
+    for (const eomgen::Warning& warning : model.warnings) {
+      if (warning.message.starts_with("gravity and")) found.push_back(warning.message + ": " + warning.remedy);
+    }
+    return found;
+  };
+  REQUIRE(warnings("m*g*R*cos(theta)").size() == 1);
+  CHECK(warnings("m*g*R*cos(theta)")[0] ==
+        "gravity and the potential of [energy] both contain 'g': both act: leave out one of them if the potential is "
+        "that of the weights");
+  CHECK(warnings("k*R^2/2").empty());
+}

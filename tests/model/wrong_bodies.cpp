@@ -148,7 +148,7 @@ std::vector<WrongModel> wrong_bodies() {
        "one moment of inertia is not enough: 'B' does not rotate about one fixed axis", inertias_are},
       {"a mass for an inertia", top({{"[\"J\", \"J\", \"J\"]", "[\"m\", \"J\", \"J\"]"}}), "9:27",
        "the units clash: a principal moment must be in kg*m^2, and this is in kg",
-       "check the formula and the units of the names in it"},
+       "use another name here, or correct the unit of 'm' in line 3"},
       {"a moment on a particle",
        top({{"on = \"B\"", "on = \"P\""}}, "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = \"g*1[s^2]*E1\"\n"),
        "13:6", "'P' is a particle or point, which has no axes", "the bodies and frames are B"},

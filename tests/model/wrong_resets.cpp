@@ -29,7 +29,7 @@ std::vector<WrongModel> wrong_resets() {
        "'theta_ddot' depends on accelerations, which the new value of 'theta_dot' cannot", value_remedy},
       {"a reset in the wrong unit", event("set = { theta_dot = \"L\" }\n"), "15:22",
        "the units clash: the new value of 'theta_dot' must be in 1/s, and this is in m",
-       "check the formula and the units of the names in it"},
+       "use another name here, or correct the unit of 'L' in line 5"},
       {"a reset that is no table", event("set = \"theta\"\n"), "15:7",
        "'set' of the event 'e' is a string, and a table is asked",
        "write set = { x_dot = \"-e*x_dot\" }: new values of velocities, coordinates, states, discrete values"},

@@ -19,7 +19,7 @@ std::vector<WrongModel> wrong_units() {
        "check the formula and the units of the names in it"},
       {"a mass in metres", pendulum({{"mass = \"m\"", "mass = \"L\""}}), "8:9",
        "the units clash: the mass of 'P' must be in kg, and this is in m",
-       "check the formula and the units of the names in it"},
+       "use another name here, or correct the unit of 'L' in line 5"},
       {"gravity with the unit of a speed", pendulum({{"9.81 m/s^2", "9.81 m/s"}}), "11:12",
        "the units clash: gravity must be in m/s^2, and this is in m/s",
        "check the formula and the units of the names in it"},
