@@ -181,9 +181,10 @@ std::vector<Ref> AbiFunctions::derivative_column(Symbol along) {
     return r;
   }
   for (std::size_t i = 0; i < n_; ++i) {
-    Ref sum = d(system_.f[i]);
+    Ref sum = system_.residual ? residual_slope(d, along, i) : d(system_.f[i]);
     for (std::size_t k = 0; k < m_; ++k) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + i]), lambda_[k]));
-    for (std::size_t j = 0; j < n_; ++j) sum = dag.sub(sum, dag.mul(d(system_.M[i * n_ + j]), qddot_[j]));
+    for (std::size_t j = 0; j < n_ && !system_.residual; ++j)
+      sum = dag.sub(sum, dag.mul(d(system_.M[i * n_ + j]), qddot_[j]));
     r.push_back(sum);
   }
   for (std::size_t k = 0; k < m_; ++k) {
@@ -194,6 +195,21 @@ std::vector<Ref> AbiFunctions::derivative_column(Symbol along) {
   std::vector<Ref> lower = solve()(std::move(r), c).first;
   for (const system::FirstOrderState& state : system_.states) lower.push_back(d(state.rate));
   return lower;
+}
+
+// -d(M qddot - f)_i/ds at fixed qddot.
+Ref AbiFunctions::residual_slope(symbolic::Derivation& d, Symbol along, std::size_t i) {
+  Dag& dag = *system_.dag;
+  const system::Residual& residual = *system_.residual;
+  Ref inertia;
+  const auto coordinate = std::find(system_.free.begin(), system_.free.end(), along.index);
+  if (along.kind == SymbolKind::coordinate && coordinate != system_.free.end()) {
+    const auto j = static_cast<std::size_t>(coordinate - system_.free.begin());
+    inertia = (along.order == 0 ? residual.by_q : residual.by_qdot)[i * n_ + j];
+  } else {
+    inertia = d(residual.inertia[i]);
+  }
+  return dag.sub(d(residual.applied[i]), (*solution_)(inertia));
 }
 
 FunctionExpressions AbiFunctions::jac() {
