@@ -157,8 +157,9 @@ std::size_t symbol_count(const system::EquationSystem& system, symbolic::SymbolK
   return count;
 }
 
-/// The systems of trees with the residual, for derivatives: one per form, each with both orders of elimination. M
-/// serves the accelerations too, so that one factorisation is enough.
+/// The systems of trees with the residual, for derivatives: one per form. M serves the accelerations too, so that one
+/// factorisation is enough, in both orders of elimination. Where the formulation solves for the derivatives itself, its
+/// own accelerations serve them.
 std::vector<std::unique_ptr<AbiFunctions>> with_residual(const std::vector<system::EquationSystem>& systems,
                                                          const Request& request) {
   std::vector<std::unique_ptr<AbiFunctions>> result;
@@ -166,16 +167,24 @@ std::vector<std::unique_ptr<AbiFunctions>> with_residual(const std::vector<syste
   const std::optional<system::Residual> residual = request.residual();
   if (!residual) return result;
   std::vector<std::pair<system::Approach, system::Form>> known;
+  const auto add = [&](system::EquationSystem system, Ties ties) {
+    result.push_back(std::make_unique<AbiFunctions>(std::move(system), request.fix, ties, holds_branches(request)));
+  };
   for (const system::EquationSystem& system : systems) {
-    if (system.formulation != "recursive" && system.formulation != "articulated") continue;
+    const bool articulated = system.formulation == "articulated";
+    if (system.formulation != "recursive" && !articulated) continue;
+    system::EquationSystem copy = system;
+    copy.residual = residual;
+    if (articulated && system.solution && system.active.empty()) add(copy, Ties::ascending);
     const std::pair<system::Approach, system::Form> form{system.approach, system.form};
     if (std::find(known.begin(), known.end(), form) != known.end()) continue;
     known.push_back(form);
-    system::EquationSystem copy = system;
     copy.solution.reset();
-    copy.residual = residual;
-    for (const Ties ties : {Ties::ascending, Ties::descending})
-      result.push_back(std::make_unique<AbiFunctions>(copy, request.fix, ties, holds_branches(request)));
+    for (auto* solved : {&copy.residual->qddot_by_q, &copy.residual->qddot_by_qdot, &copy.residual->M_inverse})
+      solved->clear();
+    copy.residual->pivots.clear();
+    add(copy, Ties::ascending);
+    add(copy, Ties::descending);
   }
   return result;
 }

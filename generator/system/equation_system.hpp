@@ -45,19 +45,21 @@ struct QuasiVelocityEquations {
   std::vector<Ref> M, f;                      // n x n, n
 };
 
+/// The solution, if the formulation solves the equations itself.
+struct Solution {
+  std::vector<Ref> qddot;   // n, without accelerations and multipliers
+  std::vector<Ref> lambda;  // m
+  std::vector<symbolic::Pivot> pivots;
+};
+
 /// The equations as forces that vanish, inertia - applied = A^T lambda, with the accelerations as symbols of their own
 /// (order 2 of each coordinate): inertia = M qddot + h. Its derivatives are those at fixed accelerations.
 struct Residual {
   std::vector<Ref> inertia, applied;  // n
   std::vector<Ref> by_q, by_qdot;     // n x n row-major: d inertia_i/dq_j, d inertia_i/dqdot_j
-  // If the formulation solves for them itself, and otherwise empty: -M^-1 by_q, -M^-1 by_qdot, M^-1.
+  // If the formulation solves for them itself, and otherwise empty: -M^-1 by_q, -M^-1 by_qdot, and M^-1 if `applied`
+  // is not 0.
   std::vector<Ref> qddot_by_q, qddot_by_qdot, M_inverse;
-};
-
-/// The solution, if the formulation solves the equations itself.
-struct Solution {
-  std::vector<Ref> qddot;   // n, without accelerations and multipliers
-  std::vector<Ref> lambda;  // m
   std::vector<symbolic::Pivot> pivots;
 };
 

@@ -37,9 +37,9 @@ gravity = "-g*E3"
 
 std::string body(const std::string& name, const std::string& position, const std::string& rotation,
                  const std::string& parent = "") {
-  return "[[body]]\nname = \"" + name + "\"\nmass = \"m\"\ninertia = [[\"A\", \"D\", 0], [\"D\", \"B\", 0], [0, 0, \"C\"]]\n" +
-         "position = \"" + position + "\"\nrotation = " + rotation + "\n" +
-         (parent.empty() ? "" : "relative_to = \"" + parent + "\"\n");
+  return "[[body]]\nname = \"" + name +
+         "\"\nmass = \"m\"\ninertia = [[\"A\", \"D\", 0], [\"D\", \"B\", 0], [0, 0, \"C\"]]\n" + "position = \"" +
+         position + "\"\nrotation = " + rotation + "\n" + (parent.empty() ? "" : "relative_to = \"" + parent + "\"\n");
 }
 
 struct Example {
@@ -56,19 +56,20 @@ const Example examples[] = {
      constants + "[coordinates]\nx = \"m\"\n" +
          body("b1", "x*E1 + L*b1.e3", "{ euler = \"313\", angles = [\"a\", \"b\", \"c\"] }") +
          body("b2", "b1 + L*b1.e3 + L*b2.e1", "{ axis = \"b1.e2\", angle = \"q\" }", "b1")},
-    {"branches",
-     constants + body("b1", "L*b1.e1", "{ axis = \"E3\", angle = \"q1\" }") +
-         body("b2", "2*L*b1.e1 + L*b2.e1", "{ axis = \"b1.e2\", angle = \"q2\" }", "b1") +
-         body("b3", "L*b1.e2 + L*b3.e3", "{ axis = \"b1.e1\", angle = \"q3\" }", "b1") +
-         body("b4", "2*L*b1.e1 + 2*L*b2.e1 + L*b4.e1", "{ axis = \"b2.e3\", angle = \"q4\" }", "b2")},
+    {"branches", constants + body("b1", "L*b1.e1", "{ axis = \"E3\", angle = \"q1\" }") +
+                     body("b2", "2*L*b1.e1 + L*b2.e1", "{ axis = \"b1.e2\", angle = \"q2\" }", "b1") +
+                     body("b3", "L*b1.e2 + L*b3.e3", "{ axis = \"b1.e1\", angle = \"q3\" }", "b1") +
+                     body("b4", "2*L*b1.e1 + 2*L*b2.e1 + L*b4.e1", "{ axis = \"b2.e3\", angle = \"q4\" }", "b2") +
+                     "[[force]]\ngeneralized = { q4 = \"-A*q4_dot - B*q3\" }\n"},
     {"a base that is moved, and a moment",
-     constants + "[functions]\nturn = \"w*t + t^2\"\n[[frame]]\nname = \"table\"\nrotation = { axis = \"E3\", angle = \"turn\" }\n" +
+     constants +
+         "[functions]\nturn = \"w*t + t^2\"\n[[frame]]\nname = \"table\"\nrotation = { axis = \"E3\", angle = \"turn\" "
+         "}\n" +
          body("b1", "L*table.e1 + L*b1.e1", "{ axis = \"table.e2\", angle = \"q1\" }", "table") +
          body("b2", "L*table.e1 + 2*L*b1.e1 + L*b2.e1", "{ axis = \"b1.e3\", angle = \"q2\" }", "b1") +
          "[[force]]\ngeneralized = { q1 = \"-A*q1_dot*abs(q2)\" }\n"},
-    {"Rodrigues parameters",
-     constants + body("b1", "L*b1.e1", "{ rodrigues = [\"r1\", \"r2\", \"r3\"] }") +
-         body("b2", "2*L*b1.e1 + L*b2.e1", "{ axis = \"b1.e3\", angle = \"q\" }", "b1")},
+    {"Rodrigues parameters", constants + body("b1", "L*b1.e1", "{ rodrigues = [\"r1\", \"r2\", \"r3\"] }") +
+                                 body("b2", "2*L*b1.e1 + L*b2.e1", "{ axis = \"b1.e3\", angle = \"q\" }", "b1")},
 };
 
 system::EquationSystem recursive(mechanics::Mechanics& m) {
@@ -87,6 +88,25 @@ double difference(const symbolic::Dag& dag, const std::vector<Ref>& a, const std
   for (std::size_t i = 0; i < left.size(); ++i)
     worst = std::max(worst, cln::double_approx(cln::abs(left[i] - right[i]) / (1 + cln::abs(right[i]))));
   return worst;
+}
+
+/// a b of square matrices by rows.
+std::vector<Ref> product(symbolic::Dag& dag, const std::vector<Ref>& a, const std::vector<Ref>& b) {
+  std::size_t n = 0;
+  while (n * n < a.size()) ++n;
+  std::vector<Ref> result(n * n, dag.zero());
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t j = 0; j < n; ++j)
+        result[i * n + k] = dag.add(result[i * n + k], dag.mul(a[i * n + j], b[j * n + k]));
+    }
+  }
+  return result;
+}
+
+std::vector<Ref> negative(symbolic::Dag& dag, std::vector<Ref> a) {
+  for (Ref& r : a) r = dag.neg(r);
+  return a;
 }
 
 }  // namespace
@@ -115,6 +135,12 @@ TEST_CASE("the residual of a tree of bodies is M qddot - f, and its derivatives 
     CHECK(difference(dag, residual->inertia, expected) < as_good_as_exact);
     CHECK(difference(dag, residual->by_q, by_q) < as_good_as_exact);
     CHECK(difference(dag, residual->by_qdot, by_qdot) < as_good_as_exact);
+    CHECK(difference(dag, product(dag, s.M, residual->qddot_by_q), negative(dag, by_q)) < as_good_as_exact);
+    CHECK(difference(dag, product(dag, s.M, residual->qddot_by_qdot), negative(dag, by_qdot)) < as_good_as_exact);
+    if (residual->M_inverse.empty()) continue;
+    std::vector<Ref> identity(n * n, dag.zero());
+    for (std::size_t i = 0; i < n; ++i) identity[i * n + i] = dag.one();
+    CHECK(difference(dag, product(dag, s.M, residual->M_inverse), identity) < as_good_as_exact);
   }
 }
 

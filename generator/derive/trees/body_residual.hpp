@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equations of a tree of bodies as forces at given accelerations, and their derivatives by the state (Carpentier and
-// Mansard 2018; Singh, Russell and Wensing 2022), on expressions, all along the axes of the links. A coordinate or rate
-// disturbs the motion of its link. The links beyond it feel the disturbance as a rotating frame feels its base, which
-// three vectors describe; composite quantities give the forces that it needs.
+// The equations of a tree of bodies as forces at given accelerations, and their derivatives by the state (Carpentier
+// and Mansard 2018; Singh, Russell and Wensing 2022), on expressions, all along the axes of the links. A coordinate or
+// rate disturbs the motion of its link. The links beyond it feel the disturbance as a rotating frame feels its base,
+// which three vectors describe; composite quantities give the forces that it needs.
 #pragma once
 
 #include <optional>
