@@ -43,8 +43,8 @@ class Reader {
     for (std::uint32_t p = 1; p < model.places.size(); ++p) {
       if (!m_.place_position[p]) continue;
       begin(model.places[p].name);
-      const auto body = std::find_if(model.bodies.begin(), model.bodies.end(),
-                                     [p](const model::Body& b) { return b.place == p; });
+      const auto body =
+          std::find_if(model.bodies.begin(), model.bodies.end(), [p](const model::Body& b) { return b.place == p; });
       if (body != model.bodies.end()) {
         has_body[body->frame] = true;
         rotation(body->frame, static_cast<std::size_t>(body - model.bodies.begin()));
@@ -196,8 +196,7 @@ class Reader {
     for (std::uint32_t i = 0; i < known.size(); ++i) {
       for (std::uint32_t k = 0; k < 3; ++k) add(Quantity::axis, frame, 3 * i + k, E.axes, known[i].first.vectors[k]);
     }
-    for (const auto& [triad, components] : known)
-      add(Quantity::angular_velocity, frame, 0, triad.axes, components);
+    for (const auto& [triad, components] : known) add(Quantity::angular_velocity, frame, 0, triad.axes, components);
     const Vec3 w_fixed = combined(known.back().second, carrier);
     add(Quantity::angular_velocity, frame, 0, E.axes, w_fixed);
     add(Quantity::angular_acceleration, frame, 0, e.axes, rate(w));

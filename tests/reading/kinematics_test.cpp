@@ -44,8 +44,8 @@ class AtState {
 
   Real value(const Sum& sum) {
     const symbolic::Ref root = reading::to_dag(*s_.mechanics.dag, sum);
-    return symbolic::evaluate(*s_.mechanics.dag, {root}, [this](const symbolic::Symbol& s) { return number(s); },
-                              digits)[0];
+    return symbolic::evaluate(
+        *s_.mechanics.dag, {root}, [this](const symbolic::Symbol& s) { return number(s); }, digits)[0];
   }
   Numbers vector(const Components& c, const Axes& axes) {
     Numbers result{0, 0, 0};
@@ -62,8 +62,8 @@ class AtState {
       case Axes::Kind::fixed: return {k == 0 ? 1 : 0, k == 1 ? 1 : 0, k == 2 ? 1 : 0};
       case Axes::Kind::own: return real(oracle_.axis(axes.frame, k));
       case Axes::Kind::before_last_rotation:
-        if (frame.stages.size() == 1) return axis({frame.parent == 0 ? Axes::Kind::fixed : Axes::Kind::own,
-                                                   frame.parent, {}}, k);
+        if (frame.stages.size() == 1)
+          return axis({frame.parent == 0 ? Axes::Kind::fixed : Axes::Kind::own, frame.parent, {}}, k);
         return real(oracle_.vector(frame.stages[frame.stages.size() - 2].e[k]));
       case Axes::Kind::chart: break;
     }
@@ -120,7 +120,7 @@ class AtState {
   static Real number(const symbolic::Symbol& s) {
     const bool has_orders = s.kind == symbolic::SymbolKind::coordinate || s.kind == symbolic::SymbolKind::function;
     const cln::cl_RA x = has_orders ? cln::cl_RA(7 + 5 * s.index + 3 * s.order) / (11 + s.index)
-                                       : cln::cl_RA(13 + 4 * s.index) / (9 + s.index);
+                                    : cln::cl_RA(13 + 4 * s.index) / (9 + s.index);
     return cln::cl_float(x, cln::float_format(static_cast<std::uintptr_t>(digits)));
   }
   verify::Environment environment() const {
