@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "derive/formulations.hpp"
+#include "derive/trees/body_residual.hpp"
 #include "emit/self_test.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
@@ -216,6 +217,7 @@ program::Program make_program(DerivedModel& derived, const program::Request& req
   program::Request complete = request;
   complete.parameters = derived.model.parameters.size();
   complete.inputs = derived.model.inputs.size();
+  complete.residual = [&derived] { return derive::body_residual(derived.mechanics); };
   program::Program program = program::build_program(derived.candidates, complete);
   derived.seconds.optimise += watch.lap();
   return program;

@@ -23,6 +23,23 @@ bool equal(const PartialDerivatives& a, const PartialDerivatives& b) {
          a.rate == b.rate && a.kinetic == b.kinetic && a.potential == b.potential && a.force == b.force;
 }
 
+/// The indices of the components of angular velocities, and the axes along which they are taken.
+std::string angular_velocity_legend(const Article& a) {
+  std::vector<std::string> numbers, before;  // `before`: bodies with the axes before their last rotation
+  for (const mechanics::BodyRotation& spin : a.m.body_rotations) {
+    numbers.push_back(std::to_string(spin.frame) + " for " + bold(spin.name));
+    if (spin.axes_angular_velocity != spin.w) before.push_back(bold(spin.name));
+  }
+  std::string text =
+      "In $\\omega_{kb}$ the index $k$ is that of the axis and $b$ that of the body: " + enumeration(numbers) +
+      ". The components are taken along the axes of the body";
+  if (before.empty()) return text + ".";
+  const bool all = before.size() == numbers.size();
+  text += all ? " before its last rotation"
+              : "; those of " + enumeration(before) + " along its axes before the last rotation";
+  return text + ". The inertia does not change in that rotation.";
+}
+
 }  // namespace
 
 void write_energies(Article& a) {
@@ -35,10 +52,7 @@ void write_energies(Article& a) {
     if (!form.rotations_skip_reason.empty()) a.left_out.push_back({"angular velocities", form.rotations_skip_reason});
   };
   const bool body_rotations = !a.one.body_rotations.empty();
-  if (body_rotations)
-    a.out.paragraph(
-        "The components $\\omega$ are those of the angular velocities, along the axes about which the moments of "
-        "inertia are taken.");
+  if (body_rotations) a.out.paragraph(angular_velocity_legend(a));
   show(a.one);
   if (!a.approaches_differ()) return;
   a.out.paragraph("With the constraints built in these are");

@@ -116,12 +116,24 @@ class System {
 
   std::string inertia(const model::Body& body) const {
     std::vector<std::string> diagonal;
+    std::vector<std::size_t> about;  // axes whose moment is not 0
     for (std::size_t i = 0; i < 3; ++i) {
-      diagonal.push_back(value(body.inertia[i][i]));
+      const bool none = body.inertia[i][i] == model::no_node || is_zero(body.inertia[i][i]);
+      diagonal.push_back(none ? out_.math(reading::number(0)) : value(body.inertia[i][i]));
+      if (!none) about.push_back(i);
       for (std::size_t k = 0; k < 3; ++k) {
         if (i != k && body.inertia[i][k] != model::no_node && !is_zero(body.inertia[i][k])) return "";
       }
       if (diagonal.back().empty()) return "";
+    }
+    if (about.empty()) return "";
+    if (about.size() == 1) {
+      // The model gives one moment for a body that rotates about a fixed axis.
+      const model::Frame& frame = model_.frames[body.frame];
+      const bool fixed = frame.parent == 0 && frame.stages.size() == 1 && frame.entries.size() == 1;
+      const Formula axis = reading::mark(fixed ? "E" : "e", {reading::number(static_cast<long>(about[0] + 1))});
+      return std::string("; its moment of inertia about ") + (fixed ? "" : "its axis ") + out_.math(axis) + " is " +
+             diagonal[about[0]];
     }
     return "; its moments of inertia about its own axes are " + enumeration(diagonal);
   }

@@ -132,6 +132,7 @@ void AbiFunctions::add_solution(FunctionExpressions& function) {
   }();
   std::vector<Pivot> pivots;
   if (system_.solution) pivots = system_.solution->pivots;
+  if (system_.residual) pivots.insert(pivots.end(), system_.residual->pivots.begin(), system_.residual->pivots.end());
   if (solve_) {
     const std::vector<Pivot> more = solve_->pivots();
     pivots.insert(pivots.end(), more.begin(), more.end());
@@ -180,10 +181,15 @@ std::vector<Ref> AbiFunctions::derivative_column(Symbol along) {
     for (const system::FirstOrderState& state : system_.states) r.push_back(d(state.rate));
     return r;
   }
+  if (std::optional<std::vector<Ref>> solved = solved_column(d, along)) {
+    for (const system::FirstOrderState& state : system_.states) solved->push_back(d(state.rate));
+    return *std::move(solved);
+  }
   for (std::size_t i = 0; i < n_; ++i) {
-    Ref sum = d(system_.f[i]);
+    Ref sum = system_.residual ? residual_slope(d, along, i) : d(system_.f[i]);
     for (std::size_t k = 0; k < m_; ++k) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + i]), lambda_[k]));
-    for (std::size_t j = 0; j < n_; ++j) sum = dag.sub(sum, dag.mul(d(system_.M[i * n_ + j]), qddot_[j]));
+    for (std::size_t j = 0; j < n_ && !system_.residual; ++j)
+      sum = dag.sub(sum, dag.mul(d(system_.M[i * n_ + j]), qddot_[j]));
     r.push_back(sum);
   }
   for (std::size_t k = 0; k < m_; ++k) {
@@ -194,6 +200,41 @@ std::vector<Ref> AbiFunctions::derivative_column(Symbol along) {
   std::vector<Ref> lower = solve()(std::move(r), c).first;
   for (const system::FirstOrderState& state : system_.states) lower.push_back(d(state.rate));
   return lower;
+}
+
+// -d(M qddot - f)_i/ds at fixed qddot.
+Ref AbiFunctions::residual_slope(symbolic::Derivation& d, Symbol along, std::size_t i) {
+  Dag& dag = *system_.dag;
+  const system::Residual& residual = *system_.residual;
+  Ref inertia;
+  const auto coordinate = std::find(system_.free.begin(), system_.free.end(), along.index);
+  if (along.kind == SymbolKind::coordinate && coordinate != system_.free.end()) {
+    const auto j = static_cast<std::size_t>(coordinate - system_.free.begin());
+    inertia = (along.order == 0 ? residual.by_q : residual.by_qdot)[i * n_ + j];
+  } else {
+    inertia = d(residual.inertia[i]);
+  }
+  return dag.sub(d(residual.applied[i]), (*solution_)(inertia));
+}
+
+/// The column of the coordinates that the formulation solves itself: qddot_by_q + M^-1 dQ.
+std::optional<std::vector<Ref>> AbiFunctions::solved_column(symbolic::Derivation& d, Symbol along) {
+  if (!system_.residual || m_ > 0) return std::nullopt;
+  Dag& dag = *system_.dag;
+  const system::Residual& residual = *system_.residual;
+  const auto coordinate = std::find(system_.free.begin(), system_.free.end(), along.index);
+  if (residual.qddot_by_q.empty() || along.kind != SymbolKind::coordinate || coordinate == system_.free.end())
+    return std::nullopt;
+  const auto j = static_cast<std::size_t>(coordinate - system_.free.begin());
+  std::vector<Ref> column;
+  for (std::size_t i = 0; i < n_; ++i)
+    column.push_back((*solution_)((along.order == 0 ? residual.qddot_by_q : residual.qddot_by_qdot)[i * n_ + j]));
+  for (std::size_t k = 0; k < n_; ++k) {
+    const Ref force = d(residual.applied[k]);
+    for (std::size_t i = 0; i < n_ && !dag.is_zero(force); ++i)
+      column[i] = dag.add(column[i], dag.mul(residual.M_inverse[i * n_ + k], force));
+  }
+  return column;
 }
 
 FunctionExpressions AbiFunctions::jac() {

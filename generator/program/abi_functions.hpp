@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +68,8 @@ class AbiFunctions {
   void add_solution(FunctionExpressions& function);
   void label_matrices(FunctionExpressions& function);
   std::vector<Ref> derivative_column(symbolic::Symbol along);
+  std::optional<std::vector<Ref>> solved_column(symbolic::Derivation& d, symbolic::Symbol along);
+  Ref residual_slope(symbolic::Derivation& d, symbolic::Symbol along, std::size_t i);
   FunctionExpressions derivative_columns(const char* name, symbolic::SymbolKind kind, std::size_t count);
   /// Substitutes the solution for qddot and the active multipliers. Sets `solved` to true if the expression contains
   /// any of them.

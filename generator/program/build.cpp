@@ -84,9 +84,14 @@ void add_prepared(const Candidate& chosen, Program& program) {
   program.functions.push_back(std::move(hoisted->rest));
 }
 
+/// Whether `mode` freezes branches.
+bool holds_branches(const Request& request) {
+  return std::find(request.with.begin(), request.with.end(), "events") != request.with.end();
+}
+
 /// The candidates as derived: every formulation with both orders of elimination.
 std::vector<Candidate> raw_candidates(const std::vector<system::EquationSystem>& systems, const Request& request) {
-  const bool hold = std::find(request.with.begin(), request.with.end(), "events") != request.with.end();
+  const bool hold = holds_branches(request);
   std::vector<Candidate> result;
   for (std::size_t i = 0; i < systems.size(); ++i) {
     for (const Ties ties : {Ties::ascending, Ties::descending}) {
@@ -152,6 +157,38 @@ std::size_t symbol_count(const system::EquationSystem& system, symbolic::SymbolK
   return count;
 }
 
+/// The systems of trees with the residual, for derivatives: one per form. M serves the accelerations too, so that one
+/// factorisation is enough, in both orders of elimination. Where the formulation solves for the derivatives itself, its
+/// own accelerations serve them.
+std::vector<std::unique_ptr<AbiFunctions>> with_residual(const std::vector<system::EquationSystem>& systems,
+                                                         const Request& request) {
+  std::vector<std::unique_ptr<AbiFunctions>> result;
+  if (!request.residual || !systems.front().contacts.empty()) return result;
+  const std::optional<system::Residual> residual = request.residual();
+  if (!residual) return result;
+  std::vector<std::pair<system::Approach, system::Form>> known;
+  const auto add = [&](system::EquationSystem system, Ties ties) {
+    result.push_back(std::make_unique<AbiFunctions>(std::move(system), request.fix, ties, holds_branches(request)));
+  };
+  for (const system::EquationSystem& system : systems) {
+    const bool articulated = system.formulation == "articulated";
+    if (system.formulation != "recursive" && !articulated) continue;
+    system::EquationSystem copy = system;
+    copy.residual = residual;
+    if (articulated && system.solution && system.active.empty()) add(copy, Ties::ascending);
+    const std::pair<system::Approach, system::Form> form{system.approach, system.form};
+    if (std::find(known.begin(), known.end(), form) != known.end()) continue;
+    known.push_back(form);
+    copy.solution.reset();
+    for (auto* solved : {&copy.residual->qddot_by_q, &copy.residual->qddot_by_qdot, &copy.residual->M_inverse})
+      solved->clear();
+    copy.residual->pivots.clear();
+    add(copy, Ties::ascending);
+    add(copy, Ties::descending);
+  }
+  return result;
+}
+
 FunctionExpressions function_expressions(AbiFunctions& functions, const std::string& name, const Request& request) {
   static const std::map<std::string_view, FunctionExpressions (AbiFunctions::*)()> formulas{
       {"jac", &AbiFunctions::jac},
@@ -170,6 +207,49 @@ FunctionExpressions function_expressions(AbiFunctions& functions, const std::str
   throw Error("program", {}, fmt::format("there is no function `{}`", name),
               fmt::format("available functions: {}", fmt::join(abi::optional_functions(), ", ")));
 }
+
+/// The cheapest of several ways to the same derivatives, which need not be that of the right-hand side.
+class Derivatives {
+ public:
+  Derivatives(const std::vector<system::EquationSystem>& systems, const Request& request, AbiFunctions& chosen)
+      : systems_(systems), request_(request), chosen_(chosen) {}
+
+  Function cheapest(const std::string& name) {
+    if (ways_.empty()) {
+      others_ = with_residual(systems_, request_);
+      ways_.push_back(&chosen_);
+      for (const std::unique_ptr<AbiFunctions>& other : others_) ways_.push_back(other.get());
+    }
+    std::vector<FunctionExpressions> wanted;
+    std::vector<PolynomialGraph> raw;
+    std::vector<std::size_t> costs;
+    for (AbiFunctions* functions : ways_) {
+      wanted.push_back(function_expressions(*functions, name, request_));
+      raw.push_back(as_derived(*functions, wanted.back()));
+      costs.push_back(count_operations(tested(flatten(raw.back(), false))).cost());
+    }
+    const std::size_t least = *std::min_element(costs.begin(), costs.end());
+    std::optional<PolynomialGraph> best;
+    std::size_t best_cost = 0, which = 0;
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      if (static_cast<double>(costs[i]) > max_cost_ratio * static_cast<double>(least)) continue;
+      PolynomialGraph graph = optimised(starts(raw[i]));
+      const std::size_t cost = count_operations(graph).cost();
+      if (best && cost >= best_cost) continue;
+      best = std::move(graph);
+      best_cost = cost;
+      which = i;
+    }
+    return finished(*best, wanted[which]);
+  }
+
+ private:
+  const std::vector<system::EquationSystem>& systems_;
+  const Request& request_;
+  AbiFunctions& chosen_;
+  std::vector<std::unique_ptr<AbiFunctions>> others_;
+  std::vector<AbiFunctions*> ways_;
+};
 
 }  // namespace
 
@@ -201,13 +281,17 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
     const std::vector<PolynomialGraph> graphs = starts(as_derived(*chosen.functions, wanted));
     program.functions.push_back(finished(request.optimise ? optimised(graphs) : graphs[0], wanted));
   };
+  Derivatives derivatives(systems, request, *chosen.functions);
   for (const std::string& name : request.with) {
     if (name == "outputs" || name == "rhs") continue;  // outputs: by requested names; rhs: always built
     if (name == "taylor") {
       program.taylor = taylor_series(program.functions.front());
       continue;
     }
-    add(function_expressions(*chosen.functions, name, request));
+    if (request.optimise && (name == "jac" || name == "jac_p" || name == "jac_u"))
+      program.functions.push_back(derivatives.cheapest(name));
+    else
+      add(function_expressions(*chosen.functions, name, request));
     if (name == "events") {
       for (const system::Event& event : system.events) program.events.push_back(event.name);
       for (const Kink& kink : chosen.functions->kinks()) program.kinks.emplace_back(program::name(kink));

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +19,9 @@ struct Request {
   std::vector<std::string> outputs;  // names of EquationSystem::outputs; if not empty, "outputs" is built
   std::map<std::uint32_t, symbolic::Rational> fix;  // values that replace parameters
   std::size_t parameters = 0, inputs = 0;           // count in the model, for jac_p, jac_u; 0: those in the equations
-  bool optimise = true;                             // false: code as derived (for tests and comparisons)
+  /// Derives the residual of trees, for derivatives by it. Empty: derivatives from M and f only.
+  std::function<std::optional<system::Residual>()> residual = {};
+  bool optimise = true;  // false: code as derived (for tests and comparisons)
 };
 
 /// Ranks the candidates by the unoptimised cost of their right-hand sides. Optimises those within 1.5 times of the

@@ -52,6 +52,17 @@ struct Solution {
   std::vector<symbolic::Pivot> pivots;
 };
 
+/// The equations as forces that vanish, inertia - applied = A^T lambda, with the accelerations as symbols of their own
+/// (order 2 of each coordinate): inertia = M qddot + h. Its derivatives are those at fixed accelerations.
+struct Residual {
+  std::vector<Ref> inertia, applied;  // n
+  std::vector<Ref> by_q, by_qdot;     // n x n row-major: d inertia_i/dq_j, d inertia_i/dqdot_j
+  // If the formulation solves for them itself, and otherwise empty: -M^-1 by_q, -M^-1 by_qdot, and M^-1 if `applied`
+  // is not 0.
+  std::vector<Ref> qddot_by_q, qddot_by_qdot, M_inverse;
+  std::vector<symbolic::Pivot> pivots;
+};
+
 /// A state of first order, with derivative `rate`: declared by the model, or an integral of a function of time without
 /// a closed form.
 struct FirstOrderState {
@@ -163,6 +174,7 @@ struct EquationSystem {
 
   std::optional<QuasiVelocityEquations> quasi;  // equivalent equations in quasi-velocities
   std::optional<Solution> solution;             // equal to the solution from M, f, A, gamma
+  std::optional<Residual> residual;             // equal to M qddot - f
 
   std::vector<Contact> contacts;
 

@@ -38,6 +38,16 @@ void for_each_expression(System& system, Visit&& visit) {
       visit(pivot.scale, ExpressionRole::motion);
     }
   }
+  if (system.residual) {
+    auto& residual = *system.residual;
+    for (auto* list : {&residual.inertia, &residual.applied, &residual.by_q, &residual.by_qdot, &residual.qddot_by_q,
+                       &residual.qddot_by_qdot, &residual.M_inverse})
+      all(*list, ExpressionRole::motion);
+    for (auto& pivot : residual.pivots) {
+      visit(pivot.pivot, ExpressionRole::motion);
+      visit(pivot.scale, ExpressionRole::motion);
+    }
+  }
   for (auto& contact : system.contacts) {
     all(contact.slip, ExpressionRole::slip);
     all(contact.slip_rate, ExpressionRole::contact);

@@ -61,3 +61,46 @@ TEST_CASE(
       CHECK(furthest(jac_p, j, [j](auto& a) -> cln::cl_R& { return a.p[j]; }) < as_good_as_exact);
   }
 }
+
+namespace {
+
+/// A serial arm of pin joints, axes in turn along e3 and e2, every mass, length and inertia a parameter.
+std::string arm(int joints) {
+  std::string text = "format = 1\n[parameters]\ng = \"9.81 m/s^2\"\n", bodies, base;
+  for (int k = 1; k <= joints; ++k) {
+    const std::string own = std::to_string(k), before = "b" + std::to_string(k - 1), axis = k % 2 == 1 ? "3" : "2";
+    for (const char* length : {"L", "c"}) {
+      if (k < joints || length[0] == 'c') text += length + own + " = \"0.3 m\"\n";
+    }
+    text += "m" + own + " = \"1.2 kg\"\n";
+    for (const char* inertia : {"A", "B", "C"}) text += inertia + own + " = \"0.02 kg*m^2\"\n";
+    bodies += "[[body]]\nname = \"b" + own + "\"\nmass = \"m" + own + "\"\ninertia = { principal = [\"A" + own +
+              "\", \"B" + own + "\", \"C" + own + "\"] }\nposition = \"" + base + "c" + own + "*b" + own +
+              ".e1\"\nrotation = { axis = \"" + (k > 1 ? before + ".e" : "E") + axis + "\", angle = \"q" + own +
+              "\" }\n" + (k > 1 ? "relative_to = \"" + before + "\"\n" : "");
+    if (k < joints)
+      bodies += "[[point]]\nname = \"J" + own + "\"\nposition = \"" + base + "L" + own + "*b" + own + ".e1\"\n";
+    base = "J" + own + " + ";
+  }
+  return text + bodies + "[[force]]\ngravity = \"-g*E3\"\n";
+}
+
+}  // namespace
+
+TEST_CASE("the Jacobian of a serial arm grows with the number of its entries and needs one factorisation") {
+  struct Size {
+    int joints;
+    std::size_t flops;
+  };
+  for (const Size& size : {Size{7, 4400}, Size{20, 34'000}}) {
+    CAPTURE(size.joints);
+    const auto model = std::make_shared<const model::Model>(model::read_model_text(arm(size.joints), "arm"));
+    const auto derived = pipeline::derive_model(model, pipeline::ApproachChoice::automatic);
+    program::Request request;
+    request.with = {"jac"};
+    const program::Function jac = pipeline::make_program(*derived, request).functions[1];
+    REQUIRE(jac.name == "jac");
+    CHECK(jac.operations.flops() <= size.flops);
+    CHECK(jac.operations.div <= static_cast<std::size_t>(size.joints));
+  }
+}

@@ -164,3 +164,30 @@ TEST_CASE("the document loads amssymb only if a name needs it") {
   CHECK(document(model::read_model_text(text, "m.toml")).find("amssymb") == std::string::npos);
   if (std::system("command -v pdflatex > /dev/null 2>&1") == 0) CHECK(compiles(with, "amssymb"));
 }
+
+TEST_CASE("a planar body has one moment of inertia, about the axis of the plane") {
+  const std::string text = document(model::read_model_text(R"(format = 1
+[parameters]
+m = "1 kg"
+L = "2 m"
+[[body]]
+name = "rod"
+mass = "m"
+inertia = "m*L^2/12"
+position = { cartesian = ["x", "y"] }
+rotation = { axis = "E3", angle = "theta" }
+)",
+                                                           "rod"));
+  const std::size_t at = text.find("its moment of inertia about ");
+  REQUIRE(at != std::string::npos);
+  CHECK(text.substr(at, text.find('.', at) - at).find("3}") != std::string::npos);
+  CHECK(text.find("own axes are") == std::string::npos);
+}
+
+TEST_CASE("the document names the axes of the components of omega, and their indices") {
+  const std::string top = document(model::read_model(test::source_folder() + "/models/R10_lagrange_top.toml"));
+  CHECK(top.find("along the axes of the body before its last rotation.") != std::string::npos);
+  CHECK(top.find("the index $k$ is that of the axis and $b$ that of the body: 1 for ") != std::string::npos);
+  const std::string body = document(model::read_model(test::source_folder() + "/models/R1_free_body.toml"));
+  CHECK(body.find("The components are taken along the axes of the body.") != std::string::npos);
+}

@@ -6,41 +6,37 @@ namespace {
 
 using symbolic::cross;
 
-/// N = I alpha + H a + n, F = H^T alpha + M a + f: the moment about the origin and the force required by a link and all
-/// links beyond it.
-struct Articulated {
-  Mat3 I, H, M;
-  Vec3 n, f;
-};
-
-/// The equation of one eliminated acceleration: u = (r - N.alpha - F.a)/D.
-struct Eliminated {
-  Vec3 angular, linear;
-  Ref r, D;
-  Vec3 N, F;
-  std::size_t index;
-};
-
 class Elimination {
  public:
   Elimination(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion)
       : dag_(dag), tree_(tree), motion_(motion) {}
 
   system::Solution operator()() {
-    const std::size_t count = tree_.links.size();
-    for (std::size_t l = 0; l < count; ++l) bodies_.push_back(rigid(l));
-    eliminated_.resize(count);
-    for (std::size_t l = count; l-- > 0;) {
-      eliminate(l);
-      if (tree_.links[l].parent >= 0) pass(l);
-    }
+    inwards();
     result_.qddot.assign(tree_.Q.size(), dag_.zero());
-    for (std::size_t l = 0; l < count; ++l) accelerate(l);
+    for (std::size_t l = 0; l < tree_.links.size(); ++l) accelerate(l);
     return std::move(result_);
+  }
+
+  ArticulatedTree bodies() {
+    inwards();
+    return {std::move(complete_), std::move(eliminated_)};
   }
 
  private:
   static std::size_t place(int link) { return static_cast<std::size_t>(link); }
+
+  void inwards() {
+    const std::size_t count = tree_.links.size();
+    for (std::size_t l = 0; l < count; ++l) bodies_.push_back(rigid(l));
+    complete_.resize(count);
+    eliminated_.resize(count);
+    for (std::size_t l = count; l-- > 0;) {
+      complete_[l] = bodies_[l];
+      eliminate(l);
+      if (tree_.links[l].parent >= 0) pass(l);
+    }
+  }
 
   Articulated rigid(std::size_t l) {
     const BodyLink& link = tree_.links[l];
@@ -49,13 +45,6 @@ class Elimination {
     body.n = gyroscopic(dag_, link.inertia, motion_[l].w);
     body.f = times(dag_, motion_[l].W, link.moment);
     return body;
-  }
-
-  static std::size_t unit(const Dag& dag, const Vec3& v) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (dag.is_one(v[k]) && dag.is_zero(v[(k + 1) % 3]) && dag.is_zero(v[(k + 2) % 3])) return k;
-    }
-    return 3;
   }
 
   /// a - x y^T/D
@@ -98,11 +87,11 @@ class Elimination {
   /// Along a freedom that is one of the axes the remaining inertia is 0: exact zeros in place of differences, and the
   /// applied force.
   void clear(Articulated& body, const Vec3& s, const Vec3& v, Ref Q) {
-    if (const std::size_t k = unit(dag_, s); k < 3 && is_zero(dag_, v)) {
+    if (const std::size_t k = unit_axis(dag_, s); k < 3 && is_zero(dag_, v)) {
       for (std::size_t i = 0; i < 3; ++i) body.I[i][k] = body.I[k][i] = body.H[k][i] = dag_.zero();
       body.n[k] = Q;
     }
-    if (const std::size_t k = unit(dag_, v); k < 3 && is_zero(dag_, s)) {
+    if (const std::size_t k = unit_axis(dag_, v); k < 3 && is_zero(dag_, s)) {
       for (std::size_t i = 0; i < 3; ++i) body.M[i][k] = body.M[k][i] = body.H[i][k] = dag_.zero();
       body.f[k] = Q;
     }
@@ -161,12 +150,23 @@ class Elimination {
   const BodyTree& tree_;
   const std::vector<LinkMotion>& motion_;
   system::Solution result_;
-  std::vector<Articulated> bodies_;
+  std::vector<Articulated> bodies_, complete_;
   std::vector<std::vector<Eliminated>> eliminated_;
   std::vector<std::pair<Vec3, Vec3>> acceleration_;
 };
 
 }  // namespace
+
+std::size_t unit_axis(const Dag& dag, const Vec3& v) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (dag.is_one(v[k]) && dag.is_zero(v[(k + 1) % 3]) && dag.is_zero(v[(k + 2) % 3])) return k;
+  }
+  return 3;
+}
+
+ArticulatedTree articulated_bodies(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) {
+  return Elimination(dag, tree, motion).bodies();
+}
 
 system::Solution body_accelerations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) {
   return Elimination(dag, tree, motion)();

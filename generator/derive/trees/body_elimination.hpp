@@ -9,6 +9,33 @@
 
 namespace eomgen::derive {
 
+/// N = I alpha + H a + n, F = H^T alpha + M a + f: the moment about the origin and the force required by a link and all
+/// links beyond it.
+struct Articulated {
+  Mat3 I, H, M;
+  Vec3 n, f;
+};
+
+/// The equation of one eliminated acceleration: u = (r - N.alpha - F.a)/D.
+struct Eliminated {
+  Vec3 angular, linear;
+  Ref r, D;
+  Vec3 N, F;
+  std::size_t index;
+};
+
+/// One entry per link: its inertia before its own accelerations are eliminated, and their equations in the order of its
+/// freedoms.
+struct ArticulatedTree {
+  std::vector<Articulated> bodies;
+  std::vector<std::vector<Eliminated>> eliminated;
+};
+
+ArticulatedTree articulated_bodies(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion);
+
+/// The index of the axis k if v is the unit vector along it; otherwise 3.
+std::size_t unit_axis(const Dag& dag, const Vec3& v);
+
 /// The derivatives of the rates (or of the angular velocities in their place), and the pivots.
 system::Solution body_accelerations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion);
 

@@ -6,13 +6,6 @@ namespace {
 
 using symbolic::cross;
 
-/// Mass, first moment of mass and inertia about the origin of the link.
-struct Composite {
-  Ref mass;
-  Vec3 moment;
-  Mat3 inertia;
-};
-
 /// Momentum of a composite: linear, and angular about the origin.
 struct Momentum {
   Vec3 linear, angular;
@@ -27,7 +20,7 @@ class Recursion {
     const std::size_t n = tree_.Q.size();
     result_ = {std::vector<Ref>(n * n, dag_.zero()), tree_.Q};
     forces();
-    composites();
+    composite_ = composite_bodies(dag_, tree_);
     for (std::size_t l = 0; l < tree_.links.size(); ++l) {
       for (const Freedom& freedom : tree_.links[l].freedoms) column(l, freedom);
     }
@@ -78,32 +71,6 @@ class Recursion {
     }
   }
 
-  void composites() {
-    for (const BodyLink& link : tree_.links) composite_.push_back({link.mass, link.moment, link.inertia});
-    for (std::size_t l = tree_.links.size(); l-- > 0;) {
-      const BodyLink& link = tree_.links[l];
-      if (link.parent < 0) continue;
-      const Composite& own = composite_[l];
-      Composite& to = composite_[place(link.parent)];
-      const Vec3 md = symbolic::scale(dag_, own.mass, link.offset);
-      const Vec3 h =
-          link.is_carried_by_parent() ? link.rotation.to_parent(dag_, own.moment) : symbolic::zero_vector(dag_);
-      to.mass = dag_.add(to.mass, own.mass);
-      to.moment = symbolic::add(dag_, to.moment, symbolic::add(dag_, md, h));
-      if (link.is_carried_by_parent())
-        to.inertia = add(dag_, to.inertia, link.rotation.to_parent(dag_, own.inertia, true));
-      // m (d.d 1 - d d^T) + 2 d.h 1 - d h^T - h d^T
-      const Ref trace = dag_.add(dot(dag_, md, link.offset), dag_.mul(dag_.integer(2), dot(dag_, link.offset, h)));
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-          Ref outer = dag_.mul(md[i], link.offset[k]);
-          outer = dag_.add(outer, dag_.add(dag_.mul(link.offset[i], h[k]), dag_.mul(h[i], link.offset[k])));
-          to.inertia[i][k] = dag_.add(to.inertia[i][k], i == k ? dag_.sub(trace, outer) : dag_.neg(outer));
-        }
-      }
-    }
-  }
-
   /// The column of M: the momentum of everything that a coordinate moves, projected on it and on the coordinates
   /// further in.
   void column(std::size_t l, const Freedom& freedom) {
@@ -134,6 +101,32 @@ class Recursion {
 };
 
 }  // namespace
+
+std::vector<Composite> composite_bodies(Dag& dag, const BodyTree& tree) {
+  std::vector<Composite> composite;
+  for (const BodyLink& link : tree.links) composite.push_back({link.mass, link.moment, link.inertia});
+  for (std::size_t l = tree.links.size(); l-- > 0;) {
+    const BodyLink& link = tree.links[l];
+    if (link.parent < 0) continue;
+    const Composite& own = composite[l];
+    Composite& to = composite[static_cast<std::size_t>(link.parent)];
+    const Vec3 md = symbolic::scale(dag, own.mass, link.offset);
+    const Vec3 h = link.is_carried_by_parent() ? link.rotation.to_parent(dag, own.moment) : symbolic::zero_vector(dag);
+    to.mass = dag.add(to.mass, own.mass);
+    to.moment = symbolic::add(dag, to.moment, symbolic::add(dag, md, h));
+    if (link.is_carried_by_parent()) to.inertia = add(dag, to.inertia, link.rotation.to_parent(dag, own.inertia, true));
+    // m (d.d 1 - d d^T) + 2 d.h 1 - d h^T - h d^T
+    const Ref trace = dag.add(dot(dag, md, link.offset), dag.mul(dag.integer(2), dot(dag, link.offset, h)));
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        Ref outer = dag.mul(md[i], link.offset[k]);
+        outer = dag.add(outer, dag.add(dag.mul(link.offset[i], h[k]), dag.mul(h[i], link.offset[k])));
+        to.inertia[i][k] = dag.add(to.inertia[i][k], i == k ? dag.sub(trace, outer) : dag.neg(outer));
+      }
+    }
+  }
+  return composite;
+}
 
 BodyEquations body_equations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) {
   return Recursion(dag, tree, motion)();

@@ -14,6 +14,16 @@ struct BodyEquations {
   std::vector<Ref> M, f;  // n x n row-major, n; for the rates or the angular velocities in their place
 };
 
+/// Mass, first moment of mass and inertia of a link and of all links beyond it, about the origin of the link.
+struct Composite {
+  Ref mass;
+  Vec3 moment;
+  Mat3 inertia;
+};
+
+/// One entry per link.
+std::vector<Composite> composite_bodies(Dag& dag, const BodyTree& tree);
+
 BodyEquations body_equations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion);
 
 }  // namespace eomgen::derive
