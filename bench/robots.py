@@ -214,7 +214,7 @@ def measure(program, path, floating, folder):
     x, dx, p = (ctypes.c_double * (2 * n))(), (ctypes.c_double * (2 * n))(), (ctypes.c_double * 1000)()
     getattr(code, name + "_defaults")(x, p)
     rhs = getattr(code, name + "_rhs")
-    rhs.argtypes = [ctypes.c_double] + [ctypes.c_void_p] * 3 + [ctypes.c_int, ctypes.c_void_p]
+    rhs.argtypes = [ctypes.c_double] + [ctypes.c_void_p] * 3 + [ctypes.c_void_p] * 2
     generator = random.Random(3)
     worst = 0.0
     for _ in range(STATES):
