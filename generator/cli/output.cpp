@@ -117,7 +117,9 @@ auto writing(Write write) {
   try {
     return write();
   } catch (const std::system_error& error) {  // the writer belongs to the runtime, which has no Error
-    throw Error("cli", {}, error.what(), "see to space on that disk and to your rights there",
+    throw Error("cli", {}, error.what(),
+                error.code() == std::errc::broken_pipe ? "let the program that reads it read to the end"
+                                                       : "see to space on that disk and to your rights there",
                 emit::write_fault(error.code()));
   }
 }

@@ -4,6 +4,7 @@
 #include <cln/float.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -36,10 +37,17 @@ int report(const Error& error) {
   return error.exit_code();
 }
 
+/// Whether standard output is a pipe without a reader, as after `| head`.
+bool has_lost_reader() {
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
+}
+
 int output_lost() {
-  print_message(
-      "error: standard output could not be written\n  remedy: see to space on that disk, or to the program that reads "
-      "it\n");
+  print_message(has_lost_reader()
+                    ? "error: the program that reads standard output ended before all of it was written\n  remedy: let "
+                      "it read to the end, or write to a file\n"
+                    : "error: standard output could not be written\n  remedy: see to space on that disk\n");
   return exit_internal;
 }
 

@@ -3,12 +3,8 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 
 namespace eomgen::cli {
-
-/// Number of rows from t0 to t1 at intervals of `every` seconds, with both ends.
-double expected_rows(double t0, double t1, double every);
 
 /// Prints the expected size of tables with more than a million rows. Throws Error if the table is unreasonably large,
 /// unless `yes`, and if t + `every` rounds to t. `columns`: without t; 0 if nothing is written to a file.

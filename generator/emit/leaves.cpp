@@ -59,7 +59,7 @@ std::string leaf_of_lanes(const Dialect& dialect, const ModelNames& names, const
       return takes_inputs ? entry(4)
                           : fmt::format("{}all({})", dialect.lane_prefix, dialect.value(context.inputs.at(i).value));
     case Slot::contact:
-      return fmt::format("{}{}({}, {})", dialect.lane_prefix, i % 2 == 1 ? "presses" : "slides", block, i / 2);
+      return fmt::format("{}{}({}, {})", dialect.lane_prefix, i % 2 == 1 ? "normal_sign" : "slides", block, i / 2);
     case Slot::side: return fmt::format("{}side({}, {})", dialect.lane_prefix, block, names.first_kink + i);
     default: break;
   }

@@ -16,10 +16,11 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
       table.declare(prefix + name);
   }
   for (const char* name :
-       {"block", "state",  "call",    "kernel", "target",       "lanes",    "mask",     "bits",  "memory", "load",
-        "store", "at",     "all",     "select", "abs",          "sign",     "every",    "whole", "place",  "to",
-        "side",  "slides", "presses", "sincos", "sincos_lanes", "alone",    "apart",    "run",   "INLINE", "WIDTH",
-        "MOST",  "MET",    "LAST",    "NAMED",  "NAMED_FOR",    "NAMED_SO", "FOR_WIDTH"})
+       {"block",        "state", "call",         "kernel",   "target",   "lanes",  "mask",        "bits",
+        "memory",       "load",  "store",        "at",       "all",      "select", "abs",         "sign",
+        "every",        "whole", "place",        "to",       "side",     "slides", "normal_sign", "sincos",
+        "sincos_lanes", "alone", "lane_by_lane", "run",      "INLINE",   "WIDTH",  "MOST",        "MET",
+        "LAST",         "NAMED", "NAMED_FOR",    "NAMED_SO", "FOR_WIDTH"})
     table.declare(mangled_id(context.id) + "_batch_" + name);
   for (const Quantity& coordinate : context.coordinates) names.all_coordinates.push_back(identifier(coordinate.name));
   for (const std::uint32_t i : program.free) names.state.push_back(table.declare(context.coordinates.at(i).name));
@@ -30,7 +31,7 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
   for (const std::uint32_t i : program.free) names.acceleration.push_back(context.coordinates.at(i).name + "_ddot");
   for (const program::ContactInfo& contact : program.contacts) {
     names.contacts.push_back(table.declare(identifier("slides_" + contact.name)));
-    names.contacts.push_back(table.declare(identifier("presses_" + contact.name)));
+    names.contacts.push_back(table.declare(identifier("normal_force_sign_" + contact.name)));
   }
   for (const Quantity& q : context.parameters) names.parameters.push_back(table.declare(q.name));
   for (const Quantity& q : context.inputs) names.inputs.push_back(table.declare(q.name));

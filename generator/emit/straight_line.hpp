@@ -50,9 +50,9 @@ struct Dialect {
 struct ModelNames {
   std::vector<std::string> state;  // entries of x: coordinates, then velocities
   std::vector<std::string> parameters, inputs, outputs, reactions, events;
-  std::vector<std::string> sides;            // kinks whose branches `mode` freezes
-  std::size_t first_kink = 0;                // entry of `mode`
-  std::vector<std::string> contacts;         // per contact: slides_NAME, presses_NAME (eom/modes/contact_state.hpp)
+  std::vector<std::string> sides;     // kinks whose branches `mode` freezes
+  std::size_t first_kink = 0;         // entry of `mode`
+  std::vector<std::string> contacts;  // per contact: slides_NAME, normal_force_sign_NAME (eom/modes/contact_state.hpp)
   std::vector<std::string> acceleration;     // "theta_ddot", for the free coordinates
   std::vector<std::string> all_coordinates;  // with eliminated ones (for names that a Program suggests)
   std::vector<std::string> prepared;         // entries of w, if lanes are loaded one by one

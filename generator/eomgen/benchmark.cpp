@@ -5,6 +5,7 @@
 #include "analysis/stress_test.hpp"
 #include "eomgen/call.hpp"
 #include "eomgen/model.hpp"
+#include "eomgen/validation.hpp"
 
 namespace eomgen {
 namespace {
@@ -29,6 +30,7 @@ Request request_of(const std::shared_ptr<const model::Model>& model, const Optio
 }  // namespace
 
 Benchmark Model::benchmark(const BenchmarkOptions& options, const CallControl& control) const {
+  require_valid(options);
   return with_lock(control, [&](CallListener& call) {
     auto request = request_of<analysis::BenchmarkRequest>(read_, options, control, call);
     request.other_libraries = options.other_libraries;
@@ -46,6 +48,7 @@ Benchmark Model::benchmark(const BenchmarkOptions& options, const CallControl& c
 }
 
 StressTest Model::stress_test(const StressOptions& options, const CallControl& control) const {
+  require_valid(options);
   return with_lock(control, [&](CallListener& call) {
     auto request = request_of<analysis::StressRequest>(read_, options, control, call);
     request.max_steps = options.max_steps;

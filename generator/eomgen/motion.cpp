@@ -7,6 +7,7 @@
 #include "analysis/inverse.hpp"
 #include "eomgen/model.hpp"
 #include "eomgen/prepared_runs.hpp"
+#include "eomgen/validation.hpp"
 
 namespace eomgen {
 namespace {
@@ -87,6 +88,7 @@ double Motion::final_value(const std::string& name) const {
 }
 
 Motion Model::run(const RunOptions& options, const CallControl& control) const {
+  require_valid(options);
   return with_listener(control, [&](CallListener& call) {
     Motion motion;
     PreparedRun prepared;
@@ -96,6 +98,9 @@ Motion Model::run(const RunOptions& options, const CallControl& control) const {
       prepared = runs_->prepare(request_of(read_, options));
       run = prepared.bind(prepared.plan->scene, options.error_estimate);
       take_columns(prepared, motion);
+      const run::Scene& scene = prepared.plan->scene;
+      require_rows(scene.t0, scene.t1, pipeline::row_interval(scene), motion.columns.size(), !options.row,
+                   "RunOptions::every");
     }
     const std::vector<std::string>& names = run->code().output_names;
     std::vector<std::size_t> index;
@@ -123,6 +128,7 @@ Motion Model::run(const RunOptions& options, const CallControl& control) const {
 }
 
 InverseDynamics Model::inverse_dynamics(const InverseOptions& options, const CallControl& control) const {
+  require_valid(options);
   return with_lock(control, [&](CallListener& call) {
     InverseDynamics result;
     analysis::InverseRequest request;
@@ -132,6 +138,9 @@ InverseDynamics Model::inverse_dynamics(const InverseOptions& options, const Cal
     request.constraints = options.constraints;
     request.seed = options.seed;
     request.interrupt = call.stopped();
+    request.begin = [](const run::Scene& scene, const std::vector<std::string>& columns) {
+      require_rows(scene.t0, scene.t1, pipeline::row_interval(scene), columns.size(), true, "InverseOptions::every");
+    };
     request.row = [&](double t, std::span<const double> values) {
       result.times.push_back(t);
       result.rows.emplace_back(values.begin(), values.end());

@@ -8,6 +8,7 @@
 #include <eom/hybrid/stepwise_run.hpp>
 
 #include "eomgen/compiled_state.hpp"
+#include "eomgen/validation.hpp"
 #include "model/names.hpp"
 #include "run/bind.hpp"
 #include "run/eligibility.hpp"
@@ -64,6 +65,7 @@ struct Simulation::Data {
   std::shared_ptr<const CompiledModel::State> model;
   std::shared_ptr<pipeline::BoundRun> bound;
   std::function<void(double t, std::span<const double> values)> row;
+  double every;            // interval of rows, s; 0: no rows
   Advance* now = nullptr;  // the advance in progress
   eom::hybrid::StepwiseRun run;
   std::vector<double> parameters;
@@ -77,6 +79,7 @@ Simulation::Data::Data(const CompiledModel& of, const SimulationOptions& options
         return model->run.bind(model->runs->scene(model->run, overrides_of(options)), false);
       }()),
       row(options.row),
+      every(options.every.value_or(0)),
       run(problem(options)),
       parameters(run.parameters().begin(), run.parameters().end()) {}
 
@@ -85,9 +88,7 @@ eom::hybrid::Problem Simulation::Data::problem(const SimulationOptions& options)
   run::RunRequest& request = bound->request();
   const std::string solver = run::choose_solver(scene.solver, scene).first;
   run::require_eligible(solver, run::features_of(scene) | run::features_of(bound->code()));
-  request.every = options.every.value_or(0);
-  if (!(request.every >= 0) || !std::isfinite(request.every))
-    throw Error("simulation", {}, "the interval of rows is not positive", "give a number of seconds, or none");
+  request.every = every;
   request.max_steps = options.max_steps;
   request.watch_power = false;
   request.row = [this](double t, std::span<const double> y) { write_row(t, y); };
@@ -111,6 +112,8 @@ Advance Simulation::Data::advance(double t_end, bool one_step, const CallControl
   if (std::isnan(t_end) || t_end < run.t())
     throw Error("simulation", {}, fmt::format("an advance to t = {} would end before t = {}", t_end, run.t()),
                 "give a later time, or restore an earlier state");
+  if (every > 0 && !one_step)
+    require_rows(run.t(), t_end, every, model->outputs.size(), !row, "SimulationOptions::every");
   return with_listener(control, [&](CallListener& call) {
     Advance result;
     now = &result;
@@ -140,7 +143,10 @@ std::size_t Simulation::Data::place_of_input(const std::string& name) const {
 }
 
 Simulation::Simulation(const CompiledModel& model, const SimulationOptions& options)
-    : data_(std::make_unique<Data>(model, options)) {}
+    : data_([&] {
+        require_valid(options);
+        return std::make_unique<Data>(model, options);
+      }()) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;

@@ -2,15 +2,14 @@
 #include "emit/targets.hpp"
 #include "eomgen/call.hpp"
 #include "eomgen/model.hpp"
+#include "eomgen/validation.hpp"
 #include "pipeline/emission.hpp"
 #include "pipeline/verification.hpp"
 
 namespace eomgen {
 
 Certificate Model::verify(const VerifyOptions& options, const CallControl& control) const {
-  if (options.digits < 20 || options.digits > 300 || options.points < 1)
-    throw Error("library", {}, "a verification needs 20 to 300 digits and at least one point",
-                "set VerifyOptions::digits and VerifyOptions::points accordingly");
+  require_valid(options);
   return with_lock(control, [&](CallListener&) {
     const verify::Certificate found =
         pipeline::verify_model(read_, {options.digits, options.points, options.seed, options.compile});

@@ -4,6 +4,7 @@
 #include "analysis/steady_search.hpp"
 #include "eomgen/call.hpp"
 #include "eomgen/model.hpp"
+#include "eomgen/validation.hpp"
 
 namespace eomgen {
 namespace {
@@ -25,6 +26,7 @@ std::vector<std::complex<double>> eigenvalues(const linear::Spectrum& spectrum) 
 }  // namespace
 
 Linearisation Model::linearise(const LineariseOptions& options, const CallControl& control) const {
+  require_valid(options);
   return with_lock(control, [&](CallListener&) {
     run::Overrides overrides;
     overrides.values = exact_rationals(options.parameters);
@@ -45,6 +47,7 @@ Linearisation Model::linearise(const LineariseOptions& options, const CallContro
 }
 
 SteadyMotions Model::steady_motions(const SteadyOptions& options, const CallControl& control) const {
+  require_valid(options);
   return with_lock(control, [&](CallListener& call) {
     analysis::SteadyRequest request;
     request.model = read_;

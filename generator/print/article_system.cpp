@@ -22,6 +22,16 @@ std::string number_word(std::size_t n, const char* one, const char* many) {
   return (n < small.size() ? small[n] : std::to_string(n)) + " " + (n == 1 ? one : many);
 }
 
+/// A value that the model gives in degrees, as written: 48.85 with the sign of degrees. Empty for other values.
+std::string in_degrees(const model::Parameter& parameter) {
+  constexpr std::string_view unit = " deg";
+  const std::string& text = parameter.written;
+  if (!text.ends_with(unit)) return "";
+  const std::string number = text.substr(0, text.size() - unit.size());
+  if (number.empty() || number.find_first_not_of("0123456789.-") != std::string::npos) return "";
+  return "$" + number + "^{\\circ}$";
+}
+
 class System {
  public:
   explicit System(Article& a) : a_(a), m_(a.m), model_(a.model), out_(a.out) {}
@@ -175,10 +185,12 @@ class System {
     std::vector<std::string> values;
     bool all_short = true;
     for (const model::Parameter& p : model_.parameters) {
+      values.push_back(in_degrees(p));
+      if (!values.back().empty()) continue;
       const std::optional<Formula> written =
           p.value == model::no_node ? std::nullopt : reading::as_written(model_, p.value);
       const bool is_short = !written || out_.broken_lines(*written, longest_value).size() == 1;
-      values.push_back(!written ? "" : is_short ? out_.math(*written) : out_.table_cell(*written, longest_value));
+      values.back() = !written ? "" : is_short ? out_.math(*written) : out_.table_cell(*written, longest_value);
       all_short = all_short && is_short;
     }
     out_.raw(std::string("\\begin{longtable}{@{}l") + (all_short ? "l" : "p{0.42\\linewidth}") + "l" +
@@ -187,7 +199,8 @@ class System {
     for (std::uint32_t i = 0; i < model_.parameters.size(); ++i) {
       const model::Parameter& p = model_.parameters[i];
       out_.raw(out_.math(reading::symbol({SymbolKind::parameter, i, 0})) + " & " + values[i] + " & " +
-               unit_in_latex(p.unit.text) + (notes ? " & " + escape_user_text(p.note) : "") + " \\\\[2pt]\n");
+               (in_degrees(p).empty() ? unit_in_latex(p.unit.text) : "") +
+               (notes ? " & " + escape_user_text(p.note) : "") + " \\\\[2pt]\n");
     }
     out_.raw("\\end{longtable}\n");
   }

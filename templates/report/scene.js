@@ -50,12 +50,14 @@ class Scene {
     this.camera.find([...balls, ...ends.map((r) => [...r, 0])], this.down);
   }
 
-  // Position of a joint or a point on a body, else the origin, in body axes.
+  // Position of a joint or a point on a body, in body axes; else the axis of the body towards the origin, which need not
+  // be fixed in the body.
   attached(body, y) {
     const {parts} = this, centre = this.placeAt(y, body.place), axes = this.axesOf(body, y);
     const joint = parts.joints.find((j) => j.of.includes(body.place)), point = parts.places.find((place) => place.from === body.place);
     const spot = joint ? this.position(y, joint.at) : point ? this.position(y, point.at) : origin;
-    return axes.map((e) => dot(e, minus(spot, centre)));
+    const inBody = axes.map((e) => dot(e, minus(spot, centre)));
+    return joint || point ? inBody : nearestAxis(body.inertia.map((i) => this.sizes[i]), inBody);
   }
   axesOf(body, y) {
     if (body.axes === null) return fixedAxes;

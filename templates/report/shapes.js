@@ -54,6 +54,13 @@ function barOfInertia(mass, inertia, spot) {
   return {kind: "bar", faces: placed(cylinderFaces(0.025 * length, length), [side, cross(along, side), along]), radius: length / 2};
 }
 
+// The axis of a body nearest to `spot`, among the two with the smaller moments of inertia.
+function nearestAxis(inertia, spot) {
+  const moments = [inertia[0], inertia[4], inertia[8]], normal = moments.indexOf(Math.max(...moments));
+  const sizes = spot.map((x, k) => k === normal ? 0 : Math.abs(x)), nearest = sizes.indexOf(Math.max(...sizes));
+  return sizes.map((size, k) => k === nearest && size > 0 ? Math.sign(spot[k]) : 0);
+}
+
 // The faces of the convex hull of points; for points in a plane the hull polygon.
 function hullFaces(points) {
   const size = Math.max(...points.map((p) => Math.hypot(...minus(p, points[0])))), least = 1e-9 * size, found = new Set(), faces = [];

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "analysis/drawing/figure.hpp"
+#include "analysis/drawing/placed_solids.hpp"
 #include "analysis/drawing/sketch.hpp"
 #include "analysis/drawing/solids.hpp"
 #include "analysis/drawing/view.hpp"
@@ -237,4 +238,26 @@ TEST_CASE("figure: a figure with too many strokes is refused with their number")
   };
   CHECK(drawn(model(30)).figure.has_value());
   CHECK_THROWS_WITH_AS(drawn(model(300)), doctest::Contains("strokes, above 4000"), Error);
+}
+
+TEST_CASE("solids: a planar body without a joint is a bar along its own axis") {
+  // The centre and the angle of a ladder that disagree in sign: the body's e2 leans left, the line to the origin right.
+  const double theta = 10 * 3.14159265358979 / 180, L = 2, m = 3;
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  inertia(2, 2) = m * L * L / 12;
+  auto [ladder, sizes] = body(m, inertia);
+  ladder.axes = {3, 6};
+  const std::vector<double> values{L / 2 * std::sin(theta), L / 2 * std::cos(theta), 0,  // centre
+                                   std::cos(theta),         std::sin(theta),         0,  // e1
+                                   -std::sin(theta),        std::cos(theta),         0};
+  analysis::DrawnParts parts{};
+  parts.places.push_back({"ladder", "body", std::nullopt, 0});
+  parts.bodies.push_back(ladder);
+  const auto placed = analysis::placed_solids(parts, sizes, values);
+  REQUIRE(placed.size() == 1);
+  REQUIRE(placed[0].solids.size() == 1);
+  const Point size = extent(placed[0].solids[0]);  // in body axes
+  CHECK(std::abs(size.y() - L) < 1e-9);
+  CHECK(size.x() < 0.1 * L);
+  CHECK(analysis::nearest_axis(ladder, sizes, Point(0.3, -0.2, 5)) == Point(1, 0, 0));
 }

@@ -176,6 +176,13 @@ TEST_CASE("a closed or full standard error loses only messages") {
   }
   shell(folder, "{ sleep 0.3; $EOMGEN check p.toml >/dev/null; echo $? >code; } 2>&1 | true");  // without reader
   CHECK(folder.read("code") == "0\n");
+  shell(folder, "{ sleep 0.3; $EOMGEN check p.toml 2>err; echo $? >code; } | true");
+  CHECK(folder.read("code") == "4\n");
+  CHECK(contains(folder.read("err"), "the program that reads standard output ended"));
+  CHECK_FALSE(contains(folder.read("err"), "disk"));
+  shell(folder, "{ sleep 0.3; $EOMGEN run p.toml --out - 2>err; echo $? >code; } | true");
+  CHECK(folder.read("code") == "4\n");
+  CHECK(contains(folder.read("err"), "let the program that reads it read to the end"));
   const ChildResult lost = shell(folder, "$EOMGEN check p.toml >&-");
   CHECK(lost.status == 4);
   CHECK(contains(lost.err, "standard output could not be written"));

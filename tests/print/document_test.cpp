@@ -191,3 +191,24 @@ TEST_CASE("the document names the axes of the components of omega, and their ind
   const std::string body = document(model::read_model(test::source_folder() + "/models/R1_free_body.toml"));
   CHECK(body.find("The components are taken along the axes of the body.") != std::string::npos);
 }
+
+TEST_CASE("angles that the model gives in degrees are printed in degrees") {
+  const std::string text = document(model::read_model_text(R"toml(format = 1
+[parameters]
+alpha = "48.85 deg"
+beta = "0.5 rad"
+m = "1 kg"
+g = "9.81 m/s^2"
+[[particle]]
+name = "P"
+mass = "m"
+position = "x*(cos(alpha + beta)*E1 - sin(alpha)*E2)"
+[coordinates]
+x = "m"
+[[force]]
+gravity = "-g*E2"
+)toml",
+                                                           "incline"));
+  CHECK(text.find("$\\alpha$ & $48.85^{\\circ}$ &  \\\\") != std::string::npos);
+  CHECK(text.find("$\\beta$ & $0.5$ & $\\mathrm{rad}$") != std::string::npos);
+}

@@ -46,7 +46,8 @@ class Placing {
     };
   }
 
-  /// Position of a joint or point on a body in body axes; the origin if it has none.
+  /// Position of a joint or point on a body in body axes. If it has none, the axis of the body towards the origin: the
+  /// origin need not be fixed in the body.
   Point attached(const DrawnBody& body) const {
     Point spot = Point::Zero();
     const auto joint = std::find_if(parts_.joints.begin(), parts_.joints.end(), [&](const DrawnJoint& j) {
@@ -58,7 +59,9 @@ class Placing {
       spot = point(joint->at);
     else if (place != parts_.places.end())
       spot = point(place->at);
-    return axes_of(body).transpose() * (spot - point(parts_.places[body.place].at));
+    const Point in_body = axes_of(body).transpose() * (spot - point(parts_.places[body.place].at));
+    const bool free = joint == parts_.joints.end() && place == parts_.places.end();
+    return free ? nearest_axis(body, sizes_, in_body) : in_body;
   }
 
   bool is_drawn(std::size_t place) const {

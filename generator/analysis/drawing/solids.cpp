@@ -203,4 +203,13 @@ std::optional<Solid> bar_of_inertia(const DrawnBody& body, const std::vector<dou
   return solid;
 }
 
+Point nearest_axis(const DrawnBody& body, const std::vector<double>& sizes, const Point& spot) {
+  Eigen::Index normal = 0, k = 0;
+  inertia_of(body, sizes).diagonal().maxCoeff(&normal);
+  Point candidates = spot.cwiseAbs();
+  candidates[normal] = 0;
+  if (!(candidates.maxCoeff(&k) > 0)) return Point::Zero();
+  return std::copysign(1.0, spot[k]) * Point::Unit(k);
+}
+
 }  // namespace eomgen::analysis

@@ -32,4 +32,7 @@ std::optional<Solid> solid_of_inertia(const DrawnBody& body, const std::vector<d
 /// Returns a bar towards the attachment point `spot`, as long as a uniform bar with the largest moment of inertia.
 std::optional<Solid> bar_of_inertia(const DrawnBody& body, const std::vector<double>& sizes, const Point& spot);
 
+/// Returns the axis of the body nearest to `spot`, among the two with the smaller moments of inertia.
+Point nearest_axis(const DrawnBody& body, const std::vector<double>& sizes, const Point& spot);
+
 }  // namespace eomgen::analysis

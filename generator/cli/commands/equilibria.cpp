@@ -14,6 +14,7 @@
 #include "cli/shared_options.hpp"
 #include "cli/stage_monitor.hpp"
 #include "cli/usage.hpp"
+#include "pipeline/limits.hpp"
 #include "work.hpp"
 
 namespace eomgen::cli {
@@ -168,7 +169,7 @@ Execute declare_equilibria(Arguments& app) {
   add_values(app, *options);
   app.add_list("--hold", options->hold, "OUTPUT=VALUE in place of the conserved momenta; may be repeated");
   app.add_option("--starts", options->starts, "how many starts the search has")
-      .check(whole_number(1, 100000))
+      .check(whole_number(limits::search_starts.least, limits::search_starts.most))
       .show_default();
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }

@@ -15,6 +15,7 @@
 #include "cli/shared_options.hpp"
 #include "cli/table_size.hpp"
 #include "cli/usage.hpp"
+#include "pipeline/limits.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -135,7 +136,7 @@ Execute declare_inverse(Arguments& app) {
   app.add_option("--atol", options->atol, "absolute tolerance where something is free to move")
       .check(nonnegative_number());
   app.add_option("--max-steps", options->max_steps, "the most steps, where something is free to move")
-      .check(whole_number(1, 1'000'000'000'000'000));
+      .check(whole_number(limits::run_steps.least, limits::run_steps.most));
   app.add_output_path("-o,--out", options->out, "the table, a CSV file; without it MODEL_inverse.csv in this folder");
   app.add_flag("--yes", options->yes, "writes a table however large it is");
   return [options](const CommonOptions& common) { return execute(*options, common); };

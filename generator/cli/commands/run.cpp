@@ -18,6 +18,8 @@
 #include "cli/shared_options.hpp"
 #include "cli/table_size.hpp"
 #include "cli/usage.hpp"
+#include "pipeline/limits.hpp"
+#include "pipeline/row_count.hpp"
 #include "pipeline/simulate.hpp"
 
 namespace eomgen::cli {
@@ -45,8 +47,8 @@ class Rows {
     const double every = pipeline::row_interval(scene);
     require_size(scene.t0, scene.t1, every, csv.empty() ? 0 : columns_.size(), yes);
     // The plot stores its points in memory, so it gets no more than it can show.
-    stride_ =
-        std::max<std::uint64_t>(1, static_cast<std::uint64_t>(expected_rows(scene.t0, scene.t1, every) / max_points));
+    stride_ = std::max<std::uint64_t>(
+        1, static_cast<std::uint64_t>(pipeline::expected_rows(scene.t0, scene.t1, every) / max_points));
     if (!csv.empty()) csv_.emplace(csv, columns_);
   }
 
@@ -209,7 +211,7 @@ Execute declare_run(Arguments& app) {
   app.add_option("--max-step", options->max_step, "the longest step where steps are chosen").check(positive_number());
   add_values(app, *options);
   app.add_option("--max-steps", options->max_steps, "the most steps, accepted and rejected")
-      .check(whole_number(1, 1'000'000'000'000'000));
+      .check(whole_number(limits::run_steps.least, limits::run_steps.most));
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
   app.add_option("--every", options->every, "interval of the rows of the CSV file").check(positive_number());
   app.add_output_path("-o,--out", options->out, "the table, a CSV file");

@@ -15,6 +15,7 @@
 #include "cli/shared_options.hpp"
 #include "cli/stress_plot.hpp"
 #include "cli/usage.hpp"
+#include "pipeline/limits.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -185,7 +186,7 @@ Execute declare_stress(Arguments& app) {
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
   app.add_list("--solver", options->solvers, "only these solvers").suggest_values(run::solver_names());
   app.add_option("--steps", options->steps, "a run with more steps is ended and reported")
-      .check(whole_number(100, 1'000'000'000))
+      .check(whole_number(limits::stress_steps.least, limits::stress_steps.most))
       .show_default();
   app.add_option("--seconds", options->seconds, "a guard: a run that takes longer is interrupted and reported")
       .check(positive_number())

@@ -8,6 +8,7 @@
 #include "cli/output.hpp"
 #include "cli/stage_monitor.hpp"
 #include "cli/usage.hpp"
+#include "pipeline/limits.hpp"
 #include "pipeline/verification.hpp"
 
 namespace eomgen::cli {
@@ -85,9 +86,11 @@ Execute declare_verify(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_option("--digits", options->digits, "decimal digits of the arithmetic")
-      .check(whole_number(20, 300))
+      .check(whole_number(limits::verification_digits.least, limits::verification_digits.most))
       .show_default();
-  app.add_option("--points", options->points, "random states").check(whole_number(1, 10000)).show_default();
+  app.add_option("--points", options->points, "random states")
+      .check(whole_number(limits::verification_points.least, limits::verification_points.most))
+      .show_default();
   app.add_flag("--no-compile", options->no_compile, "leave the emitted code out, which needs a C compiler");
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }

@@ -32,10 +32,10 @@ Mat3 block(const Mat6& a, std::size_t row, std::size_t column) {
 /// without it.
 struct Joint {
   std::size_t index;
-  Vec6 s, c, U;            // direction; U/D; the wrench per unit of acceleration
+  Vec6 s, c, U;  // direction; U/D; the wrench per unit of acceleration
   Ref D;
-  Vec3 rotation;           // per angular velocity of a disturbance, over D
-  std::size_t axis;        // the number of the component, if s is a unit vector; otherwise 6
+  Vec3 rotation;     // per angular velocity of a disturbance, over D
+  std::size_t axis;  // the number of the component, if s is a unit vector; otherwise 6
 };
 
 /// Wrench that a link and all links beyond it need at free joints, per angular velocity of a disturbance.
@@ -53,9 +53,9 @@ struct Reach {
 struct Source {
   std::size_t link;
   Vec3 omega;
-  Vec6 acceleration;      // of the link, at fixed joints
+  Vec6 acceleration;       // of the link, at fixed joints
   std::vector<Ref> force;  // on the own freedoms, in their order
-  Vec6 passed;            // change of the wrench on the parent at fixed wrench on the link, along the link's axes
+  Vec6 passed;             // change of the wrench on the parent at fixed wrench on the link, along the link's axes
 };
 
 class Compliance {
@@ -107,9 +107,7 @@ class Compliance {
     for (std::size_t i = 0; i < 6; ++i) result[i] = dot6(a[i], v);
     return result;
   }
-  Vec6 sum(const Vec6& a, const Vec6& b) {
-    return joined(plus(angular(a), angular(b)), plus(linear(a), linear(b)));
-  }
+  Vec6 sum(const Vec6& a, const Vec6& b) { return joined(plus(angular(a), angular(b)), plus(linear(a), linear(b))); }
   Vec6 scaled(Ref factor, const Vec6& v) {
     return joined(symbolic::scale(dag_, factor, angular(v)), symbolic::scale(dag_, factor, linear(v)));
   }
@@ -138,8 +136,7 @@ class Compliance {
     const Ref trace = dag_.add(dag_.add(T[0][0], T[1][1]), T[2][2]);
     RotatingResponse result;
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k)
-        result.moment[i][k] = i == k ? dag_.sub(trace, T[i][k]) : dag_.neg(T[i][k]);
+      for (std::size_t k = 0; k < 3; ++k) result.moment[i][k] = i == k ? dag_.sub(trace, T[i][k]) : dag_.neg(T[i][k]);
     }
     const Vec3 momentum = plus(flow.momentum, symbolic::scale(dag_, link.mass, v));
     result.force = cross_matrix(dag_, symbolic::scale(dag_, dag_.integer(-1), momentum));
@@ -209,8 +206,7 @@ class Compliance {
     Q = add(dag_, Q, product(dag_, P, X));
     const Mat3 XQ = product(dag_, X, Q);
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = i; k < 3; ++k)
-        S[i][k] = S[k][i] = dag_.add(S[i][k], dag_.sub(QX[i][k], XQ[i][k]));
+      for (std::size_t k = i; k < 3; ++k) S[i][k] = S[k][i] = dag_.add(S[i][k], dag_.sub(QX[i][k], XQ[i][k]));
     }
     const RotationSequence back = link.rotation.reversed();
     P = back.to_parent(dag_, P, true);
@@ -310,10 +306,10 @@ class Compliance {
     const std::size_t l = source.link;
     const Articulated& body = articulated_.bodies[l];
     const Vec3 zeta = angular(source.acceleration), a = linear(source.acceleration);
-    Vec6 p = joined(plus(plus(times(dag_, body.I, zeta), times(dag_, body.H, a)),
-                         times(dag_, complete_[l].moment, source.omega)),
-                    plus(plus(times(dag_, transposed(body.H), zeta), times(dag_, body.M, a)),
-                         times(dag_, complete_[l].force, source.omega)));
+    Vec6 p = joined(
+        plus(plus(times(dag_, body.I, zeta), times(dag_, body.H, a)), times(dag_, complete_[l].moment, source.omega)),
+        plus(plus(times(dag_, transposed(body.H), zeta), times(dag_, body.M, a)),
+             times(dag_, complete_[l].force, source.omega)));
     std::vector<Ref> u(joints_[l].size());
     for (std::size_t f = 0; f < u.size(); ++f) {
       const Joint& joint = joints_[l][f];
@@ -398,7 +394,7 @@ class Compliance {
   std::size_t n_;
   ArticulatedTree articulated_;
   // Per link: along its axes.
-  std::vector<Vec3> velocity_;                       // of the origin, twice
+  std::vector<Vec3> velocity_;  // of the origin, twice
   std::vector<std::vector<Joint>> joints_;
   std::vector<RotatingResponse> rotating_, complete_;  // after and before the elimination of the own freedoms
   std::vector<Mat6> before_, compliance_;              // before and after the own freedoms

@@ -119,8 +119,8 @@ class Derivation {
     }
     Disturbance result;
     result.omega = plus(turned, own);
-    result.alpha = plus(plus(x(carried_alpha_[l], s), x(w, turned)),
-                        plus(plus(twice(x(w, own)), bias), x(joint_w_[l], own)));
+    result.alpha =
+        plus(plus(x(carried_alpha_[l], s), x(w, turned)), plus(plus(twice(x(w, own)), bias), x(joint_w_[l], own)));
     Vec3 a = plus(twice(x(parent_w(l), derivative(by, link.offset_rate))), derivative(by, link.offset_bias));
     const Vec3 v = derivative(by, link.offset);
     if (link.parent >= 0)
@@ -134,8 +134,7 @@ class Derivation {
     const BodyLink& link = tree_.links[l];
     symbolic::Derivation& by = by_rate_[freedom.index];
     const Vec3& s = freedom.angular;
-    const Vec3 alpha =
-        plus(twice(x(carried_w_[l], s)), plus(derivative(by, joint_bias_[l]), x(joint_w_[l], s)));
+    const Vec3 alpha = plus(twice(x(carried_w_[l], s)), plus(derivative(by, joint_bias_[l]), x(joint_w_[l], s)));
     const Vec3 a = plus(twice(x(parent_w(l), derivative(by, link.offset_rate))), derivative(by, link.offset_bias));
     return {s, alpha, link.rotation.to_own_axes(dag_, a)};
   }

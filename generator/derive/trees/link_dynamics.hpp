@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The links of a tree of bodies at given accelerations (the second derivatives of the coordinates as symbols): their
-// motion, the forces that they need, and how a coordinate or its rate disturbs the motion of a link whose parent moves as
-// before (docs/theory.md, "Derivatives of the right-hand side"). Vectors of a link are along its own axes.
+// motion, the forces that they need, and how a coordinate or its rate disturbs the motion of a link whose parent moves
+// as before (docs/theory.md, "Derivatives of the right-hand side"). Vectors of a link are along its own axes.
 #pragma once
 
 #include "derive/trees/body_motion.hpp"
 
 namespace eomgen::derive {
 
-/// The disturbance of a link and of all links beyond it, at fixed coordinates there: of the angular velocity, and of the
-/// accelerations without the part that a rotating base causes, dalpha - domega x omega and that of the origin.
+/// The disturbance of a link and of all links beyond it, at fixed coordinates there: of the angular velocity, and of
+/// the accelerations without the part that a rotating base causes, dalpha - domega x omega and that of the origin.
 struct Disturbance {
   Vec3 omega, alpha, a;
 };
@@ -35,8 +35,8 @@ struct FreedomChange {
 };
 
 struct LinkDynamics {
-  Wrench wrench;  // needed by the link and all links beyond it
-  Flow flow;      // of the link alone, with velocities relative to the origin
+  Wrench wrench;                       // needed by the link and all links beyond it
+  Flow flow;                           // of the link alone, with velocities relative to the origin
   std::vector<FreedomChange> changes;  // per freedom
 };
 

@@ -289,9 +289,9 @@ class File {
   std::string named() const {
     std::set<std::string> names = for_width_;
     names.insert(library_.begin(), library_.end());
-    names.insert({"lanes",  "mask",    "bits",   "memory",       "load",  "at",    "store", "all",
-                  "select", "abs",     "sign",   "every",        "whole", "place", "to",    "side",
-                  "slides", "presses", "sincos", "sincos_lanes", "apart", "run"});
+    names.insert({"lanes",  "mask",        "bits",   "memory",       "load",         "at",    "store", "all",
+                  "select", "abs",         "sign",   "every",        "whole",        "place", "to",    "side",
+                  "slides", "normal_sign", "sincos", "sincos_lanes", "lane_by_lane", "run"});
     std::string text;
     for (const std::string& name : names) text += fmt::format("#define {0}{1} {0}NAMED({1})\n", prefix_, name);
     return text;
