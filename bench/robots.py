@@ -222,12 +222,12 @@ def measure(program, path, floating, folder):
         qdot = robot.complete([generator.uniform(-1, 1) for _ in robot.coordinates], False)
         expected = robot.accelerations(q, qdot)
         x[:] = [q[k] for k in order] + [qdot[k] for k in order]
-        if rhs(0.0, x, p, None, 0, dx) != 0:
+        if rhs(0.0, x, p, None, None, dx) != 0:
             raise RuntimeError("the right-hand side has no value")
         scale = max(abs(a) for a in expected)
         worst = max(worst, max(abs(dx[n + i] - expected[k]) for i, k in enumerate(order)) / scale)
     loop = folder / "loop.c"
-    loop.write_text(f"int {name}_rhs(double, const double*, const double*, const double*, int, double*);\n"
+    loop.write_text(f"int {name}_rhs(double, const double*, const double*, const double*, const int*, double*);\n"
                     f"void many(double* x, double* p, double* dx, int n) {{ for (int i = 0; i < n; ++i) {{ {name}_rhs(0, x, p, 0, 0, dx); x[0] += 1e-9 * dx[0]; }} }}\n")
     subprocess.run(["cc", "-O2", "-shared", "-fPIC", loop, library, "-o", folder / (name + "_loop.so"), "-Wl,-rpath," + str(folder)], check=True)
     many = ctypes.CDLL(str(folder / (name + "_loop.so"))).many
