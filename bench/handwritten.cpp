@@ -24,7 +24,7 @@ struct Packed {
 constexpr int room(int n) { return n + n % 2; }
 
 template <int N, class Sines>
-int dense(double, const double* x, const double* p, const double*, int, double* dx) {
+int dense(double, const double* x, const double* p, const double*, const int*, double* dx) {
   handwritten_chain<N, Sines>(x, p[1], p[2], dx);
   return 0;
 }
