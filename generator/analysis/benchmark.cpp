@@ -27,7 +27,7 @@ constexpr int fewest_digits = 8;    // required of the reference solution
 /// The run before any measurement: reports if there can be no reference solution. Returns the times at which supports
 /// give an impulse.
 std::vector<double> require_smooth(const Simulation& simulation, const run::RunRequest& request) {
-  if (!simulation.program.contacts.empty())
+  if (!simulation.program.contacts.empty() || !simulation.program.contact_set.empty())
     unsupported("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
   if (request.has_resets()) unsupported("events or samples change the state", "eomgen run gives an error_estimate");
   for (const run::Signal& signal : simulation.scene.inputs) {

@@ -188,7 +188,7 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
                                 value_of(m, m.parameter_value[i], fmt::format("parameter '{}'", p.name), p.span),
                                 p.written});
   }
-  for (const model::Input& input : model.inputs) {
+  for (const model::Input& input : model.inputs) {  // of the model as read: without those of contacts
     const bool given = input.default_value != model::no_node;
     found.inputs.push_back(
         {input.name, unit_of(input),

@@ -25,7 +25,7 @@ using pipeline::SimulationRequest;
 constexpr int neighbour_count = 2;
 
 void require_one_mode(const std::string& command, const DerivedModel& derived) {
-  const auto& contacts = derived.candidates.front().contacts;
+  const std::vector<mechanics::Contact>& contacts = derived.mechanics.contacts;
   if (contacts.empty()) return;
   const model::Model& model = derived.model;
   SourceLocation where{model.file, 0, 0, 1, ""};

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "mechanics/contact_forces.hpp"
 #include "mechanics/particle_force.hpp"
 
 namespace eomgen::derive {
@@ -72,6 +73,8 @@ void add_reactions(Mechanics& m, const FullEquations& full, EquationSystem& s) {
   const std::size_t n = m.q.size();
   std::vector<Ref> lambda(m.constraints.size(), dag.zero());
   for (const std::uint32_t k : s.active) lambda[k] = dag.symbol({SymbolKind::multiplier, k, 0});
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k)
+    if (m.constraints[k].force_input) lambda[k] = dag.symbol({SymbolKind::multiplier, k, 0});
   for (auto fixed = m.fixed.rbegin(); fixed != m.fixed.rend(); ++fixed) {
     const std::uint32_t c = fixed->coordinate;
     Ref force = dag.neg(full.f[c]);
@@ -241,7 +244,58 @@ void add_events(Mechanics& m, EquationSystem& s) {
   for (const model::Sample& sample : m.model->samples) s.samples.push_back({sample.name, lowered(m, s, sample.reset)});
 }
 
+/// The row of a velocity w that is linear in the rates.
+system::ContactRow contact_row(Mechanics& m, const EquationSystem& s, FinalSubstitution& finish, Ref w) {
+  symbolic::Derivation bias = symbolic::total_time_derivative(*m.dag, m.q.size(), m.model->functions.size(), true);
+  const Ref rate = finish.imposed(w);
+  system::ContactRow row{finish(rate), finish(bias(rate)), {}};
+  for (const std::uint32_t i : s.free)
+    row.slopes.push_back(finish(symbolic::partial_derivative(*m.dag, coordinate(i, 1))(rate)));
+  return row;
+}
+
+/// |grad psi| at the place of a contact; 1 where psi is a distance.
+Ref normal_scale(Mechanics& m, const mechanics::Contact& contact, FinalSubstitution& finish) {
+  return contact.gram.empty() ? m.dag->one() : m.dag->call(symbolic::Op::sqrt, finish(contact.gram[0]));
+}
+
+void add_contacts_with_inputs(Mechanics& m, EquationSystem& s, FinalSubstitution& finish) {
+  Dag& dag = *m.dag;
+  s.contact_inputs = mechanics::contact_inputs(m);
+  if (m.model->impacts) {
+    s.impact_law = static_cast<eom::contacts::ImpactLaw>(m.model->impacts->law);
+    s.impact_order = static_cast<eom::contacts::ImpactOrder>(m.model->impacts->order);
+  }
+  for (const mechanics::Contact& contact : m.contacts) {
+    system::ContactWithInputs result;
+    result.name = contact.name;
+    result.unilateral = contact.unilateral;
+    result.rolls = contact.rolls;
+    result.gap = result.given_normal = result.static_coefficient = result.dynamic_coefficient = result.restitution =
+        dag.zero();
+    result.normal_scale = normal_scale(m, contact, finish);
+    result.friction_input = *contact.first_input;
+    if (contact.constraints.empty()) {
+      result.given_normal = finish(contact.normal);
+    } else {
+      const mechanics::Constraint& constraint = m.constraints[contact.constraints[0]];
+      result.gap = finish(constraint.psi);
+      result.normal = contact_row(m, s, finish, m.velocity_form(constraint));
+      result.force_input = *constraint.force_input;
+    }
+    for (const Ref w : contact.slip) result.slip.push_back(contact_row(m, s, finish, w));
+    if (contact.width)
+      result.width = finish(*contact.width);
+    else if (contact.dimensions() > 0)
+      result.static_coefficient = finish(contact.static_coefficient);
+    if (contact.dimensions() > 0) result.dynamic_coefficient = finish(contact.dynamic_coefficient);
+    if (contact.unilateral) result.restitution = finish(contact.restitution);
+    s.contacts_with_inputs.push_back(std::move(result));
+  }
+}
+
 void add_contacts(Mechanics& m, EquationSystem& s, FinalSubstitution& finish) {
+  if (m.has_contact_inputs()) return add_contacts_with_inputs(m, s, finish);
   symbolic::Derivation ddt = symbolic::total_time_derivative(*m.dag, m.q.size(), m.model->functions.size());
   for (const mechanics::Contact& contact : m.contacts) {
     system::Contact result;
@@ -283,6 +337,7 @@ void add_slip_outputs(Mechanics& m, std::uint32_t index, EquationSystem& s) {
     const std::string name = contact.name + (vector ? "." + std::to_string(a + 1) : "");
     s.outputs.push_back(
         {"slip." + name, contact.slip[a], OutputKind::slip, index, a, "", vector ? "slip." + contact.name : ""});
+    if (contact.first_input) continue;  // a run gets its rows from the function `contacts`
     for (const std::uint32_t i : s.free) {
       const Ref slope = symbolic::partial_derivative(*m.dag, coordinate(i, 1))(contact.slip[a]);
       s.outputs.push_back(
@@ -318,6 +373,10 @@ void add_contact_outputs(Mechanics& m, EquationSystem& s) {
                              OutputKind::rolling_reaction, j, a, "", vector});
     }
     add_slip_outputs(m, j, s);
+    if (contact.first_input) {
+      s.outputs.push_back({"mode." + contact.name, mechanics::contact_mode(m, contact), OutputKind::mode, j});
+      continue;
+    }
     const Ref slides = contact.width ? dag.one() : dag.symbol(system::slip_direction_symbol(j));
     const Ref open_mode = dag.select(dag.symbol(system::normal_sign_symbol(j)), dag.zero(), dag.integer(2), slides);
     s.outputs.push_back({"mode." + contact.name, contact.unilateral ? open_mode : slides, OutputKind::mode, j});
@@ -344,6 +403,12 @@ std::vector<Ref> generalized_forces(Mechanics& m) {
       const Ref phi = m.dag->symbol({SymbolKind::friction, contact.first + a, 0});
       for (std::size_t i = 0; i < Q.size(); ++i) Q[i] = m.dag->add(Q[i], m.dag->mul(contact.tangents[a][i], phi));
     }
+  }
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (!m.constraints[k].force_input) continue;
+    const Ref lambda = m.dag->symbol({SymbolKind::multiplier, k, 0});
+    for (std::size_t i = 0; i < Q.size(); ++i)
+      Q[i] = m.dag->add(Q[i], m.dag->mul(m.constraints[k].gradient[i], lambda));
   }
   return Q;
 }

@@ -92,6 +92,8 @@ Ref power(Mechanics& m, const system::EquationSystem& s) {
   const std::vector<Ref> Q = generalized_forces(m);
   for (std::uint32_t i = 0; i < m.q.size(); ++i) result = dag.add(result, dag.mul(Q[i], m.qdot[i]));
   for (const system::Reaction& reaction : s.reactions) {
+    // The work of a contact force that is an input is that of a generalised force.
+    if (m.constraints[reaction.constraint].force_input) continue;
     result = dag.sub(result, dag.mul(reaction.value, m.constraints[reaction.constraint].rate));
   }
   symbolic::Derivation ddt = symbolic::total_time_derivative(dag, m.q.size(), m.model->functions.size());

@@ -147,6 +147,29 @@ const char* state_name(const program::ContactInfo& contact, int digit) {
 
 /// The contacts and their modes: names and states.
 void add_modes(const program::Program& program, json& info) {
+  for (const eom::contacts::Description& contact : program.contact_set.contacts) {
+    json entry = {{"name", contact.name},
+                  {"directions", contact.slip.size()},
+                  {"unilateral", contact.unilateral},
+                  {"sticks", contact.sticks},
+                  {"mode_input", contact.mode_input}};
+    const auto add = [&entry](const char* key, std::size_t place) {
+      if (place != eom::contacts::none) entry[key] = place;
+    };
+    const auto row = [](const eom::contacts::Row& of) { return json{{"first", of.first}, {"columns", of.columns}}; };
+    if (!contact.slip.empty()) add("friction_input", contact.friction_input);
+    add("force_input", contact.force_input);
+    add("gap", contact.gap);
+    if (contact.has_constraint()) entry["normal"] = row(contact.normal);
+    for (const eom::contacts::Row& slip : contact.slip) entry["slip"].push_back(row(slip));
+    add("normal_scale", contact.normal_scale);
+    add("given_normal", contact.given_normal);
+    add("static_coefficient", contact.static_coefficient);
+    add("dynamic_coefficient", contact.dynamic_coefficient);
+    add("width", contact.width);
+    add("restitution", contact.restitution);
+    info["contacts"].push_back(entry);
+  }
   info["modes"] = {"smooth"};
   if (program.contacts.empty()) return;
   std::vector<eom::ContactShape> shapes;

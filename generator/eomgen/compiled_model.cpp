@@ -102,7 +102,7 @@ bool CompiledModel::has(const std::string& function) const { return state_->func
 const SceneValues& CompiledModel::values() const { return state_->values; }
 std::size_t CompiledModel::mode_size() const {
   const run::Code& code = state_->code();
-  return eom::ModeLayout{code.contacts.size(), code.kinks.size(), 0}.size();
+  return eom::ModeLayout{code.contacts.size() + code.contact_set.contacts.size(), code.kinks.size(), 0}.size();
 }
 std::size_t CompiledModel::event_count() const {
   const run::Code& code = state_->code();

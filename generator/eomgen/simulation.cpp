@@ -204,11 +204,14 @@ void Simulation::set_state(double t, std::span<const double> x) {
   require_finite(x, "a state");
   require_finite({&t, 1}, "the time of a state");
   const std::vector<double> gaps = data_->run.gaps(t, x);
-  const std::vector<eom::Contact>& contacts = data_->bound->code().contacts;
+  std::vector<std::string> contacts;
+  for (const eom::Contact& contact : data_->bound->code().contacts) contacts.push_back(contact.name);
+  for (const eom::contacts::Description& contact : data_->bound->code().contact_set.contacts)
+    contacts.push_back(contact.name);
   std::vector<bool> open(contacts.size());
   for (std::size_t j = 0; j < contacts.size(); ++j) {
     if (gaps.empty() || !(gaps[j] >= -closed_gap))
-      throw Error("simulation", {}, fmt::format("in this state the gap of '{}' is negative", contacts[j].name),
+      throw Error("simulation", {}, fmt::format("in this state the gap of '{}' is negative", contacts[j]),
                   "give a state in which the bodies do not overlap");
     open[j] = gaps[j] > closed_gap;
   }

@@ -236,8 +236,15 @@ void eliminate_coordinates(Mechanics& m) {
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {
     if (!m.is_eliminated(i)) m.free.push_back(i);
   }
+}
+
+void list_active_constraints(Mechanics& m) {
+  const auto eliminates = [&](std::uint32_t k) {
+    return std::any_of(m.fixed.begin(), m.fixed.end(),
+                       [k](const FixedCoordinate& fixed) { return fixed.constraint == k; });
+  };
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (!used[k] && m.is_independent(k)) m.active.push_back(k);
+    if (!eliminates(k) && m.is_independent(k) && !m.constraints[k].force_input) m.active.push_back(k);
   }
 }
 

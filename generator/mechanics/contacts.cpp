@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contacts: the particle of a constraint with friction, its directions of slip, and the slip velocity.
 #include <algorithm>
-#include <eom/modes/contact_state.hpp>
 #include <functional>
 #include <set>
 
@@ -238,11 +237,6 @@ class ContactReader {
   Contact contact_;
 };
 
-[[noreturn]] void throw_too_many_contacts(const Mechanics& m, const model::Span& span) {
-  throw Error("mechanics", m.model->where(span), "this is the fourth contact with friction or that can open",
-              "a model may have three: each one multiplies the number of modes");
-}
-
 }  // namespace
 
 const model::Friction& friction_law_of(const Mechanics& m, const Contact& contact) {
@@ -346,13 +340,10 @@ void add_contacts(Mechanics& m, Lowering& lower) {
   ContactReader reader(m, lower);
   for (const model::Constraint& constraint : m.model->constraints) {
     if (!constraint.friction && !constraint.unilateral) continue;
-    if (m.contacts.size() == eom::max_contacts)
-      throw_too_many_contacts(m, constraint.friction ? constraint.friction->span : constraint.span);
     reader.read(constraint);
   }
   for (const model::Force& force : m.model->forces) {
     if (!force.dry) continue;
-    if (m.contacts.size() == eom::max_contacts) throw_too_many_contacts(m, force.dry->law.span);
     reader.read(force, *force.dry);
   }
 }

@@ -161,13 +161,15 @@ Mechanics build_mechanics(std::shared_ptr<const model::Model> model) {
   add_joints(m, lower);
   add_contacts(m, lower);
   eliminate_coordinates(m);
+  drop_blocked_directions(m);
+  choose_contact_inputs(m);
+  list_active_constraints(m);
   if (!m.constraints.empty()) {
     add_known_values(m, lower);
     drop_repeated_equations(m);
     drop_dependent_equations(m, lower);
   }
-  drop_blocked_directions(m);
-  find_blocked_directions(m);
+  if (!m.has_contact_inputs()) find_blocked_directions(m);
   add_values(m, lower);
   check_friction_coefficients(m);
   require_equations(m);

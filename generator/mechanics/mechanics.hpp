@@ -66,6 +66,7 @@ struct Constraint {
   bool unilateral = false;                          // psi >= 0: never eliminated
   Redundancy redundancy = Redundancy::independent;
   bool determined = true;  // whether the motion determines its force; for joints see JointReaction
+  std::optional<std::uint32_t> force_input;  // of a contact whose force is an input (contact_forces.hpp): its index
 
   bool holonomic() const { return kind == ConstraintKind::holonomic; }
 };
@@ -124,6 +125,7 @@ struct Contact {
   Ref restitution;                              // of impacts, if unilateral
   std::optional<std::uint32_t> body_contact;    // of a body: index into Model::constraints
   bool rolls = false;                           // sticking means rolling: the contact point moves over the body
+  std::optional<std::uint32_t> first_input;  // of its friction, then of its mode, if they are inputs (contact_forces.hpp)
 
   std::size_t dimensions() const { return tangents.size(); }
 };
@@ -181,6 +183,8 @@ struct Mechanics {
   std::vector<Ref> scalar_definition;                // per definition; 0 for vectors
   std::vector<std::array<Ref, 3>> angular_velocity;  // per Model::frames entry, along its own axes
 
+  /// Whether the forces of contacts are inputs, which a run computes (contact_forces.hpp).
+  bool has_contact_inputs() const { return !contacts.empty() && contacts.front().first_input.has_value(); }
   bool is_eliminated(std::uint32_t coordinate) const;
   /// Degrees of freedom: free coordinates minus constraints that always hold.
   long degrees_of_freedom() const;

@@ -13,6 +13,8 @@ void add_constraints(Mechanics& mechanics, Lowering& lower);  // psi and its gra
 void add_contacts(Mechanics& mechanics, Lowering& lower);  // Coulomb friction: tangents and slip, eqs. (2.33), (2.40)
 void check_friction_coefficients(const Mechanics& mechanics);  // of friction, where they depend on parameters alone
 void eliminate_coordinates(Mechanics& mechanics);              // by constraints q_c = d(t), eq. (2.96)
+void choose_contact_inputs(Mechanics& mechanics);              // contact_forces.hpp
+void list_active_constraints(Mechanics& mechanics);            // those that keep a multiplier
 void add_joints(Mechanics& mechanics, Lowering& lower);        // their reactions
 bool holds_identically(Dag& dag, Ref psi);                     // proven or numerical; false if unknown
 void drop_repeated_equations(Mechanics& mechanics);            // that [[constraint]]s imply identically; or throws

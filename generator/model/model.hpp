@@ -58,11 +58,14 @@ struct State {
   bool discrete = false;
 };
 struct Input {
+  /// What gives the value: a scene, or the contacts of a run (mechanics/contact_forces.hpp).
+  enum class Source { scene, contacts };
   std::string name;
   NodeId default_value = no_node;  // the value if a scene gives none
   Unit unit;
   std::string tex;
   Span span;
+  Source source = Source::scene;
 };
 struct Coordinate {
   std::string name;
@@ -283,6 +286,19 @@ struct ShapeSpec {
   Span span;
 };
 
+/// The law of impacts, and the order in which contacts that meet at the same time take their impulses.
+struct Impacts {
+  enum class Law {
+    newton,   // normal speeds; impulses along the normals
+    poisson,  // normal impulses of compression and restitution, with friction
+    moreau,   // normal speeds, with friction
+  };
+  enum class Order { simultaneous, sequence };
+  Law law = Law::newton;
+  Order order = Order::simultaneous;
+  Span span;
+};
+
 struct Energy {
   NodeId kinetic = no_node, potential = no_node;
 };
@@ -367,6 +383,7 @@ struct Model {
   std::vector<Frame> frames;  // [0] are the fixed axes
   std::vector<Body> bodies;
   Energy energy;
+  std::optional<Impacts> impacts;
   std::vector<Force> forces;
   std::vector<Constraint> constraints;
   std::vector<Joint> joints;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[constraint]] and [energy].
+// [[constraint]], [energy] and [impacts].
 #include "model/read_constraints.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "model/read_contacts.hpp"
 #include "model/read_couplings.hpp"
@@ -218,6 +220,34 @@ void ConstraintsReader::read_energy() {
       energy("potential", on_motion,
              "a potential is made of coordinates, functions of time and parameters; what depends on velocities "
              "belongs to kinetic, and an input acts through a [[force]]");
+}
+
+void ConstraintsReader::read_impacts() {
+  const Value* table = section("impacts");
+  if (table == nullptr) return;
+  check_keys(*table, {"[impacts]", {"law", "order"}});
+  const auto chosen = [&](const char* key, const std::vector<std::string>& words, const char* remedy) -> std::size_t {
+    const Value* value = table->find(key);
+    if (value == nullptr) return 0;
+    require_kind(Value::Kind::text, *value, fmt::format("'{}' of [impacts]", key), remedy);
+    const auto found = std::find(words.begin(), words.end(), value->text);
+    if (found == words.end())
+      source_.fail(value->span, fmt::format("there is no {} of impacts {}", key, quote(value->text)), remedy);
+    return static_cast<std::size_t>(found - words.begin());
+  };
+  Impacts impacts;
+  impacts.span = table->span;
+  impacts.law = static_cast<Impacts::Law>(
+      chosen("law", {"newton", "poisson", "moreau"},
+             "write law = \"newton\" (the default, without friction), \"poisson\" or \"moreau\""));
+  impacts.order = static_cast<Impacts::Order>(
+      chosen("order", {"simultaneous", "sequence"},
+             "write order = \"simultaneous\" (the default) or order = \"sequence\""));
+  const auto opens = [](const Constraint& constraint) { return constraint.unilateral; };
+  if (std::none_of(model_.constraints.begin(), model_.constraints.end(), opens))
+    source_.fail(table->span, "[impacts] has no effect: no contact of the model can open",
+                 "add holds = \"unilateral\" to a constraint, or remove [impacts]");
+  model_.impacts = impacts;
 }
 
 }  // namespace eomgen::model

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reader of [[constraint]] and [energy].
+// Reader of [[constraint]], [energy] and [impacts].
 #pragma once
 
 #include "model/section_reader.hpp"
@@ -12,6 +12,7 @@ class ConstraintsReader : private SectionReader {
   void declare();
   void read();
   void read_energy();
+  void read_impacts();
 
  private:
   bool read_contact(Constraint& constraint, const Value& table);

@@ -89,6 +89,7 @@ void Reader::read() {
   ConstraintsReader(context_).read_energy();
   ForcesReader(context_).read();
   ConstraintsReader(context_).read();
+  ConstraintsReader(context_).read_impacts();
   BodiesReader(context_).read_units();
   StatesReader(context_).read();
   EventsReader(context_).read();
@@ -111,7 +112,7 @@ void Reader::read_head() {
   check_keys(root_, {"a model",
                      {"format", "title",    "notes", "parameters", "functions", "inputs", "coordinates", "definitions",
                       "energy", "particle", "body",  "frame",      "point",     "chain",  "force",       "constraint",
-                      "joint",  "event",    "state", "discrete",   "sample",    "draw",   "scene"}});
+                      "joint",  "event",    "state", "discrete",   "sample",    "draw",   "scene",       "impacts"}});
   const Value& format = require_value(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {
     source_.fail(format.span, fmt::format("the format {} is not known", quote(format.text)), "write format = 1");

@@ -107,7 +107,7 @@ bool holds_beyond(const DerivedModel& derived, const run::Scene& scene, const st
 
 bool equations_hold_beyond_range(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
                                  std::uint32_t coordinate, double t, std::span<const double> x) {
-  if (!code.contacts.empty() || code.layout().others() > 0) return false;
+  if (!code.contacts.empty() || !code.contact_set.empty() || code.layout().others() > 0) return false;
   const std::size_t n = code.free.size();
   std::vector<double> dx(x.size()), y(code.output_names.size()), u;
   for (const run::Signal& input : scene.inputs) u.push_back(input(t, t));
@@ -129,7 +129,7 @@ bool equations_hold_beyond_range(const DerivedModel& derived, const run::Scene& 
 
 std::vector<std::uint32_t> coordinates_valid_beyond_range(const DerivedModel& derived, const run::Scene& scene) {
   const system::EquationSystem& system = derived.candidates.front();
-  if (!system.contacts.empty() || !system.states.empty()) return {};
+  if (system.has_contacts() || !system.states.empty()) return {};
   std::vector<double> start;
   for (const std::vector<double>* values : {&scene.q, &scene.qdot}) {
     for (const std::uint32_t i : system.free) start.push_back((*values)[i]);

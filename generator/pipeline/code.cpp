@@ -25,6 +25,7 @@ run::Code describe_code(const program::Program& program) {
   code.active_constraints = program.active_constraints;
   code.reset_values = program.result_size("resets");
   code.holonomic = program.holonomic;
+  code.contact_set = program.contact_set;
   code.kinks = program.kinks;
   for (const program::ContactInfo& contact : program.contacts) code.contacts.push_back({contact, contact.name, 0});
   if (program.taylor) code.taylor_order = static_cast<int>(program::taylor_order(*program.taylor));
@@ -84,7 +85,7 @@ std::vector<double> rounded(const std::vector<verify::Real>& values) {
 
 /// The argument `mode` for states of the contacts.
 std::vector<int> mode_array(std::vector<int> contacts, const run::Code& code) {
-  contacts.resize(code.contacts.size() + code.kinks.size() + eom::max_charts);
+  contacts.resize(code.contacts.size() + code.contact_set.contacts.size() + code.kinks.size() + eom::max_charts);
   return contacts;
 }
 

@@ -195,9 +195,10 @@ FormChoice parse_form(const std::string& text) { return chosen(form_choices(), "
 std::unique_ptr<DerivedModel> derive_model(std::shared_ptr<const model::Model> model, ApproachChoice approach,
                                            FormChoice form) {
   const work::Stage stage("deriving the equations");
-  auto derived = std::make_unique<DerivedModel>(std::move(model));
   Stopwatch watch;
-  derived->mechanics = mechanics::build_mechanics(derived->shared);
+  mechanics::Mechanics mechanics = mechanics::build_mechanics(std::move(model));
+  auto derived = std::make_unique<DerivedModel>(mechanics.model);  // with the inputs of contacts
+  derived->mechanics = std::move(mechanics);
   require_freedom(derived->mechanics);
   for (const system::Approach a : approaches(derived->mechanics, approach)) {
     for (const derive::FormulationEntry& formulation : derive::formulations()) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <eom/hybrid/solved_contacts.hpp>
 #include <eom/modes/contacts.hpp>
 #include <eom/registry.hpp>
 #include <limits>
@@ -22,6 +23,7 @@ using system::OutputKind;
 
 std::vector<run::ContactOutputs> contact_outputs(const system::EquationSystem& system) {
   std::vector<run::ContactOutputs> result;
+  if (system.contacts.empty()) return result;
   for (const system::Contact& contact : system.contacts) {
     result.emplace_back().slopes.resize(contact.slip.size());
     if (contact.unilateral) result.back().constraint = *contact.unilateral;
@@ -95,6 +97,10 @@ std::vector<eom::expressions::Table> bounded_events(const DerivedModel& derived,
       functions.emplace_back();
       if (value == 3 && contact.unilateral) functions.back() = system.psi[*contact.unilateral];
     }
+  }
+  for (const system::ContactWithInputs& contact : system.contacts_with_inputs) {
+    functions.resize(functions.size() + eom::hybrid::SolvedContacts::values_per_contact);
+    if (contact.unilateral) functions[functions.size() - eom::hybrid::SolvedContacts::values_per_contact] = contact.gap;
   }
   if (functions.empty()) return {};
   return run::bounded_events(system, functions);
@@ -171,7 +177,8 @@ program::Request functions_for_run(const DerivedModel& derived, const run::Scene
   run::require_eligible(solver, features | run::features_of(scene));
   program::Request wanted;
   wanted.outputs = code_outputs(derived, scene, !energy_is_conserved(derived));
-  if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
+  if (!system.active.empty() || system.has_contacts()) wanted.with = {"mass", "constraints"};
+  if (!system.contacts_with_inputs.empty()) wanted.with.push_back("contact_rows");
   if (!derived.model.events.empty() || !system.contacts.empty() || has_kinks) wanted.with.push_back("events");
   if (!system.samples.empty() || std::any_of(system.events.begin(), system.events.end(),
                                              [](const system::Event& event) { return !event.reset.empty(); }))
@@ -181,7 +188,7 @@ program::Request functions_for_run(const DerivedModel& derived, const run::Scene
   if (of_code.has(eom::Feature::series)) wanted.with.push_back("taylor");
   const bool momenta = of_code.has(eom::Feature::momenta);
   if (momenta) wanted.with.push_back("momenta");
-  if (momenta && system.active.empty() && system.contacts.empty()) wanted.with.push_back("mass");
+  if (momenta && system.active.empty() && !system.has_contacts()) wanted.with.push_back("mass");
   return wanted;
 }
 

@@ -195,10 +195,10 @@ class Description {
   bool rows() {
     std::vector<double> unused(model_.parameters.size(), 0);
     run::StartProblem problem{m_, system_, scene_, 0, unused, {}, {}, {}, {}, {}};
-    problem.open.resize(system_.contacts.size(), false);
     for (const model::InitialAngularVelocity& given : scene_.rotations)
       problem.angular_velocities.push_back({given.frame, {}, given.span});
     run::StartRows rows(problem);
+    problem.open.resize(rows.contacts().size(), false);
     rows.add_rolling();
     const std::size_t count = rows.b().size(), n = system_.free.size();
     if (count == 0) return true;
@@ -217,8 +217,8 @@ class Description {
       result_->taken[count + row] = 0;  // only while it rolls
       result_->rolls[row++] = static_cast<int>(contact);
     }
-    for (const system::Contact& contact : system_.contacts)
-      result_->contacts.push_back(contact.unilateral ? static_cast<int>(*contact.unilateral) : none);
+    for (const run::StartRows::Contact& contact : rows.contacts())
+      result_->contacts.push_back(contact.unilateral ? static_cast<int>(*contact.row) : none);
     std::vector<Ref> A, psi, b;
     for (const Ref r : rows.A()) A.push_back(begins_(r));
     for (const Ref r : rows.psi()) psi.push_back(begins_(r));

@@ -7,6 +7,7 @@
 
 #include "abi/functions.hpp"
 #include "error.hpp"
+#include "system/contact_set.hpp"
 #include "system/expressions.hpp"
 
 namespace eomgen::program {
@@ -31,6 +32,15 @@ void fix_parameters(system::EquationSystem& s, const std::map<std::uint32_t, sym
   for (const auto& [index, value] : fix) values[{SymbolKind::parameter, index, 0}] = s.dag->constant(value);
   Substitution fixed(*s.dag, std::move(values));
   system::for_each_expression(s, [&fixed](Ref& r, system::ExpressionRole) { r = fixed(r); });
+}
+
+/// Replaces the forces of contacts by the inputs that hold them.
+void use_contact_inputs(system::EquationSystem& s) {
+  if (s.contact_inputs.empty()) return;
+  std::map<Symbol, Ref> values;
+  for (const auto& [force, input] : s.contact_inputs) values[force] = s.dag->symbol(input);
+  Substitution given(*s.dag, std::move(values));
+  system::for_each_expression(s, [&given](Ref& r, system::ExpressionRole) { r = given(r); });
 }
 
 /// Sets rows of A and gamma to 0 for open contacts.
@@ -67,6 +77,7 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
                            Ties ties, bool hold)
     : system_(std::move(system)), n_(system_.free.size()), m_(system_.active.size()) {
   fix_parameters(system_, fix);
+  use_contact_inputs(system_);
   modeless_M_ = system_.M, modeless_f_ = system_.f, modeless_A_ = system_.A;
   if (hold) kinks_ = freeze_kink_branches(system_);
   drop_open_contacts(system_);
@@ -377,6 +388,38 @@ FunctionExpressions AbiFunctions::events() {
     for (const Ref value : {watch.slip, watch.above, watch.below, watch.hold, watch.margin})
       function.results[0].entries.push_back(value);
   }
+  if (solved) add_solution(function);
+  return function;
+}
+
+FunctionExpressions AbiFunctions::contact_rows() {
+  FunctionExpressions function = empty_function("contact_rows");
+  const eom::contacts::Set places = system::contact_set(system_);
+  std::vector<Ref>& c = function.results[0].entries;
+  c.assign(places.values, system_.dag->zero());
+  const auto put = [&c](std::size_t place, Ref value) {
+    if (place != eom::contacts::none) c[place] = value;
+  };
+  const auto put_row = [&](const eom::contacts::Row& place, const system::ContactRow& row) {
+    put(place.rate(), row.rate);
+    put(place.bias(), row.bias);
+    for (std::size_t k = 0; k < place.columns.size(); ++k) put(place.slope(k), row.slopes[place.columns[k]]);
+  };
+  for (std::size_t j = 0; j < places.contacts.size(); ++j) {
+    const eom::contacts::Description& at = places.contacts[j];
+    const system::ContactWithInputs& contact = system_.contacts_with_inputs[j];
+    put(at.gap, contact.gap);
+    if (contact.normal) put_row(at.normal, *contact.normal);
+    put(at.normal_scale, contact.normal_scale);
+    put(at.given_normal, contact.given_normal);
+    for (std::size_t a = 0; a < at.slip.size(); ++a) put_row(at.slip[a], contact.slip[a]);
+    put(at.static_coefficient, contact.static_coefficient);
+    put(at.dynamic_coefficient, contact.dynamic_coefficient);
+    if (contact.width) put(at.width, *contact.width);
+    put(at.restitution, contact.restitution);
+  }
+  bool solved = false;
+  for (Ref& r : c) r = substitute_solution(r, solved);
   if (solved) add_solution(function);
   return function;
 }

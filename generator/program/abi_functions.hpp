@@ -57,6 +57,8 @@ class AbiFunctions {
   /// The events of the model, then the surfaces of the frozen kinks, then slip, above, below, hold and margin of each
   /// contact (friction.hpp).
   FunctionExpressions events();
+  /// The array c of contacts whose forces are inputs (eom/contacts/description.hpp).
+  FunctionExpressions contact_rows();
   /// Per event of the model, then per sample: its condition if it has one, then the values that it sets.
   FunctionExpressions resets();
 

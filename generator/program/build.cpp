@@ -14,6 +14,7 @@
 #include "program/from_dag.hpp"
 #include "program/hoist.hpp"
 #include "program/taylor.hpp"
+#include "system/contact_set.hpp"
 #include "system/expressions.hpp"
 
 namespace eomgen::program {
@@ -197,6 +198,7 @@ FunctionExpressions function_expressions(AbiFunctions& functions, const std::str
       {"constraints", &AbiFunctions::constraints},
       {"reactions", &AbiFunctions::reactions},
       {"events", &AbiFunctions::events},
+      {"contact_rows", &AbiFunctions::contact_rows},
       {"resets", &AbiFunctions::resets}};
   if (const auto found = formulas.find(name); found != formulas.end()) return (functions.*found->second)();
   const auto count = [&](std::size_t in_model, symbolic::SymbolKind kind) {
@@ -275,6 +277,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   for (const system::Contact& contact : system.contacts) {
     program.contacts.push_back({contact.shape(), contact.name});
   }
+  program.contact_set = system::contact_set(chosen.functions->system());
   program.holonomic = system.holonomic;
   program.functions.push_back(finished(chosen.best, chosen.rhs));
   const auto add = [&](const FunctionExpressions& wanted) {

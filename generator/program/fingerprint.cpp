@@ -26,6 +26,8 @@ class Writer {
     words(p.active_constraints, p.in_charts);
     for (const bool holonomic : p.holonomic) words(holonomic);
     for (const ContactInfo& c : p.contacts) words(c.name, c.dimensions, c.surface, c.unilateral, c.sticks, c.rolls);
+    for (const eom::contacts::Description& c : p.contact_set.contacts)
+      words(c.name, c.unilateral, c.sticks, c.rolls, c.friction_input, c.force_input, c.mode_input);
     for (const ChartInfo& c : p.charts) {
       words(c.of, c.own, c.second, c.regular, c.guarded, c.second_at_sine);
       list(c.angles);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <eom/contacts/description.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -149,7 +150,9 @@ struct Program {
   std::size_t event_count() const { return result_size("events"); }  // length of the array g
   eom::StateLayout layout() const { return {free.size(), states.size() - discrete, discrete}; }
   std::size_t state_count() const { return layout().size(); }
-  eom::ModeLayout mode_layout() const { return {contacts.size(), kinks.size(), charts.size()}; }
+  eom::ModeLayout mode_layout() const {
+    return {contacts.size() + contact_set.contacts.size(), kinks.size(), charts.size()};
+  }
   std::string formulation;
   system::Approach approach = system::Approach::two;
   system::Form form = system::Form::multipliers;
@@ -161,6 +164,7 @@ struct Program {
   std::vector<std::string> kinks;      // "abs", "if": their surfaces follow in g, then 5 values per contact
   std::size_t active_constraints = 0;
   std::vector<ContactInfo> contacts;
+  eom::contacts::Set contact_set;  // contacts whose forces are inputs
   std::optional<Taylor> taylor;         // if requested
   std::vector<bool> holonomic;          // per active constraint; false if it constrains velocities only
   std::vector<ChartInfo> charts;        // exchangeable charts; empty if the code has one chart

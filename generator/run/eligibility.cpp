@@ -34,6 +34,7 @@ const char* with(Feature feature) {
     case Feature::other_states:
       return "the model has states of first order, discrete values, or an integral of a function of time";
     case Feature::moving_inputs: return "an input is an expression of t";
+    case Feature::contact_forces: return "the forces of its contacts are solved for at every evaluation";
     default: return "the solver does not support a feature of the model";
   }
 }
@@ -72,7 +73,8 @@ eom::Features features_of(const system::EquationSystem& system, bool kinks) {
   return eom::Features{Feature::jacobian, Feature::series, Feature::momenta}
       .set(Feature::constraints, !system.active.empty())
       .set(Feature::velocity_constraints, on_velocities)
-      .set(Feature::modes, !system.contacts.empty() || system.has_resets())
+      .set(Feature::modes, system.has_contacts() || system.has_resets())
+      .set(Feature::contact_forces, !system.contacts_with_inputs.empty())
       .set(Feature::kinks, kinks)
       .set(Feature::other_states, !system.states.empty());
 }

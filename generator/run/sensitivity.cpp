@@ -25,7 +25,7 @@ constexpr const char* by_runs = "compare runs with changed values (--set), or sw
 
 void require_smooth(const RunRequest& request, const RunResult& result) {
   const auto refuse = [](const std::string& what) { throw Error("run", {}, "--sensitivity: " + what, by_runs); };
-  if (!request.code.contacts.empty())
+  if (!request.code.contacts.empty() || !request.code.contact_set.empty())
     refuse("contacts and friction change the equations during the run, and derivatives of the end jump there");
   if (!request.samples.empty())
     refuse("samples change the state at times of their own, with which derivatives of the end jump");

@@ -58,10 +58,10 @@ class StartSolver {
   // A unilateral contact is open if all coordinates in its gap are given, and the gap is positive (order 0) or
   // increasing (order 1).
   void leave(std::uint8_t order) {
-    p_.open.resize(s_.contacts.size(), false);
-    for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
-      if (!s_.contacts[j].unilateral || p_.open[j]) continue;
-      const std::size_t k = *s_.contacts[j].unilateral;
+    p_.open.resize(rows_.contacts().size(), false);
+    for (std::size_t j = 0; j < rows_.contacts().size(); ++j) {
+      if (!rows_.contacts()[j].unilateral || p_.open[j]) continue;
+      const std::size_t k = *rows_.contacts()[j].row;
       VectorXd residual;
       MatrixXd A;
       rows_.linearise(order, residual, A);
@@ -153,9 +153,9 @@ class StartSolver {
     MatrixXd A;
     rows_.linearise(0, residual, A);
     std::vector<std::size_t> open;
-    for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
-      if (!s_.contacts[j].unilateral || p_.open[j]) continue;
-      const Eigen::Index row = row_of(0, *s_.contacts[j].unilateral);
+    for (std::size_t j = 0; j < rows_.contacts().size(); ++j) {
+      if (!rows_.contacts()[j].unilateral || p_.open[j]) continue;
+      const Eigen::Index row = row_of(0, *rows_.contacts()[j].row);
       if (residual(row) > 0 && rows_.relative(residual, A, 0, row) > start_tolerance) open.push_back(j);
     }
     return open;
@@ -178,16 +178,16 @@ class StartSolver {
     std::string names;
     for (const std::size_t j : open) {
       p_.open[j] = true;
-      rows_.drop(*s_.contacts[j].unilateral);
-      names += (names.empty() ? "'" : ", '") + s_.contacts[j].name + "'";
+      rows_.drop(*rows_.contacts()[j].row);
+      names += (names.empty() ? "'" : ", '") + rows_.contacts()[j].name + "'";
     }
     p_.solved_notes.push_back(names + (open.size() == 1 ? " is" : " are") + " open: the start cannot be met while " +
                               (open.size() == 1 ? "it is closed" : "all are closed"));
     solve(0);
-    for (const std::size_t j : open) require_open(s_.contacts[j]);
+    for (const std::size_t j : open) require_open(rows_.contacts()[j]);
   }
-  void require_open(const system::Contact& contact) {
-    if (rows_.evaluate({s_.psi[*contact.unilateral]})[0] >= 0) return;
+  void require_open(const StartRows::Contact& contact) {
+    if (rows_.evaluate({rows_.psi()[*contact.row]})[0] >= 0) return;
     throw Error("scene", p_.mechanics.model->where(p_.scene.span),
                 fmt::format("the start breaks constraint '{}', which is to be 0 or more", contact.name),
                 "give values with which it is open or closed, or start the search elsewhere with guess = { .. }");

@@ -83,10 +83,9 @@ void refuse_start(const StartProblem& problem, const StartRows& rows, std::uint8
   const auto row = static_cast<Eigen::Index>(k);
   const double off = broken ? broken->off : residual(row);
   const double relative = broken ? broken->relative : rows.relative(residual, A, order, row);
-  const std::size_t bound = rows.of_order(order)[k], turns = rows.first_angular_velocity_row(), m = s.active.size();
+  const std::size_t bound = rows.of_order(order)[k], turns = rows.first_angular_velocity_row();
   if (bound >= turns) refuse_angular_velocity(problem, problem.angular_velocities[(bound - turns) / 3], residual(row));
-  const mechanics::Constraint& constraint =
-      problem.mechanics.constraints[bound < m ? s.active[bound] : s.redundant[bound - m].constraint];
+  const mechanics::Constraint& constraint = problem.mechanics.constraints[rows.constraint_of(bound)];
   std::string given, open;
   model::Span span = problem.scene.span;
   for (std::size_t i = 0; i < s.free.size(); ++i) {

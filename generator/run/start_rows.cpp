@@ -22,31 +22,50 @@ StartRows::StartRows(StartProblem& problem)
     if (s_.holonomic[k]) rows_[0].push_back(k);
     rows_[1].push_back(k);
   }
+  constraint_of_.assign(s_.active.begin(), s_.active.end());
   A_ = s_.A;
   psi_ = s_.psi;
   b_ = s_.b;
   for (const system::RedundantConstraint& watched : s_.redundant) {
     if (p_.mechanics.constraints[watched.constraint].holonomic()) rows_[0].push_back(b_.size());
     rows_[1].push_back(b_.size());
+    constraint_of_.push_back(watched.constraint);
     A_.insert(A_.end(), watched.A.begin(), watched.A.end());
     psi_.push_back(watched.psi);
     b_.push_back(watched.b);
   }
   target_.assign(b_.size(), 0);
+  add_contacts();
   for (const StartProblem::AngularVelocity& turn : p_.angular_velocities) add_angular_velocity(turn);
+}
+
+void StartRows::add_contacts() {
+  for (const system::Contact& contact : s_.contacts) {
+    contacts_.push_back({contact.name, {}, contact.unilateral.has_value(), contact.slip});
+    if (contact.unilateral) contacts_.back().row = *contact.unilateral;
+  }
+  for (const system::ContactWithInputs& contact : s_.contacts_with_inputs) {
+    contacts_.push_back({contact.name, {}, contact.unilateral, {}});
+    for (const system::ContactRow& row : contact.slip) contacts_.back().slip.push_back(row.rate);
+    if (!contact.normal) continue;
+    contacts_.back().row = b_.size();
+    rows_[0].push_back(b_.size());
+    psi_.push_back(contact.gap);
+    constraint_of_.push_back(p_.mechanics.contacts[contacts_.size() - 1].constraints[0]);
+    add_rate(contact.normal->rate, 0);
+  }
 }
 
 // Rates of a body that rolls with friction follow from rolling, if the given rates allow it: further rows with slip 0.
 bool StartRows::add_rolling() {
   const std::size_t before = rows_[1].size();
-  for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
+  for (std::size_t j = 0; j < contacts_.size(); ++j) {
     const std::optional<std::uint32_t> body_contact = p_.mechanics.contacts[j].body_contact;
     if (!body_contact || !p_.mechanics.model->constraints[*body_contact].is_rolling_with_friction() || p_.open[j])
       continue;
-    if (s_.contacts[j].unilateral &&
-        std::find(rows_[1].begin(), rows_[1].end(), *s_.contacts[j].unilateral) == rows_[1].end())
+    if (contacts_[j].unilateral && std::find(rows_[1].begin(), rows_[1].end(), *contacts_[j].row) == rows_[1].end())
       continue;
-    for (const Ref slip : s_.contacts[j].slip) {
+    for (const Ref slip : contacts_[j].slip) {
       add_rate(slip, 0);
       rolling_contacts_.push_back(j);
     }

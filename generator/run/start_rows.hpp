@@ -19,13 +19,25 @@ inline constexpr double start_rounding = 4e-16;
 
 class StartRows {
  public:
-  /// Rows of the active constraints, then of the redundant ones, then three for each given angular velocity.
+  /// A contact of the system. Its row holds while it is closed.
+  struct Contact {
+    std::string name;
+    std::optional<std::size_t> row;   // of its constraint
+    bool unilateral = false;          // it can be open
+    std::vector<symbolic::Ref> slip;  // per tangent
+  };
+
+  /// Rows of the active constraints, then of the redundant ones, then of contacts whose forces are inputs, then three
+  /// for each given angular velocity.
   explicit StartRows(StartProblem& problem);
 
   /// Numbers of the rows of an order.
   const std::vector<std::size_t>& of_order(std::uint8_t order) const { return rows_[order]; }
   /// The number of the first row of the first given angular velocity.
-  std::size_t first_angular_velocity_row() const { return m_ + s_.redundant.size(); }
+  std::size_t first_angular_velocity_row() const { return psi_.size(); }
+  const std::vector<Contact>& contacts() const { return contacts_; }
+  /// The constraint of the mechanics that a row before those of angular velocities imposes.
+  std::size_t constraint_of(std::size_t row) const { return constraint_of_.at(row); }
   /// The rows as expressions: A (by rows), psi of the position constraints and b.
   const std::vector<symbolic::Ref>& A() const { return A_; }
   const std::vector<symbolic::Ref>& psi() const { return psi_; }
@@ -53,6 +65,7 @@ class StartRows {
   std::vector<double> evaluate(const std::vector<symbolic::Ref>& refs) const;
 
  private:
+  void add_contacts();
   void add_angular_velocity(const StartProblem::AngularVelocity& turn);
   void add_rate(symbolic::Ref w, double wanted);
   double lookup(const symbolic::Symbol& s) const;
@@ -61,6 +74,8 @@ class StartRows {
   const system::EquationSystem& s_;
   std::size_t n_, m_;
   std::vector<symbolic::Ref> A_, psi_, b_;
+  std::vector<Contact> contacts_;
+  std::vector<std::size_t> constraint_of_;  // per row of psi_
   std::vector<std::size_t> rolling_contacts_;
   std::vector<double> target_;                    // of A qdot + b
   std::array<std::vector<std::size_t>, 2> rows_;  // order 0: position constraints; order 1: all constraints

@@ -57,6 +57,19 @@ void for_each_expression(System& system, Visit&& visit) {
       visit(*r, ExpressionRole::contact);
     if (contact.width) visit(*contact.width, ExpressionRole::contact);
   }
+  for (auto& contact : system.contacts_with_inputs) {
+    const auto row = [&](auto& of, ExpressionRole part) {
+      visit(of.rate, part);
+      visit(of.bias, ExpressionRole::contact);
+      all(of.slopes, ExpressionRole::contact);
+    };
+    if (contact.normal) row(*contact.normal, ExpressionRole::contact);
+    for (auto& slip : contact.slip) row(slip, ExpressionRole::slip);
+    for (auto* r : {&contact.gap, &contact.normal_scale, &contact.given_normal, &contact.static_coefficient,
+                    &contact.dynamic_coefficient, &contact.restitution})
+      visit(*r, ExpressionRole::contact);
+    if (contact.width) visit(*contact.width, ExpressionRole::contact);
+  }
   for (auto* list : {&system.psi, &system.b}) all(*list, ExpressionRole::constraints);
   for (auto& reaction : system.reactions) visit(reaction.value, ExpressionRole::output);
   for (auto& output : system.outputs) visit(output.value, ExpressionRole::output);

@@ -35,7 +35,18 @@ bool nearer_to_failing(const Comparison& a, const Comparison& b) {
 std::vector<std::size_t> unilateral_constraints(const mechanics::Mechanics& mechanics) {
   std::vector<std::size_t> result;
   for (const mechanics::Contact& contact : mechanics.contacts) {
-    if (contact.unilateral) result.push_back(contact.constraints[0]);
+    if (contact.unilateral && !contact.first_input) result.push_back(contact.constraints[0]);
+  }
+  return result;
+}
+
+Oracle::ContactInputs contact_inputs(const mechanics::Mechanics& mechanics) {
+  Oracle::ContactInputs result;
+  if (!mechanics.has_contact_inputs()) return result;
+  for (std::size_t k = 0; k < mechanics.constraints.size(); ++k)
+    if (mechanics.constraints[k].force_input) result.forces[k] = *mechanics.constraints[k].force_input;
+  for (const mechanics::Contact& contact : mechanics.contacts) {
+    for (std::uint32_t a = 0; a < contact.dimensions(); ++a) result.friction.push_back(*contact.first_input + a);
   }
   return result;
 }
@@ -45,7 +56,7 @@ std::vector<int> mode_at(const mechanics::Mechanics& mechanics, const State& sta
   std::vector<int> mode(mechanics.contacts.size());
   for (std::size_t j = 0; j < mechanics.contacts.size(); ++j) {
     const mechanics::Contact& contact = mechanics.contacts[j];
-    if (contact.unilateral && state.open.contains(contact.constraints[0])) mode[j] = eom::contact_states / 2;
+    if (contact.unilateral && !contact.first_input && state.open.contains(contact.constraints[0])) mode[j] = eom::contact_states / 2;
   }
   return mode;
 }
@@ -144,6 +155,7 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
   for (std::uint32_t k = 0; k < mechanics.constraints.size(); ++k) {
     if (!mechanics.is_independent(k)) oracle.mark_implied(k);
   }
+  oracle.set_contact_inputs(contact_inputs(mechanics));
   StateSampler points(oracle, options.seed, allowed_rejections(options.points, digits), options.fixed,
                       unilateral_constraints(mechanics));
   ComparisonTable tally(options.digits);

@@ -361,7 +361,9 @@ State with_any_friction(const mechanics::Mechanics& mechanics, const Oracle& ora
   std::vector<Real> phi;
   for (const mechanics::Contact& contact : mechanics.contacts) {
     for (std::size_t a = 0; a < contact.dimensions(); ++a) {
-      phi.push_back(oracle.precision().round(cln::cl_RA(static_cast<long>(2 * phi.size() + 3)) / 7));
+      phi.push_back(contact.first_input
+                        ? at.inputs.at(*contact.first_input + a)
+                        : oracle.precision().round(cln::cl_RA(static_cast<long>(2 * phi.size() + 3)) / 7));
     }
   }
   if (!phi.empty()) set_friction(mechanics, oracle, state, std::move(phi));

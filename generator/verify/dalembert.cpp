@@ -246,9 +246,11 @@ std::vector<Residual> Oracle::dalembert_residuals(const State& state, const std:
     for (const Real& force : lambda) least = cln::max(least, cln::abs(force) / 10000000000u);
   for (std::size_t k = 0; k < psi_.size(); ++k) {
     const std::vector<Real>& f = at.gradient(k);
+    const std::optional<std::uint32_t> input = force_input(k);
+    const Real& force = input ? state.inputs[*input] : lambda[k];
     for (std::size_t i = 0; i < sums.size(); ++i) {
       if (cln::zerop(f[i])) continue;
-      sums[i].add(-lambda[k] * f[i], cln::abs(lambda[k] * f[i]) + least * cln::abs(f[i]));
+      sums[i].add(-force * f[i], cln::abs(force * f[i]) + least * cln::abs(f[i]));
     }
   }
   if (margin != nullptr) margin->kink = std::min(margin->kink, at.margin().kink);

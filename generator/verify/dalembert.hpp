@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -88,6 +89,19 @@ class Oracle {
   void mark_implied(std::size_t constraint) { implied_.insert(constraint); }
   bool is_implied(std::size_t constraint) const { return implied_.contains(constraint); }
   bool has_implied() const { return !implied_.empty(); }
+  /// The inputs that hold the forces of contacts (mechanics/contact_forces.hpp). These contacts are open: their
+  /// constraints are not imposed, and their forces act as applied ones.
+  struct ContactInputs {
+    std::map<std::size_t, std::uint32_t> forces;  // of constraints
+    std::vector<std::uint32_t> friction;          // of its components phi
+  };
+  void set_contact_inputs(ContactInputs inputs) { contact_inputs_ = std::move(inputs); }
+  const ContactInputs& contact_inputs() const { return contact_inputs_; }
+  /// The input that holds the force of a constraint.
+  std::optional<std::uint32_t> force_input(std::size_t constraint) const {
+    const auto found = contact_inputs_.forces.find(constraint);
+    return found == contact_inputs_.forces.end() ? std::nullopt : std::optional(found->second);
+  }
 
   std::vector<Real> default_parameters() const;
   /// All parameters. `given` holds the independent ones; the dependent ones are computed.
@@ -127,6 +141,7 @@ class Oracle {
   std::vector<model::NodeId> psi_;
   std::vector<bool> holonomic_;
   std::set<std::size_t> implied_;
+  ContactInputs contact_inputs_;
   std::optional<GaussLegendre> quadrature_;  // if the model has integrals
   mutable std::unique_ptr<AffineResidualCache> residual_cache_;
 };

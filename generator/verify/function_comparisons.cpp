@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "symbolic/evaluate.hpp"
+#include "system/contact_set.hpp"
 #include "verify/applied_forces.hpp"
 #include "verify/central_differences.hpp"
 
@@ -63,6 +64,7 @@ class FunctionComparisons {
         {"outputs", &FunctionComparisons::outputs},
         {"events", &FunctionComparisons::events},
         {"resets", &FunctionComparisons::resets},
+        {"contact_rows", &FunctionComparisons::contact_rows},
         {"taylor", &FunctionComparisons::taylor}};
     const auto found = statements.find(function);
     if (found == statements.end()) throw std::logic_error("nothing is said of the function '" + function + "'");
@@ -283,6 +285,61 @@ class FunctionComparisons {
     for (const system::Event& event : s_.events) add(event.reset);
     for (const system::Sample& sample : s_.samples) add(sample.reset);
     if (!roots.empty()) note("resets", system_name(s_), against(values, 0, roots, lookup_));
+  }
+
+  /// Compares gaps with the oracle; velocities with the differences of gaps, and their accelerations with differences
+  /// of velocities, along the path; derivatives with the forces of the contact, which do the work of these velocities.
+  void contact_rows(const AbiResults& values) {
+    const std::vector<Real>& c = values[0];
+    const std::optional<AbiResults> rhs = program_.call("rhs", at_, oracle_.digits());
+    if (!rhs) return;
+    const std::optional<CentralDifference> slopes = slope("contact_rows", [&](AbiArguments& at, const Real& step) {
+      at.t = at.t + step;
+      for (std::size_t i = 0; i < at.x.size(); ++i) at.x[i] = at.x[i] + step * to_exact((*rhs)[0][i]);
+    });
+    const std::vector<Real> lost = noise("contact_rows");
+    if (!slopes || lost.empty()) return;
+    const eom::contacts::Set set = system::contact_set(s_);
+    const std::size_t n = s_.free.size();
+    double gaps = 0, rates = 0, work = 0;
+    const auto follows = [&](std::size_t of, const Real& expected, const Real& size) {
+      rates = std::max(rates, relative_difference(slopes->values[0][of] - expected,
+                                                  size + lost[of] + slopes->errors[0][of] + cln::abs(expected)));
+    };
+    const std::vector<Real> f = evaluate(s_.f, lookup_);
+    const auto row = [&](const eom::contacts::Row& place, std::size_t input) {
+      Real acceleration = c[place.bias()], size = sizes_[0][place.bias()];
+      for (std::size_t k = 0; k < place.columns.size(); ++k) {
+        const Real term = c[place.slope(k)] * (*rhs)[0][n + place.columns[k]];
+        acceleration = acceleration + term;
+        size = size + cln::abs(term);
+      }
+      follows(place.rate(), acceleration, size);
+      SymbolValues pushed = lookup_;
+      pushed.state.inputs[input] = pushed.state.inputs[input] + 1;
+      const std::vector<Real> with = evaluate(s_.f, pushed);
+      std::vector<Real> slope(n, Real(0));
+      for (std::size_t k = 0; k < place.columns.size(); ++k) slope[place.columns[k]] = c[place.slope(k)];
+      for (std::size_t i = 0; i < n; ++i)
+        work = std::max(work, relative_difference(with[i] - f[i] - slope[i],
+                                                  cln::abs(with[i]) + cln::abs(f[i]) + cln::abs(slope[i]) + 1));
+    };
+    const ConstraintValues constraints = oracle_.constraint_values(v_.state);
+    for (std::size_t j = 0; j < set.contacts.size(); ++j) {
+      const eom::contacts::Description& contact = set.contacts[j];
+      if (contact.has_constraint()) {
+        for (std::size_t k = 0; k < constraints.psi.size(); ++k) {
+          if (oracle_.force_input(k) == contact.force_input)
+            gaps = std::max(gaps, relative_difference(c[contact.gap] - constraints.psi[k], sizes_[0][contact.gap]));
+        }
+        follows(contact.gap, c[contact.normal.rate()], sizes_[0][contact.normal.rate()]);
+        row(contact.normal, contact.force_input);
+      }
+      for (std::size_t a = 0; a < contact.slip.size(); ++a) row(contact.slip[a], contact.friction_input + a);
+    }
+    tally_.record("gaps of contacts of " + program_.name, oracle_name, false, gaps);
+    note("contact_rows", "gaps and velocities along the path", rates);
+    note("contact_rows", "the forces of contacts", work);
   }
 
   /// Compares dL/dqdot along a direction of the rates, and the rates of the momenta along the path, which include

@@ -104,6 +104,7 @@ void StateSampler::solve_start(State start, const std::vector<bool>& given) {
   if (!holonomic || std::find(given.begin(), given.end(), false) == given.end()) return;
   for (std::size_t i = 0; i < sampling_ranges_.size(); ++i) start.q[i] = exact(sampling_ranges_[i].center);
   for (const std::size_t j : unilateral_constraints_) start.open.insert(j);  // unilateral constraints may be open
+  for (const auto& [constraint, input] : oracle_.contact_inputs().forces) start.open.insert(constraint);
   try {
     project_positions(start, &given);
     require_inside(start);
@@ -298,6 +299,7 @@ State StateSampler::next() {
       open_.clear();
       State s = sample_state();
       for (const std::size_t j : contact_set.open) s.open.insert(unilateral_constraints_[j]);
+      for (const auto& [constraint, input] : oracle_.contact_inputs().forces) s.open.insert(constraint);
       project_positions(s);
       close_implied(s);
       project_velocities(s);

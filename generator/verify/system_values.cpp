@@ -231,11 +231,17 @@ Real SymbolValues::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::function: return functions.at(symbol.index).at(symbol.order);
     case SymbolKind::parameter: return state.parameters.at(symbol.index);
     case SymbolKind::input: return state.inputs.at(symbol.index);
-    case SymbolKind::multiplier: return lambda.at(symbol.index);
+    case SymbolKind::multiplier: {
+      const std::optional<std::uint32_t> input = oracle.force_input(symbol.index);
+      return input ? state.inputs.at(*input) : lambda.at(symbol.index);
+    }
     case SymbolKind::integral:
     case SymbolKind::state: return state.z.at(symbol.index);
     case SymbolKind::branch: return 0;  // branches depend on the state
-    case SymbolKind::friction: return state.phi.at(symbol.index);
+    case SymbolKind::friction: {
+      const std::vector<std::uint32_t>& inputs = oracle.contact_inputs().friction;
+      return inputs.empty() ? state.phi.at(symbol.index) : state.inputs.at(inputs.at(symbol.index));
+    }
     case SymbolKind::contact_mode: return eom::contact_sign(state.mode, symbol.index, symbol.order);
     case SymbolKind::auxiliary: break;
   }

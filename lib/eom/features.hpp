@@ -19,10 +19,12 @@ enum class Feature : unsigned {
   other_states,          // components that are not coordinates, velocities or quadratures
   moving_inputs,         // inputs that are continuous functions of time, not step functions
   charts,                // coordinates that are exchanged near their singularities
+  contact_forces,        // forces of contacts that are solved for at every evaluation
 };
 inline constexpr Feature all_features[] = {
     Feature::jacobian, Feature::series, Feature::momenta,      Feature::constraints,   Feature::velocity_constraints,
-    Feature::modes,    Feature::kinks,  Feature::other_states, Feature::moving_inputs, Feature::charts};
+    Feature::modes,    Feature::kinks,  Feature::other_states, Feature::moving_inputs, Feature::charts,
+    Feature::contact_forces};
 
 /// The feature as it follows "with ..." in a sentence.
 constexpr const char* name(Feature feature) {
@@ -37,6 +39,7 @@ constexpr const char* name(Feature feature) {
     case Feature::other_states: return "states beside coordinates, velocities and quadratures";
     case Feature::moving_inputs: return "inputs that are functions of time";
     case Feature::charts: return "coordinates that are exchanged";
+    case Feature::contact_forces: return "contacts whose forces are solved for at every evaluation";
   }
   return "";
 }

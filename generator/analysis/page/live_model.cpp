@@ -72,7 +72,7 @@ class Live {
  private:
   /// Feature of the model that the page's integrator does not support, or "".
   std::string obstacle() const {
-    if (!s_.program.contacts.empty())
+    if (!s_.program.contacts.empty() || !s_.program.contact_set.empty())
       return "its contacts stick, slide or open, and each mode has equations of its own";
     if (!s_.scene.jumps.functions.empty())
       return "a velocity jumps during the run, and the page does not compute impulses";

@@ -22,7 +22,7 @@ std::optional<system::EquationSystem> by_articulated(Mechanics& m, system::Appro
     if (s && !s->solution) s.reset();
     return s;
   }
-  if (!m.active.empty() || !m.contacts.empty()) return std::nullopt;
+  if (!m.active.empty() || (!m.contacts.empty() && !m.has_contact_inputs())) return std::nullopt;
   Dag& dag = *m.dag;
   const std::optional<TreeEquations> motion = derive_tree_motion(m, approach);
   if (!motion) return std::nullopt;

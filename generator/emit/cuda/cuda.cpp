@@ -54,7 +54,7 @@ std::vector<EmittedFile> emit_cuda(const program::Program& program, const Emissi
     throw Error("emit", {},
                 "the target cuda integrates without events, and events or samples of the model change the state",
                 "use the target cpp with --with run");
-  if (!program.contacts.empty()) {
+  if (!program.contacts.empty() || !program.contact_set.empty()) {
     throw Error("emit", {}, "the target cuda integrates without events, which contacts need for their changes of mode",
                 "use the target c or cpp with eom::integrate_modes, or take the contacts out");
   }

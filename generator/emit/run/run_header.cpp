@@ -61,6 +61,22 @@ std::string text(const eom::Contact& c) {
   return fmt::format("{{{{{}, {}, {}, {}, {}}}, {}, 0.0}}", c.dimensions, c.surface, c.unilateral, c.sticks, c.rolls,
                      text(c.name));
 }
+std::string place(std::size_t index) { return index == eom::contacts::none ? "none" : fmt::format("{}", index); }
+std::string text(const eom::contacts::Row& row) { return fmt::format("{{{}, {}}}", row.first, text(row.columns)); }
+std::string text(const eom::contacts::Description& c) {
+  return fmt::format("{{{}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}}", text(c.name), c.unilateral,
+                     c.sticks, c.rolls, place(c.gap), text(c.normal), place(c.normal_scale), place(c.given_normal),
+                     text(c.slip), place(c.static_coefficient), place(c.dynamic_coefficient), place(c.width),
+                     place(c.restitution), place(c.friction_input), place(c.force_input), place(c.mode_input));
+}
+std::string text(eom::contacts::ImpactLaw law) {
+  static constexpr std::array<const char*, 3> laws{"newton", "poisson", "moreau"};
+  return fmt::format("eom::contacts::ImpactLaw::{}", laws.at(static_cast<std::size_t>(law)));
+}
+std::string text(eom::contacts::ImpactOrder order) {
+  static constexpr std::array<const char*, 2> orders{"simultaneous", "sequence"};
+  return fmt::format("eom::contacts::ImpactOrder::{}", orders.at(static_cast<std::size_t>(order)));
+}
 std::string text(const eom::hybrid::Reset::Entry& entry) {
   return fmt::format("{{{}, {}}}", entry.component, entry.value);
 }
@@ -177,6 +193,13 @@ std::string code_text(const program::Program& program, const eom::hybrid::Code& 
   s.list("holonomic", code.holonomic);
   s.list("kinks", code.kinks);
   s.list("contacts", code.contacts);
+  if (!code.contact_set.empty()) {
+    s.line("using eom::contacts::none;");
+    s.list("contact_set.contacts", code.contact_set.contacts);
+    s.set("contact_set.values", code.contact_set.values);
+    s.set("contact_set.law", code.contact_set.law);
+    s.set("contact_set.order", code.contact_set.order);
+  }
   if (program.taylor) s.set("taylor_order", code.taylor_order);
   s.list("own_outputs", code.own_outputs);
   return s.done();

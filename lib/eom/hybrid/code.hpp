@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "eom/contacts/description.hpp"
 #include "eom/layout.hpp"
 #include "eom/modes/contact_state.hpp"
 
@@ -31,6 +32,7 @@ struct Code {
   int (*outputs)(double, const double*, const double*, const double*, const int*, double*) = nullptr;
   int (*events)(double, const double*, const double*, const double*, const int*, double*) = nullptr;
   int (*resets)(double, const double*, const double*, const double*, const int*, double*) = nullptr;
+  int (*contact_rows)(double, const double*, const double*, const double*, const int*, double*) = nullptr;
   std::size_t reset_values = 0;  // number of values that `resets` writes
   // For implicit solvers. They use differences if it is null, and for df/dt with inputs that vary in time.
   int (*jac)(double, const double*, const double*, const double*, const int*, double*, double*) = nullptr;
@@ -44,6 +46,7 @@ struct Code {
   std::vector<bool> holonomic = {};     // per active constraint: false if it constrains velocities only
   std::vector<std::string> kinks = {};  // "abs", "max": their surfaces follow the model's events in g
   std::vector<Contact> contacts = {};   // after the kinks in g, contact_values of each
+  contacts::Set contact_set = {};       // contacts whose forces are inputs; `contact_rows` writes their values
   // For the solver taylor, up to its highest order.
   int (*taylor)(double, const double*, const double*, const double*, const int*, int, double*) = nullptr;
   int taylor_order = 0;

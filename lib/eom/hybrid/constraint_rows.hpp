@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "eom/hybrid/problem.hpp"
+#include "eom/hybrid/solved_contacts.hpp"
 #include "eom/modes/mode_array.hpp"
 
 namespace eom::hybrid {
@@ -19,13 +20,16 @@ class ConstraintRows {
  public:
   explicit ConstraintRows(const Problem& problem);
 
-  std::size_t size() const { return order_.size() + integrals_.size() + slips_.size(); }
-  std::size_t position_row_count() const { return holonomic_ + integrals_.size(); }
+  std::size_t size() const { return own_size() + gap_rows() + (contacts_ != nullptr ? contacts_->slip_rows() : 0); }
+  std::size_t position_row_count() const { return holonomic_ + gap_rows() + integrals_.size(); }
+  /// Contacts whose forces are inputs add rows: their gaps before the integrals, their slip last.
+  void set_contacts(SolvedContacts* contacts) { contacts_ = contacts; }
   /// The active constraint of a row. For a row of an integral or of slip: the number of active constraints.
   std::size_t constraint_of(std::size_t row) const {
     if (row < holonomic_) return order_[row];
-    return row < position_row_count() || row - integrals_.size() >= order_.size() ? order_.size()
-                                                                                  : order_[row - integrals_.size()];
+    if (row < position_row_count()) return order_.size();
+    const std::size_t place = row - integrals_.size() - gap_rows();
+    return place >= order_.size() ? order_.size() : order_[place];
   }
 
   /// Takes the constants of the integrals from this state; u: the inputs there.
@@ -70,6 +74,9 @@ class ConstraintRows {
     std::vector<std::size_t> slopes;  // with respect to the rates of the free coordinates
   };
 
+  std::size_t own_size() const { return order_.size() + integrals_.size() + slips_.size(); }
+  std::size_t gap_rows() const { return contacts_ != nullptr ? contacts_->gap_rows() : 0; }
+  int fill_contacts(double t, const double* x, double* psi, double* A, double* b) const;
   bool is_open(std::size_t active_constraint) const;
   int constraints(double t, const double* x);
   void fill_integrals(const double* x, double* psi, double* A, double* b) const;
@@ -82,6 +89,7 @@ class ConstraintRows {
   ModeArray open_;  // all contacts open
   int mode_ = 0;
   bool all_slide_ = false;
+  SolvedContacts* contacts_ = nullptr;
   std::vector<Slip> slips_;
   std::vector<double> targets_;
   std::vector<std::size_t> order_;  // of the active constraints: position constraints first
@@ -136,7 +144,7 @@ inline std::size_t ConstraintRows::row_of(std::size_t contact) const {
 inline std::size_t ConstraintRows::slip_row_of(std::size_t contact) const {
   const auto found =
       std::find_if(slips_.begin(), slips_.end(), [=](const Slip& slip) { return slip.contact == contact; });
-  return order_.size() + integrals_.size() + static_cast<std::size_t>(found - slips_.begin());
+  return order_.size() + integrals_.size() + gap_rows() + static_cast<std::size_t>(found - slips_.begin());
 }
 
 inline int ConstraintRows::constraints(double t, const double* x) {
@@ -152,7 +160,7 @@ inline int ConstraintRows::operator()(double t, const double* x, const double* u
     if (const int code = constraints(t, x); code != 0) return code;
   }
   for (std::size_t k = 0; k < m; ++k) {
-    const std::size_t row = k < holonomic_ ? k : k + integrals_.size();
+    const std::size_t row = k < holonomic_ ? k : k + integrals_.size() + gap_rows();
     const bool open = is_open(order_[k]);
     psi[row] = open ? 0 : psi_[order_[k]];
     b[row] = open ? 0 : b_[order_[k]];
@@ -165,15 +173,36 @@ inline int ConstraintRows::operator()(double t, const double* x, const double* u
     fill_integrals(x, psi, A, b);
     fill_slips(x, psi, A, b);
   }
+  if (contacts_ != nullptr) return fill_contacts(t, x, psi, A, b);
   for (std::size_t row = 0; row < rows; ++row) b[row] -= targets_[row];
   return 0;
+}
+
+inline int ConstraintRows::fill_contacts(double t, const double* x, double* psi, double* A, double* b) const {
+  const std::size_t rows = size();
+  std::size_t gap_row = holonomic_, slip_row = own_size() + gap_rows();
+  const auto fill = [&](std::size_t row, const contacts::Row& of, double rest) {
+    b[row] = rest;
+    for (std::size_t i = 0; i < n_; ++i) A[row + rows * i] = 0;
+    for (std::size_t k = 0; k < of.columns.size(); ++k) A[row + rows * of.columns[k]] = contacts_->slope(of, k);
+  };
+  return contacts_->rows(
+      t, x,
+      [&](double gap, const contacts::Row& row, double rest) {
+        psi[gap_row] = gap;
+        fill(gap_row++, row, rest);
+      },
+      [&](const contacts::Row& row, double rest) {
+        psi[slip_row] = 0;
+        fill(slip_row++, row, rest);
+      });
 }
 
 inline void ConstraintRows::fill_integrals(const double* x, double* psi, double* A, double* b) const {
   const std::size_t rows = size();
   for (std::size_t k = 0; k < integrals_.size(); ++k) {
     const Integral& integral = integrals_[k];
-    const std::size_t row = holonomic_ + k;
+    const std::size_t row = holonomic_ + gap_rows() + k;
     psi[row] = y_[integral.psi] - integral.constant;
     b[row] = y_[integral.slopes[n_]];
     bool finite = std::isfinite(psi[row]) && std::isfinite(b[row]);
@@ -193,7 +222,7 @@ inline void ConstraintRows::fill_integrals(const double* x, double* psi, double*
 
 // The slip is linear in the rates: w = A qdot + b.
 inline void ConstraintRows::fill_slips(const double* x, double* psi, double* A, double* b) const {
-  const std::size_t rows = size(), first = order_.size() + integrals_.size();
+  const std::size_t rows = size(), first = order_.size() + integrals_.size() + gap_rows();
   for (std::size_t k = 0; k < slips_.size(); ++k) {
     const Slip& slip = slips_[k];
     const int digit = contact_digit(mode_, slip.contact);

@@ -16,6 +16,7 @@
 #include "eom/hybrid/jumps.hpp"
 #include "eom/hybrid/kinks.hpp"
 #include "eom/hybrid/model.hpp"
+#include "eom/hybrid/solved_contacts.hpp"
 
 namespace eom::hybrid {
 
@@ -27,7 +28,12 @@ class EventFunctions {
 
   std::size_t first_kink() const { return problem_.events.size(); }
   std::size_t first_contact() const { return first_kink() + problem_.code->kinks.size(); }
-  std::size_t first_jump() const { return first_contact() + contact_values * problem_.code->contacts.size(); }
+  std::size_t first_solved_contact() const {
+    return first_contact() + contact_values * problem_.code->contacts.size();
+  }
+  std::size_t first_jump() const {
+    return first_solved_contact() + SolvedContacts::values_per_contact * problem_.code->contact_set.contacts.size();
+  }
   std::size_t size() const { return first_jump() + jumps_.surfaces(); }
 
   /// Values of all functions; those of contacts in the monitored form.
@@ -35,9 +41,11 @@ class EventFunctions {
     const int code = model_.events(t, x, g);
     if (code == 0 && jumps_.surfaces() > 0)
       jumps_.values({t, {x, problem_.states()}, model_.inputs(t)}, g + first_jump());
+    if (code == 0 && solved_contacts_ != nullptr) return (*solved_contacts_)(t, x, g + first_solved_contact());
     if (code != 0 || !contacts_) return code;
     double* const of_contacts = g + first_contact();
-    if (const int bad = ContactModes::code_of(of_contacts, first_jump() - first_contact()); bad != 0) return bad;
+    if (const int bad = ContactModes::code_of(of_contacts, first_solved_contact() - first_contact()); bad != 0)
+      return bad;
     contacts_->shift_to_watched(of_contacts);
     return 0;
   }
@@ -50,17 +58,26 @@ class EventFunctions {
       functions.push_back({event.direction, event.stop || !event.reset.set.empty() ? Watch::breaking : Watch::passing});
     functions.resize(size());
     if (contacts_) contacts_->watch(of_contacts(functions));
+    if (solved_contacts_ != nullptr) solved_contacts_->watch(of_solved_contacts(functions));
     return functions;
   }
   std::span<EventFunction> of_contacts(std::span<EventFunction> functions) const {
-    return functions.subspan(first_contact(), first_jump() - first_contact());
+    return functions.subspan(first_contact(), first_solved_contact() - first_contact());
   }
+  std::span<EventFunction> of_solved_contacts(std::span<EventFunction> functions) const {
+    return functions.subspan(first_solved_contact(), first_jump() - first_solved_contact());
+  }
+  /// Contacts whose forces are inputs.
+  void set_contacts(SolvedContacts* contacts) { solved_contacts_ = contacts; }
 
   /// The interval of a step in which function i first leaves its side although no sample shows it.
   std::optional<std::pair<double, double>> hidden_crossing(const StepView& step, std::size_t i, int side, double from,
                                                            double to, const Sampling& sampling) const {
     if (model_.mode().charts() != 0) return std::nullopt;
-    if (i >= first_contact()) {
+    if (i >= first_solved_contact() && i < first_jump()) {
+      const std::size_t j = (i - first_solved_contact()) / SolvedContacts::values_per_contact;
+      if (!solved_contacts_->is_open(j)) return std::nullopt;
+    } else if (i >= first_contact()) {
       const std::size_t j = (i - first_contact()) / contact_values;
       const bool open = j < problem_.code->contacts.size() && problem_.code->contacts[j].unilateral &&
                         contact_digit(model_.contact_mode(), j) >= 3;
@@ -73,6 +90,7 @@ class EventFunctions {
   const Problem& problem_;
   Model& model_;
   const std::unique_ptr<ContactModes>& contacts_;
+  SolvedContacts* solved_contacts_ = nullptr;
   EventRanges ranges_;
   Jumps jumps_;
 };

@@ -12,6 +12,11 @@ namespace eom::hybrid {
 inline Reason explain_friction(RunContext& context, const Result& end) {
   const bool none = end.outcome == Outcome::friction_no_solution;
   if (!none && end.outcome != Outcome::friction_many_solutions) return {};
+  if (context.solved_contacts && context.solved_contacts->end_contact() != contacts::none) {
+    const std::size_t worst = context.solved_contacts->end_contact();
+    return {none ? Reason::Kind::friction_no_solution : Reason::Kind::friction_many_solutions, end.t, 0,
+            context.solved_contacts->name(worst), worst};
+  }
   if (!context.contacts || context.events(end.t, end.x.data(), context.g.data()) != 0) return {};
   const std::vector<Contact>& contacts = context.problem.code->contacts;
   std::size_t worst = 0;
@@ -38,6 +43,11 @@ inline Reason explain(RunContext& context, Reason reason, const Reason& jump, Re
     end.outcome = *context.contacts->end_outcome();
     reason = {};
     if (!context.contacts->detail().empty()) reason = {Reason::Kind::method, end.t, 0, context.contacts->detail()};
+  }
+  if (context.solved_contacts && context.solved_contacts->end_outcome()) {
+    end.outcome = *context.solved_contacts->end_outcome();
+    reason = {};
+    if (end.outcome == Outcome::step_too_small) reason = {Reason::Kind::slip, end.t};
   }
   if (end.outcome == Outcome::chart_left && context.charts.has_charts()) reason = {Reason::Kind::chart, end.t};
   if (const Reason friction = explain_friction(context, end)) reason = friction;

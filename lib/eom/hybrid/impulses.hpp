@@ -16,6 +16,7 @@
 namespace eom::hybrid {
 
 inline bool has_closed_contact(const RunContext& context) {
+  if (context.solved_contacts && context.solved_contacts->has_closed_contact()) return true;
   const std::vector<Contact>& contacts = context.problem.code->contacts;
   for (std::size_t j = 0; j < contacts.size(); ++j) {
     if (!contacts[j].unilateral || contact_digit(context.model.contact_mode(), j) < 3) return true;
@@ -51,7 +52,7 @@ inline Reason cross_impulse(RunContext& context, const Segment& before, Result& 
                                                                  context.model.inputs(before.next), total.x);
   Reason open = impulse.undetermined;
   if (!impulse.velocities && !impulse.potential) return open;
-  if (!open && impulse.velocities && context.contacts && has_closed_contact(context))
+  if (!open && impulse.velocities && context.has_contacts() && has_closed_contact(context))
     open = {Reason::Kind::support_jump_in_contact, before.next};
   total.t = before.next;
   context.freeze_branches(total.t, total.x.data(), true);

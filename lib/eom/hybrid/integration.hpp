@@ -46,6 +46,7 @@ class Integration {
   /// The modes, from which another integration of the same problem can resume.
   struct State {
     std::optional<ContactModes::State> contacts = {};
+    std::optional<SolvedContacts::State> solved_contacts = {};
     ChartSwitch::State charts = {};
     std::vector<double> largest_kink_values = {}, integral_constants = {};
     MethodChoice choice = {};
@@ -84,6 +85,7 @@ class Integration {
   void report_sliding(const std::vector<std::size_t>& before, double t, std::span<const double> x,
                       const OnEvent& event);
   EventAction change_contact(const EventPoint& point, const OnEvent& event);
+  EventAction change_solved_contact(const EventPoint& point, const OnEvent& event);
   double longest_step(const StepView& step);
 
   const Problem& problem_;
@@ -115,10 +117,10 @@ inline Integration::Integration(const Problem& problem)
       slow_slip_(context_),
       narrow_(problem),
       resets_(context_) {
-  if (!context_.contacts && context_.rows.size() > 0 && !keeps_constraints_)
+  if (!context_.has_contacts() && context_.rows.size() > 0 && !keeps_constraints_)
     singularity_step_ = std::make_unique<SingularityStep>(context_);
   // Laws of contacts are not combined, and methods that need series or momenta have none of a combination.
-  context_.may_slide = !context_.contacts && !keeps_constraints_ && !requires_feature(problem.solver, Feature::series);
+  context_.may_slide = !context_.has_contacts() && !keeps_constraints_ && !requires_feature(problem.solver, Feature::series);
   sampling_ = {[this](double t) { return context_.model.inputs(t); },
                [this](double t, const double* x, double* dx) { return context_.rhs(t, x, dx); }, problem.rtol,
                problem.atol, requires_feature(problem.solver, Feature::series)};
@@ -146,8 +148,15 @@ inline Result Integration::resume(std::span<const double> x, const Options& opti
 }
 
 inline Integration::State Integration::save() const {
-  State state{{},      context_.charts.save(), context_.kinks.largest_values(), context_.rows.integral_constants(),
-              choice_, resets_.taken(),        context_.model.sliding_kinks()};
+  State state{{},
+              {},
+              context_.charts.save(),
+              context_.kinks.largest_values(),
+              context_.rows.integral_constants(),
+              choice_,
+              resets_.taken(),
+              context_.model.sliding_kinks()};
+  if (context_.solved_contacts) state.solved_contacts = context_.solved_contacts->save();
   if (context_.contacts) state.contacts = context_.contacts->save();
   return state;
 }
@@ -165,6 +174,7 @@ inline void Integration::restore(double t, const std::vector<double>& x, const S
     context_.contacts->restore(*from.contacts);
     context_.model.set_contact_mode(from.contacts->mode);
   }
+  if (from.solved_contacts) context_.solved_contacts->restore(*from.solved_contacts);
   context_.freeze_branches(t, x.data(), true);
   choice_ = from.choice;
   if (!from.samples_taken.empty()) resets_.set_taken(from.samples_taken);
@@ -178,6 +188,9 @@ inline void Integration::begin(const Options& options) {
   fixed_step_ = options.fixed_step;
   end_time_ = problem_.begin();
   slow_slip_.start(fixed_step_);
+  if (context_.solved_contacts)
+    context_.solved_contacts->set_tolerances(fixed_step_ > 0 ? slow_slip_rtol : options.rtol,
+                                             fixed_step_ > 0 ? slow_slip_atol : options.atol);
   if (context_.contacts)
     context_.contacts->set_tolerances(fixed_step_ > 0 ? slow_slip_rtol : options.rtol,
                                       fixed_step_ > 0 ? slow_slip_atol : options.atol);
@@ -228,6 +241,12 @@ inline bool Integration::start(Result& total, const OnEvent& event) {
   for (const ModeEvent& recorded : context_.start_contacts(total.t, total.x)) {
     if (event) event({problem_.t0, recorded.kind, recorded.name}, total.x);
   }
+  if (context_.solved_contacts && context_.solved_contacts->end_outcome()) {
+    total.outcome = *context_.solved_contacts->end_outcome();
+    reason_ = explain(context_, {}, {}, total);
+    total.detail = sentence(reason_);
+    return false;
+  }
   if (context_.contacts && context_.contacts->start_code() != 0) {
     total.outcome = outcome_of_abi_code(context_.contacts->start_code());
     reason_ = explain(context_, {}, {}, total);
@@ -235,7 +254,9 @@ inline bool Integration::start(Result& total, const OnEvent& event) {
     return false;
   }
   // The start must satisfy the constraints to rounding.
-  if (requires_feature(problem_.solver, Feature::constraints) && context_.projection(total.t, total.x.data()) != 0) {
+  if ((requires_feature(problem_.solver, Feature::constraints) ||
+       (context_.solved_contacts && context_.rows.size() > 0)) &&
+      context_.projection(total.t, total.x.data()) != 0) {
     total.outcome = Outcome::inconsistent_start;
     reason_ = {Reason::Kind::start, total.t};
     total.detail = sentence(reason_);
@@ -295,6 +316,7 @@ inline bool Integration::observe_step(const StepView& step, const Observer& obse
   const bool wanted = !observer || observer(step);
   context_.freeze_branches(step.t1, step.x1.data(), false);
   if (context_.contacts) context_.contacts->update_min_slip(step.t1, step.x1.data());
+  if (context_.solved_contacts) context_.solved_contacts->update(step.x1.data());
   if (is_crossing_singularity_) singularity_step_->report(step, event);
   exchange_due_ = exchange_due_ && wanted;
   slow_slip_.set_switch_due(wanted && slow_slip_.must_switch(step.t1, step.x1.data()));
@@ -325,7 +347,7 @@ inline bool Integration::continue_after_event(const Result& part, double begin, 
   const bool paused = (exchange_due_ || slow_slip_.is_switch_due() || singularity_step_length_ != 0) &&
                       part.outcome == Outcome::stopped_by_event;
   if (stopped_ || jump_ || reset_failed_ || (context_.contacts && context_.contacts->end_outcome()) ||
-      !(passed || paused))
+      (context_.solved_contacts && context_.solved_contacts->end_outcome()) || !(passed || paused))
     return false;
   if (exchange_due_) {
     for (const std::string& whose : context_.exchange_charts(total.t, total.x)) {
@@ -351,6 +373,7 @@ inline EventAction Integration::handle_event(const EventPoint& point, const OnEv
                                                   i - functions.first_jump());
     return !jump_ ? EventAction::resume : EventAction::stop;
   }
+  if (i >= functions.first_solved_contact()) return change_solved_contact(point, event);
   if (i >= functions.first_contact()) return change_contact(point, event);
   if (i < functions.first_kink()) {
     if (resets_.any()) return reset_at_event(point, event);
@@ -377,6 +400,19 @@ inline EventAction Integration::change_contact(const EventPoint& point, const On
   context_.freeze_branches(point.t, point.x.data(), true);
   slow_slip_.set_switch_due(slow_slip_.is_switch_due() || slow_slip_.must_switch(point.t, point.x.data()));
   return slow_slip_.is_switch_due() ? EventAction::stop : answer;
+}
+
+inline EventAction Integration::change_solved_contact(const EventPoint& point, const OnEvent& event) {
+  Crossing crossing = point.crossing;
+  crossing.function -= context_.events.first_solved_contact();
+  const EventAction answer = context_.solved_contacts->handle_event(
+      point.t, point.x, crossing, context_.events.of_solved_contacts(point.functions));
+  if (event) {
+    for (const SolvedContacts::Change& change : context_.solved_contacts->changes())
+      event({point.t, change.kind, change.name, change.work}, point.x);
+  }
+  if (answer == EventAction::restart) context_.freeze_branches(point.t, point.x.data(), true);
+  return answer;
 }
 
 /// The longest admissible step: infinity, unless the step misses a force that is narrow in the state.

@@ -35,7 +35,8 @@ inline Features features_of(const Code& code) {
       .set(Feature::momenta, code.momenta != nullptr && code.mass != nullptr)
       .set(Feature::constraints, code.active_constraints > 0 && code.constraints != nullptr && code.mass != nullptr)
       .set(Feature::velocity_constraints, std::find(holonomic.begin(), holonomic.end(), false) != holonomic.end())
-      .set(Feature::modes, !code.contacts.empty())
+      .set(Feature::modes, !code.contacts.empty() || !code.contact_set.empty())
+      .set(Feature::contact_forces, !code.contact_set.empty())
       .set(Feature::kinks, !code.kinks.empty())
       .set(Feature::other_states, code.layout().others() > 0);
 }
@@ -54,6 +55,8 @@ inline void require_functions(const Problem& problem) {
          "the code has events, kinks or contacts, and no function events");
   demand(code.contacts.size() == problem.contacts.size() && code.contacts.size() <= problem.starts_open.size(),
          "each contact of the code needs its outputs, and whether it is open at the start");
+  demand(code.contact_set.empty() || (code.contact_rows != nullptr && code.mass != nullptr),
+         "the code has contacts whose forces are inputs, and no functions contact_rows and mass");
   demand((problem.samples.empty() &&
           std::all_of(problem.events.begin(), problem.events.end(),
                       [](const WatchedEvent& event) { return event.reset.set.empty() && !event.reset.condition; })) ||

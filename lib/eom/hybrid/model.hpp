@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "eom/contacts/contact_forces.hpp"
 #include "eom/hybrid/inputs.hpp"
 #include "eom/hybrid/problem.hpp"
 #include "eom/hybrid/sliding_surfaces.hpp"
@@ -36,6 +39,9 @@ class Model {
     // Before the first segment: a time just inside it, so that a table returns its value right of t0.
     segment_time_ = std::nextafter(problem.t0, problem.t1);
     prepare();
+    if (code_->contact_set.empty()) return;
+    scene_inputs_ = code_->contact_set.contacts.front().friction_input;  // those of contacts follow
+    forces_ = std::make_unique<contacts::ContactForces>(code_->contact_set, contact_system_);
   }
 
   Model(const Model&) = delete;
@@ -120,16 +126,43 @@ class Model {
 
   /// A time inside the current segment of the inputs.
   double segment_time() const { return segment_time_; }
-  double set_segment_time(double t) { return std::exchange(segment_time_, t); }
-  /// Valid until the next call.
+  double set_segment_time(double t) {
+    forget_contact_forces();
+    return std::exchange(segment_time_, t);
+  }
+  /// Valid until the next call. Forces of contacts are those of the last state for which they were solved.
   const double* inputs(double t) const {
-    for (std::size_t i = 0; i < inputs_.size(); ++i) u_[i] = inputs_(i, t, segment_time_);
+    for (std::size_t i = 0; i < std::min(scene_inputs_, inputs_.size()); ++i) u_[i] = inputs_(i, t, segment_time_);
     return u_.data();
   }
+
+  /// The contacts whose forces are inputs; null if there are none.
+  contacts::ContactForces* contact_forces() { return forces_.get(); }
+  /// The inputs at t, without forces of contacts.
+  double* inputs_without_contacts(double t) {
+    forget_contact_forces();
+    std::fill(u_.begin() + static_cast<std::ptrdiff_t>(std::min(scene_inputs_, u_.size())), u_.end(), 0.0);
+    inputs(t);
+    return u_.data();
+  }
+  /// Solves for the forces of contacts at a state. They are then among inputs(t).
+  int solve_contacts(double t, const double* x) const {
+    if (!forces_ || (t == solved_t_ && std::equal(solved_x_.begin(), solved_x_.end(), x))) return 0;
+    forget_contact_forces();
+    std::fill(u_.begin() + static_cast<std::ptrdiff_t>(scene_inputs_), u_.end(), 0.0);
+    inputs(t);
+    const int code = forces_->solve(t, x, u_.data());
+    if (code != 0) return code;
+    solved_t_ = t;
+    solved_x_.assign(x, x + code_->layout().size());
+    return 0;
+  }
+  void forget_contact_forces() const { solved_t_ = std::numeric_limits<double>::quiet_NaN(); }
   const double* parameters() const { return problem_.parameters.data(); }
 
   int rhs(double t, const double* x, double* dx) {
     if (sliding_.any()) return sliding_.evaluate(mode_, t, x, dx);
+    if (const int code = solve_contacts(t, x); code != 0) return code;
     const double* u = inputs(t);
     const int code = motion(t, x, u, mode_.data(), dx);
     // A branch that is frozen beyond its surface may have no value there (a root). The unfrozen expression always has
@@ -145,7 +178,7 @@ class Model {
   /// The derivatives are partial, at fixed inputs. If inputs vary between their jumps, df/dt is not available. `work`:
   /// whether the work is a state here; else it is a quadrature, without row and column.
   int jacobian(double t, const double* x, double* dfdx, double* dfdt, bool work) {
-    if (code_->jac == nullptr || sliding_.any()) return no_jacobian_here;
+    if (code_->jac == nullptr || sliding_.any() || forces_) return no_jacobian_here;
     const std::size_t n = code_->layout().size();
     if (work) dfdx_.resize(n * n);
     const double* u = inputs(t);
@@ -177,6 +210,7 @@ class Model {
 
   /// In second charts, entries that exist only in the own charts remain unchanged.
   int outputs(double t, const double* x, double* y) const {
+    if (const int code = solve_contacts(t, x); code != 0) return code;
     const auto in_mode = [&](const ModeArray& mode, double* values) {
       return code_->outputs(t, x, parameters(), inputs(t), mode.data(), values);
     };
@@ -196,6 +230,7 @@ class Model {
   /// slides has 1 - w^2 with its weight w, which is positive while it holds the state.
   int events(double t, const double* x, double* g) {
     if (code_->events == nullptr) return 0;
+    if (const int code = solve_contacts(t, x); code != 0) return code;
     const int code = code_->events(t, x, parameters(), inputs(t), mode_.data(), g);
     if (code != 0 || !sliding_.any()) return code;
     std::vector<double> dx(problem_.states());
@@ -215,6 +250,30 @@ class Model {
   }
 
  private:
+  /// The functions that contacts need.
+  struct ContactSystem : contacts::System {
+    explicit ContactSystem(Model* model) : of(model) {}
+    Model* of;
+    std::size_t coordinates() const override { return of->n_; }
+    int accelerations(double t, const double* x, const double* u, double* qddot) override {
+      return of->accelerations(t, x, u, qddot);
+    }
+    int rows(double t, const double* x, const double* u, double* c) override {
+      return of->code_->contact_rows(t, x, of->parameters(), u, of->mode_.data(), c);
+    }
+  };
+  int accelerations(double t, const double* x, const double* u, double* qddot) {
+    dx_.resize(code_->layout().size());
+    const auto evaluate = [&](const int* mode) {
+      return w_.empty() ? code_->rhs(t, x, parameters(), u, mode, dx_.data())
+                        : code_->rhs_prepared(t, x, parameters(), w_.data(), u, mode, dx_.data());
+    };
+    int code = evaluate(mode_.data());
+    if (code != 0 && mode_.has_frozen_branches()) code = evaluate(mode_without_branches());
+    std::copy_n(dx_.begin() + static_cast<std::ptrdiff_t>(n_), n_, qddot);
+    return code;
+  }
+
   /// The right-hand side for given branches of the kinks.
   struct Branches {
     Model* of;
@@ -305,7 +364,12 @@ class Model {
   bool inputs_move_;       // some input varies between its jumps
   std::vector<double> w_;  // output of Code::prepare
   std::vector<double> dfdx_, x_;
-  std::vector<double> h_, y_, g_;
+  std::vector<double> h_, y_, g_, dx_;
+  std::size_t scene_inputs_ = std::numeric_limits<std::size_t>::max();  // inputs before those of contacts
+  ContactSystem contact_system_{this};
+  std::unique_ptr<contacts::ContactForces> forces_;
+  mutable double solved_t_ = std::numeric_limits<double>::quiet_NaN();  // the state for which u_ has contact forces
+  mutable std::vector<double> solved_x_;
   mutable SlidingSurfaces<Branches, Surfaces> sliding_;
 };
 

@@ -181,7 +181,9 @@ struct Problem {
   }
 
   std::size_t n() const { return code->free.size(); }
-  ModeLayout mode_layout() const { return {code->contacts.size(), code->kinks.size(), charts.size()}; }
+  ModeLayout mode_layout() const {
+    return {code->contacts.size() + code->contact_set.contacts.size(), code->kinks.size(), charts.size()};
+  }
   /// Length of the state: coordinates, rates, states of first order, the work done since the start.
   std::size_t states() const { return code->layout().size() + (power ? 1 : 0); }
 };

@@ -150,7 +150,7 @@ class Resets {
         if (moves) {
           if (const Reason failed = make_consistent(t, x, name, displaces)) return failed;
         }
-        if (context_.contacts && (moves || displaces)) restart_contacts(t, x);
+        if (context_.has_contacts() && (moves || displaces)) restart_contacts(t, x);
       }
     }
     if (!made) return {};

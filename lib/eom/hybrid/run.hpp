@@ -65,6 +65,7 @@ inline RunResult run(const Problem& problem) {
   std::optional<StepAdequacy> adequacy;
   const std::vector<Contact>& contacts = problem.code->contacts;
   const bool impacts =
+      (context.solved_contacts && context.solved_contacts->can_open()) ||
       std::any_of(contacts.begin(), contacts.end(), [](const Contact& contact) { return contact.unilateral; });
   if (problem.estimate && options.fixed_step > 0) adequacy.emplace(impacts);
   const auto observe = [&](const StepView& view) {

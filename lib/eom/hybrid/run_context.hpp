@@ -18,6 +18,7 @@
 #include "eom/hybrid/model.hpp"
 #include "eom/hybrid/outputs.hpp"
 #include "eom/hybrid/problem.hpp"
+#include "eom/hybrid/solved_contacts.hpp"
 #include "eom/hybrid/state_projection.hpp"
 
 namespace eom::hybrid {
@@ -35,11 +36,25 @@ struct RunContext {
         start(own_start()),
         g(events.size()) {
     start_charts(problem.begin(), start);
+    const auto work_of = [this](double t, std::span<const double> before, std::span<const double> after) {
+      const double energy = outputs.energy(t, before.data());
+      const double work = outputs.energy(t, after.data()) - energy;
+      impulse_work += work;
+      return work;
+    };
+    if (!problem.code->contact_set.empty()) {
+      solved_contacts = std::make_unique<SolvedContacts>(problem, model, work_of);
+      events.set_contacts(solved_contacts.get());
+      rows.set_contacts(solved_contacts.get());
+      g.resize(events.size());
+      std::vector<double> x = start;
+      start_contacts(problem.begin(), x);
+    }
     if (problem.code->contacts.empty()) return;
     contacts = std::make_unique<ContactModes>(
-        problem, model, rows, [this](double t, std::span<const double> before, std::span<const double> after) {
-          const double energy = outputs.energy(t, before.data());
-          impulse_work += outputs.energy(t, after.data()) - energy;
+        problem, model, rows,
+        [work_of](double t, std::span<const double> before, std::span<const double> after) {
+          work_of(t, before, after);
         });
     std::vector<double> x = start;
     start_contacts(problem.begin(), x);  // sets the mode for observers of the start
@@ -77,6 +92,14 @@ struct RunContext {
   }
 
   std::vector<ModeEvent> start_contacts(double t, std::span<double> x) {
+    if (solved_contacts) {
+      impulse_work = 0;
+      std::vector<ModeEvent> recorded;
+      for (const SolvedContacts::Change& change : solved_contacts->start(t, x, problem.starts_open))
+        recorded.push_back({t, change.kind, change.name, 0, 0});
+      solved_contacts->update(x.data());
+      return recorded;
+    }
     if (!contacts) return {};
     impulse_work = 0;
     model.reset_mode();  // a model with contacts does not exchange charts
@@ -125,7 +148,8 @@ struct RunContext {
 
   /// Whether the work is integrated like the other states; else it is a quadrature. With sticking contacts the state
   /// may not change at all, and steps would not resolve the work of what moves the contacts.
-  bool work_is_state() const { return problem.power && !problem.code->contacts.empty(); }
+  bool work_is_state() const { return problem.power && has_contacts(); }
+  bool has_contacts() const { return contacts || solved_contacts; }
 
   /// Largest |psi|, |f . qdot + b| of a state; 0 without active constraints.
   double constraint_defect(double t, const double* x) { return rows.defect(t, x); }
@@ -138,6 +162,7 @@ struct RunContext {
   StateProjection projection;
   Kinks kinks;
   std::unique_ptr<ContactModes> contacts;  // null if there are none
+  std::unique_ptr<SolvedContacts> solved_contacts;  // whose forces are inputs; null if there are none
   EventFunctions events;
   std::vector<double> start;  // in the second chart if the own one is near its singularity
   std::vector<double> g;      // event functions

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -21,10 +22,15 @@ class StateProjection {
       : model_(model),
         rows_(rows),
         outputs_(outputs),
-        projection_(problem.n(), rows.size(), rows.position_row_count()) {}
+        n_(problem.n()),
+        shape_{rows.size(), rows.position_row_count()},
+        projection_(n_, shape_[0], shape_[1]) {}
 
   /// Returns the code of a callback or of a projection that does not converge. In both cases the state is unchanged.
   int operator()(double t, double* x) {
+    const std::array<std::size_t, 2> shape{rows_.size(), rows_.position_row_count()};
+    if (shape != shape_) projection_ = Projection(n_, shape[0], shape[1]);  // contacts opened, closed, stuck or slipped
+    shape_ = shape;
     const double before = outputs_.energy(t, x);
     const ProjectionResult moved = projection_(
         t, x,
@@ -62,6 +68,8 @@ class StateProjection {
   Model& model_;
   ConstraintRows& rows_;
   Outputs& outputs_;
+  std::size_t n_;
+  std::array<std::size_t, 2> shape_;  // rows of the projection, and those of positions
   Projection projection_;
   Corrections largest_;
   double work_ = 0;

@@ -300,6 +300,11 @@ inline void StepwiseRun::restart(double t, std::span<const double> x, std::vecto
 
 inline std::vector<double> StepwiseRun::gaps(double t, std::span<const double> x) {
   RunContext& context = integration_->context();
+  if (SolvedContacts* const solved = context.solved_contacts.get()) {
+    std::vector<double> of_solved;
+    for (std::size_t j = 0; j < solved->size(); ++j) of_solved.push_back(solved->gap(t, x.data(), j));
+    return of_solved;
+  }
   const std::vector<Contact>& contacts = problem_.code->contacts;
   std::vector<double> g(context.events.size()), result(contacts.size());
   if (contacts.empty()) return result;

@@ -26,7 +26,8 @@ namespace eom::taylor {
 
 inline constexpr Refusal refusals[] = {
     {Feature::moving_inputs, ", and its series knows inputs that stand still or jump"},
-    {Feature::charts, "its series is that of the model's own coordinates"}};
+    {Feature::charts, "its series is that of the model's own coordinates"},
+    {Feature::contact_forces, ", and its series knows inputs that stand still or jump"}};
 
 class Series : public StepEnds {
   struct At : SeriesMeasure {

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mechanics/contact_forces.hpp"
+
+#include <algorithm>
+#include <eom/modes/contact_state.hpp>
+
+#include "mechanics/stages.hpp"
+
+namespace eomgen::mechanics {
+namespace {
+
+using symbolic::SymbolKind;
+
+bool sticks(const Contact& contact) { return contact.dimensions() > 0 && !contact.width; }
+
+/// Whether more directions could be held at the same time than are free. Symbolic solutions in that mode do not exist.
+bool could_hold_too_much(const Mechanics& m) {
+  std::size_t held = 0, open = 0;
+  for (const Contact& contact : m.contacts) {
+    if (contact.unilateral) ++held, ++open;
+    if (sticks(contact)) held += contact.dimensions();
+  }
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    const bool eliminates = std::any_of(m.fixed.begin(), m.fixed.end(),
+                                        [k](const FixedCoordinate& fixed) { return fixed.constraint == k; });
+    if (!eliminates && m.is_independent(k) && !m.constraints[k].unilateral) ++held;
+  }
+  return m.contacts.size() > 1 && open > 0 && held > m.free.size();
+}
+
+/// Adds inputs to a copy of the model.
+class InputAdder {
+ public:
+  explicit InputAdder(Mechanics& m) : m_(m), model_(std::make_shared<model::Model>(*m.model)) {}
+  ~InputAdder() { m_.model = model_; }
+
+  std::uint32_t add(const std::string& name, const model::Span& span) {
+    model::Input input;
+    input.name = name;
+    input.span = span;
+    input.source = model::Input::Source::contacts;
+    model_->inputs.push_back(std::move(input));
+    return static_cast<std::uint32_t>(model_->inputs.size() - 1);
+  }
+
+ private:
+  Mechanics& m_;
+  std::shared_ptr<model::Model> model_;
+};
+
+model::Span span_of(const model::Model& model, const Contact& contact) {
+  for (const model::Constraint& constraint : model.constraints)
+    if (constraint.name == contact.name) return constraint.span;
+  for (const model::Force& force : model.forces)
+    if (force.name == contact.name) return force.span;
+  return {};
+}
+
+}  // namespace
+
+void choose_contact_inputs(Mechanics& m) {
+  if (m.contacts.empty()) return;
+  if (m.contacts.size() <= eom::max_contacts && !m.model->impacts && !could_hold_too_much(m)) return;
+  for (const Contact& contact : m.contacts) {
+    if (contact.constraints.size() < 2) continue;
+    throw Error("mechanics", m.model->where(friction_law_of(m, contact).span),
+                "the friction of the curve '" + contact.name + "' cannot be combined with so many other contacts",
+                "give this curve the smooth law (law = \"smooth\") and a constraint for each of its two surfaces, or "
+                "the model at most three contacts");
+  }
+  InputAdder inputs(m);
+  const std::shared_ptr<const model::Model> before = m.model;
+  for (Contact& contact : m.contacts) {
+    const model::Span span = span_of(*before, contact);
+    for (std::size_t a = 0; a < contact.dimensions(); ++a) {
+      const std::uint32_t input =
+          inputs.add(contact.name + ".friction" + (contact.dimensions() > 1 ? std::to_string(a + 1) : ""), span);
+      if (a == 0) contact.first_input = input;
+    }
+    const std::uint32_t mode = inputs.add(contact.name + ".mode", span);
+    if (!contact.first_input) contact.first_input = mode;
+    for (const std::uint32_t k : contact.constraints)
+      m.constraints[k].force_input = inputs.add(contact.name + ".lambda", span);
+  }
+}
+
+std::map<symbolic::Symbol, symbolic::Symbol> contact_inputs(const Mechanics& m) {
+  std::map<symbolic::Symbol, symbolic::Symbol> result;
+  if (!m.has_contact_inputs()) return result;
+  for (const Contact& contact : m.contacts) {
+    for (std::uint32_t a = 0; a < contact.dimensions(); ++a)
+      result[{SymbolKind::friction, contact.first + a, 0}] = {SymbolKind::input, *contact.first_input + a, 0};
+  }
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (m.constraints[k].force_input)
+      result[{SymbolKind::multiplier, k, 0}] = {SymbolKind::input, *m.constraints[k].force_input, 0};
+  }
+  return result;
+}
+
+Ref contact_mode(const Mechanics& m, const Contact& contact) {
+  const auto after = static_cast<std::uint32_t>(contact.dimensions());
+  return m.dag->symbol({SymbolKind::input, *contact.first_input + after, 0});
+}
+
+}  // namespace eomgen::mechanics

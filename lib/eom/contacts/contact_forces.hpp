@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+// Forces of contacts in a given set of closed, sticking and sliding ones. In: compiled code whose inputs hold these
+// forces, a state. Out: the forces with which closed contacts stay closed and sticking ones stick; the quantities from
+// which the next set follows.
+//
+// The accelerations are affine in the forces. One evaluation of the right-hand side for each unknown force gives their
+// slopes, in every formulation of the equations. Dependent rows (four corners on a plane) have the forces of least norm.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "eom/contacts/description.hpp"
+#include "eom/contacts/least_norm.hpp"
+
+namespace eom::contacts {
+
+/// The mode of a contact, as in the output mode.NAME.
+enum class Mode { sliding_back = -1, closed = 0, sliding = 1, open = 2 };
+
+/// The mode of a contact, with what it needs beside it.
+struct ContactState {
+  Mode mode = Mode::closed;              // closed: sticks, or has no friction
+  double normal_sign = 1;                // of lambda, for contacts that cannot open
+  std::array<double, 2> direction{};     // of slip in two directions, where the slip is too small to have one
+};
+
+/// The compiled code as these classes need it: a right-hand side and the rows of contacts, with all inputs given.
+struct System {
+  virtual ~System() = default;
+  virtual std::size_t coordinates() const = 0;
+  /// qddot of the free coordinates. Returns a code of the ABI.
+  virtual int accelerations(double t, const double* x, const double* u, double* qddot) = 0;
+  virtual int rows(double t, const double* x, const double* u, double* c) = 0;
+};
+
+class ContactForces {
+ public:
+  using Index = Eigen::Index;
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::MatrixXd;
+
+  ContactForces(const Set& set, System& system)
+      : set_(set),
+        system_(system),
+        n_(system.coordinates()),
+        states_(set.contacts.size()),
+        c_(set.values),
+        lambda_(set.contacts.size(), 0.0),
+        phi_(set.contacts.size()),
+        amplitude_(3 * set.contacts.size(), 1.0),
+        free_(n_),
+        work_(n_) {}
+
+  const Set& set() const { return set_; }
+  std::vector<ContactState>& states() { return states_; }
+  const std::vector<ContactState>& states() const { return states_; }
+  const Description& contact(std::size_t j) const { return set_.contacts[j]; }
+  bool is_closed(std::size_t j) const { return states_[j].mode != Mode::open; }
+  bool is_sticking(std::size_t j) const { return contact(j).sticks && states_[j].mode == Mode::closed; }
+
+  /// The least slip in two directions that has a direction of its own.
+  void set_least_slip(double speed) { least_slip_ = speed; }
+  double least_slip() const { return least_slip_; }
+
+  /// Evaluates the rows at (t, x); u has no contact forces.
+  int evaluate_rows(double t, const double* x, const double* u) { return system_.rows(t, x, u, c_.data()); }
+  double value(std::size_t place) const { return c_[place]; }
+  double rate(const Row& row) const { return c_[row.rate()]; }
+  double slip_speed(std::size_t j) const {
+    double square = 0;
+    for (const Row& row : contact(j).slip) square += rate(row) * rate(row);
+    return std::sqrt(square);
+  }
+  /// The acceleration of a row's velocity.
+  double acceleration(const Row& row, const Vector& qddot) const { return c_[row.bias()] + change(row, qddot); }
+  double change(const Row& row, const Vector& qddot) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < row.columns.size(); ++k)
+      sum += c_[row.slope(k)] * qddot(static_cast<Index>(row.columns[k]));
+    return sum;
+  }
+  /// The sum of the absolute values of the terms of a row times a vector of coordinates or rates.
+  double terms(const Row& row, const double* values) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < row.columns.size(); ++k)
+      sum += std::abs(c_[row.slope(k)] * values[row.columns[k]]);
+    return sum;
+  }
+
+  /// The direction of slip of a sliding contact, times the share of the Coulomb force that its law gives.
+  std::array<double, 2> direction(std::size_t j) const {
+    const Description& at = contact(j);
+    std::array<double, 2> w{};
+    for (std::size_t a = 0; a < at.slip.size(); ++a) w[a] = rate(at.slip[a]);
+    if (at.width != none) {
+      const double size = std::sqrt(w[0] * w[0] + w[1] * w[1] + c_[at.width] * c_[at.width]);
+      return {w[0] / size, w[1] / size};
+    }
+    if (at.slip.size() == 1) return {states_[j].mode == Mode::sliding_back ? -1.0 : 1.0, 0};
+    const double speed = slip_speed(j);
+    if (speed <= least_slip_) return states_[j].direction;
+    return {w[0] / speed, w[1] / speed};
+  }
+  /// Whether the friction of a contact follows from its normal force and its slip.
+  bool rubs(std::size_t j) const {
+    return is_closed(j) && !contact(j).slip.empty() && !(contact(j).sticks && states_[j].mode == Mode::closed);
+  }
+
+  /// A unit force: an input, and the further inputs in proportion to it.
+  struct Pattern {
+    std::size_t contact = 0;
+    int component = -1;  // -1: the normal, with the friction that follows from it; 0, 1: a tangent
+    std::vector<std::pair<std::size_t, double>> inputs = {};
+  };
+  Pattern normal_pattern(std::size_t j, bool with_friction) const {
+    const Description& at = contact(j);
+    Pattern pattern{j, -1, {{at.force_input, 1.0}}};
+    if (!with_friction || !rubs(j)) return pattern;
+    const std::array<double, 2> along = direction(j);
+    const double strength = c_[at.dynamic_coefficient] * c_[at.normal_scale] * states_[j].normal_sign;
+    for (std::size_t a = 0; a < at.slip.size(); ++a)
+      pattern.inputs.emplace_back(at.friction_input + a, -strength * along[a]);
+    return pattern;
+  }
+  Pattern tangent_pattern(std::size_t j, std::size_t a) const {
+    return {j, static_cast<int>(a), {{contact(j).friction_input + a, 1.0}}};
+  }
+
+  /// The accelerations without forces of contacts but for friction with a given normal force. They stay in `u`.
+  int evaluate_free(double t, const double* x, double* u) {
+    for (std::size_t j = 0; j < set_.contacts.size(); ++j) {
+      const Description& at = contact(j);
+      if (at.has_constraint() || !rubs(j)) continue;
+      const std::array<double, 2> along = direction(j);
+      const double force = c_[at.dynamic_coefficient] * std::abs(c_[at.given_normal]);
+      for (std::size_t a = 0; a < at.slip.size(); ++a) u[at.friction_input + a] = -force * along[a];
+    }
+    const int code = system_.accelerations(t, x, u, free_.data());
+    return code != 0 || free_.allFinite() ? code : code_not_finite;
+  }
+  const Vector& free_accelerations() const { return free_; }
+
+  /// The change of the accelerations for a unit force, after evaluate_free(). It is computed from a force with an effect
+  /// of the size of the accelerations, so that few digits are lost.
+  int response(double t, const double* x, double* u, const Pattern& pattern, Vector& result) {
+    double& amplitude = amplitude_[3 * pattern.contact + static_cast<std::size_t>(pattern.component + 1)];
+    const double size = free_.lpNorm<Eigen::Infinity>();
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      push(u, pattern, amplitude);
+      const int code = system_.accelerations(t, x, u, work_.data());
+      push(u, pattern, -amplitude);
+      if (code != 0 || !work_.allFinite()) return code != 0 ? code : code_not_finite;
+      result = (work_ - free_) / amplitude;
+      const double effect = result.lpNorm<Eigen::Infinity>() * amplitude;
+      if (size == 0 || effect == 0 || (effect > 1e-2 * size && effect < 1e2 * size)) break;
+      amplitude *= size / effect;
+    }
+    return 0;
+  }
+
+  /// Solves for the forces in the current states and adds them to u, whose contact forces are 0. Returns a code.
+  int solve(double t, const double* x, double* u) {
+    if (const int code = evaluate_rows(t, x, u); code != 0) return code;
+    if (const int code = evaluate_free(t, x, u); code != 0) return code;
+    std::vector<Pattern>& patterns = patterns_;
+    patterns.clear();
+    rows_.clear();
+    for (std::size_t j = 0; j < set_.contacts.size(); ++j) {
+      if (!is_closed(j)) continue;
+      if (contact(j).has_constraint()) patterns.push_back(normal_pattern(j, true)), rows_.push_back(&contact(j).normal);
+      for (std::size_t a = 0; a < contact(j).slip.size() && is_sticking(j); ++a)
+        patterns.push_back(tangent_pattern(j, a)), rows_.push_back(&contact(j).slip[a]);
+    }
+    const auto count = static_cast<Index>(patterns.size());
+    Matrix W(count, count);
+    Vector right(count);
+    for (Index k = 0; k < count; ++k) {
+      if (const int code = response(t, x, u, patterns[static_cast<std::size_t>(k)], response_); code != 0) return code;
+      for (Index i = 0; i < count; ++i) W(i, k) = change(*rows_[static_cast<std::size_t>(i)], response_);
+      right(k) = -acceleration(*rows_[static_cast<std::size_t>(k)], free_);
+    }
+    margins_.assign(set_.contacts.size(), 1.0);
+    std::fill(lambda_.begin(), lambda_.end(), 0.0);
+    std::fill(phi_.begin(), phi_.end(), std::array<double, 2>{});
+    if (count > 0) {
+      const LeastNorm forces = solve_least_norm(W, right);
+      undetermined_ = undetermined_ || forces.rank < count;
+      for (Index k = 0; k < count; ++k) {
+        const Pattern& pattern = patterns[static_cast<std::size_t>(k)];
+        push(u, pattern, forces.x(k));
+        if (pattern.component < 0) {
+          lambda_[pattern.contact] = forces.x(k);
+          if (rubs(pattern.contact)) margins_[pattern.contact] = W(k, k), signs_of_margins(pattern.contact, right(k));
+        }
+      }
+    }
+    for (std::size_t j = 0; j < set_.contacts.size(); ++j)
+      for (std::size_t a = 0; a < contact(j).slip.size(); ++a) phi_[j][a] = u[contact(j).friction_input + a];
+    write_modes(u);
+    return 0;
+  }
+
+  void write_modes(double* u) const {
+    for (std::size_t j = 0; j < set_.contacts.size(); ++j) u[contact(j).mode_input] = static_cast<double>(states_[j].mode);
+  }
+
+  /// Of the last solve(): lambda, the friction, the normal force (positive in compression).
+  double lambda(std::size_t j) const { return lambda_[j]; }
+  const std::array<double, 2>& friction(std::size_t j) const { return phi_[j]; }
+  double normal_force(std::size_t j) const {
+    const Description& at = contact(j);
+    return at.has_constraint() ? c_[at.normal_scale] * lambda_[j] : std::abs(c_[at.given_normal]);
+  }
+  /// Of a sliding contact: the derivative of the acceleration of its gap with respect to lambda. Not positive: Painleve's
+  /// case, in which its law has no solution or several.
+  double margin(std::size_t j) const { return margins_[j]; }
+  /// Whether a law with a negative margin has several solutions (the free contact separates), not none.
+  bool has_several(std::size_t j) const { return several_.size() > j && several_[j]; }
+  /// Whether the forces of some state were not unique.
+  bool undetermined() const { return undetermined_; }
+  void forget() { undetermined_ = false; }
+
+  static constexpr int code_not_finite = 5;  // as in the C ABI
+
+ private:
+  static void push(double* u, const Pattern& pattern, double amount) {
+    for (const auto& [input, share] : pattern.inputs) u[input] += share * amount;
+  }
+  void signs_of_margins(std::size_t j, double minus_free) {
+    several_.resize(set_.contacts.size());
+    several_[j] = minus_free < 0;
+  }
+
+  const Set& set_;
+  System& system_;
+  std::size_t n_;
+  std::vector<ContactState> states_;
+  std::vector<double> c_, lambda_, margins_;
+  std::vector<std::array<double, 2>> phi_;
+  std::vector<double> amplitude_;
+  std::vector<bool> several_;
+  std::vector<Pattern> patterns_;
+  std::vector<const Row*> rows_;
+  Vector free_, work_, response_;
+  double least_slip_ = 0;
+  bool undetermined_ = false;
+};
+
+}  // namespace eom::contacts

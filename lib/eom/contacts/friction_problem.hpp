@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+// Forces, or impulses, of several contacts with friction at the same instant: one complementarity problem. In: the
+// responses G of velocities to unit forces, the velocities q without them, the laws. Out: the forces, with the
+// complementarity residual, or the report that there are none.
+//
+// With accelerations in place of velocities the forces decide which contacts stay closed and stick, with velocities the
+// impulses of an impact follow. Friction in one direction is exact: with beta in both senses and sigma the speed,
+//   G z + q + sigma >= 0, mu N - sum beta >= 0, both complementary (Anitescu and Potra 1997, eq. (9)),
+// solved by Lemke's pivoting. In two directions this problem has a polygon in place of the circle; its solution starts a
+// projected Gauss-Seidel iteration on the circle, which ends at 1e-13.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "eom/contacts/least_norm.hpp"
+#include "eom/contacts/lemke.hpp"
+
+namespace eom::contacts {
+
+/// Friction at zero slip: |force along the tangents| <= coefficient * normal force. Indices are rows.
+struct FrictionLaw {
+  std::vector<Eigen::Index> tangents;  // one or two
+  Eigen::Index normal = -1;            // -1: the normal force is given
+  double normal_sign = 1;              // the normal force is normal_sign * force
+  double given_normal = 0;
+  double coefficient = 0;
+};
+
+struct FrictionProblem {
+  enum class Kind { holds, closes, rubs };  // the velocity is 0; it is >= 0 and so is the force; a tangent of a law
+  Eigen::MatrixXd G;
+  Eigen::VectorXd q;
+  std::vector<Kind> kinds;
+  std::vector<FrictionLaw> laws;
+};
+
+struct FrictionForces {
+  bool found = false;
+  Eigen::VectorXd force, velocity;  // per row
+  std::vector<double> speed;        // per law: of the slip
+  double residual = 0;
+};
+
+namespace friction {
+
+/// Tries all laws with 2 * `directions` or, for one tangent, 2 senses.
+class Solver {
+ public:
+  using Index = Eigen::Index;
+  using Matrix = Eigen::MatrixXd;
+  using Vector = Eigen::VectorXd;
+
+  explicit Solver(const FrictionProblem& problem) : p_(problem) {
+    for (Index i = 0; i < p_.q.size(); ++i)
+      (p_.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::holds ? held_ : free_).push_back(i);
+    eliminate_held();
+  }
+
+  FrictionForces run() {
+    FrictionForces result = by_pivoting();
+    const auto plane = [](const FrictionLaw& law) { return law.tangents.size() == 2; };
+    if (result.found && std::any_of(p_.laws.begin(), p_.laws.end(), plane)) refine(result);
+    return result;
+  }
+
+ private:
+  /// A force per direction of a polygon; `law` -1: a normal.
+  struct Column {
+    Index row;                 // of a normal
+    int law = -1;
+    std::vector<double> along;  // of the tangents of the law
+  };
+
+  // Held rows follow from the others: force_held = h0 + H force_free.
+  void eliminate_held() {
+    const auto h = static_cast<Index>(held_.size()), f = static_cast<Index>(free_.size());
+    G_ = Matrix(f, f), q_ = Vector(f);
+    for (Index i = 0; i < f; ++i) {
+      q_(i) = p_.q(free_[i]);
+      for (Index k = 0; k < f; ++k) G_(i, k) = p_.G(free_[i], free_[k]);
+    }
+    H_ = Matrix::Zero(h, f), h0_ = Vector::Zero(h);
+    if (h == 0) return;
+    Matrix of_held(h, h), cross(h, f), back(f, h);
+    Vector right(h);
+    for (Index i = 0; i < h; ++i) {
+      right(i) = -p_.q(held_[i]);
+      for (Index k = 0; k < h; ++k) of_held(i, k) = p_.G(held_[i], held_[k]);
+      for (Index k = 0; k < f; ++k) cross(i, k) = p_.G(held_[i], free_[k]), back(k, i) = p_.G(free_[k], held_[i]);
+    }
+    h0_ = solve_least_norm(of_held, right).x;
+    for (Index k = 0; k < f; ++k) H_.col(k) = solve_least_norm(of_held, -cross.col(k)).x;
+    q_ += back * h0_;
+    G_ += back * H_;
+  }
+
+  Index place(Index row) const {
+    return static_cast<Index>(std::find(free_.begin(), free_.end(), row) - free_.begin());
+  }
+  Index held_place(Index row) const {
+    const auto found = std::find(held_.begin(), held_.end(), row);
+    return found == held_.end() ? -1 : static_cast<Index>(found - held_.begin());
+  }
+
+  /// The normal force of a law as an affine function of the forces of free rows.
+  double limit(const FrictionLaw& law, Vector& by_force) const {
+    by_force = Vector::Zero(q_.size());
+    if (law.normal < 0) return law.coefficient * std::abs(law.given_normal);
+    if (const Index held = held_place(law.normal); held >= 0) {
+      by_force = law.coefficient * law.normal_sign * H_.row(held).transpose();
+      return law.coefficient * law.normal_sign * h0_(held);
+    }
+    by_force(place(law.normal)) = law.coefficient * law.normal_sign;
+    return 0;
+  }
+
+  FrictionForces by_pivoting() const {
+    std::vector<Column> columns;
+    for (const Index row : free_)
+      if (p_.kinds[static_cast<std::size_t>(row)] == FrictionProblem::Kind::closes) columns.push_back({place(row), -1, {}});
+    for (int l = 0; l < static_cast<int>(p_.laws.size()); ++l) {
+      const std::size_t senses = p_.laws[static_cast<std::size_t>(l)].tangents.size() == 1 ? 2 : polygon;
+      for (std::size_t k = 0; k < senses; ++k) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(senses);
+        columns.push_back({-1, l, senses == 2 ? std::vector<double>{k == 0 ? 1.0 : -1.0}
+                                              : std::vector<double>{std::cos(angle), std::sin(angle)}});
+      }
+    }
+    const auto n = static_cast<Index>(columns.size()), laws = static_cast<Index>(p_.laws.size());
+    // Forces of free rows = B y with the forces y of the columns.
+    Matrix B = Matrix::Zero(q_.size(), n);
+    for (Index c = 0; c < n; ++c) {
+      const Column& column = columns[static_cast<std::size_t>(c)];
+      if (column.law < 0) {
+        B(column.row, c) = 1;
+        continue;
+      }
+      const FrictionLaw& law = p_.laws[static_cast<std::size_t>(column.law)];
+      for (std::size_t a = 0; a < column.along.size(); ++a) B(place(law.tangents[a]), c) = column.along[a];
+    }
+    Matrix M = Matrix::Zero(n + laws, n + laws);
+    Vector q = Vector::Zero(n + laws);
+    M.topLeftCorner(n, n) = B.transpose() * G_ * B;
+    q.head(n) = B.transpose() * q_;
+    for (Index l = 0; l < laws; ++l) {
+      Vector by_force;
+      q(n + l) = limit(p_.laws[static_cast<std::size_t>(l)], by_force);
+      M.row(n + l).head(n) = by_force.transpose() * B;
+      for (Index c = 0; c < n; ++c) {
+        if (columns[static_cast<std::size_t>(c)].law != l) continue;
+        M(n + l, c) -= 1;
+        M(c, n + l) = 1;
+      }
+    }
+    const ComplementaritySolution solution = solve_complementarity(M, q);
+    FrictionForces result = complete(B * solution.z.head(n));
+    result.found = solution.found;
+    result.residual = solution.residual;
+    return result;
+  }
+
+  /// Forces and velocities of all rows from the forces of the free ones.
+  FrictionForces complete(const Vector& free_forces) const {
+    FrictionForces result{true, Vector::Zero(p_.q.size()), Vector::Zero(p_.q.size()), {}, 0};
+    for (std::size_t i = 0; i < free_.size(); ++i) result.force(free_[i]) = free_forces(static_cast<Index>(i));
+    const Vector held = h0_ + H_ * free_forces;
+    for (std::size_t i = 0; i < held_.size(); ++i) result.force(held_[i]) = held(static_cast<Index>(i));
+    result.velocity = p_.G * result.force + p_.q;
+    for (const FrictionLaw& law : p_.laws) {
+      double square = 0;
+      for (const Index row : law.tangents) square += result.velocity(row) * result.velocity(row);
+      result.speed.push_back(std::sqrt(square));
+    }
+    return result;
+  }
+
+  /// Gauss-Seidel with projections onto the half line of normals and the discs of friction.
+  void refine(FrictionForces& result) const {
+    constexpr int most = 200000;
+    constexpr double enough = 1e-13;
+    const Index f = q_.size();
+    Vector y(f);
+    for (Index i = 0; i < f; ++i) y(i) = result.force(free_[i]);
+    Vector velocity = G_ * y + q_;
+    const auto set = [&](Index i, double value) {
+      const double change = value - y(i);
+      if (change == 0) return 0.0;
+      y(i) = value;
+      velocity += change * G_.col(i);
+      return std::abs(change);
+    };
+    double size = std::max(1e-300, y.lpNorm<Eigen::Infinity>()), last = 0;
+    for (int round = 0; round < most; ++round) {
+      double moved = 0;
+      for (Index i = 0; i < f; ++i) {
+        if (p_.kinds[static_cast<std::size_t>(free_[i])] != FrictionProblem::Kind::closes || !(G_(i, i) > 0)) continue;
+        moved = std::max(moved, set(i, std::max(0.0, y(i) - velocity(i) / G_(i, i))));
+      }
+      for (const FrictionLaw& law : p_.laws) moved = std::max(moved, rub(law, y, velocity, set));
+      size = std::max(size, y.lpNorm<Eigen::Infinity>());
+      last = moved / size;
+      if (last <= enough) break;
+    }
+    const FrictionForces refined = complete(y);
+    result = refined;
+    result.residual = last;
+  }
+
+  template <class Set>
+  double rub(const FrictionLaw& law, const Vector& y, const Vector& velocity, const Set& set) const {
+    Vector by_force;
+    const double most = std::max(0.0, limit(law, by_force) + by_force.dot(y));
+    std::vector<double> wanted;
+    double square = 0, slowest = 0;
+    for (const Index row : law.tangents) slowest = std::max(slowest, G_(place(row), place(row)));
+    if (!(slowest > 0)) return 0;
+    for (const Index row : law.tangents) {
+      wanted.push_back(y(place(row)) - velocity(place(row)) / slowest);
+      square += wanted.back() * wanted.back();
+    }
+    const double length = std::sqrt(square), factor = length > most ? most / length : 1;
+    double moved = 0;
+    for (std::size_t a = 0; a < wanted.size(); ++a)
+      moved = std::max(moved, set(place(law.tangents[a]), factor * wanted[a]));
+    return moved;
+  }
+
+  static constexpr std::size_t polygon = 8;
+
+  const FrictionProblem& p_;
+  std::vector<Index> held_, free_;
+  Matrix G_, H_;
+  Vector q_, h0_;
+};
+
+}  // namespace friction
+
+inline FrictionForces solve_friction_problem(const FrictionProblem& problem) { return friction::Solver(problem).run(); }
+
+}  // namespace eom::contacts

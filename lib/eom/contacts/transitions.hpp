@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: MIT
+// Changes of contacts at an instant. In: a state at which a contact meets, parts, slips or stops. Out: impulses with the
+// velocities after them, then the states of all contacts from one complementarity problem on accelerations.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eom/contacts/contact_forces.hpp"
+#include "eom/contacts/friction_problem.hpp"
+
+namespace eom::contacts {
+
+/// The function of a contact that crossed zero: it favours the change that the crossing announces.
+struct Hint {
+  std::size_t contact = none;
+  bool parts = false;  // its normal force vanished
+  bool slips = false;  // friction reached its limit
+};
+
+/// What may count as zero, by the accuracy of the run.
+struct Tolerances {
+  double speed = 1e-12;  // of gaps and slip
+  double slip = 1e-12;   // in two directions
+};
+
+class Transitions {
+ public:
+  using Index = Eigen::Index;
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::MatrixXd;
+
+  Transitions(ContactForces& forces, std::size_t coordinates) : forces_(forces), n_(coordinates) {}
+
+  enum class Outcome { done, no_solution, no_value };
+  struct Result {
+    Outcome outcome = Outcome::done;
+    int code = 0;               // of the ABI, for no_value
+    std::size_t contact = none;  // for no_solution
+  };
+
+  /// Impulses of the contacts in `touching` (indices) that approach one another; the rates in x change. Contacts in
+  /// `plastic` do not bounce. `hit` receives those that had an impulse and approached.
+  Result impact(double t, double* x, double* u, const std::vector<std::size_t>& touching,
+                const std::vector<bool>& plastic, const Tolerances& tolerances, std::vector<std::size_t>& hit) {
+    if (const int code = prepare(t, x, u); code != 0) return {Outcome::no_value, code, none};
+    before_ = Eigen::Map<const Vector>(x + n_, static_cast<Index>(n_));
+    if (forces_.set().order == ImpactOrder::simultaneous)
+      return apply(t, x, u, touching, plastic, tolerances, hit);
+    constexpr int most = 10000;  // each reduces the kinetic energy, or exchanges it
+    for (int count = 0; count < most; ++count) {
+      std::size_t fastest = none;
+      double speed = -tolerances.speed;
+      for (const std::size_t j : touching) {
+        if (!forces_.contact(j).unilateral) continue;
+        const double rate = gap_speed(j, x);
+        if (rate < speed) speed = rate, fastest = j;
+      }
+      if (fastest == none) return {};
+      const Result result = apply(t, x, u, {fastest}, plastic, tolerances, hit);
+      if (result.outcome != Outcome::done) return result;
+    }
+    return {};
+  }
+
+  /// The states of the contacts at (t, x), whose gap speeds are not negative. Only those in `touching` can be closed.
+  Result decide(double t, const double* x, double* u, const std::vector<std::size_t>& touching, const Hint& hint,
+                const Tolerances& tolerances) {
+    if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return {Outcome::no_value, code, none};
+    begin_states(touching, tolerances);
+    std::vector<bool> broken(forces_.set().contacts.size(), false);
+    if (hint.slips) broken[hint.contact] = true;
+    for (std::size_t round = 0; round <= forces_.set().contacts.size(); ++round) {
+      bool again = false;
+      const Result result = settle(t, x, u, hint, broken, again);
+      if (result.outcome != Outcome::done || !again) return result;
+    }
+    return {};
+  }
+
+ private:
+  int prepare(double t, const double* x, double* u) {
+    if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return code;
+    return forces_.evaluate_free(t, x, u);
+  }
+
+  double gap_speed(std::size_t j, const double* x) const { return speed(forces_.contact(j).normal, x); }
+  /// The velocity of a row at changed rates: rows were evaluated before.
+  double speed(const Row& row, const double* x) const {
+    double sum = forces_.rate(row);
+    for (std::size_t k = 0; k < row.columns.size(); ++k)
+      sum += forces_.value(row.slope(k)) * (x[n_ + row.columns[k]] - before_(static_cast<Index>(row.columns[k])));
+    return sum;
+  }
+
+  /// Impulses of `acting` contacts; those that cannot open always act.
+  Result apply(double t, double* x, double* u, const std::vector<std::size_t>& acting,
+               const std::vector<bool>& plastic, const Tolerances& tolerances, std::vector<std::size_t>& hit) {
+    const ImpactLaw law = forces_.set().law;
+    FrictionProblem problem;
+    std::vector<const Row*> rows;
+    std::vector<Vector> responses;
+    std::vector<std::size_t> contact_of;
+    std::vector<double> approach, restitution;
+    int code = 0;
+    const auto add = [&](std::size_t j, const Row& row, const ContactForces::Pattern& pattern, FrictionProblem::Kind kind) {
+      Vector response;
+      if (code == 0) code = forces_.response(t, x, u, pattern, response);
+      rows.push_back(&row), responses.push_back(std::move(response)), contact_of.push_back(j);
+      problem.kinds.push_back(kind);
+      approach.push_back(speed(row, x));
+    };
+    for (std::size_t j = 0; j < forces_.set().contacts.size(); ++j) {
+      const Description& at = forces_.contact(j);
+      const bool acts = at.unilateral ? std::find(acting.begin(), acting.end(), j) != acting.end() : at.has_constraint();
+      if (!acts) continue;
+      const auto normal = static_cast<Index>(rows.size());
+      add(j, at.normal, forces_.normal_pattern(j, false),
+          at.unilateral ? FrictionProblem::Kind::closes : FrictionProblem::Kind::holds);
+      if (law == ImpactLaw::newton || !at.sticks) continue;
+      FrictionLaw friction{{}, normal, forces_.states()[j].normal_sign * forces_.value(at.normal_scale), 0,
+                           forces_.value(at.dynamic_coefficient)};
+      for (std::size_t a = 0; a < at.slip.size(); ++a) {
+        friction.tangents.push_back(static_cast<Index>(rows.size()));
+        add(j, at.slip[a], forces_.tangent_pattern(j, a), FrictionProblem::Kind::rubs);
+      }
+      problem.laws.push_back(std::move(friction));
+    }
+    if (code != 0) return {Outcome::no_value, code, none};
+    const auto count = static_cast<Index>(rows.size());
+    problem.G = Matrix(count, count), problem.q = Vector(count);
+    for (Index i = 0; i < count; ++i) {
+      for (Index k = 0; k < count; ++k)
+        problem.G(i, k) = forces_.change(*rows[static_cast<std::size_t>(i)], responses[static_cast<std::size_t>(k)]);
+      const std::size_t j = contact_of[static_cast<std::size_t>(i)];
+      const bool bounces = problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::closes && !plastic[j] &&
+                           approach[static_cast<std::size_t>(i)] < -tolerances.speed;
+      restitution.push_back(bounces ? forces_.value(forces_.contact(j).restitution) : 0);
+      const bool of_speeds = law != ImpactLaw::poisson;
+      problem.q(i) = approach[static_cast<std::size_t>(i)] * (of_speeds ? 1 + restitution.back() : 1);
+    }
+    FrictionForces impulses = solve_friction_problem(problem);
+    if (!impulses.found) return {Outcome::no_solution, 0, worst(problem, contact_of)};
+    Vector total = impulses.force;
+    if (law == ImpactLaw::poisson) {
+      // Restitution gives back a share of the normal impulses of compression; what comes to it may be more.
+      FrictionProblem after = problem;
+      Vector share = Vector::Zero(count);
+      for (Index i = 0; i < count; ++i) share(i) = restitution[static_cast<std::size_t>(i)] * std::max(0.0, total(i));
+      after.q = problem.q + problem.G * (total + share);
+      const FrictionForces more = solve_friction_problem(after);
+      if (!more.found) return {Outcome::no_solution, 0, worst(after, contact_of)};
+      total += share + more.force;
+    }
+    for (Index k = 0; k < count; ++k)
+      Eigen::Map<Vector>(x + n_, static_cast<Index>(n_)) += total(k) * responses[static_cast<std::size_t>(k)];
+    for (Index i = 0; i < count; ++i) {
+      const std::size_t j = contact_of[static_cast<std::size_t>(i)];
+      if (problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::closes &&
+          approach[static_cast<std::size_t>(i)] < -tolerances.speed && total(i) > 0 &&
+          std::find(hit.begin(), hit.end(), j) == hit.end())
+        hit.push_back(j);
+    }
+    return {};
+  }
+
+  static std::size_t worst(const FrictionProblem& problem, const std::vector<std::size_t>& contact_of) {
+    Index least = 0;
+    if (problem.q.size() == 0) return none;
+    problem.q.minCoeff(&least);
+    return contact_of[static_cast<std::size_t>(least)];
+  }
+
+  /// Sliding where there is slip, closed where there is none, open where nothing touches.
+  void begin_states(const std::vector<std::size_t>& touching, const Tolerances& tolerances) {
+    for (std::size_t j = 0; j < forces_.set().contacts.size(); ++j) {
+      const Description& at = forces_.contact(j);
+      ContactState& state = forces_.states()[j];
+      if (at.unilateral && std::find(touching.begin(), touching.end(), j) == touching.end()) {
+        state.mode = Mode::open;
+        continue;
+      }
+      if (at.unilateral && gap_speed_now(j) > tolerances.speed) {
+        state.mode = Mode::open;
+        continue;
+      }
+      state.mode = Mode::closed;
+      if (!at.sticks) continue;
+      const bool moves = forces_.slip_speed(j) > (at.slip.size() == 2 ? tolerances.slip : tolerances.speed);
+      if (moves) state.mode = at.slip.size() == 1 && forces_.rate(at.slip[0]) < 0 ? Mode::sliding_back : Mode::sliding;
+    }
+  }
+  double gap_speed_now(std::size_t j) const { return forces_.rate(forces_.contact(j).normal); }
+
+  /// One complementarity problem on accelerations. `again`: a contact has just begun to slide, whose coefficient changes.
+  Result settle(double t, const double* x, double* u, const Hint& hint, std::vector<bool>& broken, bool& again) {
+    std::vector<double> inputs(u, u + input_count_);
+    double* const v = inputs.data();
+    if (const int code = forces_.evaluate_free(t, x, v); code != 0) return {Outcome::no_value, code, none};
+    FrictionProblem problem;
+    std::vector<const Row*> rows;
+    std::vector<Vector> responses;
+    std::vector<std::size_t> contact_of, law_of;
+    int code = 0;
+    const auto add = [&](std::size_t j, const Row& row, const ContactForces::Pattern& pattern, FrictionProblem::Kind kind) {
+      Vector response;
+      if (code == 0) code = forces_.response(t, x, v, pattern, response);
+      rows.push_back(&row), responses.push_back(std::move(response)), contact_of.push_back(j);
+      problem.kinds.push_back(kind);
+    };
+    for (std::size_t j = 0; j < forces_.set().contacts.size(); ++j) {
+      if (!forces_.is_closed(j)) continue;
+      const Description& at = forces_.contact(j);
+      const auto normal = static_cast<Index>(rows.size());
+      if (at.has_constraint())
+        add(j, at.normal, forces_.normal_pattern(j, true),
+            at.unilateral ? FrictionProblem::Kind::closes : FrictionProblem::Kind::holds);
+      if (!forces_.is_sticking(j)) continue;
+      const double mu = forces_.value(broken[j] ? at.dynamic_coefficient : at.static_coefficient);
+      FrictionLaw friction{{}, at.has_constraint() ? normal : -1, 1, 0, mu};
+      if (at.has_constraint())
+        friction.normal_sign = forces_.states()[j].normal_sign * forces_.value(at.normal_scale);
+      else
+        friction.given_normal = forces_.value(at.given_normal);
+      for (std::size_t a = 0; a < at.slip.size(); ++a) {
+        friction.tangents.push_back(static_cast<Index>(rows.size()));
+        add(j, at.slip[a], forces_.tangent_pattern(j, a), FrictionProblem::Kind::rubs);
+      }
+      problem.laws.push_back(std::move(friction));
+      law_of.push_back(j);
+    }
+    if (code != 0) return {Outcome::no_value, code, none};
+    const auto count = static_cast<Index>(rows.size());
+    problem.G = Matrix(count, count), problem.q = Vector(count);
+    Vector size(count);
+    for (Index i = 0; i < count; ++i) {
+      const Row& row = *rows[static_cast<std::size_t>(i)];
+      for (Index k = 0; k < count; ++k) problem.G(i, k) = forces_.change(row, responses[static_cast<std::size_t>(k)]);
+      problem.q(i) = forces_.acceleration(row, forces_.free_accelerations());
+      size(i) = std::abs(forces_.value(row.bias())) + forces_.terms(row, forces_.free_accelerations().data());
+    }
+    favour(problem, contact_of, size, hint);
+    const FrictionForces found = solve_friction_problem(problem);
+    if (!found.found) return {Outcome::no_solution, 0, worst(problem, contact_of)};
+    const double largest = std::max(size.size() > 0 ? size.maxCoeff() : 0.0, 1e-300);
+    for (Index i = 0; i < count; ++i) {
+      const std::size_t j = contact_of[static_cast<std::size_t>(i)];
+      if (problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::closes && !(found.force(i) > 0) &&
+          (found.velocity(i) > negligible * largest || (hint.parts && hint.contact == j)))
+        forces_.states()[j].mode = Mode::open;
+      if (problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::holds && found.force(i) != 0)
+        forces_.states()[j].normal_sign = found.force(i) < 0 ? -1 : 1;
+    }
+    for (std::size_t l = 0; l < law_of.size(); ++l) {
+      const std::size_t j = law_of[l];
+      if (!forces_.is_closed(j) || !(found.speed[l] > negligible * largest)) continue;
+      if (!broken[j] && forces_.value(forces_.contact(j).static_coefficient) !=
+                            forces_.value(forces_.contact(j).dynamic_coefficient)) {
+        broken[j] = again = true;
+        continue;
+      }
+    }
+    if (again) {
+      // Nothing is final: contacts that were opened here may be closed with the other coefficient.
+      for (const std::size_t j : contact_of)
+        if (forces_.states()[j].mode == Mode::open) forces_.states()[j].mode = Mode::closed;
+      return {};
+    }
+    for (std::size_t l = 0; l < law_of.size(); ++l) {
+      const std::size_t j = law_of[l];
+      if (!forces_.is_closed(j) || !(found.speed[l] > negligible * largest)) continue;
+      ContactState& state = forces_.states()[j];
+      const std::vector<Index>& tangents = problem.laws[l].tangents;
+      state.mode = tangents.size() == 1 && found.velocity(tangents[0]) < 0 ? Mode::sliding_back : Mode::sliding;
+      for (std::size_t a = 0; a < tangents.size(); ++a) state.direction[a] = found.velocity(tangents[a]) / found.speed[l];
+    }
+    return {};
+  }
+
+  /// Adds a small acceleration towards the change that the crossing announces: at the crossing itself both states obey
+  /// the law.
+  void favour(FrictionProblem& problem, const std::vector<std::size_t>& contact_of, const Vector& size,
+              const Hint& hint) const {
+    if (hint.contact == none) return;
+    const double largest = size.size() > 0 ? size.maxCoeff() : 0;
+    std::size_t a = 0;
+    for (Index i = 0; i < problem.q.size(); ++i) {
+      if (contact_of[static_cast<std::size_t>(i)] != hint.contact) continue;
+      if (problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::rubs) {
+        const std::array<double, 2>& phi = friction_before_;
+        const double length = std::hypot(phi[0], phi[1]);
+        if (hint.slips && length > 0) problem.q(i) -= announced * largest * phi[a] / length;
+        ++a;
+      } else if (hint.parts) {
+        problem.q(i) += announced * largest;
+      }
+    }
+  }
+
+ public:
+  /// The friction of the contact of a Hint before the crossing.
+  void set_friction_before(const std::array<double, 2>& phi) { friction_before_ = phi; }
+  void set_input_count(std::size_t count) { input_count_ = count; }
+
+ private:
+  static constexpr double negligible = 1e-12, announced = 1e-9;
+
+  ContactForces& forces_;
+  std::size_t n_;
+  std::size_t input_count_ = 0;
+  Vector before_;  // rates at which the rows were evaluated
+  std::array<double, 2> friction_before_{};
+};
+
+}  // namespace eom::contacts

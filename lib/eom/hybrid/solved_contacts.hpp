@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: MIT
+// Contacts whose forces are inputs of the compiled code, during one run: the functions that bound their modes, and the
+// changes at the zeros of these functions. In: a Problem, its Model. Out: velocities after impacts, new modes, the
+// events to record, the rows to which a run projects its states.
+//
+// Three functions for each contact, all positive inside its mode: the gap of an open one, the normal force of a closed
+// one; what is left to the limit of sticking friction, or the slip in its sense; the margin of the law of sliding.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eom/contacts/transitions.hpp"
+#include "eom/events/locator.hpp"
+#include "eom/hybrid/model.hpp"
+#include "eom/modes/machine.hpp"
+
+namespace eom::hybrid {
+
+class SolvedContacts {
+ public:
+  static constexpr std::size_t values_per_contact = 3;
+  /// `changed`: called after velocities change, with the state before and after. Returns the work.
+  using Changed = std::function<double(double t, std::span<const double> before, std::span<const double> after)>;
+
+  SolvedContacts(const Problem& problem, Model& model, Changed changed)
+      : problem_(problem),
+        model_(model),
+        forces_(*model.contact_forces()),
+        transitions_(forces_, problem.n()),
+        changed_(std::move(changed)),
+        rtol_(problem.rtol),
+        atol_(problem.atol),
+        largest_gap_(size(), 0.0),
+        hits_(size()) {
+    transitions_.set_input_count(problem.inputs.size());
+  }
+
+  std::size_t size() const { return forces_.set().contacts.size(); }
+  std::size_t functions() const { return values_per_contact * size(); }
+
+  struct Change {
+    std::string kind, name;
+    double work = 0;  // of an impact
+  };
+  const std::vector<Change>& changes() const { return changes_; }
+  std::optional<Outcome> end_outcome() const { return end_; }
+  /// The contact without a unique force, where end_outcome() says so.
+  std::size_t end_contact() const { return end_contact_; }
+
+  void set_tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
+
+  /// Determines the modes of a start. Contacts with `open` are open; the others touch.
+  std::vector<Change> start(double t, std::span<double> x, const std::vector<bool>& open) {
+    end_.reset();
+    changes_.clear();
+    chatter_.reset();
+    largest_speed_ = 0;
+    forces_.forget();
+    std::fill(largest_gap_.begin(), largest_gap_.end(), 0.0);
+    std::vector<std::size_t> touching;
+    for (std::size_t j = 0; j < size(); ++j) {
+      forces_.states()[j] = {};
+      const bool starts_open = forces_.contact(j).unilateral && j < open.size() && open[j];
+      if (starts_open) forces_.states()[j].mode = contacts::Mode::open;
+      if (!starts_open && forces_.contact(j).has_constraint()) touching.push_back(j);
+    }
+    if (model_.contact_forces()->evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) == 0) observe(x.data());
+    meet(t, x, touching, {}, {});
+    return changes_;
+  }
+
+  /// The state from which another run of the same problem continues.
+  struct State {
+    std::vector<contacts::ContactState> states = {};
+    modes::ChatterDetector chatter = {};
+    double largest_speed = 0;
+    std::vector<double> largest_gap = {};
+    std::vector<std::size_t> hits = {};
+  };
+  State save() const { return {forces_.states(), chatter_, largest_speed_, largest_gap_, hits_}; }
+  void restore(const State& from) {
+    forces_.states() = from.states;
+    chatter_ = from.chatter;
+    largest_speed_ = from.largest_speed;
+    largest_gap_ = from.largest_gap;
+    hits_ = from.hits;
+    end_.reset();
+    model_.forget_contact_forces();
+  }
+
+  void watch(std::span<EventFunction> functions) const {
+    for (EventFunction& f : functions) f = {Direction::down, Watch::off, false};
+    for (std::size_t j = 0; j < size(); ++j) {
+      const contacts::Description& at = forces_.contact(j);
+      EventFunction* const f = &functions[values_per_contact * j];
+      const EventFunction bound{Direction::down, Watch::breaking, true};
+      if (at.has_constraint()) f[0] = bound;
+      if (!forces_.is_closed(j) || at.slip.empty()) continue;
+      if (at.sticks) f[1] = bound;
+      if (forces_.rubs(j) && at.has_constraint()) f[2] = bound;
+    }
+  }
+
+  /// Values of all functions at a state.
+  int operator()(double t, const double* x, double* g) {
+    if (const int code = model_.solve_contacts(t, x); code != 0) return code;
+    observe(x);
+    for (std::size_t j = 0; j < size(); ++j) {
+      double* const value = g + values_per_contact * j;
+      value[0] = value[1] = value[2] = 1;
+      const contacts::Description& at = forces_.contact(j);
+      if (!forces_.is_closed(j)) {
+        value[0] = forces_.value(at.gap);
+        continue;
+      }
+      if (at.has_constraint()) value[0] = at.unilateral ? forces_.lambda(j) : sign(j) * forces_.lambda(j);
+      if (at.sticks) value[1] = bound_of_friction(j);
+      value[2] = forces_.margin(j);
+    }
+    return std::any_of(g, g + functions(), [](double value) { return std::isnan(value); }) ? code_not_finite : 0;
+  }
+
+  /// Called at the start of each step.
+  void update(const double* x) {
+    constexpr double tolerances = 30;
+    double least = 0;
+    const std::size_t n = problem_.n();
+    for (std::size_t j = 0; j < size(); ++j) {
+      if (forces_.contact(j).slip.size() != 2) continue;
+      for (const contacts::Row& row : forces_.contact(j).slip) {
+        double known = 0;
+        for (std::size_t k = 0; k < row.columns.size(); ++k)
+          known += std::abs(forces_.value(row.slope(k))) * (atol_ + rtol_ * std::abs(x[n + row.columns[k]]));
+        least = std::max(least, tolerances * known);
+      }
+    }
+    forces_.set_least_slip(std::max(negligible_speed(), least));
+  }
+
+  EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions) {
+    const std::size_t j = crossing.function / values_per_contact, which = crossing.function % values_per_contact;
+    changes_.clear();
+    if (which == 2) {
+      end_ = forces_.has_several(j) ? Outcome::friction_many_solutions : Outcome::friction_no_solution;
+      end_contact_ = j;
+      return EventAction::stop;
+    }
+    const contacts::Description& at = forces_.contact(j);
+    if (which == 0 && !at.unilateral) {
+      forces_.states()[j].normal_sign = -sign(j);
+      model_.forget_contact_forces();
+      watch(functions);
+      return EventAction::restart;
+    }
+    contacts::Hint hint{j, which == 0 && forces_.is_closed(j), which == 1 && forces_.is_sticking(j)};
+    transitions_.set_friction_before(forces_.friction(j));
+    std::vector<std::size_t> touching;
+    for (std::size_t i = 0; i < size(); ++i)
+      if (forces_.contact(i).has_constraint() && (forces_.is_closed(i) || i == j)) touching.push_back(i);
+    std::vector<bool> plastic(size(), false);
+    const bool meets = which == 0 && !forces_.is_closed(j);
+    if (meets) {
+      add_touching(t, x, touching);
+      if (chatter_.add_transition(t)) end_bounces(j, touching, plastic);
+      stop_low_bounces(t, x, touching, plastic);
+    }
+    meet(t, x, touching, plastic, hint);
+    if (end_) return EventAction::stop;
+    if (!progresses(t)) {
+      end_ = Outcome::step_too_small;
+      return EventAction::stop;
+    }
+    watch(functions);
+    return EventAction::restart;
+  }
+
+  /// Rows of closed contacts: gaps; and velocities: of sticking ones.
+  std::size_t gap_rows() const {
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < size(); ++j) count += has_gap_row(j) ? 1 : 0;
+    return count;
+  }
+  std::size_t slip_rows() const {
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < size(); ++j) count += forces_.is_sticking(j) ? forces_.contact(j).slip.size() : 0;
+    return count;
+  }
+  /// Calls gap(psi, row, b) for each gap row and slip(row, b) for each slip row, with b such that A qdot + b is the
+  /// velocity. Returns a code.
+  template <class Gap, class Slip>
+  int rows(double t, const double* x, Gap&& gap, Slip&& slip) {
+    if (const int code = forces_.evaluate_rows(t, x, model_.inputs(t)); code != 0) return code;
+    const double* const rates = x + problem_.n();
+    const auto rest = [&](const contacts::Row& row) {
+      double sum = forces_.rate(row);
+      for (std::size_t k = 0; k < row.columns.size(); ++k) sum -= forces_.value(row.slope(k)) * rates[row.columns[k]];
+      return sum;
+    };
+    for (std::size_t j = 0; j < size(); ++j)
+      if (has_gap_row(j)) gap(forces_.value(forces_.contact(j).gap), forces_.contact(j).normal, rest(forces_.contact(j).normal));
+    for (std::size_t j = 0; j < size(); ++j) {
+      if (!forces_.is_sticking(j)) continue;
+      for (const contacts::Row& row : forces_.contact(j).slip) slip(row, rest(row));
+    }
+    model_.forget_contact_forces();
+    return 0;
+  }
+  double slope(const contacts::Row& row, std::size_t k) const { return forces_.value(row.slope(k)); }
+
+  bool has_closed_contact() const {
+    for (std::size_t j = 0; j < size(); ++j)
+      if (forces_.contact(j).has_constraint() && forces_.is_closed(j)) return true;
+    return false;
+  }
+  bool is_open(std::size_t j) const { return !forces_.is_closed(j); }
+  const std::string& name(std::size_t j) const { return forces_.contact(j).name; }
+  bool can_open() const {
+    const auto& all = forces_.set().contacts;
+    return std::any_of(all.begin(), all.end(), [](const contacts::Description& at) { return at.unilateral; });
+  }
+  /// The gap of a contact that can open, at a state; 0 for the others.
+  double gap(double t, const double* x, std::size_t j) {
+    if (!forces_.contact(j).unilateral) return 0;
+    model_.forget_contact_forces();
+    return forces_.evaluate_rows(t, x, model_.inputs(t)) == 0 ? forces_.value(forces_.contact(j).gap) : std::nan("");
+  }
+
+ private:
+  static constexpr int code_not_finite = 5;
+
+  double sign(std::size_t j) const { return forces_.states()[j].normal_sign; }
+  bool has_gap_row(std::size_t j) const { return forces_.contact(j).has_constraint() && forces_.is_closed(j); }
+
+  double negligible_speed() const {
+    constexpr double rounding = 1e-15, share = 1e-3, roundings = 1e-14;
+    return std::max({rounding, atol_, std::max(share * rtol_, roundings) * largest_speed_});
+  }
+  contacts::Tolerances tolerances() const { return {negligible_speed(), std::max(negligible_speed(), forces_.least_slip())}; }
+
+  double bound_of_friction(std::size_t j) const {
+    const contacts::Description& at = forces_.contact(j);
+    if (forces_.states()[j].mode == contacts::Mode::closed) {
+      const std::array<double, 2>& phi = forces_.friction(j);
+      return forces_.value(at.static_coefficient) * std::abs(forces_.normal_force(j)) - std::hypot(phi[0], phi[1]);
+    }
+    if (at.slip.size() == 1) return static_cast<double>(forces_.states()[j].mode) * forces_.rate(at.slip[0]);
+    return forces_.slip_speed(j) - forces_.least_slip();
+  }
+
+  void observe(const double* x) {
+    const double* const rates = x + problem_.n();
+    for (std::size_t j = 0; j < size(); ++j) {
+      const contacts::Description& at = forces_.contact(j);
+      const auto see = [&](const contacts::Row& row) {
+        const double speed = forces_.terms(row, rates);
+        if (std::isfinite(speed)) largest_speed_ = std::max(largest_speed_, speed);
+      };
+      if (at.has_constraint()) see(at.normal);
+      for (const contacts::Row& row : at.slip) see(row);
+      if (at.unilateral && !forces_.is_closed(j) && std::isfinite(forces_.value(at.gap)))
+        largest_gap_[j] = std::max(largest_gap_[j], forces_.value(at.gap));
+    }
+  }
+
+  /// The rounding of a gap, from the sizes of its terms.
+  double gap_rounding(std::size_t j, const double* x) const {
+    constexpr double roundings = 16, of_gaps = 3e-14;
+    const double terms = forces_.terms(forces_.contact(j).normal, x);
+    return std::max(roundings * std::numeric_limits<double>::epsilon() * terms, of_gaps * largest_gap_[j]);
+  }
+
+  /// Adds open contacts that meet at the same time.
+  void add_touching(double t, std::span<double> x, std::vector<std::size_t>& touching) {
+    if (forces_.evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) != 0) return;
+    for (std::size_t i = 0; i < size(); ++i) {
+      const contacts::Description& at = forces_.contact(i);
+      if (!at.unilateral || forces_.is_closed(i) || std::find(touching.begin(), touching.end(), i) != touching.end())
+        continue;
+      if (forces_.value(at.gap) <= gap_rounding(i, x.data()) && forces_.rate(at.normal) < negligible_speed())
+        touching.push_back(i);
+    }
+    std::sort(touching.begin(), touching.end());
+  }
+
+  /// An infinite sequence of ever smaller bounces ends with lasting contact of all contacts that took turns.
+  void end_bounces(std::size_t j, std::vector<std::size_t>& touching, std::vector<bool>& plastic) {
+    constexpr std::size_t turns = 3;
+    constexpr double low = 1e-8;
+    chatter_.reset();
+    plastic[j] = true;
+    for (std::size_t i = 0; i < size(); ++i) {
+      const contacts::Description& at = forces_.contact(i);
+      if (i == j || !at.unilateral || forces_.is_closed(i) || hits_[i] < turns) continue;
+      if (forces_.value(at.gap) > low * largest_gap_[i]) continue;
+      plastic[i] = true;
+      if (std::find(touching.begin(), touching.end(), i) == touching.end()) touching.push_back(i);
+    }
+    std::sort(touching.begin(), touching.end());
+  }
+
+  /// A bounce lower than the rounding of the gap is none.
+  void stop_low_bounces(double t, std::span<double> x, const std::vector<std::size_t>& touching,
+                        std::vector<bool>& plastic) {
+    constexpr double roundings = 10;
+    double* const u = model_.inputs_without_contacts(t);
+    if (forces_.evaluate_rows(t, x.data(), u) != 0 || forces_.evaluate_free(t, x.data(), u) != 0) return;
+    for (const std::size_t i : touching) {
+      const contacts::Description& at = forces_.contact(i);
+      // A contact at rest may approach later in a sequence of impacts.
+      if (!at.unilateral || !(forces_.rate(at.normal) < -negligible_speed())) continue;
+      const double away = -forces_.rate(at.normal) * forces_.value(at.restitution);
+      const double back = -forces_.acceleration(at.normal, forces_.free_accelerations());
+      if (away > 0 && back > 0 && away * away / (2 * back) <= roundings * gap_rounding(i, x.data())) plastic[i] = true;
+      if (away <= negligible_speed()) plastic[i] = true;
+    }
+  }
+
+  /// Impulses of contacts that approach, then new modes.
+  void meet(double t, std::span<double> x, const std::vector<std::size_t>& touching, std::vector<bool> plastic,
+            const contacts::Hint& hint) {
+    plastic.resize(size(), false);
+    const std::vector<contacts::ContactState> before = forces_.states();
+    const std::vector<double> state(x.begin(), x.end());
+    std::vector<std::size_t> hit;
+    contacts::Transitions::Result result;
+    if (forces_.evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) == 0 && approaches(touching))
+      result = transitions_.impact(t, x.data(), model_.inputs_without_contacts(t), touching, plastic, tolerances(), hit);
+    if (result.outcome == contacts::Transitions::Outcome::done)
+      result = transitions_.decide(t, x.data(), model_.inputs_without_contacts(t), touching, hint, tolerances());
+    model_.forget_contact_forces();
+    if (result.outcome != contacts::Transitions::Outcome::done) {
+      end_ = result.outcome == contacts::Transitions::Outcome::no_value ? outcome_of_abi_code(result.code)
+                                                                       : Outcome::friction_no_solution;
+      end_contact_ = result.contact;
+      return;
+    }
+    double work = 0;
+    if (!hit.empty()) work = changed_(t, state, x);
+    report(before, hit, work);
+  }
+  bool approaches(const std::vector<std::size_t>& touching) const {
+    return std::any_of(touching.begin(), touching.end(), [&](std::size_t j) {
+      const contacts::Description& at = forces_.contact(j);
+      return at.unilateral && forces_.rate(at.normal) < -negligible_speed();
+    });
+  }
+
+  void report(const std::vector<contacts::ContactState>& before, const std::vector<std::size_t>& hit, double work) {
+    using contacts::Mode;
+    for (const std::size_t j : hit) {
+      ++hits_[j];
+      changes_.push_back({"contact", name(j), std::exchange(work, 0.0)});
+    }
+    for (std::size_t j = 0; j < size(); ++j) {
+      const contacts::Description& at = forces_.contact(j);
+      const Mode from = before[j].mode, to = forces_.states()[j].mode;
+      const bool was_hit = std::find(hit.begin(), hit.end(), j) != hit.end();
+      if (from == Mode::open && to != Mode::open && !was_hit) changes_.push_back({"contact", name(j)});
+      if (from != Mode::open && to == Mode::open && !was_hit) changes_.push_back({"lose_contact", name(j)});
+      if (from == Mode::open || to == Mode::open || !at.sticks || from == to) continue;
+      const char* const kind = to == Mode::closed     ? at.rolls ? "roll" : "stick"
+                               : from == Mode::closed ? "slip"
+                                                      : "reverse";
+      changes_.push_back({kind, name(j)});
+    }
+  }
+
+  /// False after many changes at the same time.
+  bool progresses(double t) {
+    constexpr int most = 1000;
+    repeated_ = t == last_event_ ? repeated_ + 1 : 0;
+    last_event_ = t;
+    return repeated_ < most;
+  }
+
+  const Problem& problem_;
+  Model& model_;
+  contacts::ContactForces& forces_;
+  contacts::Transitions transitions_;
+  Changed changed_;
+  double rtol_, atol_;
+  double largest_speed_ = 0;
+  std::vector<double> largest_gap_;   // of open contacts
+  std::vector<std::size_t> hits_;     // number of impacts
+  modes::ChatterDetector chatter_;
+  std::vector<Change> changes_;       // of the last event
+  std::optional<Outcome> end_;
+  std::size_t end_contact_ = contacts::none;
+  double last_event_ = std::numeric_limits<double>::quiet_NaN();
+  int repeated_ = 0;
+};
+
+}  // namespace eom::hybrid

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// Contacts with friction at one instant, against closed forms: a block on an incline, a puck pushed in two directions,
+// three balls in a row, a block held from two sides.
+#include "eom/contacts/friction_problem.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using eom::contacts::FrictionForces;
+using eom::contacts::FrictionProblem;
+using eom::contacts::solve_friction_problem;
+using Kind = FrictionProblem::Kind;
+
+namespace {
+
+/// A particle of unit mass on a rough plane: rows are the normal and the tangents; q are accelerations without contact.
+FrictionProblem particle(const Eigen::VectorXd& q, double mu) {
+  FrictionProblem problem{Eigen::MatrixXd::Identity(q.size(), q.size()), q, {Kind::closes}, {{{}, 0, 1, 0, mu}}};
+  for (Eigen::Index a = 1; a < q.size(); ++a) {
+    problem.kinds.push_back(Kind::rubs);
+    problem.laws[0].tangents.push_back(a);
+  }
+  return problem;
+}
+
+}  // namespace
+
+TEST_CASE("friction problem: a block on an incline sticks below the angle of friction, and slides above it") {
+  const FrictionForces sticks = solve_friction_problem(particle(Eigen::Vector2d(-2, 0.9), 0.5));
+  REQUIRE(sticks.found);
+  CHECK(sticks.force(0) == doctest::Approx(2));
+  CHECK(sticks.force(1) == doctest::Approx(-0.9));
+  CHECK(std::abs(sticks.speed[0]) < 1e-14);
+  const FrictionForces slides = solve_friction_problem(particle(Eigen::Vector2d(-2, 1.5), 0.5));
+  REQUIRE(slides.found);
+  CHECK(slides.force(1) == doctest::Approx(-1));
+  CHECK(slides.velocity(1) == doctest::Approx(0.5));
+  const FrictionForces leaves = solve_friction_problem(particle(Eigen::Vector2d(0.1, 1.5), 0.5));
+  CHECK(leaves.force.isZero(0));
+}
+
+TEST_CASE("friction problem: in two directions the force opposes the slip to 1e-12, whatever the angle") {
+  for (double angle = 0.1; angle < 6.2; angle += 0.37) {
+    CAPTURE(angle);
+    const FrictionForces slides =
+        solve_friction_problem(particle(Eigen::Vector3d(-2, 3 * std::cos(angle), 3 * std::sin(angle)), 0.5));
+    REQUIRE(slides.found);
+    CHECK(std::abs(slides.force(1) + std::cos(angle)) < 1e-12);
+    CHECK(std::abs(slides.force(2) + std::sin(angle)) < 1e-12);
+    const FrictionForces sticks = solve_friction_problem(
+        particle(Eigen::Vector3d(-2, 0.999 * std::cos(angle), 0.999 * std::sin(angle)), 0.5));
+    REQUIRE(sticks.found);
+    CHECK(sticks.speed[0] < 1e-12);
+  }
+}
+
+TEST_CASE("friction problem: three balls that meet at the same time") {
+  // Gap speeds v2 - v1, v3 - v2 of unit masses; the first ball arrives with speed 1. Newton's law with e = 1.
+  FrictionProblem balls;
+  balls.G.resize(2, 2);
+  balls.G << 2, -1, -1, 2;
+  balls.q = Eigen::Vector2d(2 * -1.0, 0);
+  balls.kinds = {Kind::closes, Kind::closes};
+  const FrictionForces impulses = solve_friction_problem(balls);
+  REQUIRE(impulses.found);
+  CHECK(impulses.force(0) == doctest::Approx(4.0 / 3));
+  CHECK(impulses.force(1) == doctest::Approx(2.0 / 3));
+}
+
+TEST_CASE("friction problem: held rows are eliminated, and friction may hang on their force") {
+  // A bead on a rough rod across which a force of 3 acts: the rod holds it, and friction takes at most 0.5 * 3.
+  FrictionProblem bead;
+  bead.G = Eigen::Matrix2d::Identity();
+  bead.q = Eigen::Vector2d(-3, 2);
+  bead.kinds = {Kind::holds, Kind::rubs};
+  bead.laws = {{{1}, 0, 1, 0, 0.5}};
+  const FrictionForces forces = solve_friction_problem(bead);
+  REQUIRE(forces.found);
+  CHECK(forces.force(0) == doctest::Approx(3));
+  CHECK(forces.force(1) == doctest::Approx(-1.5));
+  CHECK(forces.velocity(1) == doctest::Approx(0.5));
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// Complementarity problems: known solutions, random ones, degenerate ones, those without a solution.
+#include "eom/contacts/lemke.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstddef>
+#include <random>
+
+#include "eom/contacts/least_norm.hpp"
+
+using eom::contacts::ComplementaritySolution;
+using eom::contacts::solve_complementarity;
+using eom::contacts::solve_least_norm;
+
+namespace {
+
+Eigen::MatrixXd random_matrix(std::mt19937& generator, Eigen::Index rows, Eigen::Index columns) {
+  std::uniform_real_distribution<double> value(-1, 1);
+  Eigen::MatrixXd result(rows, columns);
+  for (Eigen::Index i = 0; i < rows; ++i)
+    for (Eigen::Index k = 0; k < columns; ++k) result(i, k) = value(generator);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("lemke: the unique solution of a small problem") {
+  // w = M z + q with M = [2 1; 1 2], q = (-5, -6): z = (4/3, 7/3), w = 0.
+  Eigen::MatrixXd M(2, 2);
+  M << 2, 1, 1, 2;
+  const ComplementaritySolution solution = solve_complementarity(M, Eigen::Vector2d(-5, -6));
+  REQUIRE(solution.found);
+  CHECK(solution.z(0) == doctest::Approx(4.0 / 3));
+  CHECK(solution.z(1) == doctest::Approx(7.0 / 3));
+}
+
+TEST_CASE("lemke: random positive semidefinite problems of any rank are solved to rounding") {
+  std::mt19937 generator(7);
+  for (const Eigen::Index n : {1, 2, 5, 12, 40}) {
+    for (int trial = 0; trial < 20; ++trial) {
+      CAPTURE(n);
+      CAPTURE(trial);
+      const Eigen::Index rank = 1 + trial % n;
+      const Eigen::MatrixXd A = random_matrix(generator, n, rank);
+      // q in the range of A plus something positive: the problem is feasible, hence solvable.
+      const Eigen::VectorXd q = A * random_matrix(generator, rank, 1) + random_matrix(generator, n, 1).cwiseAbs();
+      const ComplementaritySolution solution = solve_complementarity(A * A.transpose(), q);
+      REQUIRE(solution.found);
+      CHECK(solution.residual < 1e-10);
+    }
+  }
+}
+
+TEST_CASE("lemke: four corners of a plate share its weight, and a problem without a solution is reported") {
+  // Accelerations of the corners of a square plate of unit mass and inertia, under unit gravity.
+  Eigen::MatrixXd J(4, 3);
+  J << 1, 1, 1, 1, -1, 1, 1, 1, -1, 1, -1, -1;
+  const ComplementaritySolution shared =
+      solve_complementarity(J * J.transpose(), Eigen::VectorXd::Constant(4, -1));
+  REQUIRE(shared.found);
+  CHECK(shared.z.sum() == doctest::Approx(1));
+  CHECK(shared.residual < 1e-12);
+
+  Eigen::MatrixXd pulled(1, 1);
+  pulled << -1;
+  CHECK_FALSE(solve_complementarity(pulled, Eigen::VectorXd::Constant(1, -1)).found);
+}
+
+TEST_CASE("least norm: dependent rows have the solution of least norm, others the only one") {
+  Eigen::MatrixXd A(2, 2);
+  A << 1, 1, 1, 1;
+  const auto shared = solve_least_norm(A, Eigen::Vector2d(2, 2));
+  CHECK(shared.rank == 1);
+  CHECK(shared.x(0) == doctest::Approx(1));
+  CHECK(shared.x(1) == doctest::Approx(1));
+  std::mt19937 generator(3);
+  for (const Eigen::Index n : {1, 2, 3, 4, 10}) {
+    const Eigen::MatrixXd M = random_matrix(generator, n, n);
+    const Eigen::VectorXd b = random_matrix(generator, n, 1);
+    const auto only = solve_least_norm(M, b);
+    CHECK(only.rank == n);
+    CHECK((M * only.x - b).lpNorm<Eigen::Infinity>() < 1e-10);
+  }
+}

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Models whose contacts are solved for at every evaluation: ladder, rocking block, cradle, thrown box.
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+#include <numbers>
+
+#include "models/rough.hpp"
+
+using namespace eomgen;
+using namespace eomgen::test;
+
+namespace {
+
+/// Equations of a ladder whose ends slide on floor and wall, with the angle phi to the wall.
+struct SlidingLadder {
+  double m, h, g, mu;  // h: half of the length
+
+  /// phi_ddot, normal forces of floor and wall.
+  Eigen::Vector3d solve(double phi, double rate) const {
+    const double s = std::sin(phi), c = std::cos(phi), inertia = m * h * h / 3;
+    Eigen::Matrix3d A;
+    A << m * h * c, mu, -1, -m * h * s, -1, -mu, inertia, -h * (s - mu * c), h * (mu * s + c);
+    const Eigen::Vector3d right(m * h * s * rate * rate, m * h * c * rate * rate - m * g, 0);
+    return A.fullPivLu().solve(right);
+  }
+};
+
+std::size_t count(const std::vector<run::RunEvent>& events, const std::string& kind) {
+  return static_cast<std::size_t>(
+      std::count_if(events.begin(), events.end(), [&](const run::RunEvent& event) { return event.kind == kind; }));
+}
+
+}  // namespace
+
+TEST_CASE("ladder: it slides on floor and wall, and leaves the wall where the wall's force vanishes") {
+  const FinishedRun run = run_rough("ladder");
+  const SlidingLadder ladder{run.parameter("m"), run.parameter("L") / 2, run.parameter("g"), run.parameter("mu")};
+  const auto at = [&](double t) {
+    HandWrittenMotion motion(
+        [&](double, const double* x, double* dx) {
+          dx[0] = x[1];
+          dx[1] = ladder.solve(x[0], x[1])(0);
+        },
+        0, {std::numbers::pi / 6, 0});
+    if (t > 0) motion.advance_to(t);
+    return motion.x;
+  };
+  const auto wall = [&](double t) {
+    const std::vector<double> x = at(t);
+    return ladder.solve(x[0], x[1])(2);
+  };
+  const std::vector<run::RunEvent> events = events_of(run);
+  const auto left = std::find_if(events.begin(), events.end(),
+                                 [](const run::RunEvent& event) { return event.kind == "lose_contact"; });
+  REQUIRE(left != events.end());
+  CHECK(left->name == "wall");
+  CHECK(std::abs(left->t - root_between(wall, 0.1, left->t + 0.05)) < 1e-9);
+  for (std::size_t i = 0; i < run.rows.size() && run.rows.t[i] < left->t; ++i) {
+    const std::vector<double> x = at(run.rows.t[i]);
+    CHECK(std::abs(run.rows.at(i, "theta") + x[0]) < integration_tolerance);
+    const Eigen::Vector3d forces = ladder.solve(x[0], x[1]);
+    CHECK(std::abs(run.rows.at(i, "reaction.floor") - forces(1)) < 1e-8);
+    CHECK(std::abs(run.rows.at(i, "reaction.wall") - forces(2)) < 1e-8);
+  }
+  CHECK(run.simulation.result.power_balance < 1e-9);
+}
+
+TEST_CASE("rocking_block: each impact without slip reduces the speed by Housner's ratio") {
+  const FinishedRun run = run_rough("rocking_block");
+  const double b = run.parameter("b"), h = run.parameter("h"), alpha = std::atan(b / h);
+  const double ratio = 1 - 1.5 * std::pow(std::sin(alpha), 2);
+  const std::vector<run::RunEvent> events = events_of(run);
+  REQUIRE(count(events, "contact") >= 3);
+  // The energy above the upright position is 2/3 m (b^2 + h^2)/4 theta_dot^2 at an impact.
+  const double m = run.parameter("m"), g = run.parameter("g");
+  double energy = run.rows.at(0, "energy") - m * g * h / 2;
+  for (const run::RunEvent& event : events) {
+    if (event.kind != "contact") continue;
+    const double after = energy * ratio * ratio;
+    CHECK(event.work == doctest::Approx(after - energy).epsilon(1e-8));
+    energy = after;
+  }
+  CHECK(run.simulation.result.power_balance < 1e-9);
+}
+
+TEST_CASE("newtons_cradle: pair by pair the last ball takes all; together the impulses are shared") {
+  const FinishedRun sequence = run_rough("newtons_cradle");
+  const std::vector<run::RunEvent> events = events_of(sequence);
+  REQUIRE(events.size() >= 4);
+  // Just after the first impact the last ball moves alone.
+  for (std::size_t i = 0; i < sequence.rows.size(); ++i) {
+    if (sequence.rows.t[i] < events[0].t || sequence.rows.t[i] > events[0].t + 0.1) continue;
+    for (const char* resting : {"th1", "th2", "th3", "th4"}) CHECK(std::abs(sequence.rows.at(i, resting)) < 1e-9);
+  }
+  CHECK(sequence.final("energy") == doctest::Approx(sequence.rows.at(0, "energy")).epsilon(1e-10));
+}
+
+TEST_CASE("thrown_box: it comes to rest on four corners that share its weight") {
+  const FinishedRun run = run_rough("thrown_box");
+  CHECK(std::abs(run.final("x_dot")) < 1e-9);
+  CHECK(std::abs(run.final("z_dot")) < 1e-9);
+  CHECK(run.simulation.result.power_balance < 1e-9);
+}
