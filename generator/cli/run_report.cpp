@@ -13,6 +13,10 @@
 namespace eomgen::cli {
 namespace {
 
+bool has_work(const run::RunEvent& event) {
+  return event.kind == "impulse" || (event.kind == "contact" && event.work != 0);
+}
+
 constexpr double unbounded = 1e308;  // replaces infinity, which JSON does not have
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -88,8 +92,10 @@ std::string watched(const pipeline::Simulation& simulation) {
   }
   out += line("power balance", fmt::format("{:.1e} of the energies exchanged", result.power_balance));
   if (result.contact_work != 0)
-    out += line(simulation.program.contacts.empty() ? "impulses" : "impacts",
+    out += line(simulation.derived->mechanics.contacts.empty() ? "impulses" : "impacts",
                 fmt::format("did the work {:.6g}", result.contact_work));
+  if (!result.contact_forces_determined)
+    out += line("contacts", "the motion does not determine all their forces: those of least norm are shown");
   if (simulation.derived->mechanics.active.empty()) return out;
   const std::vector<bool>& holonomic = simulation.program.holonomic;
   const bool positions = std::find(holonomic.begin(), holonomic.end(), false) == holonomic.end();
@@ -124,7 +130,7 @@ Json RunReport::json() const {
   }
   for (const run::RunEvent& e : result.events) {
     events.push_back({{"t", e.t}, {"kind", e.kind}, {"name", e.name}});
-    if (e.kind == "impulse") events.back()["work"] = number(e.work);
+    if (has_work(e)) events.back()["work"] = number(e.work);
   }
   Json changes = Json::array();
   for (const eom::MethodChange& c : result.reason.changes)
@@ -162,6 +168,7 @@ Json RunReport::json() const {
         {"velocity", result.projection_velocity},
         {"work", result.projection_work}}},
       {"contact_work", result.contact_work},
+      {"contact_forces_determined", result.contact_forces_determined},
       {"events", events},
       {"kinks", kinks},
       {"solved", scene.solved_notes},
@@ -225,7 +232,7 @@ std::string RunReport::text() const {
   }
   for (const run::RunEvent& e : result.events) {
     out += line("event", fmt::format("{} at t = {}: {}{}", e.kind, e.t, e.name,
-                                     e.kind == "impulse" ? fmt::format(", work {:.6g}", e.work) : ""));
+                                     has_work(e) ? fmt::format(", work {:.6g}", e.work) : ""));
   }
   for (const run::KinkCrossings& k : result.kinks)
     out += line("kink", fmt::format("of {}: crossed {} times", k.kink, k.count));

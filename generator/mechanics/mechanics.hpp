@@ -65,7 +65,7 @@ struct Constraint {
   model::NodeId model_expression = model::no_node;  // psi or the velocity form, in the model
   bool unilateral = false;                          // psi >= 0: never eliminated
   Redundancy redundancy = Redundancy::independent;
-  bool determined = true;  // whether the motion determines its force; for joints see JointReaction
+  bool determined = true;                    // whether the motion determines its force; for joints see JointReaction
   std::optional<std::uint32_t> force_input;  // of a contact whose force is an input (contact_forces.hpp): its index
 
   bool holonomic() const { return kind == ConstraintKind::holonomic; }
@@ -125,7 +125,8 @@ struct Contact {
   Ref restitution;                              // of impacts, if unilateral
   std::optional<std::uint32_t> body_contact;    // of a body: index into Model::constraints
   bool rolls = false;                           // sticking means rolling: the contact point moves over the body
-  std::optional<std::uint32_t> first_input;  // of its friction, then of its mode, if they are inputs (contact_forces.hpp)
+  std::optional<std::uint32_t>
+      first_input;  // of its friction, then of its mode, if they are inputs (contact_forces.hpp)
 
   std::size_t dimensions() const { return tangents.size(); }
 };

@@ -240,9 +240,8 @@ void ConstraintsReader::read_impacts() {
   impacts.law = static_cast<Impacts::Law>(
       chosen("law", {"newton", "poisson", "moreau"},
              "write law = \"newton\" (the default, without friction), \"poisson\" or \"moreau\""));
-  impacts.order = static_cast<Impacts::Order>(
-      chosen("order", {"simultaneous", "sequence"},
-             "write order = \"simultaneous\" (the default) or order = \"sequence\""));
+  impacts.order = static_cast<Impacts::Order>(chosen(
+      "order", {"simultaneous", "sequence"}, "write order = \"simultaneous\" (the default) or order = \"sequence\""));
   const auto opens = [](const Constraint& constraint) { return constraint.unilateral; };
   if (std::none_of(model_.constraints.begin(), model_.constraints.end(), opens))
     source_.fail(table->span, "[impacts] has no effect: no contact of the model can open",

@@ -164,7 +164,7 @@ struct Program {
   std::vector<std::string> kinks;      // "abs", "if": their surfaces follow in g, then 5 values per contact
   std::size_t active_constraints = 0;
   std::vector<ContactInfo> contacts;
-  eom::contacts::Set contact_set;  // contacts whose forces are inputs
+  eom::contacts::Set contact_set;       // contacts whose forces are inputs
   std::optional<Taylor> taylor;         // if requested
   std::vector<bool> holonomic;          // per active constraint; false if it constrains velocities only
   std::vector<ChartInfo> charts;        // exchangeable charts; empty if the code has one chart

@@ -67,7 +67,8 @@ struct RunResult {
   double power_balance = 0;     // largest |E - E(0) - W| relative to the energies exchanged
   double constraint_drift = 0;  // largest |psi|, or |f . qdot + b| of a constraint on velocities, at the end of a step
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
-  double contact_work = 0;  // work of impacts
+  double contact_work = 0;                // work of impacts
+  bool contact_forces_determined = true;  // eom::hybrid::RunResult
   std::vector<RunEvent> events;
   std::vector<KinkCrossings> kinks;
 };

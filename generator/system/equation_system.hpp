@@ -137,18 +137,18 @@ struct ContactRow {
 /// A contact whose forces are inputs (mechanics/contact_forces.hpp): what a run needs to solve for them.
 struct ContactWithInputs {
   std::string name;
-  bool unilateral = false;                  // it can open
-  bool rolls = false;                       // sticking is rolling
-  Ref gap;                                  // psi of its constraint; 0 without one
-  std::optional<ContactRow> normal;         // of its constraint; none: the normal force is given
-  Ref normal_scale;                         // |normal force| = normal_scale |lambda|
-  Ref given_normal;                         // the given normal force
-  std::vector<ContactRow> slip;             // per tangent
+  bool unilateral = false;                      // it can open
+  bool rolls = false;                           // sticking is rolling
+  Ref gap;                                      // psi of its constraint; 0 without one
+  std::optional<ContactRow> normal;             // of its constraint; none: the normal force is given
+  Ref normal_scale;                             // |normal force| = normal_scale |lambda|
+  Ref given_normal;                             // the given normal force
+  std::vector<ContactRow> slip;                 // per tangent
   Ref static_coefficient, dynamic_coefficient;  // of friction
-  std::optional<Ref> width;                 // of the regularised law
+  std::optional<Ref> width;                     // of the regularised law
   Ref restitution;
-  std::uint32_t friction_input = 0;         // of the first component; that of the mode follows them
-  std::uint32_t force_input = 0;            // of lambda, with a constraint
+  std::uint32_t friction_input = 0;  // of the first component; that of the mode follows them
+  std::uint32_t force_input = 0;     // of lambda, with a constraint
 
   std::uint32_t mode_input() const { return friction_input + static_cast<std::uint32_t>(slip.size()); }
 };
@@ -203,8 +203,8 @@ struct EquationSystem {
   std::optional<Solution> solution;             // equal to the solution from M, f, A, gamma
   std::optional<Residual> residual;             // equal to M qddot - f
 
-  std::vector<Contact> contacts;                        // their forces are solved for
-  std::vector<ContactWithInputs> contacts_with_inputs;  // their forces are inputs: one of both lists is empty
+  std::vector<Contact> contacts;                                // their forces are solved for
+  std::vector<ContactWithInputs> contacts_with_inputs;          // their forces are inputs: one of both lists is empty
   std::map<symbolic::Symbol, symbolic::Symbol> contact_inputs;  // the inputs of those forces
   eom::contacts::ImpactLaw impact_law = eom::contacts::ImpactLaw::newton;
   eom::contacts::ImpactOrder impact_order = eom::contacts::ImpactOrder::simultaneous;

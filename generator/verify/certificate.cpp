@@ -56,7 +56,8 @@ std::vector<int> mode_at(const mechanics::Mechanics& mechanics, const State& sta
   std::vector<int> mode(mechanics.contacts.size());
   for (std::size_t j = 0; j < mechanics.contacts.size(); ++j) {
     const mechanics::Contact& contact = mechanics.contacts[j];
-    if (contact.unilateral && !contact.first_input && state.open.contains(contact.constraints[0])) mode[j] = eom::contact_states / 2;
+    if (contact.unilateral && !contact.first_input && state.open.contains(contact.constraints[0]))
+      mode[j] = eom::contact_states / 2;
   }
   return mode;
 }

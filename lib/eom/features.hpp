@@ -21,10 +21,17 @@ enum class Feature : unsigned {
   charts,                // coordinates that are exchanged near their singularities
   contact_forces,        // forces of contacts that are solved for at every evaluation
 };
-inline constexpr Feature all_features[] = {
-    Feature::jacobian, Feature::series, Feature::momenta,      Feature::constraints,   Feature::velocity_constraints,
-    Feature::modes,    Feature::kinks,  Feature::other_states, Feature::moving_inputs, Feature::charts,
-    Feature::contact_forces};
+inline constexpr Feature all_features[] = {Feature::jacobian,
+                                           Feature::series,
+                                           Feature::momenta,
+                                           Feature::constraints,
+                                           Feature::velocity_constraints,
+                                           Feature::modes,
+                                           Feature::kinks,
+                                           Feature::other_states,
+                                           Feature::moving_inputs,
+                                           Feature::charts,
+                                           Feature::contact_forces};
 
 /// The feature as it follows "with ..." in a sentence.
 constexpr const char* name(Feature feature) {

@@ -31,7 +31,7 @@ TEST_CASE("friction problem: a block on an incline sticks below the angle of fri
   REQUIRE(sticks.found);
   CHECK(sticks.force(0) == doctest::Approx(2));
   CHECK(sticks.force(1) == doctest::Approx(-0.9));
-  CHECK(std::abs(sticks.speed[0]) < 1e-14);
+  CHECK(std::abs(sticks.speed[0]) < 1e-12);  // rows are softened by 1e-13
   const FrictionForces slides = solve_friction_problem(particle(Eigen::Vector2d(-2, 1.5), 0.5));
   REQUIRE(slides.found);
   CHECK(slides.force(1) == doctest::Approx(-1));
@@ -48,8 +48,8 @@ TEST_CASE("friction problem: in two directions the force opposes the slip to 1e-
     REQUIRE(slides.found);
     CHECK(std::abs(slides.force(1) + std::cos(angle)) < 1e-12);
     CHECK(std::abs(slides.force(2) + std::sin(angle)) < 1e-12);
-    const FrictionForces sticks = solve_friction_problem(
-        particle(Eigen::Vector3d(-2, 0.999 * std::cos(angle), 0.999 * std::sin(angle)), 0.5));
+    const FrictionForces sticks =
+        solve_friction_problem(particle(Eigen::Vector3d(-2, 0.999 * std::cos(angle), 0.999 * std::sin(angle)), 0.5));
     REQUIRE(sticks.found);
     CHECK(sticks.speed[0] < 1e-12);
   }

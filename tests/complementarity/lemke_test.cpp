@@ -56,8 +56,7 @@ TEST_CASE("lemke: four corners of a plate share its weight, and a problem withou
   // Accelerations of the corners of a square plate of unit mass and inertia, under unit gravity.
   Eigen::MatrixXd J(4, 3);
   J << 1, 1, 1, 1, -1, 1, 1, 1, -1, 1, -1, -1;
-  const ComplementaritySolution shared =
-      solve_complementarity(J * J.transpose(), Eigen::VectorXd::Constant(4, -1));
+  const ComplementaritySolution shared = solve_complementarity(J * J.transpose(), Eigen::VectorXd::Constant(4, -1));
   REQUIRE(shared.found);
   CHECK(shared.z.sum() == doctest::Approx(1));
   CHECK(shared.residual < 1e-12);

@@ -4,7 +4,8 @@
 // which the next set follows.
 //
 // The accelerations are affine in the forces. One evaluation of the right-hand side for each unknown force gives their
-// slopes, in every formulation of the equations. Dependent rows (four corners on a plane) have the forces of least norm.
+// slopes, in every formulation of the equations. Dependent rows (four corners on a plane) have the forces of least
+// norm.
 #pragma once
 
 #include <Eigen/Dense>
@@ -27,9 +28,10 @@ enum class Mode { sliding_back = -1, closed = 0, sliding = 1, open = 2 };
 
 /// The mode of a contact, with what it needs beside it.
 struct ContactState {
-  Mode mode = Mode::closed;              // closed: sticks, or has no friction
-  double normal_sign = 1;                // of lambda, for contacts that cannot open
-  std::array<double, 2> direction{};     // of slip in two directions, where the slip is too small to have one
+  Mode mode = Mode::closed;           // closed: sticks, or has no friction
+  double normal_sign = 1;             // of lambda, for contacts that cannot open
+  std::array<double, 2> direction{};  // of slip in two directions, where the slip is too small to have one
+  bool starts = false;                // slip in two directions has begun and is still that small
 };
 
 /// The compiled code as these classes need it: a right-hand side and the rows of contacts, with all inputs given.
@@ -90,8 +92,7 @@ class ContactForces {
   /// The sum of the absolute values of the terms of a row times a vector of coordinates or rates.
   double terms(const Row& row, const double* values) const {
     double sum = 0;
-    for (std::size_t k = 0; k < row.columns.size(); ++k)
-      sum += std::abs(c_[row.slope(k)] * values[row.columns[k]]);
+    for (std::size_t k = 0; k < row.columns.size(); ++k) sum += std::abs(c_[row.slope(k)] * values[row.columns[k]]);
     return sum;
   }
 
@@ -148,8 +149,8 @@ class ContactForces {
   }
   const Vector& free_accelerations() const { return free_; }
 
-  /// The change of the accelerations for a unit force, after evaluate_free(). It is computed from a force with an effect
-  /// of the size of the accelerations, so that few digits are lost.
+  /// The change of the accelerations for a unit force, after evaluate_free(). It is computed from a force with an
+  /// effect of the size of the accelerations, so that few digits are lost.
   int response(double t, const double* x, double* u, const Pattern& pattern, Vector& result) {
     double& amplitude = amplitude_[3 * pattern.contact + static_cast<std::size_t>(pattern.component + 1)];
     const double size = free_.lpNorm<Eigen::Infinity>();
@@ -180,12 +181,18 @@ class ContactForces {
         patterns.push_back(tangent_pattern(j, a)), rows_.push_back(&contact(j).slip[a]);
     }
     const auto count = static_cast<Index>(patterns.size());
+    force_size_.assign(set_.contacts.size(), 0.0);
     Matrix W(count, count);
     Vector right(count);
     for (Index k = 0; k < count; ++k) {
       if (const int code = response(t, x, u, patterns[static_cast<std::size_t>(k)], response_); code != 0) return code;
       for (Index i = 0; i < count; ++i) W(i, k) = change(*rows_[static_cast<std::size_t>(i)], response_);
-      right(k) = -acceleration(*rows_[static_cast<std::size_t>(k)], free_);
+      const Row& row = *rows_[static_cast<std::size_t>(k)];
+      right(k) = -acceleration(row, free_);
+      const double share = std::abs(W(k, k));
+      const double size = std::abs(c_[row.bias()]) + terms(row, free_.data());
+      largest_acceleration_ = std::max(largest_acceleration_, size);
+      if (share > 0) force_size_[patterns[static_cast<std::size_t>(k)].contact] += size / share;
     }
     margins_.assign(set_.contacts.size(), 1.0);
     std::fill(lambda_.begin(), lambda_.end(), 0.0);
@@ -209,7 +216,8 @@ class ContactForces {
   }
 
   void write_modes(double* u) const {
-    for (std::size_t j = 0; j < set_.contacts.size(); ++j) u[contact(j).mode_input] = static_cast<double>(states_[j].mode);
+    for (std::size_t j = 0; j < set_.contacts.size(); ++j)
+      u[contact(j).mode_input] = static_cast<double>(states_[j].mode);
   }
 
   /// Of the last solve(): lambda, the friction, the normal force (positive in compression).
@@ -219,14 +227,18 @@ class ContactForces {
     const Description& at = contact(j);
     return at.has_constraint() ? c_[at.normal_scale] * lambda_[j] : std::abs(c_[at.given_normal]);
   }
-  /// Of a sliding contact: the derivative of the acceleration of its gap with respect to lambda. Not positive: Painleve's
-  /// case, in which its law has no solution or several.
+  /// The largest sum of terms of the acceleration of a closed contact since forget().
+  double largest_acceleration() const { return largest_acceleration_; }
+  /// The size of the forces that balance the terms of the accelerations of a contact: the scale of their rounding.
+  double force_size(std::size_t j) const { return force_size_[j]; }
+  /// Of a sliding contact: the derivative of the acceleration of its gap with respect to lambda. Not positive:
+  /// Painleve's case, in which its law has no solution or several.
   double margin(std::size_t j) const { return margins_[j]; }
   /// Whether a law with a negative margin has several solutions (the free contact separates), not none.
   bool has_several(std::size_t j) const { return several_.size() > j && several_[j]; }
   /// Whether the forces of some state were not unique.
   bool undetermined() const { return undetermined_; }
-  void forget() { undetermined_ = false; }
+  void forget() { undetermined_ = false, largest_acceleration_ = 0; }
 
   static constexpr int code_not_finite = 5;  // as in the C ABI
 
@@ -243,14 +255,14 @@ class ContactForces {
   System& system_;
   std::size_t n_;
   std::vector<ContactState> states_;
-  std::vector<double> c_, lambda_, margins_;
+  std::vector<double> c_, lambda_, margins_, force_size_;
   std::vector<std::array<double, 2>> phi_;
   std::vector<double> amplitude_;
   std::vector<bool> several_;
   std::vector<Pattern> patterns_;
   std::vector<const Row*> rows_;
   Vector free_, work_, response_;
-  double least_slip_ = 0;
+  double least_slip_ = 0, largest_acceleration_ = 0;
   bool undetermined_ = false;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Contacts whose forces are inputs of compiled code: where the function NAME_contact_rows writes what a run needs to solve
-// for these forces, and which inputs take them (docs/abi.md, "Contacts"). Data only.
+// Contacts whose forces are inputs of compiled code: where the function NAME_contact_rows writes what a run needs to
+// solve for these forces, and which inputs take them (docs/abi.md, "Contacts"). Data only.
 #pragma once
 
 #include <cstddef>
@@ -26,20 +26,20 @@ inline constexpr std::size_t none = static_cast<std::size_t>(-1);
 /// Indices are those of values in the array c, and of inputs in the array u.
 struct Description {
   std::string name;
-  bool unilateral = false;            // it can open
-  bool sticks = false;                // Coulomb's law; false: no friction, or the regularised law
-  bool rolls = false;                 // sticking is rolling
-  std::size_t gap = none;             // psi of its constraint, >= 0 for a unilateral contact; none: no constraint
-  Row normal = {};                    // the velocity of the gap
-  std::size_t normal_scale = none;    // |normal force| = scale |lambda|
-  std::size_t given_normal = none;    // the normal force; where there is no constraint
-  std::vector<Row> slip = {};         // per tangent, at most two
+  bool unilateral = false;          // it can open
+  bool sticks = false;              // Coulomb's law; false: no friction, or the regularised law
+  bool rolls = false;               // sticking is rolling
+  std::size_t gap = none;           // psi of its constraint, >= 0 for a unilateral contact; none: no constraint
+  Row normal = {};                  // the velocity of the gap
+  std::size_t normal_scale = none;  // |normal force| = scale |lambda|
+  std::size_t given_normal = none;  // the normal force; where there is no constraint
+  std::vector<Row> slip = {};       // per tangent, at most two
   std::size_t static_coefficient = none, dynamic_coefficient = none;  // of friction
-  std::size_t width = none;           // of the regularised law
-  std::size_t restitution = none;     // of a unilateral contact
-  std::size_t friction_input = none;  // of the first tangent; the others follow
-  std::size_t force_input = none;     // of lambda
-  std::size_t mode_input = none;      // of the mode as a number
+  std::size_t width = none;                                           // of the regularised law
+  std::size_t restitution = none;                                     // of a unilateral contact
+  std::size_t friction_input = none;                                  // of the first tangent; the others follow
+  std::size_t force_input = none;                                     // of lambda
+  std::size_t mode_input = none;                                      // of the mode as a number
 
   bool has_constraint() const { return gap != none; }
 };

@@ -6,8 +6,8 @@
 // With accelerations in place of velocities the forces decide which contacts stay closed and stick, with velocities the
 // impulses of an impact follow. Friction in one direction is exact: with beta in both senses and sigma the speed,
 //   G z + q + sigma >= 0, mu N - sum beta >= 0, both complementary (Anitescu and Potra 1997, eq. (9)),
-// solved by Lemke's pivoting. In two directions this problem has a polygon in place of the circle; its solution starts a
-// projected Gauss-Seidel iteration on the circle, which ends at 1e-13.
+// solved by Lemke's pivoting. In two directions this problem has a polygon in place of the circle; its solution starts
+// a projected Gauss-Seidel iteration on the circle, which ends at 1e-13.
 #pragma once
 
 #include <Eigen/Dense>
@@ -62,7 +62,11 @@ class Solver {
   }
 
   FrictionForces run() {
-    FrictionForces result = by_pivoting();
+    FrictionForces result;
+    for (const double softness : {1e-13, 1e-10}) {
+      result = by_pivoting(softness);
+      if (result.found) break;
+    }
     const auto plane = [](const FrictionLaw& law) { return law.tangents.size() == 2; };
     if (result.found && std::any_of(p_.laws.begin(), p_.laws.end(), plane)) refine(result);
     return result;
@@ -71,7 +75,7 @@ class Solver {
  private:
   /// A force per direction of a polygon; `law` -1: a normal.
   struct Column {
-    Index row;                 // of a normal
+    Index row;  // of a normal
     int law = -1;
     std::vector<double> along;  // of the tangents of the law
   };
@@ -119,16 +123,18 @@ class Solver {
     return 0;
   }
 
-  FrictionForces by_pivoting() const {
+  FrictionForces by_pivoting(double softness) const {
     std::vector<Column> columns;
     for (const Index row : free_)
-      if (p_.kinds[static_cast<std::size_t>(row)] == FrictionProblem::Kind::closes) columns.push_back({place(row), -1, {}});
+      if (p_.kinds[static_cast<std::size_t>(row)] == FrictionProblem::Kind::closes)
+        columns.push_back({place(row), -1, {}});
     for (int l = 0; l < static_cast<int>(p_.laws.size()); ++l) {
       const std::size_t senses = p_.laws[static_cast<std::size_t>(l)].tangents.size() == 1 ? 2 : polygon;
       for (std::size_t k = 0; k < senses; ++k) {
         const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(senses);
-        columns.push_back({-1, l, senses == 2 ? std::vector<double>{k == 0 ? 1.0 : -1.0}
-                                              : std::vector<double>{std::cos(angle), std::sin(angle)}});
+        columns.push_back({-1, l,
+                           senses == 2 ? std::vector<double>{k == 0 ? 1.0 : -1.0}
+                                       : std::vector<double>{std::cos(angle), std::sin(angle)}});
       }
     }
     const auto n = static_cast<Index>(columns.size()), laws = static_cast<Index>(p_.laws.size());
@@ -145,7 +151,11 @@ class Solver {
     }
     Matrix M = Matrix::Zero(n + laws, n + laws);
     Vector q = Vector::Zero(n + laws);
-    M.topLeftCorner(n, n) = B.transpose() * G_ * B;
+    // Dependent rows with rounding errors may contradict one another. A small share of each row's own response makes
+    // the problem solvable, and shares the force among them.
+    Matrix G = G_;
+    G.diagonal() += softness * G_.diagonal().cwiseAbs();
+    M.topLeftCorner(n, n) = B.transpose() * G * B;
     q.head(n) = B.transpose() * q_;
     for (Index l = 0; l < laws; ++l) {
       Vector by_force;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Linear complementarity problems: w = M z + q, w >= 0, z >= 0, w . z = 0. In: M and q. Out: z, or the report that the
 // method ends on a ray. Lemke's pivoting with the covering vector of ones and the lexicographic rule, which excludes
-// cycles (Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 4.4 and 4.9). For copositive-plus M,
-// as of contacts without friction, a ray means that there is no solution.
+// cycles (Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 4.4 and 4.9). For copositive-plus
+// M, as of contacts without friction, a ray means that there is no solution.
 #pragma once
 
 #include <Eigen/Dense>
@@ -22,7 +22,8 @@ struct ComplementaritySolution {
 
 namespace lemke {
 
-/// The dictionary w_B = .. in tableau form, with the columns of w (the lexicographic order needs its inverse), z, z0, q.
+/// The dictionary w_B = .. in tableau form, with the columns of w (the lexicographic order needs its inverse), z, z0,
+/// q.
 class Tableau {
  public:
   using Index = Eigen::Index;

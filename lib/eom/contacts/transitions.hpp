@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Changes of contacts at an instant. In: a state at which a contact meets, parts, slips or stops. Out: impulses with the
-// velocities after them, then the states of all contacts from one complementarity problem on accelerations.
+// Changes of contacts at an instant. In: a state at which a contact meets, parts, slips or stops. Out: impulses with
+// the velocities after them, then the states of all contacts from one complementarity problem on accelerations.
 #pragma once
 
 #include <Eigen/Dense>
@@ -25,12 +25,14 @@ struct Hint {
   std::size_t contact = none;
   bool parts = false;  // its normal force vanished
   bool slips = false;  // friction reached its limit
+  bool stops = false;  // its slip vanished
 };
 
 /// What may count as zero, by the accuracy of the run.
 struct Tolerances {
   double speed = 1e-12;  // of gaps and slip
   double slip = 1e-12;   // in two directions
+  double acceleration = 0;
 };
 
 class Transitions {
@@ -44,18 +46,25 @@ class Transitions {
   enum class Outcome { done, no_solution, no_value };
   struct Result {
     Outcome outcome = Outcome::done;
-    int code = 0;               // of the ABI, for no_value
+    int code = 0;                // of the ABI, for no_value
     std::size_t contact = none;  // for no_solution
   };
 
   /// Impulses of the contacts in `touching` (indices) that approach one another; the rates in x change. Contacts in
-  /// `plastic` do not bounce. `hit` receives those that had an impulse and approached.
+  /// `plastic` do not bounce. `rest`: the speeds of all gaps become 0. `hit` receives those that had an impulse and
+  /// approached.
   Result impact(double t, double* x, double* u, const std::vector<std::size_t>& touching,
-                const std::vector<bool>& plastic, const Tolerances& tolerances, std::vector<std::size_t>& hit) {
+                const std::vector<bool>& plastic, bool rest, const Tolerances& tolerances,
+                std::vector<std::size_t>& hit) {
     if (const int code = prepare(t, x, u); code != 0) return {Outcome::no_value, code, none};
     before_ = Eigen::Map<const Vector>(x + n_, static_cast<Index>(n_));
+    if (rest) {  // first what the law does, then the speeds that are left of it
+      const std::vector<bool> all(plastic.size(), true);
+      const Result first = apply(t, x, u, touching, all, false, tolerances, hit);
+      return first.outcome != Outcome::done ? first : apply(t, x, u, touching, all, true, tolerances, hit);
+    }
     if (forces_.set().order == ImpactOrder::simultaneous)
-      return apply(t, x, u, touching, plastic, tolerances, hit);
+      return apply(t, x, u, touching, plastic, false, tolerances, hit);
     constexpr int most = 10000;  // each reduces the kinetic energy, or exchanges it
     for (int count = 0; count < most; ++count) {
       std::size_t fastest = none;
@@ -66,7 +75,7 @@ class Transitions {
         if (rate < speed) speed = rate, fastest = j;
       }
       if (fastest == none) return {};
-      const Result result = apply(t, x, u, {fastest}, plastic, tolerances, hit);
+      const Result result = apply(t, x, u, {fastest}, plastic, false, tolerances, hit);
       if (result.outcome != Outcome::done) return result;
     }
     return {};
@@ -76,12 +85,12 @@ class Transitions {
   Result decide(double t, const double* x, double* u, const std::vector<std::size_t>& touching, const Hint& hint,
                 const Tolerances& tolerances) {
     if (const int code = forces_.evaluate_rows(t, x, u); code != 0) return {Outcome::no_value, code, none};
-    begin_states(touching, tolerances);
+    begin_states(touching, hint, tolerances);
     std::vector<bool> broken(forces_.set().contacts.size(), false);
     if (hint.slips) broken[hint.contact] = true;
     for (std::size_t round = 0; round <= forces_.set().contacts.size(); ++round) {
       bool again = false;
-      const Result result = settle(t, x, u, hint, broken, again);
+      const Result result = settle(t, x, u, hint, tolerances, broken, again);
       if (result.outcome != Outcome::done || !again) return result;
     }
     return {};
@@ -103,8 +112,8 @@ class Transitions {
   }
 
   /// Impulses of `acting` contacts; those that cannot open always act.
-  Result apply(double t, double* x, double* u, const std::vector<std::size_t>& acting,
-               const std::vector<bool>& plastic, const Tolerances& tolerances, std::vector<std::size_t>& hit) {
+  Result apply(double t, double* x, double* u, const std::vector<std::size_t>& acting, const std::vector<bool>& plastic,
+               bool rest, const Tolerances& tolerances, std::vector<std::size_t>& hit) {
     const ImpactLaw law = forces_.set().law;
     FrictionProblem problem;
     std::vector<const Row*> rows;
@@ -112,7 +121,8 @@ class Transitions {
     std::vector<std::size_t> contact_of;
     std::vector<double> approach, restitution;
     int code = 0;
-    const auto add = [&](std::size_t j, const Row& row, const ContactForces::Pattern& pattern, FrictionProblem::Kind kind) {
+    const auto add = [&](std::size_t j, const Row& row, const ContactForces::Pattern& pattern,
+                         FrictionProblem::Kind kind) {
       Vector response;
       if (code == 0) code = forces_.response(t, x, u, pattern, response);
       rows.push_back(&row), responses.push_back(std::move(response)), contact_of.push_back(j);
@@ -121,13 +131,17 @@ class Transitions {
     };
     for (std::size_t j = 0; j < forces_.set().contacts.size(); ++j) {
       const Description& at = forces_.contact(j);
-      const bool acts = at.unilateral ? std::find(acting.begin(), acting.end(), j) != acting.end() : at.has_constraint();
+      const bool acts =
+          at.unilateral ? std::find(acting.begin(), acting.end(), j) != acting.end() : at.has_constraint();
       if (!acts) continue;
       const auto normal = static_cast<Index>(rows.size());
       add(j, at.normal, forces_.normal_pattern(j, false),
-          at.unilateral ? FrictionProblem::Kind::closes : FrictionProblem::Kind::holds);
-      if (law == ImpactLaw::newton || !at.sticks) continue;
-      FrictionLaw friction{{}, normal, forces_.states()[j].normal_sign * forces_.value(at.normal_scale), 0,
+          at.unilateral && !rest ? FrictionProblem::Kind::closes : FrictionProblem::Kind::holds);
+      if (law == ImpactLaw::newton || !at.sticks || rest) continue;
+      FrictionLaw friction{{},
+                           normal,
+                           forces_.states()[j].normal_sign * forces_.value(at.normal_scale),
+                           0,
                            forces_.value(at.dynamic_coefficient)};
       for (std::size_t a = 0; a < at.slip.size(); ++a) {
         friction.tangents.push_back(static_cast<Index>(rows.size()));
@@ -165,7 +179,7 @@ class Transitions {
       Eigen::Map<Vector>(x + n_, static_cast<Index>(n_)) += total(k) * responses[static_cast<std::size_t>(k)];
     for (Index i = 0; i < count; ++i) {
       const std::size_t j = contact_of[static_cast<std::size_t>(i)];
-      if (problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::closes &&
+      if (problem.kinds[static_cast<std::size_t>(i)] != FrictionProblem::Kind::rubs && forces_.contact(j).unilateral &&
           approach[static_cast<std::size_t>(i)] < -tolerances.speed && total(i) > 0 &&
           std::find(hit.begin(), hit.end(), j) == hit.end())
         hit.push_back(j);
@@ -181,7 +195,7 @@ class Transitions {
   }
 
   /// Sliding where there is slip, closed where there is none, open where nothing touches.
-  void begin_states(const std::vector<std::size_t>& touching, const Tolerances& tolerances) {
+  void begin_states(const std::vector<std::size_t>& touching, const Hint& hint, const Tolerances& tolerances) {
     for (std::size_t j = 0; j < forces_.set().contacts.size(); ++j) {
       const Description& at = forces_.contact(j);
       ContactState& state = forces_.states()[j];
@@ -194,15 +208,18 @@ class Transitions {
         continue;
       }
       state.mode = Mode::closed;
-      if (!at.sticks) continue;
+      state.starts = false;
+      if (!at.sticks || (hint.stops && hint.contact == j)) continue;
       const bool moves = forces_.slip_speed(j) > (at.slip.size() == 2 ? tolerances.slip : tolerances.speed);
       if (moves) state.mode = at.slip.size() == 1 && forces_.rate(at.slip[0]) < 0 ? Mode::sliding_back : Mode::sliding;
     }
   }
   double gap_speed_now(std::size_t j) const { return forces_.rate(forces_.contact(j).normal); }
 
-  /// One complementarity problem on accelerations. `again`: a contact has just begun to slide, whose coefficient changes.
-  Result settle(double t, const double* x, double* u, const Hint& hint, std::vector<bool>& broken, bool& again) {
+  /// One complementarity problem on accelerations. `again`: a contact has just begun to slide, whose coefficient
+  /// changes.
+  Result settle(double t, const double* x, double* u, const Hint& hint, const Tolerances& tolerances,
+                std::vector<bool>& broken, bool& again) {
     std::vector<double> inputs(u, u + input_count_);
     double* const v = inputs.data();
     if (const int code = forces_.evaluate_free(t, x, v); code != 0) return {Outcome::no_value, code, none};
@@ -211,7 +228,8 @@ class Transitions {
     std::vector<Vector> responses;
     std::vector<std::size_t> contact_of, law_of;
     int code = 0;
-    const auto add = [&](std::size_t j, const Row& row, const ContactForces::Pattern& pattern, FrictionProblem::Kind kind) {
+    const auto add = [&](std::size_t j, const Row& row, const ContactForces::Pattern& pattern,
+                         FrictionProblem::Kind kind) {
       Vector response;
       if (code == 0) code = forces_.response(t, x, v, pattern, response);
       rows.push_back(&row), responses.push_back(std::move(response)), contact_of.push_back(j);
@@ -251,18 +269,18 @@ class Transitions {
     favour(problem, contact_of, size, hint);
     const FrictionForces found = solve_friction_problem(problem);
     if (!found.found) return {Outcome::no_solution, 0, worst(problem, contact_of)};
-    const double largest = std::max(size.size() > 0 ? size.maxCoeff() : 0.0, 1e-300);
+    const double least = std::max(size.size() > 0 ? negligible * size.maxCoeff() : 0.0, tolerances.acceleration);
     for (Index i = 0; i < count; ++i) {
       const std::size_t j = contact_of[static_cast<std::size_t>(i)];
       if (problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::closes && !(found.force(i) > 0) &&
-          (found.velocity(i) > negligible * largest || (hint.parts && hint.contact == j)))
+          (found.velocity(i) > least || (hint.parts && hint.contact == j)))
         forces_.states()[j].mode = Mode::open;
       if (problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::holds && found.force(i) != 0)
         forces_.states()[j].normal_sign = found.force(i) < 0 ? -1 : 1;
     }
     for (std::size_t l = 0; l < law_of.size(); ++l) {
       const std::size_t j = law_of[l];
-      if (!forces_.is_closed(j) || !(found.speed[l] > negligible * largest)) continue;
+      if (!forces_.is_closed(j) || !(found.speed[l] > least)) continue;
       if (!broken[j] && forces_.value(forces_.contact(j).static_coefficient) !=
                             forces_.value(forces_.contact(j).dynamic_coefficient)) {
         broken[j] = again = true;
@@ -277,11 +295,13 @@ class Transitions {
     }
     for (std::size_t l = 0; l < law_of.size(); ++l) {
       const std::size_t j = law_of[l];
-      if (!forces_.is_closed(j) || !(found.speed[l] > negligible * largest)) continue;
+      if (!forces_.is_closed(j) || !(found.speed[l] > least)) continue;
       ContactState& state = forces_.states()[j];
       const std::vector<Index>& tangents = problem.laws[l].tangents;
       state.mode = tangents.size() == 1 && found.velocity(tangents[0]) < 0 ? Mode::sliding_back : Mode::sliding;
-      for (std::size_t a = 0; a < tangents.size(); ++a) state.direction[a] = found.velocity(tangents[a]) / found.speed[l];
+      state.starts = tangents.size() == 2;
+      for (std::size_t a = 0; a < tangents.size(); ++a)
+        state.direction[a] = found.velocity(tangents[a]) / found.speed[l];
     }
     return {};
   }

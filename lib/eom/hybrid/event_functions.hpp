@@ -28,9 +28,7 @@ class EventFunctions {
 
   std::size_t first_kink() const { return problem_.events.size(); }
   std::size_t first_contact() const { return first_kink() + problem_.code->kinks.size(); }
-  std::size_t first_solved_contact() const {
-    return first_contact() + contact_values * problem_.code->contacts.size();
-  }
+  std::size_t first_solved_contact() const { return first_contact() + contact_values * problem_.code->contacts.size(); }
   std::size_t first_jump() const {
     return first_solved_contact() + SolvedContacts::values_per_contact * problem_.code->contact_set.contacts.size();
   }

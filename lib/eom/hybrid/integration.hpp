@@ -120,7 +120,8 @@ inline Integration::Integration(const Problem& problem)
   if (!context_.has_contacts() && context_.rows.size() > 0 && !keeps_constraints_)
     singularity_step_ = std::make_unique<SingularityStep>(context_);
   // Laws of contacts are not combined, and methods that need series or momenta have none of a combination.
-  context_.may_slide = !context_.has_contacts() && !keeps_constraints_ && !requires_feature(problem.solver, Feature::series);
+  context_.may_slide =
+      !context_.has_contacts() && !keeps_constraints_ && !requires_feature(problem.solver, Feature::series);
   sampling_ = {[this](double t) { return context_.model.inputs(t); },
                [this](double t, const double* x, double* dx) { return context_.rhs(t, x, dx); }, problem.rtol,
                problem.atol, requires_feature(problem.solver, Feature::series)};

@@ -92,6 +92,7 @@ inline RunResult run(const Problem& problem) {
   result.projection_velocity = context.projection.largest().velocity;
   result.projection_work = context.projection.work();
   result.impulse_work = context.impulse_work;
+  result.contact_forces_determined = !context.solved_contacts || context.solved_contacts->forces_determined();
   result.outputs.resize(problem.code->output_names.size());
   context.outputs(at, end.x.data(), result.outputs);
   result.state = context.own_state(at, end.x);

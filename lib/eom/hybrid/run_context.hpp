@@ -52,8 +52,7 @@ struct RunContext {
     }
     if (problem.code->contacts.empty()) return;
     contacts = std::make_unique<ContactModes>(
-        problem, model, rows,
-        [work_of](double t, std::span<const double> before, std::span<const double> after) {
+        problem, model, rows, [work_of](double t, std::span<const double> before, std::span<const double> after) {
           work_of(t, before, after);
         });
     std::vector<double> x = start;
@@ -161,7 +160,7 @@ struct RunContext {
   ConstraintRows rows;
   StateProjection projection;
   Kinks kinks;
-  std::unique_ptr<ContactModes> contacts;  // null if there are none
+  std::unique_ptr<ContactModes> contacts;           // null if there are none
   std::unique_ptr<SolvedContacts> solved_contacts;  // whose forces are inputs; null if there are none
   EventFunctions events;
   std::vector<double> start;  // in the second chart if the own one is near its singularity

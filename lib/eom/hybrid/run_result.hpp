@@ -47,6 +47,8 @@ struct RunResult {
   double constraint_drift = 0;  // largest |psi|, or |f . qdot + b| of a velocity constraint, at the end of a step
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
   double impulse_work = 0;  // of impacts
+  /// False if at some time the motion did not determine the forces of closed contacts; those of least norm were taken.
+  bool contact_forces_determined = true;
   std::vector<Event> events;
   std::vector<std::size_t> kink_crossings;  // per Code::kinks
   std::optional<double> narrow_forces_unresolved_from =

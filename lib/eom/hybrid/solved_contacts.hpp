@@ -41,6 +41,8 @@ class SolvedContacts {
         rtol_(problem.rtol),
         atol_(problem.atol),
         largest_gap_(size(), 0.0),
+        largest_terms_(size(), 0.0),
+        largest_force_(size(), 0.0),
         hits_(size()) {
     transitions_.set_input_count(problem.inputs.size());
   }
@@ -66,7 +68,8 @@ class SolvedContacts {
     chatter_.reset();
     largest_speed_ = 0;
     forces_.forget();
-    std::fill(largest_gap_.begin(), largest_gap_.end(), 0.0);
+    for (std::vector<double>* largest : {&largest_gap_, &largest_terms_, &largest_force_})
+      std::fill(largest->begin(), largest->end(), 0.0);
     std::vector<std::size_t> touching;
     for (std::size_t j = 0; j < size(); ++j) {
       forces_.states()[j] = {};
@@ -75,7 +78,7 @@ class SolvedContacts {
       if (!starts_open && forces_.contact(j).has_constraint()) touching.push_back(j);
     }
     if (model_.contact_forces()->evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) == 0) observe(x.data());
-    meet(t, x, touching, {}, {});
+    meet(t, x, touching, {}, false, {});
     return changes_;
   }
 
@@ -84,15 +87,19 @@ class SolvedContacts {
     std::vector<contacts::ContactState> states = {};
     modes::ChatterDetector chatter = {};
     double largest_speed = 0;
-    std::vector<double> largest_gap = {};
+    std::vector<double> largest_gap = {}, largest_terms = {}, largest_force = {};
     std::vector<std::size_t> hits = {};
   };
-  State save() const { return {forces_.states(), chatter_, largest_speed_, largest_gap_, hits_}; }
+  State save() const {
+    return {forces_.states(), chatter_, largest_speed_, largest_gap_, largest_terms_, largest_force_, hits_};
+  }
   void restore(const State& from) {
     forces_.states() = from.states;
     chatter_ = from.chatter;
     largest_speed_ = from.largest_speed;
     largest_gap_ = from.largest_gap;
+    largest_terms_ = from.largest_terms;
+    largest_force_ = from.largest_force;
     hits_ = from.hits;
     end_.reset();
     model_.forget_contact_forces();
@@ -120,11 +127,13 @@ class SolvedContacts {
       value[0] = value[1] = value[2] = 1;
       const contacts::Description& at = forces_.contact(j);
       if (!forces_.is_closed(j)) {
-        value[0] = forces_.value(at.gap);
+        value[0] = forces_.value(at.gap) + gap_rounding(j, x);
         continue;
       }
-      if (at.has_constraint()) value[0] = at.unilateral ? forces_.lambda(j) : sign(j) * forces_.lambda(j);
-      if (at.sticks) value[1] = bound_of_friction(j);
+      largest_force_[j] = std::max(largest_force_[j], forces_.force_size(j));
+      const double rounding = force_roundings * largest_force_[j];
+      if (at.has_constraint()) value[0] = (at.unilateral ? forces_.lambda(j) : sign(j) * forces_.lambda(j)) + rounding;
+      if (at.sticks) value[1] = bound_of_friction(j, rounding);
       value[2] = forces_.margin(j);
     }
     return std::any_of(g, g + functions(), [](double value) { return std::isnan(value); }) ? code_not_finite : 0;
@@ -145,9 +154,13 @@ class SolvedContacts {
       }
     }
     forces_.set_least_slip(std::max(negligible_speed(), least));
+    for (std::size_t j = 0; j < size(); ++j)
+      if (forces_.states()[j].starts && forces_.slip_speed(j) > 2 * forces_.least_slip())
+        forces_.states()[j].starts = false;
   }
 
-  EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions) {
+  EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing,
+                           std::span<EventFunction> functions) {
     const std::size_t j = crossing.function / values_per_contact, which = crossing.function % values_per_contact;
     changes_.clear();
     if (which == 2) {
@@ -162,19 +175,21 @@ class SolvedContacts {
       watch(functions);
       return EventAction::restart;
     }
-    contacts::Hint hint{j, which == 0 && forces_.is_closed(j), which == 1 && forces_.is_sticking(j)};
+    const bool sticks = forces_.is_sticking(j);
+    contacts::Hint hint{j, which == 0 && forces_.is_closed(j), which == 1 && sticks, which == 1 && !sticks};
     transitions_.set_friction_before(forces_.friction(j));
     std::vector<std::size_t> touching;
     for (std::size_t i = 0; i < size(); ++i)
       if (forces_.contact(i).has_constraint() && (forces_.is_closed(i) || i == j)) touching.push_back(i);
     std::vector<bool> plastic(size(), false);
+    bool rest = false;
     const bool meets = which == 0 && !forces_.is_closed(j);
     if (meets) {
       add_touching(t, x, touching);
       if (chatter_.add_transition(t)) end_bounces(j, touching, plastic);
-      stop_low_bounces(t, x, touching, plastic);
+      rest = stop_low_bounces(t, x, touching, plastic);
     }
-    meet(t, x, touching, plastic, hint);
+    meet(t, x, touching, plastic, rest, hint);
     if (end_) return EventAction::stop;
     if (!progresses(t)) {
       end_ = Outcome::step_too_small;
@@ -207,7 +222,8 @@ class SolvedContacts {
       return sum;
     };
     for (std::size_t j = 0; j < size(); ++j)
-      if (has_gap_row(j)) gap(forces_.value(forces_.contact(j).gap), forces_.contact(j).normal, rest(forces_.contact(j).normal));
+      if (has_gap_row(j))
+        gap(forces_.value(forces_.contact(j).gap), forces_.contact(j).normal, rest(forces_.contact(j).normal));
     for (std::size_t j = 0; j < size(); ++j) {
       if (!forces_.is_sticking(j)) continue;
       for (const contacts::Row& row : forces_.contact(j).slip) slip(row, rest(row));
@@ -222,6 +238,8 @@ class SolvedContacts {
       if (forces_.contact(j).has_constraint() && forces_.is_closed(j)) return true;
     return false;
   }
+  /// Whether the motion has determined all forces since the start.
+  bool forces_determined() const { return !forces_.undetermined(); }
   bool is_open(std::size_t j) const { return !forces_.is_closed(j); }
   const std::string& name(std::size_t j) const { return forces_.contact(j).name; }
   bool can_open() const {
@@ -245,16 +263,26 @@ class SolvedContacts {
     constexpr double rounding = 1e-15, share = 1e-3, roundings = 1e-14;
     return std::max({rounding, atol_, std::max(share * rtol_, roundings) * largest_speed_});
   }
-  contacts::Tolerances tolerances() const { return {negligible_speed(), std::max(negligible_speed(), forces_.least_slip())}; }
+  contacts::Tolerances tolerances() const {
+    constexpr double roundings = 1e-13;
+    return {negligible_speed(), std::max(negligible_speed(), forces_.least_slip()),
+            roundings * forces_.largest_acceleration()};
+  }
 
-  double bound_of_friction(std::size_t j) const {
+  /// Rounding errors are no events: all bounds are wider by them.
+  static constexpr double force_roundings = 1e-11, speed_roundings = 1e-14;
+
+  double bound_of_friction(std::size_t j, double rounding) const {
     const contacts::Description& at = forces_.contact(j);
     if (forces_.states()[j].mode == contacts::Mode::closed) {
       const std::array<double, 2>& phi = forces_.friction(j);
-      return forces_.value(at.static_coefficient) * std::abs(forces_.normal_force(j)) - std::hypot(phi[0], phi[1]);
+      return forces_.value(at.static_coefficient) * std::abs(forces_.normal_force(j)) - std::hypot(phi[0], phi[1]) +
+             rounding;
     }
-    if (at.slip.size() == 1) return static_cast<double>(forces_.states()[j].mode) * forces_.rate(at.slip[0]);
-    return forces_.slip_speed(j) - forces_.least_slip();
+    if (at.slip.size() == 1)
+      return static_cast<double>(forces_.states()[j].mode) * forces_.rate(at.slip[0]) +
+             speed_roundings * largest_speed_;
+    return forces_.states()[j].starts ? 1 : forces_.slip_speed(j) - forces_.least_slip();
   }
 
   void observe(const double* x) {
@@ -265,7 +293,11 @@ class SolvedContacts {
         const double speed = forces_.terms(row, rates);
         if (std::isfinite(speed)) largest_speed_ = std::max(largest_speed_, speed);
       };
-      if (at.has_constraint()) see(at.normal);
+      if (at.has_constraint()) {
+        see(at.normal);
+        const double terms = forces_.terms(at.normal, x);
+        if (std::isfinite(terms)) largest_terms_[j] = std::max(largest_terms_[j], terms);
+      }
       for (const contacts::Row& row : at.slip) see(row);
       if (at.unilateral && !forces_.is_closed(j) && std::isfinite(forces_.value(at.gap)))
         largest_gap_[j] = std::max(largest_gap_[j], forces_.value(at.gap));
@@ -275,7 +307,7 @@ class SolvedContacts {
   /// The rounding of a gap, from the sizes of its terms.
   double gap_rounding(std::size_t j, const double* x) const {
     constexpr double roundings = 16, of_gaps = 3e-14;
-    const double terms = forces_.terms(forces_.contact(j).normal, x);
+    const double terms = std::max(largest_terms_[j], forces_.terms(forces_.contact(j).normal, x));
     return std::max(roundings * std::numeric_limits<double>::epsilon() * terms, of_gaps * largest_gap_[j]);
   }
 
@@ -308,39 +340,52 @@ class SolvedContacts {
     std::sort(touching.begin(), touching.end());
   }
 
-  /// A bounce lower than the rounding of the gap is none.
-  void stop_low_bounces(double t, std::span<double> x, const std::vector<std::size_t>& touching,
-                        std::vector<bool>& plastic) {
+  /// A bounce lower than the rounding of the gap is none. If all motion of contacts that meet is lower, they come to
+  /// rest together with those whose gaps are no larger (a box that rocks on its edges). Returns whether they do.
+  bool stop_low_bounces(double t, std::span<double> x, std::vector<std::size_t>& touching, std::vector<bool>& plastic) {
     constexpr double roundings = 10;
     double* const u = model_.inputs_without_contacts(t);
-    if (forces_.evaluate_rows(t, x.data(), u) != 0 || forces_.evaluate_free(t, x.data(), u) != 0) return;
+    if (forces_.evaluate_rows(t, x.data(), u) != 0 || forces_.evaluate_free(t, x.data(), u) != 0) return false;
+    bool meets = false, rest = true;
     for (const std::size_t i : touching) {
       const contacts::Description& at = forces_.contact(i);
       // A contact at rest may approach later in a sequence of impacts.
       if (!at.unilateral || !(forces_.rate(at.normal) < -negligible_speed())) continue;
-      const double away = -forces_.rate(at.normal) * forces_.value(at.restitution);
+      const double speed = -forces_.rate(at.normal), away = speed * forces_.value(at.restitution);
       const double back = -forces_.acceleration(at.normal, forces_.free_accelerations());
-      if (away > 0 && back > 0 && away * away / (2 * back) <= roundings * gap_rounding(i, x.data())) plastic[i] = true;
+      const double known = roundings * gap_rounding(i, x.data());
+      if (away > 0 && back > 0 && away * away / (2 * back) <= known) plastic[i] = true;
       if (away <= negligible_speed()) plastic[i] = true;
+      meets = true;
+      rest = rest && back > 0 && speed * speed / (2 * back) <= known;
     }
+    if (!meets || !rest) return false;
+    for (std::size_t i = 0; i < size(); ++i) {
+      const contacts::Description& at = forces_.contact(i);
+      if (!at.unilateral || std::find(touching.begin(), touching.end(), i) != touching.end()) continue;
+      if (forces_.value(at.gap) <= roundings * gap_rounding(i, x.data())) touching.push_back(i);
+    }
+    std::sort(touching.begin(), touching.end());
+    return true;
   }
 
   /// Impulses of contacts that approach, then new modes.
   void meet(double t, std::span<double> x, const std::vector<std::size_t>& touching, std::vector<bool> plastic,
-            const contacts::Hint& hint) {
+            bool rest, const contacts::Hint& hint) {
     plastic.resize(size(), false);
     const std::vector<contacts::ContactState> before = forces_.states();
     const std::vector<double> state(x.begin(), x.end());
     std::vector<std::size_t> hit;
     contacts::Transitions::Result result;
     if (forces_.evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) == 0 && approaches(touching))
-      result = transitions_.impact(t, x.data(), model_.inputs_without_contacts(t), touching, plastic, tolerances(), hit);
+      result = transitions_.impact(t, x.data(), model_.inputs_without_contacts(t), touching, plastic, rest,
+                                   tolerances(), hit);
     if (result.outcome == contacts::Transitions::Outcome::done)
       result = transitions_.decide(t, x.data(), model_.inputs_without_contacts(t), touching, hint, tolerances());
     model_.forget_contact_forces();
     if (result.outcome != contacts::Transitions::Outcome::done) {
       end_ = result.outcome == contacts::Transitions::Outcome::no_value ? outcome_of_abi_code(result.code)
-                                                                       : Outcome::friction_no_solution;
+                                                                        : Outcome::friction_no_solution;
       end_contact_ = result.contact;
       return;
     }
@@ -390,10 +435,11 @@ class SolvedContacts {
   Changed changed_;
   double rtol_, atol_;
   double largest_speed_ = 0;
-  std::vector<double> largest_gap_;   // of open contacts
-  std::vector<std::size_t> hits_;     // number of impacts
+  std::vector<double> largest_gap_;                    // of open contacts
+  std::vector<double> largest_terms_, largest_force_;  // sums of the terms of gaps; of the forces of closed contacts
+  std::vector<std::size_t> hits_;                      // number of impacts
   modes::ChatterDetector chatter_;
-  std::vector<Change> changes_;       // of the last event
+  std::vector<Change> changes_;  // of the last event
   std::optional<Outcome> end_;
   std::size_t end_contact_ = contacts::none;
   double last_event_ = std::numeric_limits<double>::quiet_NaN();
