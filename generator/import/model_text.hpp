@@ -35,7 +35,7 @@ class ModelWriter {
   void write_drives();
   void write_dissipation();
   void write_constraints();
-  void write_stops(std::size_t joint, std::size_t& stops);
+  void write_stops(std::size_t joint);
   void write_scene();
   std::string header() const;
 

@@ -12,8 +12,6 @@
 namespace eomgen::import {
 namespace {
 
-// At most three contacts of a model may have friction or be unilateral (docs/model-format.md).
-constexpr std::size_t most_contacts = 3;
 // The velocity below which the smooth law of friction is nearly linear.
 constexpr const char* friction_width_angle = "0.01[rad/s]";
 constexpr const char* friction_width_length = "0.001[m/s]";
@@ -41,7 +39,6 @@ void ModelWriter::write_drives() {
 
 void ModelWriter::write_dissipation() {
   std::string damping, smooth, friction;
-  std::size_t dry = 0;
   for (const std::size_t j : moving_joints()) {
     const Joint& joint = robot_.joints[j];
     const std::string& q = joint_names_[j];
@@ -55,17 +52,12 @@ void ModelWriter::write_dissipation() {
       continue;
     }
     if (options_.friction == FrictionLaw::smooth) {
-      // Not a `dry` force, of which a model takes three.
       findings_.add("friction", "it is written by a smooth law; --friction dry gives Coulomb's law", joint.where);
       smooth += fmt::format("{} = \"-{}*{}_dot/sqrt({}_dot^2 + {}^2)\"\n", q,
                             factor(joint.friction, is_angle ? "N*m" : "N", "f_" + q), q, q,
                             is_angle ? friction_width_angle : friction_width_length);
       continue;
     }
-    if (++dry > most_contacts)
-      fail(joint.where,
-           fmt::format("more than {} joints have friction, which Coulomb's law takes at most", most_contacts),
-           "use --friction smooth");
     friction += fmt::format(
         "\n[[force]]\nname = \"{}\"\ndry = {{ coordinate = \"{}\", normal = \"{}\", static = 1, dynamic = 1 }}\n",
         names_.claim("friction_" + q, "_force"), q, value(joint.friction, is_angle ? "N*m" : "N", "f_" + q));
@@ -86,15 +78,11 @@ void ModelWriter::write_forces() {
   write_dissipation();
 }
 
-void ModelWriter::write_stops(std::size_t j, std::size_t& stops) {
+void ModelWriter::write_stops(std::size_t j) {
   const Joint& joint = robot_.joints[j];
   if (!joint.limits.lower)
     fail(joint.where, fmt::format("the joint {} has no limits", model::quote(joint.name)),
          "name joints with <limit lower=\"..\" upper=\"..\">");
-  stops += 2;
-  if (stops > most_contacts)
-    fail(joint.limits.where, fmt::format("a model has at most {} stops, and each joint needs two", most_contacts),
-         "name one joint in --stops; limits of the others stay comments");
   const std::string& q = joint_names_[j];
   const char* unit = joint.type == JointType::prismatic ? "m" : "rad";
   body_ += fmt::format(
@@ -132,7 +120,6 @@ void ModelWriter::write_constraints() {
                          names_.claim(joint_names_[j] + "_mimic", "_constraint"), text);
     ++result_.constraints;
   }
-  std::size_t stops = 0;
   for (const std::string& name : options_.stops) {
     const auto found = std::find_if(robot_.joints.begin(), robot_.joints.end(),
                                     [&](const Joint& joint) { return joint.name == name; });
@@ -142,7 +129,7 @@ void ModelWriter::write_constraints() {
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw Error("import", {}, fmt::format("there is no joint {} that moves", model::quote(name)),
                   model::suggest_choice(name, known));
-    write_stops(j, stops);
+    write_stops(j);
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "model/content_hash.hpp"
 #include "model/declared_order.hpp"
+#include "model/expand_contacts.hpp"
 #include "model/read_bodies.hpp"
 #include "model/read_constraints.hpp"
 #include "model/read_draw.hpp"
@@ -139,7 +140,8 @@ void Reader::read_head() {
 
 Model read_model_text(const std::string& text, const std::string& file) {
   const Source source(file, text);
-  const Value root = read_document(source);
+  Value root = read_document(source);
+  expand_contacts(source, root);
   ReaderContext context(source, root);
   Reader(context).read();
   Model& model = context.model;

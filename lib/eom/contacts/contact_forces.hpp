@@ -167,8 +167,22 @@ class ContactForces {
     return 0;
   }
 
-  /// Solves for the forces in the current states and adds them to u, whose contact forces are 0. Returns a code.
+  /// Whether all contacts are open: there are no forces, and the rows need not be evaluated.
+  bool all_open() const {
+    return std::all_of(states_.begin(), states_.end(), [](const ContactState& s) { return s.mode == Mode::open; });
+  }
+
+  /// Solves for the forces in the current states and adds them to u, whose contact forces are 0. Returns a code. Rows
+  /// are evaluated unless all contacts are open.
   int solve(double t, const double* x, double* u) {
+    if (all_open()) {
+      margins_.assign(set_.contacts.size(), 1.0);
+      force_size_.assign(set_.contacts.size(), 0.0);
+      std::fill(lambda_.begin(), lambda_.end(), 0.0);
+      std::fill(phi_.begin(), phi_.end(), std::array<double, 2>{});
+      write_modes(u);
+      return 0;
+    }
     if (const int code = evaluate_rows(t, x, u); code != 0) return code;
     if (const int code = evaluate_free(t, x, u); code != 0) return code;
     std::vector<Pattern>& patterns = patterns_;

@@ -121,6 +121,9 @@ class SolvedContacts {
   /// Values of all functions at a state.
   int operator()(double t, const double* x, double* g) {
     if (const int code = model_.solve_contacts(t, x); code != 0) return code;
+    if (forces_.all_open()) {
+      if (const int code = forces_.evaluate_rows(t, x, model_.inputs(t)); code != 0) return code;
+    }
     observe(x);
     for (std::size_t j = 0; j < size(); ++j) {
       double* const value = g + values_per_contact * j;
