@@ -96,7 +96,8 @@ std::string fault_of_repetition(const mechanics::Mechanics& given, const mechani
     return fmt::format("a constraint that repeats another counts as a further one: {} independent equations, not {}",
                        independent(repeated), independent(given));
   for (const mechanics::Constraint& constraint : repeated.constraints) {
-    if (constraint.determined && (constraint.name == name || constraint.name == name + again))
+    // Runs find out whether the motion determines a force that is an input.
+    if (constraint.determined && !constraint.force_input && (constraint.name == name || constraint.name == name + again))
       return fmt::format("the force of '{}' counts as determined, though another constraint repeats it",
                          constraint.label);
   }

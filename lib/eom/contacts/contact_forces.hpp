@@ -148,6 +148,13 @@ class ContactForces {
     return code != 0 || free_.allFinite() ? code : code_not_finite;
   }
   const Vector& free_accelerations() const { return free_; }
+  /// The accelerations with the forces of the current states. u has no contact forces. Rows are evaluated.
+  int evaluate_accelerations(double t, const double* x, double* u, Vector& qddot) {
+    if (const int code = solve(t, x, u); code != 0) return code;
+    if (const int code = evaluate_rows(t, x, u); code != 0) return code;
+    qddot.resize(static_cast<Index>(n_));
+    return system_.accelerations(t, x, u, qddot.data());
+  }
 
   /// The change of the accelerations for a unit force, after evaluate_free(). It is computed from a force with an
   /// effect of the size of the accelerations, so that few digits are lost.

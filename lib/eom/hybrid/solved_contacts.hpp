@@ -77,8 +77,17 @@ class SolvedContacts {
       if (starts_open) forces_.states()[j].mode = contacts::Mode::open;
       if (!starts_open && forces_.contact(j).has_constraint()) touching.push_back(j);
     }
-    if (model_.contact_forces()->evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) == 0) observe(x.data());
+    std::vector<bool> slides(size(), false);
+    if (forces_.evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) == 0) {
+      observe(x.data());
+      for (std::size_t j = 0; j < size(); ++j) slides[j] = forces_.slip_speed(j) > negligible_speed();
+    }
     meet(t, x, touching, {}, false, {});
+    std::erase_if(changes_, [&](const Change& change) {  // what slides already does not begin to
+      for (std::size_t j = 0; j < size(); ++j)
+        if (change.name == name(j)) return change.kind == "slip" && slides[j];
+      return false;
+    });
     return changes_;
   }
 
@@ -347,15 +356,15 @@ class SolvedContacts {
   /// rest together with those whose gaps are no larger (a box that rocks on its edges). Returns whether they do.
   bool stop_low_bounces(double t, std::span<double> x, std::vector<std::size_t>& touching, std::vector<bool>& plastic) {
     constexpr double roundings = 10;
-    double* const u = model_.inputs_without_contacts(t);
-    if (forces_.evaluate_rows(t, x.data(), u) != 0 || forces_.evaluate_free(t, x.data(), u) != 0) return false;
+    contacts::ContactForces::Vector qddot;
+    if (forces_.evaluate_accelerations(t, x.data(), model_.inputs_without_contacts(t), qddot) != 0) return false;
     bool meets = false, rest = true;
     for (const std::size_t i : touching) {
       const contacts::Description& at = forces_.contact(i);
       // A contact at rest may approach later in a sequence of impacts.
       if (!at.unilateral || !(forces_.rate(at.normal) < -negligible_speed())) continue;
       const double speed = -forces_.rate(at.normal), away = speed * forces_.value(at.restitution);
-      const double back = -forces_.acceleration(at.normal, forces_.free_accelerations());
+      const double back = -forces_.acceleration(at.normal, qddot);
       const double known = roundings * gap_rounding(i, x.data());
       if (away > 0 && back > 0 && away * away / (2 * back) <= known) plastic[i] = true;
       if (away <= negligible_speed()) plastic[i] = true;
