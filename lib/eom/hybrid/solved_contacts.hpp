@@ -139,7 +139,10 @@ class SolvedContacts {
       value[0] = value[1] = value[2] = 1;
       const contacts::Description& at = forces_.contact(j);
       if (!forces_.is_closed(j)) {
-        value[0] = forces_.value(at.gap) + gap_rounding(j, x);
+        const double rounding = gap_rounding(j, x);
+        value[0] = forces_.value(at.gap) + rounding;
+        // A contact that separates does not meet, though the error of its place may leave it below the surface.
+        if (value[0] <= 0 && forces_.rate(at.normal) > 0) value[0] = rounding;
         continue;
       }
       largest_force_[j] = std::max(largest_force_[j], forces_.force_size(j));
