@@ -22,6 +22,7 @@ bool can_stick(const mechanics::Contact& contact) { return contact.dimensions() 
 
 /// Sums of squares that a constraint gives: x^2 + y^2 = L^2 replaces them in roots and denominators.
 struct Relation {
+  std::uint32_t constraint = 0;
   Sum base, value;
 };
 
@@ -39,6 +40,7 @@ class Solver {
   SolvedForm solve() {
     impose_closed_contacts();
     if (form_.mode == FrictionMode::holding) hold_rates();
+    find_relations();
     add_equations();
     add_constraints();
     if (form_.mode == FrictionMode::holding) add_contacts();
@@ -53,7 +55,6 @@ class Solver {
           unknowns.push_back({SymbolKind::friction, contact.first + a, 0});
       }
     }
-    find_relations();
     std::vector<std::optional<Sum>> solution = solve_linear(equations_, unknowns);
     form_.multipliers.resize(m_.constraints.size());
     for (std::size_t j = 0; j < unknowns.size(); ++j) {
@@ -124,6 +125,14 @@ class Solver {
   void add_constraints() {
     for (const DisplayConstraint& c : one_.constraints) {
       if (std::find(reduced_.active.begin(), reduced_.active.end(), c.constraint) == reduced_.active.end()) continue;
+      const auto relation = std::find_if(relations_.begin(), relations_.end(),
+                                         [&](const Relation& r) { return r.constraint == c.constraint; });
+      if (relation != relations_.end()) {
+        // Of x^2 + y^2 - L^2 the derivatives are shorter than those of its root, whose own rate is in them.
+        const Sum rate = bridge_.total_derivative(relation->base - relation->value);
+        equations_.push_back(simplify(imposed(bridge_.total_derivative(rate))));
+        continue;
+      }
       if (!c.acceleration_skip_reason.empty()) throw work::BudgetExceeded(c.acceleration_skip_reason);
       equations_.push_back(simplify(imposed(c.acceleration)));
     }
@@ -184,13 +193,13 @@ class Solver {
         if (monomial.size() != 1 || monomial[0].atom->op != Op::add || monomial[0].exponent != Rational(1) / 2)
           continue;
         const Sum root = -(Rational(1) / coefficient) * rest;
-        relations_.push_back({monomial[0].atom->args[0], root * root});
+        relations_.push_back({k, monomial[0].atom->args[0], root * root});
         continue;
       }
       const Content common = content(moving);
       if (!common.monomial.empty()) continue;
       const Rational scale = has_negative_leading_term(moving) ? -common.number : common.number;
-      relations_.push_back({divide(moving, {scale, {}}), divide(-rest, {scale, {}})});
+      relations_.push_back({k, divide(moving, {scale, {}}), divide(-rest, {scale, {}})});
     }
   }
 

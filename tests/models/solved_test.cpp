@@ -185,6 +185,8 @@ TEST_CASE("every shipped model: the formulas hold for the oracle's motion at ran
     const SolvedForm form = reading::solved_form(m, one, FrictionMode::given);
     MESSAGE(file.stem().string(), form.skip_reason.empty() ? ": solved" : ": " + form.skip_reason);
     if (!form.skip_reason.empty() || m.q.empty()) continue;
+    // The formulas are those of closed contacts; the states have open ones too.
+    if (std::any_of(m.contacts.begin(), m.contacts.end(), [](const auto& c) { return c.unilateral; })) continue;
     verify::Subjects subjects;
     subjects.reading.push_back({"solved form", reading::residuals_on_dag(form, m)});
     if (subjects.reading[0].residuals.empty()) continue;
