@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <variant>
 
 #include "analysis/named_functions.hpp"
 #include "derive/formulations/lagrange.hpp"
@@ -16,11 +18,17 @@
 namespace eomgen::analysis {
 
 const std::vector<std::string>& equation_keys() {
-  static const std::vector<std::string> keys{"kinematics", "basis",    "metric",     "christoffel", "line_element",
-                                             "frenet",     "energies", "lagrangian", "equations",   "constraints",
-                                             "reactions",  "friction", "conserved",  "singular",    "routh",
-                                             "linear",     "all"};
+  static const std::vector<std::string> keys{
+      "kinematics", "basis",     "metric",      "christoffel", "line_element",  "frenet",    "energies",
+      "lagrangian", "equations", "constraints", "reactions",   "friction",      "conserved", "singular",
+      "routh",      "linear",    "solved",      "forces",      "contravariant", "balance",   "all"};
   return keys;
+}
+
+bool is_part_of_all(const std::string& key) {
+  static const std::vector<std::string> on_request{"kinematics", "linear",        "routh",  "solved",
+                                                   "forces",     "contravariant", "balance"};
+  return std::find(on_request.begin(), on_request.end(), key) == on_request.end();
 }
 
 namespace {
@@ -103,11 +111,67 @@ void add_routh(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, co
   for (print::PrintedFormula& item : print::render_routh(mechanics, form)) items.push_back(std::move(item));
 }
 
+/// The values of coordinates and inputs at the start of a scene, as formulas. Rates are 0 in an equilibrium.
+std::map<reading::Symbol, reading::Sum> start_of_scene(mechanics::Mechanics& m, const std::string& name) {
+  const model::Model& model = *m.model;
+  const auto scene =
+      std::find_if(model.scenes.begin(), model.scenes.end(), [&](const model::Scene& s) { return s.name == name; });
+  if (scene == model.scenes.end()) {
+    std::vector<std::string> names;
+    for (const model::Scene& s : model.scenes) names.push_back(s.name);
+    throw Error("derive", {}, fmt::format("there is no scene {}", model::quote(name)),
+                model::suggest_choice(name, names));
+  }
+  std::map<reading::Symbol, reading::Sum> values;
+  const auto value = [&](model::NodeId expression) {
+    return reading::display_sum(m, mechanics::lower_scalar(m, expression));
+  };
+  for (const model::InitialValue& initial : scene->initial) {
+    if (initial.order == 0) values[{reading::SymbolKind::coordinate, initial.coordinate, 0}] = value(initial.value);
+  }
+  for (std::uint32_t u = 0; u < model.inputs.size(); ++u) {
+    model::NodeId signal = model.inputs[u].default_value;
+    for (const model::SceneInput& input : scene->inputs) {
+      if (input.input != u) continue;
+      const auto* constant = std::get_if<model::NodeId>(&input.signal);
+      if (constant == nullptr)
+        throw Error("derive", model.where(input.span), "an input that changes leaves no equilibrium",
+                    "name a scene in which this input is constant");
+      signal = *constant;
+    }
+    if (signal != model::no_node) values[{reading::SymbolKind::input, u, 0}] = value(signal);
+  }
+  return values;
+}
+
 // Only on explicit request: n^2 entries of four matrices, twice.
-void add_linear(const mechanics::Mechanics& mechanics, reading::DisplayForms& forms,
-                const std::vector<std::string>& show, std::vector<print::PrintedFormula>& items) {
-  if (std::find(show.begin(), show.end(), "linear") == show.end()) return;
+void add_linear(mechanics::Mechanics& mechanics, reading::DisplayForms& forms, const EquationsRequest& request,
+                std::vector<print::PrintedFormula>& items) {
+  const std::vector<std::string>& show = request.show;
+  if (std::find(show.begin(), show.end(), "linear") == show.end()) {
+    if (request.about.empty()) return;
+    throw Error("derive", {}, "an equilibrium is named, but no linearised equations are shown", "add --show linear");
+  }
+  if (!request.about.empty()) {
+    const reading::LinearEquations form =
+        reading::linear_equations(mechanics, forms.linear(), start_of_scene(mechanics, request.about));
+    for (print::PrintedFormula& item : print::render_linear(mechanics, form, request.about))
+      items.push_back(std::move(item));
+    return;
+  }
   for (print::PrintedFormula& item : print::render_linear(mechanics, forms.linear())) items.push_back(std::move(item));
+}
+
+// Only on explicit request: the equations that `all` shows, solved.
+void add_solved(const mechanics::Mechanics& mechanics, reading::DisplayForms& forms,
+                const std::vector<std::string>& show, std::vector<print::PrintedFormula>& items) {
+  if (std::find(show.begin(), show.end(), "solved") == show.end()) return;
+  std::vector<reading::FrictionMode> modes{reading::FrictionMode::given};
+  if (reading::can_hold(mechanics)) modes.push_back(reading::FrictionMode::holding);
+  for (const reading::FrictionMode mode : modes) {
+    for (print::PrintedFormula& item : print::render_solved(mechanics, forms.solved(mode)))
+      items.push_back(std::move(item));
+  }
 }
 
 system::Approach displayed_approach(const mechanics::Mechanics& m) {
@@ -137,7 +201,8 @@ Equations equations(std::shared_ptr<const model::Model> model, const EquationsRe
     if (!result.interrupted) {
       add_conserved(mechanics, forms, request.show, result.items);
       add_routh(mechanics, forms, request.show, result.items, result.notes);
-      add_linear(mechanics, forms, request.show, result.items);
+      add_linear(mechanics, forms, request, result.items);
+      add_solved(mechanics, forms, request.show, result.items);
     }
   } catch (const work::Interrupted&) {
     result.interrupted = true;
@@ -145,7 +210,7 @@ Equations equations(std::shared_ptr<const model::Model> model, const EquationsRe
   const work::DeferInterrupt kept;
   result.left_out = omissions_of(result.items, form);
   const bool about_forces = std::any_of(request.show.begin(), request.show.end(), [](const auto& key) {
-    return key == "equations" || key == "reactions" || key == "all";
+    return key == "equations" || key == "reactions" || key == "solved" || key == "all";
   });
   if (about_forces) result.multipliers = legend(mechanics, form);
   return result;

@@ -15,11 +15,15 @@ namespace eomgen::analysis {
 
 struct EquationsRequest {
   pipeline::ApproachChoice approach = pipeline::ApproachChoice::automatic;
-  /// Keys out of equation_keys(). "all": every key except "kinematics", "linear" and "routh".
+  /// Keys out of equation_keys(). "all": every key with is_part_of_all().
   std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
+  /// The scene whose start is the equilibrium of "linear"; empty: any motion, and any equilibrium.
+  std::string about;
 };
 
 const std::vector<std::string>& equation_keys();
+/// Whether "all" shows this key. Other forms of what it shows, and long tables, are shown on request only.
+bool is_part_of_all(const std::string& key);
 
 struct Multiplier {
   std::string name, latex;

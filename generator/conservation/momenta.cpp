@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // sum d(m v)/dt . d = sum (Q_i - dU/dq_i) xi_i + sum lambda_k A_ki xi_i for displacements d = dr/dq_i xi_i of all
 // masses. With d = E_k or E_k x r the left-hand side is dG_k/dt or dH_k/dt. For bodies, dH/dt . (dw/dqdot_i xi_i) is
-// added: the body rotates about E_k, or not at all.
+// added: the body rotates about E_k, or not at all. Of a body that rolls, d may be such a rotation of it alone, about
+// its centre of mass or about the point of contact P; then dH_P/dt has the term -v_P x m v, which must vanish.
 #include "conservation/momenta.hpp"
 
 #include <cmath>
@@ -68,6 +69,16 @@ bool does_no_work(const double* force, const std::vector<double>& y) {
   return std::abs(sum) <= screening * forces * longest;  // zero entries of y have rounding errors of the longest
 }
 
+/// A momentum: of the whole system, or the angular momentum of one body about its centre of mass or about a point that
+/// is `arm` from it.
+struct Candidate {
+  bool angular = false;
+  std::string name, title;  // without the axis
+  std::uint32_t index = 0;  // of the output
+  std::optional<std::size_t> body = {};
+  std::optional<Vec3> arm = {};
+};
+
 class Search {
  public:
   Search(Mechanics& m, const system::EquationSystem& s) : s_(s), dag_(*m.dag), n_(s.free.size()) {
@@ -109,58 +120,116 @@ class Search {
     }
   }
 
-  /// `repeats`: whether this expression is redundant, which is far cheaper to test than conservation.
+  /// `is_redundant`: whether this expression is redundant, which is far cheaper to test than conservation.
   template <class Repeats>
-  std::optional<ConservedQuantity> component(bool angular, std::size_t k, const Repeats& is_redundant) {
-    const std::vector<Ref> d = displacement(angular, k);
+  std::optional<ConservedQuantity> component(const Candidate& of, std::size_t k, const Repeats& is_redundant) {
+    const bool angular = of.angular;
+    const std::vector<Ref> d = displacement(of, k);
     if (mechanics::vanishes(dag_, d) || !may_be_conserved(d)) return std::nullopt;
     ConservedQuantity result;
     const std::string along = "E" + std::to_string(k + 1);
-    result.name = (angular ? "angular_momentum." : "linear_momentum.") + along;
+    result.name = of.name + along;
     result.kind = angular ? system::OutputKind::angular_momentum : system::OutputKind::linear_momentum;
+    result.index = of.index;
     result.part = static_cast<std::uint32_t>(k);
-    result.title = (angular ? "angular momentum about the origin along " : "linear momentum along ") + along;
+    result.title = of.title + along;
     Ref expression = dag_.zero();
     for (std::size_t p = 0; p < r_.size(); ++p) {
-      const Vec3 of{d[3 * p], d[3 * p + 1], d[3 * p + 2]};
-      expression = dag_.add(expression, dag_.mul(mass_[p], dot(dag_, of, v_[p])));
+      const Vec3 moved_by{d[3 * p], d[3 * p + 1], d[3 * p + 2]};
+      expression = dag_.add(expression, dag_.mul(mass_[p], dot(dag_, moved_by, v_[p])));
     }
     for (std::size_t b = 0; b < H_.size(); ++b) {
       const std::size_t row = 3 * (r_.size() + b);
       expression = dag_.add(expression, dot(dag_, Vec3{d[row], d[row + 1], d[row + 2]}, H_[b]));
     }
     if (is_redundant(expression)) return std::nullopt;
-    const Certainty certainty = zero_certainty(dag_, conditions(d));
+    std::vector<Ref> must_vanish = conditions(d);
+    if (of.arm) must_vanish.push_back(carried(of, k));
+    const Certainty certainty = zero_certainty(dag_, must_vanish);
     if (certainty == Certainty::no) return std::nullopt;
     result.certainty = certainty;
     Ref magnitude = dag_.zero();
     for (std::size_t p = 0; p < r_.size(); ++p) {
+      if (of.body && p != mass_of_body_[*of.body]) continue;
       Ref squares = dot(dag_, v_[p], v_[p]);
-      if (angular) squares = dag_.mul(squares, dot(dag_, r_[p], r_[p]));
+      const Vec3& arm = of.arm ? *of.arm : r_[p];
+      if (of.body && !of.arm) squares = dag_.zero();
+      if (angular) squares = dag_.mul(squares, dot(dag_, arm, arm));
       magnitude = dag_.add(magnitude, dag_.mul(mass_[p], dag_.call(symbolic::Op::sqrt, squares)));
     }
     for (std::size_t b = 0; b < H_.size() && angular; ++b)
-      magnitude = dag_.add(magnitude, dag_.call(symbolic::Op::sqrt, dot(dag_, H_[b], H_[b])));
+      if (!of.body || b == *of.body)
+        magnitude = dag_.add(magnitude, dag_.call(symbolic::Op::sqrt, dot(dag_, H_[b], H_[b])));
     result.expression = expression;
     result.magnitude = magnitude;
     return result;
   }
 
+  /// For bodies that roll: about their centres of mass, and about the points of contact.
+  std::vector<Candidate> of_rolling_bodies(Mechanics& m) {
+    std::vector<Candidate> result;
+    symbolic::Substitution imposed = constraint_substitution(m), written = time_function_substitution(m);
+    const model::Model& model = *m.model;
+    for (std::uint32_t c = 0; c < model.constraints.size(); ++c) {
+      const auto& contact = model.constraints[c].contact;
+      if (!contact || !contact->rolling || contact->other_place != 0) continue;
+      for (std::uint32_t b = 0; b < model.bodies.size(); ++b) {
+        if (model.bodies[b].place != contact->place) continue;
+        const std::string& name = model.places[contact->place].name;
+        result.push_back({true,
+                          "angular_momentum." + name + ".",
+                          "angular momentum of '" + name + "' about its centre of mass along ",
+                          1 + b,
+                          b,
+                          {}});
+        Vec3 arm = mechanics::lower_vector(m, contact->arm);
+        for (Ref& x : arm) x = written(imposed(x));
+        const auto bodies = static_cast<std::uint32_t>(model.bodies.size());
+        result.push_back({true, "angular_momentum." + model.constraints[c].name + ".",
+                          "angular momentum of '" + name + "' about the point of contact along ", 1 + bodies + c, b,
+                          arm});
+      }
+    }
+    for (const model::Body& body : model.bodies) {
+      const auto mass = std::find_if(m.masses.begin(), m.masses.end(),
+                                     [&](const mechanics::PointMass& p) { return p.place == body.place; });
+      mass_of_body_.push_back(static_cast<std::size_t>(mass - m.masses.begin()));
+    }
+    coordinates_ = m.q.size();
+    functions_ = model.functions.size();
+    return result;
+  }
+
  private:
-  std::vector<Ref> displacement(bool angular, std::size_t k) const {
-    std::vector<Ref> d = moved(angular, k);
-    for (const std::array<Vec3, 3>& axes : axes_) {
-      for (const Vec3& e : axes) d.push_back(angular ? e[k] : dag_.zero());
+  /// m v . (E_k x v_P): the rate of the component that the motion of the point P adds; v_P = v + d(arm)/dt.
+  Ref carried(const Candidate& of, std::size_t k) {
+    const std::size_t p = mass_of_body_[*of.body];
+    symbolic::Derivation ddt = symbolic::total_time_derivative(dag_, coordinates_, functions_);
+    Vec3 rate;
+    for (std::size_t i = 0; i < 3; ++i) rate[i] = dag_.add(v_[p][i], ddt((*of.arm)[i]));
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;  // (E_k x a) . v = a_i v_j - a_j v_i
+    return dag_.mul(mass_[p], dag_.sub(dag_.mul(rate[i], v_[p][j]), dag_.mul(rate[j], v_[p][i])));
+  }
+
+  std::vector<Ref> displacement(const Candidate& of, std::size_t k) const {
+    std::vector<Ref> d = moved(of, k);
+    for (std::size_t b = 0; b < axes_.size(); ++b) {
+      for (const Vec3& e : axes_[b]) d.push_back(of.angular && (!of.body || b == *of.body) ? e[k] : dag_.zero());
     }
     d.resize(d.size() + s_.active.size(), dag_.zero());
     return d;
   }
 
-  std::vector<Ref> moved(bool angular, std::size_t k) const {
+  std::vector<Ref> moved(const Candidate& of, std::size_t k) const {
     std::vector<Ref> d;
-    for (const Vec3& r : r_) {
+    for (std::size_t p = 0; p < r_.size(); ++p) {
+      if (of.body && (!of.arm || p != mass_of_body_[*of.body])) {
+        d.insert(d.end(), 3, dag_.zero());
+        continue;
+      }
+      const Vec3 r = of.arm ? Vec3{dag_.neg((*of.arm)[0]), dag_.neg((*of.arm)[1]), dag_.neg((*of.arm)[2])} : r_[p];
       for (std::size_t c = 0; c < 3; ++c) {
-        if (!angular)
+        if (!of.angular)
           d.push_back(c == k ? dag_.one() : dag_.zero());
         else if (c == k)
           d.push_back(dag_.zero());
@@ -233,6 +302,8 @@ class Search {
   std::vector<Ref> jump_gradients_;  // gradients of the surfaces where energies jump, row by row
   std::vector<Vec3> r_, v_, w_, H_;
   std::vector<std::array<Vec3, 3>> axes_;  // of the rotating bodies
+  std::vector<std::size_t> mass_of_body_;  // indices of masses
+  std::size_t coordinates_ = 0, functions_ = 0;
   std::optional<symbolic::Factorisation> factors_;
 };
 
@@ -252,9 +323,12 @@ std::vector<ConservedQuantity> conserved_momenta(Mechanics& m, const system::Equ
       s.free.size() > max_momentum_coordinates)
     return found;
   Search search(m, s);
-  for (const bool angular : {false, true}) {
+  std::vector<Candidate> candidates{{false, "linear_momentum.", "linear momentum along "},
+                                    {true, "angular_momentum.", "angular momentum about the origin along "}};
+  for (Candidate& candidate : search.of_rolling_bodies(m)) candidates.push_back(std::move(candidate));
+  for (const Candidate& candidate : candidates) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::optional<ConservedQuantity> c = search.component(angular, k, [&](Ref expression) {
+      const std::optional<ConservedQuantity> c = search.component(candidate, k, [&](Ref expression) {
         return mechanics::vanishes(*m.dag, {expression}) || is_redundant(*m.dag, all, expression, *m.dag);
       });
       if (!c) continue;

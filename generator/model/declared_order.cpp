@@ -35,13 +35,15 @@ std::vector<std::uint32_t> sort_by_place(std::vector<T>& items) {
   return moved;
 }
 
-// The layout of states has discrete values last. Integrals are found while expressions are read, behind them.
-void move_discrete_values_last(Model& model) {
+// The layout of states: declared ones, integrals of the motion, integrals of functions of time, discrete values.
+// Integrals are found while expressions are read, behind discrete values.
+void sort_states(Model& model) {
   std::vector<State> sorted;
   std::vector<std::uint32_t> moved(model.states.size());
-  for (const bool discrete : {false, true}) {
+  const auto rank = [](const State& state) { return state.discrete ? 2 : state.integral ? 1 : 0; };
+  for (const int wanted : {0, 1, 2}) {
     for (std::uint32_t k = 0; k < model.states.size(); ++k) {
-      if (model.states[k].discrete != discrete) continue;
+      if (rank(model.states[k]) != wanted) continue;
       moved[k] = static_cast<std::uint32_t>(sorted.size());
       sorted.push_back(model.states[k]);
     }
@@ -79,7 +81,7 @@ void restore_declared_order(Model& model) {
   for (Scene& scene : model.scenes) {
     for (auto& override_value : scene.parameters) override_value.first = parameters[override_value.first];
   }
-  move_discrete_values_last(model);
+  sort_states(model);
 }
 
 }  // namespace eomgen::model

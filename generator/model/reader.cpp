@@ -147,6 +147,7 @@ Model read_model_text(const std::string& text, const std::string& file) {
   Model& model = context.model;
   restore_declared_order(model);
   name_start_values(model);
+  name_integrals(model);
   add_start_time(model, context.resolver.units_stated());
   model.file = file;
   model.id = std::filesystem::path(file).stem().string();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Axes and angular velocities of bodies and frames: nodes for B.e1, B.e1', omega(B).
 #include "model/resolver.hpp"
+#include "rotations/rotation.hpp"
 
 namespace eomgen::model {
 
@@ -20,6 +21,23 @@ TypedNode Resolver::axis(std::uint32_t frame, std::size_t stage, std::size_t axi
 TypedNode Resolver::own_axis(std::uint32_t frame, std::size_t axis, Span span) {
   if (frame > 0) symbol(scope_.axes(frame), span);
   return this->axis(frame, frame == 0 ? 0 : model_.frames[frame].stages.size() - 1, axis, span);
+}
+
+TypedNode Resolver::dual_vector(std::uint32_t frame, std::size_t entry, Span span) {
+  const rotations::Rotation& rotation = *rotations::find(model_.frames[frame].rotation);
+  std::map<std::string, TypedNode> local;
+  for (std::size_t k = 0; k < rotation.entries.size(); ++k)
+    local[rotation.entries[k].name] = coordinate(model_.arena[model_.frames[frame].entries[k]].index, 0, span);
+  const Context context{"a dual vector", on_anything, Shape::scalar, std::nullopt, ""};
+  std::optional<TypedNode> sum;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::string& component = rotation.dual[entry][k];
+    if (component == "0") continue;
+    const TypedNode axis = own_axis(frame, k, span);
+    const TypedNode term = component == "1" ? axis : product_of(text(component, local, span, context), axis, span);
+    sum = sum ? sum_of(*sum, term, span) : term;
+  }
+  return *sum;
 }
 
 TypedNode Resolver::angular_velocity(std::uint32_t frame, Span span) {

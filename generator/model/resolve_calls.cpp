@@ -8,6 +8,11 @@
 #include "model/resolver.hpp"
 
 namespace eomgen::model {
+namespace {
+
+constexpr std::size_t max_integrals = 1000;  // with the states of the model
+
+}  // namespace
 
 void Resolver::arity(const SyntaxNode& node, std::size_t least, std::size_t most) {
   const std::size_t count = node.children.size();
@@ -223,21 +228,37 @@ TypedNode Resolver::integral(const Syntax& syntax, const SyntaxNode& node) {
     source_.fail(syntax.nodes[node.children[0]].span, "integral() takes a scalar, and this is a vector",
                  "integrate its components one by one");
   }
+  std::optional<Dimension> dimension;
+  if (inner.dimension) dimension = product(*inner.dimension, dimension_of("s"));
+  State integral;
+  integral.rate = inner.node;
+  integral.unit = unit_of(dimension);
+  integral.span = node.span;
+  const auto index = static_cast<std::uint32_t>(model_.states.size());
   const Dependencies motion = inner.dependencies & static_cast<Dependencies>(~on_time);
   if (motion != 0) {
-    source_.fail(syntax.nodes[node.children[0]].span,
-                 "integral() is of a function of time, and this depends on the motion or on an input",
-                 "use t, functions of time, parameters and numbers");
+    // Of coordinates, rates, inputs or states: a state of first order, whose rate is the integrand.
+    if (motion & (on_acceleration | on_reaction | on_state_rate)) {
+      source_.fail(syntax.nodes[node.children[0]].span,
+                   "integral() is of time, coordinates, velocities, inputs and states, and this depends on "
+                   "accelerations, constraint forces or rates of states",
+                   "integrate a velocity in place of an acceleration; the integral of ddt(z) is z");
+    }
+    require_allowed(on_first_order, node.span, "an integral of coordinates, velocities, inputs or states");
+    if (model_.states.size() >= max_integrals) {
+      source_.fail(node.span, fmt::format("the model has more than {} integrals and states", max_integrals),
+                   "a model of this size cannot be handled");
+    }
+    model_.states.push_back(std::move(integral));
+    TypedNode result = state(index, node.span);
+    result.dimension = dimension;
+    return result;
   }
   TypedNode result = make(Op::integral, false, {inner}, node.span);
   result.dependencies |= on_time;
-  if (inner.dimension) result.dimension = product(*inner.dimension, dimension_of("s"));
+  result.dimension = dimension;
   require_allowed(result.dependencies, node.span, "integral()");
-  model_.arena.nodes[result.node].index = static_cast<std::uint32_t>(model_.states.size());
-  State integral;
-  integral.rate = inner.node;
-  integral.unit = unit_of(result.dimension);
-  integral.span = node.span;
+  model_.arena.nodes[result.node].index = index;
   integral.integral = true;
   model_.states.push_back(std::move(integral));
   return result;

@@ -51,7 +51,8 @@ TypedNode Resolver::name(const SyntaxNode& node) {
   if (symbol->frame > 0 && node.parts.size() == 2) {
     const std::string& part = node.parts[1];
     const bool axis = part.size() == 2 && part[0] == 'e' && part[1] >= '1' && part[1] <= '3';
-    if (axis || part == "omega" || symbol->kind == SymbolKind::frame) return frame_part(node, *symbol);
+    if (axis || part == "omega" || symbol->kind == SymbolKind::frame || rotation_entry(symbol->frame, part, node.span))
+      return frame_part(node, *symbol);
   }
   if (symbol->kind != SymbolKind::place) {
     source_.fail(node.span, fmt::format("'{}' is {} and has no parts", symbol->name, kind_name(symbol->kind)),
@@ -83,11 +84,28 @@ TypedNode Resolver::frame_part(const SyntaxNode& node, const Symbol& symbol) {
                        : "primes are for intermediate axes of Euler angles");
     }
     if (node.primes > 0) result = this->axis(symbol.frame, node.primes - 1, k, node.span);
+  } else if (const std::optional<std::size_t> entry = rotation_entry(symbol.frame, part, node.span)) {
+    result = dual_vector(symbol.frame, *entry, node.span);
   } else {
     source_.fail(node.span, fmt::format("'{}' has no part {}", symbol.name, quote(part)),
-                 "its parts are e1, e2, e3 and omega");
+                 "its parts are e1, e2, e3, omega, and g_q for the coordinates q of its rotation");
   }
   require_allowed(result.dependencies, node.span, fmt::format("'{}'", written));
+  return result;
+}
+
+std::optional<std::size_t> Resolver::rotation_entry(std::uint32_t frame, const std::string& part, Span span) {
+  const Symbol* coordinate = part.starts_with("g_") ? scope_.find(part.substr(2)) : nullptr;
+  if (coordinate == nullptr || coordinate->kind != SymbolKind::coordinate) return std::nullopt;
+  symbol(scope_.axes(frame), span);  // its entries may be declared later
+  const std::vector<NodeId>& entries = model_.frames[frame].entries;
+  if (entries.size() < 3) return std::nullopt;
+  std::optional<std::size_t> result;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const Node& entry = model_.arena[entries[k]];
+    if (entry.op != Op::coordinate || entry.order != 0) return std::nullopt;
+    if (entry.index == coordinate->index) result = k;
+  }
   return result;
 }
 

@@ -79,6 +79,8 @@ class Resolver {
   TypedNode axis(std::uint32_t frame, std::size_t stage, std::size_t axis, Span span);
   TypedNode own_axis(std::uint32_t frame, std::size_t axis, Span span);  // after the last stage
   TypedNode angular_velocity(std::uint32_t frame, Span span);
+  /// The vector dual to an entry of the rotation: g^q . w is its rate, with w relative to the parent.
+  TypedNode dual_vector(std::uint32_t frame, std::size_t entry, Span span);
   /// For a vector with constant components along the axes of one frame: the same sum of E1, E2, E3; otherwise no_node.
   TypedNode in_axes(const TypedNode& vector, std::uint32_t frame);
   TypedNode unit_of_vector(const TypedNode& vector, Span span);
@@ -130,6 +132,8 @@ class Resolver {
   TypedNode reaction(const SyntaxNode& node);
   TypedNode omega_call(const Syntax& syntax, const SyntaxNode& node);
   TypedNode frame_part(const SyntaxNode& node, const Symbol& symbol);
+  /// The entry of the rotation that g_q names, if all entries are coordinates.
+  std::optional<std::size_t> rotation_entry(std::uint32_t frame, const std::string& part, Span span);
   TypedNode basis_vector(const SyntaxNode& node, Symbol& symbol);
   TypedNode leaf(Symbol& symbol, std::uint8_t order, Span span);
   [[noreturn]] void unknown_name(const SyntaxNode& node);

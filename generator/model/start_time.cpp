@@ -35,13 +35,17 @@ void name_start_values(Model& model) {
   }
 }
 
+void name_integrals(Model& model) {
+  std::size_t number = 0;
+  for (State& state : model.states) {
+    if (state.integral || state.name.empty()) state.name = free_name(model, "integral_" + std::to_string(++number));
+  }
+}
+
 void add_start_time(Model& model, bool units_stated) {
   const auto first =
       std::find_if(model.states.begin(), model.states.end(), [](const State& state) { return state.integral; });
   if (first == model.states.end()) return;
-  for (auto state = first; state != model.states.end() && state->integral; ++state) {
-    state->name = free_name(model, "integral_" + std::to_string(state - first + 1));
-  }
   Parameter start;
   start.name = free_name(model, "t_start");
   start.value = model.scenes.front().t0;

@@ -10,8 +10,11 @@ namespace eomgen::model {
 /// Names the parameters that represent initial(q).
 void name_start_values(Model& model);
 
-/// If the model has integrals: appends the parameter `t_start`, sets its value in every scene, and names the integrals.
-/// Underscores are appended to these names until they are unique.
+/// Names the integrals integral_1, .. Underscores are appended until the names are unique.
+void name_integrals(Model& model);
+
+/// If the model has integrals of functions of time: appends the parameter `t_start` and sets its value in every scene.
+/// Underscores are appended to its name until it is unique.
 void add_start_time(Model& model, bool units_stated);
 
 }  // namespace eomgen::model

@@ -61,8 +61,11 @@ std::string reason_of(const Article& a, const ConservedFinding& c) {
       return "a displacement of the whole along this axis changes neither energies nor constraints, and no force acts "
              "along it";
     case OutputKind::angular_momentum:
-      return "a turn of the whole about this axis changes neither energies nor constraints, and no moment acts about "
-             "it";
+      return c.index == 0
+                 ? "a turn of the whole about this axis changes neither energies nor constraints, and no moment acts "
+                   "about it"
+                 : "a turn of this body about this axis through that point violates no constraint, and no moment acts "
+                   "about it";
     default: return "the constraint on velocities is the rate of it";
   }
 }

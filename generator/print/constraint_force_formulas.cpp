@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "print/formulas.hpp"
+#include "reading/solved_form.hpp"
 #include "reading/trig.hpp"
 
 namespace eomgen::print {
@@ -21,20 +22,38 @@ using reading::Sum;
 using symbolic::Ref;
 using symbolic::SymbolKind;
 
-/// Multipliers in formulas. In approach II the multipliers of imposed constraints are not unknowns; vectors that
-/// contain them are omitted.
+/// Multipliers in formulas: symbols, or functions of the state. In approach II the multipliers of imposed constraints
+/// are not unknowns; vectors that contain them are omitted, as are those that the motion does not determine.
 class Multipliers {
  public:
   Multipliers(const Mechanics& m, const DisplayForm& form) : m_(m), built_in_(m.constraints.size(), false) {
     if (form.approach != system::Approach::two) return;
     for (const reading::DisplayConstraint& c : form.constraints) built_in_[c.constraint] = c.fixes.has_value();
   }
+  Multipliers(const Mechanics& m, const reading::SolvedForm& solved)
+      : m_(m), built_in_(m.constraints.size(), false), solved_(&solved) {
+    for (std::uint32_t k = 0; k < m.constraints.size(); ++k)
+      built_in_[k] = m.is_independent(k) && !solved.multipliers[k];
+  }
+  const char* key() const { return solved_ != nullptr ? "solved" : "reactions"; }
   bool holds(std::uint32_t k) const { return m_.is_independent(k); }
   bool built_in(std::uint32_t k) const { return built_in_[k]; }
+  bool are_solved() const { return solved_ != nullptr; }
+  Sum value(std::uint32_t k) const {
+    if (solved_ != nullptr) return *solved_->multipliers[k];
+    return reading::display_sum(m_, m_.dag->symbol({SymbolKind::multiplier, k, 0}));
+  }
+  /// The friction force along tangent `a` of a contact, where all contacts hold; 0 otherwise.
+  Sum friction(const mechanics::Contact& contact, std::uint32_t a) const {
+    if (solved_ == nullptr || contact.first + a >= solved_->friction.size()) return {};
+    return solved_->friction[contact.first + a].value_or(Sum());
+  }
+  bool is_holding() const { return solved_ != nullptr && solved_->mode == reading::FrictionMode::holding; }
 
  private:
   const Mechanics& m_;
   std::vector<bool> built_in_;
+  const reading::SolvedForm* solved_ = nullptr;
 };
 
 /// Whether the coordinate moves anything besides the mass at `place` and the body. If so, the constraint forces along
@@ -110,12 +129,41 @@ class BodyForces {
     try {
       show(role, letter, along, vector);
     } catch (const work::BudgetExceeded& over) {
-      out_.push_back(left_out("reactions", m_.body_rotations[body_].name, role, over.what()));
+      out_.push_back(left_out(multipliers_.key(), m_.body_rotations[body_].name, role, over.what()));
     }
+  }
+
+  /// The components along the vectors as sums, with the multipliers as functions of the state.
+  template <class Vector>
+  void show_solved(const char* role, const char* letter, const std::vector<std::uint32_t>& along, Vector&& vector) {
+    std::vector<Formula> terms;
+    for (std::size_t i = 0; i < along.size(); ++i) {
+      Sum component;
+      for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
+        if (!multipliers_.holds(k)) continue;
+        const Sum slope = reading::display_sum(m_, m_.constraints[k].gradient[along[i]]);
+        if (slope.is_zero()) continue;
+        if (multipliers_.built_in(k)) return;
+        component = reading::simplify(component + slope * multipliers_.value(k));
+      }
+      if (component.is_zero()) continue;
+      const bool minus = reading::has_negative_leading_term(component);
+      Formula term = reading::product({reading::arrange(minus ? -component : component), vector(i)});
+      terms.push_back(minus ? reading::negative(std::move(term)) : std::move(term));
+    }
+    if (!terms.empty()) add(role, letter, std::move(terms));
+  }
+
+  void add(const char* role, const char* letter, std::vector<Formula> terms) {
+    std::vector<Formula> sub;
+    if (m_.model->bodies.size() > 1) sub.push_back(reading::number(static_cast<long>(body_ + 1)));
+    out_.push_back({multipliers_.key(), m_.body_rotations[body_].name, "", role,
+                    reading::relation({mark(letter, std::move(sub)), reading::sum(std::move(terms))})});
   }
 
   template <class Vector>
   void show(const char* role, const char* letter, const std::vector<std::uint32_t>& along, Vector&& vector) {
+    if (multipliers_.are_solved()) return show_solved(role, letter, along, vector);
     std::vector<Formula> terms;
     for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
       if (!multipliers_.holds(k)) continue;
@@ -146,11 +194,7 @@ class BodyForces {
       Formula term = reading::product({lambda, reading::sum(std::move(parts))});
       terms.push_back(all_minus ? reading::negative(std::move(term)) : std::move(term));
     }
-    if (terms.empty()) return;
-    std::vector<Formula> sub;
-    if (m_.model->bodies.size() > 1) sub.push_back(reading::number(static_cast<long>(body_ + 1)));
-    out_.push_back({"reactions", m_.body_rotations[body_].name, "", role,
-                    reading::relation({mark(letter, std::move(sub)), reading::sum(std::move(terms))})});
+    if (!terms.empty()) add(role, letter, std::move(terms));
   }
 
   const Mechanics& m_;
@@ -198,7 +242,7 @@ class ParticleForces {
           if (auto statement = force_on(g, *mass, *carried)) statements.emplace(*mass, std::move(*statement));
         } catch (const work::BudgetExceeded& over) {
           forces_[*mass] = std::nullopt;
-          statements.emplace(*mass, left_out("reactions", g.name, "constraint force", over.what()));
+          statements.emplace(*mass, left_out(multipliers_.key(), g.name, role(), over.what()));
         }
       }
     }
@@ -263,21 +307,23 @@ class ParticleForces {
     reading::Components force{};
     for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
       if (!multipliers_.holds(k)) continue;
-      const Sum lambda = reading::display_sum(m_, m_.dag->symbol({SymbolKind::multiplier, k, 0}));
       for (std::size_t i = 0; i < g.coordinates.size(); ++i) {
         const Sum slope = reading::display_sum(m_, m_.constraints[k].gradient[g.coordinates[i]]);
         if (slope.is_zero()) continue;
         if (multipliers_.built_in(k)) return std::nullopt;
-        if (g.contravariant_unit.empty())
-          force[i] += lambda * slope;
-        else
-          for (std::size_t j = 0; j < 3; ++j)
-            force[j] = reading::simplify(force[j] + lambda * slope * g.contravariant_unit[i][j]);
+        add_along(g, i, multipliers_.value(k) * slope, force);
+      }
+    }
+    for (const mechanics::Contact& contact : m_.contacts) {
+      for (std::uint32_t a = 0; multipliers_.is_holding() && a < contact.dimensions(); ++a) {
+        const Sum phi = multipliers_.friction(contact, a);
+        for (std::size_t i = 0; i < g.coordinates.size(); ++i)
+          add_along(g, i, phi * reading::display_sum(m_, contact.tangents[a][g.coordinates[i]]), force);
       }
     }
     Terms terms;
     if (!std::all_of(force.begin(), force.end(), [](const Sum& s) { return s.is_zero(); }))
-      terms.push_back({false, combination(force, vectors_of(g))});
+      terms.push_back({false, vector(g, force)});
     for (const std::size_t other : carried)
       for (const auto& [minus, term] : *forces_.at(other)) terms.push_back({!minus, term});
     forces_[p] = terms;
@@ -285,8 +331,48 @@ class ParticleForces {
     std::vector<Formula> sum, sub;
     for (const auto& [minus, term] : terms) sum.push_back(minus ? negated(term) : term);
     if (m_.masses.size() > 1) sub.push_back(reading::number(static_cast<long>(p + 1)));
-    return Statement{"reactions", g.name, "", "constraint force",
-                     reading::relation({mark("bold N", std::move(sub)), reading::sum(std::move(sum))})};
+    const char* letter = multipliers_.is_holding() ? "bold F" : "bold N";
+    return Statement{multipliers_.key(), g.name, "", role(),
+                     reading::relation({mark(letter, std::move(sub)), reading::sum(std::move(sum))})};
+  }
+  /// While contacts hold, their friction is a constraint force like the others.
+  const char* role() const {
+    return multipliers_.is_holding() ? "constraint force with the friction that holds" : "constraint force";
+  }
+
+  /// Adds Q_i a^i.
+  static void add_along(const reading::Geometry& g, std::size_t i, const Sum& component, reading::Components& force) {
+    if (g.contravariant_unit.empty()) {
+      force[i] = reading::simplify(force[i] + component);
+      return;
+    }
+    for (std::size_t j = 0; j < 3; ++j) force[j] = reading::simplify(force[j] + component * g.contravariant_unit[i][j]);
+  }
+
+  /// Along the vectors of the chart, or along E1, E2, E3 if that is shorter: a force that holds balances weights.
+  Formula vector(const reading::Geometry& g, const reading::Components& force) const {
+    if (!multipliers_.is_holding() || g.contravariant_unit.empty()) return combination(force, vectors_of(g));
+    reading::Components fixed;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        fixed[k] = reading::simplify(fixed[k] + force[j] * unit_along_fixed(g, j, k));
+      }
+    }
+    std::size_t along_chart = 0, along_fixed = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      along_chart += force[k].size();
+      along_fixed += fixed[k].size();
+    }
+    if (along_fixed > along_chart) return combination(force, vectors_of(g));
+    return combination(
+        fixed, {mark("E", {reading::number(1)}), mark("E", {reading::number(2)}), mark("E", {reading::number(3)})});
+  }
+
+  /// e_j . E_k = sum_i (e_j . a_i) (a^i . E_k).
+  static Sum unit_along_fixed(const reading::Geometry& g, std::size_t j, std::size_t k) {
+    Sum result;
+    for (std::size_t i = 0; i < g.coordinates.size(); ++i) result += g.covariant_unit[i][j] * g.contravariant[i][k];
+    return reading::simplify(result);
   }
 
   /// -term, term by term.
@@ -305,10 +391,21 @@ class ParticleForces {
 
 }  // namespace
 
-void add_constraint_forces(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
-  const Multipliers multipliers(m, form);
+namespace {
+
+void add_forces(const Mechanics& m, const Multipliers& multipliers, std::vector<Statement>& out) {
   if (!m.constraints.empty()) ParticleForces(m, multipliers).add(out);
   for (std::uint32_t body = 0; body < m.body_rotations.size(); ++body) BodyForces(m, multipliers, body, out).add();
+}
+
+}  // namespace
+
+void add_constraint_forces(const Mechanics& m, const DisplayForm& form, std::vector<Statement>& out) {
+  add_forces(m, Multipliers(m, form), out);
+}
+
+void add_constraint_forces(const Mechanics& m, const reading::SolvedForm& solved, std::vector<Statement>& out) {
+  add_forces(m, Multipliers(m, solved), out);
 }
 
 }  // namespace eomgen::print

@@ -403,7 +403,14 @@ void add_statements(const Mechanics& m, const DisplayForm& form, const std::vect
     if (wanted(key)) of_geometry.emplace_back(key);
   }
   if (!of_geometry.empty()) add_geometry(m, of_geometry, out);
+  if (wanted("basis")) {
+    add_euler_bases(m, out);
+    add_system_basis(m, out);
+  }
   if (std::find(show.begin(), show.end(), "kinematics") != show.end()) add_kinematics(m, out);
+  if (std::find(show.begin(), show.end(), "forces") != show.end()) add_body_forces(m, out);
+  if (std::find(show.begin(), show.end(), "contravariant") != show.end()) add_contravariant(m, out);
+  if (std::find(show.begin(), show.end(), "balance") != show.end()) add_balance(m, out);
   add("frenet", [&] { add_frenet(m, std::find(show.begin(), show.end(), "frenet") != show.end(), out); });
   add("singular", [&] { add_singular(m, out); });
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reading/reading.hpp"
+#include "reading/solved_form.hpp"
 
 namespace eomgen::print {
 
@@ -67,10 +68,23 @@ void add_reactions(const reading::DisplayForm& form, std::vector<Statement>& out
 /// Constraint force and constraint moment on every body that has coordinates and angles of its own.
 void add_constraint_forces(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                            std::vector<Statement>& out);
+/// The same with the multipliers as functions of the state, under the key "solved".
+void add_constraint_forces(const mechanics::Mechanics& mechanics, const reading::SolvedForm& solved,
+                           std::vector<Statement>& out);
 /// The linear combination x e_1 + y e_2 + z e_3.
 reading::Formula combination(const reading::Components& components, const std::vector<reading::Formula>& vectors);
 /// Kinematics of every particle, body, point, frame and definition.
 void add_kinematics(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
+/// Forces and moments of potentials on bodies.
+void add_body_forces(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
+/// Euler and dual Euler bases of bodies and frames, under the key "basis".
+void add_euler_bases(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
+/// The equations in contravariant form.
+void add_contravariant(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
+/// The bases of E^3N of a system of particles, under the key "basis".
+void add_system_basis(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
+/// The balance laws of one body in components of its angular velocity.
+void add_balance(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
 void add_geometry(const mechanics::Mechanics& mechanics, const std::vector<std::string>& keys,
                   std::vector<Statement>& out);
 

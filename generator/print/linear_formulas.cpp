@@ -72,4 +72,24 @@ std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& m, const L
   return render(m, out);
 }
 
+std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& m, const reading::LinearEquations& form,
+                                          const std::string& where) {
+  std::vector<Statement> out;
+  const std::string role = "about '" + where + "', deviations by the letters of their coordinates";
+  if (!form.skip_reason.empty()) {
+    out.push_back(left_out("linear", "", "", form.skip_reason));
+    return render(m, out);
+  }
+  for (const auto& [q, value] : form.equilibrium) {
+    out.push_back({"linear", "", m.model->coordinates[q].name, "equilibrium '" + where + "'",
+                   reading::relation({print::coordinate(q, 0), arrange(value)})});
+  }
+  for (std::size_t i = 0; i < form.coordinates.size(); ++i) {
+    out.push_back(
+        {"linear", "", m.model->coordinates[form.coordinates[i]].name, role,
+         reading::relation({reading::arrange_by_factors(form.left[i]), reading::arrange_by_factors(form.right[i])})});
+  }
+  return render(m, out);
+}
+
 }  // namespace eomgen::print

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "joints/joint.hpp"
+#include "reading/balance_form.hpp"
 #include "reading/routh.hpp"
+#include "reading/solved_form.hpp"
 
 namespace eomgen::print {
 namespace {
@@ -128,6 +130,8 @@ Notation::Notation(const mechanics::Mechanics& mechanics)
   };
   if (taken("lambda")) multiplier_letter_ = "mu";
   if (taken("p")) momentum_letter_ = "Pi";
+  if (taken("omega")) omega_letter_ = "varpi";
+  if (taken("gamma")) cosine_letter_ = "Gamma";
   of_joints_.resize(mechanics.constraints.size());
   for (const JointDirection& d : joint_directions(mechanics)) {
     Glyph glyph = split_name(multiplier_letter_ + "_" + d.joint->name);
@@ -171,8 +175,32 @@ Glyph Notation::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::branch:
     case SymbolKind::contact_mode: break;
     case SymbolKind::auxiliary:
-      if (symbol != reading::momentum_symbol(symbol.index)) break;
-      return split_name(momentum_letter_ + "_" + model_->coordinates[symbol.index].name);
+      if (symbol == reading::momentum_symbol(symbol.index))
+        return split_name(momentum_letter_ + "_" + model_->coordinates[symbol.index].name);
+      for (std::uint32_t k = 0; k < 9; ++k) {
+        if (symbol == reading::cosine_symbol(k / 3, k % 3))
+          return split_name(cosine_letter_ + "_" + std::to_string(k / 3 + 1) + "_" + std::to_string(k % 3 + 1));
+        for (const std::uint8_t order : {std::uint8_t{0}, std::uint8_t{1}}) {
+          if (k > 2 || symbol != reading::omega_symbol(k, order)) continue;
+          Glyph glyph = split_name(omega_letter_ + "_" + std::to_string(k + 1));
+          glyph.dots = order;
+          if (order == 1) glyph.name += "_dot";
+          return glyph;
+        }
+      }
+      for (const std::uint8_t order : {std::uint8_t{0}, std::uint8_t{1}}) {
+        if (symbol != reading::initial_symbol(symbol.index, order)) continue;
+        Glyph glyph = split_name(model_->coordinates[symbol.index].name);
+        glyph.tex = model_->coordinates[symbol.index].tex;
+        glyph.dots = order;
+        if (glyph.tex.empty())
+          glyph.index.emplace_back("0");
+        else
+          glyph.tex += "_{0}";
+        glyph.name += order == 0 ? "_0" : "_dot_0";
+        return glyph;
+      }
+      break;
   }
   return split_name("e_" + std::to_string(symbol.index + 1));
 }

@@ -40,6 +40,8 @@ class Notation {
   std::size_t multipliers_;
   std::vector<std::optional<Glyph>> of_joints_;  // per constraint
   std::string momentum_letter_ = "p";            // p_theta: momentum of a cyclic coordinate; Pi if the model has a p
+  std::string omega_letter_ = "omega";           // components of an angular velocity; varpi if the model has an omega
+  std::string cosine_letter_ = "gamma";          // direction cosines; Gamma if the model has a gamma
   std::string multiplier_letter_;                // mu if the model has a lambda
 };
 

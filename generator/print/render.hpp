@@ -9,6 +9,7 @@
 #include "reading/linear_form.hpp"
 #include "reading/reading.hpp"
 #include "reading/routh.hpp"
+#include "reading/solved_form.hpp"
 
 namespace eomgen::print {
 
@@ -29,6 +30,13 @@ std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const 
 
 /// M, C, K, B under the key "linear": along a motion, or at rest with the equilibrium equations.
 std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& mechanics, const reading::LinearForm& form);
+
+/// The same about one equilibrium, `where` by name, as equations.
+std::vector<PrintedFormula> render_linear(const mechanics::Mechanics& mechanics, const reading::LinearEquations& form,
+                                          const std::string& where);
+
+/// Accelerations, multipliers, constraint forces and closed forms under the key "solved".
+std::vector<PrintedFormula> render_solved(const mechanics::Mechanics& mechanics, const reading::SolvedForm& form);
 
 /// Routh's reduction under the key "routh": constant momenta, the resulting rates, the Routhian, the reduced equations.
 std::vector<PrintedFormula> render_routh(const mechanics::Mechanics& mechanics, const reading::RouthForm& form);

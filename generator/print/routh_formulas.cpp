@@ -25,13 +25,14 @@ std::vector<PrintedFormula> render_routh(const mechanics::Mechanics& m, const Ro
       add(name + "_dot", name, "rate that it gives",
           reading::relation({reading::symbol({symbolic::SymbolKind::coordinate, c, 1}), arrange(form.rates[i])}));
     }
-    add("Routhian", "", "Routhian", reading::relation({reading::mark("cal R"), arrange(form.routhian)}));
+    add("Routhian", "", "Routhian",
+        reading::relation({reading::mark("cal R"), reading::arrange_fractions(form.routhian)}));
     for (const reading::Equation& equation : form.equations) {
       const std::string& name = m.model->coordinates[equation.coordinate].name;
       add("", name, "reduced motion", momentum_form(equation));
       add("", name, "reduced motion", explicit_form(equation));
     }
-    if (form.energy) add("energy", "", "energy of the reduced motion", arrange(*form.energy));
+    if (form.energy) add("energy", "", "energy of the reduced motion", reading::arrange_fractions(*form.energy));
   }
   return render(m, out);
 }

@@ -46,6 +46,10 @@ RouthForm routh_form(const mechanics::Mechanics& mechanics, const std::vector<st
 
 LinearForm linear_form(const mechanics::Mechanics& mechanics) { return DisplayForms(mechanics).linear(); }
 
+SolvedForm DisplayForms::solved(FrictionMode mode) {
+  return solved_form(m_, (*this)(Approach::one, Extent::whole), mode);
+}
+
 LinearForm DisplayForms::linear() { return linear_form(m_, (*this)(Approach::two, Extent::equations)); }
 
 }  // namespace eomgen::reading

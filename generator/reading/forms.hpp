@@ -9,6 +9,7 @@
 #include "reading/linear_form.hpp"
 #include "reading/reading.hpp"
 #include "reading/routh.hpp"
+#include "reading/solved_form.hpp"
 
 namespace eomgen::reading {
 
@@ -31,6 +32,7 @@ class DisplayForms {
   const DisplayForm& operator()(system::Approach approach, Extent extent = Extent::whole);
   RouthForm routh(const std::vector<std::uint32_t>& cyclic);
   LinearForm linear();
+  SolvedForm solved(FrictionMode mode);
 
  private:
   const mechanics::Mechanics& m_;

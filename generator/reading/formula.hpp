@@ -60,6 +60,11 @@ enum class Layout {
   grouped,  // energies, reactions: common factors of terms of like kind are taken out
 };
 Formula arrange(const Sum& sum, Layout layout = Layout::grouped);
+/// A sum of few terms with the factors taken out that save most: m g L x + k L^2 (x - y).
+Formula arrange_by_factors(const Sum& sum);
+/// The same with terms over common denominators joined, where their numerator has factors: (p - q cos(x))^2/(I
+/// sin^2(x)) in place of three fractions.
+Formula arrange_fractions(const Sum& sum);
 /// The sum as a product of irreducible factors, for determinants.
 Formula factored(const Sum& sum);
 /// The terms of arrange(), each possibly `negative`.

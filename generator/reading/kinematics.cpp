@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "reading/atom_table.hpp"
 #include "reading/ginac_bridge.hpp"
 #include "reading/no_value.hpp"
 #include "reading/rational_function.hpp"
@@ -60,6 +61,20 @@ class Reader {
     return std::move(result_);
   }
 
+  std::vector<Kinematics> bases() {
+    for (std::uint32_t f = 1; f < m_.model->frames.size(); ++f) {
+      if (m_.model->frames[f].stages.empty() || angles(f).empty()) continue;
+      begin(m_.model->frames[f].name);
+      const auto body = std::find_if(m_.body_rotations.begin(), m_.body_rotations.end(),
+                                     [f](const mechanics::BodyRotation& b) { return b.frame == f; });
+      std::optional<std::size_t> index;
+      if (body != m_.body_rotations.end()) index = static_cast<std::size_t>(body - m_.body_rotations.begin());
+      const std::vector<std::pair<Triad, Vec3>> known = known_rates(f, index);
+      tangents(f, known.front().first, known.back().first, known.front().second, known.back().second);
+    }
+    return std::move(result_);
+  }
+
  private:
   /// Axes with their vectors.
   struct Triad {
@@ -67,7 +82,7 @@ class Reader {
     std::array<Vec3, 3> vectors;
   };
 
-  void begin(const std::string& name) { result_.push_back({name, {}, {}, {}}); }
+  void begin(const std::string& name) { result_.push_back({name, {}, {}, {}, {}}); }
 
   Triad fixed() {
     Triad result;
@@ -157,6 +172,9 @@ class Reader {
     if (frame == 0 && !unit) frame = last_frame(*m_.model, m_.model->places[place].position);
     if (unit) triads.push_back(*std::move(unit));
     if (frame != 0) triads.push_back(own(frame));
+    const bool is_body = std::any_of(m_.model->bodies.begin(), m_.model->bodies.end(),
+                                     [place](const model::Body& b) { return b.place == place; });
+    if (frame != 0 && !is_body) inertia_about(place, frame);
     std::rotate(triads.begin(), triads.begin() + 1, triads.end());  // the fixed axes last
     Vec3 r = *m_.place_position[place];
     add_along(Quantity::position, place, r, triads);
@@ -183,15 +201,21 @@ class Reader {
     return {by(v[0]), by(v[1]), by(v[2])};
   }
 
+  /// Axes, and the angular velocity along them; the last carry the inertia tensor.
+  std::vector<std::pair<Triad, Vec3>> known_rates(std::uint32_t frame, std::optional<std::size_t> body) {
+    std::vector<std::pair<Triad, Vec3>> known{{own(frame), m_.angular_velocity[frame]}};
+    if (body && m_.body_rotations[*body].axes != known.front().first.vectors) {
+      const mechanics::BodyRotation& carried = m_.body_rotations[*body];
+      known.push_back({{{Axes::Kind::before_last_rotation, frame, {}}, carried.axes}, carried.w});
+    }
+    return known;
+  }
+
   void rotation(std::uint32_t frame, std::optional<std::size_t> body) {
     if (m_.model->frames[frame].stages.empty()) return;
     const Triad e = own(frame), E = fixed();
     const Vec3 w = m_.angular_velocity[frame];
-    std::vector<std::pair<Triad, Vec3>> known{{e, w}};  // axes, and w along them; the last carry J
-    if (body && m_.body_rotations[*body].axes != e.vectors) {
-      const mechanics::BodyRotation& carried = m_.body_rotations[*body];
-      known.push_back({{{Axes::Kind::before_last_rotation, frame, {}}, carried.axes}, carried.w});
-    }
+    const std::vector<std::pair<Triad, Vec3>> known = known_rates(frame, body);
     const Triad& carrier = known.back().first;
     for (std::uint32_t i = 0; i < known.size(); ++i) {
       for (std::uint32_t k = 0; k < 3; ++k) add(Quantity::axis, frame, 3 * i + k, E.axes, known[i].first.vectors[k]);
@@ -202,6 +226,7 @@ class Reader {
     add(Quantity::angular_acceleration, frame, 0, e.axes, rate(w));
     add(Quantity::angular_acceleration, frame, 0, E.axes, rate(w_fixed));
     tangents(frame, e, carrier, w, known.back().second);
+    axis_and_angle(frame, e);
     if (body) inertia(frame, *body, e, carrier, w);
   }
 
@@ -233,6 +258,72 @@ class Reader {
     }
   }
 
+  // cos(p) = (sum e_k . E_k - 1)/2 and 2 sin(p) r = sum E_k x e_k.
+  void axis_and_angle(std::uint32_t frame, const Triad& e) {
+    KinematicAngle result{frame, {}, {}, {}, {}};
+    result.skip_reason = within_budget([&] {
+      Ref trace = dag_.integer(-1);
+      Vec3 axis = symbolic::zero_vector(dag_);
+      const Triad E = fixed();
+      for (std::size_t k = 0; k < 3; ++k) {
+        trace = dag_.add(trace, e.vectors[k][k]);
+        axis = symbolic::add(dag_, axis, symbolic::cross(dag_, E.vectors[k], e.vectors[k]));
+      }
+      result.cosine = simplify(bridge_.sum(dag_.div(trace, dag_.integer(2))));
+      result.axis = sums(axis);
+      if (!is_constant(result.cosine)) return;
+      result.angle = angle_of(result.cosine);
+      const Sum square = Sum(1) - result.cosine * result.cosine;
+      if (square.is_zero()) return;  // no rotation, or half a turn, whose axis this does not give
+      const Sum half_inverse = Rational(1) / 2 * power(square, Rational(-1) / 2);
+      for (Sum& component : result.axis) component = simplify(component * half_inverse);
+    });
+    result_.back().angle = std::move(result);
+  }
+  static bool is_constant(const Sum& sum) {
+    bool constant = true;
+    for_each_atom(sum, [&](const Atom& atom) { constant = constant && atom.op != Op::symbol; });
+    return constant;
+  }
+  static Sum angle_of(const Sum& cosine) {
+    for (long twelfths = 0; twelfths <= 12; ++twelfths) {
+      const Sum angle = Rational(twelfths) / 12 * pi();
+      if (is_zero(call(Op::cos, {angle}) - cosine)) return angle;
+    }
+    return call(Op::acos, {cosine});
+  }
+
+  /// The inertia tensor about a point that is fixed to the body, by the parallel axis theorem, eq. (6.111).
+  void inertia_about(std::uint32_t place, std::uint32_t frame) {
+    const auto body = std::find_if(m_.body_rotations.begin(), m_.body_rotations.end(),
+                                   [frame](const mechanics::BodyRotation& b) { return b.frame == frame; });
+    if (body == m_.body_rotations.end()) return;
+    const std::uint32_t centre = m_.model->bodies[static_cast<std::size_t>(body - m_.body_rotations.begin())].place;
+    const auto mass = std::find_if(m_.masses.begin(), m_.masses.end(),
+                                   [centre](const mechanics::PointMass& p) { return p.place == centre; });
+    KinematicTensor t{false, place, frame, {Axes::Kind::own, frame, {}}, {}, {}};
+    bool is_fixed = true;
+    t.skip_reason = within_budget([&] {
+      const Triad e = own(frame);
+      const Vec3 from = symbolic::subtract(dag_, *m_.place_position[centre], *m_.place_position[place]);
+      const Components arm = sums(along(from, e));
+      for (const Sum& component : arm) {
+        for_each_atom(component, [&](const Atom& atom) {
+          is_fixed = is_fixed && (atom.op != Op::symbol || atom.symbol.kind == SymbolKind::parameter);
+        });
+      }
+      const bool is_centre = std::all_of(arm.begin(), arm.end(), [](const Sum& s) { return s.is_zero(); });
+      is_fixed = is_fixed && !is_centre;
+      if (!is_fixed) return;
+      const Sum m = bridge_.sum(mass->mass), square = arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2];
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k)
+          t.entries[i][k] = simplify(bridge_.sum(body->J[i][k]) + m * ((i == k ? square : Sum()) - arm[i] * arm[k]));
+      }
+    });
+    if (is_fixed) result_.back().tensors.push_back(std::move(t));
+  }
+
   void inertia(std::uint32_t frame, std::size_t body, const Triad& e, const Triad& carrier, const Vec3& w) {
     const mechanics::BodyRotation& spin = m_.body_rotations[body];
     const Triad E = fixed();
@@ -242,7 +333,7 @@ class Reader {
     if (carrier.axes.kind != Axes::Kind::own) add(Quantity::angular_momentum, frame, 0, carrier.axes, H);
     add(Quantity::angular_momentum, frame, 0, E.axes, combined(H, carrier));
     const auto tensor = [&](bool euler, const Triad& along_axes, const auto& entry) {
-      KinematicTensor t{euler, frame, along_axes.axes, {}, {}};
+      KinematicTensor t{euler, 0, frame, along_axes.axes, {}, {}};
       t.skip_reason = within_budget([&] {
         for (std::size_t i = 0; i < 3; ++i) {
           for (std::size_t k = 0; k < 3; ++k) t.entries[i][k] = simplify(bridge_.sum(entry(i, k)));
@@ -315,6 +406,13 @@ const char* name(Quantity quantity) {
 std::vector<Kinematics> kinematics(const Mechanics& mechanics) try {
   const work::Budget budget(form_budget);
   return Reader(mechanics).all();
+} catch (const std::domain_error&) {
+  throw no_value_error(mechanics);
+}
+
+std::vector<Kinematics> euler_bases(const Mechanics& mechanics) try {
+  const work::Budget budget(form_budget);
+  return Reader(mechanics).bases();
 } catch (const std::domain_error&) {
   throw no_value_error(mechanics);
 }

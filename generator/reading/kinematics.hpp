@@ -53,7 +53,8 @@ struct KinematicVector {
 
 /// A symmetric tensor along one set of axes.
 struct KinematicTensor {
-  bool is_euler_tensor = false;  // E = tr(J)/2 1 - J; otherwise J about the centre of mass
+  bool is_euler_tensor = false;  // E = tr(J)/2 1 - J; otherwise J
+  std::uint32_t about = 0;       // the place to which J refers; 0: the centre of mass
   std::uint32_t frame = 0;
   Axes axes;
   std::array<Components, 3> entries;
@@ -66,15 +67,28 @@ struct KinematicScalar {
   std::string skip_reason;
 };
 
+/// Angle p and axis r of the rotation that maps E1, E2, E3 to the axes of a frame, eq. (5.32).
+struct KinematicAngle {
+  std::uint32_t frame = 0;
+  Sum cosine;                // cos(p) = (tr Q - 1)/2
+  Components axis;           // 2 sin(p) r, or r if `angle` is known
+  std::optional<Sum> angle;  // p in [0, pi], of a constant attitude
+  std::string skip_reason;
+};
+
 /// All results of one particle, body, point, frame or definition.
 struct Kinematics {
   std::string name;
   std::vector<KinematicVector> vectors;
   std::vector<KinematicTensor> tensors;
+  std::optional<KinematicAngle> angle;
   std::optional<KinematicScalar> scalar;
 };
 
 /// In the order of the model: places with their bodies, other frames, definitions.
 std::vector<Kinematics> kinematics(const mechanics::Mechanics& mechanics);
+
+/// The Euler and dual Euler bases of bodies and frames alone, (5.86), (5.87): `tangent` and `dual` vectors.
+std::vector<Kinematics> euler_bases(const mechanics::Mechanics& mechanics);
 
 }  // namespace eomgen::reading

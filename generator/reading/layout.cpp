@@ -5,6 +5,7 @@
 #include <cln/integer.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "reading/formula.hpp"
@@ -366,6 +367,113 @@ std::vector<Formula> arranged_terms(const Sum& whole, Layout layout) {
     first = last;
   }
   return result;
+}
+
+Formula arrange_by_factors(const Sum& whole) {
+  std::vector<Formula> result;
+  // Accelerations, rates and the rest stay apart.
+  std::map<std::pair<long, long>, Sum> kinds;
+  for (const auto& [monomial, coefficient] : whole.terms()) {
+    long accelerations = 0, rates = 0;
+    for (const Factor& factor : monomial) {
+      if (!moves(*factor.atom)) continue;
+      (factor.atom->symbol.order >= 2 ? accelerations : rates) += 1;
+    }
+    kinds[{-accelerations, -rates}].add(monomial, coefficient);
+  }
+  for (auto& [kind, left] : kinds) {
+    Factored taken;
+    while (factor_out_best(left, taken)) result.push_back(factored_formula(taken));
+    for (const auto& [monomial, coefficient] : display_order(left))
+      result.push_back(term_formula(coefficient, monomial));
+  }
+  return led_by_plus(sum(std::move(result)), true);
+}
+
+namespace {
+
+/// The factors with negative exponents.
+Monomial denominator(const Monomial& monomial) {
+  Monomial result;
+  for (const Factor& factor : monomial) {
+    if (cln::minusp(factor.exponent)) result.push_back({factor.atom, -factor.exponent});
+  }
+  return result;
+}
+
+/// Whether every factor of `a` is in `b`, with an exponent at least as large.
+bool divides(const Monomial& a, const Monomial& b) {
+  return std::all_of(a.begin(), a.end(), [&](const Factor& f) {
+    return std::any_of(b.begin(), b.end(),
+                       [&](const Factor& g) { return compare(*f.atom, *g.atom) == 0 && f.exponent <= g.exponent; });
+  });
+}
+
+/// The sum with sin^2 written as 1 - cos^2.
+Sum in_cosines(const Sum& sum) {
+  Sum result;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    Sum term(coefficient);
+    for (const Factor& factor : monomial) {
+      const bool square = factor.atom->op == Op::sin && is_integer(factor.exponent) && factor.exponent >= 2;
+      if (!square) {
+        term = term * Sum(Monomial{factor}, 1);
+        continue;
+      }
+      const Sum c = call(Op::cos, factor.atom->args);
+      const long pairs = to_long(factor.exponent) / 2;
+      term = term * power(Sum(1) - c * c, Rational(pairs));
+      if (to_long(factor.exponent) % 2 == 1) term = term * Sum(factor.atom);
+    }
+    result += term;
+  }
+  return result;
+}
+
+/// The product of its factors, if one of them occurs more than once.
+std::optional<Formula> with_square(const Sum& numerator, const Monomial& below) {
+  const Factorisation parts = factorise(numerator);
+  if (std::none_of(parts.factors.begin(), parts.factors.end(), [](const auto& f) { return f.second > 1; }))
+    return std::nullopt;
+  std::vector<Formula> brackets;
+  for (const auto& [base, times] : parts.factors) {
+    Formula f = bracket(base);
+    brackets.push_back(times == 1 ? std::move(f) : make_formula(FormulaKind::power, {std::move(f), number(times)}));
+  }
+  const Sum front = multiply(parts.content.monomial, inverse(below));
+  if (front.size() != 1) return std::nullopt;
+  return term_formula(parts.sign * parts.content.number, front.terms().begin()->first, std::move(brackets));
+}
+
+}  // namespace
+
+Formula arrange_fractions(const Sum& whole) {
+  Monomial largest;
+  for (const auto& [monomial, coefficient] : whole.terms()) {
+    Monomial below = denominator(monomial);
+    if (below.size() > largest.size() || (below.size() == largest.size() && divides(largest, below)))
+      largest = std::move(below);
+  }
+  if (largest.empty()) return arrange(whole);
+  // Terms over the largest denominator, then those over a part of it as well.
+  for (const bool parts_too : {false, true}) {
+    Sum joined, rest;
+    for (const auto& [monomial, coefficient] : whole.terms()) {
+      const Monomial below = denominator(monomial);
+      const bool joins = divides(below, largest) && (divides(largest, below) || (parts_too && !below.empty()));
+      (joins ? joined : rest).add(monomial, coefficient);
+    }
+    if (joined.size() < 2 || joined.size() > 8) continue;
+    const Sum numerator = joined * Sum(largest, 1);
+    for (const Sum& form : {numerator, in_cosines(numerator)}) {
+      std::optional<Formula> square = with_square(form, largest);
+      if (!square) continue;
+      std::vector<Formula> terms = arranged_terms(rest, Layout::grouped);
+      terms.push_back(*std::move(square));
+      return led_by_plus(sum(std::move(terms)), true);
+    }
+  }
+  return arrange(whole);
 }
 
 Formula factored(const Sum& whole) {

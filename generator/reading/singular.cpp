@@ -14,6 +14,7 @@
 #include "reading/rational_function.hpp"
 #include "reading/small_matrix.hpp"
 #include "reading/trig.hpp"
+#include "rotations/rotation.hpp"
 #include "symbolic/sample.hpp"
 
 namespace eomgen::reading {
@@ -59,6 +60,24 @@ std::vector<Formula> solutions(const Sum& factor) {
   return {};
 }
 
+bool is_always_positive(const Sum& factor) {
+  // A sum of terms without a sign change, of which one does not vanish: m1 + m2 sin(x)^2.
+  if (turns(factor)) return false;
+  bool constant_part = false;
+  for (const auto& [monomial, coefficient] : factor.terms()) {
+    if (cln::minusp(coefficient)) return false;
+    bool fixed = true;
+    for (const Factor& f : monomial) {
+      const bool even = is_integer(f.exponent) && cln::evenp(cln::numerator(f.exponent));
+      const bool moves = varies(Sum(f.atom));
+      if (moves && !even) return false;
+      fixed = fixed && !moves;
+    }
+    constant_part = constant_part || fixed;
+  }
+  return constant_part;
+}
+
 class Sets {
  public:
   void add(const std::string& approach, const Sum& factor) {
@@ -83,33 +102,23 @@ class Sets {
     for (const auto& [monomial, coefficient] : sum.terms()) {
       for (const Factor& factor : monomial) {
         if (!cln::minusp(factor.exponent)) continue;
-        add(approach, factor.atom->op == Op::add ? factor.atom->args[0] : Sum(factor.atom));
+        const Sum base = factor.atom->op == Op::add ? factor.atom->args[0] : Sum(factor.atom);
+        if (!is_always_positive(base)) add(approach, base);
       }
     }
+  }
+  /// A rotation by half a turn, of which the entries have no finite values: p = pi, 1/(l.l) = 0.
+  void add_half_turn(const Sum& squares) {
+    const Sum inverse = power(squares, -1);
+    Formula pi;
+    pi.kind = FormulaKind::pi;
+    found_.push_back({"both", inverse, {relation({mark("p"), pi}), relation({arrange(inverse), number(0)})}});
   }
   std::vector<SingularSet> take() { return std::move(found_); }
 
  private:
   std::vector<SingularSet> found_;
 };
-
-bool is_always_positive(const Sum& factor) {
-  // A sum of terms without a sign change, of which one does not vanish: m1 + m2 sin(x)^2.
-  if (turns(factor)) return false;
-  bool constant_part = false;
-  for (const auto& [monomial, coefficient] : factor.terms()) {
-    if (cln::minusp(coefficient)) return false;
-    bool fixed = true;
-    for (const Factor& f : monomial) {
-      const bool even = is_integer(f.exponent) && cln::evenp(cln::numerator(f.exponent));
-      const bool moves = varies(Sum(f.atom));
-      if (moves && !even) return false;
-      fixed = fixed && !moves;
-    }
-    constant_part = constant_part || fixed;
-  }
-  return constant_part;
-}
 
 /// Whether searches for a zero from many starts end far from one. Then a factor of a nonnegative determinant has no
 /// zeros. Parameters count as positive, like masses, inertias and lengths.
@@ -175,6 +184,15 @@ void add_rotations(const Mechanics& mechanics, GinacBridge& bridge, const std::m
   Mechanics m = mechanics;  // shares the Dag; lowering may add nodes to it
   for (const model::Body& body : m.model->bodies) {
     const model::Frame& frame = m.model->frames[body.frame];
+    const rotations::Rotation* rotation = rotations::find(frame.rotation);
+    if (rotation != nullptr && rotation->singularity.empty() && !rotation->singular.empty()) {
+      Sum squares;
+      for (const model::NodeId entry : frame.entries) {
+        const Sum l = bridge.sum(mechanics::lower_scalar(m, entry));
+        squares += l * l;
+      }
+      sets.add_half_turn(squares);
+    }
     if (frame.singularity == model::no_node) continue;
     const auto gone = [&](std::size_t k) {
       const model::Node& entry = m.model->arena[frame.entries[k]];

@@ -302,6 +302,8 @@ double largest_residual(const DisplayForm& form, const symbolic::Dag& dag, const
   SymbolValues sized = at;
   for (std::size_t i = 0; i < sized.state.qddot.size(); ++i)
     sized.state.qddot[i] = cln::max(cln::abs(at.state.qddot[i]), motion.scale[i]);
+  for (std::size_t k = 0; k < sized.lambda.size(); ++k)
+    sized.lambda[k] = cln::max(cln::abs(at.lambda[k]), motion.lambda_scale[k]);
   std::vector<Ref> roots;  // of each residual: itself, then its terms
   std::vector<std::size_t> first;
   for (const Ref residual : form.residuals) {

@@ -11,7 +11,7 @@
 namespace eomgen::verify {
 
 Motion solve_motion(const Oracle& oracle, const State& at) {
-  Motion motion{at, {}, {}};
+  Motion motion{at, {}, {}, {}};
   State& s = motion.state;
   std::vector<std::size_t> bound;  // constraints that are closed and not implied by others
   for (std::size_t k = 0; k < oracle.constraints().size(); ++k) {
@@ -51,12 +51,15 @@ Motion solve_motion(const Oracle& oracle, const State& at) {
     for (std::size_t k = 0; k < size; ++k)
       row_scale[i] = row_scale[i] + cln::abs(matrix[i * size + k] * solution.x()[k]);
   for (std::size_t i = 0; i < n; ++i) s.qddot[i] = solution.x()[i];
-  motion.lambda = no_forces;
+  motion.lambda = motion.lambda_scale = no_forces;
   for (std::size_t k = 0; k < m; ++k) motion.lambda[bound[k]] = solution.x()[n + k];
   for (std::size_t i = 0; i < size; ++i) {
     Real scale = 0;
     for (std::size_t k = 0; k < size; ++k) scale = scale + exact(solution.inverse[k][i]) * row_scale[k];
-    if (i >= n) continue;
+    if (i >= n) {
+      motion.lambda_scale[bound[i - n]] = scale;
+      continue;
+    }
     // For an acceleration that a constraint makes 0, the terms of its own equation cancel.
     const Real inertia = cln::abs(matrix[i * size + i]);
     if (!cln::zerop(inertia)) scale = scale + row_scale[i] / inertia;
@@ -67,6 +70,10 @@ Motion solve_motion(const Oracle& oracle, const State& at) {
     Real largest = 0;
     for (const Real& scale : motion.scale) largest = cln::max(largest, scale);
     for (Real& scale : motion.scale) scale = cln::max(scale, largest * share);
+    // A multiplier may be 0 but for rounding, such as that of a coordinate without inertia: its scale is one of forces.
+    Real largest_force = 0;
+    for (std::size_t i = 0; i < n; ++i) largest_force = cln::max(largest_force, row_scale[i]);
+    for (const std::size_t k : bound) motion.lambda_scale[k] = cln::max(motion.lambda_scale[k], largest_force * share);
   }
   return motion;
 }

@@ -9,8 +9,9 @@ namespace eomgen::verify {
 struct Motion {
   State state;               // with qddot
   std::vector<Real> lambda;  // per scalar constraint
-  /// The change of qddot for errors as large as the terms of the equations; far smaller values are rounding.
-  std::vector<Real> scale;
+  /// The change of qddot, and of lambda, for errors as large as the terms of the equations; far smaller values are
+  /// rounding.
+  std::vector<Real> scale, lambda_scale;
 };
 
 /// Solves for qddot and lambda. The residuals are affine in them: N + 1 evaluations and one solve. Throws Singular if

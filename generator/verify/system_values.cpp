@@ -194,9 +194,14 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
     if (!cln::zerop(inertia)) unknown[i] = unknown[i] + row_scale[i] / inertia;
     v.scale[s.free[i]] = unknown[i];
   }
-  for (std::size_t k = 0; k < m; ++k) v.scale[all + s.active[k]] = unknown[n + k];
   const std::vector<Real> accelerations(unknown.begin(), unknown.begin() + static_cast<std::ptrdiff_t>(n));
-  const std::vector<Real> multipliers(unknown.begin() + static_cast<std::ptrdiff_t>(n), unknown.end());
+  std::vector<Real> multipliers(unknown.begin() + static_cast<std::ptrdiff_t>(n), unknown.end());
+  // A multiplier may be 0 but for rounding, such as that of a coordinate without inertia: its scale is one of forces.
+  const Real share = minimum_relative_scale(*mechanics.model);
+  Real largest_force = 0;
+  for (std::size_t i = 0; i < n; ++i) largest_force = cln::max(largest_force, row_scale[i]);
+  for (Real& multiplier : multipliers) multiplier = cln::max(multiplier, largest_force * share);
+  for (std::size_t k = 0; k < m; ++k) v.scale[all + s.active[k]] = multipliers[k];
   const std::vector<Real> sized = sizes_of_rows(s, solved, v, accelerations, multipliers);
   for (std::size_t i = 0; i < n; ++i) v.rows[s.free[i]].scale = sized[i];
   for (const mechanics::FixedCoordinate& fixed : mechanics.fixed) {
@@ -208,7 +213,7 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
     v.scale[fixed.coordinate] = sum / slope;
     v.scale[all + fixed.constraint] = v.rows[fixed.coordinate].scale / slope;
   }
-  if (!s.active.empty()) raise_least(v.scale, all, minimum_relative_scale(*mechanics.model));
+  if (!s.active.empty()) raise_least(v.scale, all, share);
 }
 
 }  // namespace

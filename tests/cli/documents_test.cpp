@@ -74,7 +74,7 @@ TEST_CASE("derive: one key per kind of formula, in three formats") {
     }
   }
   for (const char* key : {"kinematics", "basis", "metric", "christoffel", "line_element", "energies", "lagrangian",
-                          "constraints", "singular"}) {
+                          "constraints", "singular", "solved", "contravariant"}) {
     CAPTURE(key);
     const Json shown = document(folder, {"derive", "P7_moving_sphere", "--show", key});
     has_keys(shown, {key, "equations", "reactions"});
@@ -89,6 +89,17 @@ TEST_CASE("derive: one key per kind of formula, in three formats") {
   CHECK(contains(in_format("text"), "lambda = m d_ddot - m d (phi_dot^2 + sin^2(phi) theta_dot^2) + m g cos(phi)"));
   CHECK(contains(in_format("latex"), "\\dot{\\theta}"));
   CHECK(contains(in_format("mathml"), "<math"));
+}
+
+TEST_CASE("derive: an item of which the model has none is named, and --about needs a scene that is an equilibrium") {
+  const Folder folder;
+  CHECK(contains(expect(0, folder, {"derive", "S1_two_masses", "--show", "singular"}).out, "singular\n  none\n"));
+  CHECK_FALSE(contains(expect(0, folder, {"derive", "S1_two_masses"}).out, "none"));
+  const auto about = [&](int status, const char* scene) {
+    return expect(status, folder, {"derive", "cart_pendulum", "--show", "linear", "--about", scene});
+  };
+  CHECK(contains(about(2, "no_scene").err, "there is no scene 'no_scene'"));
+  CHECK(contains(expect(2, folder, {"derive", "cart_pendulum", "--about", "default"}).err, "add --show linear"));
 }
 
 TEST_CASE("derive --document: writes the derivation as LaTeX, with the same bytes as emit --target latex") {

@@ -140,9 +140,10 @@ std::vector<WrongModel> wrong_structure() {
       {"dry friction of no coordinate",
        pendulum({}, "[[force]]\ndry = { coordinate = \"phy\", normal = 1, static = 0.3, dynamic = 0.2 }\n"), "13:22",
        "'phy' is not a coordinate", "did you mean 'phi'?"},
-      {"an integral of the motion", pendulum({}, "[definitions]\nf = \"integral(theta)\"\n"), "13:15",
-       "integral() is of a function of time, and this depends on the motion or on an input",
-       "use t, functions of time, parameters and numbers"},
+      {"an integral of an acceleration", pendulum({}, "[definitions]\nf = \"integral(theta_ddot)\"\n"), "13:15",
+       "integral() is of time, coordinates, velocities, inputs and states, and this depends on accelerations, "
+       "constraint forces or rates of states",
+       "integrate a velocity in place of an acceleration; the integral of ddt(z) is z"},
       {"an integral of a vector", pendulum({}, "[definitions]\nf = \"integral(t*E1)\"\n"), "13:16",
        "integral() takes a scalar, and this is a vector", "integrate its components one by one"},
       {"an integral by a parameter", pendulum({}, "[definitions]\nf = \"diff(2*integral(g*t), g)\"\n"), "13:6",

@@ -187,7 +187,7 @@ TEST_CASE("kinematics: every vector and tensor has the oracle's value") {
         }
       }
       for (const KinematicTensor& t : of.tensors) {
-        if (t.is_euler_tensor || !t.skip_reason.empty()) continue;
+        if (t.is_euler_tensor || t.about != 0 || !t.skip_reason.empty()) continue;
         const std::array<Numbers, 3> J = at.inertia(t.frame);
         for (std::size_t k = 0; k < 3; ++k) {
           Numbers row{0, 0, 0};  // row k along the fixed axes

@@ -16,7 +16,7 @@ namespace eomgen::cli {
 namespace {
 
 struct Options {
-  std::string model, approach = "auto", format = "text", document;
+  std::string model, approach = "auto", format = "text", document, about;
   std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
 };
 
@@ -35,8 +35,8 @@ Json to_json(const std::vector<print::PrintedFormula>& items, const std::string&
   Json result{{"format", 1}, {"approach", approach}, {"equations", Json::array()}, {"reactions", Json::array()}};
   const bool all = std::find(show.begin(), show.end(), "all") != show.end();
   for (const std::string& key : analysis::equation_keys()) {
-    const bool wanted = std::find(show.begin(), show.end(), key) != show.end() ||
-                        (all && key != "linear" && key != "routh" && key != "kinematics");
+    const bool wanted =
+        std::find(show.begin(), show.end(), key) != show.end() || (all && analysis::is_part_of_all(key));
     if (wanted && key != "all") result[key] = Json::array();  // present even if there is nothing to show
   }
   for (const print::PrintedFormula& item : items) {
@@ -53,6 +53,12 @@ Json to_json(const std::vector<print::PrintedFormula>& items, const std::string&
   result["left_out"] = Json::array();
   for (const work::LeftOut& l : left_out) result["left_out"].push_back({{"what", l.what}, {"why", l.why}});
   return result;
+}
+
+std::string solved_heading(const print::PrintedFormula& item) {
+  const bool of_place = item.role.starts_with("constraint ");
+  if (item.role == "closed form") return "closed form of the motion, from initial values at t = 0";
+  return (of_place ? fmt::format("{} on '{}'", item.role, item.name) : item.role) + ", as a function of the state";
 }
 
 /// Heading of a group of formulas.
@@ -77,17 +83,22 @@ std::string heading_of(const print::PrintedFormula& item) {
   if (item.key == "singular")
     return item.role == "both" ? "where both approaches fail" : fmt::format("where approach {} fails", item.role);
   if (item.key == "conserved") return "conserved, " + item.role;
+  if (item.key == "solved") return solved_heading(item);
+  if (item.key == "forces") return fmt::format("'{}', {}", item.name, item.role);
   if (item.key == "kinematics") return fmt::format("'{}', {}", item.name, item.role);
   if (item.key == "parts") return "where";
   if (item.key == "states") return "states of first order";
   if (item.key == "resets") return fmt::format("new values at {} '{}', from those before", item.role, item.name);
+  if (item.key == "basis" && (item.role.starts_with("tangent") || item.role.starts_with("dual")))
+    return fmt::format("basis: {} of '{}'", item.role, item.name);
   if (item.role.empty()) return item.key;
   return item.key + ": " + item.role;
 }
 
+/// `asked`: items that were named one by one; of those that the model has none of, the text says so.
 std::string readable(const std::vector<print::PrintedFormula>& items, const std::string& approach,
                      const std::string& format, const std::vector<work::LeftOut>& left_out,
-                     const std::vector<analysis::Multiplier>& multipliers) {
+                     const std::vector<analysis::Multiplier>& multipliers, const std::vector<std::string>& asked) {
   std::string text = fmt::format("Approach {}\n", approach), heading;
   for (const print::PrintedFormula& item : items) {
     if (!item.left_out.empty()) continue;
@@ -95,6 +106,10 @@ std::string readable(const std::vector<print::PrintedFormula>& items, const std:
     if (next != heading) text += fmt::format("\n{}\n", next);
     heading = next;
     text += fmt::format("  {}\n", in_format(item, format));
+  }
+  for (const std::string& key : asked) {
+    const auto is_of_key = [&](const auto& item) { return item.key == key; };
+    if (std::none_of(items.begin(), items.end(), is_of_key)) text += fmt::format("\n{}\n  none\n", key);
   }
   if (!left_out.empty()) text += "\nleft out\n";
   for (const work::LeftOut& l : left_out) text += fmt::format("  {}: {}\n", l.what, l.why);
@@ -112,7 +127,7 @@ Json to_json(const std::vector<analysis::Multiplier>& multipliers) {
 
 int execute(const Options& options, const CommonOptions& common) {
   require_format(options.format);
-  const analysis::EquationsRequest request{pipeline::parse_approach(options.approach), options.show};
+  const analysis::EquationsRequest request{pipeline::parse_approach(options.approach), options.show, options.about};
   if (!options.document.empty())
     require_writable_targets({{"--document", options.document, ".tex"}}, locate_model(options.model), common.json);
   const auto model = load_model(options.model);
@@ -139,7 +154,10 @@ int execute(const Options& options, const CommonOptions& common) {
     print_document(result);
   } else {
     const bool taken = is_standard_output(options.document);
-    print_readable(readable(found.items, approach, options.format, found.left_out, found.multipliers), taken);
+    std::vector<std::string> asked;
+    if (options.show != Options{}.show && !found.interrupted) asked = options.show;
+    std::erase(asked, "all");
+    print_readable(readable(found.items, approach, options.format, found.left_out, found.multipliers, asked), taken);
     if (written && !taken) print_readable(fmt::format("\nwrote {}\n", options.document), taken);
   }
   if (found.interrupted) print_interrupted(nullptr);
@@ -155,6 +173,7 @@ Execute declare_derive(Arguments& app) {
   app.add_list("--show", options->show,
                fmt::format("what to show; a list of {}", fmt::join(analysis::equation_keys(), ", ")))
       .suggest_values(analysis::equation_keys());
+  app.add_option("--about", options->about, "the scene whose start is the equilibrium of --show linear");
   app.add_option("--format", options->format, "text, latex or mathml")
       .show_default()
       .suggest_values({"text", "latex", "mathml"});
