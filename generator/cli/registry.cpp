@@ -23,6 +23,7 @@ std::span<const Command> commands() {
       Command{"sweep", "many runs over a grid of parameters, in parallel, resumable", declare_sweep},
       Command{"merge", "the tables of a sweep's shards into one", declare_merge},
       Command{"report", "one self-contained page: equations, verification, a run, plots, an animation", declare_report},
+      Command{"docs", "the pages of the documentation, or one of their sections", declare_docs},
       Command{"manual", "the pages of the manual, for man", declare_manual},
       Command{"completion", "words that a shell completes, for bash, zsh and fish", declare_completion},
   };
