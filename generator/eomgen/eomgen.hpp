@@ -3,3 +3,4 @@
 #pragma once
 
 #include "eomgen/model.hpp"
+#include "eomgen/robot.hpp"

@@ -3,6 +3,7 @@
 #include "eomgen/call.hpp"
 #include "eomgen/model.hpp"
 #include "eomgen/validation.hpp"
+#include "pipeline/archives.hpp"
 #include "pipeline/emission.hpp"
 #include "pipeline/verification.hpp"
 
@@ -52,6 +53,6 @@ Sources Model::emit(const EmitOptions& options, const CallControl& control) cons
   });
 }
 
-std::vector<std::string> targets() { return emit::target_names(); }
+std::vector<std::string> targets() { return pipeline::target_names(); }
 
 }  // namespace eomgen

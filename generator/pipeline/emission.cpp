@@ -10,6 +10,7 @@
 #include "error.hpp"
 #include "model/names.hpp"
 #include "numeric/numbers.hpp"
+#include "pipeline/archives.hpp"
 #include "pipeline/charts.hpp"
 #include "pipeline/run_text.hpp"
 #include "pipeline/simulate.hpp"
@@ -122,22 +123,47 @@ void add_start(const EmissionRequest& request, DerivedModel& derived, emit::Emis
               "leave start out of --with, or choose coordinates with fewer constraints");
 }
 
+/// The request with everything that an archive requires. Throws Error if the archive has no such version.
+EmissionRequest complete(const EmissionRequest& asked, const Archive& archive, const model::Model& model) {
+  EmissionRequest request = asked;
+  if (request.format_version == 0) request.format_version = archive.versions.front();
+  if (std::find(archive.versions.begin(), archive.versions.end(), request.format_version) == archive.versions.end())
+    throw Error("emit", {}, fmt::format("the target {} has no version {}", archive.name, request.format_version),
+                fmt::format("versions: {}", fmt::join(archive.versions, ", ")));
+  if (request.single)
+    throw Error("emit", {}, fmt::format("the target {} computes in double precision", archive.name),
+                "leave --real out");
+  if (has(request.with, "charts"))
+    throw Error("emit", {}, fmt::format("the target {} does not exchange charts", archive.name),
+                "leave charts out of --with");
+  for (const char* name : archive.required) {
+    const bool empty = model.inputs.empty() && std::string(name) == "jac_u";
+    if (!empty && !has(request.with, name)) request.with.emplace_back(name);
+  }
+  return request;
+}
+
 }  // namespace
 
 void require_target(const std::string& target, const std::vector<std::string>& beside) {
-  std::vector<std::string> known = emit::target_names();
+  std::vector<std::string> known = target_names();
   known.insert(known.end(), beside.begin(), beside.end());
   if (has(known, target)) return;
   throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)),
               model::suggest_choice(target, known));
 }
 
-Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionRequest& request) {
-  require_target(request.target);
-  require_with(request.with);
+Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionRequest& asked) {
+  require_target(asked.target);
+  require_with(asked.with);
+  const Archive* archive = find_archive(asked.target);
+  if (archive == nullptr && asked.format_version != 0)
+    throw Error("emit", {}, fmt::format("the target {} has no versions", asked.target), "leave the version out");
+  const EmissionRequest request = archive != nullptr ? complete(asked, *archive, *model) : asked;
   const auto derived = derive_model(std::move(model), request.approach, request.form);
-  const run::Scene scene =
-      run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});
+  model::Scene read = derived->model.scene("default");
+  if (archive != nullptr) read.inputs.clear();
+  const run::Scene scene = run::resolve_scene(derived->mechanics, derived->candidates.front(), read, {});
   const program::Request wanted = request_of(request, *derived, scene);
   Emission result;
   result.program = make_program(*derived, wanted);
@@ -155,7 +181,8 @@ Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionReq
   if (has(request.with, "run")) context.run = run_text(*derived, scene, result.program);
   if (request.single) emit::convert_to_single(result.program, context);
   result.single_error = context.single_error;
-  result.files = emit::emit(result.program, context, request.target);
+  result.files = archive != nullptr ? archive->make({*derived, result.program, context, request.format_version})
+                                    : emit::emit(result.program, context, request.target);
   result.seconds = derived->seconds;
   return result;
 }

@@ -8,14 +8,15 @@
 namespace eomgen::pipeline {
 
 struct EmissionRequest {
-  std::string target = "cpp";  // of emit::targets()
+  std::string target = "cpp";  // of target_names() (archives.hpp)
   ApproachChoice approach = ApproachChoice::automatic;
   FormChoice form = std::nullopt;
   std::vector<std::string> with;     // of emitted_functions()
   std::vector<std::string> outputs;  // of the function `outputs`, in addition to those of "outputs" in `with`
   std::vector<std::string> fix;      // parameters that become constants
   std::uint64_t seed = 1;
-  bool single = false;  // single precision
+  bool single = false;     // single precision
+  int format_version = 0;  // of an archive (Archive::versions); 0: its default
 };
 
 /// The possible entries of `with`: functions other than rhs; "energy"; "outputs" of the default scene; "charts", second

@@ -13,6 +13,7 @@ Quantities are in SI units everywhere, angles in radians. Arrays are NumPy array
 from ._core import solvers, targets
 from ._core import version as __version__
 from .compiled import CompiledModel
+from .control import DiscreteStep, StateSpace, TransferFunction, Trim
 from .definition import (
     Body,
     Chain,
@@ -38,6 +39,7 @@ __all__ = [
     "CompiledModel",
     "Constraint",
     "Definition",
+    "DiscreteStep",
     "Error",
     "Event",
     "Expression",
@@ -52,6 +54,9 @@ __all__ = [
     "Sample",
     "Simulation",
     "State",
+    "StateSpace",
+    "TransferFunction",
+    "Trim",
     "if_",
     "quantity",
     "solvers",

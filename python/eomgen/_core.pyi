@@ -16,6 +16,16 @@ version: str
 
 def solvers() -> List[str]: ...
 def targets() -> List[str]: ...
+def import_robot(
+    path: str,
+    floating: bool,
+    attitude: str,
+    friction: str,
+    actuators: str,
+    stops: List[str],
+    parameters: bool,
+    exact_angles: bool,
+) -> Dict[str, Any]: ...
 
 class Callbacks:
     def __init__(self, stage: Any, progress: Any, warning: Any) -> None: ...

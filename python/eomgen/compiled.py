@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from . import _core
+from . import _core, control
+from .control import DiscreteStep, StateSpace, TransferFunction, Trim
 from .records import Quantity
 
 if TYPE_CHECKING:
@@ -160,6 +161,63 @@ class CompiledModel(_core.CompiledModel):
     ) -> "NDArray[Any]":
         """Coefficients of the power series of the motion at constant inputs: (order + 1, N)."""
         return self._taylor(t, x, order, inputs, parameters, mode)
+
+    def linearize(
+        self,
+        x: Any = None,
+        inputs: Any = None,
+        *,
+        outputs: "Sequence[str] | str | None" = None,
+        t: Optional[float] = None,
+        mode: Any = None,
+    ) -> StateSpace:
+        """Linearises about a state: dx' = A dx + B du, dy = C dx + D du.
+
+        ``x``: (N,), or names and values as in ``state()``; by default the start. ``inputs``: (U,), or names and values;
+        by default those of the scene. ``outputs``: names; by default the states. A, B are exact (``jac``, ``jac_u``),
+        and so are rows of C, D of states; rows of other outputs are extrapolated differences, good to about ten digits.
+        For models without constraints with multipliers; ``model.linearize`` linearises on their manifold.
+        """
+        return control.linearize(self, x, inputs, outputs, t, mode)
+
+    def transfer_function(
+        self,
+        x: Any = None,
+        inputs: Any = None,
+        *,
+        outputs: "Sequence[str] | str | None" = None,
+        t: Optional[float] = None,
+    ) -> TransferFunction:
+        """The transfer functions from the inputs to outputs about a state: ``linearize(..).transfer_function()``."""
+        return control.linearize(self, x, inputs, outputs, t, None).transfer_function()
+
+    def trim(
+        self,
+        x: Any = None,
+        inputs: "Sequence[str] | str | None" = None,
+        *,
+        guess: Any = None,
+        t: Optional[float] = None,
+        tolerance: float = 1e-9,
+    ) -> Trim:
+        """Finds the inputs that hold a state: its accelerations vanish.
+
+        ``x``: as in ``linearize``; rates that are not 0 give a steady motion. ``inputs``: names of those that may
+        change, by default all; the others keep ``guess``, by default the values of the scene. States of first order
+        follow. Raises Error, which names the coordinates, if these inputs cannot hold the state. Needs "jac_u".
+        """
+        return control.trim(self, x, inputs, guess, t, tolerance)
+
+    def discretize(
+        self, period: float, x: Any = None, inputs: Any = None, *, t: Optional[float] = None, rtol: float = 1e-10
+    ) -> DiscreteStep:
+        """The nonlinear step from sample to sample, with held inputs, and its derivatives. ``period`` in s.
+
+        ``rtol``: of the step, whose parts are halved until it is met. Inputs, kinks and contacts do not change within a
+        step. ``linearize(..).discretize(period)`` discretises the linear system instead. Needs "jac_u" if there are
+        inputs.
+        """
+        return control.discretize(self, period, x, inputs, t, rtol)
 
     def simulate(self, **options: Any) -> "Simulation":
         """A Simulation of these equations, with its options."""

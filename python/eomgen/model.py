@@ -85,6 +85,37 @@ class Model:
         return model
 
     @classmethod
+    def from_urdf(
+        cls,
+        path: "str | os.PathLike[str]",
+        *,
+        floating: bool = False,
+        attitude: str = "euler",
+        friction: str = "smooth",
+        actuators: str = "transmissions",
+        stops: "Sequence[str] | str" = (),
+        parameters: bool = False,
+        exact_angles: bool = False,
+        name: Optional[str] = None,
+    ) -> "Model":
+        """Reads a robot file (URDF) as a model: ``eomgen import``. ``text`` is the model file.
+
+        ``floating``: the root link moves. ``attitude``: of free links, "euler" or "euler_parameters". ``friction``:
+        "smooth", "dry" or "none". ``actuators``: joints with an input, "transmissions", "all" or "none". ``stops``:
+        joints whose limits are end stops. ``parameters``: masses, centres, tensors as parameters. What has no meaning
+        in a model is a ModelWarning with its line.
+        """
+        file = os.fspath(path)
+        found = _core.import_robot(
+            file, floating, attitude, friction, actuators, _names(stops), parameters, exact_angles
+        )
+        for what, why, count, line in found["left_out"]:
+            text = f"{file}:{line}: '{what}' is not in the model ({count} times): {why}"
+            warnings.warn(text, ModelWarning, stacklevel=2)
+        base = os.path.splitext(os.path.basename(file))[0]
+        return cls(found["text"], name or base)
+
+    @classmethod
     def from_text(cls, text: str, name: str = "model") -> "Model":
         """Reads a model from text in the format of model files."""
         return cls(text, name)

@@ -224,9 +224,12 @@ class Certificate(Record):
 
 
 class Sources(Record):
-    """Emitted source files: ``files`` maps names to texts. ``flops``: operations of the right-hand side."""
+    """Emitted source files: ``files`` maps names to texts, or to bytes for an archive (target "fmu").
 
-    files: Dict[str, str]
+    ``flops``: operations of the right-hand side.
+    """
+
+    files: "Dict[str, str | bytes]"
     formulation: str
     approach: str
     form: str
@@ -238,10 +241,10 @@ class Sources(Record):
         """Writes the files into a folder, which is made if needed, and returns their paths."""
         os.makedirs(folder, exist_ok=True)
         paths = []
-        for name, text in self.files.items():
+        for name, content in self.files.items():
             paths.append(os.path.join(folder, name))
-            with open(paths[-1], "w", encoding="utf-8") as file:
-                file.write(text)
+            with open(paths[-1], "wb") as file:
+                file.write(content if isinstance(content, bytes) else content.encode("utf-8"))
         return paths
 
 

@@ -122,7 +122,10 @@ py::dict emit(const Model& model, const std::string& target, const std::string& 
   const EmitOptions options{target, approach_named(approach), form, functions, outputs, fixed, seed, real};
   const Sources found = call_library(callbacks, [&](auto& c) { return model.emit(options, c.control()); });
   py::dict files, result;
-  for (const SourceFile& file : found.files) files[py::str(file.name)] = file.text;
+  for (const SourceFile& file : found.files) {
+    const bool is_text = file.text.find('\0') == std::string::npos;
+    files[py::str(file.name)] = is_text ? py::object(py::str(file.text)) : py::object(py::bytes(file.text));
+  }
   result["files"] = files;
   result["formulation"] = found.formulation;
   result["approach"] = found.approach;

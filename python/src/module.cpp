@@ -52,6 +52,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("solvers", &eomgen::solvers);
   module.def("targets", &eomgen::targets);
   add_model(module);
+  add_robot(module);
   add_compiled_model(module);
   add_simulation(module);
 }

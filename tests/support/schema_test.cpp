@@ -144,6 +144,10 @@ const std::map<std::string, json>& right_documents() {
           {"renamed", json::array({{{"kind", "joint"}, {"from", "elbow-1"}, {"to", "elbow"}}})},
           {"left_out", json::array({{{"what", "<mesh>"}, {"why", "not read"}, {"count", 3}, {"line", 28}}})},
           {"left_out_unlisted", 0}}},
+        {"docs",
+         {{"format", 1},
+          {"pages", json::array({{{"topic", "abi"}, {"title", "The C ABI of emitted code"}}})},
+          {"texts", json::array({{{"topic", "abi"}, {"heading", "Kinks"}, {"text", "## Kinks"}}})}}},
     };
   }();
   return documents;

@@ -23,6 +23,7 @@ Execute declare_merge(Arguments& app);
 Execute declare_report(Arguments& app);
 Execute declare_bench(Arguments& app);
 Execute declare_stress(Arguments& app);
+Execute declare_docs(Arguments& app);
 Execute declare_manual(Arguments& app);
 Execute declare_completion(Arguments& app);
 

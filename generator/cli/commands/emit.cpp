@@ -12,6 +12,7 @@
 #include "cli/output.hpp"
 #include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
+#include "pipeline/archives.hpp"
 #include "pipeline/emission.hpp"
 
 namespace eomgen::cli {
@@ -21,11 +22,12 @@ struct Options {
   std::string model, folder, target = "cpp", approach = "auto", form = "auto", real = "double";
   std::vector<std::string> with, fix, outputs;
   bool print_name = false;
+  int fmi = 0;
 };
 
 /// Names of the targets of code, and of the document.
 std::vector<std::string> target_names() {
-  std::vector<std::string> names = emit::target_names();
+  std::vector<std::string> names = pipeline::target_names();
   names.emplace_back(analysis::latex_document_target);
   return names;
 }
@@ -89,7 +91,8 @@ int execute(const Options& options, const CommonOptions& common) {
                                           options.outputs,
                                           options.fix,
                                           common.seed,
-                                          options.real == "float"};
+                                          options.real == "float",
+                                          options.fmi};
   if (options.target == analysis::latex_document_target) return emit_document(options, common);
   double reading = 0;
   const auto model = load_model(options.model, &reading);
@@ -168,6 +171,8 @@ Execute declare_emit(Arguments& app) {
   app.add_option("--real", options->real, "double, or float: single precision")
       .show_default()
       .suggest_values({"double", "float"});
+  app.add_option("--fmi", options->fmi, "the version of FMI for the target fmu: 3 (default) or 2")
+      .check(whole_number(2, 3));
   add_approach(app, options->approach);
   add_form(app, options->form);
   app.add_flag("--print-name", options->print_name,

@@ -4,10 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "cli/commands/commands.hpp"
 #include "cli/output.hpp"
+#include "import/option_words.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::cli {
@@ -19,40 +18,11 @@ struct Options {
   std::vector<std::string> stops;
 };
 
-/// A word of an option and the value that it stands for.
-template <typename T>
-struct Word {
-  const char* text;
-  T value;
-};
-
-constexpr std::array attitudes{Word{"euler", import::Attitude::euler},
-                               Word{"euler_parameters", import::Attitude::euler_parameters}};
-constexpr std::array frictions{Word{"smooth", import::FrictionLaw::smooth}, Word{"dry", import::FrictionLaw::dry},
-                               Word{"none", import::FrictionLaw::none}};
-constexpr std::array actuations{Word{"transmissions", import::Actuation::transmissions},
-                                Word{"all", import::Actuation::all}, Word{"none", import::Actuation::none}};
-
-template <typename Words>
-std::vector<std::string> texts_of(const Words& words) {
-  std::vector<std::string> result;
-  for (const auto& word : words) result.emplace_back(word.text);
-  return result;
-}
-
-template <typename Words>
-auto parse(const std::string& option, const std::string& text, const Words& words) {
-  for (const auto& word : words)
-    if (text == word.text) return word.value;
-  throw Error("import", {}, fmt::format("{} does not take {}", option, model::quote(text)),
-              model::suggest_choice(text, texts_of(words)));
-}
-
 import::ImportOptions import_options(const Options& options){import::ImportOptions result;
 result.floating = options.floating;
-result.attitude = parse("--attitude", options.attitude, attitudes);
-result.friction = parse("--friction", options.friction, frictions);
-result.actuation = parse("--actuators", options.actuators, actuations);
+result.attitude = import::attitude_named("--attitude", options.attitude);
+result.friction = import::friction_named("--friction", options.friction);
+result.actuation = import::actuation_named("--actuators", options.actuators);
 result.stops = options.stops;
 result.parameters = options.parameters;
 result.exact_angles = options.exact_angles;
@@ -120,11 +90,11 @@ Execute declare_import(Arguments& app) {
   app.add_output_path("-o,--out", options->out, "the model, F.toml; - or without it standard output");
   app.add_flag("--floating", options->floating, "the root link moves freely; without it, it is fixed to the ground");
   app.add_option("--attitude", options->attitude, "coordinates of free rotations: euler (3-2-1) or euler_parameters")
-      .suggest_values(texts_of(attitudes));
+      .suggest_values(import::attitude_words());
   app.add_option("--friction", options->friction, "friction of joints: smooth, dry (three joints at most) or none")
-      .suggest_values(texts_of(frictions));
+      .suggest_values(import::friction_words());
   app.add_option("--actuators", options->actuators, "joints with an input: transmissions, all or none")
-      .suggest_values(texts_of(actuations));
+      .suggest_values(import::actuation_words());
   app.add_list("--stops", options->stops, "joints whose limits are end stops, by their names in the file");
   app.add_flag("--parameters", options->parameters, "masses, centres, tensors, damping and friction as parameters");
   app.add_flag("--exact-angles", options->exact_angles, "decimals of multiples of pi/12 stay decimals");

@@ -11,6 +11,7 @@
 #include "eom/ode.hpp"
 #include "forces/kind.hpp"
 #include "joints/joint.hpp"
+#include "pipeline/archives.hpp"
 #include "rotations/rotation.hpp"
 #include "run/eligibility.hpp"
 
@@ -46,6 +47,8 @@ Json registries() {
   }
   for (const emit::TargetEntry& target : emit::targets())
     targets.push_back({{"name", target.name}, {"title", target.title}});
+  for (const pipeline::Archive& archive : pipeline::archives())
+    targets.push_back({{"name", archive.name}, {"title", archive.title}});
   // The document uses the display form instead of a program, so it is not in that registry.
   targets.push_back({{"name", analysis::latex_document_target},
                      {"title", "a LaTeX document: both approaches side by side, constraint forces"}});

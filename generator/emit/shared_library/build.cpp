@@ -102,17 +102,22 @@ void write_file(const fs::path& path, const std::string& text) {
 
 /// Whether a cache entry contains an intact library.
 bool is_whole(const fs::path& entry, const std::string& name) {
-  if (!is_own_folder(entry) || !is_own_file(entry / (name + ".so"))) return false;
-  const auto library = read_file(entry / (name + ".so"));
+  if (!is_own_folder(entry) || !is_own_file(entry / name)) return false;
+  const auto library = read_file(entry / name);
   const auto sum = read_file(entry / "checksum");
   return library && sum && model::content_hash(*library) == *sum;
 }
 
 void compile_into(const fs::path& folder, const Compiler& compiler, const Recipe& recipe) {
-  for (const auto& [name, text] : recipe.files) write_file(folder / name, text);
-  const fs::path library = folder / (recipe.name + ".so");
+  for (const auto& [name, text] : recipe.files) {
+    fs::create_directories((folder / name).parent_path());
+    write_file(folder / name, text);
+  }
+  const fs::path library = folder / (recipe.name + recipe.suffix);
   std::vector<std::string> command = compiler.command;
   command.insert(command.end(), recipe.flags.begin(), recipe.flags.end());
+  if (recipe.uses_own_headers)
+    command.insert(command.end(), {"-I", folder.string(), "-ffile-prefix-map=" + folder.string() + "=."});
   for (const std::string& argument :
        {(folder / recipe.files.front().first).string(), std::string("-o"), library.string()})
     command.push_back(argument);
@@ -157,11 +162,11 @@ BuiltLibrary build_library(const Recipe& recipe, const std::function<void(const 
   for (const std::string& library : recipe.libraries) key += '\0' + library;
   const CacheFolder cache = cache_folder();
   const fs::path entry = cache.path / model::content_hash(key);
-  const std::string file = recipe.name + ".so";
+  const std::string file = recipe.name + recipe.suffix;
   const std::string library = (entry / file).string();
   BuiltLibrary built{library, true, 0, cache.scratch, cache.reason};
 
-  if (!cache.scratch && is_whole(entry, recipe.name)) return built;
+  if (!cache.scratch && is_whole(entry, file)) return built;
   if (!cache.scratch) clear_leftovers(cache.path, scratch_prefix);
   try {
     const ScratchFolder workplace(cache.path, scratch_prefix);
@@ -169,7 +174,7 @@ BuiltLibrary build_library(const Recipe& recipe, const std::function<void(const 
     compile_into(workplace.path(), compiler, recipe);
     built.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (examine) examine((workplace.path() / file).string());
-    put_in_place(workplace.path(), entry, recipe.name);
+    put_in_place(workplace.path(), entry, file);
   } catch (const std::system_error&) {
     fail("cannot use the cache folder " + cache.path.string(),
          "set EOMGEN_CACHE_DIR to a folder that you may write to");

@@ -15,8 +15,10 @@ namespace eomgen::emit {
 class ScratchFolder;
 
 struct Recipe {
-  std::string name;                                        // name of the library without .so
+  std::string name;                                        // name of the library without its suffix
   std::vector<std::pair<std::string, std::string>> files;  // name and text; the first file is compiled
+  std::string suffix = ".so";
+  bool uses_own_headers = false;  // the folder of the files is searched for headers, and its path enters no result
   std::vector<std::string> flags, libraries;
   // The compiler: the value of the first variable that is set, or the first of these that runs.
   std::string language = "C", package = "gcc libc6-dev";

@@ -30,6 +30,8 @@
 
 namespace eom::hybrid {
 
+class ExternalSteps;
+
 class Integration {
  public:
   /// The problem must outlive this object. Its code must have the functions that its solver needs.
@@ -69,6 +71,8 @@ class Integration {
   std::optional<double> narrow_forces_unresolved_from() const { return narrow_.unresolved_from(); }
 
  private:
+  friend class ExternalSteps;  // whose caller integrates the smooth parts
+
   bool start(Result& total, const OnEvent& event);
   void cross_kink_at_end(const Segment& last, Result& total, const OnEvent& event);
   void begin(const Options& options);

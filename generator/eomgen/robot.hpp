@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Robot files of other programs (URDF) as models. In: a file. Out: the text of a model file, and what of the robot file
+// it does not contain.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace eomgen {
+
+/// As the options of `eomgen import`.
+struct RobotOptions {
+  bool floating = false;                    // the root link moves freely
+  std::string attitude = "euler";           // of free links: euler, euler_parameters
+  std::string friction = "smooth";          // of joints: smooth, dry, none
+  std::string actuators = "transmissions";  // joints with an input: transmissions, all, none
+  std::vector<std::string> stops;           // joints whose limits are end stops
+  bool parameters = false;                  // masses, centres, tensors, damping, friction as parameters
+  bool exact_angles = false;                // decimals of multiples of pi/12 stay decimals
+};
+
+/// An element of the robot file that has no meaning in a model, and the line of its first occurrence.
+struct RobotOmission {
+  std::string what, why;
+  std::size_t count = 0, line = 0;
+};
+
+struct RobotModel {
+  std::string robot, text;  // the name of the robot; the model file
+  std::vector<std::string> coordinates, inputs;
+  std::vector<RobotOmission> left_out;
+};
+
+/// Throws Error with the place in the robot file.
+RobotModel import_robot(const std::string& path, const RobotOptions& options = {});
+
+}  // namespace eomgen
