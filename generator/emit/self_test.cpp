@@ -196,12 +196,7 @@ class Body {
       text_ += fmt::format("  static const int modes[{}][{}] = {{\n{}}};\n", context_.tests.size(),
                            program_.mode_layout().size(), modes);
     }
-    const TestVector& first = context_.tests.front();
-    starts_ = !has_mode(first) && same(first.t, context_.start_time) && first.x.size() == context_.start.size();
-    for (std::size_t i = 0; starts_ && i < first.x.size(); ++i) starts_ = same(first.x[i], context_.start[i]);
-    for (std::size_t i = 0; i < first.p.size(); ++i)
-      starts_ = starts_ && same(first.p[i], context_.parameters[i].value);
-    for (std::size_t i = 0; i < first.u.size(); ++i) starts_ = starts_ && same(first.u[i], context_.inputs[i].value);
+    starts_ = begins_with_defaults(context_, !suffix_.empty());
   }
 
   /// The entries of `mode`, all of them.
@@ -215,16 +210,14 @@ class Body {
     return integers(mode.entries());
   }
 
-  bool same(double a, double b) const {
-    return suffix_.empty() ? a == b : static_cast<float>(a) == static_cast<float>(b);
-  }
-
   /// The first state is the default state.
   void defaults() {
     if (!starts_) return;
     const std::size_t n = program_.state_count(), count = context_.parameters.size();
-    text_ += fmt::format("  {{\n    {} x[{}], p[{}];\n    int i;\n    {}(x, p);\n", real_, n,
-                         std::max<std::size_t>(1, count), names_.function_name("defaults"));
+    text_ += fmt::format("  {{\n    {} x[{}], p[{}];\n    int i;\n", real_, n, std::max<std::size_t>(1, count));
+    text_ += fmt::format("    for (i = 0; i < {}; ++i) x[i] = NAN;\n", n);
+    if (count > 0) text_ += fmt::format("    for (i = 0; i < {}; ++i) p[i] = NAN;\n", count);
+    text_ += fmt::format("    {}(x, p);\n", names_.function_name("defaults"));
     text_ +=
         fmt::format("    for (i = 0; i < {}; ++i) {{\n      if (!(x[i] == points[0][1 + i])) return 1;\n    }}\n", n);
     if (count > 0)
@@ -278,13 +271,16 @@ class Body {
     text_ += fmt::format("      const {}* const point = points[state];\n", real_);
     std::string arrays;
     for (std::size_t r = 0; r < shape.size(); ++r) {
-      text_ += fmt::format("      {} y{}[{}] = {{0}};\n", real_, r + 1, std::max<std::size_t>(1, shape[r].size()));
+      text_ += fmt::format("      {} y{}[{}];\n", real_, r + 1, std::max<std::size_t>(1, shape[r].size()));
       arrays += fmt::format(", y{}", r + 1);
     }
     const std::size_t prepared = program_.prepared_count();
-    if (abi::find(function)->has_input(abi::Input::prepared))
-      text_ += fmt::format("      {} w[{}];\n      if ({}(point + {}, w) != 0) return state + 1;\n", real_, prepared,
-                           names_.function_name("prepare"), at_p_);
+    const bool takes_prepared = abi::find(function)->has_input(abi::Input::prepared);
+    if (takes_prepared) text_ += fmt::format("      {} w[{}];\n", real_, prepared);
+    for (std::size_t r = 0; r < shape.size(); ++r) text_ += unset(fmt::format("y{}", r + 1), shape[r].size());
+    if (takes_prepared)
+      text_ += unset("w", prepared) + fmt::format("      if ({}(point + {}, w) != 0) return state + 1;\n",
+                                                  names_.function_name("prepare"), at_p_);
     text_ += wrapped(fmt::format("      if ({}({}{}) != 0) return state + 1;", names_.function_name(function),
                                  arguments(function, to), arrays),
                      "          ") +
@@ -297,6 +293,13 @@ class Body {
       place += 1 + shape[r].size();
     }
     text_ += "    }\n  }\n";
+  }
+
+  /// A statement that fills an array with numbers that no comparison accepts, so that an entry that is never written is
+  /// a difference.
+  std::string unset(const std::string& array, std::size_t count) const {
+    if (count == 0) return "";
+    return fmt::format("      for (int i = 0; i < {}; ++i) {}[i] = NAN;\n", count, array);
   }
 
   std::string arguments(const std::string& function, unsigned to) const {
@@ -360,6 +363,19 @@ std::optional<TestVector> test_vector(const program::Program& program, const Emi
   }
   if (smooth) add_charts(program, arguments, single, at);
   return at;
+}
+
+bool begins_with_defaults(const EmissionContext& context, bool single) {
+  if (context.tests.empty() || has_mode(context.tests.front())) return false;
+  const auto same = [single](double a, double b) {
+    return single ? static_cast<float>(a) == static_cast<float>(b) : a == b;
+  };
+  const auto same_value = [&same](double a, const Quantity& b) { return same(a, b.value); };
+  const TestVector& first = context.tests.front();
+  return same(first.t, context.start_time) &&
+         std::equal(first.x.begin(), first.x.end(), context.start.begin(), context.start.end(), same) &&
+         std::equal(first.p.begin(), first.p.end(), context.parameters.begin(), context.parameters.end(), same_value) &&
+         std::equal(first.u.begin(), first.u.end(), context.inputs.begin(), context.inputs.end(), same_value);
 }
 
 std::string selftest_body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names,

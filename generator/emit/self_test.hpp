@@ -18,6 +18,9 @@ namespace eomgen::emit {
 std::optional<TestVector> test_vector(const program::Program& program, const EmissionContext& context, TestVector at,
                                       std::size_t index);
 
+/// Whether the first vector is the default state with the default parameters and inputs.
+bool begins_with_defaults(const EmissionContext& context, bool single);
+
 /// Names that differ between C and C++.
 struct SelfTestNames {
   std::function<std::string(const std::string&)> function_name;  // name of a function of the ABI in code: "NAME_rhs"

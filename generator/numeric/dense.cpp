@@ -23,6 +23,14 @@ Eigen::Index rank(const MatrixXd& A, double threshold) {
   return decomposition.rank();
 }
 
+MatrixXd orthogonal_complement(const MatrixXd& A, double threshold) {
+  Eigen::ColPivHouseholderQR<MatrixXd> decomposition;
+  decomposition.setThreshold(threshold);
+  decomposition.compute(A);
+  const MatrixXd Q = decomposition.householderQ();
+  return Q.rightCols(A.rows() - decomposition.rank());
+}
+
 Eigen::VectorXcd eigenvalues(const MatrixXd& A) { return Eigen::EigenSolver<MatrixXd>(A, false).eigenvalues(); }
 
 VectorXd symmetric_eigenvalues(const MatrixXd& A) {

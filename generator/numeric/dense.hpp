@@ -19,6 +19,9 @@ LeastSquares least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, s
 /// The rank, with the same criterion for pivots as least_squares.
 Eigen::Index rank(const Eigen::MatrixXd& A, double threshold);
 
+/// An orthonormal basis of the vectors that are orthogonal to the columns of A, with the same criterion.
+Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& A, double threshold);
+
 /// Eigenvalues in Eigen's order.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 /// Eigenvalues of a symmetric matrix, ascending. Only the lower triangle is read.

@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <eom/modes/mode_array.hpp>
+#include <limits>
 
 namespace eomgen::pipeline {
 namespace {
+
+// Of arrays before a call, so that an entry that is never written differs from its expected value.
+constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
 /// Whether a function has its values at a test vector. `inputs`: null if they are left out.
 bool satisfies(const abi::CompiledFunctions& functions, const program::Program& program, const emit::TestVector& at,
@@ -23,7 +27,7 @@ bool satisfies(const abi::CompiledFunctions& functions, const program::Program& 
   to.set_charts(expected.to);
   given.mode = mode.data();
   given.to = to.data();
-  std::vector<double> w(program.prepared_count() + 1);
+  std::vector<double> w(program.prepared_count() + 1, unset);
   given.w = w.data();
   if (abi::find(expected.function)->has_input(abi::Input::prepared) && functions.prepare(at.p.data(), w.data()) != 0)
     return false;
@@ -31,7 +35,7 @@ bool satisfies(const abi::CompiledFunctions& functions, const program::Program& 
     given.order = static_cast<int>(expected.values.at(0).size() / program.state_count()) - 1;
   std::vector<std::vector<double>> arrays;
   for (std::size_t r = 0; r < expected.values.size(); ++r) {
-    arrays.emplace_back(std::max<std::size_t>(1, expected.values[r].size()));
+    arrays.emplace_back(std::max<std::size_t>(1, expected.values[r].size()), unset);
     given.results.at(r) = arrays[r].data();
   }
   if (functions.call(expected.function, given) != 0) return false;

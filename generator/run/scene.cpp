@@ -4,7 +4,6 @@
 #include <cln/exception.h>
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <eom/hybrid/jumps.hpp>
@@ -13,6 +12,7 @@
 #include <limits>
 
 #include "derive/imposition.hpp"
+#include "numeric/dense.hpp"
 #include "numeric/numbers.hpp"
 #include "run/bind.hpp"
 #include "run/monitored_functions.hpp"
@@ -166,30 +166,46 @@ void require_span(const Mechanics& m, const model::Scene& scene, const Scene& re
     fail("step, max_step and every must be positive", "leave them out for the defaults");
 }
 
-// Coordinates are singular where M has no inverse. With multipliers M may be singular if the constraints compensate it.
+// Coordinates are singular where M has no inverse. With multipliers M may be singular if the constraints compensate it:
+// then it has to be regular in the directions that they leave free.
 void require_regular(const Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
                      const Scene& start) {
-  constexpr double smallest_pivot = 1e-14;  // of M scaled to a unit diagonal; rounding leaves 1e-16 per operation
-  if (!system.active.empty()) return;
+  constexpr double smallest_eigenvalue = 5e-15;  // of M scaled to a unit diagonal; rounding leaves 1e-16 per operation
+  constexpr double smallest_row = 1e-10;         // of a constraint outside the span of the others
   const auto n = static_cast<Eigen::Index>(system.free.size());
   const std::vector<symbolic::Symbol> states = system.state_symbols();
-  const std::vector<double> values = symbolic::evaluate(*system.dag, system.M, [&](const symbolic::Symbol& s) {
-    if (s.kind == symbolic::SymbolKind::parameter) return start.parameters[s.index];
-    if (s.kind == symbolic::SymbolKind::time) return start.t0;
-    if (const auto found = std::find(states.begin(), states.end(), s); found != states.end())
-      return start.z[static_cast<std::size_t>(found - states.begin())];
-    if (s.kind == symbolic::SymbolKind::coordinate) return (s.order == 0 ? start.q : start.qdot)[s.index];
-    return std::nan("");
-  });
+  const auto values_of = [&](const std::vector<symbolic::Ref>& entries) {
+    return symbolic::evaluate(*system.dag, entries, [&](const symbolic::Symbol& s) {
+      if (s.kind == symbolic::SymbolKind::parameter) return start.parameters[s.index];
+      if (s.kind == symbolic::SymbolKind::time) return start.t0;
+      if (const auto found = std::find(states.begin(), states.end(), s); found != states.end())
+        return start.z[static_cast<std::size_t>(found - states.begin())];
+      if (s.kind == symbolic::SymbolKind::coordinate) return (s.order == 0 ? start.q : start.qdot)[s.index];
+      return std::nan("");
+    });
+  };
+  const std::vector<double> values = values_of(system.M);
   Eigen::MatrixXd M = Eigen::Map<const Eigen::MatrixXd>(values.data(), n, n);
-  if (!M.allFinite()) return;  // reported with the undefined value
-  const Eigen::VectorXd scale = M.diagonal().cwiseSqrt();
-  if (scale.size() == 0) return;  // no free coordinates
+  if (!M.allFinite() || n == 0) return;  // reported with the undefined value; no free coordinates
+  Eigen::VectorXd scale = M.diagonal().cwiseSqrt();
   bool regular = scale.minCoeff() > 0;
+  if (!system.active.empty()) {
+    const std::vector<double> rows = values_of(system.A);
+    Eigen::MatrixXd gradients =  // in columns
+        Eigen::Map<const Eigen::MatrixXd>(rows.data(), n, static_cast<Eigen::Index>(system.active.size()));
+    if (!gradients.allFinite()) return;
+    for (double& s : scale) s = s > 0 ? s : 1;
+    gradients = scale.cwiseInverse().asDiagonal() * gradients;
+    gradients.colwise().normalize();
+    const Eigen::MatrixXd Z = numeric::orthogonal_complement(gradients, smallest_row);
+    if (Z.cols() == 0) return;  // the constraints determine the motion
+    M = Z.transpose() * scale.cwiseInverse().asDiagonal() * M * scale.cwiseInverse().asDiagonal() * Z;
+    regular = true;
+    scale = Eigen::VectorXd::Ones(Z.cols());
+  }
   if (regular) {
     M = scale.cwiseInverse().asDiagonal() * M * scale.cwiseInverse().asDiagonal();
-    const Eigen::LDLT<Eigen::MatrixXd> factors(M);
-    regular = factors.vectorD().minCoeff() > smallest_pivot;
+    regular = numeric::symmetric_eigenvalues(M)[0] > smallest_eigenvalue;
   }
   if (regular) return;
   throw Error("scene", m.model->where(scene.span), "the start is a singular configuration: the coordinates fail there",

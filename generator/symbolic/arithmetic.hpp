@@ -41,9 +41,9 @@ struct ClnArithmetic {
     const cln::cl_F x = round(argument);
     switch (op) {
       case Op::sqrt: require(!cln::minusp(x), "sqrt of a negative number"); return cln::sqrt(x);
-      case Op::sin: return cln::sin(x);
-      case Op::cos: return cln::cos(x);
-      case Op::tan: return cln::tan(x);
+      case Op::sin: return cln::sin(reducible(x));
+      case Op::cos: return cln::cos(reducible(x));
+      case Op::tan: return cln::tan(reducible(x));
       case Op::asin: return arcsine(x);
       case Op::acos: return cln::pi(format) / 2 - arcsine(x);
       case Op::atan: return cln::atan(x);
@@ -56,6 +56,13 @@ struct ClnArithmetic {
       case Op::sign: return cln::zerop(x) ? cln::cl_R(0) : cln::minusp(x) ? cln::cl_R(-1) : cln::cl_R(1);
       default: throw std::logic_error("not a function of one argument");
     }
+  }
+  /// The argument of a trigonometric function. CLN subtracts a multiple of pi that has the digits of the whole part:
+  /// the largest floats would take all memory.
+  static const cln::cl_F& reducible(const cln::cl_F& x) {
+    constexpr long most_bits = 1 << 16;
+    require(cln::float_exponent(x) <= most_bits, "an angle of more than 65536 bits before its point");
+    return x;
   }
   /// 0 if the result is below the exponent range of CLN's floats.
   static cln::cl_R exp(const cln::cl_F& x) {

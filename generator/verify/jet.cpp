@@ -20,6 +20,8 @@ struct Jet::Dual {
 
 namespace {
 
+constexpr long most_bits_of_angle = 1 << 16;  // before its point
+
 const Jet& zero_jet() {
   static const Jet zero;
   return zero;
@@ -172,7 +174,10 @@ Jet apply_chain_rule(const Jet& x, Jet value, const Jet& derivative) {
 std::pair<Jet, Jet> sin_cos(const Jet& x, const Precision& p) {
   if (x.level() == 0) {
     if (x.is_exactly_zero()) return {Jet(0), Jet(1)};
-    const cln::cos_sin_t both = cln::cos_sin(p.round(x.real()));
+    const cln::cl_F angle = p.round(x.real());
+    // CLN subtracts a multiple of pi that has the digits of the whole part, which may take all memory.
+    require(cln::float_exponent(angle) <= most_bits_of_angle, "an angle is beyond all bounds");
+    const cln::cos_sin_t both = cln::cos_sin(angle);
     return {Jet(both.sin), Jet(both.cos)};
   }
   const auto [s, c] = sin_cos(x.value(x.level()), p);

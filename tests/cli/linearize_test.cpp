@@ -52,6 +52,26 @@ TEST_CASE("linearize: another parameter, another time") {
   CHECK(faint["A"].back().back() == -1.0);
 }
 
+TEST_CASE("linearize: a state that is moved to the equilibrium beside it is reported") {
+  const Folder folder;
+  const auto start_at = [&](const char* x) {
+    folder.write("near.toml",
+                 std::string("format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[[force]]\n"
+                             "generalized = { x = \"-(x + 1.8)*(4 + x^2)\" }\n[scene.default]\ninitial = { x = ") +
+                     x + " }\n");
+    return document(folder, {"linearize", "near.toml"});
+  };
+  const Json exact = start_at("-1.8");
+  CHECK(exact["kind"] == "equilibrium");
+  CHECK(exact["point"]["x"] == -1.8);
+  CHECK(exact["moved"].empty());
+  const Json near = start_at("-1.8000000000000007");
+  CHECK(near["kind"] == "equilibrium");
+  CHECK(near["point"]["x"] == -1.8);
+  CHECK(near["moved"]["x"].get<double>() == doctest::Approx(6.7e-16).epsilon(0.01));
+  CHECK(contains(expect(0, folder, {"linearize", "near.toml"}).out, "moved             x by 6.7e-16"));
+}
+
 TEST_CASE("linearize: nondifferentiable terms, contacts, unknown names and invalid times are refused with a remedy") {
   const Folder folder;
   folder.write("edge.toml",

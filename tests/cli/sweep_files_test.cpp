@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <random>
 #include <thread>
 
@@ -70,6 +71,85 @@ TEST_CASE("sweep: rows truncated by a full disk, and runs that do not belong to 
   CHECK(folder.read("all.csv") == whole);
 }
 
+TEST_CASE("sweep: rows that were edited are computed again, with a warning") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator_text());
+  const Words words{"sweep", "oscillator.toml", "--grid", "k=1:9:9", "--out", "all.csv"};
+  expect(0, folder, words);
+  const std::string whole = folder.read("all.csv");
+  const std::size_t begin = offset_after_lines(whole, 3), end = offset_after_lines(whole, 4);
+  const std::string row = whole.substr(begin, end - begin);  // the second one: "1,2,done,1,.."
+  const auto with_row = [&](const std::string& other) { return whole.substr(0, begin) + other + whole.substr(end); };
+  const auto replaced = [&row](const std::string& from, const std::string& to) {
+    std::string text = row;
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+  };
+  const std::string last_field = row.substr(row.rfind(','));
+  for (const std::string& edited :
+       {with_row(replaced(",done,1,", ",done,2,")), with_row(replaced(",done,1,", ",done,nan,")),
+        with_row(replaced(",done,", ",exploded,")), with_row(replaced(last_field, ",=cmd|calc" + last_field)),
+        with_row(replaced("1,2,", "1,3,"))}) {
+    CAPTURE(edited);
+    folder.write("all.csv", edited);
+    const ChildResult result = expect(0, folder, words);
+    CHECK(contains(result.out, "(8 of them were there)"));
+    CHECK(contains(result.err, "1 lines of 'all.csv' are no rows of this sweep"));
+    CHECK(folder.read("all.csv") == whole);
+  }
+  // What follows the rows is removed.
+  for (const std::string& tail :
+       {std::string("=cmd|calc\n"), std::string(3 << 20, 'x'), std::string(8 << 20, 'x'), "9" + row.substr(1)}) {
+    folder.write("all.csv", whole + tail);
+    CHECK(contains(expect(0, folder, words).out, "(9 of them were there)"));
+    CHECK(folder.read("all.csv") == whole);
+  }
+}
+
+TEST_CASE("sweep: a table whose columns were changed is refused and kept") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator_text());
+  const Words words{"sweep", "oscillator.toml", "--grid", "k=1:9:9", "--out", "all.csv"};
+  expect(0, folder, words);
+  std::string table = folder.read("all.csv");
+  table.replace(table.find(",energy,"), 8, ",energie,");
+  for (const char* name : {"all.csv", "all.csv.partial"}) {
+    std::filesystem::remove(folder / "all.csv");
+    folder.write(name, table);
+    CHECK(contains(expect(2, folder, words).err, "has other columns than this sweep writes"));
+    CHECK(folder.read(name) == table);
+    CHECK(folder.names() == Words{name, "oscillator.toml"});
+  }
+}
+
+TEST_CASE("sweep: a second sweep to the same table is refused while the first one runs") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator_text());
+  const Words first = {"sweep",  "oscillator.toml", "--sample", "k=1:9", "--samples",
+                       "200000", "--jobs",          "1",        "--out", "all.csv"};
+  Child child(command(folder, first));
+  const auto writes = [&folder] {
+    const Words names = folder.names();
+    return std::any_of(names.begin(), names.end(), [](const std::string& n) { return contains(n, "all.csv.partial"); });
+  };
+  for (int wait = 0; wait < 2000 && !writes(); ++wait) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  REQUIRE(writes());
+  const Words second{"sweep", "oscillator.toml", "--grid", "k=1:9:9", "--out", "all.csv"};
+  CHECK(contains(expect(2, folder, second).err, "another sweep is writing 'all.csv'"));
+  child.signal(SIGKILL);
+  child.finish();
+  CHECK(contains(expect(2, folder, second).err, "is the unfinished table of another sweep"));  // the lock ended
+}
+
+TEST_CASE("sweep: the table of a model whose file name has a line break is continued") {
+  const Folder folder;
+  folder.write("two\nlines.toml", oscillator_text());
+  const Words words{"sweep", "two\nlines.toml", "--grid", "k=1:9:9", "--out", "all.csv"};
+  expect(0, folder, words);
+  CHECK(document(folder, words)["resumed"] == 9);
+}
+
 TEST_CASE("sweep: runs that cannot start cost no derivation each, at any position") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
@@ -112,6 +192,10 @@ TEST_CASE("merge: a table that ends in the middle of a line lacks that run; a si
   CHECK(contains(reply, "run 5 is missing, and 1 of 7 in all"));
   folder.write("2.csv", second.substr(0, second.size() - 5) + "\n");
   CHECK(contains(expect(2, folder, merge).err, "a line that is no run of that shard"));
+  std::string moved = second;
+  moved.replace(moved.find("\n1,") + 3, 1, "7");  // the value of k of run 1
+  folder.write("2.csv", moved);
+  CHECK(contains(expect(2, folder, merge).err, "was changed"));
   folder.write("2.csv", second + second.substr(offset_after_lines(second, 3)));
   CHECK(contains(expect(2, folder, merge).err, "2 lines are of runs that another line has"));
   folder.write("2.csv", "");

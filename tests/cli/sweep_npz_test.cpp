@@ -36,7 +36,7 @@ for member in archive.infolist():
     arrays[member.filename[:-4]] = values
 lines = open(sys.argv[2], newline='').read().split('\n')
 rows = list(csv.reader(lines[1:-1]))
-names, rows = rows[0], rows[1:]
+names, rows = rows[0][:-1], [row[:-1] for row in rows[1:]]
 assert arrays['sweep'] == [lines[0]]
 def same(a, text):
     return math.isnan(a) if text in ('', 'nan') else a == float(text)

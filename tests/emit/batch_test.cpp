@@ -148,6 +148,32 @@ TEST_CASE("batch: a function with thousands of operations is split into parts") 
   CHECK(wrong(folder.path, e, widths(e).back(), "{0}") == "");
 }
 
+TEST_CASE("batch: its self test detects an entry that is never written, and a wrong lane") {
+  const Example e =
+      example("two", double_pendulum(), {"theta1", "theta2"}, {"m1", "m2", "l1", "l2", "g"}, {}, {"jac", "taylor"});
+  const std::vector<emit::EmittedFile> files = emit::emit(e.program, e.context, "batch");
+  const auto status = [&](const std::string& what, const std::string& instead) {
+    const Folder folder;
+    emit::write_files(folder.path, files);
+    std::string code = file_named(files, "_batch.c");
+    if (!what.empty()) {
+      const std::size_t at = code.find(what);
+      REQUIRE(at != std::string::npos);
+      code.replace(at, what.size(), instead);
+    }
+    std::ofstream(folder.path + "/two_batch.c") << code;
+    std::ofstream(folder.path + "/use.c")
+        << "#include \"two_batch.h\"\nint main(void) { return two_batch_selftest(); }\n";
+    const std::string program = folder.path + "/use";
+    CHECK(compiler_diagnostics({EOMGEN_TEST_CC, "-std=gnu11", "-O2", "-ffp-contract=off", "-o", program},
+                               {program + ".c", folder.path + "/two.c", folder.path + "/two_batch.c", "-lm"}) == "");
+    return emit::run_process({program}).status;
+  };
+  CHECK(status("", "") == 0);
+  CHECK(status("\n  two_batch_store(", "\n  if (0) two_batch_store(") != 0);
+  CHECK(status("codes[first + k] = code;", "codes[first + k] = code + 1;") != 0);
+}
+
 TEST_CASE("batch: hostile names, and every available compiler") {
   const Example two =
       example("two", double_pendulum(), {"two_batch_sincos", "block"}, {"fine", "place", "now", "w_0", "dx"});

@@ -153,6 +153,29 @@ int main() {
   CHECK(emit::run_process({program}).status == 0);
 }
 
+TEST_CASE("emitted code: its self test detects entries that are never written, also those that are 0") {
+  const Example e = example("eom", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"});
+  const std::vector<emit::EmittedFile> files = emit::emit(e.program, e.context, "c");
+  const std::string code = file_named(files, ".c"), zero = "] = 0.0;";
+  const auto status = [&](const std::string& text) {
+    const Folder folder;
+    emit::write_files(folder.path, {{"eom.c", text}, {"eom.h", file_named(files, ".h")}});
+    std::ofstream(folder.path + "/use.c") << "#include \"eom.h\"\nint main(void) { return eom_selftest(); }\n";
+    REQUIRE(emit::run_process({EOMGEN_TEST_CC, "-O2", "-o", folder.path + "/use", folder.path + "/use.c",
+                               folder.path + "/eom.c", "-lm"})
+                .status == 0);
+    return emit::run_process({folder.path + "/use"}).status;
+  };
+  REQUIRE(status(code) == 0);
+  std::size_t zeros = 0;
+  for (std::size_t at = code.find(zero); at != std::string::npos; at = code.find(zero, at + 1), ++zeros) {
+    const std::size_t begin = code.rfind('\n', at), end = code.find('\n', at);
+    CAPTURE(code.substr(begin, end - begin));
+    CHECK(status(code.substr(0, begin) + code.substr(end)) == 1);
+  }
+  CHECK(zeros > 2);
+}
+
 TEST_CASE("emitted code: -ffast-math is rejected") {
   const Folder folder;
   const Example e = examples()[0];

@@ -56,6 +56,29 @@ TEST_CASE("target javascript: its self-test detects a wrong value") {
             .status == 2);
 }
 
+TEST_CASE("target javascript: its self-test detects wrong defaults and entries that are never written") {
+  if (!has_node()) return;
+  Example e = example("eom", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"});
+  const emit::TestVector& first = e.context.tests.front();
+  e.context.start_time = first.t;
+  for (std::size_t i = 0; i < first.p.size(); ++i) e.context.parameters[i].value = first.p[i];
+  e.context.inputs[0].value = first.u[0];
+  const std::string text = emit::emit(e.program, e.context, "javascript").front().text;
+  const auto status = [](const std::string& script) {
+    const Folder folder;
+    emit::write_files(folder.path, {{"eom.js", script}});
+    return emit::run_process({"node", "-e", fmt::format("process.exit(require('{}/eom.js').selftest())", folder.path)})
+        .status;
+  };
+  REQUIRE(status(text) == 0);
+  for (const char* statement : {"  p[1] = ", "  x[1] = ", "  dx[0] = "}) {
+    CAPTURE(std::string(statement));
+    const std::size_t begin = text.find(statement);
+    REQUIRE(begin != std::string::npos);
+    CHECK(status(text.substr(0, begin) + text.substr(text.find('\n', begin))) == 1);
+  }
+}
+
 TEST_CASE("target javascript: names of JavaScript and browsers, and hostile texts, cause no harm") {
   for (const char* id : {"function", "document", "module", "window", "json", "Math"}) {
     INFO(id);

@@ -43,6 +43,30 @@ TEST_CASE("target python: the C code has no warnings under strict flags, and the
   }
 }
 
+TEST_CASE("target python: momenta and series are there if they were emitted, and named if not") {
+  compiles_and_imports(example("two", double_pendulum(), {"theta1", "theta2"}, {"m1", "m2", "l1", "l2", "g"}, {},
+                               {"mass", "momenta", "taylor"}),
+                       "x = m.defaults['x']; M, h = m.mass_matrix(0, x); P, rates = m.momenta(0, x); "
+                       "assert all(abs(P[i] - sum(M[i][j]*x[2 + j] for j in range(2))) < 1e-12 for i in range(2)); "
+                       "c, dx = m.taylor(0, x), m.rhs(0, x); "
+                       "assert all(c[i][0] == x[i] and abs(c[i][1] - dx[i]) < 1e-12 for i in range(4)); "
+                       "assert len(m.taylor(0, x, order=3)[0]) == 4");
+  if (emit::run_process({"python3", "--version"}).status != 0) return;
+  compiles_and_imports(example("two", double_pendulum(), {"theta1", "theta2"}, {"m1", "m2", "l1", "l2", "g"}),
+                       "\n"
+                       "for f in (m.momenta, m.taylor):\n"
+                       "  try: f(0, m.defaults['x'])\n"
+                       "  except NotImplementedError as e: assert '--with ' + f.__name__ in str(e)\n"
+                       "  else: raise AssertionError(f)\n");
+}
+
+TEST_CASE("target python: simulate ends with the outcomes of eomgen run") {
+  compiles_and_imports(examples()[0],
+                       "assert m._ERRORS == {1: 'singular_mass_matrix', 2: 'chart_left', 3: 'friction_no_solution', "
+                       "4: 'friction_many_solutions', 5: 'not_finite', 10: 'step_too_small', 11: 'max_steps', "
+                       "12: 'diverged'}; assert m.simulate(m.defaults['t'] + 100, max_steps=3).outcome == 'max_steps'");
+}
+
 TEST_CASE("target python: hostile names and texts cause no harm") {
   auto e = example("int", cart_pendulum(), {"I", "lambda"}, {"rhs", "import", "numpy", "main", "None"}, {"class"});
   e.context.title = "\"\"\" + exit(7) #\n%s {} \\";

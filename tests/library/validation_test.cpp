@@ -57,11 +57,12 @@ TEST_CASE("library: rows that are not distinct, or that fill the memory, are ref
   CHECK(rows == 100001);
 }
 
-TEST_CASE("library: a time, a longest step or an interval near the largest number ends in an Error or an outcome") {
+TEST_CASE(
+    "library: a time, a step, a longest step or an interval near the largest number ends in an Error or an outcome") {
   const Model model = Model::from(test::pendulum(), "pendulum");
   for (const double large : {1e300, largest}) {
-    for (const RunOptions& options :
-         {RunOptions{.t_end = large, .max_steps = 100}, RunOptions{.max_step = large}, RunOptions{.every = large}}) {
+    for (const RunOptions& options : {RunOptions{.t_end = large, .max_steps = 100}, RunOptions{.step = large},
+                                      RunOptions{.max_step = large}, RunOptions{.every = large}}) {
       (void)message_of([&] { CHECK(!model.run(options).outcome.empty()); });
     }
   }

@@ -32,7 +32,8 @@ const std::vector<std::string>& refusals() {
       "fixes nothing",                  // a joint on a place with prescribed motion
       "contains no velocity",           // a knife edge along an arm: its point never moves in this direction
       "does not depend on any velocity",
-      "the forces are not determined",  // more directions of sticking friction than degrees of freedom
+      "the start is a singular configuration",  // of angles that the assembly determines
+      "the forces are not determined",          // more directions of sticking friction than degrees of freedom
   };
   return texts;
 }

@@ -102,3 +102,11 @@ TEST_CASE("results below the range of CLN's floats are 0") {
   CHECK(cln::zerop(precise.call(Op::exp, -cln::expt(Rational(10), 300))));
   CHECK(cln::plusp(precise.call(Op::exp, -cln::expt(Rational(10), 17))));
 }
+
+TEST_CASE("angles whose multiple of pi would fill the memory have no value") {
+  const cl_R huge = cln::exp(cln::cl_float(1e11, precise.format));
+  for (const Op op : {Op::sin, Op::cos, Op::tan}) {
+    CHECK_THROWS_AS(precise.call(op, huge), std::domain_error);
+    CHECK_NOTHROW(precise.call(op, cln::expt(Rational(10), 1000)));
+  }
+}

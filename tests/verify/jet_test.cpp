@@ -93,6 +93,10 @@ TEST_CASE("jets: numbers below the float range are 0, and subnormal numbers keep
   CHECK(bool(exact(5e-324) * cln::expt(cln::cl_RA(2), cln::cl_I(1074)) == 1));
 }
 
+TEST_CASE("jets: angles whose multiple of pi would fill the memory have no value") {
+  CHECK_THROWS_AS(sin_cos(exp(Jet(Real(100000000000)), p), p), Singular);
+}
+
 TEST_CASE("jets: points without a derivative are rejected, exact zeros stay exact") {
   CHECK_THROWS_AS(Jet(1) / Jet(), Singular);
   CHECK_THROWS_AS(log(Jet(-1), p), Singular);

@@ -37,6 +37,16 @@ struct Answer {
     return result;
   }
   std::vector<std::string> ignorable() const { return names(linear::ignorable_entries(l.symmetry)); }
+  /// Entries that differ from those of the state: a state that is an equilibrium or steady motion but for roundings is
+  /// moved to it.
+  std::vector<std::pair<std::string, double>> moved() const {
+    std::vector<std::pair<std::string, double>> result;
+    for (std::size_t i = 0; i + 1 < l.z.size(); ++i) {
+      if (display_value(l.z[i]) != display_value(problem.z[i]))
+        result.emplace_back(problem.flow->names()[i], display_value(l.z[i] - problem.z[i]));
+    }
+    return result;
+  }
   std::size_t accidental() const { return l.spectrum.zeros - l.structural_zeros; }
   std::string what() const {
     const std::string off =
@@ -66,14 +76,16 @@ Json rows(const linear::Matrix<linear::Precise>& A) {
 }
 
 Json to_json(const Answer& a) {
-  Json eigenvalues = Json::array(), point = Json::object();
+  Json eigenvalues = Json::array(), point = Json::object(), moved = Json::object();
   for (const linear::Eigenvalue& e : a.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
   for (std::size_t i = 0; i + 1 < a.l.z.size(); ++i) point[a.problem.flow->names()[i]] = display_value(a.l.z[i]);
+  for (const auto& [name, distance] : a.moved()) moved[name] = distance;
   return {{"format", 1},
           {"kind", linear::name(a.l.kind)},
           {"autonomous", a.l.symmetry.autonomous},
           {"t", a.problem.t},
           {"point", point},
+          {"moved", moved},
           {"states", a.states()},
           {"inputs", a.inputs()},
           {"A", rows(a.l.A)},
@@ -113,6 +125,8 @@ std::string text(const Answer& a) {
     out += fmt::format("  {:<24} {:>24}   follows from the constraints\n", a.problem.flow->names()[i],
                        display_value(a.l.z[i]));
   }
+  for (const auto& [name, distance] : a.moved())
+    out += fmt::format("moved             {} by {:.1e}, to where the balance holds\n", name, distance);
   out += matrix_text("A", a.l.A, a.states(), a.states());
   if (!a.inputs().empty()) out += matrix_text("B", a.l.B, a.states(), a.inputs());
   out += "\neigenvalues\n";

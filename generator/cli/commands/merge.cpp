@@ -62,11 +62,12 @@ class Tables {
     const std::uint32_t number = rows_.add(file);
     std::optional<ShardHeader> note;
     std::size_t lines = 0;
-    for_each_line(file, [&](std::string_view line, std::uint64_t offset) {
+    const std::size_t tail = for_each_line(file, [&](std::string_view line, std::uint64_t offset) {
       if (++lines == 1) {
         note = begun(path, std::string(line));
       } else if (lines == 2) {
         if (header_.empty()) header_ = line;
+        checksum_ = RowChecksum(header_);
         if (line != header_) fail(fmt::format("{} has other columns", model::quote(path)), "make that shard again");
       } else {
         take(path, line, note->shard, number, offset);
@@ -74,6 +75,7 @@ class Tables {
       return true;
     });
     if (!note) begun(path, "");
+    if (tail > 0) cut_ = path;
   }
 
   void write(const std::string& out) {
@@ -107,6 +109,8 @@ class Tables {
     if (rows_.size() < lines)
       fail(fmt::format("{} lines are of runs that another line has", lines - rows_.size()),
            "make the shards again in which a run comes twice");
+    if (rows_.size() == note_.runs && !cut_.empty())
+      fail(fmt::format("{} ends within a line", model::quote(cut_)), "make that shard again");
     if (rows_.size() == note_.runs) return;
     std::size_t run = 0;
     while (run < rows_.size() && rows_.run(run) == run) ++run;
@@ -143,8 +147,8 @@ class Tables {
   void take(const std::string& path, std::string_view line, const analysis::Shard& shard, std::uint32_t file,
             std::uint64_t offset) {
     std::size_t run = 0;
-    if (!is_row_of_table(line, header_, run) || run >= note_.runs || !shard.contains(run)) {
-      fail(fmt::format("{} has a line that is no run of that shard: {}", model::quote(path),
+    if (!is_row_of_table(line, checksum_, run) || run >= note_.runs || !shard.contains(run)) {
+      fail(fmt::format("{} has a line that is no run of that shard, or was changed: {}", model::quote(path),
                        model::quote(std::string(line.substr(0, 60)))),
            "make that shard again");
     }
@@ -152,7 +156,8 @@ class Tables {
   }
 
   ShardHeader note_;
-  std::string header_;
+  std::string header_, cut_;  // cut_: a table that ends within a line
+  RowChecksum checksum_;
   std::map<std::size_t, std::string> tables_;
   Rows rows_;
 };

@@ -11,12 +11,14 @@
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "cli/output.hpp"
 #include "cli/sweep/npz.hpp"
 #include "emit/write_files.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
+#include "work.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -31,6 +33,11 @@ constexpr const char* mark = "# sweep: ";
               emit::write_fault(error.code()));
 }
 
+[[noreturn]] void refuse_columns(const std::string& path) {
+  throw Error("sweep", {}, fmt::format("{} has other columns than this sweep writes", model::quote(path)),
+              "write to another file with --out, or remove this one; it is kept as it is");
+}
+
 /// Opens a file that may be taken over: regular, owned by the user, not a link, and not being written.
 OpenFile open_own(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
@@ -38,32 +45,32 @@ OpenFile open_own(const std::string& path) {
   OpenFile file(descriptor);
   struct stat found {};
   if (::fstat(descriptor, &found) != 0 || !S_ISREG(found.st_mode) || found.st_uid != ::geteuid()) return {};
-  // File systems of some clusters have no locks, so a writer is not detected. This loses nothing: two writers have
-  // different files.
+  // A file of `run` that is being written, or of a worker whose leader was killed. File systems of some clusters have
+  // no locks, so a writer is not detected. This loses nothing: two writers have different files.
   if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) return {};
   return file;
 }
 
 }  // namespace
 
-CheckpointFile::CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t)> contains_run,
-                               Role part)
-    : file_(std::move(file)), place_(file_), key_(std::move(key)), contains_run_(std::move(contains_run)) {
+CheckpointFile::CheckpointFile(std::string file, std::string key, IsRowOfRun is_row_of_run, Role part)
+    : file_(std::move(file)), place_(file_), key_(std::move(key)), is_row_of_run_(std::move(is_row_of_run)) {
   std::error_code none;
   kept_ = !is_standard_output(file_) && (!fs::exists(file_, none) || fs::is_regular_file(file_, none));
   if (!kept_ || part == Role::member) return;
   try {
+    lock_ = TableLock(eom::AtomicFile::resolve_links(file_));
     for (const Unfinished& table : unfinished()) {
       if (!table.same) {
         throw Error("sweep", {}, fmt::format("{} is the unfinished table of another sweep", model::quote(table.path)),
                     "finish that sweep with its own options, remove the file, or write to another one with --out");
       }
-      read(table.file);
+      read(table.path, table.file);
       taken_over_.push_back(table.path);
       place_ = table.path;
     }
     if (taken_over_.empty()) {
-      if (const OpenFile done = open_own(eom::AtomicFile::resolve_links(file_).string())) read(done);
+      if (const OpenFile done = open_own(eom::AtomicFile::resolve_links(file_).string())) read(file_, done);
     }
   } catch (const std::system_error& error) {
     lost(error);
@@ -91,18 +98,31 @@ std::vector<CheckpointFile::Unfinished> CheckpointFile::unfinished() const {
   return found;
 }
 
-void CheckpointFile::read(const OpenFile& file) {
+void CheckpointFile::read(const std::string& path, const OpenFile& file) {
   const std::uint32_t from = rows_.add(file);
   std::size_t number = 0;
-  for_each_line(file, [&](std::string_view line, std::uint64_t offset) {
+  const std::size_t tail = for_each_line(file, [&](std::string_view line, std::uint64_t offset) {
     if (number == 0 && line != mark + key_) return false;
     if (number == 1 && header_.empty()) header_ = line;
-    if (number == 1 && header_ != line) return false;
+    if (number == 1 && header_ != line) refuse_columns(path);
+    if (number == 1) checksum_ = RowChecksum(header_);
     if (number++ < 2) return true;
     std::size_t run = 0;
-    if (is_row_of_table(line, header_, run) && contains_run_(run)) rows_.add(run, from, offset, line.size());
+    if (is_row_of_table(line, checksum_, run) && is_row_of_run_(run, line))
+      rows_.add(run, from, offset, line.size());
+    else
+      ++damaged_;
     return true;
   });
+  if (tail > 0 && number > 0 && path == file_) ++damaged_;  // the last line of a partial file is often incomplete
+}
+
+void CheckpointFile::warn_of_damage() {
+  if (damaged_ == 0 || std::exchange(warned_, true)) return;
+  work::warn(format_warning({{},
+                             fmt::format("{} lines of {} are no rows of this sweep: a checksum or a point differs",
+                                         damaged_, model::quote(place_)),
+                             "these runs are computed again; see to the disk if nobody edited the table"}));
 }
 
 std::string CheckpointFile::file_header() const { return mark + key_ + "\n" + header_ + "\n"; }
@@ -122,8 +142,10 @@ void CheckpointFile::write(const std::function<void(std::string_view)>& to) cons
 }
 
 void CheckpointFile::set_header(const std::string& header) try {
-  if (header_ != header) rows_ = Rows();  // a table with other columns cannot be continued
+  if (header_ != header && rows_.size() + damaged_ > 0) refuse_columns(place_);
   header_ = header;
+  checksum_ = RowChecksum(header_);
+  warn_of_damage();
   if (kept_) {
     out_.emplace(file_);
     if (out_->partial().empty()) {  // the file is open as standard output
@@ -153,7 +175,8 @@ void CheckpointFile::set_header(const std::string& header) try {
   lost(error);
 }
 
-void CheckpointFile::add(std::size_t run, const std::string& line) try {
+void CheckpointFile::add(std::size_t run, const std::string& row) try {
+  const std::string line = checksum_.append_to(row);
   if (out_)
     out_->write(line + "\n");
   else
@@ -190,6 +213,7 @@ void CheckpointFile::require_file() const {
 }
 
 void CheckpointFile::finish() {
+  warn_of_damage();
   if (kept_ && !open()) return;  // the table was complete
   rows_.sort();
   whole();

@@ -9,37 +9,41 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/sweep/row_checksum.hpp"
 #include "cli/sweep/rows.hpp"
+#include "cli/sweep/table_lock.hpp"
 
 namespace eomgen::cli {
 
 /// Table of a sweep with checkpoints. Rows are appended to FILE.partial-XXXXXX in the order of completion; finish()
 /// writes FILE in the order of the runs and removes the partial file. The constructor takes over the rows of partial
-/// files of the same sweep, unless their process still runs, and those of a finished FILE. For safety it follows no
-/// links and reads no files of other users. If FILE is not a regular file, nothing is taken over and the table is
-/// written directly.
+/// files of the same sweep and those of a finished FILE. Rows without their checksum or their point are computed again,
+/// with a warning. For safety it follows no links and reads no files of other users. A lock keeps a second sweep from
+/// FILE. If FILE is not a regular file, nothing is locked or taken over and the table is written directly.
 class CheckpointFile {
  public:
   enum class Role { whole, member };  // member: a process of a group other than its leader; it takes nothing over
 
-  /// `key` identifies the sweep; it is in the first line of the file. `belongs`: whether the table has this run. Throws
-  /// Error if there is an unfinished table of another sweep.
-  CheckpointFile(std::string file, std::string key, std::function<bool(std::size_t run)> contains_run,
-                 Role part = Role::whole);
+  using IsRowOfRun = std::function<bool(std::size_t run, std::string_view line)>;
+  /// `key` identifies the sweep; it is in the first line of the file. `is_row_of_run`: whether the table has this run,
+  /// and the line its point. Throws Error if there is an unfinished table of another sweep, or another process writes.
+  CheckpointFile(std::string file, std::string key, IsRowOfRun is_row_of_run, Role part = Role::whole);
 
   const Rows& rows() const { return rows_; }  // sorted before the first add() and after finish()
   void sort() { rows_.sort(); }
   const std::string& header() const { return header_; }
   /// First lines of the file.
   std::string file_header() const;
-  /// Sets the column names and starts the file. Not needed if all rows exist.
+  /// Sets the column names and starts the file. Not needed if all rows exist. Throws Error if the rows that were taken
+  /// over have other columns.
   void set_header(const std::string& header);
-  void add(std::size_t run, const std::string& line);
+  /// `row`: without its checksum.
+  void add(std::size_t run, const std::string& row);
   void finish();
   /// Throws Error unless FILE is a regular file.
   void require_file() const;
-  /// Whether rows are in files other than FILE.
-  bool open() const { return out_ || !taken_over_.empty(); }
+  /// Whether FILE has to be written: rows are in other files, or it has lines that are none.
+  bool open() const { return out_ || !taken_over_.empty() || damaged_ > 0; }
   /// Removes the partial files after another process wrote FILE.
   void remove_partial_files();
   /// Writes the rows so far if no partial file stores them.
@@ -54,14 +58,19 @@ class CheckpointFile {
     bool same = false;  // belongs to this sweep
   };
   std::vector<Unfinished> unfinished() const;
-  void read(const OpenFile& file);
+  void read(const std::string& path, const OpenFile& file);
+  void warn_of_damage();
   void write(const std::function<void(std::string_view)>& to) const;
   void whole() const;  // to FILE
   void remove_others();
 
   std::string file_, place_, key_, header_;
-  std::function<bool(std::size_t)> contains_run_;
-  bool kept_ = true;  // rows go to a partial file
+  IsRowOfRun is_row_of_run_;
+  TableLock lock_;
+  RowChecksum checksum_;
+  bool kept_ = true;         // rows go to a partial file
+  std::size_t damaged_ = 0;  // lines that were not taken over
+  bool warned_ = false;
   std::vector<std::string> taken_over_;
   Rows rows_;
   std::optional<eom::AtomicFile> out_;

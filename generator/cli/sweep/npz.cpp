@@ -30,11 +30,13 @@ std::string npy_header(const std::string& type, const std::string& shape) {
 
 std::string bytes_type(std::size_t width) { return fmt::format("|S{}", std::max<std::size_t>(width, 1)); }
 
+/// The fields of a row or of the header up to the detail, without the checksum.
 std::vector<std::string_view> fields_of(std::string_view line, std::size_t count) {
   std::vector<std::string_view> fields;
+  line = line.substr(0, line.rfind(','));
   for (; fields.size() + 1 < count; line.remove_prefix(fields.back().size() + 1))
     fields.push_back(line.substr(0, line.find(',')));
-  fields.push_back(line);  // the last field may be quoted
+  fields.push_back(line);  // the detail may be quoted
   return fields;
 }
 
@@ -71,7 +73,7 @@ class Table {
  public:
   Table(const std::string& key, const std::string& header, const Rows& rows) : rows_(rows), key_(key) {
     const auto commas = static_cast<std::size_t>(std::count(header.begin(), header.end(), ','));
-    for (const std::string_view name : fields_of(header, commas + 1)) names_.emplace_back(name);
+    for (const std::string_view name : fields_of(header, commas)) names_.emplace_back(name);
     outcome_ = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), "outcome") - names_.begin());
     rows_.for_each(0, rows_.size(), [this](std::size_t, std::string_view line) {
       const std::vector<std::string_view> fields = fields_of(line, names_.size());

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "cli/output.hpp"
 #include "model/content_hash.hpp"
 
@@ -24,7 +27,10 @@ std::string sweep_key(const SweepOptions& options, const model::Model& model, st
     for (const std::string& entry : options.sample) text += '\x1f' + entry;
   }
   if (!points_hash.empty()) text += "\npoints " + points_hash;
-  return model.id + " " + model::content_hash(text + '\n' + options.solver.value_or("")).substr(0, 16);
+  std::string name = model.id;  // the key is one line of the table
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '_');
+  return name + " " + model::content_hash(text + '\n' + options.solver.value_or("")).substr(0, 16);
 }
 
 }  // namespace eomgen::cli

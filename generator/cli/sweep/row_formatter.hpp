@@ -19,14 +19,16 @@ class RowFormatter {
   /// `varied`: the names of the points.
   RowFormatter(std::vector<std::string> varied, const model::Model& model, const run::Scene& scene);
 
+  /// Names of the columns, with that of the checksum.
   std::string header() const;
+  /// Row without its checksum, as the next one.
   std::string format_row(std::size_t run, const Point& point, const run::RunResult& result) const;
-  /// Line of a run that could not start.
+  /// Row of a run that could not start.
   std::string format_refused(std::size_t run, const Point& point, const std::string& why) const;
+  /// The first fields of a row: its run, and the values of `varied`.
+  static std::string format_point(std::size_t run, const std::vector<std::string>& varied, const Point& point);
 
  private:
-  std::string format_point(std::size_t run, const Point& point) const;
-
   std::vector<std::string> varied_, titles_, names_;
 };
 

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/sweep/row_checksum.hpp"
+
 namespace eomgen::cli {
 
 /// Shared file descriptor, closed with the last copy. An unlinked file stays readable until then.
@@ -30,12 +32,14 @@ class OpenFile {
 };
 
 /// Calls `take` with the lines of a file from the start until it returns false. A last line without line break is
-/// skipped.
-void for_each_line(const OpenFile& file, const std::function<bool(std::string_view line, std::uint64_t offset)>& take);
+/// skipped, and nothing is read behind a line that is longer than any row. Returns the bytes that were read of such a
+/// last line.
+std::size_t for_each_line(const OpenFile& file,
+                          const std::function<bool(std::string_view line, std::uint64_t offset)>& take);
 
-/// Whether a line has as many fields as `header`; if so, sets `run` to its first field. Lines written while the disk
-/// was full are incomplete.
-bool is_row_of_table(std::string_view line, std::string_view header, std::size_t& run);
+/// Whether a line begins with a number and has its checksum; if so, sets `run` to the number. Lines written while the
+/// disk was full, and edited ones, have not.
+bool is_row_of_table(std::string_view line, const RowChecksum& checksum, std::size_t& run);
 
 class Rows {
  public:

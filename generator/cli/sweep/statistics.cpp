@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_values = 16'000'000;  // in memory at the same time
 
-/// Calls take(number, field) with the fields of a line. Only the last field may be quoted.
+/// Calls take(number, field) with the first fields of a line, which are not quoted.
 template <class Take>
 void each_field(std::string_view line, std::size_t most, Take&& take) {
   for (std::size_t k = 0; k < most; ++k) {
@@ -41,7 +41,7 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
   const auto outcome = static_cast<std::size_t>(std::find(names.begin(), names.end(), "outcome") - names.begin());
   std::vector<ColumnStatistics> result;
   const std::size_t at_once = std::max<std::size_t>(1, most_values / std::max<std::size_t>(rows, 1));
-  const std::size_t end = names.size() - 1;  // the last column is text
+  const std::size_t end = names.size() - 2;  // the last columns are the detail and the checksum
   for (std::size_t first = outcome + 1; first < end; first += at_once) {
     const std::size_t last = std::min(first + at_once, end);
     std::vector<std::vector<double>> values(last - first);
@@ -75,7 +75,7 @@ void classify_runs(analysis::BasinStatistics& basins, const std::string& header,
   std::vector<double> state(places.size());
   for_each_row([&](std::string_view row) {
     bool well = false;
-    each_field(row, names.size() - 1, [&](std::size_t k, std::string_view text) {
+    each_field(row, names.size() - 2, [&](std::size_t k, std::string_view text) {
       if (k == outcome) well = is_successful(text);
       const auto place = std::find(places.begin(), places.end(), k);
       if (place == places.end()) return;

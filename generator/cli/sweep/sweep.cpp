@@ -97,7 +97,10 @@ Sweep::Sweep(const SweepOptions& options, const CommonOptions& common, const mod
            require_writable_targets({{"--out", file_, is_npz(file_) ? ".npz" : ".csv"}}, model.file, common.json),
            file_),
           key_of_table(options, model, common.seed, points_hash_, shard_, points_),
-          [this](std::size_t run) { return run < points_.size() && shard_.contains(run); },
+          [this](std::size_t run, std::string_view line) {
+            return run < points_.size() && shard_.contains(run) &&
+                   line.starts_with(RowFormatter::format_point(run, points_.names(), points_.point(run)) + ",");
+          },
           common.group == nullptr || common.group->is_leader() ? CheckpointFile::Role::whole
                                                                : CheckpointFile::Role::member),
       resumed_(checkpoint_.rows().size()),
@@ -216,9 +219,7 @@ bool Sweep::simulate_first(std::size_t run, bool integrate) {
   }
   if (options_.ensemble) require_side_by_side(*first_);
   text_ = RowFormatter(points_.names(), first_->derived->model, first_->scene);
-  const std::size_t there = checkpoint_.rows().size();
   checkpoint_.set_header(text_.header());
-  if (checkpoint_.rows().size() < there) resumed_ = 0;
   return true;
 }
 

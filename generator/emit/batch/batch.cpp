@@ -70,7 +70,17 @@ class File {
         {"mode_room", std::to_string(std::max<std::size_t>(1, program_.mode_layout().size()))},
         {"contact_states", std::to_string(eom::contact_states)},
         {"sincos", packs_ ? sincos() : ""},
-        {"names", named()}};
+        {"names", named()},
+        {"state_count", std::to_string(program_.state_count())},
+        {"parameter_count", std::to_string(context_.parameters.size())},
+        {"states", room(Slot::state)},
+        {"parameters", room(Slot::parameter)},
+        {"prepared", room(Slot::prepared)},
+        {"inputs", room(Slot::input)},
+        {"default_inputs", default_inputs()},
+        {"start_time", dialect_.value(context_.start_time)},
+        {"order", program_.taylor ? name_ + "_taylor_order" : "0"},
+        {"prepare", program_.prepared_count() > 0 ? fmt::format("    {}_prepare(p, w);\n", name_) : ""}};
     const std::vector<std::pair<std::string, std::string>> numbers = lane_template_values(single());
     values.insert(values.end(), numbers.begin(), numbers.end());
     return {{name_ + "_batch.c", render_template(skeleton::batch_model_batch_c, values, defined_)},
@@ -87,6 +97,19 @@ class File {
       case Slot::prepared: return program_.prepared_count();
       default: return context_.inputs.size();
     }
+  }
+
+  /// Size of an array of the self test, which is never empty.
+  std::string room(Slot slot) const {
+    for (const Array& array : arrays) {
+      if (array.slot == slot) return std::to_string(std::max<std::size_t>(1, entries(array)));
+    }
+    return "1";
+  }
+  std::string default_inputs() const {
+    std::string values;
+    for (const Quantity& input : context_.inputs) values += (values.empty() ? "" : ", ") + dialect_.value(input.value);
+    return values.empty() ? "0" : values;
   }
 
   void add(const Function& function) {
@@ -120,7 +143,9 @@ class File {
     defined_.push_back({{"adaptor", adaptor(function, list)},
                         {"kernel", kernel(function, block)},
                         {"many", driver(function, list, results)},
-                        {"entry", entry(function, list, head)}});
+                        {"entry", entry(function, list, head)},
+                        {"check_name", fmt::format("{}{}_agrees", prefix_, function)},
+                        {"check", check(function, list, results)}});
   }
   bool fits(const std::vector<Argument>& list, const std::vector<std::pair<std::string, std::size_t>>& results) const {
     std::size_t numbers = 0;
@@ -278,6 +303,48 @@ class File {
     return fmt::format("{}\n{{\n{}\n}}\n", head,
                        wrapped(fmt::format("  {}FOR_WIDTH({}_many, (count, stride, {}own, {}codes));", prefix_,
                                            function, inputs, results),
+                               "      "));
+  }
+
+  /// The comparison of the self test with the function of one state.
+  std::string check(const std::string& function, const std::vector<Argument>& list,
+                    const std::vector<std::pair<std::string, std::size_t>>& results) const {
+    std::string declared, unset, batch, sizes, handed, size = fmt::format("1 + {}", room(Slot::state));
+    for (const Slot slot : {Slot::parameter, Slot::prepared, Slot::input}) size += " + " + room(slot);
+    for (std::size_t r = 0; r < 3; ++r) {
+      const std::size_t count = r < results.size() ? results[r].second : 0;
+      batch += fmt::format("{}{}", r == 0 ? "" : ", ", r < results.size() ? fmt::format("y{}", r + 1) : "0");
+      sizes += fmt::format("{}{}", r == 0 ? "" : ", ", count);
+      if (r >= results.size()) continue;
+      size += fmt::format(" + {}", count);
+      declared +=
+          fmt::format("{}y{}[{}*{}SAMPLES]", r == 0 ? "" : ", ", r + 1, std::max<std::size_t>(1, count), prefix_);
+      unset += fmt::format("  {0}unset(y{1}, {2}*{0}SAMPLES);\n", prefix_, r + 1, count);
+    }
+    std::size_t result = 0;
+    for (const Argument& a : list) {
+      if (a.kind == Argument::Kind::result) {
+        if (result == 0) handed += "all, ";
+        handed += fmt::format("y{}, ", ++result);
+      } else {
+        handed += fmt::format("samples->{}, ", is_integer(a) ? a.name : arrays[place_of(a.slot)].name);
+      }
+    }
+    return fmt::format(R"(static int {0}{1}_agrees(struct {0}samples* samples)
+{{
+  enum {{
+    all = {2}_own_time | {2}_own_parameters | {2}_own_inputs | {2}_own_modes | {2}_own_prepared | {2}_own_orders
+  }};
+  {3} {4}, room[{5}];
+  {3}* const batch[3] = {{{6}}};
+  const size_t results[3] = {{{7}}};
+{8}{9}
+  return {0}compare({0}{1}_alone, samples, batch, results, room);
+}}
+)",
+                       prefix_, function, name_, dialect_.lane_type, declared, size, batch, sizes, unset,
+                       wrapped(fmt::format("  {0}_{1}_batch({2}SAMPLES, {2}SAMPLES, {3}samples->codes);", name_,
+                                           function, prefix_, handed),
                                "      "));
   }
 

@@ -10,6 +10,7 @@
 #include "abi/functions.hpp"
 #include "emit/metadata.hpp"
 #include "emit/names.hpp"
+#include "emit/self_test.hpp"
 #include "emit/signature.hpp"
 #include "emit/single_precision.hpp"
 #include "emit/start/start.hpp"
@@ -24,20 +25,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string number(double value) {
+std::string script_number(double value) {
   if (std::isnan(value)) return "NaN";
   if (std::isinf(value)) return value > 0 ? "Infinity" : "-Infinity";
   return decimal(value);
 }
 
-std::string rounded_number(double value) { return number(to_single(value)); }
+std::string rounded_number(double value) { return script_number(to_single(value)); }
 
 /// In single precision, sums, products, quotients and roots have the same bits as in C: rounding to 53 and then to 24
 /// bits equals one rounding to 24 bits.
 Dialect javascript_dialect(bool single) {
   Dialect dialect;
-  dialect.constant = [](const symbolic::Rational& value) { return number(nearest_double(value)); };
-  dialect.value = number;
+  dialect.constant = [](const symbolic::Rational& value) { return script_number(nearest_double(value)); };
+  dialect.value = script_number;
   dialect.pi = "3.141592653589793";
   if (single) {
     dialect.constant = [](const symbolic::Rational& value) { return rounded_number(nearest_double(value)); };
@@ -130,6 +131,17 @@ std::string vectors(const program::Program& program, const EmissionContext& cont
   return text + "]";
 }
 
+/// The comparison of `defaults` with the first vector, in the self test.
+std::string defaults_test(const program::Program& program, const EmissionContext& context, const Dialect& dialect) {
+  if (!begins_with_defaults(context, !dialect.rounding_function.empty())) return "";
+  return fmt::format(R"(  const x = new {0}({1}).fill(NaN), p = new {0}({2}).fill(NaN), first = vectors[0];
+  defaults(x, p);
+  if (!{0}.from(first.x).every((value, i) => x[i] === value)) return 1;
+  if (!{0}.from(first.p).every((value, i) => p[i] === value)) return 1;
+)",
+                     array_of(dialect), program.state_count(), context.parameters.size());
+}
+
 void require_known(const program::Program& program) {
   if (program.taylor)
     throw Error("emit", {}, "the JavaScript target does not support Taylor series",
@@ -189,6 +201,7 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
       {"rounding", dialect.rounding_function.empty() ? "" : ", " + dialect.rounding_function},
       {"prepared", std::to_string(program.prepared_count())},
       {"without_inputs", without_inputs()},
+      {"defaults_test", defaults_test(program, context, dialect)},
       {"vectors", vectors(program, context)}};
   return {{name + ".js", render_template(skeleton::javascript_model_js, values, functions)}};
 }

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <eom/outcome.hpp>
+
 #include "abi/functions.hpp"
 #include "emit/c/c.hpp"
 #include "emit/metadata.hpp"
@@ -15,8 +17,8 @@ namespace eomgen::emit {
 namespace {
 
 // Functions that the module wraps.
-constexpr const char* wrapped_functions[] = {"rhs",         "jac",       "jac_p",   "jac_u",  "mass",
-                                             "constraints", "reactions", "outputs", "events", "resets"};
+constexpr const char* wrapped_functions[] = {"rhs",         "jac",       "jac_p",   "jac_u",  "mass",   "momenta",
+                                             "constraints", "reactions", "outputs", "events", "resets", "taylor"};
 
 /// _rhs = _function("rhs", "daaaia"): one letter per argument type.
 std::string c_function_declarations() {
@@ -25,11 +27,24 @@ std::string c_function_declarations() {
     const abi::Function& function = *abi::find(name);
     std::string types;
     for (const abi::Input input : function.inputs)
-      types += input == abi::Input::time ? 'd' : input == abi::Input::mode ? 'I' : 'a';
+      types += input == abi::Input::time    ? 'd'
+               : input == abi::Input::mode  ? 'I'
+               : input == abi::Input::order ? 'i'
+                                            : 'a';
     types.append(function.results.size(), 'a');
     lines += fmt::format("{0}_{1} = _function(\"{1}\", \"{2}\")", lines.empty() ? "" : "\n", name, types);
   }
   return lines;
+}
+
+/// The outcomes of runs by the codes of NAME_simulate: those of the ABI, and its own.
+std::string outcomes() {
+  using eom::Outcome;
+  std::string list;
+  for (int code = 1; code <= eom::code_not_finite; ++code)
+    list += fmt::format("{}: \"{}\", ", code, eom::name(eom::outcome_of_abi_code(code)));
+  return list + fmt::format("10: \"{}\", 11: \"{}\", 12: \"{}\"", eom::name(Outcome::step_too_small),
+                            eom::name(Outcome::max_steps), eom::name(Outcome::diverged));
 }
 
 /// Values for the skeletons that depend on the floating-point type.
@@ -65,6 +80,7 @@ std::vector<EmittedFile> emit_python(const program::Program& program, const Emis
   std::vector<std::pair<std::string, std::string>> values = {{"name", name},
                                                              {"banner", banner(program, context, "# ", "# ", "")},
                                                              {"functions_of_c", c_function_declarations()},
+                                                             {"outcomes", outcomes()},
                                                              {"resets", context.has_resets() ? "True" : "False"}};
   const std::vector<std::pair<std::string, std::string>> numbers = number_values(context.single_error.has_value());
   values.insert(values.end(), numbers.begin(), numbers.end());

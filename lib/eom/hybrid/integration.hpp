@@ -214,7 +214,7 @@ inline Result Integration::integrate_segments(Result total, const Options& optio
     segment.max_steps =
         options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
     if (options.fixed_step > 0 && problem_.fixed_step > 0)
-      segment.fixed_step = options.fixed_step * all[k].step / problem_.fixed_step;
+      segment.fixed_step = all[k].step * (options.fixed_step / problem_.fixed_step);  // their product may overflow
     segment.events_at_end = k + 1 == all.size();
     if (!jump_) integrate_until(all[k].end, segment, observer, event, total);
     reason_ = explain(context_, reason_, jump_, total);
