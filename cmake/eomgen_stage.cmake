@@ -19,6 +19,15 @@ function(eomgen_take_precompiled target owner)
   endif()
 endfunction()
 
+# eomgen_unite(TARGET): with EOMGEN_UNITY, compiles the sources of a target in groups, each as one file. Headers and templates
+# are then read once for a group. Names of one file (in its anonymous namespace) must differ from those of the others of its
+# target; tests/architecture requires it.
+function(eomgen_unite target)
+  if(EOMGEN_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+  endif()
+endfunction()
+
 # eomgen_stage(NAME [OWN_HEADERS] [UNOPTIMISED] SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
 # One static library per stage. NEEDS is the dependency rule: a stage uses only the stages it names.
 # Headers are included as "stage/file.hpp" from generator/. OWN_HEADERS: no shared precompiled headers.
@@ -32,6 +41,7 @@ function(eomgen_stage name)
     target_link_libraries(eomgen_${name} PUBLIC eomgen_${stage})
   endforeach()
   target_link_libraries(eomgen_${name} PUBLIC ${ARG_LINKS})
+  eomgen_unite(eomgen_${name})
   if(ARG_UNOPTIMISED)
     target_compile_options(eomgen_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
@@ -67,5 +77,6 @@ function(eomgen_test name)
   if(NOT ARG_OWN_OPTIONS)
     eomgen_take_precompiled(test_${name} eomgen_test_main)
   endif()
+  eomgen_unite(test_${name})
   add_test(NAME ${name} COMMAND test_${name})
 endfunction()

@@ -2,4 +2,5 @@
 # Other compilers may warn more, so only the presets for developers treat warnings as errors.
 add_library(eomgen_warnings INTERFACE)
 target_compile_options(eomgen_warnings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion $<$<BOOL:${EOMGEN_WERROR}>:-Werror>)
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion $<$<BOOL:${EOMGEN_WERROR}>:-Werror>
+  $<$<BOOL:${EOMGEN_UNITY}>:-Wno-shadow>)  # where several files are one, a name in one of them is no outer scope of another

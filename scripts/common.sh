@@ -26,8 +26,10 @@ jobs() {
 }
 
 # configure PRESET: takes about a second if nothing changed. Always run, since only configuring finds a new folder.
+# EOMGEN_UNITY=ON in the environment compiles several files at a time (docs/testing.md).
 configure() {
   local preset=$1 folder="$root/build/$1" fresh=() log
+  local options=(${EOMGEN_UNITY:+"-DEOMGEN_UNITY=$EOMGEN_UNITY"})
   # The build folder of a moved or copied source tree cannot be reused.
   if [[ -f $folder/CMakeCache.txt ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
     say "build/$preset was configured for another folder: configuring afresh"
@@ -36,7 +38,7 @@ configure() {
   mkdir -p "$folder"
   log="$folder/configure.log"
   say "configuring (cmake --preset $preset)"
-  if ! (cd "$root" && cmake --preset "$preset" "${fresh[@]}") >"$log" 2>&1; then
+  if ! (cd "$root" && cmake --preset "$preset" "${options[@]}" "${fresh[@]}") >"$log" 2>&1; then
     cat "$log" >&2
     fail 4 "configuring failed; build/$preset/configure.log has the whole of it"
   fi

@@ -64,7 +64,7 @@ void check_against_oracle(Mechanics& m, const DisplayForm& one, const DisplayFor
 }
 
 /// Figure at the start of the default scene.
-void draw(Mechanics& m, const system::EquationSystem& system, print::Findings& findings) {
+void draw_figure(Mechanics& m, const system::EquationSystem& system, print::Findings& findings) {
   try {
     findings.figure = figure(m, run::resolve_scene(m, system, m.model->scene("default"), {}));
   } catch (const Error& error) {
@@ -135,7 +135,7 @@ std::string latex_document(std::shared_ptr<const model::Model> model, std::uint6
   findings.conserved = conserved_of(m, two, conserved);
   const std::vector<std::uint32_t> cyclic = conservation::cyclic_coordinates(conserved);
   if (!cyclic.empty()) findings.routh = forms.routh(cyclic);
-  draw(m, system, findings);
+  draw_figure(m, system, findings);
   check_against_oracle(m, one, two, seed, findings);
   look_for_steady_motions(m, two, seed, findings);
   return print::latex_document(m, one, two, findings);

@@ -8,7 +8,6 @@
 namespace eomgen::cli {
 namespace {
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 std::string error_text(double value) { return std::isfinite(value) ? fmt::format("{:.1e}", value) : "-"; }
 std::string setting(const bench::Row& row) {
   return row.step > 0 ? fmt::format("step {:.2g}", row.step) : fmt::format("{:.0e}", row.rtol);
@@ -22,12 +21,12 @@ Json BenchReport::json() const {
   Json list = Json::array();
   for (const bench::Row& row : found.rows) {
     Json errors = Json::object();
-    for (std::size_t i = 0; i < row.errors.size(); ++i) errors[found.states[i]] = number(row.errors[i]);
+    for (std::size_t i = 0; i < row.errors.size(); ++i) errors[found.states[i]] = finite_or_null(row.errors[i]);
     list.push_back({{"solver", row.solver},
                     {"rtol", row.step > 0 ? Json(nullptr) : Json(row.rtol)},
                     {"step", row.step > 0 ? Json(row.step) : Json(nullptr)},
-                    {"error", number(row.error)},
-                    {"error_along", number(row.error_along)},
+                    {"error", finite_or_null(row.error)},
+                    {"error_along", finite_or_null(row.error_along)},
                     {"errors", errors},
                     {"seconds", row.seconds},
                     {"repeats", row.repeats},

@@ -4,11 +4,6 @@
 namespace eomgen::cli {
 namespace {
 
-template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
 Json list(const std::vector<std::string>& names) {
   Json result = Json::array();
   for (const std::string& name : names) result.push_back(name);

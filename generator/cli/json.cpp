@@ -2,6 +2,7 @@
 #include "cli/json.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -145,5 +146,7 @@ struct Writer {
 std::string Json::dump(int indent, bool signed_zero) const {
   return Writer{signed_zero}.of(*this).dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
+
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 }  // namespace eomgen::cli

@@ -19,8 +19,6 @@ bool has_work(const run::RunEvent& event) {
 
 constexpr double unbounded = 1e308;  // replaces infinity, which JSON does not have
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 /// One line of the report: title, then text.
 std::string line(const std::string& label, const std::string& value) { return fmt::format("{:<18}{}\n", label, value); }
 
@@ -123,14 +121,15 @@ Json RunReport::json() const {
   const pipeline::Timings& seconds = derived.seconds;
   Json final = Json::object(), invariants = Json::object(), events = Json::array(), kinks = Json::array();
   for (const auto& [name, value] : result.final) {
-    if (is_final(simulation, name)) final[name] = number(value);
+    if (is_final(simulation, name)) final[name] = finite_or_null(value);
   }
   for (const run::Invariant& i : result.invariants) {
-    invariants[i.name] = {{"initial", number(i.initial)}, {"max_relative_drift", number(i.max_relative_drift)}};
+    invariants[i.name] = {{"initial", finite_or_null(i.initial)},
+                          {"max_relative_drift", finite_or_null(i.max_relative_drift)}};
   }
   for (const run::RunEvent& e : result.events) {
     events.push_back({{"t", e.t}, {"kind", e.kind}, {"name", e.name}});
-    if (has_work(e)) events.back()["work"] = number(e.work);
+    if (has_work(e)) events.back()["work"] = finite_or_null(e.work);
   }
   Json changes = Json::array();
   for (const eom::MethodChange& c : result.reason.changes)
@@ -161,8 +160,8 @@ Json RunReport::json() const {
       {"compiled", compiled_when(code)},
       {"final", final},
       {"invariants", invariants},
-      {"power_balance", number(result.power_balance)},
-      {"constraint_drift", derived.mechanics.active.empty() ? Json(nullptr) : number(result.constraint_drift)},
+      {"power_balance", finite_or_null(result.power_balance)},
+      {"constraint_drift", derived.mechanics.active.empty() ? Json(nullptr) : finite_or_null(result.constraint_drift)},
       {"projection",
        {{"position", result.projection_position},
         {"velocity", result.projection_velocity},

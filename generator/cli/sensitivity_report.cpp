@@ -9,12 +9,6 @@
 
 namespace eomgen::cli {
 
-namespace {
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-}  // namespace
-
 std::string text_of(const run::Sensitivities& found, const std::vector<std::string>& states) {
   std::string out = fmt::format("\nsensitivities     of the state at t = {}, by {}: {}\n", found.t, found.solver,
                                 eom::name(found.outcome));
@@ -34,12 +28,12 @@ Json json_of(const run::Sensitivities& found, const std::vector<std::string>& st
   bool estimated = false;
   for (const run::Sensitivity& s : found.list) {
     for (std::size_t i = 0; i < states.size(); ++i) {
-      values[s.of][states[i]] = number(s.value[i]);
-      if (!s.error.empty()) errors[s.of][states[i]] = number(s.error[i]), estimated = true;
+      values[s.of][states[i]] = finite_or_null(s.value[i]);
+      if (!s.error.empty()) errors[s.of][states[i]] = finite_or_null(s.error[i]), estimated = true;
     }
     if (s.of_time == 0) continue;
-    values[s.of]["t"] = number(s.of_time);
-    if (!s.error.empty()) errors[s.of]["t"] = number(s.error_of_time);
+    values[s.of]["t"] = finite_or_null(s.of_time);
+    if (!s.error.empty()) errors[s.of]["t"] = finite_or_null(s.error_of_time);
   }
   return {{"method", found.solver},
           {"t", found.t},

@@ -15,7 +15,7 @@ namespace {
 using eom::plot::escaped;
 using stress::Verdict;
 
-constexpr double letter = 7.2, line = 18, column = 22, cell = 13;  // pixels; text widths are estimated
+constexpr double letter = 7.2, line_height = 18, column = 22, cell = 13;  // pixels; text widths are estimated
 
 struct Line {
   std::string name;
@@ -47,7 +47,7 @@ std::string rectangle(double x, double y, double width, double height, const cha
 }
 
 // The verdicts also differ in shape: a square, a bar, a square with a cross.
-std::string mark(Verdict verdict, double x, double y) {
+std::string status_mark(Verdict verdict, double x, double y) {
   switch (verdict) {
     case Verdict::pass: return rectangle(x, y, cell, cell, eom::plot::colours[0]);
     case Verdict::reported: return rectangle(x, y + cell / 2 - 2, cell, 4, eom::plot::colours[3]);
@@ -84,7 +84,7 @@ std::string StressPlot::svg() const {
       170.0, 24 + letter * static_cast<double>(longest(lines, [](const Line& l) { return std::string_view(l.name); })));
   const double heads = 12 + letter * static_cast<double>(longest(
                                          found.solvers, [](const std::string& s) { return std::string_view(s); }));
-  const double top = 70 + heads, height = top + line * static_cast<double>(lines.size()) + 20;
+  const double top = 70 + heads, height = top + line_height * static_cast<double>(lines.size()) + 20;
   const double width = std::max({left + column * static_cast<double>(found.solvers.size()) + 24, 480.0,
                                  48 + 9.8 * static_cast<double>(title.size())});
   std::string out = fmt::format(
@@ -95,7 +95,7 @@ std::string StressPlot::svg() const {
   out += text(24, 28, R"( font-size="17" font-weight="600" fill="#111")", title);
   double x = 24;
   for (const Verdict verdict : verdicts) {
-    out += mark(verdict, x, 43) + text(x + cell + 6, 54, "", counted(found, verdict));
+    out += status_mark(verdict, x, 43) + text(x + cell + 6, 54, "", counted(found, verdict));
     x += 120;
   }
   if (!found.left_out.empty()) out += text(x, 54, "", fmt::format("{} left out", found.left_out.size()));
@@ -106,14 +106,14 @@ std::string StressPlot::svg() const {
                 found.solvers[s]);
   }
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    const double y = top + line * static_cast<double>(k);
-    if (k % 2 == 0) out += rectangle(12, y, width - 24, line, "#f3f4f6") + "\n";
+    const double y = top + line_height * static_cast<double>(k);
+    if (k % 2 == 0) out += rectangle(12, y, width - 24, line_height, "#f3f4f6") + "\n";
     out += text(left - 10, y + 13.5, " text-anchor=\"end\"", lines[k].name);
     for (std::size_t s = 0; s < lines[k].rows.size(); ++s) {
       const stress::Row* row = lines[k].rows[s];
       if (row == nullptr) continue;
       out += "<g><title>" + escaped(row_summary(*row)) + "</title>" +
-             mark(row->verdict, left + column * static_cast<double>(s), y + 2.5) + "</g>\n";
+             status_mark(row->verdict, left + column * static_cast<double>(s), y + 2.5) + "</g>\n";
     }
   }
   return out + "</svg>\n";

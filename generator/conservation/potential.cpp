@@ -21,13 +21,13 @@ using symbolic::Ref;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-Symbol coordinate(std::size_t i) { return {SymbolKind::coordinate, static_cast<std::uint32_t>(i), 0}; }
+Symbol coordinate_symbol(std::size_t i) { return {SymbolKind::coordinate, static_cast<std::uint32_t>(i), 0}; }
 
-class Search {
+class PotentialSearch {
  public:
-  Search(mechanics::Mechanics& m, const std::vector<Ref>& Q) : m_(m), dag_(*m.dag), Q_(Q) {
+  PotentialSearch(mechanics::Mechanics& m, const std::vector<Ref>& Q) : m_(m), dag_(*m.dag), Q_(Q) {
     for (std::size_t i = 0; i < Q.size(); ++i) {
-      if (std::any_of(Q.begin(), Q.end(), [&](Ref q) { return symbolic::depends_on(dag_, q, coordinate(i)); }) ||
+      if (std::any_of(Q.begin(), Q.end(), [&](Ref q) { return symbolic::depends_on(dag_, q, coordinate_symbol(i)); }) ||
           !dag_.is_zero(Q[i])) {
         active_.push_back(i);
       }
@@ -50,7 +50,7 @@ class Search {
  private:
   static constexpr std::size_t most_coordinates = 6;  // more coordinates have too many orders and expressions
 
-  Ref slope(Ref f, std::size_t i) { return symbolic::partial_derivative(dag_, coordinate(i))(f); }
+  Ref slope(Ref f, std::size_t i) { return symbolic::partial_derivative(dag_, coordinate_symbol(i))(f); }
 
   bool is_potential(Ref U) {
     for (const std::size_t i : active_) {
@@ -66,8 +66,8 @@ class Search {
           symbolic::expand_or_keep(dag_, dag_.neg(dag_.add(Q_[order[step]], slope(U, order[step]))));
       if (mechanics::vanishes(dag_, {*rest})) continue;
       for (std::size_t before = 0; before < step && rest; ++before)
-        rest = symbolic::eliminate_symbol(dag_, *rest, coordinate(order[before]));
-      if (rest) rest = symbolic::antiderivative(dag_, *rest, coordinate(order[step]));
+        rest = symbolic::eliminate_symbol(dag_, *rest, coordinate_symbol(order[before]));
+      if (rest) rest = symbolic::antiderivative(dag_, *rest, coordinate_symbol(order[step]));
       if (!rest) return std::nullopt;
       U = dag_.add(U, *rest);
     }
@@ -133,7 +133,7 @@ std::vector<DomainCondition> domain_of(mechanics::Mechanics& m, const std::vecto
 }
 
 std::optional<Potential> find_potential(mechanics::Mechanics& m, const std::vector<Ref>& Q) {
-  const std::optional<Ref> U = Search(m, Q).run();
+  const std::optional<Ref> U = PotentialSearch(m, Q).run();
   if (!U) return std::nullopt;
   return Potential{*U, domain_of(m, {*U})};
 }

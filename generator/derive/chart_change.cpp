@@ -46,17 +46,18 @@ Matrix step(Dag& dag, std::size_t axis, const Turn& turn) {
   R[k][j] = dag.neg(turn.sine.ref);
   return R;
 }
-Vec3 times(Dag& dag, const Matrix& R, const Vec3& v) {
+Vec3 matrix_product(Dag& dag, const Matrix& R, const Vec3& v) {
   return {symbolic::dot(dag, R[0], v), symbolic::dot(dag, R[1], v), symbolic::dot(dag, R[2], v)};
 }
-Matrix transposed(const Matrix& R) {
+Matrix transpose_of(const Matrix& R) {
   return {Vec3{R[0][0], R[1][0], R[2][0]}, Vec3{R[0][1], R[1][1], R[2][1]}, Vec3{R[0][2], R[1][2], R[2][2]}};
 }
-Matrix times(Dag& dag, const Matrix& A, const Matrix& B) {
-  const Matrix columns = transposed(B);
-  return transposed({times(dag, A, columns[0]), times(dag, A, columns[1]), times(dag, A, columns[2])});
+Matrix matrix_product(Dag& dag, const Matrix& A, const Matrix& B) {
+  const Matrix columns = transpose_of(B);
+  return transpose_of(
+      {matrix_product(dag, A, columns[0]), matrix_product(dag, A, columns[1]), matrix_product(dag, A, columns[2])});
 }
-Vec3 along(Dag& dag, std::size_t axis, Ref size) {
+Vec3 along_axis(Dag& dag, std::size_t axis, Ref size) {
   Vec3 v = symbolic::zero_vector(dag);
   v[axis] = size;
   return v;
@@ -84,12 +85,13 @@ std::vector<Ref> change_of_angles(Dag& dag, const std::vector<std::uint32_t>& an
   std::array<Matrix, 3> R;
   for (std::size_t s = 0; s < 3; ++s) R[s] = step(dag, from[s], turn_by(dag, n.value[s].ref));
   // w along the axes of the body, eq. (5.59).
-  Vec3 w = symbolic::add(dag, times(dag, R[1], along(dag, from[0], n.rate[0].ref)), along(dag, from[1], n.rate[1].ref));
-  w = symbolic::add(dag, times(dag, R[2], w), along(dag, from[2], n.rate[2].ref));
-  const std::array<Turn, 3> turns = read_off(dag, to, times(dag, R[2], times(dag, R[1], R[0])));
+  Vec3 w = symbolic::add(dag, matrix_product(dag, R[1], along_axis(dag, from[0], n.rate[0].ref)),
+                         along_axis(dag, from[1], n.rate[1].ref));
+  w = symbolic::add(dag, matrix_product(dag, R[2], w), along_axis(dag, from[2], n.rate[2].ref));
+  const std::array<Turn, 3> turns = read_off(dag, to, matrix_product(dag, R[2], matrix_product(dag, R[1], R[0])));
 
   // Along the axes before the last step, g2 and g3 are two of the axes, and g1 has no component along g2.
-  const Vec3 v = times(dag, transposed(step(dag, to[2], turns[2])), w);
+  const Vec3 v = matrix_product(dag, transpose_of(step(dag, to[2], turns[2])), w);
   const Matrix second = step(dag, to[1], turns[1]);
   const std::size_t third = 3 - to[1] - to[2];
   const Scalar rate1 = Scalar{&dag, v[third]} / Scalar{&dag, second[third][to[0]]};

@@ -40,7 +40,7 @@ bool round(TestVector& at) {
 
 std::vector<float> single(const std::vector<double>& values) { return {values.begin(), values.end()}; }
 
-std::vector<cln::cl_R> exact(const std::vector<double>& values) {
+std::vector<cln::cl_R> exact_values(const std::vector<double>& values) {
   std::vector<cln::cl_R> result;
   for (const double value : values) result.push_back(numeric::exact(value));
   return result;
@@ -49,7 +49,8 @@ std::vector<cln::cl_R> exact(const std::vector<double>& values) {
 /// The error relative to the largest entry of each result. Returns nothing if there is no value, no value in single
 /// precision, or the code reports a singular matrix.
 std::optional<double> error_of(const program::Function& function, const TestVector& at) {
-  program::Arguments<cln::cl_R> arguments{numeric::exact(at.t), exact(at.x), exact(at.p), exact(at.u)};
+  program::Arguments<cln::cl_R> arguments{numeric::exact(at.t), exact_values(at.x), exact_values(at.p),
+                                          exact_values(at.u)};
   program::Arguments<float> rounded_ones{static_cast<float>(at.t), single(at.x), single(at.p), single(at.u)};
   arguments.mode = rounded_ones.mode = at.mode;
   try {

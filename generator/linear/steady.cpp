@@ -6,19 +6,20 @@
 namespace eomgen::linear {
 namespace {
 
-struct Equations {
+struct PreciseEquations {
   Matrix<Precise> value, jacobian;
 };
 
-void add(Equations& e, const Matrix<Precise>& value, const Matrix<Precise>& jacobian) {
+void add(PreciseEquations& e, const Matrix<Precise>& value, const Matrix<Precise>& jacobian) {
   e.value = stacked(std::move(e.value), value);
   e.jacobian = stacked(std::move(e.jacobian), jacobian);
 }
 
-Equations steady_equations(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
-                           const State<Precise>& start, const Setting<Precise>& setting, const ExtraEquations& extra) {
+PreciseEquations steady_equations(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
+                                  const State<Precise>& start, const Setting<Precise>& setting,
+                                  const ExtraEquations& extra) {
   const Field<Precise> field = flow.at(z, setting);
-  Equations e{field.phi, field.phi_jacobian};
+  PreciseEquations e{field.phi, field.phi_jacobian};
   e.jacobian.cols = field.phi_jacobian.cols;
   add(e, rows_of(field.X, symmetry.constant), rows_of(field.jacobian, symmetry.constant));
   for (const std::size_t i : ignorable_entries(symmetry)) {
@@ -36,7 +37,7 @@ Equations steady_equations(const Flow& flow, const Symmetry& symmetry, const Sta
 }
 
 /// The magnitude of the terms of an equation, estimated from its derivatives.
-Precise size_of(const Equations& e, std::size_t i, const State<Precise>& z) {
+Precise size_of(const PreciseEquations& e, std::size_t i, const State<Precise>& z) {
   Precise size(1);
   for (std::size_t j = 0; j < e.jacobian.cols; ++j)
     size = size + magnitude(e.jacobian(i, j)) * (Precise(1) + magnitude(z[j]));
@@ -44,7 +45,7 @@ Precise size_of(const Equations& e, std::size_t i, const State<Precise>& z) {
 }
 
 /// Whether every equation holds to so many digits, relative to the magnitude of its terms.
-bool is_satisfied(const Equations& e, const State<Precise>& z, int digits_of_it = 90) {
+bool is_satisfied(const PreciseEquations& e, const State<Precise>& z, int digits_of_it = 90) {
   for (std::size_t i = 0; i < e.value.rows; ++i) {
     if (magnitude(e.value(i, 0)) > tiny<Precise>(digits_of_it) * size_of(e, i, z)) return false;
   }
@@ -70,7 +71,7 @@ std::optional<State<Precise>> newton(const Flow& flow, const Symmetry& symmetry,
   State<Precise> z = start;
   for (int step = 0; step < most_steps; ++step) {
     z = on_constraints(flow, z, setting);
-    Equations e = steady_equations(flow, symmetry, z, start, setting, extra);
+    PreciseEquations e = steady_equations(flow, symmetry, z, start, setting, extra);
     for (std::size_t i = 0; i < e.jacobian.rows; ++i) e.jacobian(i, e.jacobian.cols - 1) = Precise(0);  // t stays
     const Matrix<Precise> move =
         Elimination<Precise>(e.jacobian, tiny<Precise>(rank.cutoff), tiny<Precise>(rank.floor)).solve(e.value);
@@ -93,8 +94,8 @@ struct Problem {
   const Setting<Precise>& setting;
   const ExtraEquations& extra;
 
-  Equations at(const State<Precise>& z) const {
-    Equations e = steady_equations(flow, symmetry, z, start, setting, extra);
+  PreciseEquations at(const State<Precise>& z) const {
+    PreciseEquations e = steady_equations(flow, symmetry, z, start, setting, extra);
     for (std::size_t i = 0; i < e.jacobian.rows; ++i) e.jacobian(i, e.jacobian.cols - 1) = Precise(0);  // t stays
     return e;
   }
@@ -124,7 +125,7 @@ std::optional<SteadyState> multiple_root(const Problem& p) {
   std::optional<Matrix<Precise>> before;
   Precise ratio_before(0);
   for (int step = 0; step < most_steps; ++step) {
-    const Equations e = p.at(z);
+    const PreciseEquations e = p.at(z);
     const Matrix<Precise> move =
         Elimination<Precise>(e.jacobian, tiny<Precise>(cutoff), tiny<Precise>(floor)).solve(e.value);
     const Precise size = largest_move(move, z);
@@ -152,7 +153,7 @@ std::optional<SteadyState> multiple_root(const Problem& p) {
 /// The least relative change of the numbers of the setting with which each equation holds: the largest over the
 /// equations.
 Precise distance_in_numbers(const Problem& p, const State<Precise>& z) {
-  const Equations e = p.at(z);
+  const PreciseEquations e = p.at(z);
   const Precise change = tiny<Precise>(50);
   std::vector<Precise> moved_by(e.value.rows, Precise(0));
   const auto add = [&](std::vector<Precise> Setting<Precise>::*list) {
@@ -160,7 +161,7 @@ Precise distance_in_numbers(const Problem& p, const State<Precise>& z) {
       if (is_zero((p.setting.*list)[k])) continue;
       Setting<Precise> other = p.setting;
       (other.*list)[k] = (other.*list)[k] * (Precise(1) + change);
-      const Equations there = steady_equations(p.flow, p.symmetry, z, p.start, other, p.extra);
+      const PreciseEquations there = steady_equations(p.flow, p.symmetry, z, p.start, other, p.extra);
       for (std::size_t i = 0; i < moved_by.size(); ++i)
         moved_by[i] = moved_by[i] + magnitude(there.value(i, 0) - e.value(i, 0)) / change;
     }
@@ -183,7 +184,7 @@ std::optional<SteadyState> rounded_root(const Problem& p) {
   constexpr double roundings = 1e-12;
   State<Precise> z = p.start;
   for (int step = 0; step < most_steps; ++step) {
-    Equations e = p.at(z);
+    PreciseEquations e = p.at(z);
     for (std::size_t i = 0; i < e.value.rows; ++i) {
       const Precise size = size_of(e, i, z);
       e.value(i, 0) = e.value(i, 0) / size;
@@ -248,7 +249,7 @@ std::optional<SteadyState> find_steady_state(const Flow& flow, const Symmetry& s
   }
   const Problem p{flow, symmetry, start, setting, extra};
   try {
-    const Equations e = p.at(start);
+    const PreciseEquations e = p.at(start);
     if (found ? !is_satisfied(e, start, exact) : is_satisfied(e, start, near)) {
       if (const auto root = multiple_root(p)) found = root;
     }

@@ -12,7 +12,7 @@
 namespace eomgen::mechanics {
 namespace {
 
-using Row = std::vector<Ref>;  // by the free coordinates
+using DirectionRow = std::vector<Ref>;  // by the free coordinates
 using Real = cln::cl_R;
 
 bool sticks(const Contact& contact) { return contact.dimensions() > 0 && !contact.width; }
@@ -92,8 +92,8 @@ class Search {
     }
     for (std::uint32_t c = 0; c < m_.contacts.size(); ++c) {
       if (c == index || !m_.contacts[c].unilateral) continue;
-      const Row g = row(m_.constraints[m_.contacts[c].constraints[0]].gradient);
-      std::vector<Row> rows = base_;
+      const DirectionRow g = row(m_.constraints[m_.contacts[c].constraints[0]].gradient);
+      std::vector<DirectionRow> rows = base_;
       rows.push_back(g);
       if (free_directions(rows) == free) continue;
       // One remaining direction may have any length.
@@ -104,13 +104,13 @@ class Search {
   }
 
  private:
-  Row row(const std::vector<Ref>& by_coordinate) {
-    Row result;
+  DirectionRow row(const std::vector<Ref>& by_coordinate) {
+    DirectionRow result;
     for (const std::uint32_t i : m_.free) result.push_back(space_.impose_and_expand(by_coordinate[i]));
     return result;
   }
 
-  std::size_t rank(const std::vector<Row>& rows, std::size_t point) const {
+  std::size_t rank(const std::vector<DirectionRow>& rows, std::size_t point) const {
     numeric::Matrix<Real> matrix(rows.size(), m_.free.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const std::vector<Real> values = space_.values(rows[i], point);
@@ -121,8 +121,8 @@ class Search {
   }
 
   /// The number of directions of slip left under these rows: the maximum over the sample points.
-  std::size_t free_directions(const std::vector<Row>& rows) const {
-    std::vector<Row> all = rows;
+  std::size_t free_directions(const std::vector<DirectionRow>& rows) const {
+    std::vector<DirectionRow> all = rows;
     all.insert(all.end(), tangents_.begin(), tangents_.end());
     std::size_t most = 0;
     for (std::size_t point = 0; point < space_.points(); ++point)
@@ -132,9 +132,9 @@ class Search {
 
   /// The direction, of two, that one permanent constraint blocks; empty if it takes several constraints.
   std::optional<std::vector<Ref>> always_held(const Contact& contact) {
-    std::vector<Row> rows;
+    std::vector<DirectionRow> rows;
     if (contact.constraints.size() == 1) rows.push_back(row(m_.constraints[contact.constraints[0]].gradient));
-    for (const Row& g : always_) {
+    for (const DirectionRow& g : always_) {
       rows.push_back(g);
       const bool holds = free_directions(rows) < tangents_.size();
       rows.pop_back();
@@ -146,10 +146,10 @@ class Search {
 
   /// h with g = h_1 t_1 + h_2 t_2, up to a factor and the contact's own normal: minors of these rows. Empty if other
   /// constraints are involved.
-  std::optional<std::vector<Ref>> tangent_components(const Row& g, const Contact& contact) {
-    std::vector<Row> rows = tangents_;
+  std::optional<std::vector<Ref>> tangent_components(const DirectionRow& g, const Contact& contact) {
+    std::vector<DirectionRow> rows = tangents_;
     if (contact.constraints.size() == 1) {
-      const Row normal = row(m_.constraints[contact.constraints[0]].gradient);
+      const DirectionRow normal = row(m_.constraints[contact.constraints[0]].gradient);
       if (rank({normal}, 0) > 0) rows.push_back(normal);  // otherwise it fixes a coordinate
     }
     const std::size_t n = rows.size();
@@ -163,34 +163,34 @@ class Search {
     if (columns.size() < n) return std::nullopt;
     std::vector<Ref> share;
     for (std::size_t a = 0; a < 2; ++a) {
-      std::vector<Row> replaced = rows;
+      std::vector<DirectionRow> replaced = rows;
       replaced[a] = g;
       share.push_back(symbolic::expand_if_shorter(*m_.dag, determinant(of(replaced, columns)), 60));
     }
     // The rest of g is a part of the normal.
     const Ref whole = determinant(of(rows, columns));
-    Row rest;
+    DirectionRow rest;
     for (std::size_t j = 0; j < g.size(); ++j) {
       Ref sum = m_.dag->mul(whole, g[j]);
       for (std::size_t a = 0; a < 2; ++a) sum = m_.dag->sub(sum, m_.dag->mul(share[a], rows[a][j]));
       rest.push_back(sum);
     }
-    std::vector<Row> normal(rows.begin() + 2, rows.end());
+    std::vector<DirectionRow> normal(rows.begin() + 2, rows.end());
     const std::size_t before = normal.empty() ? 0 : 1;
     normal.push_back(rest);
     for (std::size_t point = 0; point < space_.points(); ++point)
       if (rank(normal, point) > before) return std::nullopt;
     return share;
   }
-  static std::vector<Row> of(const std::vector<Row>& rows, const std::vector<std::size_t>& columns) {
-    std::vector<Row> result;
-    for (const Row& r : rows) {
+  static std::vector<DirectionRow> of(const std::vector<DirectionRow>& rows, const std::vector<std::size_t>& columns) {
+    std::vector<DirectionRow> result;
+    for (const DirectionRow& r : rows) {
       result.emplace_back();
       for (const std::size_t j : columns) result.back().push_back(r[j]);
     }
     return result;
   }
-  Ref determinant(const std::vector<Row>& a) const {
+  Ref determinant(const std::vector<DirectionRow>& a) const {
     Dag& dag = *m_.dag;
     const auto minor = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
       return dag.sub(dag.mul(a[i][k], a[j][l]), dag.mul(a[i][l], a[j][k]));
@@ -209,7 +209,7 @@ class Search {
 
   Mechanics& m_;
   OneFormSpace space_;
-  std::vector<Row> always_, base_, tangents_;
+  std::vector<DirectionRow> always_, base_, tangents_;
 };
 
 }  // namespace

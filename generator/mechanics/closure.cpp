@@ -11,6 +11,7 @@
 
 #include "mechanics/imposition.hpp"
 #include "mechanics/pfaffian.hpp"
+#include "mechanics/small.hpp"
 #include "numeric/dense.hpp"
 #include "numeric/numbers.hpp"
 #include "symbolic/evaluate.hpp"
@@ -34,7 +35,6 @@ constexpr int plain_steps = 40;               // of Newton's method in binary64
 constexpr double plain_tolerance = 1e-10;     // of psi in binary64
 constexpr double plainly_independent = 1e-7;  // a row's part outside the span of the others
 
-cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 cl_R exact(double value) { return cln::cl_float(numeric::exact(value), cln::float_format(digits)); }
 
 using numeric::is_zero;

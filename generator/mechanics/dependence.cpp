@@ -10,14 +10,13 @@
 #include <utility>
 
 #include "mechanics/closure.hpp"
+#include "mechanics/small.hpp"
 #include "mechanics/stages.hpp"
 
 namespace eomgen::mechanics {
 namespace {
 
 using cln::cl_R;
-
-cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 
 constexpr int dependent_digits = 20;  // rows have 50 digits, configurations 38: smaller parts outside the span are 0
 constexpr double looks_redundant = 1e-4;  // |psi| of an equation that was meant to be redundant

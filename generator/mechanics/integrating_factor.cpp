@@ -19,9 +19,9 @@ using symbolic::SymbolKind;
 constexpr std::size_t most_bases = 14, most_factors = 3, points_used = 2;
 constexpr long finest_exponent = 2;  // exponents are multiples of 1/2
 
-class Search {
+class IntegralSearch {
  public:
-  Search(OneFormSpace& space, OneForm form)
+  IntegralSearch(OneFormSpace& space, OneForm form)
       : space_(space), dag_(space.dag()), form_(std::move(form)), x_(space.variables()) {}
 
   std::optional<Ref> run() {
@@ -231,6 +231,6 @@ class Search {
 
 }  // namespace
 
-std::optional<Ref> find_integral(OneFormSpace& space, const OneForm& form) { return Search(space, form).run(); }
+std::optional<Ref> find_integral(OneFormSpace& space, const OneForm& form) { return IntegralSearch(space, form).run(); }
 
 }  // namespace eomgen::mechanics

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "mechanics/small.hpp"
 #include "numeric/elimination.hpp"
 #include "symbolic/sample.hpp"
 #include "symbolic/series.hpp"
@@ -19,11 +20,9 @@ using Vector = std::vector<cl_R>;
 using Matrix = std::vector<Vector>;  // by rows
 using MatrixSeries = std::vector<Matrix>;
 
-constexpr int digits = 50, zero_digits = 20;  // of a direction outside the span of earlier ones
-constexpr int regular_digits = 30;            // of a pivot
-constexpr std::size_t most_entries = 200000;  // of the derivatives of all forms
-
-cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
+constexpr int bracket_digits = 50, zero_digits = 20;  // of a direction outside the span of earlier ones
+constexpr int regular_digits = 30;                    // of a pivot
+constexpr std::size_t most_entries = 200000;          // of the derivatives of all forms
 
 cl_R dot(const Vector& a, const Vector& b) {
   cl_R sum = 0;
@@ -100,7 +99,7 @@ class Path {
     const std::vector<Symbol> symbols = space.dag().symbols(roots);
     const auto integral = [](const Symbol& s) { return s.kind == symbolic::SymbolKind::integral; };
     if (std::any_of(symbols.begin(), symbols.end(), integral)) throw std::domain_error("an integral of time");
-    series_.emplace(space.dag(), std::move(roots), digits);
+    series_.emplace(space.dag(), std::move(roots), bracket_digits);
     x_.emplace_back();
     for (const Symbol& variable : space.variables()) x_.back().push_back(space.value(variable, point));
     extend();
@@ -208,7 +207,7 @@ class Path {
       next[j] = cln::cl_float(
           cl_R(symbolic::sample({symbolic::SymbolKind::auxiliary, static_cast<std::uint32_t>(j), 0}, 7 + k) -
                symbolic::Rational(7) / 10),
-          cln::float_format(digits));
+          cln::float_format(bracket_digits));
     }
     Vector right(rows_, cl_R(0));
     for (std::size_t row = 0; row < rows_; ++row) {

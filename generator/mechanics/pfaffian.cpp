@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "mechanics/imposition.hpp"
+#include "mechanics/small.hpp"
 #include "numeric/elimination.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/polynomial.hpp"
@@ -19,16 +20,14 @@ namespace {
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-constexpr int digits = 50, agreed_digits = 30;
+constexpr int sample_digits = 50, agreed_digits = 30;
 constexpr std::size_t wanted_points = 4, tried_points = 40;
-constexpr std::size_t term_budget = 300;
+constexpr std::size_t form_terms = 300;
 constexpr std::size_t most_effort = 1000000;  // products of terms: a few tenths of a second
-
-cln::cl_R small(int exponent) { return cln::cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 
 /// A random value with all digits set, so that sums of values have them too.
 cln::cl_R value_at(const Symbol& symbol, std::uint64_t point) {
-  return cln::cl_float(cln::cl_R(symbolic::sample(symbol, point)), cln::float_format(digits));
+  return cln::cl_float(cln::cl_R(symbolic::sample(symbol, point)), cln::float_format(sample_digits));
 }
 
 /// Replaces dependent parameters by their expressions, in as many rounds as the longest chain may need.
@@ -109,7 +108,7 @@ Ref OneFormSpace::derivative(Ref f, std::size_t variable) {
 
 std::vector<cln::cl_R> OneFormSpace::values(const std::vector<Ref>& expressions, std::size_t point) const {
   return symbolic::evaluate(
-      dag_, expressions, [&](const Symbol& symbol) { return value(symbol, point); }, digits);
+      dag_, expressions, [&](const Symbol& symbol) { return value(symbol, point); }, sample_digits);
 }
 
 cln::cl_R OneFormSpace::value(const Symbol& symbol, std::size_t point) const {
@@ -126,7 +125,7 @@ bool OneFormSpace::move_onto_constraints(std::map<Symbol, cln::cl_R>& point) con
   try {
     for (int step = 0; step < 60; ++step) {
       const std::vector<cln::cl_R> v = symbolic::evaluate(
-          dag_, roots, [&](const Symbol& s) { return point.at(s); }, digits);
+          dag_, roots, [&](const Symbol& s) { return point.at(s); }, sample_digits);
       const auto A = [&](std::size_t k, std::size_t i) -> const cln::cl_R& { return v[count + k * (n + 1) + i]; };
       std::vector<std::vector<cln::cl_R>> gram(count, std::vector<cln::cl_R>(count, cln::cl_R(0)));
       cln::cl_R size = 0;
@@ -136,7 +135,7 @@ bool OneFormSpace::move_onto_constraints(std::map<Symbol, cln::cl_R>& point) con
           for (std::size_t i = 0; i < n; ++i) gram[k][j] = gram[k][j] + A(k, i) * A(j, i);
         }
       }
-      if (size < small(digits - 5)) return true;
+      if (size < small(sample_digits - 5)) return true;
       std::vector<cln::cl_R> y;
       if (!solve_small(gram, {v.begin(), v.begin() + static_cast<std::ptrdiff_t>(count)}, y)) return false;
       for (std::size_t i = 0; i < n; ++i) {
@@ -164,7 +163,7 @@ ZeroTestResult OneFormSpace::vanishing(Ref expression) {
 }
 
 Ref OneFormSpace::simpler(Ref expression) {
-  return symbolic::expand_if_shorter(dag_, expression, term_budget, &effort_);
+  return symbolic::expand_if_shorter(dag_, expression, form_terms, &effort_);
 }
 
 // Chooses a constant pivot if there is one, otherwise the one with the smallest expression, to keep results short.

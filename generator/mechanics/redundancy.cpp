@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "mechanics/pfaffian.hpp"
+#include "mechanics/small.hpp"
 #include "mechanics/stages.hpp"
 
 namespace eomgen::mechanics {
@@ -21,8 +22,6 @@ namespace {
 using cln::cl_R;
 
 constexpr long largest_denominator = 12;  // of a coefficient in a message
-
-cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 
 /// Values of the rows at a point: coefficients of the velocities, then b.
 using Rows = std::vector<std::vector<cl_R>>;

@@ -18,11 +18,11 @@ using symbolic::Symbol;
 namespace {
 
 constexpr std::uint64_t points = 4;
-constexpr int digits = 40, more_digits = 70;
+constexpr int trial_digits = 40, more_digits = 70;
 
 // The values at a point; none outside the domain of a function, which is inconclusive.
 std::vector<cln::cl_R> values_at(const Dag& dag, const std::vector<Ref>& expressions, std::uint64_t point,
-                                 int with = digits) {
+                                 int with = trial_digits) {
   try {
     return symbolic::evaluate(
         dag, expressions, [point](const Symbol& symbol) -> cln::cl_R { return symbolic::sample(symbol, point); }, with);

@@ -5,16 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
+#include "model/letters.hpp"
 #include "model/names.hpp"
 #include "model/syntax.hpp"
 
 namespace eomgen::model {
 namespace {
-
-bool letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
-bool digit(char c) { return c >= '0' && c <= '9'; }
 
 cln::cl_I integer_of(const std::string& digits) { return digits.empty() ? cln::cl_I(0) : cln::cl_I(digits.c_str()); }
 

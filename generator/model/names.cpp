@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "model/letters.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -37,9 +38,6 @@ constexpr std::array<std::string_view, 13> other_functions{
     "if",           "ddt",   "diff", "integral", "initial", "position", "velocity",
     "acceleration", "omega", "dot",  "cross",    "norm",    "unit"};
 constexpr std::array<std::string_view, 7> reserved_names{"t", "pi", "origin", "ground", "E1", "E2", "E3"};
-
-bool letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
-bool digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 

@@ -12,7 +12,7 @@
 namespace eomgen::model {
 namespace {
 
-constexpr const char* form =
+constexpr const char* rotation_form =
     "write rotation = { euler = \"313\", angles = [\"phi\", \"theta\", \"psi\"] }, { axis = \"E3\", angle = \"phi\" }, "
     "{ euler_parameters = [..] }, { rodrigues = [..] } or { fixed = true }";
 
@@ -43,7 +43,7 @@ void BodiesReader::declare_angles(const Value& table) {
 }
 
 const Entry& BodiesReader::rotation_entry(const Value& rotation) const {
-  require_kind(Value::Kind::table, rotation, "a rotation", form);
+  require_kind(Value::Kind::table, rotation, "a rotation", rotation_form);
   check_keys(rotation, {"a rotation", {"euler", "angles", "axis", "angle", "euler_parameters", "rodrigues", "fixed"}});
   const Entry* found = nullptr;
   for (const Entry& entry : rotation.entries) {
@@ -53,12 +53,13 @@ const Entry& BodiesReader::rotation_entry(const Value& rotation) const {
                    "keep one of them");
     found = &entry;
   }
-  if (found == nullptr) source_.fail(rotation.span, "the rotation says no kind", form);
+  if (found == nullptr) source_.fail(rotation.span, "the rotation says no kind", rotation_form);
   for (const Entry& entry : rotation.entries) {
     const bool fits = &entry == found || (entry.key == "angles" && found->key == "euler") ||
                       (entry.key == "angle" && found->key == "axis");
     if (!fits)
-      source_.fail(entry.span, fmt::format("'{}' does not belong to a rotation by '{}'", entry.key, found->key), form);
+      source_.fail(entry.span, fmt::format("'{}' does not belong to a rotation by '{}'", entry.key, found->key),
+                   rotation_form);
   }
   return *found;
 }
@@ -69,7 +70,7 @@ std::vector<const Value*> BodiesReader::rotation_entries(Frame& frame, const rot
   frame.rotation = found.name;
   if (found.family == "fixed") {
     if (!require_kind(Value::Kind::boolean, entry.value, "'fixed'", "write fixed = true").boolean)
-      source_.fail(entry.value.span, "a rotation cannot be fixed = false", form);
+      source_.fail(entry.value.span, "a rotation cannot be fixed = false", rotation_form);
     return {};
   }
   if (found.family == "axis")
@@ -79,7 +80,7 @@ std::vector<const Value*> BodiesReader::rotation_entries(Frame& frame, const rot
                                             "add angles = [\"phi\", \"theta\", \"psi\"]")
                             : entry.value;
   const std::string what = euler ? "'angles'" : fmt::format("'{}'", entry.key);
-  require_kind(Value::Kind::array, list, what, form);
+  require_kind(Value::Kind::array, list, what, rotation_form);
   if (list.items.size() != found.entries.size()) {
     source_.fail(list.span, fmt::format("{} has {} entries", what, list.items.size()),
                  fmt::format("give {} of them", found.entries.size()));
@@ -93,7 +94,7 @@ TypedNode BodiesReader::define_axes(Symbol& symbol) {
   const std::uint32_t index = symbol.index;
   const Value& table = *frame_sources_[index].table;
   const std::string what = fmt::format("'{}'", model_.frames[index].name);
-  const Value& rotation = require_value(table, "rotation", what, form);
+  const Value& rotation = require_value(table, "rotation", what, rotation_form);
   Frame frame = model_.frames[index];
   if (const Value* parent = table.find("relative_to")) frame.parent = require_frame(*parent, "'relative_to'");
   if (frame.parent > 0) symbol.typed = resolver_.symbol(scope_.axes(frame.parent), table.find("relative_to")->span);

@@ -12,15 +12,15 @@
 namespace eomgen::model {
 namespace {
 
-constexpr const char* form = "write custom = [\"q1\", \"q2\", \"q3\"], x = [\"..\", \"..\", \"..\"]";
+constexpr const char* custom_form = "write custom = [\"q1\", \"q2\", \"q3\"], x = [\"..\", \"..\", \"..\"]";
 constexpr const char* give_x = "give x = [\"..\", \"..\", \"..\"] in terms of the coordinates too; it is then checked";
 
 }  // namespace
 
 PositionsReader::ExpandedPosition PositionsReader::custom_position(const Value& table, const Entry& entry) {
-  require_kind(Value::Kind::array, entry.value, "'custom'", form);
+  require_kind(Value::Kind::array, entry.value, "'custom'", custom_form);
   if (entry.value.items.size() != 3) {
-    source_.fail(entry.value.span, fmt::format("'custom' has {} entries", entry.value.items.size()), form);
+    source_.fail(entry.value.span, fmt::format("'custom' has {} entries", entry.value.items.size()), custom_form);
   }
   const Value *x = table.find("x"), *q = table.find("q");
   if (x == nullptr && q == nullptr) {
@@ -29,7 +29,7 @@ PositionsReader::ExpandedPosition PositionsReader::custom_position(const Value& 
   }
   for (const Value* list : {x, q}) {
     if (list == nullptr) continue;
-    require_kind(Value::Kind::array, *list, list == x ? "'x'" : "'q'", form);
+    require_kind(Value::Kind::array, *list, list == x ? "'x'" : "'q'", custom_form);
     if (list->items.size() != 3) {
       source_.fail(list->span, fmt::format("'{}' has {} entries", list == x ? 'x' : 'q', list->items.size()),
                    "give three expressions");
@@ -40,7 +40,7 @@ PositionsReader::ExpandedPosition PositionsReader::custom_position(const Value& 
   for (std::size_t k = 0; k < 3; ++k) {
     const Value& item = entry.value.items[k];
     if (!item.is(Value::Kind::text) || !is_identifier(item.text)) {
-      source_.fail(item.span, "an entry of custom is the name of a coordinate", form);
+      source_.fail(item.span, "an entry of custom is the name of a coordinate", custom_form);
     }
     expanded.chart.entries[k] =
         resolver_.value(item, {"an entry of the position", on_motion, Shape::scalar, std::nullopt, ""}).node;

@@ -13,7 +13,7 @@
 namespace eomgen::model {
 namespace {
 
-constexpr const char* form =
+constexpr const char* drawing_form =
     "write { sphere = \"R\" }, { box = [\"a\", \"b\", \"c\"] }, { cylinder = [\"R\", \"L\"] }, { disk = \"R\" }, { rod "
     "= \"L\" }, { arrow = [\"x\", \"y\", \"z\"] } or { mesh = [[\"x\", \"y\", \"z\"], ..] }";
 constexpr const char* points_form = "give its points as [[\"x\", \"y\", \"z\"], ..], from 4 to 60 of them";
@@ -25,7 +25,7 @@ struct DrawnShape {
   std::string_view key;
   std::size_t lengths;
 };
-constexpr std::array<DrawnShape, 6> shapes{
+constexpr std::array<DrawnShape, 6> drawn_shapes{
     {{"sphere", 1}, {"box", 3}, {"cylinder", 2}, {"disk", 1}, {"rod", 1}, {"arrow", 3}}};
 
 constexpr double same_point = 1e-9;  // of the largest distance between two points of a mesh
@@ -80,15 +80,15 @@ void DrawReader::read() {
 
 ShapeSpec DrawReader::drawn_shape(std::uint32_t place, const Value& value) {
   const std::string what = fmt::format("the drawing of '{}'", model_.places[place].name);
-  require_kind(Value::Kind::table, value, what, form);
+  require_kind(Value::Kind::table, value, what, drawing_form);
   Keys keys{what, {}};
-  for (const DrawnShape& shape : shapes) keys.known.push_back(shape.key);
+  for (const DrawnShape& shape : drawn_shapes) keys.known.push_back(shape.key);
   for (const char* key : {"mesh", "faces", "axis", "at"}) keys.known.emplace_back(key);
   check_keys(value, keys);
   ShapeSpec drawn;
   drawn.place = place;
   drawn.span = value.span;
-  for (const DrawnShape& shape : shapes) {
+  for (const DrawnShape& shape : drawn_shapes) {
     const Value* lengths = value.find(shape.key);
     if (lengths == nullptr) continue;
     if (!drawn.kind.empty())
@@ -102,9 +102,9 @@ ShapeSpec DrawReader::drawn_shape(std::uint32_t place, const Value& value) {
     source_.fail(mesh->span, fmt::format("{} is both '{}' and 'mesh'", what, drawn.kind),
                  "draw one of them, or give an array of tables");
   if (faces != nullptr && mesh == nullptr)
-    source_.fail(faces->span, fmt::format("{} has faces, and no points for them", what), form);
+    source_.fail(faces->span, fmt::format("{} has faces, and no points for them", what), drawing_form);
   if (mesh != nullptr) read_mesh(drawn, *mesh, faces, what);
-  if (drawn.kind.empty()) source_.fail(value.span, fmt::format("{} has no shape", what), form);
+  if (drawn.kind.empty()) source_.fail(value.span, fmt::format("{} has no shape", what), drawing_form);
   if (const Value* axis = value.find("axis")) {
     const char* remedy = "write axis = \"e1\", \"e2\" or \"e3\": its own axis that a cylinder, disk or rod is about";
     const std::string& text = require_kind(Value::Kind::text, *axis, fmt::format("the axis in {}", what), remedy).text;
@@ -221,7 +221,7 @@ std::vector<NodeId> DrawReader::drawn_lengths(const Value& value, std::size_t co
     return typed.node;
   };
   if (count == 1) return {length(value)};
-  require_kind(Value::Kind::array, value, fmt::format("{}: its lengths", what), form);
+  require_kind(Value::Kind::array, value, fmt::format("{}: its lengths", what), drawing_form);
   if (value.items.size() != count)
     source_.fail(value.span, fmt::format("{} has {} lengths here", what, value.items.size()),
                  fmt::format("give {} of them", count));

@@ -8,7 +8,7 @@
 namespace eomgen::model {
 namespace {
 
-constexpr const char* form =
+constexpr const char* inertia_form =
     "write inertia = { principal = [\"A\", \"B\", \"C\"] }, a symmetric [[..], [..], [..]], or a shape such as { "
     "sphere = \"R\" }";
 
@@ -36,7 +36,8 @@ Context moment_context(const std::string& what) {
 
 void InertiaReader::read(Body& body, const Value& table) {
   const std::string what = fmt::format("the inertia of '{}'", model_.frames[body.frame].name);
-  const Value& value = require_value(table, "inertia", fmt::format("'{}'", model_.frames[body.frame].name), form);
+  const Value& value =
+      require_value(table, "inertia", fmt::format("'{}'", model_.frames[body.frame].name), inertia_form);
   const NodeId zero = resolver_.number(0, value.span).node;
   for (auto& row : body.inertia) row = {zero, zero, zero};
   if (value.is(Value::Kind::array)) {
@@ -46,7 +47,8 @@ void InertiaReader::read(Body& body, const Value& table) {
         if (!row.is(Value::Kind::array) || row.items.size() != 3) return false;
       return true;
     };
-    if (!square()) source_.fail(value.span, fmt::format("{} is not an array of three rows of three", what), form);
+    if (!square())
+      source_.fail(value.span, fmt::format("{} is not an array of three rows of three", what), inertia_form);
     std::array<std::array<TypedNode, 3>, 3> J;
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -69,7 +71,7 @@ void InertiaReader::read(Body& body, const Value& table) {
   for (const Shape3& shape : shapes()) keys.known.push_back(shape.key);
   check_keys(value, keys);
   if (value.entries.size() != 1) {
-    source_.fail(value.span, fmt::format("{} is given in {} ways", what, value.entries.size()), form);
+    source_.fail(value.span, fmt::format("{} is given in {} ways", what, value.entries.size()), inertia_form);
   }
   const Entry& entry = value.entries[0];
   const std::array<NodeId, 3> moments = shape_moments(body, entry);
@@ -80,9 +82,9 @@ std::array<NodeId, 3> InertiaReader::shape_moments(const Body& body, const Entry
   const std::string what = fmt::format("the inertia of '{}'", model_.frames[body.frame].name);
   std::array<NodeId, 3> result{};
   if (shape.key == "principal") {
-    require_kind(Value::Kind::array, shape.value, "'principal'", form);
+    require_kind(Value::Kind::array, shape.value, "'principal'", inertia_form);
     if (shape.value.items.size() != 3)
-      source_.fail(shape.value.span, fmt::format("'principal' has {} entries", shape.value.items.size()), form);
+      source_.fail(shape.value.span, fmt::format("'principal' has {} entries", shape.value.items.size()), inertia_form);
     std::array<TypedNode, 3> J;
     for (std::size_t k = 0; k < 3; ++k) {
       J[k] = resolver_.value(shape.value.items[k], moment_context("a principal moment"));
@@ -132,7 +134,7 @@ void InertiaReader::read_scalar_inertia(Body& body, const Value& value) {
     source_.fail(
         value.span,
         fmt::format("one moment of inertia is not enough: '{}' does not rotate about one fixed axis", frame.name),
-        form);
+        inertia_form);
   }
   // Only J r . r affects the motion, for the unit vector r of the axis: the matrix is J r r.
   const auto on = [&](std::size_t k) { return !axis->numbers || !cln::zerop((*axis->numbers)[k]); };

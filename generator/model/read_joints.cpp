@@ -10,17 +10,17 @@
 namespace eomgen::model {
 namespace {
 
-constexpr const char* form =
+constexpr const char* joint_form =
     "write type = \"pin\", bodies = [\"A\", \"B\"], at = [\"point of A\", \"point of B\"], axis = [\"A.e3\", "
     "\"B.e3\"]; \"ground\" may be one of the bodies";
 
-std::string kinds() {
+std::string joint_types() {
   std::string names;
   for (const joints::Joint& joint : joints::registry()) names += (names.empty() ? "" : ", ") + joint.name;
   return names;
 }
 
-double length(const std::array<double, 3>& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+double magnitude(const std::array<double, 3>& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 // Directions with a smaller sine of the angle between them count as equal.
 constexpr double parallel = 1e-9;
@@ -51,15 +51,15 @@ void JointsReader::read() {
 
 void JointsReader::read_joint(Joint& joint, const Value& table) {
   const std::string what = fmt::format("the joint '{}'", joint.name);
-  const Value& type = require_kind(Value::Kind::text, require_value(table, "type", what, form),
-                                   fmt::format("'type' of {}", what), form);
+  const Value& type = require_kind(Value::Kind::text, require_value(table, "type", what, joint_form),
+                                   fmt::format("'type' of {}", what), joint_form);
   const joints::Joint* kind = joints::find(type.text);
   if (kind == nullptr) {
     std::vector<std::string> names;
     for (const joints::Joint& other : joints::registry()) names.push_back(other.name);
     const std::string hint = did_you_mean(type.text, names);
     source_.fail(type.span, fmt::format("there is no joint of type {}", quote(type.text)),
-                 hint.empty() ? "the types are " + kinds() : hint);
+                 hint.empty() ? "the types are " + joint_types() : hint);
   }
   joint.type = kind->name;
   std::array<JointEnd, 2> ends = joint_ends(table, what);
@@ -101,8 +101,8 @@ void JointsReader::read_joint(Joint& joint, const Value& table) {
 }
 
 std::array<JointsReader::JointEnd, 2> JointsReader::joint_ends(const Value& table, const std::string& what) {
-  const Value& bodies = require_kind(Value::Kind::array, require_value(table, "bodies", what, form),
-                                     fmt::format("'bodies' of {}", what), form);
+  const Value& bodies = require_kind(Value::Kind::array, require_value(table, "bodies", what, joint_form),
+                                     fmt::format("'bodies' of {}", what), joint_form);
   if (bodies.items.size() != 2) {
     source_.fail(bodies.span, fmt::format("{} is between {} bodies", what, bodies.items.size()),
                  "write bodies = [\"A\", \"B\"]; one of them may be \"ground\"");
@@ -246,7 +246,7 @@ std::array<TypedNode, 3> JointsReader::triad_about(const Value& written, const J
   }
   StartSubstitution values(model_, {});
   const std::array<double, 3> v = values.vector_value(along.node);
-  if (!(length(v) > 0))
+  if (!(magnitude(v) > 0))
     source_.fail(written.span, fmt::format("an axis of {} has no direction", what), "make it of " + of);
   // The first normal direction uses the body axis that is least aligned with the joint axis.
   std::size_t least = 0;
@@ -289,7 +289,7 @@ void JointsReader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>
     if (b == no_node) return;  // the initial state is checked instead
     const std::array<double, 3> u = start.vector_value(a), v = start.vector_value(b);
     const std::array<double, 3> across{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    if (length(across) < parallel * length(u) * length(v)) {
+    if (magnitude(across) < parallel * magnitude(u) * magnitude(v)) {
       source_.fail(axis->span, fmt::format("the axes of {} are parallel at the start", what),
                    "the axes of a universal joint are at right angles: give one that is across the other");
     }
@@ -325,7 +325,7 @@ void JointsReader::axis_at_start(const TypedNode& direction, std::array<JointEnd
   const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
   const TypedNode placed = fixed_in_frame(direction, 0, start, span);
   const std::array<double, 3> v = start.vector_value(placed.node);
-  if (!(length(v) > 0))
+  if (!(magnitude(v) > 0))
     source_.fail(span, fmt::format("the axis of {} has no direction at the start", what),
                  "give a vector that is not 0 there");
   std::size_t along = 3, least = 0;

@@ -9,7 +9,7 @@
 namespace eomgen::model {
 namespace {
 
-constexpr const char* form =
+constexpr const char* rolling_form =
     "write rolling = { body = \"B\", at = \"<vector>\", on = \"ground\" }, with shape = { sphere = \"R\" } or { disk = "
     "\"R\" } instead of 'at' if it is one";
 
@@ -66,7 +66,7 @@ TypedNode ContactsReader::contact_arm(const Value& table, std::map<std::string, 
     source_.fail(table.span,
                  at == nullptr ? "this contact does not state where the body is touched"
                                : "this contact has both 'at' and 'shape'",
-                 form);
+                 rolling_form);
   }
   const Context arm{"the vector to the point of contact", on_motion, Shape::vector, dimension_of("m"),
                     "it is made of axes of the body, angles and lengths"};
@@ -127,9 +127,9 @@ void ContactsReader::read_contact_point(Constraint& constraint, const Value& tab
 
 void ContactsReader::read(Constraint& constraint, const Value& table, bool rolling, bool rough) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
-  require_kind(Value::Kind::table, table, what, form);
+  require_kind(Value::Kind::table, table, what, rolling_form);
   check_keys(table, {what, {"body", "on", "at", "shape", "at_b", "shape_b", "normal", "tangent"}});
-  const Value& name = require_value(table, "body", what, form);
+  const Value& name = require_value(table, "body", what, rolling_form);
   const std::uint32_t frame = require_frame(name, fmt::format("'body' of {}", what));
   if (frame == 0 || frame_sources_[frame].place == 0)
     source_.fail(name.span, fmt::format("{} needs a body, and this has no mass", what), "name a [[body]]");

@@ -18,12 +18,12 @@ using reading::mark;
 using reading::Sum;
 using reading::SymbolKind;
 
-Formula coordinate(std::uint32_t i) { return reading::symbol({SymbolKind::coordinate, i, 0}); }
+Formula coordinate_letter(std::uint32_t i) { return reading::symbol({SymbolKind::coordinate, i, 0}); }
 
 // qdot_i -> dq_i
 Formula with_differentials(const Formula& f) {
   if (f.kind == FormulaKind::symbol && f.symbol.kind == SymbolKind::coordinate && f.symbol.order == 1) {
-    return reading::make_formula(FormulaKind::differential, {coordinate(f.symbol.index)});
+    return reading::make_formula(FormulaKind::differential, {coordinate_letter(f.symbol.index)});
   }
   Formula result = f;
   for (Formula& arg : result.args) arg = with_differentials(arg);
@@ -39,7 +39,7 @@ class Tables {
     std::vector<Formula> fixed, unit;
     for (int k = 1; k <= 3; ++k) fixed.push_back(mark("E", {reading::number(k)}));
     for (const std::optional<std::uint32_t>& name : g_.unit_names) {
-      unit.push_back(name ? mark("e", {coordinate(*name)}) : mark("e"));
+      unit.push_back(name ? mark("e", {coordinate_letter(*name)}) : mark("e"));
     }
     const auto add = [&](const char* role, const Formula& left, const std::vector<Components>& in_fixed,
                          const std::vector<Components>& in_unit, std::size_t i) {
@@ -93,7 +93,7 @@ class Tables {
   }
 
  private:
-  Formula q(std::size_t i) const { return coordinate(g_.coordinates[i]); }
+  Formula q(std::size_t i) const { return coordinate_letter(g_.coordinates[i]); }
   void entry(const char* key, Formula left, const Sum& right, const char* role) {
     if (right.is_zero()) return;
     out_.push_back(

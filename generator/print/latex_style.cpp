@@ -20,7 +20,7 @@ std::string integer(const cln::cl_I& value) {
   return text.str();
 }
 
-std::string function_name(Op op) { return symbolic::function_of(op).latex; }
+std::string latex_function(Op op) { return symbolic::function_of(op).latex; }
 
 // Approximate number of visible characters of a piece: braces and blanks count 0, sin counts 3, dots over letters count
 // 0.
@@ -79,11 +79,11 @@ class LatexStyle final : public Style {
         return {"\\begin{cases} " + args[2].text + " & \\text{if } " + args[0].text + " < " + args[1].text + " \\\\ " +
                     args[3].text + " & \\text{else} \\end{cases}",
                 Piece::sum};
-      default: return {function_name(op) + arguments(args), Piece::call};
+      default: return {latex_function(op) + arguments(args), Piece::call};
     }
   }
   Piece call_power(Op op, const std::vector<Piece>& args, const std::string& exponent) const override {
-    return {function_name(op) + "^{" + exponent + "}" + arguments(args), Piece::call};
+    return {latex_function(op) + "^{" + exponent + "}" + arguments(args), Piece::call};
   }
   Piece power(const Piece& base, const std::string& above) const override {
     std::string exponent = above;

@@ -89,7 +89,7 @@ std::string in_alphabet(std::string_view word, unsigned capital_a, unsigned smal
   }
   return text;
 }
-std::string bold(std::string_view word) {
+std::string mathml_bold(std::string_view word) {
   const std::string_view letter = greek(word);  // two bytes
   if (letter.size() != 2) return in_alphabet(word, 0x1d400, 0x1d41a, "", nullptr);
   constexpr unsigned capital_alpha = 0x391, alpha = 0x3b1, bold_capital_alpha = 0x1d6a8, bold_alpha = 0x1d6c2;
@@ -104,7 +104,7 @@ std::string script(std::string_view word) {
   return in_alphabet(word, 0x1d49c, 0x1d4b6, "BEFHILMRego", elsewhere);
 }
 
-std::string function_name(Op op) { return symbolic::function_of(op).mathml; }
+std::string mathml_function(Op op) { return symbolic::function_of(op).mathml; }
 
 class MathmlStyle final : public Style {
  public:
@@ -138,11 +138,11 @@ class MathmlStyle final : public Style {
                     op("&lt;") + args[1].text + "</mtd></mtr><mtr><mtd>" + args[3].text +
                     "</mtd><mtd><mtext>else</mtext></mtd></mtr></mtable>"),
                 Piece::sum};
-      default: return {row("<mi>" + function_name(function) + "</mi>" + applied_to(args)), Piece::call};
+      default: return {row("<mi>" + mathml_function(function) + "</mi>" + applied_to(args)), Piece::call};
     }
   }
   Piece call_power(Op function, const std::vector<Piece>& args, const std::string& exponent) const override {
-    return {row("<msup><mi>" + function_name(function) + "</mi>" + exponent + "</msup>" + applied_to(args)),
+    return {row("<msup><mi>" + mathml_function(function) + "</mi>" + exponent + "</msup>" + applied_to(args)),
             Piece::call};
   }
   Piece power(const Piece& base, const std::string& exponent) const override {
@@ -218,15 +218,16 @@ class MathmlStyle final : public Style {
       return "<mover accent=\"true\">" + letter(word.substr(0, word.size() - 1)) + "<mo>~</mo></mover>";
     }
     if (word.starts_with("cal ")) return "<mi>" + script(word.substr(4)) + "</mi>";
-    if (word.starts_with("bold ")) return "<mi>" + bold(word.substr(5)) + "</mi>";
+    if (word.starts_with("bold ")) return "<mi>" + mathml_bold(word.substr(5)) + "</mi>";
     if (word.starts_with("det ")) {
       return row("<mi>det</mi>" + op("(") + "<msub><mi>" + word.substr(4) + "</mi>" + row("<mi>i</mi><mi>k</mi>") +
                  "</msub>" + op(")"));
     }
     if (word == "...") return op("…");
     if (word == "metric a") return "<mi>a</mi>";
-    if (word == "a" || word == "e" || word == "E" || word == "r" || word == "v") return "<mi>" + bold(word) + "</mi>";
-    if (word == "e'") return row("<mi>" + bold("e") + "</mi>" + op("′"));
+    if (word == "a" || word == "e" || word == "E" || word == "r" || word == "v")
+      return "<mi>" + mathml_bold(word) + "</mi>";
+    if (word == "e'") return row("<mi>" + mathml_bold("e") + "</mi>" + op("′"));
     if (word == "ds^2") return "<mi>d</mi><msup><mi>s</mi><mn>2</mn></msup>";
     if (const std::string_view symbol = greek(word); !symbol.empty()) return "<mi>" + std::string(symbol) + "</mi>";
     return "<mi>" + word + "</mi>";

@@ -28,7 +28,7 @@ using symbolic::SymbolKind;
 using symbolic::Vec3;
 
 constexpr std::size_t longest_numerator = 12;  // terms; longer sums are not combined in one fraction
-constexpr std::size_t max_terms = 100;         // terms of a readable part
+constexpr std::size_t max_part_terms = 100;    // terms of a readable part
 constexpr std::size_t longest_energy = 24;     // terms; named forces are shorter than longer energies
 
 /// 0 for a zero vector.
@@ -124,7 +124,7 @@ class NamedParts {
     define("potential energy", "", reading::relation({letter, reading::sum(std::move(terms))}));
   }
 
-  std::optional<Formula> read(Ref r, std::size_t most = max_terms) {
+  std::optional<Formula> read(Ref r, std::size_t most = max_part_terms) {
     try {
       const Sum sum = reading::display_sum(m_, value(r));
       if (sum.size() <= most) return arranged(sum);

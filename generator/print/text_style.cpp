@@ -12,7 +12,7 @@ namespace {
 
 using reading::Op;
 
-std::string function_name(Op op) { return symbolic::function_of(op).name; }
+std::string text_function(Op op) { return symbolic::function_of(op).name; }
 
 class TextStyle final : public Style {
  public:
@@ -39,11 +39,11 @@ class TextStyle final : public Style {
       return {"if(" + args[0].text + " < " + args[1].text + ", " + args[2].text + ", " + args[3].text + ")",
               Piece::atom};
     }
-    return {function_name(op) + arguments(args), Piece::atom};
+    return {text_function(op) + arguments(args), Piece::atom};
   }
   Piece call_power(Op op, const std::vector<Piece>& args, const std::string& exponent) const override {
-    if (language_) return {function_name(op) + arguments(args) + "^" + exponent, Piece::call};
-    return {function_name(op) + ("^" + exponent) + arguments(args), Piece::call};
+    if (language_) return {text_function(op) + arguments(args) + "^" + exponent, Piece::call};
+    return {text_function(op) + ("^" + exponent) + arguments(args), Piece::call};
   }
   Piece power(const Piece& base, const std::string& exponent) const override {
     const bool plain = exponent.find_first_of(" +-*/(") == std::string::npos;

@@ -54,7 +54,7 @@ BoundedValue root(const BoundedValue& a) {
              : BoundedValue{std::sqrt(std::max(0.0, a.value)), std::sqrt(std::fabs(a.value) + a.error)};
 }
 
-BoundedValue power(const BoundedValue& a, const BoundedValue& b) {
+BoundedValue rounded_power(const BoundedValue& a, const BoundedValue& b) {
   const double value = std::pow(a.value, b.value);
   const double error =
       std::fabs(value) * (std::fabs(b.value) * a.error / std::fabs(a.value) + std::fabs(std::log(a.value)) * b.error);
@@ -68,7 +68,7 @@ BoundedValue inverse_sine(Op op, const BoundedValue& a) {
 }
 
 /// `numbers` of symbolic::slope_of.
-struct Numbers {
+struct BinaryNumbers {
   static double one() { return 1; }
   static double two() { return 2; }
   static double square(double x) { return x * x; }
@@ -89,8 +89,8 @@ BoundedValue of_one(Op op, const BoundedValue& a) {
     case Op::abs: return {std::fabs(x), a.error};
     case Op::sign: return {x > 0 ? 1.0 : x < 0 ? -1.0 : x, std::fabs(x) < a.error ? infinite : 0};
     default: {
-      const double value = Numbers::call(op, x);
-      const auto [size, divides, falls] = symbolic::slope_of(symbolic::function_of(op), x, value, Numbers{});
+      const double value = BinaryNumbers::call(op, x);
+      const auto [size, divides, falls] = symbolic::slope_of(symbolic::function_of(op), x, value, BinaryNumbers{});
       return smooth(value, divides ? 1 / size : size);
     }
   }
@@ -104,7 +104,7 @@ bool undecided(const BoundedValue& a, const BoundedValue& b) {
 BoundedValue of_two(Op op, const BoundedValue& a, const BoundedValue& b) {
   switch (op) {
     case Op::div: return quotient(a, b);
-    case Op::pow: return power(a, b);
+    case Op::pow: return rounded_power(a, b);
     case Op::atan2: {
       const double square = a.value * a.value + b.value * b.value;
       return rounded(std::atan2(a.value, b.value),

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t factors_a_unit = 8;  // of `work::spend`
 
-double power(double base, int exponent) {
+double evaluated_power(double base, int exponent) {
   double result = 1;
   for (int k = std::abs(exponent); k > 0; k /= 2, base *= base) {
     if (k % 2 != 0) result *= base;
@@ -63,7 +63,8 @@ double Evaluator::value(const Flat& sum) const {
   for (const Term& term : sum) {
     double product = term.coefficient;
     for (const Power& p : term.powers)
-      product *= p.whole != 0 ? power(items_[p.item].value, p.whole) : std::pow(items_[p.item].value, p.exponent);
+      product *=
+          p.whole != 0 ? evaluated_power(items_[p.item].value, p.whole) : std::pow(items_[p.item].value, p.exponent);
     result += product;
   }
   return result;

@@ -29,7 +29,7 @@ using Terms = std::vector<Term>;  // greatest powers first
 unsigned shift(std::uint32_t lane) { return bits * (per_word - 1 - lane % per_word); }
 
 /// a / b; no exponent of b is greater than that of a.
-std::optional<Powers> quotient(const Powers& a, const Powers& b) {
+std::optional<Powers> polynomial_quotient(const Powers& a, const Powers& b) {
   Powers result;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const Word difference = (a[i] | spare) - b[i];
@@ -39,7 +39,7 @@ std::optional<Powers> quotient(const Powers& a, const Powers& b) {
   return result;
 }
 
-Powers product(const Powers& a, const Powers& b) {
+Powers polynomial_product(const Powers& a, const Powers& b) {
   Powers result;
   for (std::size_t i = 0; i < a.size(); ++i) result.push_back(a[i] + b[i]);
   return result;
@@ -162,7 +162,7 @@ Terms remainder(Terms& rest, const Term& by, const Terms& divisor) {
   result.reserve(rest.size() + divisor.size());
   auto i = rest.begin() + 1;
   for (auto j = divisor.begin() + 1; j != divisor.end(); ++j) {
-    Term term{product(by.powers, j->powers), -(by.coefficient * j->coefficient)};
+    Term term{polynomial_product(by.powers, j->powers), -(by.coefficient * j->coefficient)};
     while (i != rest.end() && term.powers < i->powers) result.push_back(std::move(*i++));
     if (i != rest.end() && i->powers == term.powers)
       term.coefficient = symbolic::plus(term.coefficient, (i++)->coefficient);
@@ -187,15 +187,16 @@ Powers degrees(const Terms& terms) {
 }
 
 /// Empty if there is a remainder. If the division is exact, first and last terms divide, and degrees subtract.
-std::optional<Terms> divide(Terms rest, const Terms& divisor) {
+std::optional<Terms> divide_polynomials(Terms rest, const Terms& divisor) {
   Terms result;
-  if (!quotient(rest.front().powers, divisor.front().powers) || !quotient(rest.back().powers, divisor.back().powers))
+  if (!polynomial_quotient(rest.front().powers, divisor.front().powers) ||
+      !polynomial_quotient(rest.back().powers, divisor.back().powers))
     return std::nullopt;
-  const std::optional<Powers> most = quotient(degrees(rest), degrees(divisor));
+  const std::optional<Powers> most = polynomial_quotient(degrees(rest), degrees(divisor));
   if (!most) return std::nullopt;
   while (!rest.empty()) {
-    std::optional<Powers> powers = quotient(rest.front().powers, divisor.front().powers);
-    if (!powers || !quotient(*most, *powers)) return std::nullopt;
+    std::optional<Powers> powers = polynomial_quotient(rest.front().powers, divisor.front().powers);
+    if (!powers || !polynomial_quotient(*most, *powers)) return std::nullopt;
     result.push_back({*std::move(powers), rest.front().coefficient / divisor.front().coefficient});
     rest = remainder(rest, result.back(), divisor);
   }
@@ -219,13 +220,13 @@ std::size_t display_operation_count(const Sum& sum) {
 
 namespace {
 
-std::optional<Sum> divide(const Letters& letters, const Sum& a, const std::vector<Rational>& common_a, const Sum& b,
-                          const std::vector<Rational>& common_b) {
+std::optional<Sum> divide_polynomials(const Letters& letters, const Sum& a, const std::vector<Rational>& common_a,
+                                      const Sum& b, const std::vector<Rational>& common_b) {
   const std::optional<Terms> divisor = letters.polynomial(b, common_b);
   if (!divisor) return std::nullopt;
   std::optional<Terms> dividend = letters.polynomial(a, common_a);
   if (!dividend) return std::nullopt;
-  const std::optional<Terms> terms = divide(*std::move(dividend), *divisor);
+  const std::optional<Terms> terms = divide_polynomials(*std::move(dividend), *divisor);
   if (!terms) return std::nullopt;
   Sum whole = letters.sum(*terms);
   work::consume_budget(display_operation_count(whole) + 2 * whole.size());
@@ -236,7 +237,7 @@ std::optional<Sum> divide_expanded(const Sum& a, const Content& common_a, const 
   const Sum dividend = divide(a, common_a), divisor = divide(b, common_b);
   const Letters letters(dividend, divisor);
   const std::vector<Rational> none = letters.common(Sum());
-  const std::optional<Sum> whole = divide(letters, dividend, none, divisor, none);
+  const std::optional<Sum> whole = divide_polynomials(letters, dividend, none, divisor, none);
   if (!whole) return std::nullopt;
   return Sum(common_a.monomial, common_a.number / common_b.number) * multiply(inverse(common_b.monomial), {}) * *whole;
 }
@@ -250,7 +251,7 @@ std::optional<Sum> divide_exactly(const Sum& a, const Sum& b) {
     return divide_expanded(a, content(a), b, content(b));
   // The operations of extracting the common factors.
   work::consume_budget(2 * (a.size() + b.size()));
-  const std::optional<Sum> whole = divide(letters, a, common_a, b, common_b);
+  const std::optional<Sum> whole = divide_polynomials(letters, a, common_a, b, common_b);
   if (!whole) return std::nullopt;
   return Sum(letters.monomial(common_a), 1) * multiply(inverse(letters.monomial(common_b)), {}) * *whole;
 }

@@ -8,6 +8,7 @@
 #include "reading/lagrangian.hpp"
 #include "reading/no_value.hpp"
 #include "reading/rational_function.hpp"
+#include "reading/scalar_product.hpp"
 #include "reading/small_matrix.hpp"
 #include "reading/trig.hpp"
 #include "reading/zero_test.hpp"
@@ -17,9 +18,7 @@ namespace {
 
 using mechanics::Mechanics;
 
-constexpr std::size_t readable_terms = 60;  // of |r' x r''|^2: more would fill pages
-
-Sum dot(const Components& a, const Components& b) { return simplify(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]); }
+constexpr std::size_t readable_curve_terms = 60;  // of |r' x r''|^2: more would fill pages
 
 Components cross(const Components& a, const Components& b) {
   Components c;
@@ -165,7 +164,7 @@ Frenet frenet(const Mechanics& mechanics) try {
   const Components bend = cross(first, second);
   if (!vanishes(bend)) {
     const Sum square = dot(bend, bend), size = power(square, Rational(1) / 2);
-    if (square.size() > readable_terms) throw TermBudget();
+    if (square.size() > readable_curve_terms) throw TermBudget();
     f.binormal = vector(bend, size);
     f.normal = vector(cross(bend, first), size * speed);
     f.curvature = on_curve(simplify(size * power(speed, -3)));

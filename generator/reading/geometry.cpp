@@ -8,6 +8,7 @@
 #include "reading/lagrangian.hpp"
 #include "reading/no_value.hpp"
 #include "reading/rational_function.hpp"
+#include "reading/scalar_product.hpp"
 #include "reading/small_matrix.hpp"
 #include "reading/trig.hpp"
 #include "reading/zero_test.hpp"
@@ -18,8 +19,6 @@ namespace {
 using mechanics::Mechanics;
 
 constexpr std::size_t largest_manifold = 6;
-
-Sum dot(const Components& a, const Components& b) { return simplify(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]); }
 
 // [ij,k] = 1/2 (da_kj/dq_i + da_ik/dq_j - da_ij/dq_k), Gamma^k_ij = a^kr [ij,r]
 void add_christoffel(GinacBridge& bridge, Geometry& g) {

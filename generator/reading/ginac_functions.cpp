@@ -9,14 +9,18 @@ using GiNaC::ex;
 using GiNaC::function;
 using GiNaC::function_options;
 
-ex call(unsigned serial, const std::vector<ex>& args) { return GiNaC::function(serial, GiNaC::exvector(args)); }
+ex ginac_function_of(unsigned serial, const std::vector<ex>& args) {
+  return GiNaC::function(serial, GiNaC::exvector(args));
+}
 
 // Registered on first use, so that the order of static initialisation does not matter.
 unsigned sign_serial();
 unsigned select_serial();
 
-ex select(const ex& a, const ex& b, const ex& x, const ex& y) { return call(select_serial(), {a, b, x, y}); }
-ex abs_derivative(const ex& x, unsigned) { return call(sign_serial(), {x}); }
+ex select(const ex& a, const ex& b, const ex& x, const ex& y) {
+  return ginac_function_of(select_serial(), {a, b, x, y});
+}
+ex abs_derivative(const ex& x, unsigned) { return ginac_function_of(sign_serial(), {x}); }
 ex sign_derivative(const ex&, unsigned) { return 0; }
 ex min_derivative(const ex& a, const ex& b, unsigned k) { return k == 0 ? select(b, a, 0, 1) : select(b, a, 1, 0); }
 ex max_derivative(const ex& a, const ex& b, unsigned k) { return k == 0 ? select(a, b, 0, 1) : select(a, b, 1, 0); }
@@ -85,7 +89,7 @@ ex ginac_call(Op op, const std::vector<ex>& args) {
   if (op == Op::sqrt) return GiNaC::sqrt(args[0]);
   if (op == Op::pow) return GiNaC::pow(args[0], args[1]);
   for (const Known& f : known()) {
-    if (f.op == op) return call(f.serial, args);
+    if (f.op == op) return ginac_function_of(f.serial, args);
   }
   throw std::logic_error("not a function");
 }

@@ -24,9 +24,9 @@ struct AtomLess {
 /// Polynomials over atoms as GiNaC polynomials over symbols. GiNaC orders symbols by hash values that differ between
 /// processes, and its factorisation starts from the first symbol: with some orders, it does not end within minutes.
 /// Therefore the n-th atom of the sum is given the n-th symbol of GiNaC's order.
-class Letters {
+class PolynomialLetters {
  public:
-  explicit Letters(const Sum& sum) {
+  explicit PolynomialLetters(const Sum& sum) {
     std::set<AtomPtr, AtomLess> atoms;
     for (const auto& [monomial, coefficient] : sum.terms()) {
       for (const Factor& factor : monomial) atoms.insert(factor.atom);
@@ -133,7 +133,7 @@ bool has_irreducible_image(const ex& polynomial, const ex& x, const std::vector<
 /// Adds the factors of an expanded polynomial. If it is a y + b with a symbol y that neither a nor b contains, then
 /// (a y + b) / gcd(a, b) has no further factor: it is primitive and of degree 1 in y. Lifting factors of an image to
 /// several symbols, which can take minutes, is left to polynomials that neither this nor an image settles.
-void add_factors(Factorisation& result, const Letters& letters, const ex& polynomial) {
+void add_factors(Factorisation& result, const PolynomialLetters& letters, const ex& polynomial) {
   const std::vector<ex> symbols = letters.by_degree(polynomial);
   const auto common_divisor = [&](const ex& x) {
     if (polynomial.degree(x) > 1) return polynomial.content(x);
@@ -182,7 +182,7 @@ Factorisation factorise(const Sum& whole) {
     return result;
   }
   std::optional<ex> polynomial;
-  const Letters letters(primitive.size() <= factored_terms ? primitive : Sum(0));
+  const PolynomialLetters letters(primitive.size() <= factored_terms ? primitive : Sum(0));
   if (primitive.size() <= factored_terms) polynomial = letters.polynomial(primitive);
   if (!polynomial) {
     result.factors.emplace_back(primitive, 1);

@@ -11,7 +11,7 @@
 namespace eomgen::reading {
 namespace {
 
-constexpr int most_rounds = 6;
+constexpr int most_square_rounds = 6;
 constexpr long most_pairs = 64;  // higher powers are not expanded
 
 /// Operation counts as for sums: one for a product of two terms or an addition of a term.
@@ -269,7 +269,7 @@ Sum reduce_squares(const Sum& sum) {
   for (const auto& [monomial, coefficient] : sum.terms())
     denominator = cln::lcm(denominator, cln::denominator(coefficient));
   PackedSum best = merged(packed(lanes, sum, denominator));  // sufficient in most cases
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < most_square_rounds; ++round) {
     bool improved = false;
     for (const Lanes::Angle& angle : squared_angles(best)) {
       PackedSum with_cos = merged(replace_square(best, angle.sine));

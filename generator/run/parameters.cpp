@@ -22,7 +22,7 @@ using symbolic::Ref;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-constexpr int digits = 40;
+constexpr int parameter_digits = 40;
 
 // The simplification of the equations assumed this sign.
 void require_sign(const model::Parameter& p, const cln::cl_R& value, const model::Model& model) {
@@ -36,7 +36,7 @@ void require_sign(const model::Parameter& p, const cln::cl_R& value, const model
 // Runs use binary64: a subnormal number would silently count as 0 there.
 void require_normal(const std::string& what, const cln::cl_R& value, const SourceLocation& where) {
   if (cln::zerop(value)) return;
-  const cln::cl_F written = cln::cl_float(value, cln::float_format(digits));
+  const cln::cl_F written = cln::cl_float(value, cln::float_format(parameter_digits));
   const auto size = cln::float_exponent(written);  // |value| < 2^size
   const double power = std::log10(std::abs(cln::double_approx(cln::scale_float(written, -size)))) +
                        static_cast<double>(size) * std::numbers::ln2 / std::numbers::ln10;
@@ -123,7 +123,7 @@ std::optional<std::vector<cln::cl_R>> known_values(const Mechanics& m, const std
     return std::nullopt;
   const auto lookup = [&](const Symbol& s) -> cln::cl_R { return parameters[s.index]; };
   try {
-    return symbolic::evaluate(*m.dag, expressions, lookup, digits);
+    return symbolic::evaluate(*m.dag, expressions, lookup, parameter_digits);
   } catch (const std::domain_error& error) {
     throw Error("scene", m.model->where(span), fmt::format("{} has no value here: {}", what, error.what()),
                 "check the numbers that it is computed from");

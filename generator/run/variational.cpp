@@ -66,8 +66,8 @@ double largest(const std::vector<double>& values) {
   throw Error("run", {}, "--sensitivity: " + what, "compare runs with changed values (--set), or sweep over them");
 }
 
-constexpr int smaller_steps = -4, most_steps = 8;  // powers of 2; number of the differences tried
-constexpr double continuous = 1e-10;               // of f: a smaller jump is rounding
+constexpr int smaller_differences = -4, most_differences = 8;  // powers of 2; number of the differences tried
+constexpr double continuous = 1e-10;                           // of f: a smaller jump is rounding
 
 }  // namespace
 
@@ -270,8 +270,8 @@ class VariationalRun::Run {
     const double widest = std::max(size > 0 ? std::max(largest(x), scene_.atol) / size : 0,
                                    dt != 0 ? (scene_.t1 - scene_.t0) / std::abs(dt) : 0);
     double step = std::ldexp(1.0, std::ilogb(widest));
-    for (int attempt = 0; attempt < most_steps; ++attempt) {
-      step = std::ldexp(step, smaller_steps);
+    for (int attempt = 0; attempt < most_differences; ++attempt) {
+      step = std::ldexp(step, smaller_differences);
       std::vector<std::vector<double>> beside;
       for (const double offset : difference_offsets(step)) {
         std::vector<double> at = x;

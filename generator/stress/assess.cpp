@@ -12,7 +12,7 @@
 namespace eomgen::stress {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double pass_within = 100;     // tolerances times the condition of the end state
 constexpr double reported_within = 10;  // estimates
 constexpr std::size_t most_fixed_steps = 2000;
@@ -39,12 +39,12 @@ class Assessment {
                : !result.detail.empty() ? result.detail
                                         : result.estimate_note;
     if (clock.was_exceeded() || result.outcome != eom::Outcome::done) {
-      row.error = row.estimate = infinity;
+      row.error = row.estimate = unbounded;
       row.verdict = Verdict::reported;
     } else if (reference_ != nullptr) {
       compare(result, run::get_method(solver).adaptive, row);
     } else {
-      row.error = row.estimate = infinity;
+      row.error = row.estimate = unbounded;
       row.verdict = Verdict::undetected;
       row.note = "no motion exists, but the outcome is done";
     }
@@ -85,7 +85,7 @@ class Assessment {
         tolerance =
             std::max({tolerance, scene_.rtol, scene_.atol / scale});  // a fixed step promises only its error estimate
       passes = passes && error <= pass_within * tolerance * condition;
-      row.error = std::isnan(error) ? infinity : std::max(row.error, error);
+      row.error = std::isnan(error) ? unbounded : std::max(row.error, error);
       row.estimate = std::max(row.estimate, result.error_estimate[i].second / scale);
     }
     if (passes)

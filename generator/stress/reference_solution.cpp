@@ -24,8 +24,8 @@ constexpr double disturbed_rtol = 1e-13;
 constexpr std::size_t sample_count = 32, early_samples = 2;
 constexpr double safety_factor = 3;  // the errors of two runs may be larger than their difference
 constexpr double most_uncertain = 1e-6;
-constexpr double shorter = 0.5;          // next span relative to the span that was reached
-constexpr double smallest_scale = 1e-9;  // of the largest component
+constexpr double shorter = 0.5;              // next span relative to the span that was reached
+constexpr double smallest_component = 1e-9;  // of the largest component
 
 constexpr const char* by_the_clock = "skipped: a tight run exceeds the time limit";
 
@@ -147,7 +147,7 @@ void ReferenceSolver::set_scale_floor(State& scale, const State& x0) const {
   double largest = 0;
   for (std::size_t i = 0; i < scale.size(); ++i)
     largest = std::max(largest, scale[i] = std::max(scale[i], std::abs(x0[i])));
-  for (double& s : scale) s = std::max({s, smallest_scale * largest, std::numeric_limits<double>::min()});
+  for (double& s : scale) s = std::max({s, smallest_component * largest, std::numeric_limits<double>::min()});
   const std::size_t n = run_.code.free.size();
   for (std::size_t i = 0; i < n; ++i) scale[n + i] = std::max(scale[n + i], scale[i] / whole_);
 }

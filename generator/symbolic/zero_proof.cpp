@@ -11,7 +11,7 @@
 namespace eomgen::symbolic {
 namespace {
 
-constexpr std::size_t term_budget = 4000;
+constexpr std::size_t proof_terms = 4000;
 constexpr long most_multiples = 6;  // of an angle: sin(6 x) is taken apart, sin(7 x) is a thing of its own
 constexpr std::uint32_t first_symbol = 0x40000000u;  // of SymbolKind::auxiliary; nobody else goes that high
 
@@ -163,7 +163,7 @@ Ref roots_split(Dag& dag, Ref expression) {
 bool is_proven_zero(Dag& dag, Ref expression, ProductBudget* effort) {
   constexpr int most_rounds = 4;  // of roots inside of roots
   RationalForm form(dag);
-  Expander expander(dag, term_budget, effort);
+  Expander expander(dag, proof_terms, effort);
   for (int round = 0; round < most_rounds; ++round) {
     if (dag.is_zero(expression)) return true;
     const Ref numerator = form(expression).num;

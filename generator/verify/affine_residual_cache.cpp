@@ -13,10 +13,6 @@ namespace {
 /// Size of a vector: the sum of the absolute values of its components.
 Real length(const Vector& v) { return cln::abs(v[0].real()) + cln::abs(v[1].real()) + cln::abs(v[2].real()); }
 
-Vector slope(const Vector& v, unsigned level, std::size_t i) {
-  return {v[0].slope(level, i), v[1].slope(level, i), v[2].slope(level, i)};
-}
-
 /// The coordinates that any of the vectors depends on.
 std::vector<std::size_t> directions(const std::vector<Vector>& vectors, unsigned level) {
   std::set<std::size_t> result;

@@ -39,7 +39,7 @@ double to_binary64(const Real& value) {
   return cln::double_approx(value);
 }
 
-std::vector<double> rounded(const std::vector<Real>& values) {
+std::vector<double> binary_values(const std::vector<Real>& values) {
   std::vector<double> result;
   for (const Real& value : values) result.push_back(to_binary64(value));
   return result;
@@ -81,8 +81,8 @@ double compiled_difference(const CompiledForm& form, const Subjects& subjects, S
   if (!s.contacts.empty()) at.phi = solve_friction_law(s, oracle, at);
   const std::vector<Real> reference = right_hand_side(s, oracle, at);
   const AbiArguments arguments = arguments_at(s, at, mode);
-  const auto dx =
-      form.rhs(cln::double_approx(at.t), rounded(arguments.x), rounded(at.parameters), rounded(at.inputs), mode);
+  const auto dx = form.rhs(cln::double_approx(at.t), binary_values(arguments.x), binary_values(at.parameters),
+                           binary_values(at.inputs), mode);
   const std::vector<Real> rounding =
       subjects.programs.empty() ? std::vector<Real>{} : rounding_of_rhs(subjects.programs.front(), arguments, oracle);
   const bool finite = dx && std::all_of(dx->begin(), dx->end(), [](double value) { return std::isfinite(value); });

@@ -24,10 +24,6 @@ Jet nested_slope(Jet jet, unsigned top) {
   return jet;
 }
 
-Vector slope(const Vector& v, unsigned level, std::size_t i) {
-  return {v[0].slope(level, i), v[1].slope(level, i), v[2].slope(level, i)};
-}
-
 }  // namespace
 
 void Residual::add(const Real& term, const Real& size) {

@@ -22,6 +22,9 @@ Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 Jet norm(const Vector& a, const Precision& p) { return sqrt(dot(a, a), p); }
+Vector slope(const Vector& v, unsigned level, std::size_t i) {
+  return {v[0].slope(level, i), v[1].slope(level, i), v[2].slope(level, i)};
+}
 
 Interpreter::Interpreter(const model::Model& model, Environment environment, Precision precision, KinkMargin* margin,
                          const model::Force* spring)

@@ -28,6 +28,8 @@ Vector operator*(const Jet& s, const Vector& v);
 Jet dot(const Vector& a, const Vector& b);
 Vector cross(const Vector& a, const Vector& b);
 Jet norm(const Vector& a, const Precision& p);
+/// The slopes of the components in direction i of a level.
+Vector slope(const Vector& v, unsigned level, std::size_t i);
 
 struct Environment {
   Jet t;

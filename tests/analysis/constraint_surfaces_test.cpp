@@ -13,7 +13,7 @@ using test::shipped;
 
 namespace {
 
-constexpr double rounding = 1e-12;  // relative, for values at the start
+constexpr double surface_rounding = 1e-12;  // relative, for values at the start
 
 std::vector<std::pair<long, long>> rods(const std::string& name) {
   std::vector<std::pair<long, long>> result;
@@ -51,7 +51,7 @@ TEST_CASE("drawing: a body that rotates about a fixed point has a joint there") 
   std::vector<Eigen::Vector3d> wanted{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {1, 1, 0}};
   REQUIRE(found.drawing.parts().joints.size() == wanted.size());
   for (std::size_t k = 0; k < wanted.size(); ++k)
-    CHECK((found.vector(found.drawing.parts().joints[k].at) - wanted[k]).norm() < rounding);
+    CHECK((found.vector(found.drawing.parts().joints[k].at) - wanted[k]).norm() < surface_rounding);
   CHECK(shipped("R6_rolling_disk").drawing.parts().joints.empty());  // its point of contact is not fixed in any body
 }
 
@@ -129,6 +129,6 @@ TEST_CASE("drawing: a surface moves with its reference place, and centres of bod
 TEST_CASE("drawing: the plane of an open contact is below the body") {
   const InitialState found = shipped("bouncing_sphere");
   const analysis::DrawnContact& floor = found.drawing.parts().contacts.at(0);
-  CHECK((found.vector(floor.at) - Eigen::Vector3d(0, 0, 1)).norm() < rounding);
-  CHECK(found.vector(floor.foot).norm() < rounding);
+  CHECK((found.vector(floor.at) - Eigen::Vector3d(0, 0, 1)).norm() < surface_rounding);
+  CHECK(found.vector(floor.foot).norm() < surface_rounding);
 }

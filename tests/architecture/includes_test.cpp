@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path root = eomgen::test::source_folder();
+const fs::path source_root = eomgen::test::source_folder();
 
 /// The products of the stages in the order of the data flow. They are plain data: a later stage may read them without
 /// depending on the stage that creates them.
@@ -48,7 +48,8 @@ const std::vector<std::pair<std::string, std::set<std::string>>> libraries = {
 };
 
 std::string place(const fs::path& file, const Include& include) {
-  return fs::relative(file, root).generic_string() + ":" + std::to_string(include.line) + " includes " + include.path;
+  return fs::relative(file, source_root).generic_string() + ":" + std::to_string(include.line) + " includes " +
+         include.path;
 }
 
 std::string first_part(const std::string& path) { return path.substr(0, path.find('/')); }
@@ -76,7 +77,7 @@ struct Generator {
 
 Generator read_generator() {
   Generator generator;
-  for (const fs::directory_entry& entry : fs::directory_iterator(root / "generator")) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(source_root / "generator")) {
     const fs::path list = entry.path() / "CMakeLists.txt";
     if (!fs::exists(list)) continue;
     const std::string folder = entry.path().filename().string();
@@ -109,7 +110,7 @@ TEST_CASE("a stage includes its own folder, the stages under NEEDS, and products
       for (const std::string& stage : stages)
         if (reached.count(stage) == 1) allowed.insert(other);
 
-    for (const fs::path& file : files_below(root / "generator" / folder, {".cpp", ".hpp"})) {
+    for (const fs::path& file : files_below(source_root / "generator" / folder, {".cpp", ".hpp"})) {
       for (const Include& include : parse_includes(read_text(file))) {
         const std::string first = first_part(include.path);
         if (!include.quoted || first == "eom") continue;
@@ -127,7 +128,7 @@ TEST_CASE("a stage includes the libraries that its CMakeLists.txt links, and no 
   const Generator generator = read_generator();
   for (const auto& [folder, owners] : generator.folders) {
     const std::set<std::string> reached = generator.reached_from(folder);
-    for (const fs::path& file : files_below(root / "generator" / folder, {".cpp", ".hpp"})) {
+    for (const fs::path& file : files_below(source_root / "generator" / folder, {".cpp", ".hpp"})) {
       for (const Include& include : parse_includes(read_text(file))) {
         for (const auto& [prefix, targets] : libraries) {
           if (!include.path.starts_with(prefix)) continue;
@@ -147,12 +148,12 @@ TEST_CASE("every test includes doctest, directly or by a header of its folder, a
                        [](const Include& i) { return i.path == "doctest/doctest.h"; });
   };
   std::size_t seen = 0;
-  for (const fs::path& file : files_below(root / "tests", {".cpp"})) {
+  for (const fs::path& file : files_below(source_root / "tests", {".cpp"})) {
     if (!file.filename().string().ends_with("_test.cpp")) continue;
     ++seen;
     bool named = names_doctest(file);
     for (const Include& include : parse_includes(read_text(file))) {
-      const fs::path header = root / "tests" / include.path;
+      const fs::path header = source_root / "tests" / include.path;
       named = named || (include.quoted && fs::exists(header) && names_doctest(header));
     }
     INFO(file.string());
@@ -175,7 +176,7 @@ TEST_CASE("the dependencies of stages have no cycles") {
 
 TEST_CASE("products include only products and the graph, no implementation of a stage") {
   for (const auto& [folder, header] : products) {
-    const fs::path file = root / "generator" / header;
+    const fs::path file = source_root / "generator" / header;
     for (const Include& include : parse_includes(read_text(file))) {
       if (!include.quoted) continue;
       INFO(place(file, include));
@@ -193,12 +194,12 @@ TEST_CASE("the oracle includes only the Model and its own files") {
   std::set<std::string> own;  // "verify/jet" for jet.cpp and jet.hpp
   for (const std::string& source : oracle.sources)
     own.insert(oracle.folder + "/" + fs::path(source).replace_extension().string());
-  for (const fs::path& file : files_below(root / "generator/verify/forces", {".cpp", ".hpp"}))
+  for (const fs::path& file : files_below(source_root / "generator/verify/forces", {".cpp", ".hpp"}))
     own.insert("verify/forces/" + file.stem().string());
   REQUIRE(own.count("verify/forces/spring") == 1);
   for (const std::string& stem : own) {
     for (const char* ending : {".hpp", ".cpp"}) {
-      const fs::path file = root / "generator" / (stem + ending);
+      const fs::path file = source_root / "generator" / (stem + ending);
       if (!fs::exists(file)) continue;
       for (const Include& include : parse_includes(read_text(file))) {
         if (!include.quoted) continue;
@@ -216,14 +217,14 @@ TEST_CASE("the runtime and emitted code include neither the generator nor comput
   const std::set<std::string> code = {".hpp", ".h", ".cpp", ".c", ".mustache", ".in"};
   std::size_t seen = 0;
   for (const char* folder : {"lib", "templates", "generated", "examples"}) {
-    for (const fs::path& file : files_below(root / folder, code)) {
+    for (const fs::path& file : files_below(source_root / folder, code)) {
       for (const Include& include : parse_includes(read_text(file))) {
         ++seen;
         INFO(place(file, include));
         CHECK_FALSE(include.path.starts_with("ginac/"));
         CHECK_FALSE(include.path.starts_with("cln/"));
         // Except for the library's public headers in its own example.
-        if (!include.path.starts_with("eomgen/")) CHECK_FALSE(fs::exists(root / "generator" / include.path));
+        if (!include.path.starts_with("eomgen/")) CHECK_FALSE(fs::exists(source_root / "generator" / include.path));
       }
     }
   }
@@ -245,7 +246,7 @@ TEST_CASE("the command line includes only registries and values of the computing
                                          "import/import.hpp",
                                          "joints/joint.hpp",
                                          "rotations/rotation.hpp"};
-  for (const fs::path& file : files_below(root / "generator" / "cli", {".cpp", ".hpp"})) {
+  for (const fs::path& file : files_below(source_root / "generator" / "cli", {".cpp", ".hpp"})) {
     for (const Include& include : parse_includes(read_text(file))) {
       const std::string first = first_part(include.path);
       if (!include.quoted || first == "eom") continue;
@@ -271,13 +272,13 @@ TEST_CASE("no file contains a path of the machine on which it was written or bui
   std::vector<fs::path> files;
   for (const char* folder : {".ci", "bench", "cmake", "docs", "examples", "generated", "generator", "lib", "models",
                              "scripts", "templates", "tests"}) {
-    const std::vector<fs::path> more = files_below(root / folder);
+    const std::vector<fs::path> more = files_below(source_root / folder);
     files.insert(files.end(), more.begin(), more.end());
   }
-  for (const char* file : {"CMakeLists.txt", "CMakePresets.json", "README.md"}) files.push_back(root / file);
+  for (const char* file : {"CMakeLists.txt", "CMakePresets.json", "README.md"}) files.push_back(source_root / file);
   for (const fs::path& file : files) {
     const std::string text = read_text(file);
-    INFO(fs::relative(file, root).generic_string());
+    INFO(fs::relative(file, source_root).generic_string());
     for (const std::string& folder : never) {
       const std::size_t at = text.find(folder);
       INFO("names " << folder << " in: " << (at == std::string::npos ? "" : text.substr(at, 60)));

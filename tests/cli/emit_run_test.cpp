@@ -20,14 +20,14 @@ std::string pendulum(const std::string& solver) {
   return pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 0.6, y = -0.8 }\nsolver = \"" + solver + "\"\n");
 }
 
-struct Case {
+struct EmittedCase {
   const char* what;
   std::string text;
   std::vector<std::string> expected_parts;
 };
 
 /// The run is refused with these words and nothing is written. Without the run, the model is emitted.
-void check_refusal(const Case& c) {
+void check_refusal(const EmittedCase& c) {
   CAPTURE(std::string(c.what));
   const Folder folder;
   folder.write("model.toml", c.text);
@@ -44,7 +44,7 @@ void check_refusal(const Case& c) {
 
 TEST_CASE("emit --with run: a solver of the default scene that is ineligible for the model is refused") {
   const std::string clipped = "[[force]]\non = \"P\"\nforce = \"-max(x, 0)*1[N/m]*E1\"\n";
-  const std::vector<Case> cases{
+  const std::vector<EmittedCase> cases{
       {"no constraints",
        particle("solver = \"ggl\"\n"),
        {"solver 'ggl' cannot integrate this model", "no constraints with multipliers", "dop853 or auto"}},
@@ -54,7 +54,7 @@ TEST_CASE("emit --with run: a solver of the default scene that is ineligible for
       {"moving inputs",
        particle("solver = \"taylor\"\ninputs = { F = \"3*sin(2*t)\" }\n"),
        {"solver 'taylor' cannot integrate this scene", "an input is an expression of t"}}};
-  for (const Case& c : cases) check_refusal(c);
+  for (const EmittedCase& c : cases) check_refusal(c);
 }
 
 TEST_CASE("emit --with run: an eligible solver adds the functions that it needs") {

@@ -83,7 +83,7 @@ initial = { x = 0.5, y = 0, y_dot = 1.5, X = 0.3, X_dot = 1 }
 solve = ["z", "z_dot"]
 )";
 
-struct Case {
+struct PageCase {
   std::string model;        // a name, or a file in the folder
   bool live = true;         // the page integrates it
   std::string slider = {};  // a parameter that is moved
@@ -167,7 +167,7 @@ Json positions(const Folder& folder, const std::string& model, const Json& parts
   return {{"columns", table.columns}, {"rows", table.rows}};
 }
 
-void check(const Json& found, const Case& c, const Json& wanted) {
+void check(const Json& found, const PageCase& c, const Json& wanted) {
   CAPTURE(c.model);
   CAPTURE(found.dump());
   REQUIRE_FALSE(found.contains("failed"));
@@ -245,23 +245,23 @@ TEST_CASE("page: reports show complete equations, replay the run, and integrate 
   folder.write("chain_10.toml", replaced(source("models/S6_chain_6.toml"), "n = 6", "n = 10"));
   folder.write("brick.toml", brick);
   folder.write("bowl.toml", bowl);
-  const std::vector<Case> list{{"brick.toml", true, "a", 0.5, "", "corner"},
-                               {"P7_moving_sphere", true, "m", 2, "", "", true},
-                               {"S5_double_pendulum", true, "m2", 1.5, "P2"},
-                               {"R6_rolling_disk", true, "R", 0.25},
-                               {"bowl.toml"},
-                               {"bouncing_ball", false},
-                               {"R7_satellite"},
-                               {"R10_lagrange_top"},
-                               {"R15_pin_joint", true, "m1", 2},
-                               {"R16_sphere_on_sphere"},
-                               {"R16_disk_on_disk", false},
-                               {"six_bar_spatial", true, "k", 170, "plate"},
-                               {"n_four_bar_2", true, "", 0, "K1"},
-                               {"chain_10.toml", true, "L", 1.2}};
+  const std::vector<PageCase> list{{"brick.toml", true, "a", 0.5, "", "corner"},
+                                   {"P7_moving_sphere", true, "m", 2, "", "", true},
+                                   {"S5_double_pendulum", true, "m2", 1.5, "P2"},
+                                   {"R6_rolling_disk", true, "R", 0.25},
+                                   {"bowl.toml"},
+                                   {"bouncing_ball", false},
+                                   {"R7_satellite"},
+                                   {"R10_lagrange_top"},
+                                   {"R15_pin_joint", true, "m1", 2},
+                                   {"R16_sphere_on_sphere"},
+                                   {"R16_disk_on_disk", false},
+                                   {"six_bar_spatial", true, "k", 170, "plate"},
+                                   {"n_four_bar_2", true, "", 0, "K1"},
+                                   {"chain_10.toml", true, "L", 1.2}};
   Json cases = Json::array();
   std::vector<Json> wanted;
-  for (const Case& c : list) {
+  for (const PageCase& c : list) {
     CAPTURE(c.model);
     expect(0, folder, {"report", c.model, "-o", "page.html"});
     const std::string page = folder.read("page.html");

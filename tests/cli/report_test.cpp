@@ -41,7 +41,7 @@ std::string unbalanced(const std::string& page) {
   return open.empty() ? "" : open.back();
 }
 
-std::size_t count(const std::string& text, const std::string& part) {
+std::size_t occurrences(const std::string& text, const std::string& part) {
   std::size_t found = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
   return found;
@@ -64,8 +64,8 @@ TEST_CASE("report: one page with equations, certificate, run, plots and animatio
     CHECK(found["file"] == "page.html");
     const std::string page = folder.read("page.html");
     CHECK(unbalanced(page) == "");
-    CHECK(count(page, "<math") > 5);
-    CHECK(count(page, "<svg") >= 2);
+    CHECK(occurrences(page, "<math") > 5);
+    CHECK(occurrences(page, "<svg") >= 2);
     CHECK(contains(page, "pass: 5 points, 50 digits"));
     for (const char* reference : {"src=", "href=", "@import", "url(", "fetch(", "XMLHttpRequest"})
       CHECK_FALSE(contains(page, reference));
@@ -146,7 +146,7 @@ outputs = ["work", "kinetic", "stored"]
     Words panels;
     for (const Json& panel : moving["panels"]) {
       const std::string title = panel["title"].get<std::string>();
-      CHECK(count(page, ">" + title + "<") == 1);  // at the axis of its plot
+      CHECK(occurrences(page, ">" + title + "<") == 1);  // at the axis of its plot
       panels.push_back(title + ":");
       for (const Json& curve : panel["of"]) panels.back() += " " + curve["name"].get<std::string>();
     }
@@ -294,10 +294,10 @@ TEST_CASE("report: text of a model is escaped") {
   expect(0, folder, {"report", "hostile.toml"});
   const std::string page = folder.read("report.html");
   CHECK(unbalanced(page) == "");
-  CHECK(count(page, "<script") == 2);  // the motion, and the script of the page with the model
-  CHECK(count(page, "</script") == 2);
-  CHECK(count(page, "<!--") == 0);
-  CHECK(count(page, "<img") == 0);
+  CHECK(occurrences(page, "<script") == 2);  // the motion, and the script of the page with the model
+  CHECK(occurrences(page, "</script") == 2);
+  CHECK(occurrences(page, "<!--") == 0);
+  CHECK(occurrences(page, "<img") == 0);
   CHECK(contains(page, "&lt;script&gt;alert(1)"));
   CHECK(contains(page, "{{{body}}}"));
 }

@@ -37,7 +37,7 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-std::string scene(const std::string& solver) {
+std::string scene_of(const std::string& solver) {
   return pendulum_text("[scene.default]\nt = [0, 0.1]\ninitial = { x = 0.6, y = -0.8 }\nstep = 0.01\nsolver = \"" +
                        solver + "\"\n");
 }
@@ -81,10 +81,10 @@ TEST_CASE("solvers: a scene may name every method of the registry, and no other"
   const Folder folder;
   for (const std::string& name : names()) {
     CAPTURE(name);
-    folder.write("model.toml", scene(name));
+    folder.write("model.toml", scene_of(name));
     expect(0, folder, {"check", "model.toml"});
   }
-  folder.write("model.toml", scene("no_such_method"));
+  folder.write("model.toml", scene_of("no_such_method"));
   const ChildResult result = expect(2, folder, {"check", "model.toml"});
   CHECK(contains(result.err, "there is no solver 'no_such_method'"));
   CHECK(contains(result.err, "remedy: the solvers are " + joined(names()) + "\n"));
@@ -94,7 +94,7 @@ TEST_CASE("solvers: every method of the registry integrates the pendulum on a ro
   const Folder folder;
   for (const eom::MethodInfo& method : eom::methods()) {
     CAPTURE(std::string(method.name));
-    folder.write("model.toml", scene(method.name));
+    folder.write("model.toml", scene_of(method.name));
     CHECK(document(folder, {"run", "model.toml", "--no-error-estimate"})["solver"] == method.name);
   }
 }

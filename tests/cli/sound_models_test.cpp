@@ -13,7 +13,7 @@ using namespace eomgen::test;
 
 namespace {
 
-std::string particle(const std::string& parameters, const std::string& force) {
+std::string particle_under(const std::string& parameters, const std::string& force) {
   return fmt::format(R"toml(format = 1
 [parameters]
 m = 1
@@ -53,7 +53,7 @@ TEST_CASE("verify: tolerances allow for rounding with large angles, distant plac
         {"k = 1e10\nd = 3", "spring = { between = [\"P\", \"d*E1\"], stiffness = \"k\", length = \"d\" }"}}) {
     const auto& shown = force;
     CAPTURE(shown);
-    folder.write("sound.toml", particle(parameters, force));
+    folder.write("sound.toml", particle_under(parameters, force));
     CHECK(document(folder, {"verify", "sound.toml", "--points", "6"})["verdict"] == "pass");
   }
 }
@@ -61,7 +61,7 @@ TEST_CASE("verify: tolerances allow for rounding with large angles, distant plac
 TEST_CASE(
     "verify: a narrow force far from the sampled states passes, and so does an acceleration of 0 by cancelling terms") {
   const Folder folder;
-  folder.write("pulse.toml", particle("", "generalized = { x = \"exp(-((t - 5)/0.01)^2)\" }"));
+  folder.write("pulse.toml", particle_under("", "generalized = { x = \"exp(-((t - 5)/0.01)^2)\" }"));
   CHECK(document(folder, {"verify", "pulse.toml", "--points", "4"})["verdict"] == "pass");
   // exp(-1e11) has about 4e10 zeros after the decimal point.
   folder.write("barrier.toml",

@@ -11,7 +11,7 @@ using namespace eomgen::test;
 namespace {
 
 /// Without the first line, which identifies the sweep.
-std::string rows(const std::string& text) { return text.substr(text.find('\n')); }
+std::string text_of_rows(const std::string& text) { return text.substr(text.find('\n')); }
 
 }  // namespace
 
@@ -29,7 +29,7 @@ TEST_CASE("sweep: the lines of a file are points, alone and with a grid") {
   folder.write("grid.csv", "k\n1\n2\n9.3\n");
   expect(0, folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--points", "grid.csv", "--out", "a.csv"});
   expect(0, folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--grid", "k=1,2,9.3", "--out", "b.csv"});
-  CHECK(rows(folder.read("a.csv")) == rows(folder.read("b.csv")));
+  CHECK(text_of_rows(folder.read("a.csv")) == text_of_rows(folder.read("b.csv")));
   // Another file is another sweep.
   folder.write("grid.csv", "k\n1\n2\n9.4\n");
   CHECK(document(folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--points", "grid.csv", "--out",

@@ -15,7 +15,7 @@ using namespace eomgen;
 
 namespace {
 
-constexpr double rounding = 1e-13;   // a few operations on numbers about 1, about 0.2 from a singular set
+constexpr double chart_rounding = 1e-13;  // a few operations on numbers about 1, about 0.2 from a singular set
 constexpr double difference = 1e-8;  // of central differences with steps of 1e-5: their square, times third derivatives
 
 model::Model body(const std::string& set) {
@@ -91,10 +91,10 @@ TEST_CASE(
     for (const Values& x : {Values{0.4, near, -1.1, 0.3, -0.8, 1.7}, Values{2.9, near, 4.0, -2, 0.1, 0.6},
                             Values{-1.3, near + 0.5, 0.2, 1, 2, -3}}) {
       const Values second = applied(dag, change.to_second, change.angles, x);
-      CHECK((attitude(r.name, x) - attitude(charts[0].second, second)).norm() < rounding);
+      CHECK((attitude(r.name, x) - attitude(charts[0].second, second)).norm() < chart_rounding);
       check_rates(dag, change.to_second, change.angles, x);
       const Values again = applied(dag, change.to_own, change.angles, second);
-      CHECK((attitude(r.name, again) - attitude(r.name, x)).norm() < rounding);
+      CHECK((attitude(r.name, again) - attitude(r.name, x)).norm() < chart_rounding);
       check_rates(dag, change.to_own, change.angles, second);
       const double guard = change.second_at_sine ? std::sin(second[1]) : std::cos(second[1]);
       if (x[1] == near) CHECK(std::abs(guard) > 0.97);  // the second set is far from singular there
@@ -112,13 +112,13 @@ TEST_CASE("chart change: spherical coordinates about E3 and about E1") {
   CHECK(change.singularity == "sin(phi)");
   for (const Values& x : {Values{0.2, 0.9, -1.1, 0.3}, Values{M_PI - 0.2, -2.5, 0.4, 1.6}}) {
     const Values second = applied(dag, change.to_second, change.angles, x);
-    CHECK(std::cos(second[0]) == doctest::Approx(std::sin(x[0]) * std::cos(x[1])).epsilon(rounding));
+    CHECK(std::cos(second[0]) == doctest::Approx(std::sin(x[0]) * std::cos(x[1])).epsilon(chart_rounding));
     CHECK(std::sin(second[0]) * std::cos(second[1]) ==
-          doctest::Approx(std::sin(x[0]) * std::sin(x[1])).epsilon(rounding));
-    CHECK(std::sin(second[0]) * std::sin(second[1]) == doctest::Approx(std::cos(x[0])).epsilon(rounding));
+          doctest::Approx(std::sin(x[0]) * std::sin(x[1])).epsilon(chart_rounding));
+    CHECK(std::sin(second[0]) * std::sin(second[1]) == doctest::Approx(std::cos(x[0])).epsilon(chart_rounding));
     check_rates(dag, change.to_second, change.angles, x);
     const Values again = applied(dag, change.to_own, change.angles, second);
-    for (std::size_t k = 0; k < 4; ++k) CHECK(again[k] == doctest::Approx(x[k]).epsilon(rounding));
+    for (std::size_t k = 0; k < 4; ++k) CHECK(again[k] == doctest::Approx(x[k]).epsilon(chart_rounding));
     check_rates(dag, change.to_own, change.angles, second);
   }
 }

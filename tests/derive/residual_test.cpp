@@ -79,7 +79,7 @@ system::EquationSystem recursive(mechanics::Mechanics& m) {
   throw std::logic_error("the formulation `recursive`");
 }
 
-double difference(const symbolic::Dag& dag, const std::vector<Ref>& a, const std::vector<Ref>& b) {
+double difference_of(const symbolic::Dag& dag, const std::vector<Ref>& a, const std::vector<Ref>& b) {
   const auto value = [](const symbolic::Symbol& s) -> cln::cl_R { return symbolic::sample(s, 1); };
   const std::vector<cln::cl_R> left = symbolic::evaluate(dag, a, value, digits),
                                right = symbolic::evaluate(dag, b, value, digits);
@@ -132,15 +132,15 @@ TEST_CASE("the residual of a tree of bodies is M qddot - f, and its derivatives 
         by_qdot.push_back(symbolic::partial_derivative(dag, {SymbolKind::coordinate, s.free[j], 1})(sum));
       }
     }
-    CHECK(difference(dag, residual->inertia, expected) < as_good_as_exact);
-    CHECK(difference(dag, residual->by_q, by_q) < as_good_as_exact);
-    CHECK(difference(dag, residual->by_qdot, by_qdot) < as_good_as_exact);
-    CHECK(difference(dag, product(dag, s.M, residual->qddot_by_q), negative(dag, by_q)) < as_good_as_exact);
-    CHECK(difference(dag, product(dag, s.M, residual->qddot_by_qdot), negative(dag, by_qdot)) < as_good_as_exact);
+    CHECK(difference_of(dag, residual->inertia, expected) < as_good_as_exact);
+    CHECK(difference_of(dag, residual->by_q, by_q) < as_good_as_exact);
+    CHECK(difference_of(dag, residual->by_qdot, by_qdot) < as_good_as_exact);
+    CHECK(difference_of(dag, product(dag, s.M, residual->qddot_by_q), negative(dag, by_q)) < as_good_as_exact);
+    CHECK(difference_of(dag, product(dag, s.M, residual->qddot_by_qdot), negative(dag, by_qdot)) < as_good_as_exact);
     if (residual->M_inverse.empty()) continue;
     std::vector<Ref> identity(n * n, dag.zero());
     for (std::size_t i = 0; i < n; ++i) identity[i * n + i] = dag.one();
-    CHECK(difference(dag, product(dag, s.M, residual->M_inverse), identity) < as_good_as_exact);
+    CHECK(difference_of(dag, product(dag, s.M, residual->M_inverse), identity) < as_good_as_exact);
   }
 }
 

@@ -14,7 +14,7 @@ using namespace eomgen::test;
 
 namespace {
 
-FinishedRun run_text(const std::string& name, const std::string& text) {
+FinishedRun run_dependent(const std::string& name, const std::string& text) {
   const std::string path = test::build_folder() + "/" + name + ".toml";
   write_text(path, text);
   return run_model(path);
@@ -48,7 +48,7 @@ std::array<double, 2> by_newton(double v, double w, double until) {
 TEST_CASE("two wheels on one axle obey Newton's and Euler's equations, with and without a coordinate for the height") {
   for (const std::string height : {"z", "R"}) {
     CAPTURE(height);
-    const FinishedRun run = run_text("axle_" + height, wheels_on_one_axle(height));
+    const FinishedRun run = run_dependent("axle_" + height, wheels_on_one_axle(height));
     CHECK(run.simulation.certificate.pass);
     CHECK(run.simulation.result.constraint_drift < 1e-10);
     CHECK(run.simulation.result.power_balance < 1e-9);
@@ -62,7 +62,7 @@ TEST_CASE("two wheels on one axle obey Newton's and Euler's equations, with and 
 // At t = 1.05 the bars are collinear. The length of the coupler then gives no condition to first order, so another
 // equation must be kept.
 TEST_CASE("Bennett's loop conserves energy and satisfies all four equations, also if its bars are collinear") {
-  const FinishedRun run = run_text("bennett", bennett_by_products());
+  const FinishedRun run = run_dependent("bennett", bennett_by_products());
   CHECK(run.simulation.certificate.pass);
   CHECK(run.simulation.result.outcome == eom::Outcome::done);
   CHECK(run.simulation.result.t == 2);

@@ -33,7 +33,7 @@ struct Built {
   }
 };
 
-std::string refusal(const std::string& text) {
+std::string refusal_message(const std::string& text) {
   try {
     const Built built(text);
   } catch (const Error& error) {
@@ -43,19 +43,20 @@ std::string refusal(const std::string& text) {
   return "not refused";
 }
 
-const std::string axis = "axis = [\"coupler.e3\", \"rocker.e3\"]";
+const std::string pin_axis = "axis = [\"coupler.e3\", \"rocker.e3\"]";
 
 }  // namespace
 
 TEST_CASE("a loop whose dimensions are inexact, or fit only for special parameters, is rejected") {
-  CHECK(refusal(changed("four_bar_spatial_pins", {{axis, "axis = [\"coupler.e3\", \"rocker.e3 + 1e-8*rocker.e1\"]"}}))
+  CHECK(refusal_message(
+            changed("four_bar_spatial_pins", {{pin_axis, "axis = [\"coupler.e3\", \"rocker.e3 + 1e-8*rocker.e1\"]"}}))
             .find("seems to follow from the other constraints") != std::string::npos);
   for (const std::string tilt : {"sin(p - q)", "r"}) {  // parameters that happen to be equal, one that happens to be 0
     const std::string text =
         changed("four_bar_spatial_pins",
-                {{axis, "axis = [\"coupler.e3\", \"rocker.e3 + " + tilt + "*rocker.e1\"]"},
+                {{pin_axis, "axis = [\"coupler.e3\", \"rocker.e3 + " + tilt + "*rocker.e1\"]"},
                  {"g = \"9.81 m/s^2\"\n", "g = \"9.81 m/s^2\"\np = \"0.5 rad\"\nq = \"0.5 rad\"\nr = 0\n"}});
-    CHECK(refusal(text).find("for these values of the parameters only") != std::string::npos);
+    CHECK(refusal_message(text).find("for these values of the parameters only") != std::string::npos);
   }
 }
 

@@ -10,7 +10,7 @@
 
 namespace {
 
-std::string text_of(const std::string& path) {
+std::string document_text(const std::string& path) {
   std::ifstream file(eomgen::test::source_folder() + "/" + path, std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
@@ -20,13 +20,13 @@ std::string text_of(const std::string& path) {
 }  // namespace
 
 TEST_CASE("docs/runtime.md: its example is examples/runtime/pendulum.cpp") {
-  const std::string code = text_of("examples/runtime/pendulum.cpp");
+  const std::string code = document_text("examples/runtime/pendulum.cpp");
   REQUIRE(!code.empty());
-  CHECK(text_of("docs/runtime.md").find("```cpp\n" + code + "```\n") != std::string::npos);
+  CHECK(document_text("docs/runtime.md").find("```cpp\n" + code + "```\n") != std::string::npos);
 }
 
 TEST_CASE("docs/runtime.md: the table of requirements agrees with the methods") {
-  const std::string text = text_of("docs/runtime.md");
+  const std::string text = document_text("docs/runtime.md");
   const std::string section = text.substr(text.find("| method | requires |"));
   for (const eom::MethodInfo& method : eom::methods()) {
     CAPTURE(std::string(method.name));
@@ -52,7 +52,7 @@ TEST_CASE("docs/runtime.md: the table of requirements agrees with the methods") 
 }
 
 TEST_CASE("docs/runtime.md: every method and every outcome is in its tables") {
-  const std::string text = text_of("docs/runtime.md");
+  const std::string text = document_text("docs/runtime.md");
   for (const eom::MethodInfo& method : eom::methods()) {
     CAPTURE(std::string(method.name));
     CHECK(text.find("| `" + std::string(method.name) + "` | " + std::to_string(method.order)) != std::string::npos);

@@ -29,7 +29,7 @@ eom::Options tight(const eom::MethodInfo& method) {
   return options;
 }
 
-struct Seen {
+struct SeenEvent {
   double t;
   std::size_t function;
   bool up;
@@ -38,9 +38,9 @@ struct Seen {
 
 /// The oscillator from (1, 0): x = cos t, with all of its events; `watch` of all functions.
 template <class G>
-std::vector<Seen> crossings(const eom::MethodInfo& method, double t1, G g, std::vector<EventFunction> functions,
-                            eom::Options options) {
-  std::vector<Seen> seen;
+std::vector<SeenEvent> crossings(const eom::MethodInfo& method, double t1, G g, std::vector<EventFunction> functions,
+                                 eom::Options options) {
+  std::vector<SeenEvent> seen;
   const problems::Oscillator oscillator{{1, 0}};
   const auto handler = [&](const EventPoint& point) {
     seen.push_back({point.t, point.crossing.function, point.crossing.up, {point.x.begin(), point.x.end()}});
@@ -85,8 +85,8 @@ TEST_CASE("all methods: event directions refer to increasing time, for both dire
       const auto down = crossings(method, t1, position, {{Direction::down, Watch::passing}}, tight(method));
       REQUIRE(up.size() == 3);
       REQUIRE(down.size() == 3);
-      for (const Seen& s : up) CHECK(-s.x[1] < 0);
-      for (const Seen& s : down) CHECK(s.x[1] < 0);
+      for (const SeenEvent& s : up) CHECK(-s.x[1] < 0);
+      for (const SeenEvent& s : down) CHECK(s.x[1] < 0);
     }
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("all methods: a double root inside one step gives two events, and a na
       CAPTURE(std::string(method.name));
       eom::Options options = tight(method);
       if (!method.adaptive) options.fixed_step = 0.005;
-      std::vector<Seen> seen = crossings(method, 7, g, {{Direction::any, Watch::breaking}}, options);
+      std::vector<SeenEvent> seen = crossings(method, 7, g, {{Direction::any, Watch::breaking}}, options);
       if (level > 1) {
         CHECK(seen.empty());
         continue;

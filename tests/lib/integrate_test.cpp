@@ -14,7 +14,7 @@
 
 namespace {
 
-eom::Options tight(const eom::MethodInfo& method) {
+eom::Options tight_options(const eom::MethodInfo& method) {
   eom::Options options;
   options.rtol = 1e-12;
   options.atol = 1e-13;
@@ -28,7 +28,7 @@ void check_closed_form(const Problem& problem, double t1) {
     for (const double end : {t1, -t1}) {
       CAPTURE(std::string(method.name));
       CAPTURE(end);
-      const eom::Result result = eom::integrate(method.name, problem, 0, problem.start, end, tight(method));
+      const eom::Result result = eom::integrate(method.name, problem, 0, problem.start, end, tight_options(method));
       CHECK(result.outcome == eom::Outcome::done);
       CHECK(result.t == end);
       CHECK(result.detail.empty());
@@ -50,7 +50,8 @@ TEST_CASE("pendulum: after the period from the arithmetic-geometric mean it retu
   const problems::Pendulum pendulum;
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
-    const auto result = eom::integrate(method.name, pendulum, 0, pendulum.start, pendulum.period(), tight(method));
+    const auto result =
+        eom::integrate(method.name, pendulum, 0, pendulum.start, pendulum.period(), tight_options(method));
     CHECK(problems::largest_difference(result.x, pendulum.start) < problems::coarser(method) * tolerances::closed_form);
   }
 }

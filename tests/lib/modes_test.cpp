@@ -21,7 +21,7 @@ using eom::ModeResult;
 using eom::Transition;
 using std::numbers::pi;
 
-eom::Options tight(const eom::MethodInfo& method) {
+eom::Options tight_steps(const eom::MethodInfo& method) {
   eom::Options options;
   options.rtol = 1e-13;
   options.atol = 1e-14;
@@ -63,8 +63,8 @@ TEST_CASE("all methods: a block on a belt sticks for 5 and slips for 2(pi - atan
     CAPTURE(std::string(method.name));
     const std::vector<double> start{0, 0.2};  // sticking; x = 1 after 5
     const ModeResult r =
-        eom::integrate_modes(method.name, model.rhs(), 0, start, 0, 60, tight(method), model.events(), 3, belt_modes,
-                             [&](const ModePoint& point) { return belt_rule(point, p); });
+        eom::integrate_modes(method.name, model.rhs(), 0, start, 0, 60, tight_steps(method), model.events(), 3,
+                             belt_modes, [&](const ModePoint& point) { return belt_rule(point, p); });
     CHECK(r.outcome == eom::Outcome::done);
     REQUIRE(r.events.size() >= 10);
     // Slip oscillates about x = 0.5, from x = 1 to x = 0 at belt speed. The way back to x = 1 on the belt takes 1/0.2 =
@@ -93,8 +93,9 @@ TEST_CASE("implicit methods: they receive df/dx of the current mode") {
     CAPTURE(std::string(method.name));
     const std::vector<double> start{0, 0.2};
     const auto events = [&] {
-      return eom::integrate_modes(method.name, model.rhs_and_jacobian(), 0, start, 0, 20, tight(method), model.events(),
-                                  3, belt_modes, [&](const ModePoint& point) { return belt_rule(point, p); });
+      return eom::integrate_modes(method.name, model.rhs_and_jacobian(), 0, start, 0, 20, tight_steps(method),
+                                  model.events(), 3, belt_modes,
+                                  [&](const ModePoint& point) { return belt_rule(point, p); });
     };
     model.jac_function = jacobian;
     const ModeResult given = events();
@@ -120,8 +121,8 @@ TEST_CASE("all methods: an oscillator with Coulomb friction stops as in the clos
     CAPTURE(std::string(method.name));
     const std::vector<double> start{4.1, 0};
     const ModeResult r =
-        eom::integrate_modes(method.name, model.rhs(), 0, start, 0, 50, tight(method), model.events(), 3, belt_modes,
-                             [&](const ModePoint& point) { return belt_rule(point, p); });
+        eom::integrate_modes(method.name, model.rhs(), 0, start, 0, 50, tight_steps(method), model.events(), 3,
+                             belt_modes, [&](const ModePoint& point) { return belt_rule(point, p); });
     CHECK(r.outcome == eom::Outcome::done);
     CHECK(r.mode == 0);
     REQUIRE(r.events.size() == 8);
@@ -173,8 +174,8 @@ TEST_CASE("all methods: a bouncing ball ends with a report at the accumulation o
     for (const double e : {0.5, 0.8}) {
       CAPTURE(std::string(method.name));
       CAPTURE(e);
-      const ModeResult r = eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight(method), ball_events, 1,
-                                                flight, Bounce{e});
+      const ModeResult r = eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight_steps(method),
+                                                ball_events, 1, flight, Bounce{e});
       CHECK(r.outcome == eom::Outcome::step_too_small);
       CHECK(r.detail.find("accumulate") != std::string::npos);
       CHECK(std::abs(r.accumulation - fall * (1 + e) / (1 - e)) < problems::coarser(method) * tolerances::event_time);
@@ -185,8 +186,8 @@ TEST_CASE("all methods: a bouncing ball ends with a report at the accumulation o
         t += flight_time;
       }
       CHECK(r.events.size() > 10);
-      const ModeResult rests = eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight(method), ball_events,
-                                                    1, flight, BounceAndRest{{e}});
+      const ModeResult rests = eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight_steps(method),
+                                                    ball_events, 1, flight, BounceAndRest{{e}});
       CHECK(rests.outcome == eom::Outcome::done);
       CHECK(rests.mode == 1);
       CHECK(rests.x == std::vector<double>{0, 0});
@@ -205,8 +206,8 @@ TEST_CASE("a ball on a table of height 1 never falls through it, down to bounces
     double lowest = 1;
     const auto observe = [&](const eom::StepView& view, int) { return lowest = std::min(lowest, view.x1[0]), true; };
     const std::vector<double> start{1.5, 0.1};
-    const ModeResult r = eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight(method), above_table, 1,
-                                              flight, bounce, observe);
+    const ModeResult r = eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight_steps(method), above_table,
+                                              1, flight, bounce, observe);
     CHECK(r.outcome == eom::Outcome::step_too_small);
     CHECK_FALSE(r.detail.empty());
     CHECK(lowest > 1 - tolerances::event_state);

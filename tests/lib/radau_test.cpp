@@ -17,7 +17,7 @@ using eom::implicit::RadauTableau;
 using problems::State;
 
 /// Van der Pol's equation with epsilon = 1e-6 (Hairer, Wanner, section IV.10) with its df/dx, and its state at t = 2.
-struct VanDerPol {
+struct StiffVanDerPol {
   State start{2, 0}, end{1.706167732170483, -0.8928097010247975};
   int operator()(double, const double* x, double* dx) const {
     dx[0] = x[1];
@@ -103,7 +103,7 @@ TEST_CASE("radau: orders 5, 9 and 13 in both directions of time, dense output of
 }
 
 TEST_CASE("radau: at tight tolerances it needs a fifth of the steps of radau5 for the same accuracy") {
-  const VanDerPol f;
+  const StiffVanDerPol f;
   for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
     CAPTURE(tolerance);
     Options options;

@@ -42,7 +42,7 @@ Vector times_gamma(const Row& row) {
 }
 
 /// Per tree the elementary weights of the stages: alpha at a vertex with several branches, beta at one with one.
-std::vector<Vector> stage_weights(const std::vector<Tree>& all) {
+std::vector<Vector> rosenbrock_weights(const std::vector<Tree>& all) {
   const Matrix gamma = gamma_matrix();
   Matrix alpha{};
   for (std::size_t i = 0; i < n; ++i) alpha[i] = times_gamma(T::a[i]);
@@ -63,7 +63,7 @@ std::vector<Vector> stage_weights(const std::vector<Tree>& all) {
 /// Largest order up to which the weights of the stages give s^order / density for all trees; for s = 0 they give 0.
 int order_met(const Vector& row, double s, int highest) {
   const std::vector<Tree> all = trees::rooted_trees(highest);
-  const std::vector<Vector> weights = stage_weights(all);
+  const std::vector<Vector> weights = rosenbrock_weights(all);
   for (std::size_t t = 0; t < all.size(); ++t) {
     double sum = 0;
     for (std::size_t j = 0; j < n; ++j) sum += row[j] * weights[t][j];

@@ -13,7 +13,7 @@
 
 namespace {
 
-constexpr double start_time = 0.7;
+constexpr double series_start = 0.7;
 
 /// Largest error at the ends of the steps, and of the dense output between them.
 std::pair<double, double> errors(int order, double direction, double step) {
@@ -32,8 +32,8 @@ std::pair<double, double> errors(int order, double direction, double step) {
     }
     return true;
   };
-  const auto result = eom::integrate("taylor", pendulum, start_time, pendulum.exact(start_time),
-                                     start_time + direction * 6, options, observe);
+  const auto result = eom::integrate("taylor", pendulum, series_start, pendulum.exact(series_start),
+                                     series_start + direction * 6, options, observe);
   REQUIRE(result.outcome == eom::Outcome::done);
   return {ends, between};
 }
@@ -136,7 +136,7 @@ struct Ball {
 };
 
 /// x' = -x with its integral as an additional component, which has no series.
-struct Decay {
+struct SeriesDecay {
   int operator()(double, const double* x, double* dx) const { return dx[0] = -x[0], dx[1] = x[0] * x[0], 0; }
   int taylor(double, const double* x, int order, double* c) const {
     c[0] = x[0];
@@ -176,7 +176,7 @@ TEST_CASE("taylor: components without a series are integrated as quadratures") {
     worst = std::max(worst, std::abs(x[0] - std::exp(-0.5 * (view.t0 + view.t1))));
     return true;
   };
-  const auto result = eom::integrate("taylor", Decay{}, 0, std::vector<double>{1, 0}, 3, options, see);
+  const auto result = eom::integrate("taylor", SeriesDecay{}, 0, std::vector<double>{1, 0}, 3, options, see);
   CHECK(std::abs(result.x[0] - std::exp(-3)) < 1e-12);
   CHECK(std::abs(result.x[1] - (1 - std::exp(-6)) / 2) < 1e-12);
   CHECK(worst < 1e-12);

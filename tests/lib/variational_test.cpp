@@ -53,7 +53,7 @@ struct DoublePendulum {
 };
 
 /// A pendulum in Cartesian coordinates with rod length 1 + 0.1 sin t; rate: optionally with a drag of -0.1 v.
-struct Rod {
+struct RodMotion {
   double drag = 0;
   static double length(double t) { return 1 + 0.1 * std::sin(t); }
   int operator()(double t, const double* x, double* dx) const {
@@ -101,7 +101,7 @@ std::vector<eom::MethodInfo> variational() {
   return found;
 }
 
-Options fixed(double h, std::size_t quadratures = 0) {
+Options fixed_step(double h, std::size_t quadratures = 0) {
   Options options;
   options.fixed_step = h;
   options.quadratures = quadratures;
@@ -126,7 +126,7 @@ void check_order(const F& f, const State& start, std::size_t quadratures) {
       const State right = reference(f, start, end, quadratures);
       const double h = method.order == 2 ? 0.005 : method.order == 4 ? 0.01 : 0.015;
       const auto error = [&](double step) {
-        const Result result = eom::integrate(method.name, f, 0, start, end, fixed(step, quadratures));
+        const Result result = eom::integrate(method.name, f, 0, start, end, fixed_step(step, quadratures));
         CHECK(result.outcome == eom::Outcome::done);
         return problems::largest_difference(result.x, right);
       };
@@ -156,20 +156,20 @@ TEST_CASE(
     "variational: the order is the stated one, in both directions of time, without and with a constraint, forces "
     "and work") {
   check_order(DoublePendulum{}, swinging, 0);
-  check_order(Rod{}, rod_start, 1);
-  check_order(Rod{0.3}, rod_start, 1);
+  check_order(RodMotion{}, rod_start, 1);
+  check_order(RodMotion{0.3}, rod_start, 1);
 }
 
 TEST_CASE("variational: a step back undoes a step, and constraints hold to rounding on positions and velocities") {
-  const Rod rod{0};
+  const RodMotion rod{0};
   for (const eom::MethodInfo& method : variational()) {
     CAPTURE(std::string(method.name));
-    const Result there = eom::integrate(method.name, rod, 0, rod_start, 20, fixed(0.1, 1));
+    const Result there = eom::integrate(method.name, rod, 0, rod_start, 20, fixed_step(0.1, 1));
     double psi, A[2], b;
     rod.constrain(20, there.x.data(), &psi, A, &b);
     CHECK(std::abs(psi) < 1e-14);
     CHECK(std::abs(A[0] * there.x[2] + A[1] * there.x[3] + b) < 1e-13);
-    const Result back = eom::integrate(method.name, rod, 20, there.x, 0, fixed(0.1, 1));
+    const Result back = eom::integrate(method.name, rod, 20, there.x, 0, fixed_step(0.1, 1));
     CHECK(problems::largest_difference(back.x, rod_start) <
           1e-10);  // 400 steps, each with several roundings, of a motion that amplifies them
   }
@@ -198,7 +198,7 @@ TEST_CASE("variational: the map of a step preserves dq ^ dp; that of dopri5 does
       const auto moved = [&](double part) {
         State z = start;
         z[j] += part * by;
-        return to_momenta(eom::integrate(method, f, 0, from_momenta(z), 0.5, fixed(0.1)).x);
+        return to_momenta(eom::integrate(method, f, 0, from_momenta(z), 0.5, fixed_step(0.1)).x);
       };
       const State a = moved(1), b = moved(-1), c = moved(2), d = moved(-2);
       for (std::size_t i = 0; i < 4; ++i) J[i][j] = (8 * (a[i] - b[i]) - (c[i] - d[i])) / (12 * by);
@@ -224,7 +224,7 @@ TEST_CASE("variational: energy errors are bounded and do not grow, also along a 
     const State start{1.2, 0.3, 0, 0};
     const auto drift = [&](double end) {
       double worst = 0;
-      eom::integrate(method.name, f, 0, start, end, fixed(0.02), [&](const eom::StepView& view) {
+      eom::integrate(method.name, f, 0, start, end, fixed_step(0.02), [&](const eom::StepView& view) {
         worst = std::max(worst, std::abs(f.energy(view.x1.data()) - f.energy(start.data())));
         return true;
       });
@@ -243,13 +243,13 @@ TEST_CASE("variational: events are found, and a right-hand side without momenta 
     const auto handler = [&](const eom::EventPoint& point) {
       return times.push_back(point.t), eom::EventAction::resume;
     };
-    const Result result = eom::integrate_events(method.name, DoublePendulum{}, 0, swinging, 2, fixed(0.001), position,
-                                                {{eom::Direction::down, eom::Watch::breaking}}, handler);
+    const Result result = eom::integrate_events(method.name, DoublePendulum{}, 0, swinging, 2, fixed_step(0.001),
+                                                position, {{eom::Direction::down, eom::Watch::breaking}}, handler);
     CHECK(result.outcome == eom::Outcome::done);
     REQUIRE(!times.empty());
     CHECK(std::abs(reference(DoublePendulum{}, swinging, times[0], 0)[0]) < 1e-5);  // the error of steps of order 2
     const problems::Kepler kepler;
-    CHECK_THROWS_WITH_AS(eom::integrate(method.name, kepler, 0, kepler.start, 1, fixed(0.1)),
+    CHECK_THROWS_WITH_AS(eom::integrate(method.name, kepler, 0, kepler.start, 1, fixed_step(0.1)),
                          doctest::Contains("momenta"), std::invalid_argument);
     CHECK_THROWS_WITH_AS(eom::integrate(method.name, DoublePendulum{}, 0, swinging, 1), doctest::Contains("fixed_step"),
                          std::invalid_argument);

@@ -13,7 +13,7 @@ using namespace eomgen;
 namespace {
 
 /// q'' = -4 sin q + u.
-Definition driven_pendulum() {
+Definition pushed_pendulum() {
   Definition d("Driven pendulum");
   d.parameter("k", "4");
   d.set("coordinates", "q", Value::table({}));
@@ -54,7 +54,7 @@ Definition ball() {
 }  // namespace
 
 TEST_CASE("library: a simulation in pieces reaches the end of a run, with its events and rows") {
-  const Model model = Model::from(driven_pendulum(), "driven");
+  const Model model = Model::from(pushed_pendulum(), "driven");
   const Motion whole = model.run({.rtol = 1e-12, .atol = 1e-14});
   const CompiledModel f = model.compile();
   Simulation s(f, {.rtol = 1e-11, .atol = 1e-13, .every = 0.5});
@@ -81,7 +81,7 @@ TEST_CASE("library: a simulation in pieces reaches the end of a run, with its ev
 }
 
 TEST_CASE("library: a controller at 1 kHz holds its inputs, and simulations of one model are independent") {
-  const CompiledModel f = Model::from(driven_pendulum(), "driven").compile();
+  const CompiledModel f = Model::from(pushed_pendulum(), "driven").compile();
   Simulation s(f), other(f, {.parameters = {{"k", 9}, {"q", 0.5}}});
   CHECK(other.state() == std::vector<double>{0.5, 0});
   CHECK(other.parameters() == std::vector<double>{9});
@@ -127,13 +127,13 @@ TEST_CASE("library: a restored simulation continues with the same bits, with con
   REQUIRE(rest.advance(1).outcome == "done");
   CHECK(rest.state() == std::vector<double>{0, 0});
   CHECK_THROWS_WITH_AS(rest.set_state(0, below), doctest::Contains("the gap of 'floor' is negative"), Error);
-  const CompiledModel pendulum = Model::from(driven_pendulum(), "driven").compile();
+  const CompiledModel pendulum = Model::from(pushed_pendulum(), "driven").compile();
   Simulation elsewhere(pendulum);
   CHECK_THROWS_AS(elsewhere.restore(rest.save()), Error);
 }
 
 TEST_CASE("library: a stop request ends an advance, and the simulation goes on afterwards") {
-  const CompiledModel f = Model::from(driven_pendulum(), "driven").compile();
+  const CompiledModel f = Model::from(pushed_pendulum(), "driven").compile();
   std::stop_source source;
   Simulation s(f, {.every = 1, .row = [&](double t, std::span<const double>) {
                      if (t >= 5) source.request_stop();

@@ -26,7 +26,7 @@ Linearised linearised_at(const std::string& path) {
   return {std::move(problem), std::move(l)};
 }
 
-analysis::SteadyMotions found(const std::string& path, std::size_t starts) {
+analysis::SteadyMotions found_from(const std::string& path, std::size_t starts) {
   analysis::SteadyRequest request;
   request.model = test::model_at(path);
   request.starts = starts;
@@ -121,7 +121,7 @@ gravity = "-9.81*E3"
 initial = { a = 0.1, b = 0.7, c = 0.2, d = 0.9 }
 )toml";
   try {
-    const analysis::SteadyMotions all = found(written("conical_rods", rods), 40);
+    const analysis::SteadyMotions all = found_from(written("conical_rods", rods), 40);
     CHECK(all.search.failed_starts > 0);
   } catch (const Error& error) {
     CHECK(error.message().find("of the starts end where the equations of motion have no slope") != std::string::npos);
@@ -139,7 +139,7 @@ TEST_CASE("twenty members of an undetermined family are examined, and starts tha
         "\"j{0}\"\ntype = \"ball\"\nbodies = [\"{1}\", \"B{0}\"]\nat = [\"{2}\", \"B{0} + 0.5*B{0}.e3\"]\n",
         k, k == 1 ? "ground" : "B1", k == 1 ? "origin" : "B1 - 0.5*B1.e3");
   }
-  const analysis::SteadyMotions all = found(written("two_hang", text + "[[force]]\ngravity = \"-9.81*E3\"\n"), 60);
+  const analysis::SteadyMotions all = found_from(written("two_hang", text + "[[force]]\ngravity = \"-9.81*E3\"\n"), 60);
   CHECK(all.search.further_members > 0);
   CHECK(all.points.size() <= 20);
   CHECK(all.search.converged >= all.search.further_members + all.points.size());

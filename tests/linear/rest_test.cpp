@@ -20,19 +20,19 @@ std::string file(const std::string& name, const std::string& text) {
   return path;
 }
 
-Linearised linearised_at(const std::string& path) {
+Linearised linearised_rest(const std::string& path) {
   analysis::SteadyProblem problem = analysis::steady_problem("linearize", test::model_at(path), "default", {}, {}, 1);
   linear::Linearisation l = linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, 1);
   return {std::move(problem), std::move(l)};
 }
 
-analysis::SteadyMotions found(const std::string& path) {
+analysis::SteadyMotions found_at_rest(const std::string& path) {
   analysis::SteadyRequest request;
   request.model = test::model_at(path);
   return analysis::steady_motions(request);
 }
 
-double value(const analysis::SteadyMotions& all, std::size_t point, const std::string& name) {
+double value_at_rest(const analysis::SteadyMotions& all, std::size_t point, const std::string& name) {
   const auto& names = all.problem.flow->names();
   return linear::to_double(
       all.points.at(point).l.z[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
@@ -52,11 +52,11 @@ const std::string at_rest = "[scene.default]\ninitial = { x = 0 }\n";
 
 TEST_CASE("a mass on a spring and a damper: linear also where the points of the damper coincide") {
   const std::string path = file("damper", numbers + particle + spring + damper + at_rest);
-  const Linearised here = linearised_at(path);
+  const Linearised here = linearised_rest(path);
   CHECK(here.l.kind == linear::MotionKind::equilibrium);
   same(here.A("x_dot", "x_dot"), -0.25);
   same(here.A("x_dot", "x"), -4);
-  const analysis::SteadyMotions all = found(path);
+  const analysis::SteadyMotions all = found_at_rest(path);
   REQUIRE(all.points.size() == 1);
   CHECK(all.points[0].verdict.stability == Stability::stable);
 }
@@ -71,12 +71,12 @@ TEST_CASE(
       "= \"C\" }\n"
       "[[force]]\ngravity = \"-g*E2\"\n[[force]]\ndamper = { between = [\"C\", \"origin\"], coefficient = \"c\" }\n" +
           at_rest);
-  const Linearised hanging = linearised_at(cart);
+  const Linearised hanging = linearised_rest(cart);
   same(hanging.A("x_dot", "x_dot"), -0.15);
   same(hanging.A("th_dot", "x_dot"), 0.15 / 0.8);
-  REQUIRE(found(cart).points.size() == 2);
+  REQUIRE(found_at_rest(cart).points.size() == 2);
 
-  const Linearised incline = linearised_at(file(
+  const Linearised incline = linearised_rest(file(
       "incline", numbers +
                      "[coordinates]\nx = {}\ny = {}\n"
                      "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = \"x*(cos(0.4)*E1 + sin(0.4)*E2)\"\n"
@@ -86,10 +86,10 @@ TEST_CASE(
   same(incline.A("x_dot", "y_dot"), 0.25);
 
   const Linearised rod =
-      linearised_at(file("rod", numbers +
-                                    "W = 1\n[coordinates]\nx = {}\n[[particle]]\nname = \"P\"\nmass = \"m\"\n"
-                                    "position = \"x*cos(W*t)*E1 + x*sin(W*t)*E2\"\n" +
-                                    spring + damper + at_rest));
+      linearised_rest(file("rod", numbers +
+                                      "W = 1\n[coordinates]\nx = {}\n[[particle]]\nname = \"P\"\nmass = \"m\"\n"
+                                      "position = \"x*cos(W*t)*E1 + x*sin(W*t)*E2\"\n" +
+                                      spring + damper + at_rest));
   same(rod.A("x_dot", "x_dot"), -0.25);
   same(rod.A("x_dot", "x"), 1 - 4);
 }
@@ -102,18 +102,18 @@ TEST_CASE("quadratic drag has derivative 0 at rest in any form, and a nonzero on
     CAPTURE(law);
     const std::string path =
         file("drag", numbers + free_particle + spring + "[[force]]\nname = \"air\"\n" + law + at_rest);
-    const Linearised here = linearised_at(path);
+    const Linearised here = linearised_rest(path);
     for (const char* speed : {"x_dot", "y_dot", "z_dot"}) same(here.A(speed, speed), 0);
     same(here.value(0).im, 2);
-    CHECK(found(path).points.size() == 1);
+    CHECK(found_at_rest(path).points.size() == 1);
   }
-  const Linearised wind = linearised_at(file(
+  const Linearised wind = linearised_rest(file(
       "wind", numbers + free_particle + spring +
                   "[[force]]\nforce = \"-0.3*norm(velocity(P) - 3*E1)*(velocity(P) - 3*E1)\"\non = \"P\"\n" + at_rest));
   same(wind.A("x_dot", "x_dot"), -0.9);
   same(wind.A("y_dot", "y_dot"), -0.45);
   // The energy k |x|^3/3 is as smooth.
-  same(linearised_at(
+  same(linearised_rest(
            file("hard", numbers + free_particle +
                             "[[force]]\nspring = { between = [\"P\", \"origin\"], energy = \"k*extension^3/3\" }\n" +
                             at_rest))
@@ -139,7 +139,7 @@ TEST_CASE("a true kink is reported with the line of its force by both commands, 
     const std::string path = file(c.name, c.text);
     bool is_refused = false;
     try {
-      found(path);
+      found_at_rest(path);
     } catch (const Error& error) {
       is_refused = true;
       CHECK(error.message().find("'culprit' has no slope") != std::string::npos);
@@ -155,16 +155,16 @@ TEST_CASE("a search starts where linearize does: at the boundary of an untaken `
       "[[force]]\ngeneralized = { x = \"if(x < 1, -x_dot, -abs(y)*3)\", y = \"if(x > 5, max(0, y), 0)\" "
       "}\n[scene.default]\ninitial = { x = 0.3 }\n";
   const std::string path = file("branch", text);
-  same(linearised_at(path).A("x_dot", "x_dot"), -1);
-  CHECK(found(path).points.size() == 1);
+  same(linearised_rest(path).A("x_dot", "x_dot"), -1);
+  CHECK(found_at_rest(path).points.size() == 1);
   // At x = 0 this spring has a kink; the search leaves it.
-  const analysis::SteadyMotions all = found(file(
+  const analysis::SteadyMotions all = found_at_rest(file(
       "length", numbers + particle +
                     "[[force]]\nspring = { between = [\"P\", \"origin\"], stiffness = \"k\", length = \"0.5\" }\n" +
                     at_rest));
   REQUIRE(all.points.size() == 2);
-  same(value(all, 0, "x"), -0.5);
-  same(value(all, 1, "x"), 0.5);
+  same(value_at_rest(all, 0, "x"), -0.5);
+  same(value_at_rest(all, 1, "x"), 0.5);
 }
 
 TEST_CASE("hover of a planar rotorcraft is found with inputs off balance by a rounding, which is reported") {
@@ -175,24 +175,24 @@ TEST_CASE("hover of a planar rotorcraft is found with inputs off balance by a ro
                                 "+ I/2*th_dot^2\"\npotential = \"m*g*y\"\n"
                                 "[[force]]\ngeneralized = { x = \"-(u1 + u2)*sin(th)\", y = \"(u1 + u2)*cos(th)\", th "
                                 "= \"l*(u2 - u1)\" }\n[scene.default]\ninitial = { x = 0.3 }\n");
-  const Linearised here = linearised_at(path);
+  const Linearised here = linearised_rest(path);
   CHECK(here.l.kind == linear::MotionKind::equilibrium);
   CHECK(here.l.parameter_change > 0);
   CHECK(here.l.parameter_change < 1e-15);
   same(here.A("x_dot", "th"), -9.81);
-  const analysis::SteadyMotions all = found(path);
+  const analysis::SteadyMotions all = found_at_rest(path);
   REQUIRE(all.points.size() == 1);
   CHECK(all.points[0].l.parameter_change < 1e-15);
   // A balance with more than rounding errors is none.
   std::string heavy = read_text(path);
   heavy.replace(heavy.find("m = 0.7"), 7, "m = 0.7001");
   write_text(path, heavy);
-  CHECK(found(path).points.empty());
-  CHECK(linearised_at(path).l.kind == linear::MotionKind::motion);
+  CHECK(found_at_rest(path).points.empty());
+  CHECK(linearised_rest(path).l.kind == linear::MotionKind::motion);
 }
 
 TEST_CASE("slider-crank with all coordinates constrained: both equilibria of both assemblies") {
-  const analysis::SteadyMotions all = found(
+  const analysis::SteadyMotions all = found_at_rest(
       file("slider",
            "[parameters]\nr = 0.2\nL = 0.6\n[coordinates]\na = {}\nb = {}\nx = {}\n"
            "[[particle]]\nname = \"C\"\nmass = 1\nposition = { cartesian = [\"r*cos(a)\", \"r*sin(a)\", \"0\"] }\n"
@@ -203,8 +203,8 @@ TEST_CASE("slider-crank with all coordinates constrained: both equilibria of bot
            "L*sin(b)\"]\n[scene.default]\ninitial = { a = 0.3 }\n"));
   REQUIRE(all.points.size() == 4);
   for (std::size_t i = 0; i < 4; ++i) {
-    same(value(all, i, "a"), i < 2 ? -std::acos(-1.0) / 2 : std::acos(-1.0) / 2);
-    same(std::abs(value(all, i, "x")), std::sqrt(0.32));
+    same(value_at_rest(all, i, "a"), i < 2 ? -std::acos(-1.0) / 2 : std::acos(-1.0) / 2);
+    same(std::abs(value_at_rest(all, i, "x")), std::sqrt(0.32));
     CHECK(all.points[i].verdict.stability == (i < 2 ? Stability::stable : Stability::unstable));
   }
 }
@@ -219,7 +219,7 @@ TEST_CASE("equilibria that are multiple roots are found once each and are no fam
                         Case{"mixed", "(x + 2*y - 1)^4 + (x - y)^6", 1.0 / 3, 1.0 / 3, 4},
                         Case{"valley", "(x - y)^4 + (x + y - 2)^2", 1, 1, 2}}) {
     CAPTURE(c.name);
-    const analysis::SteadyMotions all = found(file(
+    const analysis::SteadyMotions all = found_at_rest(file(
         c.name,
         std::string("[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"") +
             c.potential + "\"\n[scene.default]\ninitial = { x = 0.3 }\n"));
@@ -227,8 +227,8 @@ TEST_CASE("equilibria that are multiple roots are found once each and are no fam
     CHECK(all.held.empty());
     CHECK(all.points[0].family_dimension == 0);
     CHECK(all.points[0].l.spectrum.zeros == c.zeros);
-    same(value(all, 0, "x"), c.x);
-    same(value(all, 0, "y"), c.y);
+    same(value_at_rest(all, 0, "x"), c.x);
+    same(value_at_rest(all, 0, "y"), c.y);
     CHECK(all.points[0].verdict.stability == Stability::unknown);
   }
 }
@@ -247,7 +247,7 @@ TEST_CASE("a hanging chain of 12 damped bodies: no eigenvalue has a positive rea
     before = name;
   }
   const Linearised here =
-      linearised_at(file("chain", text + "[[force]]\ngravity = \"-g*E2\"\n[scene.default]\ninitial = { q1 = 0 }\n"));
+      linearised_rest(file("chain", text + "[[force]]\ngravity = \"-g*E2\"\n[scene.default]\ninitial = { q1 = 0 }\n"));
   REQUIRE(here.l.spectrum.values.size() == 24);
   CHECK(here.zeros() == 0);
   CHECK(here.l.spectrum.is_reliable());

@@ -35,7 +35,7 @@ struct Built {
   mechanics::Mechanics m;
 };
 
-std::string refusal(const std::string& text) {
+std::string refusal_of(const std::string& text) {
   try {
     const Built built(text);
   } catch (const Error& error) {
@@ -83,7 +83,7 @@ TEST_CASE(
 }
 
 TEST_CASE("wheels of different radii on one level axle are rejected") {
-  CHECK(has(refusal(wheels_on_one_axle("z", "R", "2*R")), "'right.3' fixes nothing"));
+  CHECK(has(refusal_of(wheels_on_one_axle("z", "R", "2*R")), "'right.3' fixes nothing"));
 }
 
 TEST_CASE("Bricard's mechanism has one degree of freedom with as many constraints as coordinates") {
@@ -108,14 +108,14 @@ TEST_CASE("Bennett's loop has one degree of freedom with more scalar equations t
 TEST_CASE("more constraints than coordinates without a configuration where all hold are rejected") {
   std::string open = bennett_by_products();
   open.replace(open.find("b = \"a*sin"), 28, "b = \"3*a\"");
-  CHECK(has(refusal(open), "no configuration is found in which all hold"));
+  CHECK(has(refusal_of(open), "no configuration is found in which all hold"));
 }
 
 TEST_CASE("three parallel cranks move a platform if they are equal for all values of the parameters") {
   const Built built(cranks({"L", "L", "L"}, "L = 1\n"));
   CHECK(built.m.degrees_of_freedom() == 1);
   CHECK(built.undetermined() == "crank0 crank1 crank2");
-  CHECK(has(refusal(cranks({"L", "M", "L"}, "L = 1\nM = 1\n")), "for these values of the parameters only"));
+  CHECK(has(refusal_of(cranks({"L", "M", "L"}, "L = 1\nM = 1\n")), "for these values of the parameters only"));
   CHECK(Built(cranks({"L", "L"}, "L = 1\n")).m.degrees_of_freedom() == 1);
   CHECK(Built(cranks({"L", "L"}, "L = 1\n")).undetermined().empty());
 }
@@ -139,11 +139,11 @@ TEST_CASE("a constraint that the user can omit is rejected if all its equations 
       "[[constraint]]\nname = \"again\"\nrolling = { body = \"L\", at = \"-R*E3\", on = \"ground\" }\n[scene.default]";
   std::string twice = text;
   twice.replace(twice.find("[scene.default]"), 15, again);
-  CHECK(has(refusal(twice), "'again."));
+  CHECK(has(refusal_of(twice), "'again."));
 }
 
 TEST_CASE("an event cannot wait for a force that the motion does not determine") {
   std::string text = wheels_on_one_axle("z");
   text += "[[event]]\nname = \"lifts\"\nwhen = \"reaction.left.3\"\n";
-  CHECK(has(refusal(text), "does not determine the force of 'left.3'"));
+  CHECK(has(refusal_of(text), "does not determine the force of 'left.3'"));
 }

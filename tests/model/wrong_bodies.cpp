@@ -38,7 +38,7 @@ constexpr const char* points_are = "give its points as [[\"x\", \"y\", \"z\"], .
 constexpr const char* faces_are =
     "give each face as the numbers of its points in their order, [1, 2, 3], counted from 1";
 const std::string angles = "{ euler = \"313\", angles = [\"phi\", \"theta\", \"psi\"] }";
-const std::string moments = "{ principal = [\"J\", \"J\", \"J\"] }";
+const std::string equal_moments = "{ principal = [\"J\", \"J\", \"J\"] }";
 
 }  // namespace
 
@@ -91,7 +91,8 @@ std::vector<WrongModel> wrong_bodies() {
        "write axis = \"e1\", \"e2\" or \"e3\": its own axis that a cylinder, disk or rod is about"},
       {"a body without a rotation", top({{"rotation = " + angles + "\n", ""}}), "6:1", "'B' has no rotation",
        rotations_are},
-      {"a body without inertia", top({{"inertia = " + moments + "\n", ""}}), "6:1", "'B' has no inertia", inertias_are},
+      {"a body without inertia", top({{"inertia = " + equal_moments + "\n", ""}}), "6:1", "'B' has no inertia",
+       inertias_are},
       {"a body without mass", top({{"mass = \"m\"\n", ""}}), "6:1", "'B' has no mass",
        "add mass = \"m\" or a value such as \"2 kg\""},
       {"a body whose mass changes", top({{"mass = \"m\"", "mass = \"m*t/1[s]\""}}), "8:11",
@@ -136,15 +137,15 @@ std::vector<WrongModel> wrong_bodies() {
        "check the values and their units"},
       {"a negative moment", top({{"[\"J\", \"J\", \"J\"]", "[1, -1, 2]"}}), "9:29", "a moment of inertia is negative",
        "it is a sum of masses times squares"},
-      {"a matrix that is not symmetric", top({{moments, "[[1, 0, 0.1], [0, 1, 0], [0.2, 0, 1]]"}}), "9:37",
+      {"a matrix that is not symmetric", top({{equal_moments, "[[1, 0, 0.1], [0, 1, 0], [0.2, 0, 1]]"}}), "9:37",
        "the inertia of 'B' is not symmetric", "write the same expression on both sides of the diagonal"},
-      {"a matrix of two rows", top({{moments, "[[1, 0, 0], [0, 1, 0]]"}}), "9:11",
+      {"a matrix of two rows", top({{equal_moments, "[[1, 0, 0], [0, 1, 0]]"}}), "9:11",
        "the inertia of 'B' is not an array of three rows of three", inertias_are},
-      {"an unknown shape", top({{moments, "{ spher = \"1 m\" }"}}), "9:13", "the inertia of 'B' has no key 'spher'",
-       "did you mean 'sphere'?"},
-      {"a cylinder without its length", top({{moments, "{ cylinder = [\"1 m\"] }"}}), "9:24",
+      {"an unknown shape", top({{equal_moments, "{ spher = \"1 m\" }"}}), "9:13",
+       "the inertia of 'B' has no key 'spher'", "did you mean 'sphere'?"},
+      {"a cylinder without its length", top({{equal_moments, "{ cylinder = [\"1 m\"] }"}}), "9:24",
        "'cylinder' has 1 entries", "write cylinder = [\"R\", \"L\"]"},
-      {"one moment of a body that turns about many axes", top({{moments, "\"J\""}}), "9:11",
+      {"one moment of a body that turns about many axes", top({{equal_moments, "\"J\""}}), "9:11",
        "one moment of inertia is not enough: 'B' does not rotate about one fixed axis", inertias_are},
       {"a mass for an inertia", top({{"[\"J\", \"J\", \"J\"]", "[\"m\", \"J\", \"J\"]"}}), "9:27",
        "the units clash: a principal moment must be in kg*m^2, and this is in kg",

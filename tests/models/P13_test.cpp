@@ -15,7 +15,7 @@ using namespace eomgen;
 
 namespace {
 
-constexpr double rounding = 1e-13;  // about twenty operations on numbers of magnitude 1
+constexpr double rounding_of_numbers = 1e-13;  // about twenty operations on numbers of magnitude 1
 constexpr double k = 2, GM = 3, c = 0.4;
 
 struct Place {
@@ -73,7 +73,7 @@ void check_fields(const std::string& name, const std::function<std::vector<doubl
     if (!right.U) continue;
     const double difference =
         value(m, *found[i].potential, coordinates(there)) - value(m, *found[i].potential, coordinates(here));
-    CHECK(difference == doctest::Approx(right.U(there) - right.U(here)).epsilon(rounding));
+    CHECK(difference == doctest::Approx(right.U(there) - right.U(here)).epsilon(rounding_of_numbers));
   }
 }
 
@@ -94,7 +94,7 @@ TEST_CASE("P13: e_theta/r does work 2 pi c per turn although its curl vanishes, 
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   const conservation::ForceClassification vortex = conservation::classify_forces(m).back();
   REQUIRE(vortex.work.has_value());
-  CHECK(value(m, *vortex.work, {1, 1, 1}) == doctest::Approx(2 * std::numbers::pi * c).epsilon(rounding));
+  CHECK(value(m, *vortex.work, {1, 1, 1}) == doctest::Approx(2 * std::numbers::pi * c).epsilon(rounding_of_numbers));
   CHECK(vortex.reason.find("one turn of theta") != std::string::npos);
   const model::Model cartesian = model::read_model(test::model_path("P13_force_fields"));
   mechanics::Mechanics n = mechanics::build_mechanics(cartesian);

@@ -11,7 +11,7 @@ using namespace eomgen::test;
 
 namespace {
 
-void tighten(pipeline::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; }
+void tighten_linkage(pipeline::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; }
 
 // Runs of 2 s at 1e-12 with motions of the order of 1.
 constexpr double same = 1e-9;
@@ -36,7 +36,7 @@ std::string built_in(const std::string& name) {
 FinishedRun run_text(const std::string& name, const std::string& text) {
   const std::string path = test::build_folder() + "/" + name + ".toml";
   write_text(path, text);
-  return run_model(path, tighten);
+  return run_model(path, tighten_linkage);
 }
 
 void check_balance(const FinishedRun& run, const std::string& joint) {
@@ -54,7 +54,7 @@ void check_balance(const FinishedRun& run, const std::string& joint) {
 }  // namespace
 
 TEST_CASE("R15: a ball joint gives the same motion as relative coordinates, angles 1-3-1") {
-  const FinishedRun joint = run_model("R15_ball_joint", tighten),
+  const FinishedRun joint = run_model("R15_ball_joint", tighten_linkage),
                     tree = run_text("R15_ball_built_in", built_in("R15_ball_joint"));
   CHECK(joint.simulation.derived->mechanics.degrees_of_freedom() == 9);
   check_balance(joint, "ball");
@@ -72,7 +72,7 @@ TEST_CASE("R15: a pin gives the same motion as a relative angle, angles 3-2-1") 
   replace(text, "n1 = 1.1,", "q = 0.8,");        // n1 - psi
   replace(text, "n1_dot = 2,", "q_dot = 1.5,");  // n1_dot - psi_dot, since e3 = E3 at the start
   replace(text, "guess = { n2 = 0, n3 = 0 }", "");
-  const FinishedRun joint = run_model("R15_pin_joint", tighten), tree = run_text("R15_pin_built_in", text);
+  const FinishedRun joint = run_model("R15_pin_joint", tighten_linkage), tree = run_text("R15_pin_built_in", text);
   CHECK(joint.simulation.derived->mechanics.degrees_of_freedom() == 7);
   check_balance(joint, "pin");
   for (const char* name : {"x1", "y1", "z1", "psi", "theta", "phi", "x1_dot", "psi_dot", "theta_dot", "phi_dot"}) {
@@ -82,7 +82,7 @@ TEST_CASE("R15: a pin gives the same motion as a relative angle, angles 3-2-1") 
 }
 
 TEST_CASE("R15: two bodies with a spring (7.65) conserve energy, linear and angular momentum; angles 3-2-1") {
-  const FinishedRun run = run_model("R15_spring", tighten);
+  const FinishedRun run = run_model("R15_spring", tighten_linkage);
   CHECK(run.simulation.derived->mechanics.degrees_of_freedom() == 12);
   for (const char* name :
        {"energy", "linear_momentum.E1", "angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"}) {

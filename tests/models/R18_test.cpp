@@ -11,7 +11,7 @@ using namespace eomgen;
 
 namespace {
 
-void replace(std::string& text, const std::string& from, const std::string& to) {
+void substitute(std::string& text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   REQUIRE(at != std::string::npos);
   text.replace(at, from.size(), to);
@@ -27,8 +27,8 @@ TEST_CASE("R18: every representation of rotations gives the same motion of a hea
     if (!written) continue;
     INFO(r.name);
     std::string text = shipped;
-    replace(text, "{ rodrigues = [\"l1\", \"l2\", \"l3\"] }", written->rotation);
-    replace(text, "l1 = 0.3, l2 = 0.2", written->start);
+    substitute(text, "{ rodrigues = [\"l1\", \"l2\", \"l3\"] }", written->rotation);
+    substitute(text, "l1 = 0.3, l2 = 0.2", written->start);
     const std::string path = test::build_folder() + "/R18_" + r.name + ".toml";
     test::write_text(path, text);
     const test::FinishedRun run = test::run_model(path, [](pipeline::SimulationRequest& request) {

@@ -13,9 +13,9 @@ using namespace eomgen;
 namespace {
 
 constexpr std::array<double, 3> J{1, 2, 2.5};
-constexpr double tolerance = 1e-9;  // twenty seconds, some four turns, at rtol 1e-12
+constexpr double turning_tolerance = 1e-9;  // twenty seconds, some four turns, at rtol 1e-12
 
-void tighten(pipeline::SimulationRequest& request) {
+void tighten_turning(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-12;
   request.overrides.atol = 1e-13;
 }
@@ -52,8 +52,8 @@ std::string model_text(const std::string& rotation, const std::string& start) {
 TEST_CASE("R1: the angular velocity is Jacobi's solution, in angles and Euler parameters, and E and H are conserved") {
   for (const char* name : {"R1_free_body", "R1_free_body_euler_parameters"}) {
     INFO(name);
-    const test::FinishedRun run = test::run_model(name, tighten);
-    CHECK(worst_against_jacobi(run) < tolerance);
+    const test::FinishedRun run = test::run_model(name, tighten_turning);
+    CHECK(worst_against_jacobi(run) < turning_tolerance);
     CHECK(run.drift("energy") < 1e-11);
     for (const char* h : {"angular_momentum.E1", "angular_momentum.E2"}) CHECK(run.drift(h) < 1e-10);
     // On the energy ellipsoid and the momentum sphere.
@@ -64,8 +64,8 @@ TEST_CASE("R1: the angular velocity is Jacobi's solution, in angles and Euler pa
         energy += J[k] * w * w / 2;
         momentum += J[k] * J[k] * w * w;
       }
-      CHECK(energy == doctest::Approx((0.04 + 2.5) / 2).epsilon(tolerance));
-      CHECK(momentum == doctest::Approx(0.04 + 6.25).epsilon(tolerance));
+      CHECK(energy == doctest::Approx((0.04 + 2.5) / 2).epsilon(turning_tolerance));
+      CHECK(momentum == doctest::Approx(0.04 + 6.25).epsilon(turning_tolerance));
     }
   }
 }
@@ -74,15 +74,15 @@ TEST_CASE("R1: with two equal moments w rotates at a constant rate, with three i
   for (const char* scene : {"axisymmetric", "symmetric"}) {
     INFO(scene);
     const test::FinishedRun run = test::run_model("R1_free_body", [&](pipeline::SimulationRequest& request) {
-      tighten(request);
+      tighten_turning(request);
       request.scene = scene;
     });
     const double rate = run.parameter("J3") == 2 ? 0 : (2.5 - 2.0) / 2;  // (J3 - J1)/J1 w3
     for (std::size_t i = 0; i < run.rows.size(); ++i) {
       const double t = run.rows.t[i];
-      CHECK(std::abs(run.rows.at(i, "B.omega1") - 0.2 * std::cos(rate * t)) < tolerance);
-      CHECK(std::abs(run.rows.at(i, "B.omega2") - 0.2 * std::sin(rate * t)) < tolerance);
-      CHECK(std::abs(run.rows.at(i, "B.omega3") - 1) < tolerance);
+      CHECK(std::abs(run.rows.at(i, "B.omega1") - 0.2 * std::cos(rate * t)) < turning_tolerance);
+      CHECK(std::abs(run.rows.at(i, "B.omega2") - 0.2 * std::sin(rate * t)) < turning_tolerance);
+      CHECK(std::abs(run.rows.at(i, "B.omega3") - 1) < turning_tolerance);
     }
   }
 }
@@ -90,7 +90,7 @@ TEST_CASE("R1: with two equal moments w rotates at a constant rate, with three i
 TEST_CASE("R1: near the intermediate axis it tumbles: e2 reverses, and E and H are conserved") {
   const test::FinishedRun run =
       test::run_model("R1_free_body_euler_parameters", [](pipeline::SimulationRequest& request) {
-        tighten(request);
+        tighten_turning(request);
         request.overrides.rtol = request.overrides.atol = 1e-13;
         request.scene = "tumbling";
       });
@@ -122,7 +122,7 @@ TEST_CASE("R1: all twelve sets of Euler angles, Euler parameters and a Rodrigues
     found.emplace_back();
     for (std::size_t i = 0; i < 9; ++i)
       found.back()[i] = run.final("c" + std::to_string(i / 3 + 1) + std::to_string(i % 3 + 1));
-    for (std::size_t i = 0; i < 9; ++i) CHECK(std::abs(found.back()[i] - found.front()[i]) < tolerance);
+    for (std::size_t i = 0; i < 9; ++i) CHECK(std::abs(found.back()[i] - found.front()[i]) < turning_tolerance);
     CHECK(std::abs(found.back()[0] - start(0, 0)) > 0.01);  // it has moved
   }
   CHECK(found.size() == 14);

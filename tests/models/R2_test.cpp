@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-void tighten(pipeline::SimulationRequest& request) {
+void tighten_top(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-12;
   request.overrides.atol = 1e-12;
 }
@@ -39,7 +39,7 @@ struct Flight {
 // vdot = -g E3 + B w x v with constant w, eq. (8.59) with its signs put right: along w a free fall, across it v - v_s
 // turns about w with the rate B|w|, where v_s is the velocity for which lift and weight balance.
 TEST_CASE("R2: without drag the ball follows the closed form of (8.63)") {
-  const test::FinishedRun run = test::run_model("R2_ball_in_flight", tighten);
+  const test::FinishedRun run = test::run_model("R2_ball_in_flight", tighten_top);
   const Flight f(run);
   const Vector3d n = f.w.normalized(), gravity(0, 0, -f.g), across = gravity - gravity.dot(n) * n;
   const double turn = f.B * f.w.norm();
@@ -62,7 +62,7 @@ TEST_CASE("R2: without drag the ball follows the closed form of (8.63)") {
 
 TEST_CASE("R2: with drag it agrees with a separate integration of vdot") {
   const test::FinishedRun run = test::run_model("R2_ball_in_flight", [](pipeline::SimulationRequest& request) {
-    tighten(request);
+    tighten_top(request);
     request.scene = "drag";
   });
   const Flight f(run);

@@ -12,9 +12,10 @@ using namespace eomgen;
 
 namespace {
 
-constexpr double tolerance = 1e-8;  // ten seconds at rtol 1e-12: errors of 1e-12 grow by some 1e2 to 1e3 in this swing
+constexpr double swing_tolerance =
+    1e-8;  // ten seconds at rtol 1e-12: errors of 1e-12 grow by some 1e2 to 1e3 in this swing
 
-void tighten(pipeline::SimulationRequest& request) {
+void tighten_swing(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-12;
   request.overrides.atol = 1e-12;
 }
@@ -22,8 +23,8 @@ void tighten(pipeline::SimulationRequest& request) {
 }  // namespace
 
 TEST_CASE("S5: polar coordinates without rods and Cartesian ones with multipliers give the same motion and tension") {
-  const test::FinishedRun polar = test::run_model("S5_double_pendulum", tighten);
-  const test::FinishedRun cartesian = test::run_model("S5_double_pendulum_cartesian", tighten);
+  const test::FinishedRun polar = test::run_model("S5_double_pendulum", tighten_swing);
+  const test::FinishedRun cartesian = test::run_model("S5_double_pendulum_cartesian", tighten_swing);
   REQUIRE(polar.rows.size() == cartesian.rows.size());
   CHECK(cartesian.simulation.derived->mechanics.active.size() == 2);
   CHECK(polar.simulation.derived->mechanics.active.empty());
@@ -39,8 +40,8 @@ TEST_CASE("S5: polar coordinates without rods and Cartesian ones with multiplier
       scale = std::max(scale, std::abs(polar.rows.at(i, rod)));
     }
   }
-  CHECK(worst < tolerance);
-  CHECK(worst_rod < tolerance * scale);
+  CHECK(worst < swing_tolerance);
+  CHECK(worst_rod < swing_tolerance * scale);
   CHECK(cartesian.simulation.result.constraint_drift < 1e-13);
   CHECK(polar.drift("energy") < 1e-10);
   CHECK(cartesian.drift("energy") < 1e-10);
@@ -50,7 +51,7 @@ TEST_CASE("S5: approach I and approach II give the same motion, planar and spher
   for (const char* name : {"S5_double_pendulum", "S5_spherical_double_pendulum"}) {
     const auto run = [&](pipeline::ApproachChoice approach) {
       return test::run_model(name, [&](pipeline::SimulationRequest& request) {
-        tighten(request);
+        tighten_swing(request);
         request.approach = approach;
         request.overrides.t_end = 3;
       });
@@ -59,7 +60,7 @@ TEST_CASE("S5: approach I and approach II give the same motion, planar and spher
     for (const auto& [key, value] : one.simulation.result.final) {
       const auto& shown = key;
       INFO(name, " ", shown);
-      CHECK(std::abs(value - two.final(key)) < tolerance * (1 + std::abs(value)));
+      CHECK(std::abs(value - two.final(key)) < swing_tolerance * (1 + std::abs(value)));
     }
   }
 }
@@ -67,7 +68,7 @@ TEST_CASE("S5: approach I and approach II give the same motion, planar and spher
 TEST_CASE("S5: the spherical double pendulum conserves E and the vertical angular momentum") {
   const test::FinishedRun run =
       test::run_model("S5_spherical_double_pendulum", [](pipeline::SimulationRequest& request) {
-        tighten(request);
+        tighten_swing(request);
         request.overrides.outputs = {"P1.position1", "P1.position2", "P1.velocity1", "P1.velocity2",
                                      "P2.position1", "P2.position2", "P2.velocity1", "P2.velocity2"};
       });
@@ -85,7 +86,7 @@ TEST_CASE("S5: the spherical double pendulum conserves E and the vertical angula
 
 TEST_CASE("S5: a spherical double pendulum that starts in a plane moves as the planar one") {
   const test::FinishedRun planar = test::run_model("S5_double_pendulum", [](pipeline::SimulationRequest& request) {
-    tighten(request);
+    tighten_swing(request);
     request.overrides.t_end = 3;
     request.overrides.values = {{"m2", symbolic::Rational(1) / 2}, {"L2", symbolic::Rational(4) / 5}};
   });
@@ -119,10 +120,10 @@ initial = { phi1 = "pi/2", phi2 = "pi/2", theta1 = 0.8, theta2 = 0.4 }
   // Gravity along E1 and both angles phi at pi/2: theta are the angles of the planar model.
   const std::string path = test::build_folder() + "/S5_turned.toml";
   test::write_text(path, text);
-  const test::FinishedRun spherical = test::run_model(path, tighten);
+  const test::FinishedRun spherical = test::run_model(path, tighten_swing);
   for (const char* name : {"theta1", "theta2", "theta1_dot", "theta2_dot", "reaction.rod1", "reaction.rod2"}) {
     INFO(name);
-    CHECK(spherical.final(name) == doctest::Approx(planar.final(name)).epsilon(tolerance));
+    CHECK(spherical.final(name) == doctest::Approx(planar.final(name)).epsilon(swing_tolerance));
   }
   CHECK(spherical.final("phi1") == doctest::Approx(std::acos(0.0)).epsilon(1e-12));
 }
@@ -131,7 +132,7 @@ TEST_CASE(
     "S5: a velocity constraint on both masses holds in either approach, and the power balance includes its work") {
   const auto run = [](pipeline::ApproachChoice approach) {
     return test::run_model("S5_double_pendulum_pfaffian", [approach](pipeline::SimulationRequest& request) {
-      tighten(request);
+      tighten_swing(request);
       request.approach = approach;
       request.overrides.outputs = {"P1.position1", "P1.position2", "P1.velocity3",
                                    "P2.velocity1", "P2.velocity2", "power"};
@@ -148,7 +149,7 @@ TEST_CASE(
   for (const auto& [key, value] : one.simulation.result.final) {
     const auto& shown = key;
     INFO(shown);
-    CHECK(std::abs(value - two.final(key)) < tolerance * (1 + std::abs(value)));
+    CHECK(std::abs(value - two.final(key)) < swing_tolerance * (1 + std::abs(value)));
   }
   CHECK(one.simulation.result.power_balance < 1e-9);
 }

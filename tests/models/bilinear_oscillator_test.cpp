@@ -15,9 +15,9 @@ using std::numbers::pi;
 namespace {
 
 // Ten periods at rtol 1e-13.
-constexpr double tolerance = 1e-10;
+constexpr double impact_tolerance = 1e-10;
 
-pipeline::SimulationRequest& tight(pipeline::SimulationRequest& request) {
+pipeline::SimulationRequest& with_tight_tolerances(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-13;
   request.overrides.atol = 1e-14;
   return request;
@@ -40,15 +40,15 @@ std::string variant(const std::string& name, const std::string& forces, const st
 
 TEST_CASE("bilinear_oscillator: after ten periods it is where it started, and the kink was crossed twice in each") {
   for (const char* solver : {"dopri5", "tsit5", "dop853"}) {
-    const test::FinishedRun run =
-        test::run_model("bilinear_oscillator",
-                        [solver](pipeline::SimulationRequest& request) { tight(request).overrides.solver = solver; });
+    const test::FinishedRun run = test::run_model(
+        "bilinear_oscillator",
+        [solver](pipeline::SimulationRequest& request) { with_tight_tolerances(request).overrides.solver = solver; });
     const run::RunResult& result = run.simulation.result;
     CAPTURE(solver);
     CHECK(result.outcome == eom::Outcome::done);
     const double rate = 0.1 * std::sqrt(run.parameter("k1") / run.parameter("m"));
-    CHECK(std::abs(run.final("x") - 0.1) < tolerance);
-    CHECK(std::abs(run.final("x_dot")) < tolerance * 10 * rate / 0.1);
+    CHECK(std::abs(run.final("x") - 0.1) < impact_tolerance);
+    CHECK(std::abs(run.final("x_dot")) < impact_tolerance * 10 * rate / 0.1);
     REQUIRE(result.kinks.size() == 1);  // max and min have the same surface
     CHECK(result.kinks[0].count == 20);
     MESSAGE(solver, ": ", result.statistics.steps, " steps, ", result.statistics.rejected, " rejected, ",
@@ -58,17 +58,20 @@ TEST_CASE("bilinear_oscillator: after ten periods it is where it started, and th
 
 TEST_CASE(
     "bilinear_oscillator: with the branch held, no step is refused for the kink; abs and if do as max and min do") {
-  const test::FinishedRun smooth = test::run_model(variant("linear", "-k1*x"), [](auto& request) { tight(request); });
-  const test::FinishedRun two = test::run_model("bilinear_oscillator", [](auto& request) { tight(request); });
+  const test::FinishedRun smooth =
+      test::run_model(variant("linear", "-k1*x"), [](auto& request) { with_tight_tolerances(request); });
+  const test::FinishedRun two =
+      test::run_model("bilinear_oscillator", [](auto& request) { with_tight_tolerances(request); });
   for (const auto& [name, forces] :
        {std::pair{"with_abs", "-(k1 + k2)/2*x - (k1 - k2)/2*abs(x)"}, std::pair{"with_if", "if(x > 0, -k1*x, -k2*x)"},
         std::pair{"with_sign", "-x*((k1 + k2)/2 + (k1 - k2)/2*sign(x))"}}) {
     const auto& shown = name;
     CAPTURE(shown);
-    const test::FinishedRun run = test::run_model(variant(name, forces), [](auto& request) { tight(request); });
+    const test::FinishedRun run =
+        test::run_model(variant(name, forces), [](auto& request) { with_tight_tolerances(request); });
     REQUIRE(run.simulation.result.kinks.size() == 1);
     CHECK(run.simulation.result.kinks[0].count == 20);
-    CHECK(std::abs(run.final("x") - two.final("x")) < tolerance);
+    CHECK(std::abs(run.final("x") - two.final("x")) < impact_tolerance);
   }
   CHECK(smooth.simulation.result.kinks.empty());
   // 20 crossings: a step or two each, where control of the error alone would refuse several at each of them.
@@ -77,9 +80,9 @@ TEST_CASE(
 
 TEST_CASE("bilinear_oscillator: a start on the kink itself is no crossing") {
   const test::FinishedRun run = test::run_model(variant("from_kink", "-k1*max(0, x) - k2*min(0, x)", "x_dot = 0.7"),
-                                                [](auto& request) { tight(request); });
-  CHECK(std::abs(run.final("x")) < tolerance);
-  CHECK(std::abs(run.final("x_dot") - 0.7) < 10 * tolerance);
+                                                [](auto& request) { with_tight_tolerances(request); });
+  CHECK(std::abs(run.final("x")) < impact_tolerance);
+  CHECK(std::abs(run.final("x_dot") - 0.7) < 10 * impact_tolerance);
   // Nineteen inside, and the one at the very end that rounding may put before or behind it.
   CHECK(run.simulation.result.kinks.at(0).count >= 19);
   CHECK(run.simulation.result.kinks.at(0).count <= 20);
@@ -90,7 +93,7 @@ TEST_CASE("bilinear_oscillator: a branch without a value beyond its surface is l
   // above the ground, where the last trial step of each contact goes.
   const std::string path = variant("hertz", "-m*9.81[m/s^2] + 1e5[N/m]*max(0, -x)*sqrt(max(0, -x)/1[m])", "x = 0.2");
   const test::FinishedRun run = test::run_model(path, [](auto& request) {
-    tight(request);
+    with_tight_tolerances(request);
     request.overrides.t_end = 2;
     request.overrides.every = 0.001;
   });
@@ -109,14 +112,14 @@ TEST_CASE("bilinear_oscillator: discontinuous friction slips by its closed form,
   // x'' = -(k/m) x - (F/m) sign(x_dot) with F/k = 0.03: each half period swings about +-0.03, from 0.1 to -0.04 and on
   // to -0.02, where the spring is weaker than the friction.
   const std::string path = variant("dry", "-k1*x - 0.03[m]*k1*sign(x_dot)");
-  const test::FinishedRun run = test::run_model(path, [](auto& request) { tight(request); });
+  const test::FinishedRun run = test::run_model(path, [](auto& request) { with_tight_tolerances(request); });
   const run::RunResult& result = run.simulation.result;
   CHECK(result.outcome == eom::Outcome::done);
   const auto slides = [](const run::RunEvent& event) { return event.kind == "slide"; };
   const auto stick = std::find_if(result.events.begin(), result.events.end(), slides);
   REQUIRE(stick != result.events.end());
   CHECK(stick->name == "sign");
-  CHECK(std::abs(stick->t - 2 * pi * std::sqrt(2.0 / 50)) < tolerance);
-  CHECK(std::abs(run.final("x") + 0.02) < tolerance);
+  CHECK(std::abs(stick->t - 2 * pi * std::sqrt(2.0 / 50)) < impact_tolerance);
+  CHECK(std::abs(run.final("x") + 0.02) < impact_tolerance);
   CHECK(run.final("x_dot") == 0);
 }

@@ -13,7 +13,7 @@ using namespace eomgen;
 
 namespace {
 
-constexpr std::array<double, 3> J{1, 1.3, 2.2}, H{0.949, 0, 1.1616};  // and the start: w2 = 0
+constexpr std::array<double, 3> J_body{1, 1.3, 2.2}, H{0.949, 0, 1.1616};  // and the start: w2 = 0
 
 std::size_t exchanges(const test::FinishedRun& run, const std::string& whose = "B") {
   std::size_t count = 0;
@@ -67,11 +67,11 @@ Kept kept(const test::Rows& rows) {
   double energy0 = 0, momentum0 = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     double momentum = 0, square = 0;
-    const std::array<double, 3> closed = test::free_body(J, 0.949, 0.528, rows.t[i]);
+    const std::array<double, 3> closed = test::free_body(J_body, 0.949, 0.528, rows.t[i]);
     for (std::size_t k = 0; k < 3; ++k) {
       const double w = rows.at(i, "B.omega" + std::to_string(k + 1));
       square += w * w;
-      momentum += J[k] * J[k] * w * w;
+      momentum += J_body[k] * J_body[k] * w * w;
       worst.omega = std::max(worst.omega, std::abs(w - closed[k]));
     }
     momentum = std::sqrt(momentum);

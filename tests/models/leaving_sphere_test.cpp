@@ -15,7 +15,7 @@ double time_between(double phi0, double phi1, double a, double g) {
 }
 
 // Steps at rtol 1e-12.
-constexpr double tolerance = 1e-11;
+constexpr double leaving_tolerance = 1e-11;
 
 test::FinishedRun run_scene(const char* scene, const char* solver = "dop853") {
   return test::run_model("leaving_sphere", [=](pipeline::SimulationRequest& request) {
@@ -34,14 +34,14 @@ TEST_CASE("leaving_sphere: it leaves at cos(phi) = 2/3, at the time of the close
     const run::RunResult& result = run.simulation.result;
     const double a = run.parameter("a"), g = run.parameter("g");
     CHECK(result.outcome == eom::Outcome::stopped_by_event);
-    CHECK(std::abs(std::cos(run.final("phi")) - 2.0 / 3) < tolerance);
-    CHECK(std::abs(run.final("reaction.sphere")) < tolerance);
+    CHECK(std::abs(std::cos(run.final("phi")) - 2.0 / 3) < leaving_tolerance);
+    CHECK(std::abs(run.final("reaction.sphere")) < leaving_tolerance);
     const double exact = time_between(0.1, std::acos(2.0 / 3), a, g);
-    CHECK(std::abs(result.t - exact) < tolerance);
+    CHECK(std::abs(result.t - exact) < leaving_tolerance);
     REQUIRE(result.events.size() == 2);
     CHECK(result.events[0].kind == "custom");
     CHECK(result.events[0].name == "halfway");
-    CHECK(std::abs(result.events[0].t - time_between(0.1, std::acos(5.0 / 6), a, g)) < tolerance);
+    CHECK(std::abs(result.events[0].t - time_between(0.1, std::acos(5.0 / 6), a, g)) < leaving_tolerance);
     CHECK(result.events[1].kind == "stop");
     CHECK(result.events[1].name == "leaves");
     CHECK(result.events[1].t == result.t);
@@ -55,14 +55,14 @@ TEST_CASE("leaving_sphere: rows are in order of time, with those of the events a
   for (std::size_t i = 1; i < run.rows.size(); ++i) CHECK(run.rows.t[i] > run.rows.t[i - 1]);
   for (std::size_t i = 0; i < 5; ++i) CHECK(run.rows.t[i] == static_cast<double>(i) * 0.1);
   CHECK(run.rows.t[5] == result.events[0].t);
-  CHECK(std::abs(std::cos(run.rows.at(5, "phi")) - 5.0 / 6) < tolerance);
+  CHECK(std::abs(std::cos(run.rows.at(5, "phi")) - 5.0 / 6) < leaving_tolerance);
   CHECK(run.rows.t[6] == result.t);
 }
 
 TEST_CASE("leaving_sphere: `stop` of a scene ends it at an event that is only recorded elsewhere") {
   const test::FinishedRun run = run_scene("half");
   CHECK(run.simulation.result.outcome == eom::Outcome::stopped_by_event);
-  CHECK(std::abs(std::cos(run.final("phi")) - 5.0 / 6) < tolerance);
+  CHECK(std::abs(std::cos(run.final("phi")) - 5.0 / 6) < leaving_tolerance);
   REQUIRE(run.simulation.result.events.size() == 1);
   CHECK(run.simulation.result.events[0].kind == "stop");
 }

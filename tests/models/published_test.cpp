@@ -23,7 +23,7 @@ using namespace eomgen;
 
 namespace {
 
-using Values = std::vector<std::pair<std::string, double>>;
+using StateValues = std::vector<std::pair<std::string, double>>;
 
 test::FinishedRun motion(const std::string& model, const std::string& scene, const std::string& solver, double rtol) {
   return test::run_model(model, [&](pipeline::SimulationRequest& request) {
@@ -36,7 +36,7 @@ test::FinishedRun motion(const std::string& model, const std::string& scene, con
 }
 
 /// Largest difference from the values, relative to the largest of all coordinates, of all rates.
-double error(const test::FinishedRun& run, const Values& values) {
+double error(const test::FinishedRun& run, const StateValues& values) {
   double worst[2] = {0, 0}, size[2] = {0, 0};
   for (const auto& [name, value] : values) {
     const int rate = name.ends_with("_dot") ? 1 : 0;
@@ -47,7 +47,7 @@ double error(const test::FinishedRun& run, const Values& values) {
 }
 
 test::FinishedRun check(const std::string& model, const std::string& scene, const std::string& solver,
-                        const Values& values, double tolerance) {
+                        const StateValues& values, double tolerance) {
   CAPTURE(model);
   CAPTURE(scene);
   CAPTURE(solver);
@@ -58,28 +58,28 @@ test::FinishedRun check(const std::string& model, const std::string& scene, cons
 }
 
 // Problem andrews of the Test Set for IVP Solvers, t = 0.03.
-const Values andrews{{"beta", 15.81077119515370709711939},       {"theta", -15.75637105841183946972775},
-                     {"gamma", 0.04082224011964580485828232},    {"phi", -0.5347301163420795937701850},
-                     {"delta", 0.5244099658799540693716558},     {"Omega", 0.5347301163420795937701850},
-                     {"epsilon", 1.048080741041937873068515},    {"beta_dot", 1139.920302259106064198097},
-                     {"theta_dot", -1424.379295177540073196026}, {"gamma_dot", 11.03291191061859374532731},
-                     {"phi_dot", 19.29337410503204083162756},    {"delta_dot", 0.5735699148295024538176879},
-                     {"Omega_dot", -19.29337410503204083162756}, {"epsilon_dot", 0.3231791492491308749907483}};
-const Values andrews_literature{
+const StateValues andrews{{"beta", 15.81077119515370709711939},       {"theta", -15.75637105841183946972775},
+                          {"gamma", 0.04082224011964580485828232},    {"phi", -0.5347301163420795937701850},
+                          {"delta", 0.5244099658799540693716558},     {"Omega", 0.5347301163420795937701850},
+                          {"epsilon", 1.048080741041937873068515},    {"beta_dot", 1139.920302259106064198097},
+                          {"theta_dot", -1424.379295177540073196026}, {"gamma_dot", 11.03291191061859374532731},
+                          {"phi_dot", 19.29337410503204083162756},    {"delta_dot", 0.5735699148295024538176879},
+                          {"Omega_dot", -19.29337410503204083162756}, {"epsilon_dot", 0.3231791492491308749907483}};
+const StateValues andrews_literature{
     {"beta", 15.81077119629904},       {"theta", -15.75637105984298},      {"gamma", 0.04082224013073101},
     {"phi", -0.5347301163226948},      {"delta", 0.5244099658805304},      {"Omega", 0.5347301163226948},
     {"epsilon", 1.048080741042263},    {"beta_dot", 1139.920302151208},    {"theta_dot", -1424.379294994111},
     {"gamma_dot", 11.03291221937134},  {"phi_dot", 19.29337464421385},     {"delta_dot", 0.5735699284790808},
     {"Omega_dot", -19.29337464421385}, {"epsilon_dot", 0.3231791658026955}};
 // Problem caraxis of the same set, t = 3.
-const Values car{{"xl", 0.04934557842752409213152679},      {"yl", 0.4969894602300081067629340},
-                 {"xr", 1.041742524885426115194776},        {"yr", 0.3739110272653658193578977},
-                 {"xl_dot", -0.07705836840359208428394056}, {"yl_dot", 0.007446866592068416491401753},
-                 {"xr_dot", 0.01755681575354173662974062},  {"yr_dot", 0.7703410437796010631206428}};
-const Values car_literature{{"xl", 0.04934557842755629},      {"yl", 0.4969894602303324},
-                            {"xr", 1.041742524885400},        {"yr", 0.3739110272652214},
-                            {"xl_dot", -0.07705836840321485}, {"yl_dot", 0.007446866596327776},
-                            {"xr_dot", 0.01755681574942899},  {"yr_dot", 0.7703410437794031}};
+const StateValues car{{"xl", 0.04934557842752409213152679},      {"yl", 0.4969894602300081067629340},
+                      {"xr", 1.041742524885426115194776},        {"yr", 0.3739110272653658193578977},
+                      {"xl_dot", -0.07705836840359208428394056}, {"yl_dot", 0.007446866592068416491401753},
+                      {"xr_dot", 0.01755681575354173662974062},  {"yr_dot", 0.7703410437796010631206428}};
+const StateValues car_literature{{"xl", 0.04934557842755629},      {"yl", 0.4969894602303324},
+                                 {"xr", 1.041742524885400},        {"yr", 0.3739110272652214},
+                                 {"xl_dot", -0.07705836840321485}, {"yl_dot", 0.007446866596327776},
+                                 {"xr_dot", 0.01755681574942899},  {"yr_dot", 0.7703410437794031}};
 
 // The top with position and attitude as coordinates and the joint as three equations, as the literature poses it:
 // index 3.
@@ -113,12 +113,12 @@ outputs = ["top.omega2"]
 TEST_CASE(
     "published: Kepler orbits of e = 0.9 and 0.99 are back at the perihelion after a period; DETEST D5 reaches its "
     "value") {
-  const Values back{{"x", 0.1}, {"y", 0}, {"x_dot", 0}, {"y_dot", 4.358898943540673552236982}};
-  const Values back99{{"x", 0.01}, {"y", 0}, {"x_dot", 0}, {"y_dot", 14.10673597966588442523216}};
-  const Values detest{{"x", -1.295266250987574},
-                      {"y", 0.4003938963792321},
-                      {"x_dot", -0.6775390924707566},
-                      {"y_dot", -0.1270838154278686}};
+  const StateValues back{{"x", 0.1}, {"y", 0}, {"x_dot", 0}, {"y_dot", 4.358898943540673552236982}};
+  const StateValues back99{{"x", 0.01}, {"y", 0}, {"x_dot", 0}, {"y_dot", 14.10673597966588442523216}};
+  const StateValues detest{{"x", -1.295266250987574},
+                           {"y", 0.4003938963792321},
+                           {"x_dot", -0.6775390924707566},
+                           {"y_dot", -0.1270838154278686}};
   for (const char* solver :
        {"dop853", "taylor"}) {  // at the perihelion an error in time is one of velocity, large as 1/(1 - e)^2
     check("kepler_eccentric", "default", solver, back, 1e-8);
@@ -128,10 +128,10 @@ TEST_CASE(
 }
 
 TEST_CASE("published: the heavy top of the Lie-group literature, in Euler parameters about O and on a ball joint") {
-  const Values e{{"e0", 0.1229471350415334671042516},     {"e1", -0.4910798925500270146990447},
-                 {"e2", 0.3504300303436209618390203},     {"e3", -0.7879868875504856693241740},
-                 {"e0_dot", -28.55931683497920995348961}, {"e1_dot", 58.08053732712041817400288},
-                 {"e2_dot", 7.735086293981340390856202},  {"e3_dot", -37.21237517022154494696796}};
+  const StateValues e{{"e0", 0.1229471350415334671042516},     {"e1", -0.4910798925500270146990447},
+                      {"e2", 0.3504300303436209618390203},     {"e3", -0.7879868875504856693241740},
+                      {"e0_dot", -28.55931683497920995348961}, {"e1_dot", 58.08053732712041817400288},
+                      {"e2_dot", 7.735086293981340390856202},  {"e3_dot", -37.21237517022154494696796}};
   check("heavy_top", "default", "taylor", e, 5e-10);  // 48 turns
   const std::string path = test::build_folder() + "/heavy_top_pinned.toml";
   test::write_text(path, pinned);
@@ -147,9 +147,9 @@ TEST_CASE("published: Andrews' squeezing mechanism, where the test set's digits 
   CHECK(run.simulation.derived->mechanics.active.size() == 6);
   CHECK(error(run, andrews_literature) < 5e-10);
   CHECK(error(run, andrews_literature) > 5e-11);  // the values above are nearer
-  const Values multipliers{{"reaction.pin3.1", -199.1753333731910}, {"reaction.pin3.2", 29.75531228015052},
-                           {"reaction.pin4.1", -23.06654119098399}, {"reaction.pin4.2", -31.45271365475927},
-                           {"reaction.pin6.1", -22.64249232082739}, {"reaction.pin6.2", -11.61740700019673}};
+  const StateValues multipliers{{"reaction.pin3.1", -199.1753333731910}, {"reaction.pin3.2", 29.75531228015052},
+                                {"reaction.pin4.1", -23.06654119098399}, {"reaction.pin4.2", -31.45271365475927},
+                                {"reaction.pin6.1", -22.64249232082739}, {"reaction.pin6.2", -11.61740700019673}};
   for (const auto& [name, value] : multipliers)
     CHECK(run.final(name) == doctest::Approx(value).epsilon(2e-6));  // as good as the literature's
 }
@@ -165,15 +165,15 @@ TEST_CASE("published: the car axis") {
 
 TEST_CASE(
     "published: the stiff elastic pendulum on its smooth solution: radau5 and rodas to 1e-8 in fewer than 2000 steps") {
-  const Values k4{{"s", 7.2540613167445481505278e-4},
-                  {"theta", 0.91821441020506344195360},
-                  {"s_dot", -2.6839916839492663749500e-3},
-                  {"theta_dot", 1.1454141217483031969358}};
+  const StateValues k4{{"s", 7.2540613167445481505278e-4},
+                       {"theta", 0.91821441020506344195360},
+                       {"s_dot", -2.6839916839492663749500e-3},
+                       {"theta_dot", 1.1454141217483031969358}};
   check("elastic_pendulum_smooth", "k4", "taylor", k4, 1e-11);
-  const Values k10{{"s", 7.20996328660383e-10},
-                   {"theta", 0.9207938245963407927995921},
-                   {"s_dot", -2.64346480206845e-9},
-                   {"theta_dot", 1.128301874649872064922251}};
+  const StateValues k10{{"s", 7.20996328660383e-10},
+                        {"theta", 0.9207938245963407927995921},
+                        {"s_dot", -2.64346480206845e-9},
+                        {"theta_dot", 1.128301874649872064922251}};
   for (const char* solver : {"radau5", "rodas"}) {
     CAPTURE(std::string(solver));
     const test::FinishedRun run = motion("elastic_pendulum_smooth", "default", solver, 1e-11);
@@ -209,10 +209,10 @@ TEST_CASE("published: bench reports explicit solvers as inefficient for the stif
 }
 
 TEST_CASE("published: the IFToMM pendulum follows its closed form") {
-  const Values end{{"x", -0.2750874625761168600543914},
-                   {"y", -0.96141920509912506426513507},
-                   {"x_dot", 4.1755981009517288364605195},
-                   {"y_dot", -1.194749054560475271647513}};
+  const StateValues end{{"x", -0.2750874625761168600543914},
+                        {"y", -0.96141920509912506426513507},
+                        {"x_dot", 4.1755981009517288364605195},
+                        {"y_dot", -1.194749054560475271647513}};
   const test::FinishedRun run = check("iftomm_pendulum", "default", "dop853", end, 1e-11);
   const test::Swing swing = test::pendulum_from_rest(std::acos(-1.0) / 2, std::sqrt(9.81), 10);  // from the other side
   CHECK(run.final("x") == doctest::Approx(-std::sin(swing.angle)).epsilon(1e-10));

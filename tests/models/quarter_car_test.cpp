@@ -12,11 +12,11 @@ using namespace eomgen;
 namespace {
 
 // Accelerations of some 10 m/s^2 as differences of forces that are 100 times as large, computed twice in binary64.
-constexpr double rounding = 1e-10;
+constexpr double rounding_of_run = 1e-10;
 // 4 s at rtol 1e-10.
 constexpr double followed = 1e-8;
 
-test::FinishedRun run_scene(const char* scene) {
+test::FinishedRun run_road(const char* scene) {
   return test::run_model("quarter_car", [scene](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.rtol = request.overrides.atol = 1e-10;
@@ -30,7 +30,7 @@ test::FinishedRun run_scene(const char* scene) {
 //   (M + m) z'' - m L cos(a) a'' = -(M + m) g - m L sin(a) a'^2 - kt w
 //   -m L cos(a) z'' + m L^2 a'' = (m g + kt w) L cos(a) + S dd/da,  S = -k (d - l0) - c d' - cs z'.
 TEST_CASE("quarter_car: the accelerations are those of Lagrange's equations by hand, and the energy closes") {
-  const test::FinishedRun run = run_scene("default");
+  const test::FinishedRun run = run_road("default");
   const auto p = [&run](const char* name) { return run.parameter(name); };
   const double M = p("M"), m = p("m"), g = p("g"), L = p("L"), q = p("p"), b = p("b"), h = p("h");
   REQUIRE(run.rows.size() > 100);
@@ -45,8 +45,8 @@ TEST_CASE("quarter_car: the accelerations are those of Lagrange's equations by h
     const double f1 = -(M + m) * g - m * L * S * a1 * a1 - p("kt") * w,
                  f2 = (m * g + p("kt") * w) * L * C + strut * slope;
     const double A = M + m, B = -m * L * C, D = m * L * L, det = A * D - B * B;
-    CHECK(at("z_ddot") == doctest::Approx((D * f1 - B * f2) / det).epsilon(rounding).scale(10));
-    CHECK(at("a_ddot") == doctest::Approx((A * f2 - B * f1) / det).epsilon(rounding).scale(10));
+    CHECK(at("z_ddot") == doctest::Approx((D * f1 - B * f2) / det).epsilon(rounding_of_run).scale(10));
+    CHECK(at("a_ddot") == doctest::Approx((A * f2 - B * f1) / det).epsilon(rounding_of_run).scale(10));
     stroke = std::max(stroke, std::abs(d - p("d0")));
   }
   CHECK(stroke > 1e-3);  // the strut moves
@@ -55,7 +55,7 @@ TEST_CASE("quarter_car: the accelerations are those of Lagrange's equations by h
 }
 
 TEST_CASE("quarter_car: on a flat road the strut carries M g L cos(a)/(dd/da), the tyre (M + m) g, and nothing moves") {
-  const test::FinishedRun run = run_scene("flat");
+  const test::FinishedRun run = run_road("flat");
   CHECK(std::abs(run.final("a") - run.parameter("a0")) < followed);
   CHECK(std::abs(run.final("z") - run.parameter("z0")) < followed);
   CHECK(std::abs(run.final("z_dot")) < followed);

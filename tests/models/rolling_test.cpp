@@ -13,12 +13,12 @@ using namespace eomgen::test;
 
 namespace {
 
-void tighten(pipeline::SimulationRequest& request) {
+void tighten_rolling(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-12;
   request.overrides.atol = 1e-13;
 }
 
-double spread(const FinishedRun& run, const std::string& name) {
+double spread_of(const FinishedRun& run, const std::string& name) {
   double worst = 0;
   for (std::size_t i = 0; i < run.rows.size(); ++i)
     worst = std::max(worst, std::abs(run.rows.at(i, name) - run.rows.at(0, name)));
@@ -28,7 +28,7 @@ double spread(const FinishedRun& run, const std::string& name) {
 }  // namespace
 
 TEST_CASE("rolling: R3: the sphere gains (5/7) g sin(b)/R t about E2 alone, eq. (8.85), and the plane gives (8.82)") {
-  const FinishedRun run = run_model("R3_sphere_on_incline", tighten);
+  const FinishedRun run = run_model("R3_sphere_on_incline", tighten_rolling);
   const double R = run.parameter("R"), m = run.parameter("m"), down = run.parameter("g") * std::sin(run.parameter("b"));
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const double t = run.rows.t[i], W2 = -2 + 5 * down * t / (7 * R);
@@ -47,7 +47,7 @@ TEST_CASE("rolling: R3: the sphere gains (5/7) g sin(b)/R t about E2 alone, eq. 
 
 // v = W E3 x x + R w x E3 at the start; then vdot = (2/7) W E3 x v.
 TEST_CASE("rolling: R4: on a turntable the centre circles at 2/7 of its rate") {
-  const FinishedRun run = run_model("R4_turntable", tighten);
+  const FinishedRun run = run_model("R4_turntable", tighten_rolling);
   const double W = run.parameter("W"), R = run.parameter("R"), rate = 2 * W / 7;
   const double v1 = W * 0.1 + R * 5, v2 = W * 0.3 - R * 2;
   double worst = 0;
@@ -61,10 +61,10 @@ TEST_CASE("rolling: R4: on a turntable the centre circles at 2/7 of its rate") {
 }
 
 TEST_CASE("rolling: R5: Chaplygin's sphere conserves energy and the angular momentum about the point of contact") {
-  const FinishedRun run = run_model("R5_chaplygin_sphere", tighten);
+  const FinishedRun run = run_model("R5_chaplygin_sphere", tighten_rolling);
   CHECK(run.drift("energy") < 1e-10);
-  for (const char* name : {"HP1", "HP2", "HP3"}) CHECK(spread(run, name) < 1e-10);
-  CHECK(spread(run, "ball.omega1") > 0.5);
+  for (const char* name : {"HP1", "HP2", "HP3"}) CHECK(spread_of(run, name) < 1e-10);
+  CHECK(spread_of(run, "ball.omega1") > 0.5);
 }
 
 TEST_CASE("rolling: R6: the constraints are (9.79), two not integrable and one that is") {
@@ -97,7 +97,7 @@ TEST_CASE("rolling: R6: the disk conserves energy to 1e-10 over 100 s") {
 // Euler's equations about the centre along e1', e2'', e3 with the force of the plane from Newton's: of theta, its rate,
 // w2 = phi_dot sin(theta) and w3 alone.
 TEST_CASE("rolling: R6: the disk agrees with a separate integration of Newton's and Euler's equations") {
-  const FinishedRun run = run_model("R6_rolling_disk", tighten);
+  const FinishedRun run = run_model("R6_rolling_disk", tighten_rolling);
   const double m = run.parameter("m"), R = run.parameter("R"), g = run.parameter("g"), J = m * R * R / 4,
                J3 = m * R * R / 2;
   using State = std::array<double, 4>;
@@ -125,10 +125,10 @@ TEST_CASE("rolling: R6: the disk agrees with a separate integration of Newton's 
 }
 
 TEST_CASE("rolling: R6: on ice the disk conserves energy, spin, and the horizontal velocity of its centre") {
-  const FinishedRun run = run_model("R6_sliding_disk", tighten);
+  const FinishedRun run = run_model("R6_sliding_disk", tighten_rolling);
   CHECK(run.drift("energy") < 1e-11);
-  CHECK(spread(run, "x1_dot") < 1e-11);
-  CHECK(spread(run, "x2_dot") < 1e-11);
-  CHECK(spread(run, "disk.omega3") < 1e-9);
+  CHECK(spread_of(run, "x1_dot") < 1e-11);
+  CHECK(spread_of(run, "x2_dot") < 1e-11);
+  CHECK(spread_of(run, "disk.omega3") < 1e-9);
   CHECK(std::abs(run.final("x3") - 0.2 * std::sin(run.final("theta"))) < 1e-12);
 }

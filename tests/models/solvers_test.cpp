@@ -14,7 +14,7 @@ using namespace eomgen;
 
 namespace {
 
-test::FinishedRun motion(const std::string& model, const std::string& solver, double t_end) {
+test::FinishedRun motion_until(const std::string& model, const std::string& solver, double t_end) {
   return test::run_model(model, [&](pipeline::SimulationRequest& request) {
     request.overrides.solver = solver;
     request.overrides.rtol = 1e-10;
@@ -24,7 +24,7 @@ test::FinishedRun motion(const std::string& model, const std::string& solver, do
 }
 
 /// Largest difference of the states at the end.
-double difference(const test::FinishedRun& a, const test::FinishedRun& b) {
+double distance(const test::FinishedRun& a, const test::FinishedRun& b) {
   double largest = 0;
   for (const model::Coordinate& c : a.simulation.derived->model.coordinates)
     for (const std::string& name : {c.name, c.name + "_dot"})
@@ -39,13 +39,13 @@ TEST_CASE("solvers: the implicit ones end where dop853 does, with df/dx from the
                             "bilinear_oscillator", "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian"}) {
     const std::string of_model = model;
     CAPTURE(of_model);
-    const test::FinishedRun reference = motion(model, "dop853", 1.5);
+    const test::FinishedRun reference = motion_until(model, "dop853", 1.5);
     for (const char* solver : {"radau5", "rodas"}) {
       CAPTURE(std::string(solver));
-      const test::FinishedRun other = motion(model, solver, 1.5);
+      const test::FinishedRun other = motion_until(model, solver, 1.5);
       const run::RunResult& result = other.simulation.result;
       CHECK(result.outcome == eom::Outcome::done);
-      CHECK(difference(other, reference) < 1e-6);
+      CHECK(distance(other, reference) < 1e-6);
       CHECK(result.statistics.jacobians > 0);
       CHECK(result.statistics.difference_evaluations == 0);  // inputs, where there are any, stand still
     }
@@ -53,7 +53,7 @@ TEST_CASE("solvers: the implicit ones end where dop853 does, with df/dx from the
 }
 
 TEST_CASE("solvers: an implicit one on code that was compiled without df/dx takes differences, and says so") {
-  const test::FinishedRun first = motion("cart_pendulum", "dop853", 1.5);
+  const test::FinishedRun first = motion_until("cart_pendulum", "dop853", 1.5);
   run::Overrides overrides;
   overrides.solver = "radau5";
   overrides.rtol = 1e-10;
@@ -115,7 +115,7 @@ TEST_CASE(
         CHECK(result.outcome == eom::Outcome::done);
         CHECK(result.reason.uses_momenta);
         CHECK(result.constraint_drift < 1e-11);
-        return difference(found, reference);
+        return distance(found, reference);
       };
       const double coarse = error(order == 6 ? 0.025 : 0.01), fine = error(order == 6 ? 0.0125 : 0.005);
       CHECK(fine < 1e-3);
@@ -185,11 +185,11 @@ TEST_CASE("solvers: taylor ends where dop853 does, through constraints, tables, 
                             "R6_rolling_disk", "stick_slip_belt", "bouncing_ball", "P5_rough_sphere"}) {
     const std::string of_model = model;
     CAPTURE(of_model);
-    const test::FinishedRun reference = motion(model, "dop853", 1.5), other = motion(model, "taylor", 1.5);
+    const test::FinishedRun reference = motion_until(model, "dop853", 1.5), other = motion_until(model, "taylor", 1.5);
     const run::RunResult& result = other.simulation.result;
     CHECK(result.outcome == reference.simulation.result.outcome);
     CHECK(run::to_text(result.reason) == "as asked for, series from the equations");
-    CHECK(difference(other, reference) < 1e-6);
+    CHECK(distance(other, reference) < 1e-6);
     CHECK(result.events.size() == reference.simulation.result.events.size());
     CHECK(result.power_balance < 1e-6);
   }
@@ -201,9 +201,9 @@ TEST_CASE(
   test::write_text(folder + "/cart_table.toml", text + "inputs = { F = { t = [0, 0.7], value = [5, -3] } }\n");
   test::write_text(folder + "/cart_pushed.toml", text + "inputs = { F = \"3*sin(2*t)\" }\n");
   const std::string table = folder + "/cart_table.toml", pushed = folder + "/cart_pushed.toml";
-  CHECK(difference(motion(table, "taylor", 1.5), motion(table, "dop853", 1.5)) < 1e-8);
-  CHECK_THROWS_WITH_AS(motion(pushed, "taylor", 1.5), doctest::Contains("an expression of t"), Error);
-  const test::FinishedRun first = motion("cart_pendulum", "dop853", 0.5);
+  CHECK(distance(motion_until(table, "taylor", 1.5), motion_until(table, "dop853", 1.5)) < 1e-8);
+  CHECK_THROWS_WITH_AS(motion_until(pushed, "taylor", 1.5), doctest::Contains("an expression of t"), Error);
+  const test::FinishedRun first = motion_until("cart_pendulum", "dop853", 0.5);
   run::Overrides overrides;
   overrides.solver = "taylor";
   CHECK_THROWS_WITH_AS(pipeline::rerun(first.simulation, overrides, false),
@@ -218,7 +218,7 @@ TEST_CASE(
                             "P7_moving_sphere_pfaffian", "car_axis"}) {
     const std::string of_model = model;
     CAPTURE(of_model);
-    const test::FinishedRun reference = motion(model, "dop853", 1);
+    const test::FinishedRun reference = motion_until(model, "dop853", 1);
     run::Overrides overrides;
     overrides.solver = "ggl";
     overrides.rtol = 1e-10;
@@ -242,7 +242,7 @@ TEST_CASE(
     const std::string of_model = model;
     CAPTURE(of_model);
     try {
-      motion(model, "ggl", 1);
+      motion_until(model, "ggl", 1);
       FAIL("it is to be refused");
     } catch (const Error& error) {
       CHECK(std::string(error.what()).find(why) != std::string::npos);
@@ -253,7 +253,7 @@ TEST_CASE(
 
 TEST_CASE("solvers: fixed implicit steps where components stay at rounding level, or start at 0") {
   for (const auto& [model, t_end] : {std::pair{"n_four_bar_2", 0.5}, std::pair{"iftomm_pendulum", 2.0}}) {
-    const test::FinishedRun reference = motion(model, "dop853", t_end);
+    const test::FinishedRun reference = motion_until(model, "dop853", t_end);
     for (const char* solver : {"midpoint", "radau5", "radau", "ggl"}) {
       const std::string of_model = model;
       CAPTURE(of_model);

@@ -28,9 +28,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Relative to the largest position, rate or parameter. Constraints are solved to 1e-14 of their terms.
-constexpr double allowed = 1e-9;
+constexpr double allowed_error = 1e-9;
 
-struct Values {
+struct StartedValues {
   std::vector<double> t{0, 0}, x, p;
   std::vector<int> open;  // states of the contacts
 };
@@ -38,8 +38,8 @@ struct Values {
 struct Case {
   std::string what;
   std::vector<int> given;
-  Values in;
-  std::optional<Values> expected;  // nothing: `run` refuses it
+  StartedValues in;
+  std::optional<StartedValues> expected;  // nothing: `run` refuses it
   std::string refusal;
 };
 
@@ -63,9 +63,9 @@ std::unique_ptr<pipeline::DerivedModel> derive_once(const std::string& path) {
   return derived;
 }
 
-Values values_of(const run::Scene& scene, const system::EquationSystem& system) {
+StartedValues values_of(const run::Scene& scene, const system::EquationSystem& system) {
   const std::vector<std::uint32_t>& free = system.free;
-  Values values;
+  StartedValues values;
   values.t = {scene.t0, scene.t1};
   for (const std::uint32_t i : free) values.x.push_back(scene.q[i]);
   for (const std::uint32_t i : free) values.x.push_back(scene.qdot[i]);
@@ -130,7 +130,7 @@ class Cases {
   mechanics::Mechanics& m_;
   const system::EquationSystem& system_;
   const model::Scene& scene_;
-  Values default_;
+  StartedValues default_;
   Scene result_;
 };
 
@@ -158,7 +158,7 @@ std::vector<emit::EmittedFile> sources(pipeline::DerivedModel& derived, const mo
   return emit::emit(program, context, target);
 }
 
-double distance(const Values& found, Values expected, std::size_t n) {
+double distance(const StartedValues& found, StartedValues expected, std::size_t n) {
   expected.open.resize(found.open.size());  // a scene lists only unilateral contacts
   double off = found.open == expected.open ? 0 : 1;
   const auto compare = [&](const std::vector<double>& a, const std::vector<double>& b, std::size_t from,
@@ -197,7 +197,7 @@ require("fs").writeFileSync("results.json", JSON.stringify(results));
 
 struct Outcome {
   int code = 0;
-  Values values;
+  StartedValues values;
 };
 
 void check(const Scene& scene, const Case& c, const Outcome& found) {
@@ -212,7 +212,7 @@ void check(const Scene& scene, const Case& c, const Outcome& found) {
     return;
   }
   CHECK(found.code == 0);
-  if (found.code == 0) CHECK(distance(found.values, *c.expected, scene.coordinates) <= allowed);
+  if (found.code == 0) CHECK(distance(found.values, *c.expected, scene.coordinates) <= allowed_error);
 }
 
 void check_c(const std::string& folder, const std::vector<Scene>& scenes) {

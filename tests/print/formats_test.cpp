@@ -31,7 +31,7 @@ struct Printed {
   std::vector<PrintedFormula> items;
 };
 
-std::string shipped(const std::string& name) { return test::source_folder() + "/models/" + name + ".toml"; }
+std::string shipped_file(const std::string& name) { return test::source_folder() + "/models/" + name + ".toml"; }
 
 // Whether elements open and close in order.
 bool well_formed(const std::string& xml) {
@@ -65,7 +65,8 @@ std::string expression(const std::string& is, const Form& form) {
 }  // namespace
 
 TEST_CASE("P7 reads as (2.111)") {
-  const Printed one(model::read_model(shipped("P7_moving_sphere")), system::Approach::one, {"equations", "reactions"});
+  const Printed one(model::read_model(shipped_file("P7_moving_sphere")), system::Approach::one,
+                    {"equations", "reactions"});
   const auto equations = one.of("equations");
   REQUIRE(equations.size() == 3);
   CHECK(equations[0].coordinate == "phi");
@@ -84,14 +85,15 @@ TEST_CASE("P7 reads as (2.111)") {
 }
 
 TEST_CASE("P7 by approach II reads as (2.109), without the constraint force") {
-  const Printed two(model::read_model(shipped("P7_moving_sphere")), system::Approach::two, {"equations", "energies"});
+  const Printed two(model::read_model(shipped_file("P7_moving_sphere")), system::Approach::two,
+                    {"equations", "energies"});
   REQUIRE(two.of("equations").size() == 2);
   for (const PrintedFormula& item : two.items) CHECK(item.text.find("lambda") == std::string::npos);
   CHECK(two.of("energies")[0].text == "T~ = 1/2 m (d^2 phi_dot^2 + d^2 sin^2(phi) theta_dot^2 + d_dot^2)");
 }
 
 TEST_CASE("common parameter factors come first") {
-  const Printed one(model::read_model(shipped("S5_double_pendulum")), system::Approach::two, {"equations"});
+  const Printed one(model::read_model(shipped_file("S5_double_pendulum")), system::Approach::two, {"equations"});
   CHECK(one.of("explicit")[0].text ==
         "(m1 + m2) L1^2 theta1_ddot + m2 L1 L2 cos(theta1 - theta2) theta2_ddot + m2 L1 L2 sin(theta1 - theta2) "
         "theta2_dot^2"
@@ -102,7 +104,7 @@ TEST_CASE("everything that `all` selects exists in three formats, and MathML is 
   for (const char* name : {"P7_moving_sphere", "S5_spherical_double_pendulum", "S5_double_pendulum_cartesian",
                            "P14_kepler_cartesian", "cart_pendulum", "S6_chain_6"}) {
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
-      const Printed printed(model::read_model(shipped(name)), approach);
+      const Printed printed(model::read_model(shipped_file(name)), approach);
       CHECK(printed.items.size() > 3);
       for (const PrintedFormula& item : printed.items) {
         CAPTURE(item.text);
@@ -241,24 +243,24 @@ TEST_CASE("decimals in the model stay decimals, and simple fractions stay fracti
 }
 
 TEST_CASE("the constraint force on a particle is a vector along the unit vectors of its coordinates") {
-  const Printed cone(model::read_model(shipped("P4_moving_cone")), system::Approach::one, {"reactions"});
+  const Printed cone(model::read_model(shipped_file("P4_moving_cone")), system::Approach::one, {"reactions"});
   const auto is_force = [](const PrintedFormula& item) { return item.role == "constraint force"; };
   const std::vector<PrintedFormula> of_cone = cone.of("reactions");
   const auto found = std::find_if(of_cone.begin(), of_cone.end(), is_force);
   REQUIRE(found != of_cone.end());
   CHECK(found->text == "N = (lambda/R) e_phi");
-  const Printed helix(model::read_model(shipped("P8_smooth_helix")), system::Approach::one, {"reactions"});
+  const Printed helix(model::read_model(shipped_file("P8_smooth_helix")), system::Approach::one, {"reactions"});
   CHECK(helix.of("reactions").back().text == "N = lambda_1 a^r + lambda_2 a^nu");
 }
 
 TEST_CASE("by approach II no vector contains the multiplier of an imposed constraint") {
   for (const char* name : {"P7_moving_sphere", "P4_moving_cone", "P8_smooth_helix"}) {
     CAPTURE(name);
-    const model::Model model = model::read_model(shipped(name));
+    const model::Model model = model::read_model(shipped_file(name));
     for (const PrintedFormula& item : Printed(model, system::Approach::two, {"reactions"}).items)
       CHECK_MESSAGE(item.text.find("lambda") == std::string::npos, item.text);
   }
-  const model::Model sphere = model::read_model(shipped("P7_moving_sphere"));
+  const model::Model sphere = model::read_model(shipped_file("P7_moving_sphere"));
   CHECK_FALSE(Printed(sphere, system::Approach::one).of("reactions").empty());
 }
 

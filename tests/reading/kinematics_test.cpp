@@ -23,16 +23,16 @@ using verify::Real;
 
 namespace {
 
-constexpr int digits = 50;
-const Real tolerance = cln::expt_pos(cln::cl_RA(1) / 10, 40);  // ten digits are left for cancellation
+constexpr int kinematic_digits = 50;
+const Real kinematic_tolerance = cln::expt_pos(cln::cl_RA(1) / 10, 40);  // ten digits are left for cancellation
 
-using Numbers = std::array<Real, 3>;
+using RealTriple = std::array<Real, 3>;
 
-Numbers real(const verify::Vector& v) { return {v[0].real(), v[1].real(), v[2].real()}; }
+RealTriple real(const verify::Vector& v) { return {v[0].real(), v[1].real(), v[2].real()}; }
 
-bool near(const Numbers& a, const Numbers& b) {
+bool near(const RealTriple& a, const RealTriple& b) {
   for (std::size_t k = 0; k < 3; ++k) {
-    if (cln::abs(a[k] - b[k]) > tolerance) return false;
+    if (cln::abs(a[k] - b[k]) > kinematic_tolerance) return false;
   }
   return true;
 }
@@ -40,23 +40,24 @@ bool near(const Numbers& a, const Numbers& b) {
 /// One model at one state with unequal numbers.
 class AtState {
  public:
-  explicit AtState(System& system) : s_(system), oracle_(system.model, environment(), verify::Precision(digits)) {}
+  explicit AtState(System& system)
+      : s_(system), oracle_(system.model, environment(), verify::Precision(kinematic_digits)) {}
 
   Real value(const Sum& sum) {
     const symbolic::Ref root = reading::to_dag(*s_.mechanics.dag, sum);
     return symbolic::evaluate(
-        *s_.mechanics.dag, {root}, [this](const symbolic::Symbol& s) { return number(s); }, digits)[0];
+        *s_.mechanics.dag, {root}, [this](const symbolic::Symbol& s) { return number(s); }, kinematic_digits)[0];
   }
-  Numbers vector(const Components& c, const Axes& axes) {
-    Numbers result{0, 0, 0};
+  RealTriple vector(const Components& c, const Axes& axes) {
+    RealTriple result{0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
-      const Numbers e = axis(axes, k);
+      const RealTriple e = axis(axes, k);
       const Real x = value(c[k]);
       for (std::size_t i = 0; i < 3; ++i) result[i] = result[i] + x * e[i];
     }
     return result;
   }
-  Numbers axis(const Axes& axes, std::size_t k) {
+  RealTriple axis(const Axes& axes, std::size_t k) {
     const model::Frame& frame = s_.model.frames[axes.frame];
     switch (axes.kind) {
       case Axes::Kind::fixed: return {k == 0 ? 1 : 0, k == 1 ? 1 : 0, k == 2 ? 1 : 0};
@@ -69,7 +70,7 @@ class AtState {
     }
     return {0, 0, 0};
   }
-  Numbers expected(const KinematicVector& v) {
+  RealTriple expected(const KinematicVector& v) {
     verify::Interpreter &later = oracle_.with_time_slope(), &much_later = later.with_time_slope();
     const auto slope = [](const verify::Vector& x, unsigned level) {
       return verify::Vector{x[0].slope(level, 0), x[1].slope(level, 0), x[2].slope(level, 0)};
@@ -87,9 +88,9 @@ class AtState {
       case Quantity::angular_acceleration: return real(slope(later.angular_velocity(v.index), later.level()));
       case Quantity::tangent: return real(oracle_.virtual_rotation(v.index, v.number));
       case Quantity::angular_momentum: {
-        const Numbers w = real(oracle_.angular_velocity(v.index));
-        const std::array<Numbers, 3> J = inertia(v.index);
-        Numbers H{0, 0, 0};
+        const RealTriple w = real(oracle_.angular_velocity(v.index));
+        const std::array<RealTriple, 3> J = inertia(v.index);
+        RealTriple H{0, 0, 0};
         for (std::size_t i = 0; i < 3; ++i) {
           for (std::size_t k = 0; k < 3; ++k) H[i] = H[i] + J[i][k] * w[k];
         }
@@ -99,13 +100,13 @@ class AtState {
     }
   }
   /// J along E1, E2, E3.
-  std::array<Numbers, 3> inertia(std::uint32_t frame) {
-    std::array<Numbers, 3> J{};
+  std::array<RealTriple, 3> inertia(std::uint32_t frame) {
+    std::array<RealTriple, 3> J{};
     for (const model::Body& body : s_.model.bodies) {
       if (body.frame != frame) continue;
       for (std::size_t a = 0; a < 3; ++a) {
         for (std::size_t b = 0; b < 3; ++b) {
-          const Numbers ea = real(oracle_.axis(frame, a)), eb = real(oracle_.axis(frame, b));
+          const RealTriple ea = real(oracle_.axis(frame, a)), eb = real(oracle_.axis(frame, b));
           const Real entry = oracle_.scalar(body.inertia[a][b]).real();
           for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t k = 0; k < 3; ++k) J[i][k] = J[i][k] + entry * ea[i] * eb[k];
@@ -121,7 +122,7 @@ class AtState {
     const bool has_orders = s.kind == symbolic::SymbolKind::coordinate || s.kind == symbolic::SymbolKind::function;
     const cln::cl_RA x = has_orders ? cln::cl_RA(7 + 5 * s.index + 3 * s.order) / (11 + s.index)
                                     : cln::cl_RA(13 + 4 * s.index) / (9 + s.index);
-    return cln::cl_float(x, cln::float_format(static_cast<std::uintptr_t>(digits)));
+    return cln::cl_float(x, cln::float_format(static_cast<std::uintptr_t>(kinematic_digits)));
   }
   verify::Environment environment() const {
     verify::Environment result;
@@ -169,7 +170,7 @@ TEST_CASE("kinematics: every vector and tensor has the oracle's value") {
       for (const KinematicVector& v : of.vectors) {
         CAPTURE(reading::name(v.quantity));
         if (!v.skip_reason.empty() || v.axes.kind == Axes::Kind::chart) continue;
-        const Numbers shown = at.vector(v.components, v.axes);
+        const RealTriple shown = at.vector(v.components, v.axes);
         ++vectors;
         if (v.quantity != Quantity::dual) {
           CHECK(near(shown, at.expected(v)));
@@ -181,19 +182,19 @@ TEST_CASE("kinematics: every vector and tensor has the oracle's value") {
             return other.quantity == Quantity::dual && other.number == g.number;
           });
           if (!is_entry) continue;
-          const Numbers e = at.expected(g);
+          const RealTriple e = at.expected(g);
           const Real product = shown[0] * e[0] + shown[1] * e[1] + shown[2] * e[2];
-          CHECK(cln::abs(product - (g.number == v.number ? 1 : 0)) < tolerance);
+          CHECK(cln::abs(product - (g.number == v.number ? 1 : 0)) < kinematic_tolerance);
         }
       }
       for (const KinematicTensor& t : of.tensors) {
         if (t.is_euler_tensor || t.about != 0 || !t.skip_reason.empty()) continue;
-        const std::array<Numbers, 3> J = at.inertia(t.frame);
+        const std::array<RealTriple, 3> J = at.inertia(t.frame);
         for (std::size_t k = 0; k < 3; ++k) {
-          Numbers row{0, 0, 0};  // row k along the fixed axes
+          RealTriple row{0, 0, 0};  // row k along the fixed axes
           for (std::size_t a = 0; a < 3; ++a) {
             for (std::size_t b = 0; b < 3; ++b) {
-              const Numbers ea = at.axis(t.axes, a), eb = at.axis(t.axes, b);
+              const RealTriple ea = at.axis(t.axes, a), eb = at.axis(t.axes, b);
               for (std::size_t i = 0; i < 3; ++i) row[i] = row[i] + ea[k] * at.value(t.entries[a][b]) * eb[i];
             }
           }

@@ -12,7 +12,7 @@ using namespace eomgen;
 namespace {
 
 /// A ball above a floor: y = 5 - 5 t^2, first impact at t = 1.
-std::string ball(const char* restitution, const char* span) {
+std::string ball_text(const char* restitution, const char* span) {
   return std::string(
              "[parameters]\nm = 1\ng = \"10 m/s^2\"\n[coordinates]\ny = \"m\"\n[[particle]]\nname = \"P\"\nmass = "
              "\"m\"\n"
@@ -50,7 +50,7 @@ TEST_CASE("contacts: an impact exactly at the end of a run is applied, with ever
     if (!can_have_contacts(method)) continue;
     CAPTURE(method.name);
     ++solvers;
-    const test::FinishedRun once = run_with("ball", ball("0.5", "[0, 1]"), method, 0.01);
+    const test::FinishedRun once = run_with("ball", ball_text("0.5", "[0, 1]"), method, 0.01);
     CHECK(once.simulation.result.outcome == eom::Outcome::done);
     CHECK(once.simulation.result.t == 1);
     REQUIRE(once.simulation.result.events.size() == 1);
@@ -60,14 +60,14 @@ TEST_CASE("contacts: an impact exactly at the end of a run is applied, with ever
     CHECK(once.simulation.result.statistics.rhs_evaluations < 20'000);
     CHECK(once.simulation.result.estimate_rhs_evaluations < 60'000);
     // The second impact is at t = 2, and without a bounce the ball stays on the floor.
-    const test::FinishedRun twice = run_with("ball", ball("0.5", "[0, 2]"), method, 0.01);
+    const test::FinishedRun twice = run_with("ball", ball_text("0.5", "[0, 2]"), method, 0.01);
     CHECK(twice.simulation.result.events.size() == 2);
     CHECK(std::abs(twice.final("y_dot") - 2.5) < 1e-6);
-    const test::FinishedRun rests = run_with("ball", ball("0", "[0, 1]"), method, 0.01);
+    const test::FinishedRun rests = run_with("ball", ball_text("0", "[0, 1]"), method, 0.01);
     CHECK(rests.simulation.result.events.size() == 1);
     CHECK(std::abs(rests.final("y_dot")) < 1e-6);
     // Before the impact there is none.
-    const test::FinishedRun before = run_with("ball", ball("0.5", "[0, 0.9999]"), method, 0.01);
+    const test::FinishedRun before = run_with("ball", ball_text("0.5", "[0, 0.9999]"), method, 0.01);
     CHECK(before.simulation.result.events.empty());
     CHECK(std::abs(before.final("y_dot") + 9.999) < 1e-6);
   }
@@ -78,7 +78,7 @@ TEST_CASE("contacts: an implicit solver needs few steps beside the work of a con
   for (const char* solver : {"rodas", "radau5", "radau"}) {
     CAPTURE(solver);
     const test::FinishedRun fall =
-        test::run_text("ball", ball("0.5", "[0, 0.9]"), [&](auto& request) { request.overrides.solver = solver; });
+        test::run_text("ball", ball_text("0.5", "[0, 0.9]"), [&](auto& request) { request.overrides.solver = solver; });
     CHECK(fall.simulation.result.statistics.steps < 30);  // rodas: 285020 with the work in the place of a rate
   }
 }

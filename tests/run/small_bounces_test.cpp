@@ -15,7 +15,7 @@ namespace {
 
 Rational ten_to(long exponent) { return cln::expt(Rational(10), cln::cl_I(exponent)); }
 
-const char* const ball =
+const char* const small_ball =
     "format = 1\n[parameters]\nm = 1\ng = 9.81\nh = \"1 m\"\nv = \"3 m/s\"\ne = { value = 0.5, unit = \"1\" }\nmu = { "
     "value = 0.1, unit = \"1\" }\n"
     "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = "
@@ -27,7 +27,7 @@ const char* const ball =
 const test::FinishedRun& made() {
   static const test::FinishedRun finished = [] {
     const std::string path = test::build_folder() + "/small_bounces.toml";
-    test::write_text(path, ball);
+    test::write_text(path, small_ball);
     return test::run_model(path);
   }();
   return finished;

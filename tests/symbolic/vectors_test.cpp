@@ -11,13 +11,13 @@
 using namespace eomgen::symbolic;
 
 namespace {
-Ref coordinate(Dag& dag, std::uint32_t i) { return dag.symbol({SymbolKind::coordinate, i, 0}); }
+Ref coordinate_of(Dag& dag, std::uint32_t i) { return dag.symbol({SymbolKind::coordinate, i, 0}); }
 }  // namespace
 
 TEST_CASE("vectors: a cross product is normal to both factors, and its square is Lagrange's identity") {
   Dag dag;
-  const Vec3 a{coordinate(dag, 0), coordinate(dag, 1), coordinate(dag, 2)},
-      b{coordinate(dag, 3), coordinate(dag, 4), coordinate(dag, 5)};
+  const Vec3 a{coordinate_of(dag, 0), coordinate_of(dag, 1), coordinate_of(dag, 2)},
+      b{coordinate_of(dag, 3), coordinate_of(dag, 4), coordinate_of(dag, 5)};
   const Vec3 c = cross(dag, a, b);
   CHECK(dag.is_zero(expand_or_keep(dag, dot(dag, a, c))));
   CHECK(dag.is_zero(expand_or_keep(dag, dot(dag, b, c))));
@@ -31,7 +31,7 @@ TEST_CASE("vectors: a cross product is normal to both factors, and its square is
 
 TEST_CASE("vectors: products with a matrix and its transpose") {
   Dag dag;
-  const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
+  const Ref x = coordinate_of(dag, 0), y = coordinate_of(dag, 1);
   const std::vector<Rational> C{1, 2, 0, Rational(-1) / 3};  // rows (1, 2) and (0, -1/3)
   CHECK(multiply(dag, C, {x, y}) ==
         std::vector<Ref>{dag.add(x, dag.mul(dag.integer(2), y)), dag.mul(dag.constant(C[3]), y)});
@@ -60,7 +60,7 @@ TEST_CASE("sample: values differ by symbol, order, kind and point, and are in th
 
 TEST_CASE("expansion: beyond the budget an expression is unchanged, and the shorter form is chosen on request") {
   Dag dag;
-  const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
+  const Ref x = coordinate_of(dag, 0), y = coordinate_of(dag, 1);
   const Ref power = dag.power(dag.add(x, y), 6);  // 7 terms
   CHECK(expand_or_keep(dag, power, 3) == power);
   CHECK_FALSE(expand_or_keep(dag, power, 10) == power);
@@ -70,7 +70,7 @@ TEST_CASE("expansion: beyond the budget an expression is unchanged, and the shor
 
 TEST_CASE("dag: kinks are found anywhere in an expression") {
   Dag dag;
-  const Ref x = coordinate(dag, 0), y = coordinate(dag, 1), one = dag.one();
+  const Ref x = coordinate_of(dag, 0), y = coordinate_of(dag, 1), one = dag.one();
   for (const Ref kink : {dag.call(Op::abs, x), dag.call(Op::sign, x), dag.call(Op::min, x, y), dag.call(Op::max, x, y),
                          dag.select(x, y, one, y)}) {
     CHECK(dag.has_kinks({y, dag.call(Op::sin, dag.add(kink, y))}));

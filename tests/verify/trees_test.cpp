@@ -14,7 +14,7 @@ using namespace eomgen;
 
 namespace {
 
-const std::string parameters = R"toml(format = 1
+const std::string tree_parameters = R"toml(format = 1
 [parameters]
 m0 = "2 kg"
 m1 = "1 kg"
@@ -32,7 +32,7 @@ F = { unit = "N", default = 0 }
 )toml";
 
 // A cart on a shaking table, a rod on it, and two rods at the end of this rod; B has a relative angle.
-const std::string planar_tree = parameters + R"toml([coordinates]
+const std::string planar_tree = tree_parameters + R"toml([coordinates]
 beta = "rad"
 [[particle]]
 name = "cart"
@@ -66,7 +66,7 @@ mass = "m3"
 position = { spherical = ["r", "phi", "psi"], from = "cart" }
 )toml";
 
-const std::string growing_mass = parameters + R"toml([[particle]]
+const std::string growing_mass = tree_parameters + R"toml([[particle]]
 name = "A"
 mass = "m1 + m2*sin(w*t)/4"
 position = { cylindrical = ["L1", "alpha"] }
@@ -79,7 +79,7 @@ gravity = "-g*E2"
 )toml";
 
 // B is attached to A and to C: not a tree.
-const std::string closed = parameters + R"toml([coordinates]
+const std::string closed = tree_parameters + R"toml([coordinates]
 alpha = "rad"
 gamma = "rad"
 [[particle]]
@@ -97,7 +97,7 @@ position = "(A + C)/2"
 )toml";
 
 std::string chain(int n, const std::string& angles) {
-  return parameters + "[[chain]]\nname = \"link\"\nn = " + std::to_string(n) +
+  return tree_parameters + "[[chain]]\nname = \"link\"\nn = " + std::to_string(n) +
          "\nmass = \"m1\"\nlength = \"L1\"\nangles = \"" + angles + "\"\n[[force]]\ngravity = \"-g*E2\"\n";
 }
 
@@ -173,7 +173,7 @@ namespace {
 
 // Four rods with particles at their ends, by energies alone: one velocity written out, one particle with y before x,
 // one with opposite signs.
-const std::string energies_of_rods = parameters + R"toml([coordinates]
+const std::string energies_of_rods = tree_parameters + R"toml([coordinates]
 a1 = "rad"
 a2 = "rad"
 a3 = "rad"

@@ -45,26 +45,26 @@ constexpr Direction directions[] = {{1, 0, {1}},
                                     {5, 4, {1, 1, 5, 5, 5}},
                                     {5, 7, {1, 1, 7, 11, 19}}};
 constexpr std::size_t most_dimensions = 1 + std::size(directions);
-constexpr unsigned digits = 32;
+constexpr unsigned binary_digits = 32;
 
 /// The Sobol' point of this index, in units of 2^-32.
 std::uint32_t sobol(std::size_t dimension, std::uint64_t index) {
-  std::uint32_t v[digits];
-  for (unsigned i = 0; i < digits; ++i) {
+  std::uint32_t v[binary_digits];
+  for (unsigned i = 0; i < binary_digits; ++i) {
     if (dimension == 0) {
-      v[i] = 1U << (digits - 1 - i);
+      v[i] = 1U << (binary_digits - 1 - i);
       continue;
     }
     const Direction& d = directions[dimension - 1];
     if (i < d.degree) {
-      v[i] = d.m[i] << (digits - 1 - i);
+      v[i] = d.m[i] << (binary_digits - 1 - i);
       continue;
     }
     v[i] = v[i - d.degree] ^ (v[i - d.degree] >> d.degree);
     for (unsigned k = 1; k < d.degree; ++k) v[i] ^= (d.inner >> (d.degree - 1 - k) & 1U) * v[i - k];
   }
   std::uint32_t x = 0;
-  for (unsigned i = 0; index >> i != 0 && i < digits; ++i) {
+  for (unsigned i = 0; index >> i != 0 && i < binary_digits; ++i) {
     if ((index >> i & 1) != 0) x ^= v[i];
   }
   return x;

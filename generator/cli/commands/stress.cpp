@@ -30,11 +30,9 @@ struct Options : SceneOptions {
   bool quick = false;
 };
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json of(const stress::Extreme& extreme) {
   if (extreme.value == stress::no_value) return nullptr;
-  return {{"value", number(extreme.value)}, {"case", extreme.at}};
+  return {{"value", finite_or_null(extreme.value)}, {"case", extreme.at}};
 }
 
 Json of(const stress::Audit& audit) {
@@ -63,9 +61,9 @@ Json document(const model::Model& model, const analysis::StressFindings& found) 
     list.push_back({{"case", row.test},
                     {"solver", row.solver},
                     {"verdict", stress::name(row.verdict)},
-                    {"error", number(row.error)},
-                    {"estimate", number(row.estimate)},
-                    {"condition", number(row.condition)},
+                    {"error", finite_or_null(row.error)},
+                    {"estimate", finite_or_null(row.estimate)},
+                    {"condition", finite_or_null(row.condition)},
                     {"seconds", row.seconds},
                     {"outcome", row.outcome},
                     {"note", row.note}});

@@ -6,11 +6,6 @@
 namespace eomgen::cli {
 namespace {
 
-template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-/// The index, or null.
 Json bounds(const std::vector<double>& list) {
   Json result = Json::array();
   for (const double bound : list) result.push_back(std::isfinite(bound) ? Json(bound) : Json(nullptr));

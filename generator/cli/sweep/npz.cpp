@@ -59,19 +59,19 @@ double value_of(std::string_view field) {
 
 /// Eight bytes, little-endian.
 template <class T>
-void put(std::string& text, T value) {
+void append(std::string& text, T value) {
   const auto bits = std::bit_cast<std::uint64_t>(value);
   for (int i = 0; i < 8; ++i) text += static_cast<char>(bits >> (8 * i) & 0xff);
 }
 
-void put(std::string& text, std::string_view bytes, std::size_t width) {
+void append(std::string& text, std::string_view bytes, std::size_t width) {
   text += bytes;
   text.append(width - bytes.size(), '\0');
 }
 
-class Table {
+class ColumnArchive {
  public:
-  Table(const std::string& key, const std::string& header, const Rows& rows) : rows_(rows), key_(key) {
+  ColumnArchive(const std::string& key, const std::string& header, const Rows& rows) : rows_(rows), key_(key) {
     const auto commas = static_cast<std::size_t>(std::count(header.begin(), header.end(), ','));
     for (const std::string_view name : fields_of(header, commas)) names_.emplace_back(name);
     outcome_ = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), "outcome") - names_.begin());
@@ -124,15 +124,15 @@ class Table {
         const std::vector<std::string_view> fields = fields_of(line, names_.size());
         for (std::size_t k = 0; k + 1 < names_.size(); ++k) {
           if (k == 0)
-            put(columns[k + 1], static_cast<std::uint64_t>(run));
+            append(columns[k + 1], static_cast<std::uint64_t>(run));
           else if (k == outcome_)
-            put(columns[k + 1], fields[k], std::max<std::size_t>(outcome_width_, 1));
+            append(columns[k + 1], fields[k], std::max<std::size_t>(outcome_width_, 1));
           else
-            put(columns[k + 1], value_of(fields[k]));
+            append(columns[k + 1], value_of(fields[k]));
         }
         if (fields.back().empty()) return;
-        put(columns[names_.size()], static_cast<std::uint64_t>(run));
-        put(columns[names_.size() + 1], unquoted(fields.back()), detail_width_);
+        append(columns[names_.size()], static_cast<std::uint64_t>(run));
+        append(columns[names_.size() + 1], unquoted(fields.back()), detail_width_);
       });
       for (std::size_t i = 0; i < columns.size(); ++i) {
         archive.write(i, columns[i]);
@@ -153,7 +153,7 @@ class Table {
 bool is_npz(const std::string& path) { return path.ends_with(".npz"); }
 
 void write_npz(const std::string& path, const std::string& key, const std::string& header, const Rows& rows) try {
-  Table(key, header, rows).write(path);
+  ColumnArchive(key, header, rows).write(path);
 } catch (const std::invalid_argument&) {
   throw Error("sweep", {}, fmt::format("{} is no file, and an archive of columns needs one", model::quote(path)),
               "name a file, or write the table as .csv");

@@ -20,22 +20,25 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::size_t most_bytes = 1'000'000'000;
+constexpr std::size_t largest_file = 1'000'000'000;
 
-[[noreturn]] void fail(const std::string& what, const std::string& remedy) { throw Error("sweep", {}, what, remedy); }
+[[noreturn]] void refuse_file(const std::string& what, const std::string& remedy) {
+  throw Error("sweep", {}, what, remedy);
+}
 
-std::string text_of(const std::string& path) {
+std::string file_text(const std::string& path) {
   std::error_code none;
   if (!std::filesystem::is_regular_file(path, none))
-    fail(fmt::format("--points {}: there is no such file", model::quote(path)),
-         "name a CSV file: a line of parameters, then lines of values");
-  if (std::filesystem::file_size(path, none) > most_bytes)
-    fail(fmt::format("--points {}: the file is larger than 1 GB", model::quote(path)),
-         "make several sweeps of parts of it");
+    refuse_file(fmt::format("--points {}: there is no such file", model::quote(path)),
+                "name a CSV file: a line of parameters, then lines of values");
+  if (std::filesystem::file_size(path, none) > largest_file)
+    refuse_file(fmt::format("--points {}: the file is larger than 1 GB", model::quote(path)),
+                "make several sweeps of parts of it");
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
-  if (!file) fail(fmt::format("--points {}: the file cannot be read", model::quote(path)), "see to your rights there");
+  if (!file)
+    refuse_file(fmt::format("--points {}: the file cannot be read", model::quote(path)), "see to your rights there");
   return text.str();
 }
 
@@ -58,7 +61,7 @@ std::vector<std::string> fields_of(std::string_view line) {
 }  // namespace
 
 PointsFile read_points(const std::string& path) {
-  const std::string text = text_of(path);
+  const std::string text = file_text(path);
   PointsFile file{{}, model::content_hash(text)};
   auto& [names, values] = file.points;
   std::size_t number = 0;
@@ -71,29 +74,29 @@ PointsFile read_points(const std::string& path) {
     if (names.empty()) {
       names = fields;
       for (std::size_t i = 0; i < names.size(); ++i) {
-        if (names[i].empty()) fail(place + ": a column has no name", "name a parameter in each");
+        if (names[i].empty()) refuse_file(place + ": a column has no name", "name a parameter in each");
         if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
             names.begin() + static_cast<std::ptrdiff_t>(i)) {
-          fail(fmt::format("{}: {} comes twice", place, model::quote(names[i])), "name each parameter once");
+          refuse_file(fmt::format("{}: {} comes twice", place, model::quote(names[i])), "name each parameter once");
         }
       }
       continue;
     }
     if (fields.size() != names.size()) {
-      fail(fmt::format("{}: {} values, and {} parameters are named", place, fields.size(), names.size()),
-           "give a value for each, with commas between them");
+      refuse_file(fmt::format("{}: {} values, and {} parameters are named", place, fields.size(), names.size()),
+                  "give a value for each, with commas between them");
     }
     for (const std::string& field : fields) {
       const double value = cln::double_approx(parse_decimal(field, place));
       if (!std::isfinite(value))
-        fail(fmt::format("{}: {} leaves the range of binary64", place, model::quote(field)),
-             "use units in which it is nearer to 1");
+        refuse_file(fmt::format("{}: {} leaves the range of binary64", place, model::quote(field)),
+                    "use units in which it is nearer to 1");
       values.push_back(value);
     }
   }
   if (names.empty() || values.empty())
-    fail(fmt::format("--points {}: no line has values", model::quote(path)),
-         "write a line of parameters, then lines of values");
+    refuse_file(fmt::format("--points {}: no line has values", model::quote(path)),
+                "write a line of parameters, then lines of values");
   return file;
 }
 

@@ -29,7 +29,7 @@ std::string field(std::string text) {
   return quoted + "\"";
 }
 
-std::string number(double value) {
+std::string decimal(double value) {
   return std::isfinite(value) ? fmt::format("{:.17g}", unsigned_zero(value))
          : std::isnan(value)  ? "nan"
          : value > 0          ? "inf"
@@ -58,7 +58,7 @@ std::string RowFormatter::header() const {
 
 std::string RowFormatter::format_point(std::size_t run, const std::vector<std::string>& varied, const Point& point) {
   std::string text = std::to_string(run);
-  for (const std::string& name : varied) text += "," + number(cln::double_approx(point.at(name)));
+  for (const std::string& name : varied) text += "," + decimal(cln::double_approx(point.at(name)));
   return text;
 }
 
@@ -69,15 +69,15 @@ std::string RowFormatter::format_refused(std::size_t run, const Point& point, co
 
 std::string RowFormatter::format_row(std::size_t run, const Point& point, const run::RunResult& result) const {
   std::string text =
-      format_point(run, varied_, point) + fmt::format(",{},{},{},{}", eom::name(result.outcome), number(result.t),
+      format_point(run, varied_, point) + fmt::format(",{},{},{},{}", eom::name(result.outcome), decimal(result.t),
                                                       result.statistics.steps, result.statistics.rhs_evaluations);
   for (const std::string& name : names_) {
     const auto found =
         std::find_if(result.final.begin(), result.final.end(), [&](const auto& entry) { return entry.first == name; });
-    text += "," + (found == result.final.end() ? "" : number(found->second));
+    text += "," + (found == result.final.end() ? "" : decimal(found->second));
   }
   const auto& estimate = result.error_estimate;
-  return text + "," + (estimate.empty() ? "" : number(estimate.back().second)) + "," + field(result.detail);
+  return text + "," + (estimate.empty() ? "" : decimal(estimate.back().second)) + "," + field(result.detail);
 }
 
 }  // namespace eomgen::cli

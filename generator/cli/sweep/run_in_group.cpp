@@ -11,7 +11,7 @@ namespace eomgen::cli {
 namespace {
 
 constexpr std::uint64_t least_of_ensemble = 256;  // runs per block and thread, so that SIMD lanes are mostly full
-constexpr std::size_t most_rows = 1 << 16;        // written in one request
+constexpr std::size_t rows_of_request = 1 << 16;  // written in one request
 
 }  // namespace
 
@@ -71,7 +71,8 @@ void Sweep::write_table_in_group() {
   std::vector<Part> parts;
   std::vector<ProcessGroup::TableSegment> pieces;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const bool follows = i > 0 && rows.run(i) == rows.run(i - 1) + shard_.count && i - parts.back().first < most_rows;
+    const bool follows =
+        i > 0 && rows.run(i) == rows.run(i - 1) + shard_.count && i - parts.back().first < rows_of_request;
     if (!follows) {
       parts.push_back({i, i});
       pieces.push_back({{rows.run(i), 0}, 0});

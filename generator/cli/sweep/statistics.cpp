@@ -15,7 +15,7 @@ using analysis::quantile_levels;
 
 namespace {
 
-constexpr std::size_t most_values = 16'000'000;  // in memory at the same time
+constexpr std::size_t values_in_memory = 16'000'000;  // in memory at the same time
 
 /// Calls take(number, field) with the first fields of a line, which are not quoted.
 template <class Take>
@@ -40,7 +40,7 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
   each_field(header, std::string::npos, [&](std::size_t, std::string_view name) { names.emplace_back(name); });
   const auto outcome = static_cast<std::size_t>(std::find(names.begin(), names.end(), "outcome") - names.begin());
   std::vector<ColumnStatistics> result;
-  const std::size_t at_once = std::max<std::size_t>(1, most_values / std::max<std::size_t>(rows, 1));
+  const std::size_t at_once = std::max<std::size_t>(1, values_in_memory / std::max<std::size_t>(rows, 1));
   const std::size_t end = names.size() - 2;  // the last columns are the detail and the checksum
   for (std::size_t first = outcome + 1; first < end; first += at_once) {
     const std::size_t last = std::min(first + at_once, end);

@@ -22,7 +22,8 @@ constexpr ::mode_t owner_only = 0600;
 
 /// Whether a path still leads to an open file: the process that held the lock before may have removed it meanwhile.
 bool leads_to(const std::string& path, int file) {
-  struct stat opened {}, found {};
+  struct stat opened {
+  }, found{};
   return ::fstat(file, &opened) == 0 && ::stat(path.c_str(), &found) == 0 && opened.st_dev == found.st_dev &&
          opened.st_ino == found.st_ino;
 }

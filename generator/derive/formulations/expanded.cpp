@@ -9,8 +9,8 @@ namespace eomgen::derive {
 namespace {
 
 // Beyond this an expansion has never been the cheapest, and it would delay larger systems.
-constexpr std::size_t term_budget = 300;
-constexpr std::size_t coordinate_budget = 8;
+constexpr std::size_t expanded_terms = 300;
+constexpr std::size_t most_coordinates = 8;
 
 FullEquations reduced(symbolic::Expander& expander, FullEquations equations) {
   for (Ref& r : equations.M) r = expander.expand_or_keep(r);
@@ -20,8 +20,8 @@ FullEquations reduced(symbolic::Expander& expander, FullEquations equations) {
 
 /// Applies if the kinetic energy fits into the term budget of the expansion.
 std::optional<system::EquationSystem> by_expanded(Mechanics& m, system::Approach approach) {
-  if (m.q.size() > coordinate_budget) return std::nullopt;
-  symbolic::Expander expander(*m.dag, term_budget);
+  if (m.q.size() > most_coordinates) return std::nullopt;
+  symbolic::Expander expander(*m.dag, expanded_terms);
   const std::optional<Ref> kinetic = expander(m.kinetic);
   if (!kinetic) return std::nullopt;
   std::vector<Ref> Q = generalized_forces(m);

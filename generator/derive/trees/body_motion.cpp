@@ -8,7 +8,7 @@ using symbolic::cross;
 
 /// Euler angles: three steps about one axis each, with the rates of the three coordinates alone. The axis of the middle
 /// step differs from the others.
-struct Angles {
+struct EulerAngles {
   std::array<std::size_t, 3> axis;
   std::size_t third;  // neither of the first nor of the middle step
   std::array<std::size_t, 3> freedom;
@@ -17,10 +17,10 @@ struct Angles {
   Ref divisor() const { return symmetric() ? s : c; }
 };
 
-std::optional<Angles> euler_angles(Dag& dag, const BodyLink& link) {
+std::optional<EulerAngles> euler_angles(Dag& dag, const BodyLink& link) {
   const std::vector<RotationStep>& steps = link.rotation.steps;
   if (steps.size() != 3 || link.angles.size() != 3) return std::nullopt;
-  Angles angles;
+  EulerAngles angles;
   for (std::size_t k = 0; k < 3; ++k) {
     angles.axis[k] = axis_of(dag, steps[k].R);
     if (angles.axis[k] == 3 || !is_zero(dag, steps[k].w_bias)) return std::nullopt;
@@ -54,7 +54,8 @@ Vec3 normal(Dag& dag, const BodyLink& link, std::size_t f) {
 }
 
 /// Solves for the rates of Euler angles one after another, from the last step back to the first.
-std::array<Ref, 3> angle_rates(Dag& dag, const BodyLink& link, const Angles& angles, Vec3 parent, Vec3 w, Vec3 own) {
+std::array<Ref, 3> angle_rates(Dag& dag, const BodyLink& link, const EulerAngles& angles, Vec3 parent, Vec3 w,
+                               Vec3 own) {
   const std::vector<RotationStep>& steps = link.rotation.steps;
   // Along the axes before the last step: the difference of the own acceleration and the parent's part.
   for (std::size_t k = 0; k < 2; ++k) {
@@ -160,7 +161,7 @@ Vec3 joint_moment(Dag& dag, const BodyLink& link, const std::vector<Ref>& Q) {
     for (std::size_t f = 0; f < 4; ++f) moment = symbolic::add(dag, moment, symbolic::scale(dag, own[f], dual[f]));
     return symbolic::scale(dag, dag.constant(symbolic::Rational(1) / 2), moment);
   }
-  if (const std::optional<Angles> angles = euler_angles(dag, link)) {
+  if (const std::optional<EulerAngles> angles = euler_angles(dag, link)) {
     const Ref first = own[angles->freedom[0]], last = own[angles->freedom[2]];
     moment[angles->axis[1]] = own[angles->freedom[1]];
     moment[angles->axis[2]] = last;
@@ -191,7 +192,7 @@ std::vector<Ref> coordinate_accelerations(Dag& dag, const BodyTree& tree, const 
       continue;
     }
     alpha.push_back({u[link.freedoms[0].index], u[link.freedoms[1].index], u[link.freedoms[2].index]});
-    if (const std::optional<Angles> angles = euler_angles(dag, link)) {
+    if (const std::optional<EulerAngles> angles = euler_angles(dag, link)) {
       const Vec3 w = ground ? none : motion[static_cast<std::size_t>(link.parent)].w;
       const std::array<Ref, 3> rates = angle_rates(dag, link, *angles, parent, w, alpha.back());
       for (std::size_t f = 0; f < 3; ++f) result[link.angles[f].index] = rates[f];

@@ -15,7 +15,7 @@ static_assert(program::taylor_lanes % 4 == 0);
 constexpr std::size_t max_lanes = 8, stack_budget = std::size_t{1} << 21;  // bytes, the same as for one state
 
 // Sums have the order of additions of NAME_taylor_sums. Orders are computed up to the highest that a lane requests.
-constexpr const char* text = R"(/* sums[i] = a_1 b_(k-1) + ... + a_(k-1) b_1 of each product i. */
+constexpr const char* series_block = R"(/* sums[i] = a_1 b_(k-1) + ... + a_(k-1) b_1 of each product i. */
 static void {0}taylor_sums(int k, const {0}lanes* a, const {0}lanes* b, {0}lanes* sums)
 {{
   int i, j;
@@ -125,7 +125,7 @@ std::string taylor_block(const program::Program& program, const ModelNames& name
   const std::size_t orders = program::taylor_order(taylor);
   return kernel("taylor_start", print_function(taylor.start, names, context, dialect)) +
          kernel("taylor_next", print_function(taylor.next, of_next, context, dialect)) +
-         fmt::format(fmt::runtime(text), dialect.lane_prefix, fmt::arg("name", mangled_id(context.id)),
+         fmt::format(fmt::runtime(series_block), dialect.lane_prefix, fmt::arg("name", mangled_id(context.id)),
                      fmt::arg("n", program.state_count()), fmt::arg("products", taylor.product_count),
                      fmt::arg("series", taylor.product_count * orders), fmt::arg("prepared", taylor.workspace_size()),
                      fmt::arg("zeros", taylor.order_zero_count),

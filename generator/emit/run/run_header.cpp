@@ -270,7 +270,7 @@ std::string rows_text(const RunDescription& run) {
 }
 
 /// NAME_set_start, if the file has NAME_start.
-std::string start_text(const EmissionContext& context, const std::string& name) {
+std::string start_code(const EmissionContext& context, const std::string& name) {
   if (!context.start_functions) return "";
   return fmt::format(R"(
 /// Sets the parameters, initial values and times that `given` names (null: none), and all that follows from them. The
@@ -320,7 +320,7 @@ std::vector<EmittedFile> emit_run_header(const program::Program& program, const 
             {"problem", problem_text(*context.run)},
             {"names", used_names(problem)},
             {"rows", rows_text(*context.run)},
-            {"start", start_text(context, name)},
+            {"start", start_code(context, name)},
             {"columns", wrapped(fmt::format("  return {};", text(context.run->columns)), "      ")}},
            {})}};
 }

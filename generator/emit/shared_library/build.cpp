@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "emit/shared_library/cache_folder.hpp"
+#include "emit/shared_library/environment.hpp"
 #include "emit/shared_library/process.hpp"
 #include "error.hpp"
 #include "model/content_hash.hpp"
@@ -21,11 +22,6 @@ namespace eomgen::emit {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string environment(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
 
 [[noreturn]] void fail(const std::string& what, const std::string& remedy) {
   throw Error("compile", {}, what, remedy, ErrorKind::tool);

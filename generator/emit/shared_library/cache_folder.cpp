@@ -13,17 +13,13 @@
 #include <system_error>
 #include <vector>
 
+#include "emit/shared_library/environment.hpp"
 #include "error.hpp"
 
 namespace eomgen::emit {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string environment(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
 
 /// TMPDIR if it is a writable folder, else /tmp.
 fs::path temporary_folder() {

@@ -21,7 +21,7 @@ struct Table {
   const std::vector<int>* entries;
 };
 
-struct Array {
+struct StartArray {
   const char* name;
   std::size_t size;
   bool whole = false;  // of integers
@@ -153,14 +153,14 @@ class Text {
     return text + "\n";
   }
 
-  std::vector<Array> arrays() const {
+  std::vector<StartArray> arrays() const {
     const std::size_t rows = start_.row_count(), rank = std::min(rows, n_);
-    std::vector<Array> list{{"t", 2},
-                            {"x", states_},
-                            {"p", context_.parameters.size()},
-                            {"v", start_.values.results[0].entries.size()},
-                            {"given", states_, true},
-                            {"open", start_.contacts.size(), true}};
+    std::vector<StartArray> list{{"t", 2},
+                                 {"x", states_},
+                                 {"p", context_.parameters.size()},
+                                 {"v", start_.values.results[0].entries.size()},
+                                 {"given", states_, true},
+                                 {"open", start_.contacts.size(), true}};
     if (!has_rows()) return list;
     list.insert(list.end(), {{"A", rows * n_},
                              {"psi", start_.rows.results[1].entries.size()},
@@ -185,7 +185,7 @@ class Text {
 
   std::string structure() const {
     std::string text;
-    for (const Array& array : arrays()) {
+    for (const StartArray& array : arrays()) {
       const std::size_t size = std::max<std::size_t>(1, array.size);
       text += language_.is_c ? fmt::format("  {} {}[{}];\n",
                                            array.whole        ? "int"

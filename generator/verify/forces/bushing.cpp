@@ -5,7 +5,7 @@ namespace eomgen::verify::forces {
 namespace {
 
 // By Newton and Euler: a force on B at its point, the opposite force on A at the same point, and moments.
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_bushing(const model::Force& force, VirtualWork& w) {
   const std::uint32_t A = argument(force, "A")->index, B = argument(force, "B")->index;
   const model::NodeId rA = argument_expression(force, "rA"), rB = argument_expression(force, "rB");
   const auto number = [&](const char* key, std::size_t k) {
@@ -31,7 +31,7 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
   w.apply_moment(Jet(-1) * moment, A);
 }
 
-void potential(const model::Force& force, Potentials& U) {
+void bushing_potential(const model::Force& force, Potentials& U) {
   const std::uint32_t A = argument(force, "A")->index, B = argument(force, "B")->index;
   const Vector d = U.at.vector(argument_expression(force, "rB")) - U.at.vector(argument_expression(force, "rA"));
   Vector skew;  // twice sin(p) n
@@ -47,6 +47,6 @@ void potential(const model::Force& force, Potentials& U) {
 
 }  // namespace
 
-ForceLaw bushing() { return {add_virtual_work, potential}; }
+ForceLaw bushing() { return {add_bushing, bushing_potential}; }
 
 }  // namespace eomgen::verify::forces

@@ -25,7 +25,7 @@ void attract_extended(const model::Force& force, const model::Body& body, Virtua
   w.apply_moment((Jet(3) * GM / (R * R * R)) * cross(c, Jc), body.frame);
 }
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_central_gravity(const model::Force& force, VirtualWork& w) {
   for (const model::Body& body : w.model.bodies) {
     if (extended(force)) attract_extended(force, body, w);
   }
@@ -37,7 +37,7 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
   }
 }
 
-void potential(const model::Force& force, Potentials& U) {
+void central_gravity_potential(const model::Force& force, Potentials& U) {
   const Jet GM = U.at.scalar(argument_expression(force, "GM"));
   const Vector center = U.at.vector(argument_expression(force, "center"));
   for (const Mass& p : list_masses(U.model))
@@ -54,6 +54,6 @@ void potential(const model::Force& force, Potentials& U) {
 
 }  // namespace
 
-ForceLaw central_gravity() { return {add_virtual_work, potential}; }
+ForceLaw central_gravity() { return {add_central_gravity, central_gravity_potential}; }
 
 }  // namespace eomgen::verify::forces

@@ -4,7 +4,7 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_damper(const model::Force& force, VirtualWork& w) {
   const model::NodeId a = argument_expression(force, "a"), b = argument_expression(force, "b");
   const Jet length = norm(w.with_time_slope().vector(b) - w.with_time_slope().vector(a), w.precision);
   const Jet tension =
@@ -15,6 +15,6 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
 
 }  // namespace
 
-ForceLaw damper() { return {add_virtual_work}; }
+ForceLaw damper() { return {add_damper}; }
 
 }  // namespace eomgen::verify::forces

@@ -4,7 +4,7 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {  // (8.53)
+void add_drag(const model::Force& force, VirtualWork& w) {  // (8.53)
   const model::NodeId on = argument_expression(force, "on");
   const Vector v = w.velocity(on);
   const Jet factor = w.now.scalar(argument_expression(force, "density")) *
@@ -15,6 +15,6 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {  // (8.53)
 
 }  // namespace
 
-ForceLaw drag() { return {add_virtual_work}; }
+ForceLaw drag() { return {add_drag}; }
 
 }  // namespace eomgen::verify::forces

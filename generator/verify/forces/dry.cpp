@@ -4,10 +4,10 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force&, VirtualWork&) {}  // computed with the contacts (State::friction)
+void add_dry(const model::Force&, VirtualWork&) {}  // computed with the contacts (State::friction)
 
 }  // namespace
 
-ForceLaw dry() { return {add_virtual_work}; }
+ForceLaw dry() { return {add_dry}; }
 
 }  // namespace eomgen::verify::forces

@@ -4,12 +4,12 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_force(const model::Force& force, VirtualWork& w) {
   w.apply_force(w.now.vector(argument_expression(force, "force")), w.by_q.vector(argument_expression(force, "on")));
 }
 
 }  // namespace
 
-ForceLaw force() { return {add_virtual_work}; }
+ForceLaw force() { return {add_force}; }
 
 }  // namespace eomgen::verify::forces

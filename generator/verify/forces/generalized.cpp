@@ -4,13 +4,13 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_generalized(const model::Force& force, VirtualWork& w) {
   for (const model::Argument& component : force.arguments)
     w.apply_to_coordinate(component.index, w.now.scalar(component.value));
 }
 
 }  // namespace
 
-ForceLaw generalized() { return {add_virtual_work}; }
+ForceLaw generalized() { return {add_generalized}; }
 
 }  // namespace eomgen::verify::forces

@@ -4,7 +4,7 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_gravitation(const model::Force& force, VirtualWork& w) {
   const std::vector<Mass> all = list_masses(w.model);
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t k = i + 1; k < all.size(); ++k) {
@@ -15,7 +15,7 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
     }
 }
 
-void potential(const model::Force& force, Potentials& U) {
+void gravitation_potential(const model::Force& force, Potentials& U) {
   const std::vector<Mass> all = list_masses(U.model);
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t k = i + 1; k < all.size(); ++k) {
@@ -26,6 +26,6 @@ void potential(const model::Force& force, Potentials& U) {
 
 }  // namespace
 
-ForceLaw gravitation() { return {add_virtual_work, potential}; }
+ForceLaw gravitation() { return {add_gravitation, gravitation_potential}; }
 
 }  // namespace eomgen::verify::forces

@@ -4,7 +4,7 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_linear_actuator(const model::Force& force, VirtualWork& w) {
   const Vector d = w.by_q.vector(argument_expression(force, "b")) - w.by_q.vector(argument_expression(force, "a"));
   w.apply_generalized_force(w.now.scalar(argument_expression(force, "force")),
                             norm(d, w.precision));  // along the distance
@@ -12,6 +12,6 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
 
 }  // namespace
 
-ForceLaw linear_actuator() { return {add_virtual_work}; }
+ForceLaw linear_actuator() { return {add_linear_actuator}; }
 
 }  // namespace eomgen::verify::forces

@@ -4,7 +4,7 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {  // (8.52)
+void add_magnus(const model::Force& force, VirtualWork& w) {  // (8.52)
   const model::Body& body = w.model.bodies[argument(force, "on")->index];
   const Jet factor = w.now.scalar(body.mass) * w.now.scalar(argument_expression(force, "coefficient"));
   w.apply_force(factor * cross(w.now.angular_velocity(body.frame), w.velocity_of_place(body.place)),
@@ -13,6 +13,6 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {  // (8.52)
 
 }  // namespace
 
-ForceLaw magnus() { return {add_virtual_work}; }
+ForceLaw magnus() { return {add_magnus}; }
 
 }  // namespace eomgen::verify::forces

@@ -4,12 +4,12 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_moment(const model::Force& force, VirtualWork& w) {
   w.apply_moment(w.now.vector(argument_expression(force, "moment")), argument(force, "on")->index);
 }
 
 }  // namespace
 
-ForceLaw moment() { return {add_virtual_work}; }
+ForceLaw moment() { return {add_moment}; }
 
 }  // namespace eomgen::verify::forces

@@ -4,7 +4,7 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_rotary_actuator(const model::Force& force, VirtualWork& w) {
   const Jet moment = w.now.scalar(argument_expression(force, "moment"));
   if (argument_expression(force, "angle") != model::no_node)
     return w.apply_generalized_force(moment, w.by_q.scalar(argument_expression(force, "angle")));
@@ -16,6 +16,6 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
 
 }  // namespace
 
-ForceLaw rotary_actuator() { return {add_virtual_work}; }
+ForceLaw rotary_actuator() { return {add_rotary_actuator}; }
 
 }  // namespace eomgen::verify::forces

@@ -4,7 +4,7 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_spring(const model::Force& force, VirtualWork& w) {
   if (argument_expression(force, "energy") != model::no_node) {
     Interpreter own = w.by_q.with_spring(force);
     return w.apply_potential(own.scalar(argument_expression(force, "energy")));
@@ -17,7 +17,7 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
   w.apply_elastic_force(stiffness, w.by_q.extension(force));
 }
 
-void potential(const model::Force& force, Potentials& U) {
+void spring_potential(const model::Force& force, Potentials& U) {
   if (argument_expression(force, "energy") != model::no_node) {
     Interpreter own = U.at.with_spring(force);
     return U.add(own.scalar(argument_expression(force, "energy")));
@@ -30,6 +30,6 @@ void potential(const model::Force& force, Potentials& U) {
 
 }  // namespace
 
-ForceLaw spring() { return {add_virtual_work, potential}; }
+ForceLaw spring() { return {add_spring, spring_potential}; }
 
 }  // namespace eomgen::verify::forces

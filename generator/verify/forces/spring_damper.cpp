@@ -4,7 +4,7 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_spring_damper(const model::Force& force, VirtualWork& w) {
   const model::NodeId a = argument_expression(force, "a"), b = argument_expression(force, "b");
   const Vector d = w.by_q.vector(b) - w.by_q.vector(a);
   const Jet stiffness = w.by_q.scalar(argument_expression(force, "stiffness"));
@@ -18,7 +18,7 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
   w.apply_force((-w.now.scalar(argument_expression(force, "coefficient")) * rate) * along, d);
 }
 
-void potential(const model::Force& force, Potentials& U) {
+void spring_damper_potential(const model::Force& force, Potentials& U) {
   const Vector d = U.at.vector(argument_expression(force, "b")) - U.at.vector(argument_expression(force, "a"));
   const Jet length = U.at.scalar(argument_expression(force, "length")),
             half = U.at.scalar(argument_expression(force, "stiffness")) / 2;
@@ -29,6 +29,6 @@ void potential(const model::Force& force, Potentials& U) {
 
 }  // namespace
 
-ForceLaw spring_damper() { return {add_virtual_work, potential}; }
+ForceLaw spring_damper() { return {add_spring_damper, spring_damper_potential}; }
 
 }  // namespace eomgen::verify::forces

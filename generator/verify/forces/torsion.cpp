@@ -4,7 +4,7 @@
 namespace eomgen::verify::forces {
 namespace {
 
-void add_virtual_work(const model::Force& force, VirtualWork& w) {
+void add_torsion(const model::Force& force, VirtualWork& w) {
   const Jet angle = w.by_q.scalar(argument_expression(force, "angle"));
   if (argument_expression(force, "stiffness") != model::no_node)
     w.apply_elastic_force(w.by_q.scalar(argument_expression(force, "stiffness")),
@@ -16,7 +16,7 @@ void add_virtual_work(const model::Force& force, VirtualWork& w) {
   }
 }
 
-void potential(const model::Force& force, Potentials& U) {
+void torsion_potential(const model::Force& force, Potentials& U) {
   if (argument_expression(force, "stiffness") == model::no_node) return;
   const Jet e = U.at.scalar(argument_expression(force, "angle")) - U.at.scalar(argument_expression(force, "rest"));
   U.add(U.at.scalar(argument_expression(force, "stiffness")) * e * e / 2);
@@ -24,6 +24,6 @@ void potential(const model::Force& force, Potentials& U) {
 
 }  // namespace
 
-ForceLaw torsion() { return {add_virtual_work, potential}; }
+ForceLaw torsion() { return {add_torsion, torsion_potential}; }
 
 }  // namespace eomgen::verify::forces

@@ -6,10 +6,6 @@
 namespace eomgen::verify {
 namespace {
 
-Vector slope(const Vector& v, unsigned level, std::size_t i) {
-  return {v[0].slope(level, i), v[1].slope(level, i), v[2].slope(level, i)};
-}
-
 Real size(const Vector& v) { return cln::abs(v[0].real()) + cln::abs(v[1].real()) + cln::abs(v[2].real()); }
 
 }  // namespace
