@@ -97,7 +97,8 @@ std::string fault_of_repetition(const mechanics::Mechanics& given, const mechani
                        independent(repeated), independent(given));
   for (const mechanics::Constraint& constraint : repeated.constraints) {
     // Runs find out whether the motion determines a force that is an input.
-    if (constraint.determined && !constraint.force_input && (constraint.name == name || constraint.name == name + again))
+    if (constraint.determined && !constraint.force_input &&
+        (constraint.name == name || constraint.name == name + again))
       return fmt::format("the force of '{}' counts as determined, though another constraint repeats it",
                          constraint.label);
   }

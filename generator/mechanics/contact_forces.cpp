@@ -11,14 +11,14 @@ namespace {
 
 using symbolic::SymbolKind;
 
-bool sticks(const Contact& contact) { return contact.dimensions() > 0 && !contact.width; }
+bool can_hold_slip(const Contact& contact) { return contact.dimensions() > 0 && !contact.width; }
 
 /// Whether more directions could be held at the same time than are free. Symbolic solutions in that mode do not exist.
 bool could_hold_too_much(const Mechanics& m) {
   std::size_t held = 0, open = 0;
   for (const Contact& contact : m.contacts) {
     if (contact.unilateral) ++held, ++open;
-    if (sticks(contact)) held += contact.dimensions();
+    if (can_hold_slip(contact)) held += contact.dimensions();
   }
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     const bool eliminates = std::any_of(m.fixed.begin(), m.fixed.end(),

@@ -51,7 +51,8 @@ class ContactTable {
     }
     if (chosen == nullptr)
       fail(table_, "does not state what touches what",
-           "add points = { .. } or corners = [a, b, c] of a body, spheres = [\"A\", \"B\", ..], or limits = { q = [a, b] }");
+           "add points = { .. } or corners = [a, b, c] of a body, spheres = [\"A\", \"B\", ..], or limits = { q = [a, "
+           "b] }");
     std::vector<std::string> known{"name", "restitution", chosen->key};
     known.insert(known.end(), chosen->further.begin(), chosen->further.end());
     for (const Entry& entry : table_.entries) {
@@ -73,7 +74,8 @@ class ContactTable {
     return *value;
   }
   void require_text(const Value& value, const std::string& what) const {
-    if (!value.is(Value::Kind::text)) fail(value, fmt::format("gives {} as {}", what, kind_name(value.kind)), "write it in quotes");
+    if (!value.is(Value::Kind::text))
+      fail(value, fmt::format("gives {} as {}", what, kind_name(value.kind)), "write it in quotes");
   }
   /// An expression, as written, in parentheses.
   std::string expression(const Value& value, const std::string& what) const {
@@ -82,7 +84,8 @@ class ContactTable {
     return "(" + value.text + ")";
   }
   const std::vector<Value>& list(const Value& value, const std::string& what) const {
-    if (!value.is(Value::Kind::array)) fail(value, fmt::format("gives {} as {}", what, kind_name(value.kind)), "write a list in brackets");
+    if (!value.is(Value::Kind::array))
+      fail(value, fmt::format("gives {} as {}", what, kind_name(value.kind)), "write a list in brackets");
     return value.items;
   }
 
@@ -122,7 +125,8 @@ class ContactTable {
   void corners(const Value& value) {
     const std::vector<Value>& edges = list(value, "the edges");
     if (edges.size() != 3)
-      fail(value, fmt::format("gives {} edges", edges.size()), "write corners = [\"a\", \"b\", \"c\"], the lengths along e1, e2, e3");
+      fail(value, fmt::format("gives {} edges", edges.size()),
+           "write corners = [\"a\", \"b\", \"c\"], the lengths along e1, e2, e3");
     const Value& body = require("body", "add body = \"B\", whose corners touch");
     require_text(body, "the body");
     for (std::size_t corner = 0; corner < 8; ++corner) {
@@ -159,7 +163,9 @@ class ContactTable {
       fail(value, "has no limits", "write limits = { q = [\"lower\", \"upper\"] }");
     for (const Entry& entry : value.entries) {
       const std::vector<Value>& ends = list(entry.value, "the limits of " + quote(entry.key));
-      if (ends.size() != 2) fail(entry.value, fmt::format("gives {} limits of {}", ends.size(), quote(entry.key)), "write [\"lower\", \"upper\"]");
+      if (ends.size() != 2)
+        fail(entry.value, fmt::format("gives {} limits of {}", ends.size(), quote(entry.key)),
+             "write [\"lower\", \"upper\"]");
       begin(ends[0], entry.key + "_lower")
           .entries.push_back({"holonomic", entry.span,
                               text_value(ends[0], fmt::format("{} - {}", entry.key, expression(ends[0], "a limit")))});
@@ -186,7 +192,8 @@ void expand_contacts(const Source& source, Value& root) {
   std::vector<Value> constraints;
   for (const Value& table : found->value.items) {
     if (!table.is(Value::Kind::table))
-      source.fail(table.span, fmt::format("a [[contact]] is {}", kind_name(table.kind)), "write [[contact]] and its keys below");
+      source.fail(table.span, fmt::format("a [[contact]] is {}", kind_name(table.kind)),
+                  "write [[contact]] and its keys below");
     ContactTable(source, table, constraints).expand();
   }
   const Span span = found->span;

@@ -24,7 +24,7 @@ struct Unsuitable {
 };
 
 /// f . v + h . omega + b = 0 with the components of f and h along E1, E2, E3.
-struct Row {
+struct BalanceRow {
   std::uint32_t constraint = 0;
   Components f, h;
   Sum b;
@@ -136,7 +136,7 @@ class Balance {
 
   void read_constraint(std::uint32_t k) {
     const mechanics::Constraint& c = m_.constraints[k];
-    Row row;
+    BalanceRow row;
     row.constraint = k;
     std::vector<Sum> covector;
     for (std::size_t j = 0; j < 3; ++j) row.f[j] = clean(bridge_.sum(c.gradient[form_.position[j]]));
@@ -205,7 +205,7 @@ class Balance {
 
   void write() {
     std::vector<Sum> rates;  // of the constraints
-    for (const Row& row : rows_) {
+    for (const BalanceRow& row : rows_) {
       Sum speed = with_omega(row.h, 0) + row.b, rate = with_omega(row.h, 1);
       Sum slopes = bridge_.total_derivative(row.b);
       for (std::size_t j = 0; j < 3; ++j) {
@@ -237,13 +237,13 @@ class Balance {
     std::vector<Sum> linear;
     for (std::size_t j = 0; j < 3; ++j) {
       Sum left = mass_ * acceleration(j) - F[j];
-      for (const Row& row : rows_) left -= multiplier(row) * row.f[j];
+      for (const BalanceRow& row : rows_) left -= multiplier(row) * row.f[j];
       linear.push_back(std::move(left));
     }
     std::vector<Sum> angular = moment_equations(M);
     std::vector<Symbol> unknowns;
     for (const std::uint32_t j : form_.position) unknowns.push_back(coordinate_symbol(j, 2));
-    for (const Row& row : rows_) unknowns.push_back({SymbolKind::multiplier, row.constraint, 0});
+    for (const BalanceRow& row : rows_) unknowns.push_back({SymbolKind::multiplier, row.constraint, 0});
     std::vector<Sum> known = linear;
     known.insert(known.end(), rates.begin(), rates.end());
     const std::vector<std::optional<Sum>> solution = solve_linear(known, unknowns);
@@ -281,7 +281,7 @@ class Balance {
     }
   }
 
-  Sum multiplier(const Row& row) { return atoms()({SymbolKind::multiplier, row.constraint, 0}); }
+  Sum multiplier(const BalanceRow& row) { return atoms()({SymbolKind::multiplier, row.constraint, 0}); }
 
   // J omega_dot + omega x J omega - M - sum lambda h, along the axes of the form.
   std::vector<Sum> moment_equations(const Components& M) {
@@ -296,7 +296,7 @@ class Balance {
       for (std::uint32_t l = 0; l < 3; ++l) left += J_[k][l] * omega(l, 1);
       if (!form_.along_fixed) left += omega(i) * H[j] - omega(j) * H[i];
       left -= component(M, k);
-      for (const Row& row : rows_) left -= multiplier(row) * component(row.h, k);
+      for (const BalanceRow& row : rows_) left -= multiplier(row) * component(row.h, k);
       result.push_back(simplify(left));
     }
     return result;
@@ -318,7 +318,7 @@ class Balance {
   std::array<Components, 3> axes_;
   std::array<Components, 3> J_;
   Sum mass_;
-  std::vector<Row> rows_;
+  std::vector<BalanceRow> rows_;
 };
 
 }  // namespace

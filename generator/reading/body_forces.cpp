@@ -15,9 +15,9 @@ namespace {
 using mechanics::Mechanics;
 using symbolic::Ref;
 
-class Reader {
+class BodyForceReader {
  public:
-  explicit Reader(const Mechanics& m) : m_(m), bridge_(m) {}
+  explicit BodyForceReader(const Mechanics& m) : m_(m), bridge_(m) {}
 
   std::vector<BodyForce> all() {
     std::vector<BodyForce> result;
@@ -206,7 +206,7 @@ class Reader {
 }  // namespace
 
 std::vector<BodyForce> body_forces(const Mechanics& mechanics) try {
-  return Reader(mechanics).all();
+  return BodyForceReader(mechanics).all();
 } catch (const std::domain_error&) {
   throw no_value_error(mechanics);
 }

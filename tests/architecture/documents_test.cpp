@@ -85,6 +85,7 @@ TEST_CASE("the README shows the shipped model verbatim") {
 TEST_CASE("docs/commands.md describes every command that has a schema, and every schema is linked") {
   const std::string text = read_text(root / "docs" / "commands.md");
   for (const fs::path& schema : files_below(root / "docs" / "schema", {".json"})) {
+    if (schema.parent_path().filename() == "editor") continue;  // of files, not of a command's results
     const std::string file = schema.filename().string();
     CAPTURE(file);
     CHECK(text.find("(schema/" + file + ")") != std::string::npos);

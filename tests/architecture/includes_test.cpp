@@ -244,6 +244,7 @@ TEST_CASE("the command line includes only registries and values of the computing
                                          "derive/formulations.hpp",
                                          "forces/kind.hpp",
                                          "import/import.hpp",
+                                         "import/option_words.hpp",
                                          "joints/joint.hpp",
                                          "rotations/rotation.hpp"};
   for (const fs::path& file : files_below(source_root / "generator" / "cli", {".cpp", ".hpp"})) {

@@ -106,7 +106,8 @@ std::optional<LocalName> local_name(const std::string& statement) {
   if (std::regex_search(statement, std::regex(R"(^\s*(using|namespace|extern|static_assert)\b)"))) return std::nullopt;
   if (std::regex_search(
           statement, found,
-          std::regex(R"(^\s*(?:template\s*<[\s\S]*>\s*)?(?:struct|class|enum class|enum|union)\s+(\w+)\s*(:|$))")))
+          std::regex(
+              R"(^\s*(?:template\s*<[\s\S]*>\s*)?(?:struct|class|enum class|enum|union)\s+(\w+)(?:\s+final)?\s*(:|$))")))
     return LocalName{found[1], ""};
   const std::string head = statement.substr(0, statement.find('='));
   if (std::regex_search(head, found, std::regex(R"((\w+)\s*\()"))) {

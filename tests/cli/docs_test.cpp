@@ -13,7 +13,7 @@ using namespace eomgen::test;
 
 namespace {
 
-std::string file_text(const std::filesystem::path& path) {
+std::string page_text(const std::filesystem::path& path) {
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
   return text.str();
@@ -32,7 +32,7 @@ TEST_CASE("docs: every page of docs/ is listed, and shown byte for byte") {
   for (const Json& page : list["pages"]) {
     const std::string topic = page["topic"];
     CAPTURE(topic);
-    CHECK(expect(0, folder, {"docs", topic}).out == file_text(root / (topic + ".md")));
+    CHECK(expect(0, folder, {"docs", topic}).out == page_text(root / (topic + ".md")));
   }
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/expand_contacts.hpp"
+
 #include <doctest/doctest.h>
 
 #include <string>
 
 #include "error.hpp"
-#include "model/expand_contacts.hpp"
 #include "model/model.hpp"
 
 using namespace eomgen;

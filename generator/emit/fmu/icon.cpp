@@ -26,15 +26,15 @@ unsigned char shade(double x, double y) {
   return static_cast<unsigned char>(std::lround(255 * std::clamp(0.5 - inside, 0.0, 1.0)));
 }
 
-void put32(std::string& out, std::uint32_t value) {
+void put_big_endian(std::string& out, std::uint32_t value) {
   for (const int shift : {24, 16, 8, 0}) out += static_cast<char>(value >> shift & 0xff);
 }
 
 std::string chunk(const std::string& type, const std::string& data) {
   std::string out;
-  put32(out, static_cast<std::uint32_t>(data.size()));
+  put_big_endian(out, static_cast<std::uint32_t>(data.size()));
   out += type + data;
-  put32(out, crc32(type + data));
+  put_big_endian(out, crc32(type + data));
   return out;
 }
 
@@ -52,7 +52,7 @@ std::string stored(const std::string& bytes) {
     out += static_cast<char>(part >> 8 & 0xff);
   }
   out += bytes;
-  put32(out, b << 16 | a);
+  put_big_endian(out, b << 16 | a);
   return out;
 }
 
@@ -60,8 +60,8 @@ std::string stored(const std::string& bytes) {
 
 std::string icon_png() {
   std::string header, pixels;
-  put32(header, size);
-  put32(header, size);
+  put_big_endian(header, size);
+  put_big_endian(header, size);
   header += std::string("\x08\x00\x00\x00\x00", 5);  // 8 bits of grey
   for (int row = 0; row < size; ++row) {
     pixels += '\0';  // no filter

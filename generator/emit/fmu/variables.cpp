@@ -21,9 +21,9 @@ double nominal_value(double start) {
   return std::pow(10.0, std::clamp(std::round(std::log10(std::abs(start))), -9.0, 9.0));
 }
 
-class Table {
+class VariableTable {
  public:
-  Table(FmuVariables& into, const FmuDescription& description) : into_(into), description_(description) {}
+  VariableTable(FmuVariables& into, const FmuDescription& description) : into_(into), description_(description) {}
   /// The name gets a number if it is taken. Returns the value reference.
   std::size_t add(FmuVariable variable) {
     const std::string wanted = variable.name;
@@ -112,7 +112,7 @@ FmuVariables fmu_variables(const program::Program& program, const EmissionContex
                            const FmuDescription& description) {
   FmuVariables result;
   mark_parameters(context, result);
-  Table table(result, description);
+  VariableTable table(result, description);
   table.add(named({"time", "s", "", 0}, "independent", "continuous", ""));
   const std::vector<Quantity> states = state_quantities(program, context);
   const std::size_t continuous = program.layout().discrete_begin();

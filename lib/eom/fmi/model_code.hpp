@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The model of an FMU as data: compiled functions, the default scene, the variables. The emitted NAME_fmu.cpp defines
-// it; fmi2.cpp and fmi3.cpp, which are the same for every model, read it.
+// it; the sources of FMI 2.0 and 3.0, which are the same for every model, read it.
 //
 // Value references number the variables from 0 in this order: time; the state x (coordinates, rates, states of first
 // order, discrete values); the derivatives of its continuous part; inputs; parameters; outputs that are no states;
