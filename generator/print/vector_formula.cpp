@@ -7,7 +7,6 @@
 
 namespace eomgen::print {
 
-using model::Op;
 using reading::Formula;
 using reading::FormulaKind;
 using reading::mark;
@@ -55,18 +54,18 @@ Terms VectorFormula::terms(model::NodeId id) {
   const model::Node& node = m_.model->arena[id];
   const auto one = [](Formula f) { return Terms{{std::move(f)}}; };
   switch (node.op) {
-    case Op::zero_vector: return Terms{std::in_place};
-    case Op::fixed_basis: return one(mark("E", {index(node.index + 1)}));
-    case Op::place:
+    case model::Op::zero_vector: return Terms{std::in_place};
+    case model::Op::fixed_basis: return one(mark("E", {index(node.index + 1)}));
+    case model::Op::place:
       if (node.index == 0) return Terms{std::in_place};
       places_.push_back(node.index);
       return one(mark("r", {index(node.index)}));
-    case Op::axis: {
+    case model::Op::axis: {
       std::optional<Formula> e = axis(node);
       return e ? one(*std::move(e)) : std::nullopt;
     }
-    case Op::definition: return terms(m_.model->definitions[node.index].expression);
-    case Op::array: {
+    case model::Op::definition: return terms(m_.model->definitions[node.index].expression);
+    case model::Op::array: {
       std::vector<Formula> result;
       for (std::uint32_t k = 0; k < 3; ++k) {
         if (node.args[k] == model::no_node) continue;
@@ -76,24 +75,24 @@ Terms VectorFormula::terms(model::NodeId id) {
       }
       return result;
     }
-    case Op::negate: return negated(terms(node.args[0]));
-    case Op::add:
-    case Op::subtract: {
+    case model::Op::negate: return negated(terms(node.args[0]));
+    case model::Op::add:
+    case model::Op::subtract: {
       Terms left = terms(node.args[0]), right = terms(node.args[1]);
-      if (node.op == Op::subtract) right = negated(std::move(right));
+      if (node.op == model::Op::subtract) right = negated(std::move(right));
       if (!left || !right) return std::nullopt;
       left->insert(left->end(), right->begin(), right->end());
       return left;
     }
-    case Op::multiply:
-    case Op::divide: {
+    case model::Op::multiply:
+    case model::Op::divide: {
       const bool first = m_.model->arena[node.args[0]].vector;
       const std::optional<Formula> factor = scalar_(node.args[first ? 1 : 0]);
       const Terms of = terms(node.args[first ? 0 : 1]);
       if (!factor || !of) return std::nullopt;
       std::vector<Formula> result;
       for (const Formula& term : *of)
-        add(result, node.op == Op::divide ? reading::fraction(reading::number(1), *factor) : *factor, term);
+        add(result, node.op == model::Op::divide ? reading::fraction(reading::number(1), *factor) : *factor, term);
       return result;
     }
     default: return std::nullopt;

@@ -13,7 +13,6 @@ namespace eomgen::program {
 namespace {
 
 using symbolic::Dag;
-using symbolic::Node;
 using symbolic::Op;
 using symbolic::Ref;
 using symbolic::Symbol;
@@ -36,7 +35,7 @@ class KinkFreezing {
   Ref operator()(Ref expression) {
     for (const Ref r : dag_.reachable({expression})) {
       if (memo_.contains(r.id)) continue;
-      const Node node = dag_[r];
+      const symbolic::Node node = dag_[r];
       std::array<Ref, 4> a{};
       bool changed = false;
       for (std::uint8_t i = 0; i < node.arity; ++i) {
@@ -56,7 +55,7 @@ class KinkFreezing {
     return op == Op::abs || op == Op::sign ? first : dag_.sub(first, second);
   }
 
-  Ref held(const Node& node, const std::array<Ref, 4>& a, Ref live) {
+  Ref held(const symbolic::Node& node, const std::array<Ref, 4>& a, Ref live) {
     const Op op = node.op;
     const Ref value = surface(op, a[0], a[1]);
     const auto [own, opposite] = both_signs(value);

@@ -11,7 +11,6 @@ namespace eomgen::run {
 namespace {
 
 using eom::hybrid::JumpFunctions;
-using symbolic::Op;
 using symbolic::Ref;
 using symbolic::SymbolKind;
 
@@ -22,19 +21,19 @@ constexpr int steep_power = 4;  // in a denominator: the tails of 1/(1 + x^2) ar
 /// with tails that the error control detects.
 std::vector<Ref> bumps(symbolic::Dag& dag, Ref r) {
   const symbolic::Node node = dag[r];
-  const auto steep = [&](Ref part) { return dag[part].op == Op::power && dag[part].payload >= steep_power; };
+  const auto steep = [&](Ref part) { return dag[part].op == symbolic::Op::power && dag[part].payload >= steep_power; };
   switch (node.op) {
-    case Op::div: {
+    case symbolic::Op::div: {
       const std::vector<Ref> parts = dag.reachable({node.args[1]});
       if (std::none_of(parts.begin(), parts.end(), steep)) return {};
       return {dag.div(dag.one(), node.args[1])};
     }
-    case Op::exp: return {r, dag.call(Op::exp, dag.neg(node.args[0]))};
-    case Op::tanh: return {dag.sub(dag.one(), dag.power(r, 2))};
-    case Op::cosh: return {dag.div(dag.one(), r)};
-    case Op::sinh: return {dag.div(dag.one(), dag.add(dag.one(), dag.power(r, 2)))};
-    case Op::pow: return {r};
-    case Op::power: return node.payload >= high_power ? std::vector{r} : std::vector<Ref>{};
+    case symbolic::Op::exp: return {r, dag.call(symbolic::Op::exp, dag.neg(node.args[0]))};
+    case symbolic::Op::tanh: return {dag.sub(dag.one(), dag.power(r, 2))};
+    case symbolic::Op::cosh: return {dag.div(dag.one(), r)};
+    case symbolic::Op::sinh: return {dag.div(dag.one(), dag.add(dag.one(), dag.power(r, 2)))};
+    case symbolic::Op::pow: return {r};
+    case symbolic::Op::power: return node.payload >= high_power ? std::vector{r} : std::vector<Ref>{};
     default: return {};
   }
 }
