@@ -208,6 +208,7 @@ class System {
   void inputs() {
     std::vector<std::string> names;
     for (std::uint32_t i = 0; i < model_.inputs.size(); ++i) {
+      if (model_.inputs[i].source == model::Input::Source::contacts) continue;  // a run solves for them
       const std::string unit = unit_in_latex(model_.inputs[i].unit.text);
       names.push_back(out_.math(reading::symbol({SymbolKind::input, i, 0})) + (unit.empty() ? "" : " (" + unit + ")"));
     }
