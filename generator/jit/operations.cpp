@@ -11,7 +11,7 @@ using symbolic::Op;
 
 namespace {
 
-Library library_call(Op op) {
+Library library_of(Op op) {
   switch (op) {
     case Op::pow: return Library::pow;
     case Op::sin: return Library::sin;
@@ -188,7 +188,7 @@ std::uint8_t Operations::library_call(Op op, const std::vector<Operand>& o) {
   }
   step(Action::load, 0, o.size() == 2 ? in_memory(o[0]) : location(o[0]));
   if (o[0].negated) step(Action::negate, 0);
-  step(Action::call, 0, {}, static_cast<std::uint32_t>(library_call(op)));
+  step(Action::call, 0, {}, static_cast<std::uint32_t>(library_of(op)));
   registers().empty_after_call();
   return registers().acquire();  // register 0
 }

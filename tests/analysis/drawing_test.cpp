@@ -25,7 +25,7 @@ using print::Figure;
 
 namespace {
 
-constexpr double rounding = 1e-12;                       // for a few operations on numbers near 1
+constexpr double drawing_rounding = 1e-12;               // for a few operations on numbers near 1
 constexpr double paper_width = 170, paper_height = 130;  // mm; a text of A4 is 174 wide
 
 struct Drawn {
@@ -40,7 +40,7 @@ Drawn drawn(model::Model model) {
   result.figure = analysis::figure(m, run::resolve_scene(m, system, m.model->scene("default"), {}));
   return result;
 }
-Drawn shipped(const std::string& name) {
+Drawn drawn_model(const std::string& name) {
   return drawn(model::read_model(test::source_folder() + "/models/" + name + ".toml"));
 }
 
@@ -90,16 +90,16 @@ TEST_CASE("view: a plane is seen along its normal with gravity downwards, space 
   const std::vector<Point> plane{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}, space{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const View upright(plane, Point(0, -9.81, 0));
   CHECK(upright.flat());
-  CHECK((upright({1, 0, 0}) - analysis::PlanePoint(1, 0)).norm() < rounding);
-  CHECK((upright({0, 1, 0}) - analysis::PlanePoint(0, 1)).norm() < rounding);
+  CHECK((upright({1, 0, 0}) - analysis::PlanePoint(1, 0)).norm() < drawing_rounding);
+  CHECK((upright({0, 1, 0}) - analysis::PlanePoint(0, 1)).norm() < drawing_rounding);
   const View along_x(plane, Point(9.81, 0, 0));
-  CHECK((along_x({1, 0, 0}) - analysis::PlanePoint(0, -1)).norm() < rounding);
-  CHECK((along_x({0, 1, 0}) - analysis::PlanePoint(1, 0)).norm() < rounding);
+  CHECK((along_x({1, 0, 0}) - analysis::PlanePoint(0, -1)).norm() < drawing_rounding);
+  CHECK((along_x({0, 1, 0}) - analysis::PlanePoint(1, 0)).norm() < drawing_rounding);
   // With gravity out of the plane, the view is not from above.
   CHECK_FALSE(View(plane, Point(0, 0, -1)).flat());
   const View spatial(space, Point(0, 0, -1));
   CHECK_FALSE(spatial.flat());
-  CHECK(std::abs(spatial({0, 0, 1}).x()) < rounding);
+  CHECK(std::abs(spatial({0, 0, 1}).x()) < drawing_rounding);
   CHECK(spatial({0, 0, 1}).y() > 0.5);
 }
 
@@ -108,7 +108,7 @@ TEST_CASE("solids: homogeneous bodies are found from mass and moments, in any or
   // A box 0.2 x 0.5 x 1.
   const Eigen::Matrix3d box = (m / 12 * Point(0.25 + 1, 0.04 + 1, 0.04 + 0.25)).asDiagonal();
   const auto [plain, sizes] = body(m, box);
-  CHECK((extent(*analysis::solid_of_inertia(plain, sizes)) - Point(0.2, 0.5, 1)).norm() < rounding);
+  CHECK((extent(*analysis::solid_of_inertia(plain, sizes)) - Point(0.2, 0.5, 1)).norm() < drawing_rounding);
   const Eigen::Matrix3d turn =
       (Eigen::AngleAxisd(0.3, Point::UnitX()) * Eigen::AngleAxisd(1.1, Point::UnitZ())).toRotationMatrix();
   const auto [turned, turned_sizes] = body(m, turn * box * turn.transpose());
@@ -116,7 +116,7 @@ TEST_CASE("solids: homogeneous bodies are found from mass and moments, in any or
   for (std::vector<Point>& face : back.faces) {
     for (Point& r : face) r = turn.transpose() * r;
   }
-  CHECK((extent(back) - Point(0.2, 0.5, 1)).norm() < 1e3 * rounding);  // of an eigenvector
+  CHECK((extent(back) - Point(0.2, 0.5, 1)).norm() < 1e3 * drawing_rounding);  // of an eigenvector
   // A cylinder of radius 0.4 and length 1 about the second axis; a ball of radius 0.7.
   const double across = m / 12 * (3 * 0.16 + 1);
   const auto [roller, roller_sizes] = body(m, Point(across, m / 2 * 0.16, across).asDiagonal());
@@ -151,7 +151,7 @@ TEST_CASE("solids: the convex hull of points has each face once, oriented outwar
 }
 
 TEST_CASE("figure: rods have the angles of the start, with arcs and lengths") {
-  const Figure figure = shipped("S5_double_pendulum").figure.value();
+  const Figure figure = drawn_model("S5_double_pendulum").figure.value();
   const std::vector<Figure::Stroke> rods = strokes(figure, Figure::Weight::strong);
   REQUIRE(rods.size() == 2);
   const std::array<double, 2> angles{0.8, 0.4};  // from the vertical
@@ -165,17 +165,17 @@ TEST_CASE("figure: rods have the angles of the start, with arcs and lengths") {
   // Every mass is a dot at the end of its rod.
   for (const Figure::Stroke& rod : rods) {
     CHECK(std::any_of(figure.dots.begin(), figure.dots.end(), [&](const Figure::Dot& dot) {
-      return dot.filled && std::hypot(dot.at[0] - rod.to[0], dot.at[1] - rod.to[1]) < rounding;
+      return dot.filled && std::hypot(dot.at[0] - rod.to[0], dot.at[1] - rod.to[1]) < drawing_rounding;
     }));
   }
 }
 
 TEST_CASE("figure: a line of variable length is no rod; particles have shapes, wheels pitch circles") {
   // The radius of a growing sphere; a pendulum; a free coordinate.
-  CHECK(strokes(*shipped("P7_moving_sphere").figure, Figure::Weight::strong).empty());
-  CHECK(strokes(*shipped("P1_spherical_pendulum").figure, Figure::Weight::strong).size() == 1);
-  CHECK(strokes(*shipped("G1_spherical").figure, Figure::Weight::strong).empty());
-  CHECK(strokes(*shipped("S6_chain_6").figure, Figure::Weight::strong).size() == 6);
+  CHECK(strokes(*drawn_model("P7_moving_sphere").figure, Figure::Weight::strong).empty());
+  CHECK(strokes(*drawn_model("P1_spherical_pendulum").figure, Figure::Weight::strong).size() == 1);
+  CHECK(strokes(*drawn_model("G1_spherical").figure, Figure::Weight::strong).empty());
+  CHECK(strokes(*drawn_model("S6_chain_6").figure, Figure::Weight::strong).size() == 6);
   const auto particle = [](const std::string& draw) {
     return strokes(
         *drawn(model::read_model_text("format = 1\n[[particle]]\nname = \"P\"\nmass = \"1 kg\"\nposition = { "
@@ -197,7 +197,7 @@ TEST_CASE("figure: a line of variable length is no rod; particles have shapes, w
                  "[draw]\nP = { mesh = [[0, 0, 0], [\"a60\", 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[1, 2, 3]] }\n")
             .size() == 3);
   // Two circles of 40 strokes for each pair of gears, and two straight lines of the belt.
-  CHECK(strokes(*shipped("geared_hoist").figure, Figure::Weight::plain).size() >= 2 * 2 * 40 + 2);
+  CHECK(strokes(*drawn_model("geared_hoist").figure, Figure::Weight::plain).size() >= 2 * 2 * 40 + 2);
 }
 
 TEST_CASE("figure: a body has the edges that it does not hide itself") {

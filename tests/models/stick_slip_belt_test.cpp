@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
+#include <numbers>
+
 #include "models/rough.hpp"
 
 using namespace eomgen;
@@ -8,7 +10,7 @@ using namespace eomgen::test;
 
 namespace {
 
-const double pi = std::acos(-1.0);
+using std::numbers::pi;
 constexpr double cycle_time = 1e-10;  // rtol 1e-12; the closed form is exact
 
 }  // namespace
