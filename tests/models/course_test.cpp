@@ -126,7 +126,7 @@ generalized = { x = "-k*x - c*integral(x)" }
 [definitions]
 travelled = "integral(x_dot)"
 impulse = "integral(u)"
-twice = "integral(integral(x_dot) + t)"
+twice = "integral(integral(x_dot)*t)"
 [scene.default]
 t = [0, 3]
 initial = { x = 0.4, x_dot = 0 }
