@@ -33,7 +33,8 @@ struct Multiplier {
 
 struct EquationsOptions {
   Approach approach = Approach::automatic;
-  /// Formula keys, as in `eomgen derive --show`. "all": every key except "kinematics", "linear" and "routh".
+  /// Formula keys, as in `eomgen derive --show`. "all": every key except "kinematics", "linear", "routh", "solved",
+  /// "forces", "contravariant" and "balance".
   std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
 };
 

@@ -43,9 +43,10 @@ struct Function {  // of time
   std::string tex;
   Span span;
 };
-/// A state of first order: d/dt of it is `rate`. It is declared by [[state]], or it is integral(e) of a function of
-/// time from the start of the run, which is a state only if e has no antiderivative in closed form. A discrete value
-/// ([discrete]) is a state with the rate 0, which events and samples change.
+/// A state of first order: d/dt of it is `rate`. It is declared by [[state]], or it is integral(e) from the start of
+/// the run. Of a function of time (`integral`), that is a state only if e has no antiderivative in closed form; of the
+/// motion, it is one like a declared state. A discrete value ([discrete]) is a state with the rate 0, which events and
+/// samples change.
 struct State {
   std::string name;  // of an integral "integral_1"; unique in the model
   NodeId rate = no_node;

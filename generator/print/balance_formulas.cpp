@@ -14,6 +14,9 @@ using reading::Layout;
 using reading::mark;
 using reading::Sum;
 
+/// Longer solutions are left to the equations above, which determine them.
+constexpr std::size_t most_solved_terms = 6;
+
 class BalanceStatements {
  public:
   BalanceStatements(const Mechanics& m, const BalanceForm& form, std::vector<Statement>& out)
@@ -29,12 +32,12 @@ class BalanceStatements {
     }
     for (const Sum& left : form_.moments) show("M = dH/dt without constraint forces", equals_zero(left));
     for (std::uint32_t k = 0; k < form_.rates.size(); ++k) {
-      if (form_.rates[k])
+      if (form_.rates[k] && form_.rates[k]->size() <= most_solved_terms)
         show("solved",
              reading::relation({reading::symbol(reading::omega_symbol(k, 1)), reading::arrange(*form_.rates[k])}));
     }
     for (std::size_t j = 0; j < form_.accelerations.size(); ++j) {
-      if (form_.accelerations[j])
+      if (form_.accelerations[j] && form_.accelerations[j]->size() <= most_solved_terms)
         show("solved",
              reading::relation({coordinate(form_.position[j], 2), reading::arrange(*form_.accelerations[j])}));
     }

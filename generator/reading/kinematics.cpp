@@ -275,7 +275,12 @@ class Reader {
       result.angle = angle_of(result.cosine);
       const Sum square = Sum(1) - result.cosine * result.cosine;
       if (square.is_zero()) return;  // no rotation, or half a turn, whose axis this does not give
-      const Sum half_inverse = Rational(1) / 2 * power(square, Rational(-1) / 2);
+      // Of a fraction, numerator and denominator apart: 1/sqrt(3) in place of 1/(2 sqrt(3/4)).
+      const Sum inverse = square.is_number()
+                              ? power(Sum(Rational(cln::numerator(square.number()))), Rational(-1) / 2) *
+                                    power(Sum(Rational(cln::denominator(square.number()))), Rational(1) / 2)
+                              : power(square, Rational(-1) / 2);
+      const Sum half_inverse = Rational(1) / 2 * inverse;
       for (Sum& component : result.axis) component = simplify(component * half_inverse);
     });
     result_.back().angle = std::move(result);

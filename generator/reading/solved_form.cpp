@@ -74,6 +74,7 @@ class Solver {
       }
     }
     if (form_.mode == FrictionMode::given) find_closed_forms();
+    add_dependent_accelerations();
     return std::move(form_);
   }
 
@@ -240,6 +241,19 @@ class Solver {
       return std::any_of(of.begin(), of.end(),
                          [&](const Factor& g) { return compare(*f.atom, *g.atom) == 0 && f.exponent <= g.exponent; });
     });
+  }
+
+  // Of coordinates that constraints give in terms of others, which move with them.
+  void add_dependent_accelerations() {
+    std::map<Symbol, Sum> solved;
+    for (const SolvedAcceleration& a : form_.accelerations) solved[coordinate_symbol(a.coordinate, 2)] = a.value;
+    if (solved.size() != reduced_.free.size()) return;
+    for (const auto& [symbol, value] : values_) {
+      if (symbol.order != 2 || m_.is_eliminated(symbol.index)) continue;
+      form_.accelerations.push_back({symbol.index, related(simplify(cancel(bridge_.substitute(value, solved))))});
+    }
+    std::sort(form_.accelerations.begin(), form_.accelerations.end(),
+              [](const SolvedAcceleration& a, const SolvedAcceleration& b) { return a.coordinate < b.coordinate; });
   }
 
   // qddot = a: a parabola. qddot = a - k q with k > 0: an oscillation about a/k.

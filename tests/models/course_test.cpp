@@ -126,7 +126,7 @@ generalized = { x = "-k*x - c*integral(x)" }
 [definitions]
 travelled = "integral(x_dot)"
 impulse = "integral(u)"
-twice = "integral(integral(x_dot) + t)"
+twice = "integral(integral(x_dot)*t)"
 [scene.default]
 t = [0, 3]
 initial = { x = 0.4, x_dot = 0 }
@@ -230,7 +230,9 @@ TEST_CASE("R5: the angular momentum about the point of contact is conserved, and
   const Sum J[] = {r5("J1"), r5("J2"), r5("J3")};
   // J w_dot + w x J w + m R^2 (w_dot - gamma (gamma . w_dot) + terms of gamma_dot) = 0 with gamma = E3 along e.
   const std::vector<std::string> names = conserved_names("R5_chaplygin_sphere");
-  for (const char* axis : {"E1", "E2", "E3"}) CHECK(has(names, std::string("angular_momentum.contact.") + axis));
+  // Along E3 both are the same, as the point of contact is below the centre.
+  for (const char* name : {"contact.E1", "contact.E2", "ball.E3"})
+    CHECK(has(names, std::string("angular_momentum.") + name));
   // The coefficient of w1_dot in the first equation.
   const Sum g1 = w.cosine(3, 1);
   Sum coefficient;

@@ -22,6 +22,7 @@ awk -v folder="$scratch/steps" '
   inside && file != "" { print >file }' "$page"
 
 failed=0 calls=0
+shopt -s nullglob  # a page may write no file
 cd "$scratch/work"
 for step in "$scratch"/steps/*.{write,call}; do printf '%s\n' "$step"; done | sort >"$scratch/order"
 while read -r step; do
