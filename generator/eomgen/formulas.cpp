@@ -98,7 +98,7 @@ Examination Model::examine(const CallControl& control) const {
 
 Equations Model::equations(const EquationsOptions& options, const CallControl& control) const {
   return with_lock(control, [&](CallListener& call) {
-    const analysis::Equations found = analysis::equations(read_, {approach_choice(options.approach), options.show});
+    const analysis::Equations found = analysis::equations(read_, {approach_choice(options.approach), options.show, {}});
     for (const std::string& note : found.notes) call.on_warning(note);
     Equations result;
     result.approach = system::name(found.approach);
