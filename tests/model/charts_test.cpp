@@ -18,14 +18,14 @@ std::string head(const std::string& position = "") {
 const std::string end = "[scene.default]\nt = [0, 1]\n";
 const std::string spherical = "position = { spherical = [\"R\", \"alpha\", \"beta\"] }\n";
 
-std::string refusal(const std::string& text, std::size_t which = 0) {
+std::string chart_refusal(const std::string& text, std::size_t which = 0) {
   return model::charts(model::read_model_text(text, "m.toml")).at(which).refusal;
 }
 
 }  // namespace
 
 TEST_CASE("charts: angles used nowhere else, or only in initial values, can be exchanged") {
-  CHECK(refusal(head() +
+  CHECK(chart_refusal(head() +
                 "[[force]]\ngravity = \"-g*E3\"\n[[force]]\nmoment = \"k*B.e1\"\non = \"B\"\n[definitions]\nw = "
                 "\"dot(omega(B), B.e3)\"\n" +
                 end + "initial = { theta = 1, \"B.omega\" = [1, 2, 3] }\noutputs = [\"w\"]\n")
@@ -35,7 +35,7 @@ TEST_CASE("charts: angles used nowhere else, or only in initial values, can be e
 TEST_CASE("charts: a constraint, a force, a definition or an event that uses an angle prevents the exchange") {
   const auto check = [](const std::string& more, const std::string& sentence) {
     CAPTURE(more);
-    CHECK(refusal(head() + more + end) == sentence);
+    CHECK(chart_refusal(head() + more + end) == sentence);
   };
   check("[[constraint]]\nname = \"level\"\nholonomic = \"psi\"\n",
         "the coordinate 'psi' is named by constraint 'level'");
@@ -56,12 +56,12 @@ TEST_CASE("charts: a constraint, a force, a definition or an event that uses an 
 TEST_CASE("charts: angles that are not coordinates, contacts and rotating axes prevent the exchange") {
   std::string text = head();
   text.replace(text.find("\"psi\""), 5, "\"k*t\"");
-  CHECK(refusal(text + end) == "an angle is an expression or the same as another: only coordinates can be exchanged");
-  CHECK(refusal(head("position = { cartesian = [\"x\", \"y\", \"z\"] }\n") +
+  CHECK(chart_refusal(text + end) == "an angle is an expression or the same as another: only coordinates can be exchanged");
+  CHECK(chart_refusal(head("position = { cartesian = [\"x\", \"y\", \"z\"] }\n") +
                 "[[constraint]]\nname = \"floor\"\nholonomic = \"z\"\nholds = \"unilateral\"\n" + end) ==
         "constraint 'floor' has friction or can be left");
   CHECK(
-      refusal(
+      chart_refusal(
           head() +
               "[[particle]]\nname = \"P\"\nmass = 1\nposition = { spherical = [\"R\", \"a\", \"b\"], axes = \"B\" }\n" +
               end,
