@@ -435,6 +435,8 @@ int P7_moving_sphere_selftest(void)
   {
     double x[4], p[6];
     int i;
+    for (i = 0; i < 4; ++i) x[i] = NAN;
+    for (i = 0; i < 6; ++i) p[i] = NAN;
     P7_moving_sphere_defaults(x, p);
     for (i = 0; i < 4; ++i) {
       if (!(x[i] == points[0][1 + i])) return 1;
@@ -452,7 +454,8 @@ int P7_moving_sphere_selftest(void)
     for (int k = 0; k < 3; ++k) {
       const int state = at[k];
       const double* const point = points[state];
-      double y1[4] = {0};
+      double y1[4];
+      for (int i = 0; i < 4; ++i) y1[i] = NAN;
       if (P7_moving_sphere_rhs(point[0], point + 1, point + 5, 0, 0, y1) != 0) return state + 1;
       if (P7_moving_sphere_differs(4, y1, expected[k] + 0)) return state + 1;
     }
@@ -472,8 +475,10 @@ int P7_moving_sphere_selftest(void)
     for (int k = 0; k < 3; ++k) {
       const int state = at[k];
       const double* const point = points[state];
-      double y1[16] = {0};
-      double y2[4] = {0};
+      double y1[16];
+      double y2[4];
+      for (int i = 0; i < 16; ++i) y1[i] = NAN;
+      for (int i = 0; i < 4; ++i) y2[i] = NAN;
       if (P7_moving_sphere_jac(point[0], point + 1, point + 5, 0, 0, y1, y2) != 0) return state + 1;
       if (P7_moving_sphere_differs(16, y1, expected[k] + 0)) return state + 1;
       if (P7_moving_sphere_differs(4, y2, expected[k] + 17)) return state + 1;
@@ -490,8 +495,10 @@ int P7_moving_sphere_selftest(void)
     for (int k = 0; k < 3; ++k) {
       const int state = at[k];
       const double* const point = points[state];
-      double y1[4] = {0};
-      double y2[2] = {0};
+      double y1[4];
+      double y2[2];
+      for (int i = 0; i < 4; ++i) y1[i] = NAN;
+      for (int i = 0; i < 2; ++i) y2[i] = NAN;
       if (P7_moving_sphere_mass(point[0], point + 1, point + 5, y1, y2) != 0) return state + 1;
       if (P7_moving_sphere_differs(4, y1, expected[k] + 0)) return state + 1;
       if (P7_moving_sphere_differs(2, y2, expected[k] + 5)) return state + 1;
@@ -506,7 +513,8 @@ int P7_moving_sphere_selftest(void)
     for (int k = 0; k < 3; ++k) {
       const int state = at[k];
       const double* const point = points[state];
-      double y1[1] = {0};
+      double y1[1];
+      for (int i = 0; i < 1; ++i) y1[i] = NAN;
       if (P7_moving_sphere_reactions(point[0], point + 1, point + 5, 0, 0, y1) != 0) return state + 1;
       if (P7_moving_sphere_differs(1, y1, expected[k] + 0)) return state + 1;
     }
@@ -520,7 +528,8 @@ int P7_moving_sphere_selftest(void)
     for (int k = 0; k < 3; ++k) {
       const int state = at[k];
       const double* const point = points[state];
-      double y1[2] = {0};
+      double y1[2];
+      for (int i = 0; i < 2; ++i) y1[i] = NAN;
       if (P7_moving_sphere_outputs(point[0], point + 1, point + 5, 0, 0, y1) != 0) return state + 1;
       if (P7_moving_sphere_differs(2, y1, expected[k] + 0)) return state + 1;
     }

@@ -428,6 +428,8 @@ inline int selftest() {
   {
     double x[4], p[6];
     int i;
+    for (i = 0; i < 4; ++i) x[i] = NAN;
+    for (i = 0; i < 6; ++i) p[i] = NAN;
     defaults<double>(x, p);
     for (i = 0; i < 4; ++i) {
       if (!(x[i] == points[0][1 + i])) return 1;
@@ -445,7 +447,8 @@ inline int selftest() {
     for (int k = 0; k < 3; ++k) {
       const int state = at[k];
       const double* const point = points[state];
-      double y1[4] = {0};
+      double y1[4];
+      for (int i = 0; i < 4; ++i) y1[i] = NAN;
       if (rhs<double>(point[0], point + 1, point + 5, nullptr, nullptr, y1) != 0) return state + 1;
       if (eom_differs(4, y1, expected[k] + 0)) return state + 1;
     }
@@ -465,8 +468,10 @@ inline int selftest() {
     for (int k = 0; k < 3; ++k) {
       const int state = at[k];
       const double* const point = points[state];
-      double y1[16] = {0};
-      double y2[4] = {0};
+      double y1[16];
+      double y2[4];
+      for (int i = 0; i < 16; ++i) y1[i] = NAN;
+      for (int i = 0; i < 4; ++i) y2[i] = NAN;
       if (jac<double>(point[0], point + 1, point + 5, nullptr, nullptr, y1, y2) != 0) return state + 1;
       if (eom_differs(16, y1, expected[k] + 0)) return state + 1;
       if (eom_differs(4, y2, expected[k] + 17)) return state + 1;
@@ -483,8 +488,10 @@ inline int selftest() {
     for (int k = 0; k < 3; ++k) {
       const int state = at[k];
       const double* const point = points[state];
-      double y1[4] = {0};
-      double y2[2] = {0};
+      double y1[4];
+      double y2[2];
+      for (int i = 0; i < 4; ++i) y1[i] = NAN;
+      for (int i = 0; i < 2; ++i) y2[i] = NAN;
       if (mass<double>(point[0], point + 1, point + 5, y1, y2) != 0) return state + 1;
       if (eom_differs(4, y1, expected[k] + 0)) return state + 1;
       if (eom_differs(2, y2, expected[k] + 5)) return state + 1;
@@ -499,7 +506,8 @@ inline int selftest() {
     for (int k = 0; k < 3; ++k) {
       const int state = at[k];
       const double* const point = points[state];
-      double y1[1] = {0};
+      double y1[1];
+      for (int i = 0; i < 1; ++i) y1[i] = NAN;
       if (reactions<double>(point[0], point + 1, point + 5, nullptr, nullptr, y1) != 0) return state + 1;
       if (eom_differs(1, y1, expected[k] + 0)) return state + 1;
     }
@@ -513,7 +521,8 @@ inline int selftest() {
     for (int k = 0; k < 3; ++k) {
       const int state = at[k];
       const double* const point = points[state];
-      double y1[2] = {0};
+      double y1[2];
+      for (int i = 0; i < 2; ++i) y1[i] = NAN;
       if (outputs<double>(point[0], point + 1, point + 5, nullptr, nullptr, y1) != 0) return state + 1;
       if (eom_differs(2, y1, expected[k] + 0)) return state + 1;
     }
