@@ -26,9 +26,9 @@ std::string chart_refusal(const std::string& text, std::size_t which = 0) {
 
 TEST_CASE("charts: angles used nowhere else, or only in initial values, can be exchanged") {
   CHECK(chart_refusal(head() +
-                "[[force]]\ngravity = \"-g*E3\"\n[[force]]\nmoment = \"k*B.e1\"\non = \"B\"\n[definitions]\nw = "
-                "\"dot(omega(B), B.e3)\"\n" +
-                end + "initial = { theta = 1, \"B.omega\" = [1, 2, 3] }\noutputs = [\"w\"]\n")
+                      "[[force]]\ngravity = \"-g*E3\"\n[[force]]\nmoment = \"k*B.e1\"\non = \"B\"\n[definitions]\nw = "
+                      "\"dot(omega(B), B.e3)\"\n" +
+                      end + "initial = { theta = 1, \"B.omega\" = [1, 2, 3] }\noutputs = [\"w\"]\n")
             .empty());
 }
 
@@ -56,9 +56,10 @@ TEST_CASE("charts: a constraint, a force, a definition or an event that uses an 
 TEST_CASE("charts: angles that are not coordinates, contacts and rotating axes prevent the exchange") {
   std::string text = head();
   text.replace(text.find("\"psi\""), 5, "\"k*t\"");
-  CHECK(chart_refusal(text + end) == "an angle is an expression or the same as another: only coordinates can be exchanged");
+  CHECK(chart_refusal(text + end) ==
+        "an angle is an expression or the same as another: only coordinates can be exchanged");
   CHECK(chart_refusal(head("position = { cartesian = [\"x\", \"y\", \"z\"] }\n") +
-                "[[constraint]]\nname = \"floor\"\nholonomic = \"z\"\nholds = \"unilateral\"\n" + end) ==
+                      "[[constraint]]\nname = \"floor\"\nholonomic = \"z\"\nholds = \"unilateral\"\n" + end) ==
         "constraint 'floor' has friction or can be left");
   CHECK(
       chart_refusal(

@@ -174,7 +174,7 @@ std::vector<WrongModel> wrong_bodies() {
        "'B' has no axis 'B.e1''", "primes are for intermediate axes of Euler angles"},
       {"a part of a frame",
        top({}, "[[frame]]\nname = \"F\"\nrotation = { fixed = true }\n[definitions]\na = \"F.position\"\n"), "18:6",
-       "'F' has no part 'position'", "its parts are e1, e2, e3 and omega"},
+       "'F' has no part 'position'", "its parts are e1, e2, e3, omega, and g_q for the coordinates q of its rotation"},
       {"a frame as a vector",
        top({}, "[[frame]]\nname = \"F\"\nrotation = { fixed = true }\n[definitions]\na = \"F\"\n"), "18:6",
        "'F' is a frame, not a value",
