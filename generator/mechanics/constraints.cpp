@@ -216,7 +216,9 @@ void eliminate_coordinates(Mechanics& m) {
   for (bool changed = true; changed;) {
     changed = false;
     for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-      if (used[k] || !m.constraints[k].holonomic() || m.constraints[k].unilateral || !m.is_independent(k)) continue;
+      if (used[k] || !m.constraints[k].holonomic() || m.constraints[k].unilateral || m.constraints[k].force_input ||
+          !m.is_independent(k))
+        continue;
       const Ref reduced = with_fixed(m, m.constraints[k].psi);
       if (coordinates_in(*m.dag, reduced).empty()) {
         if (may_be_redundant(m, m.constraints[k]) && holds_identically(*m.dag, reduced))

@@ -11,23 +11,6 @@ namespace {
 
 using symbolic::SymbolKind;
 
-bool can_hold_slip(const Contact& contact) { return contact.dimensions() > 0 && !contact.width; }
-
-/// Whether more directions could be held at the same time than are free. Symbolic solutions in that mode do not exist.
-bool could_hold_too_much(const Mechanics& m) {
-  std::size_t held = 0, open = 0;
-  for (const Contact& contact : m.contacts) {
-    if (contact.unilateral) ++held, ++open;
-    if (can_hold_slip(contact)) held += contact.dimensions();
-  }
-  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    const bool eliminates = std::any_of(m.fixed.begin(), m.fixed.end(),
-                                        [k](const FixedCoordinate& fixed) { return fixed.constraint == k; });
-    if (!eliminates && m.is_independent(k) && !m.constraints[k].unilateral) ++held;
-  }
-  return m.contacts.size() > 1 && open > 0 && held > m.free.size();
-}
-
 /// Adds inputs to a copy of the model.
 class InputAdder {
  public:
@@ -58,9 +41,11 @@ model::Span span_of(const model::Model& model, const Contact& contact) {
 
 }  // namespace
 
-void choose_contact_inputs(Mechanics& m) {
-  if (m.contacts.empty()) return;
-  if (m.contacts.size() <= eom::max_contacts && !m.model->impacts && !could_hold_too_much(m)) return;
+bool needs_contact_inputs(const Mechanics& m) {
+  return m.contacts.size() > eom::max_contacts || (m.model->impacts && !m.contacts.empty());
+}
+
+void require_contact_inputs(Mechanics& m) {
   for (const Contact& contact : m.contacts) {
     if (contact.constraints.size() < 2) continue;
     throw Error("mechanics", m.model->where(friction_law_of(m, contact).span),
@@ -68,6 +53,15 @@ void choose_contact_inputs(Mechanics& m) {
                 "give this curve the smooth law (law = \"smooth\") and a constraint for each of its two surfaces, or "
                 "the model at most three contacts");
   }
+  for (const Contact& contact : m.contacts) {
+    for (const std::uint32_t k : contact.constraints) m.constraints[k].force_input = 0;  // numbered later
+  }
+}
+
+void number_contact_inputs(Mechanics& m) {
+  const auto requires_input = [](const Constraint& constraint) { return constraint.force_input.has_value(); };
+  const bool constrained = std::any_of(m.constraints.begin(), m.constraints.end(), requires_input);
+  if (!constrained && !needs_contact_inputs(m)) return;
   InputAdder inputs(m);
   const std::shared_ptr<const model::Model> before = m.model;
   for (Contact& contact : m.contacts) {

@@ -142,7 +142,10 @@ void add_masses(Mechanics& m, Lowering& lower) {
   for (const model::Body& body : m.model->bodies) add(body.place, body.mass, body.span);
 }
 
-Mechanics build_mechanics(std::shared_ptr<const model::Model> model) {
+namespace {
+
+/// None if the contacts could hold more directions than are free, and their forces are not to be inputs.
+std::optional<Mechanics> built(std::shared_ptr<const model::Model> model, bool contact_inputs) {
   Mechanics m;
   m.model = std::move(model);
   m.dag = std::make_shared<Dag>();
@@ -160,21 +163,29 @@ Mechanics build_mechanics(std::shared_ptr<const model::Model> model) {
   add_constraints(m, lower);
   add_joints(m, lower);
   add_contacts(m, lower);
+  if (contact_inputs || needs_contact_inputs(m)) require_contact_inputs(m);
   eliminate_coordinates(m);
   drop_blocked_directions(m);
-  choose_contact_inputs(m);
+  number_contact_inputs(m);
   list_active_constraints(m);
   if (!m.constraints.empty()) {
     add_known_values(m, lower);
     drop_repeated_equations(m);
     drop_dependent_equations(m, lower);
   }
-  if (!m.has_contact_inputs()) find_blocked_directions(m);
+  if (!m.has_contact_inputs() && !find_blocked_directions(m)) return std::nullopt;
   add_values(m, lower);
   check_friction_coefficients(m);
   require_equations(m);
   classify_constraints(m);
   return m;
+}
+
+}  // namespace
+
+Mechanics build_mechanics(std::shared_ptr<const model::Model> model) {
+  std::optional<Mechanics> result = built(model, false);
+  return result ? *std::move(result) : *built(std::move(model), true);
 }
 
 symbolic::Symbol state_symbol(const model::Model& model, std::uint32_t index) {
