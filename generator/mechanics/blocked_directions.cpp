@@ -42,7 +42,8 @@ class Search {
   bool has_sample_points() const { return space_.points() > 0; }
 
   /// If more directions can stick than there are degrees of freedom, the motion does not determine the static friction.
-  void require_determinate(const ClosedContacts& closed) {
+  /// False if contacts with one that can open could hold more directions than are free.
+  bool is_determinate(const ClosedContacts& closed) {
     std::size_t freedom = m_.free.size() - m_.active.size(), directions = 0, open_contacts = 0;
     bool any_touches = false;
     base_ = always_;
@@ -62,6 +63,7 @@ class Search {
       for (const std::vector<Ref>& tangent : contact.tangents) tangents_.push_back(row(tangent));
       const std::size_t free = has_sample_points() ? free_directions(base_) : directions;
       if (directions <= freedom && directions <= free) continue;
+      if (can_any_open()) return false;
       const std::string where = !any_touches         ? ""
                                 : open_contacts == 0 ? " while all contacts are closed"
                                                      : " while some contacts touch";
@@ -75,6 +77,7 @@ class Search {
               ": where all stick, the forces are not determined",
           "give fewer contacts friction, or this one the smooth law (law = \"smooth\"), under which nothing sticks");
     }
+    return true;
   }
 
   void examine_contact(std::uint32_t index) {
@@ -87,7 +90,7 @@ class Search {
     if (free == 0) refuse(contact);
     if (free < tangents_.size()) {
       std::optional<std::vector<Ref>> along = always_held(contact);
-      if (!along) return;  // too many directions; require_determinate reports it
+      if (!along) return;  // too many directions; is_determinate finds it
       contact.blocked.push_back({index, std::move(*along)});
     }
     for (std::uint32_t c = 0; c < m_.contacts.size(); ++c) {
@@ -104,6 +107,10 @@ class Search {
   }
 
  private:
+  bool can_any_open() const {
+    return std::any_of(m_.contacts.begin(), m_.contacts.end(),
+                       [](const Contact& contact) { return contact.unilateral; });
+  }
   DirectionRow row(const std::vector<Ref>& by_coordinate) {
     DirectionRow result;
     for (const std::uint32_t i : m_.free) result.push_back(space_.impose_and_expand(by_coordinate[i]));
@@ -214,10 +221,10 @@ class Search {
 
 }  // namespace
 
-void find_blocked_directions(Mechanics& m) {
-  if (std::none_of(m.contacts.begin(), m.contacts.end(), sticks)) return;
-  if (m.free.empty()) return;                   // the motion is prescribed, and friction acts against it
-  if (m.free.size() < m.active.size()) return;  // reported elsewhere
+bool find_blocked_directions(Mechanics& m) {
+  if (std::none_of(m.contacts.begin(), m.contacts.end(), sticks)) return true;
+  if (m.free.empty()) return true;                   // the motion is prescribed, and friction acts against it
+  if (m.free.size() < m.active.size()) return true;  // reported elsewhere
   // Sample points on the constraints, if any are found: some directions are blocked only there.
   std::optional<Search> search;
   search.emplace(m, OneFormSpace::SampleSet::on_constraints);
@@ -233,8 +240,9 @@ void find_blocked_directions(Mechanics& m) {
   for (std::size_t choice = std::size_t{1} << leavable.size(); choice-- > 0;) {
     ClosedContacts closed(m.contacts.size(), false);
     for (std::size_t i = 0; i < leavable.size(); ++i) closed[leavable[i]] = ((choice >> i) & 1) != 0;
-    search->require_determinate(closed);
+    if (!search->is_determinate(closed)) return false;
   }
+  return true;
 }
 
 }  // namespace eomgen::mechanics
