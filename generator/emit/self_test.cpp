@@ -299,7 +299,9 @@ class Body {
   /// a difference.
   std::string unset(const std::string& array, std::size_t count) const {
     if (count == 0) return "";
-    return fmt::format("      for (int i = 0; i < {}; ++i) {}[i] = NAN;\n", count, array);
+    // Code in second charts leaves entries of the own charts as they are.
+    return fmt::format("      for (int i = 0; i < {}; ++i) {}[i] = {};\n", count, array,
+                       program_.charts.empty() ? "NAN" : "0");
   }
 
   std::string arguments(const std::string& function, unsigned to) const {

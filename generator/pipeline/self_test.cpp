@@ -27,7 +27,9 @@ bool satisfies(const abi::CompiledFunctions& functions, const program::Program& 
   to.set_charts(expected.to);
   given.mode = mode.data();
   given.to = to.data();
-  std::vector<double> w(program.prepared_count() + 1, unset);
+  // Code in second charts leaves entries of the own charts as they are.
+  const double before = program.charts.empty() ? unset : 0;
+  std::vector<double> w(program.prepared_count() + 1, before);
   given.w = w.data();
   if (abi::find(expected.function)->has_input(abi::Input::prepared) && functions.prepare(at.p.data(), w.data()) != 0)
     return false;
@@ -35,7 +37,7 @@ bool satisfies(const abi::CompiledFunctions& functions, const program::Program& 
     given.order = static_cast<int>(expected.values.at(0).size() / program.state_count()) - 1;
   std::vector<std::vector<double>> arrays;
   for (std::size_t r = 0; r < expected.values.size(); ++r) {
-    arrays.emplace_back(std::max<std::size_t>(1, expected.values[r].size()), unset);
+    arrays.emplace_back(std::max<std::size_t>(1, expected.values[r].size()), before);
     given.results.at(r) = arrays[r].data();
   }
   if (functions.call(expected.function, given) != 0) return false;
