@@ -70,6 +70,17 @@ void transfer(Archive& archive, hybrid::ContactModes::State& state) {
   transfer(archive, largest_gap);
 }
 template <class Archive>
+void transfer(Archive& archive, hybrid::SolvedContacts::State& state) {
+  auto& [states, chatter, largest_speed, largest_gap, largest_terms, largest_force, hits] = state;
+  transfer(archive, states);
+  transfer(archive, chatter);
+  transfer(archive, largest_speed);
+  transfer(archive, largest_gap);
+  transfer(archive, largest_terms);
+  transfer(archive, largest_force);
+  transfer(archive, hits);
+}
+template <class Archive>
 void transfer(Archive& archive, hybrid::ChartSwitch::State& state) {
   auto& [second, sides, own, t] = state;
   transfer(archive, second);
@@ -90,8 +101,9 @@ void transfer(Archive& archive, MethodChoice& choice) {
 }
 template <class Archive>
 void transfer(Archive& archive, hybrid::Integration::State& state) {
-  auto& [contacts, charts, largest_kinks, constants, choice, taken, sliding] = state;
+  auto& [contacts, solved_contacts, charts, largest_kinks, constants, choice, taken, sliding] = state;
   transfer(archive, contacts);
+  transfer(archive, solved_contacts);
   transfer(archive, charts);
   transfer(archive, largest_kinks);
   transfer(archive, constants);
