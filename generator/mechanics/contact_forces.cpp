@@ -49,9 +49,10 @@ void require_contact_inputs(Mechanics& m) {
   for (const Contact& contact : m.contacts) {
     if (contact.constraints.size() < 2) continue;
     throw Error("mechanics", m.model->where(friction_law_of(m, contact).span),
-                "the friction of the curve '" + contact.name + "' cannot be combined with so many other contacts",
-                "give this curve the smooth law (law = \"smooth\") and a constraint for each of its two surfaces, or "
-                "the model at most three contacts");
+                "the friction of the curve '" + contact.name +
+                    "' cannot be solved for together with these contacts, or with a law of impacts",
+                "remove this friction or [impacts], or leave at most three contacts that cannot hold more directions "
+                "than are free");
   }
   for (const Contact& contact : m.contacts) {
     for (const std::uint32_t k : contact.constraints) m.constraints[k].force_input = 0;  // numbered later

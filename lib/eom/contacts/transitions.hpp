@@ -8,10 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <optional>
-#include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -43,7 +39,7 @@ class Transitions {
 
   Transitions(ContactForces& forces, std::size_t coordinates) : forces_(forces), n_(coordinates) {}
 
-  enum class Outcome { done, no_solution, no_value };
+  enum class Outcome { done, no_solution, no_value, endless };  // endless: a sequence of impacts
   struct Result {
     Outcome outcome = Outcome::done;
     int code = 0;                // of the ABI, for no_value
@@ -78,7 +74,7 @@ class Transitions {
       const Result result = apply(t, x, u, {fastest}, plastic, false, tolerances, hit);
       if (result.outcome != Outcome::done) return result;
     }
-    return {};
+    return {Outcome::endless, 0, none};
   }
 
   /// The states of the contacts at (t, x), whose gap speeds are not negative. Only those in `touching` can be closed.
@@ -281,11 +277,9 @@ class Transitions {
     for (std::size_t l = 0; l < law_of.size(); ++l) {
       const std::size_t j = law_of[l];
       if (!forces_.is_closed(j) || !(found.speed[l] > least)) continue;
-      if (!broken[j] && forces_.value(forces_.contact(j).static_coefficient) !=
-                            forces_.value(forces_.contact(j).dynamic_coefficient)) {
+      if (!broken[j] &&
+          forces_.value(forces_.contact(j).static_coefficient) != forces_.value(forces_.contact(j).dynamic_coefficient))
         broken[j] = again = true;
-        continue;
-      }
     }
     if (again) {
       // Nothing is final: contacts that were opened here may be closed with the other coefficient.

@@ -399,8 +399,10 @@ class SolvedContacts {
       result = transitions_.decide(t, x.data(), model_.inputs_without_contacts(t), touching, hint, tolerances());
     model_.forget_contact_forces();
     if (result.outcome != contacts::Transitions::Outcome::done) {
-      end_ = result.outcome == contacts::Transitions::Outcome::no_value ? outcome_of_abi_code(result.code)
-                                                                        : Outcome::friction_no_solution;
+      using Result = contacts::Transitions::Outcome;
+      end_ = result.outcome == Result::no_value  ? outcome_of_abi_code(result.code)
+             : result.outcome == Result::endless ? Outcome::step_too_small
+                                                 : Outcome::friction_no_solution;
       end_contact_ = result.contact;
       return;
     }
