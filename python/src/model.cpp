@@ -7,7 +7,7 @@
 namespace eomgen::python {
 namespace {
 
-using Numbers = std::map<std::string, double>;
+using NumbersByName = std::map<std::string, double>;
 using Names = std::vector<std::string>;
 using Real = std::optional<double>;
 
@@ -233,7 +233,7 @@ py::dict run_sweep(const Model& model, const py::dict& given, const Names& names
   return result;
 }
 
-py::dict inverse(const Model& model, const std::string& scene, const Numbers& parameters, Real t_end, Real every,
+py::dict inverse(const Model& model, const std::string& scene, const NumbersByName& parameters, Real t_end, Real every,
                  Real rtol, Real atol, const Names& constraints, std::uint64_t seed, const Callbacks& callbacks) {
   const InverseOptions options{scene, parameters, t_end, every, rtol, atol, constraints, seed};
   const InverseDynamics found =
@@ -249,7 +249,7 @@ py::dict inverse(const Model& model, const std::string& scene, const Numbers& pa
   return result;
 }
 
-py::dict linearize(const Model& model, const std::string& scene, const Numbers& parameters, Real time,
+py::dict linearize(const Model& model, const std::string& scene, const NumbersByName& parameters, Real time,
                    std::uint64_t seed, const Callbacks& callbacks) {
   const LineariseOptions options{scene, parameters, time, seed};
   const Linearisation l = call_library(callbacks, [&](auto& c) { return model.linearise(options, c.control()); });
@@ -265,7 +265,7 @@ py::dict linearize(const Model& model, const std::string& scene, const Numbers& 
   return result;
 }
 
-py::dict equilibria(const Model& model, const std::string& scene, const Numbers& parameters, const Numbers& hold,
+py::dict equilibria(const Model& model, const std::string& scene, const NumbersByName& parameters, const NumbersByName& hold,
                     std::size_t starts, std::uint64_t seed, const Callbacks& callbacks) {
   const SteadyOptions options{scene, parameters, hold, starts, seed};
   const SteadyMotions found =
@@ -282,7 +282,7 @@ py::dict equilibria(const Model& model, const std::string& scene, const Numbers&
   return result;
 }
 
-py::dict bench(const Model& model, const std::string& scene, const Numbers& parameters, Real t_end,
+py::dict bench(const Model& model, const std::string& scene, const NumbersByName& parameters, Real t_end,
                const Names& solvers, double max_seconds, bool other_libraries, std::uint64_t seed,
                const Callbacks& callbacks) {
   const BenchmarkOptions options{scene, parameters, t_end, solvers, max_seconds, other_libraries, seed};
@@ -300,7 +300,7 @@ py::dict bench(const Model& model, const std::string& scene, const Numbers& para
   return result;
 }
 
-py::dict stress(const Model& model, const std::string& scene, const Numbers& parameters, Real t_end,
+py::dict stress(const Model& model, const std::string& scene, const NumbersByName& parameters, Real t_end,
                 const Names& solvers, double max_seconds, std::size_t max_steps, bool quick, std::uint64_t seed,
                 const Callbacks& callbacks) {
   const StressOptions options{scene, parameters, t_end, solvers, max_seconds, max_steps, quick, seed};
