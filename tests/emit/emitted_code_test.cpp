@@ -154,15 +154,15 @@ int main() {
 }
 
 TEST_CASE("emitted code: its self test detects entries that are never written, also those that are 0") {
-  const Example e = example("eom", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"});
+  const Example e = example("cart", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"});
   const std::vector<emit::EmittedFile> files = emit::emit(e.program, e.context, "c");
   const std::string code = file_named(files, ".c"), zero = "] = 0.0;";
   const auto status = [&](const std::string& text) {
     const Folder folder;
-    emit::write_files(folder.path, {{"eom.c", text}, {"eom.h", file_named(files, ".h")}});
-    std::ofstream(folder.path + "/use.c") << "#include \"eom.h\"\nint main(void) { return eom_selftest(); }\n";
+    emit::write_files(folder.path, {{"cart.c", text}, {"cart.h", file_named(files, ".h")}});
+    std::ofstream(folder.path + "/use.c") << "#include \"cart.h\"\nint main(void) { return cart_selftest(); }\n";
     REQUIRE(emit::run_process({EOMGEN_TEST_CC, "-O2", "-o", folder.path + "/use", folder.path + "/use.c",
-                               folder.path + "/eom.c", "-lm"})
+                               folder.path + "/cart.c", "-lm"})
                 .status == 0);
     return emit::run_process({folder.path + "/use"}).status;
   };

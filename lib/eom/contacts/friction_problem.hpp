@@ -43,7 +43,7 @@ struct FrictionForces {
   bool found = false;
   Eigen::VectorXd force, velocity;  // per row
   std::vector<double> speed;        // per law: of the slip
-  double residual = 0;
+  double residual = 0;              // largest violation of the laws, as a share of the forces; see residual_of()
 };
 
 namespace friction {
@@ -69,6 +69,7 @@ class Solver {
     }
     const auto plane = [](const FrictionLaw& law) { return law.tangents.size() == 2; };
     if (result.found && std::any_of(p_.laws.begin(), p_.laws.end(), plane)) refine(result);
+    if (result.found) result.residual = residual_of(result);
     return result;
   }
 
@@ -170,7 +171,6 @@ class Solver {
     const ComplementaritySolution solution = solve_complementarity(M, q);
     FrictionForces result = complete(B * solution.z.head(n));
     result.found = solution.found;
-    result.residual = solution.residual;
     return result;
   }
 
@@ -204,7 +204,7 @@ class Solver {
       velocity += change * G_.col(i);
       return std::abs(change);
     };
-    double size = std::max(1e-300, y.lpNorm<Eigen::Infinity>()), last = 0;
+    double size = std::max(1e-300, y.lpNorm<Eigen::Infinity>());
     for (int round = 0; round < most; ++round) {
       double moved = 0;
       for (Index i = 0; i < f; ++i) {
@@ -213,12 +213,42 @@ class Solver {
       }
       for (const FrictionLaw& law : p_.laws) moved = std::max(moved, rub(law, y, velocity, set));
       size = std::max(size, y.lpNorm<Eigen::Infinity>());
-      last = moved / size;
-      if (last <= enough) break;
+      if (moved <= enough * size) break;
     }
-    const FrictionForces refined = complete(y);
-    result = refined;
-    result.residual = last;
+    result = complete(y);
+  }
+
+  /// How far the forces and velocities of all rows are from the laws: the largest change of a force in one step of
+  /// projection, with the velocities divided by their own responses, as a share of the largest force. It is 0 exactly
+  /// for solutions, and does not depend on the method that found them.
+  double residual_of(const FrictionForces& forces) const {
+    double largest = 0;
+    double size = forces.force.size() > 0 ? forces.force.lpNorm<Eigen::Infinity>() : 0;
+    const auto step = [&](Index row, double response) {
+      size = std::max(size, std::abs(p_.q(row)) / response);
+      return forces.velocity(row) / response;
+    };
+    for (Index i = 0; i < p_.q.size(); ++i) {
+      const FrictionProblem::Kind kind = p_.kinds[static_cast<std::size_t>(i)];
+      const double response = std::abs(p_.G(i, i));
+      if (kind == FrictionProblem::Kind::rubs || !(response > 0)) continue;
+      const double change = step(i, response);
+      const bool held = kind == FrictionProblem::Kind::holds;
+      largest = std::max(largest, std::abs(held ? change : std::min(forces.force(i), change)));
+    }
+    for (const FrictionLaw& law : p_.laws) {
+      double slowest = 0, square = 0, moved = 0;
+      for (const Index row : law.tangents) slowest = std::max(slowest, p_.G(row, row));
+      if (!(slowest > 0)) continue;
+      const double normal = law.normal < 0 ? std::abs(law.given_normal) : law.normal_sign * forces.force(law.normal);
+      const double most = law.coefficient * std::max(0.0, normal);
+      for (const Index row : law.tangents) square += std::pow(forces.force(row) - step(row, slowest), 2);
+      const double factor = square > most * most ? most / std::sqrt(square) : 1;
+      for (const Index row : law.tangents)
+        moved = std::max(moved, std::abs(factor * (forces.force(row) - step(row, slowest)) - forces.force(row)));
+      largest = std::max(largest, moved);
+    }
+    return size > 0 ? largest / size : 0;
   }
 
   template <class Set>

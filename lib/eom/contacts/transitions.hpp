@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "eom/contacts/contact_forces.hpp"
-#include "eom/contacts/friction_problem.hpp"
+#include "eom/contacts/contact_problem.hpp"
 
 namespace eom::contacts {
 
@@ -35,7 +35,6 @@ class Transitions {
  public:
   using Index = Eigen::Index;
   using Vector = Eigen::VectorXd;
-  using Matrix = Eigen::MatrixXd;
 
   Transitions(ContactForces& forces, std::size_t coordinates) : forces_(forces), n_(coordinates) {}
 
@@ -111,83 +110,55 @@ class Transitions {
   Result apply(double t, double* x, double* u, const std::vector<std::size_t>& acting, const std::vector<bool>& plastic,
                bool rest, const Tolerances& tolerances, std::vector<std::size_t>& hit) {
     const ImpactLaw law = forces_.set().law;
-    FrictionProblem problem;
-    std::vector<const Row*> rows;
-    std::vector<Vector> responses;
-    std::vector<std::size_t> contact_of;
-    std::vector<double> approach, restitution;
-    int code = 0;
-    const auto add = [&](std::size_t j, const Row& row, const ContactForces::Pattern& pattern,
-                         FrictionProblem::Kind kind) {
-      Vector response;
-      if (code == 0) code = forces_.response(t, x, u, pattern, response);
-      rows.push_back(&row), responses.push_back(std::move(response)), contact_of.push_back(j);
-      problem.kinds.push_back(kind);
-      approach.push_back(speed(row, x));
-    };
+    ContactProblem rows(forces_, t, x, u);
     for (std::size_t j = 0; j < forces_.set().contacts.size(); ++j) {
       const Description& at = forces_.contact(j);
       const bool acts =
           at.unilateral ? std::find(acting.begin(), acting.end(), j) != acting.end() : at.has_constraint();
       if (!acts) continue;
-      const auto normal = static_cast<Index>(rows.size());
-      add(j, at.normal, forces_.normal_pattern(j, false),
-          at.unilateral && !rest ? FrictionProblem::Kind::closes : FrictionProblem::Kind::holds);
-      if (law == ImpactLaw::newton || !at.sticks || rest) continue;
-      FrictionLaw friction{{},
-                           normal,
-                           forces_.states()[j].normal_sign * forces_.value(at.normal_scale),
-                           0,
-                           forces_.value(at.dynamic_coefficient)};
-      for (std::size_t a = 0; a < at.slip.size(); ++a) {
-        friction.tangents.push_back(static_cast<Index>(rows.size()));
-        add(j, at.slip[a], forces_.tangent_pattern(j, a), FrictionProblem::Kind::rubs);
-      }
-      problem.laws.push_back(std::move(friction));
+      const Index normal =
+          rows.add_row(j, at.normal, forces_.normal_pattern(j, false), at.unilateral && !rest ? Kind::closes : Kind::holds);
+      if (law != ImpactLaw::newton && at.sticks && !rest)
+        rows.add_friction(j, normal, forces_.value(at.dynamic_coefficient));
     }
-    if (code != 0) return {Outcome::no_value, code, none};
-    const auto count = static_cast<Index>(rows.size());
-    problem.G = Matrix(count, count), problem.q = Vector(count);
+    if (const int code = rows.complete(); code != 0) return {Outcome::no_value, code, none};
+    FrictionProblem& problem = rows.problem();
+    const Index count = rows.size();
+    Vector approach(count), restitution(count);
     for (Index i = 0; i < count; ++i) {
-      for (Index k = 0; k < count; ++k)
-        problem.G(i, k) = forces_.change(*rows[static_cast<std::size_t>(i)], responses[static_cast<std::size_t>(k)]);
-      const std::size_t j = contact_of[static_cast<std::size_t>(i)];
-      const bool bounces = problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::closes && !plastic[j] &&
-                           approach[static_cast<std::size_t>(i)] < -tolerances.speed;
-      restitution.push_back(bounces ? forces_.value(forces_.contact(j).restitution) : 0);
+      approach(i) = speed(rows.row(i), x);
+      const bool bounces =
+          rows.kind(i) == Kind::closes && !plastic[rows.contact(i)] && approach(i) < -tolerances.speed;
+      restitution(i) = bounces ? forces_.value(forces_.contact(rows.contact(i)).restitution) : 0;
       const bool of_speeds = law != ImpactLaw::poisson;
-      problem.q(i) = approach[static_cast<std::size_t>(i)] * (of_speeds ? 1 + restitution.back() : 1);
+      problem.q(i) = approach(i) * (of_speeds ? 1 + restitution(i) : 1);
     }
-    FrictionForces impulses = solve_friction_problem(problem);
-    if (!impulses.found) return {Outcome::no_solution, 0, worst(problem, contact_of)};
+    const FrictionForces impulses = solve(problem);
+    if (!impulses.found) return {Outcome::no_solution, 0, rows.fastest_contact()};
     Vector total = impulses.force;
     if (law == ImpactLaw::poisson) {
       // Restitution gives back a share of the normal impulses of compression; what comes to it may be more.
-      FrictionProblem after = problem;
-      Vector share = Vector::Zero(count);
-      for (Index i = 0; i < count; ++i) share(i) = restitution[static_cast<std::size_t>(i)] * std::max(0.0, total(i));
-      after.q = problem.q + problem.G * (total + share);
-      const FrictionForces more = solve_friction_problem(after);
-      if (!more.found) return {Outcome::no_solution, 0, worst(after, contact_of)};
+      const Vector share = restitution.cwiseProduct(total.cwiseMax(0.0));
+      problem.q += problem.G * (total + share);
+      const FrictionForces more = solve(problem);
+      if (!more.found) return {Outcome::no_solution, 0, rows.fastest_contact()};
       total += share + more.force;
     }
     for (Index k = 0; k < count; ++k)
-      Eigen::Map<Vector>(x + n_, static_cast<Index>(n_)) += total(k) * responses[static_cast<std::size_t>(k)];
+      Eigen::Map<Vector>(x + n_, static_cast<Index>(n_)) += total(k) * rows.response(k);
     for (Index i = 0; i < count; ++i) {
-      const std::size_t j = contact_of[static_cast<std::size_t>(i)];
-      if (problem.kinds[static_cast<std::size_t>(i)] != FrictionProblem::Kind::rubs && forces_.contact(j).unilateral &&
-          approach[static_cast<std::size_t>(i)] < -tolerances.speed && total(i) > 0 &&
-          std::find(hit.begin(), hit.end(), j) == hit.end())
+      const std::size_t j = rows.contact(i);
+      if (rows.kind(i) != Kind::rubs && forces_.contact(j).unilateral && approach(i) < -tolerances.speed &&
+          total(i) > 0 && std::find(hit.begin(), hit.end(), j) == hit.end())
         hit.push_back(j);
     }
     return {};
   }
 
-  static std::size_t worst(const FrictionProblem& problem, const std::vector<std::size_t>& contact_of) {
-    Index least = 0;
-    if (problem.q.size() == 0) return none;
-    problem.q.minCoeff(&least);
-    return contact_of[static_cast<std::size_t>(least)];
+  FrictionForces solve(const FrictionProblem& problem) {
+    FrictionForces result = solve_friction_problem(problem);
+    if (result.found) largest_residual_ = std::max(largest_residual_, result.residual);
+    return result;
   }
 
   /// Sliding where there is slip, closed where there is none, open where nothing touches.
@@ -219,61 +190,37 @@ class Transitions {
     std::vector<double> inputs(u, u + input_count_);
     double* const v = inputs.data();
     if (const int code = forces_.evaluate_free(t, x, v); code != 0) return {Outcome::no_value, code, none};
-    FrictionProblem problem;
-    std::vector<const Row*> rows;
-    std::vector<Vector> responses;
-    std::vector<std::size_t> contact_of, law_of;
-    int code = 0;
-    const auto add = [&](std::size_t j, const Row& row, const ContactForces::Pattern& pattern,
-                         FrictionProblem::Kind kind) {
-      Vector response;
-      if (code == 0) code = forces_.response(t, x, v, pattern, response);
-      rows.push_back(&row), responses.push_back(std::move(response)), contact_of.push_back(j);
-      problem.kinds.push_back(kind);
-    };
+    ContactProblem rows(forces_, t, x, v);
     for (std::size_t j = 0; j < forces_.set().contacts.size(); ++j) {
       if (!forces_.is_closed(j)) continue;
       const Description& at = forces_.contact(j);
-      const auto normal = static_cast<Index>(rows.size());
+      Index normal = -1;
       if (at.has_constraint())
-        add(j, at.normal, forces_.normal_pattern(j, true),
-            at.unilateral ? FrictionProblem::Kind::closes : FrictionProblem::Kind::holds);
-      if (!forces_.is_sticking(j)) continue;
-      const double mu = forces_.value(broken[j] ? at.dynamic_coefficient : at.static_coefficient);
-      FrictionLaw friction{{}, at.has_constraint() ? normal : -1, 1, 0, mu};
-      if (at.has_constraint())
-        friction.normal_sign = forces_.states()[j].normal_sign * forces_.value(at.normal_scale);
-      else
-        friction.given_normal = forces_.value(at.given_normal);
-      for (std::size_t a = 0; a < at.slip.size(); ++a) {
-        friction.tangents.push_back(static_cast<Index>(rows.size()));
-        add(j, at.slip[a], forces_.tangent_pattern(j, a), FrictionProblem::Kind::rubs);
-      }
-      problem.laws.push_back(std::move(friction));
-      law_of.push_back(j);
+        normal = rows.add_row(j, at.normal, forces_.normal_pattern(j, true), at.unilateral ? Kind::closes : Kind::holds);
+      if (forces_.is_sticking(j))
+        rows.add_friction(j, normal, forces_.value(broken[j] ? at.dynamic_coefficient : at.static_coefficient));
     }
-    if (code != 0) return {Outcome::no_value, code, none};
-    const auto count = static_cast<Index>(rows.size());
-    problem.G = Matrix(count, count), problem.q = Vector(count);
+    if (const int code = rows.complete(); code != 0) return {Outcome::no_value, code, none};
+    FrictionProblem& problem = rows.problem();
+    const Index count = rows.size();
     Vector size(count);
     for (Index i = 0; i < count; ++i) {
-      const Row& row = *rows[static_cast<std::size_t>(i)];
-      for (Index k = 0; k < count; ++k) problem.G(i, k) = forces_.change(row, responses[static_cast<std::size_t>(k)]);
-      problem.q(i) = forces_.acceleration(row, forces_.free_accelerations());
-      size(i) = std::abs(forces_.value(row.bias())) + forces_.terms(row, forces_.free_accelerations().data());
+      problem.q(i) = forces_.acceleration(rows.row(i), forces_.free_accelerations());
+      size(i) = std::abs(forces_.value(rows.row(i).bias())) +
+                forces_.terms(rows.row(i), forces_.free_accelerations().data());
     }
-    favour(problem, contact_of, size, hint);
-    const FrictionForces found = solve_friction_problem(problem);
-    if (!found.found) return {Outcome::no_solution, 0, worst(problem, contact_of)};
-    const double least = std::max(size.size() > 0 ? negligible * size.maxCoeff() : 0.0, tolerances.acceleration);
+    favour(rows, size, hint);
+    const FrictionForces found = solve(problem);
+    if (!found.found) return {Outcome::no_solution, 0, rows.fastest_contact()};
+    const double least = std::max(count > 0 ? negligible * size.maxCoeff() : 0.0, tolerances.acceleration);
     for (Index i = 0; i < count; ++i) {
-      const std::size_t j = contact_of[static_cast<std::size_t>(i)];
-      if (problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::closes && !(found.force(i) > 0) &&
+      const std::size_t j = rows.contact(i);
+      if (rows.kind(i) == Kind::closes && !(found.force(i) > 0) &&
           (found.velocity(i) > least || (hint.parts && hint.contact == j)))
         forces_.states()[j].mode = Mode::open;
-      if (problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::holds && found.force(i) != 0)
-        forces_.states()[j].normal_sign = found.force(i) < 0 ? -1 : 1;
+      if (rows.kind(i) == Kind::holds && found.force(i) != 0) forces_.states()[j].normal_sign = found.force(i) < 0 ? -1 : 1;
     }
+    const std::vector<std::size_t>& law_of = rows.contact_of_law();
     for (std::size_t l = 0; l < law_of.size(); ++l) {
       const std::size_t j = law_of[l];
       if (!forces_.is_closed(j) || !(found.speed[l] > least)) continue;
@@ -283,8 +230,8 @@ class Transitions {
     }
     if (again) {
       // Nothing is final: contacts that were opened here may be closed with the other coefficient.
-      for (const std::size_t j : contact_of)
-        if (forces_.states()[j].mode == Mode::open) forces_.states()[j].mode = Mode::closed;
+      for (Index i = 0; i < count; ++i)
+        if (forces_.states()[rows.contact(i)].mode == Mode::open) forces_.states()[rows.contact(i)].mode = Mode::closed;
       return {};
     }
     for (std::size_t l = 0; l < law_of.size(); ++l) {
@@ -302,20 +249,20 @@ class Transitions {
 
   /// Adds a small acceleration towards the change that the crossing announces: at the crossing itself both states obey
   /// the law.
-  void favour(FrictionProblem& problem, const std::vector<std::size_t>& contact_of, const Vector& size,
-              const Hint& hint) const {
+  void favour(ContactProblem& rows, const Vector& size, const Hint& hint) const {
     if (hint.contact == none) return;
+    Vector& q = rows.problem().q;
     const double largest = size.size() > 0 ? size.maxCoeff() : 0;
     std::size_t a = 0;
-    for (Index i = 0; i < problem.q.size(); ++i) {
-      if (contact_of[static_cast<std::size_t>(i)] != hint.contact) continue;
-      if (problem.kinds[static_cast<std::size_t>(i)] == FrictionProblem::Kind::rubs) {
+    for (Index i = 0; i < q.size(); ++i) {
+      if (rows.contact(i) != hint.contact) continue;
+      if (rows.kind(i) == Kind::rubs) {
         const std::array<double, 2>& phi = friction_before_;
         const double length = std::hypot(phi[0], phi[1]);
-        if (hint.slips && length > 0) problem.q(i) -= announced * largest * phi[a] / length;
+        if (hint.slips && length > 0) q(i) -= announced * largest * phi[a] / length;
         ++a;
       } else if (hint.parts) {
-        problem.q(i) += announced * largest;
+        q(i) += announced * largest;
       }
     }
   }
@@ -324,13 +271,17 @@ class Transitions {
   /// The friction of the contact of a Hint before the crossing.
   void set_friction_before(const std::array<double, 2>& phi) { friction_before_ = phi; }
   void set_input_count(std::size_t count) { input_count_ = count; }
+  /// The largest complementarity residual of all problems solved.
+  double largest_residual() const { return largest_residual_; }
 
  private:
+  using Kind = FrictionProblem::Kind;
   static constexpr double negligible = 1e-12, announced = 1e-9;
 
   ContactForces& forces_;
   std::size_t n_;
   std::size_t input_count_ = 0;
+  double largest_residual_ = 0;
   Vector before_;  // rates at which the rows were evaluated
   std::array<double, 2> friction_before_{};
 };
