@@ -94,6 +94,10 @@ std::string watched(const pipeline::Simulation& simulation) {
                 fmt::format("did the work {:.6g}", result.contact_work));
   if (!result.contact_forces_determined)
     out += line("contacts", "the motion does not determine all their forces: those of least norm are shown");
+  constexpr double accurate = 1e-9;  // the accuracy of the laws that docs/theory.md states
+  if (result.contact_residual > accurate)
+    out += line("contacts", fmt::format("at a change, their forces meet the laws of contact and friction to {:.1e} only",
+                                        result.contact_residual));
   if (simulation.derived->mechanics.active.empty()) return out;
   const std::vector<bool>& holonomic = simulation.program.holonomic;
   const bool positions = std::find(holonomic.begin(), holonomic.end(), false) == holonomic.end();
@@ -168,6 +172,7 @@ Json RunReport::json() const {
         {"work", result.projection_work}}},
       {"contact_work", result.contact_work},
       {"contact_forces_determined", result.contact_forces_determined},
+      {"contact_residual", result.contact_residual},
       {"events", events},
       {"kinks", kinks},
       {"solved", scene.solved_notes},

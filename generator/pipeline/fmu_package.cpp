@@ -12,6 +12,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "emit/fmu/compiled_functions.hpp"
 #include "emit/fmu/fmu.hpp"
 #include "emit/fmu/zip.hpp"
 #include "emit/shared_library/build.hpp"
@@ -51,17 +52,6 @@ std::string read_whole(const fs::path& path) {
   text << in.rdbuf();
   if (!in) throw Error("emit", {}, "cannot read " + path.string(), "run the command again", ErrorKind::tool);
   return text.str();
-}
-
-/// The files that a list of dependencies, as compilers write it, names below a folder.
-std::vector<std::string> dependencies_below(const std::string& list, const std::string& folder) {
-  std::vector<std::string> result;
-  std::istringstream words(list);
-  for (std::string word; words >> word;) {
-    if (word.starts_with(folder + "/")) result.push_back(word.substr(folder.size() + 1));
-  }
-  std::sort(result.begin(), result.end());
-  return result;
 }
 
 emit::Recipe cpp_recipe(const std::string& what) {
@@ -161,24 +151,18 @@ std::vector<emit::EmittedFile> make_fmu(const ArchiveContents& contents) {
   equations.remedy = compiler_remedy;
   const emit::BuiltLibrary equations_object = emit::build_library(equations);
 
-  emit::Recipe interface = cpp_recipe("the functions of FMI");  // the same for all models: compiled once
-  interface.name = functions;
-  interface.suffix = ".o";
-  interface.files = first(runtime, functions + ".cpp");
-  interface.flags.insert(interface.flags.end(), {"-I", eigen, "-MD", "-c"});
-  const emit::BuiltLibrary interface_object = emit::build_library(interface);
-
   emit::Recipe whole = cpp_recipe("the description of the model");
   whole.name = name;
   whole.files = first(of_model, name + "_fmu.cpp");
   whole.files.insert(whole.files.end(), runtime.begin(), runtime.end());
+  whole.files.emplace_back("fmi.o", emit::compiled_fmi_functions());
+  whole.objects = {"fmi.o"};
   whole.flags.insert(whole.flags.end(), {"-I", eigen, "-shared", "-s", "-static-libstdc++", "-static-libgcc",
                                          "-Wl,--build-id=none", "-Wl,--exclude-libs,ALL"});
-  whole.libraries = {equations_object.path, interface_object.path, "-lm"};
+  whole.libraries = {equations_object.path, "-lm"};
   const emit::BuiltLibrary binary = emit::build_library(whole);
 
-  fs::path list = interface_object.path;
-  for (const std::string& header : dependencies_below(read_whole(list.replace_extension(".d")), eigen))
+  for (const std::string& header : emit::headers_of_fmi_functions())
     files.push_back({emit::fmu_sources + header, read_whole(fs::path(eigen) / header)});
   files.push_back({fmt::format("binaries/{}/{}.so", platform(contents.version), name), read_whole(binary.path)});
   return {{name + ".fmu", emit::zip(files)}};

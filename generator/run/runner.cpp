@@ -130,6 +130,7 @@ RunResult integrate_scene(const RunRequest& request) {
   result.projection_work = run.projection_work;
   result.contact_work = run.impulse_work;
   result.contact_forces_determined = run.contact_forces_determined;
+  result.contact_residual = run.contact_residual;
   for (std::size_t i = 0; i < run.outputs.size(); ++i) {
     const std::string& name = request.code.output_names[i];
     const bool size = std::any_of(request.conserved.begin(), request.conserved.end(),

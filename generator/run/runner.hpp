@@ -69,6 +69,7 @@ struct RunResult {
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
   double contact_work = 0;                // work of impacts
   bool contact_forces_determined = true;  // eom::hybrid::RunResult
+  double contact_residual = 0;            // eom::hybrid::RunResult
   std::vector<RunEvent> events;
   std::vector<KinkCrossings> kinks;
 };

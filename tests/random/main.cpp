@@ -2,7 +2,7 @@
 // random_mechanisms PROGRAM FROM TO [N]: runs the program on the model of every seed; prints a line for each finding,
 // and the total. Every N-th model (each, if N is omitted) is also compiled, run and linearised.
 // random_mechanisms PROGRAM --found FOLDER: the same for models of earlier findings. Models with names run_* are also
-// run; models with names check_* are only checked, in a tenth of the time.
+// run; models with names check_* are only checked, in a tenth of the time; a run of models with names refused_* is refused.
 // random_mechanisms PROGRAM --print SEED | --shrink SEED: prints the text of a model; prints the smallest text with the
 // same finding.
 #include <algorithm>
@@ -66,14 +66,15 @@ int replay_found(const std::string& program, const std::string& folder, const st
     std::ifstream in(file);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     Limits limits;
-    limits.moved = file.filename().string().starts_with("run_");
+    const bool is_refused = file.filename().string().starts_with("refused_");
+    limits.moved = is_refused || file.filename().string().starts_with("run_");
     limits.only_checked = file.filename().string().starts_with("check_");
     if (limits.only_checked) limits.seconds = seconds_of_a_check;
     const Trial trial = try_model(program, folder, text, limits);
     if (!trial.refusal.empty()) std::printf("%s: refused: %s\n", file.filename().c_str(), trial.refusal.c_str());
     for (const Finding& finding : trial.findings)
       std::printf("%s: %s: %s\n", file.filename().c_str(), finding.command.c_str(), finding.what.c_str());
-    failed += trial.refusal.empty() && trial.findings.empty() ? 0 : 1;
+    failed += trial.refusal.empty() != is_refused && trial.findings.empty() ? 0 : 1;
   }
   std::printf("%zu models of former findings, %zu fail\n", files.size(), failed);
   return failed == 0 && !files.empty() ? 0 : 1;

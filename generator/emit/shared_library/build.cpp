@@ -117,6 +117,7 @@ void compile_into(const fs::path& folder, const Compiler& compiler, const Recipe
   for (const std::string& argument :
        {(folder / recipe.files.front().first).string(), std::string("-o"), library.string()})
     command.push_back(argument);
+  for (const std::string& object : recipe.objects) command.push_back((folder / object).string());
   command.insert(command.end(), recipe.libraries.begin(), recipe.libraries.end());
   const ProcessResult finished = run_process(command, recipe.interrupt);
   if (finished.interrupted)

@@ -20,6 +20,7 @@ struct Recipe {
   std::string suffix = ".so";
   bool uses_own_headers = false;  // the folder of the files is searched for headers, and its path enters no result
   std::vector<std::string> flags, libraries;
+  std::vector<std::string> objects;  // names of object files among the files, which are linked as well
   // The compiler: the value of the first variable that is set, or the first of these that runs.
   std::string language = "C", package = "gcc libc6-dev";
   std::vector<std::string> variables = {"EOMGEN_CC", "CC"}, compilers = {"cc", "gcc"};

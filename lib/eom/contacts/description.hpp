@@ -3,6 +3,7 @@
 // solve for these forces, and which inputs take them (docs/abi.md, "Contacts"). Data only.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -57,6 +58,10 @@ struct Set {
   ImpactOrder order = ImpactOrder::simultaneous;
 
   bool empty() const { return contacts.empty(); }
+  /// Whether a contact can open, so that there are impacts.
+  bool can_open() const {
+    return std::any_of(contacts.begin(), contacts.end(), [](const Description& at) { return at.unilateral; });
+  }
 };
 
 }  // namespace eom::contacts

@@ -13,6 +13,7 @@
 
 #include "eom/contacts/contact_forces.hpp"
 #include "eom/contacts/contact_problem.hpp"
+#include "eom/contacts/thresholds.hpp"
 
 namespace eom::contacts {
 
@@ -22,13 +23,6 @@ struct Hint {
   bool parts = false;  // its normal force vanished
   bool slips = false;  // friction reached its limit
   bool stops = false;  // its slip vanished
-};
-
-/// What may count as zero, by the accuracy of the run.
-struct Tolerances {
-  double speed = 1e-12;  // of gaps and slip
-  double slip = 1e-12;   // in two directions
-  double acceleration = 0;
 };
 
 class Transitions {
@@ -271,7 +265,8 @@ class Transitions {
   /// The friction of the contact of a Hint before the crossing.
   void set_friction_before(const std::array<double, 2>& phi) { friction_before_ = phi; }
   void set_input_count(std::size_t count) { input_count_ = count; }
-  /// The largest complementarity residual of all problems solved.
+  void start() { largest_residual_ = 0; }
+  /// The largest complementarity residual of the problems solved since start().
   double largest_residual() const { return largest_residual_; }
 
  private:

@@ -71,13 +71,14 @@ void transfer(Archive& archive, hybrid::ContactModes::State& state) {
 }
 template <class Archive>
 void transfer(Archive& archive, hybrid::SolvedContacts::State& state) {
-  auto& [states, chatter, largest_speed, largest_gap, largest_terms, largest_force, hits] = state;
+  auto& [states, chatter, sizes, hits] = state;
+  auto& [speed, gap, terms, force] = sizes;
   transfer(archive, states);
   transfer(archive, chatter);
-  transfer(archive, largest_speed);
-  transfer(archive, largest_gap);
-  transfer(archive, largest_terms);
-  transfer(archive, largest_force);
+  transfer(archive, speed);
+  transfer(archive, gap);
+  transfer(archive, terms);
+  transfer(archive, force);
   transfer(archive, hits);
 }
 template <class Archive>

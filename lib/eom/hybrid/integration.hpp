@@ -152,39 +152,6 @@ inline Result Integration::resume(std::span<const double> x, const Options& opti
   return integrate_segments(std::move(total), options, observer, event);
 }
 
-inline Integration::State Integration::save() const {
-  State state{{},
-              {},
-              context_.charts.save(),
-              context_.kinks.largest_values(),
-              context_.rows.integral_constants(),
-              choice_,
-              resets_.taken(),
-              context_.model.sliding_kinks()};
-  if (context_.solved_contacts) state.solved_contacts = context_.solved_contacts->save();
-  if (context_.contacts) state.contacts = context_.contacts->save();
-  return state;
-}
-
-inline void Integration::restore(double t, const std::vector<double>& x, const State& from) {
-  context_.charts.restore(from.charts, x.data());
-  context_.model.set_code(context_.charts.code());
-  context_.model.reset_mode();
-  context_.model.set_charts(context_.charts.second_charts());
-  context_.rows.set_charts(context_.charts.code(), context_.model.mode());
-  context_.rows.set_integral_constants(from.integral_constants);
-  context_.kinks.set_largest_values(from.largest_kink_values);
-  context_.model.set_sliding(from.sliding);
-  if (from.contacts) {
-    context_.contacts->restore(*from.contacts);
-    context_.model.set_contact_mode(from.contacts->mode);
-  }
-  if (from.solved_contacts) context_.solved_contacts->restore(*from.solved_contacts);
-  context_.freeze_branches(t, x.data(), true);
-  choice_ = from.choice;
-  if (!from.samples_taken.empty()) resets_.set_taken(from.samples_taken);
-}
-
 inline void Integration::begin(const Options& options) {
   stopped_ = false;
   jump_ = {};
@@ -391,35 +358,6 @@ inline EventAction Integration::handle_event(const EventPoint& point, const OnEv
   return change_side(point, i - functions.first_kink(), event);
 }
 
-inline EventAction Integration::change_contact(const EventPoint& point, const OnEvent& event) {
-  Crossing crossing = point.crossing;
-  crossing.function -= context_.events.first_contact();
-  const EventAction answer =
-      context_.contacts->handle_event(point.t, point.x, crossing, context_.events.of_contacts(point.functions));
-  context_.model.set_contact_mode(context_.contacts->mode());
-  if (event) {
-    for (const ModeEvent& recorded : context_.contacts->recorded_events())
-      event({recorded.t, recorded.kind, recorded.name}, point.x);
-  }
-  if (answer != EventAction::restart) return answer;
-  context_.freeze_branches(point.t, point.x.data(), true);
-  slow_slip_.set_switch_due(slow_slip_.is_switch_due() || slow_slip_.must_switch(point.t, point.x.data()));
-  return slow_slip_.is_switch_due() ? EventAction::stop : answer;
-}
-
-inline EventAction Integration::change_solved_contact(const EventPoint& point, const OnEvent& event) {
-  Crossing crossing = point.crossing;
-  crossing.function -= context_.events.first_solved_contact();
-  const EventAction answer = context_.solved_contacts->handle_event(
-      point.t, point.x, crossing, context_.events.of_solved_contacts(point.functions));
-  if (event) {
-    for (const SolvedContacts::Change& change : context_.solved_contacts->changes())
-      event({point.t, change.kind, change.name, change.work}, point.x);
-  }
-  if (answer == EventAction::restart) context_.freeze_branches(point.t, point.x.data(), true);
-  return answer;
-}
-
 /// The longest admissible step: infinity, unless the step misses a force that is narrow in the state.
 inline double Integration::longest_step(const StepView& step) {
   if (context_.charts.second_charts() != 0) return std::numeric_limits<double>::infinity();
@@ -431,5 +369,7 @@ inline double Integration::longest_step(const StepView& step) {
 
 }  // namespace eom::hybrid
 
-#include "eom/hybrid/kink_events.hpp"   // the members that change sides of kinks
-#include "eom/hybrid/reset_events.hpp"  // the members that make resets
+#include "eom/hybrid/contact_events.hpp"     // the members that change modes of contacts
+#include "eom/hybrid/integration_state.hpp"  // the members that save and restore
+#include "eom/hybrid/kink_events.hpp"        // the members that change sides of kinks
+#include "eom/hybrid/reset_events.hpp"       // the members that make resets

@@ -65,7 +65,7 @@ inline RunResult run(const Problem& problem) {
   std::optional<StepAdequacy> adequacy;
   const std::vector<Contact>& contacts = problem.code->contacts;
   const bool impacts =
-      (context.solved_contacts && context.solved_contacts->can_open()) ||
+      problem.code->contact_set.can_open() ||
       std::any_of(contacts.begin(), contacts.end(), [](const Contact& contact) { return contact.unilateral; });
   if (problem.estimate && options.fixed_step > 0) adequacy.emplace(impacts);
   const auto observe = [&](const StepView& view) {
@@ -93,6 +93,7 @@ inline RunResult run(const Problem& problem) {
   result.projection_work = context.projection.work();
   result.impulse_work = context.impulse_work;
   result.contact_forces_determined = !context.solved_contacts || context.solved_contacts->forces_determined();
+  result.contact_residual = context.solved_contacts ? context.solved_contacts->largest_residual() : 0;
   result.outputs.resize(problem.code->output_names.size());
   context.outputs(at, end.x.data(), result.outputs);
   result.state = context.own_state(at, end.x);

@@ -49,6 +49,8 @@ struct RunResult {
   double impulse_work = 0;  // of impacts
   /// False if at some time the motion did not determine the forces of closed contacts; those of least norm were taken.
   bool contact_forces_determined = true;
+  /// Largest complementarity residual of the changes of contacts (contacts/friction_problem.hpp).
+  double contact_residual = 0;
   std::vector<Event> events;
   std::vector<std::size_t> kink_crossings;  // per Code::kinks
   std::optional<double> narrow_forces_unresolved_from =

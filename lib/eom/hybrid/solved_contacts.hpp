@@ -38,11 +38,7 @@ class SolvedContacts {
         forces_(*model.contact_forces()),
         transitions_(forces_, problem.n()),
         changed_(std::move(changed)),
-        rtol_(problem.rtol),
-        atol_(problem.atol),
-        largest_gap_(size(), 0.0),
-        largest_terms_(size(), 0.0),
-        largest_force_(size(), 0.0),
+        thresholds_(forces_, problem.n(), problem.rtol, problem.atol),
         hits_(size()) {
     transitions_.set_input_count(problem.inputs.size());
   }
@@ -59,17 +55,16 @@ class SolvedContacts {
   /// The contact without a unique force, where end_outcome() says so.
   std::size_t end_contact() const { return end_contact_; }
 
-  void set_tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
+  void set_tolerances(double rtol, double atol) { thresholds_.set_tolerances(rtol, atol); }
 
   /// Determines the modes of a start. Contacts with `open` are open; the others touch.
   std::vector<Change> start(double t, std::span<double> x, const std::vector<bool>& open) {
     end_.reset();
     changes_.clear();
     chatter_.reset();
-    largest_speed_ = 0;
     forces_.forget();
-    for (std::vector<double>* largest : {&largest_gap_, &largest_terms_, &largest_force_})
-      std::fill(largest->begin(), largest->end(), 0.0);
+    transitions_.start();
+    thresholds_.start();
     std::vector<std::size_t> touching;
     for (std::size_t j = 0; j < size(); ++j) {
       forces_.states()[j] = {};
@@ -79,8 +74,8 @@ class SolvedContacts {
     }
     std::vector<bool> slides(size(), false);
     if (forces_.evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) == 0) {
-      observe(x.data());
-      for (std::size_t j = 0; j < size(); ++j) slides[j] = forces_.slip_speed(j) > negligible_speed();
+      thresholds_.observe(x.data());
+      for (std::size_t j = 0; j < size(); ++j) slides[j] = forces_.slip_speed(j) > thresholds_.negligible_speed();
     }
     meet(t, x, touching, {}, false, {});
     std::erase_if(changes_, [&](const Change& change) {  // what slides already does not begin to
@@ -95,20 +90,16 @@ class SolvedContacts {
   struct State {
     std::vector<contacts::ContactState> states = {};
     modes::ChatterDetector chatter = {};
-    double largest_speed = 0;
-    std::vector<double> largest_gap = {}, largest_terms = {}, largest_force = {};
+    contacts::Thresholds::Sizes sizes = {};
     std::vector<std::size_t> hits = {};
   };
   State save() const {
-    return {forces_.states(), chatter_, largest_speed_, largest_gap_, largest_terms_, largest_force_, hits_};
+    return {forces_.states(), chatter_, thresholds_.sizes(), hits_};
   }
   void restore(const State& from) {
     forces_.states() = from.states;
     chatter_ = from.chatter;
-    largest_speed_ = from.largest_speed;
-    largest_gap_ = from.largest_gap;
-    largest_terms_ = from.largest_terms;
-    largest_force_ = from.largest_force;
+    thresholds_.restore(from.sizes);
     hits_ = from.hits;
     end_.reset();
     model_.forget_contact_forces();
@@ -133,42 +124,30 @@ class SolvedContacts {
     if (forces_.all_open()) {
       if (const int code = forces_.evaluate_rows(t, x, model_.inputs(t)); code != 0) return code;
     }
-    observe(x);
+    thresholds_.observe(x);
     for (std::size_t j = 0; j < size(); ++j) {
       double* const value = g + values_per_contact * j;
       value[0] = value[1] = value[2] = 1;
       const contacts::Description& at = forces_.contact(j);
       if (!forces_.is_closed(j)) {
-        const double rounding = gap_rounding(j, x);
+        const double rounding = thresholds_.gap_rounding(j, x);
         value[0] = forces_.value(at.gap) + rounding;
         // A contact that separates does not meet, though the error of its place may leave it below the surface.
         if (value[0] <= 0 && forces_.rate(at.normal) > 0) value[0] = rounding;
         continue;
       }
-      largest_force_[j] = std::max(largest_force_[j], forces_.force_size(j));
-      const double rounding = force_roundings * largest_force_[j];
+      thresholds_.observe_force(j);
+      const double rounding = thresholds_.force_rounding(j);
       if (at.has_constraint()) value[0] = (at.unilateral ? forces_.lambda(j) : sign(j) * forces_.lambda(j)) + rounding;
       if (at.sticks) value[1] = bound_of_friction(j, rounding);
       value[2] = forces_.margin(j);
     }
-    return std::any_of(g, g + functions(), [](double value) { return std::isnan(value); }) ? code_not_finite : 0;
+    return std::any_of(g, g + functions(), [](double value) { return std::isnan(value); }) ? contacts::ContactForces::code_not_finite : 0;
   }
 
   /// Called at the start of each step.
   void update(const double* x) {
-    constexpr double tolerances = 30;
-    double least = 0;
-    const std::size_t n = problem_.n();
-    for (std::size_t j = 0; j < size(); ++j) {
-      if (forces_.contact(j).slip.size() != 2) continue;
-      for (const contacts::Row& row : forces_.contact(j).slip) {
-        double known = 0;
-        for (std::size_t k = 0; k < row.columns.size(); ++k)
-          known += std::abs(forces_.value(row.slope(k))) * (atol_ + rtol_ * std::abs(x[n + row.columns[k]]));
-        least = std::max(least, tolerances * known);
-      }
-    }
-    forces_.set_least_slip(std::max(negligible_speed(), least));
+    forces_.set_least_slip(thresholds_.least_slip(x));
     for (std::size_t j = 0; j < size(); ++j)
       if (forces_.states()[j].starts && forces_.slip_speed(j) > 2 * forces_.least_slip())
         forces_.states()[j].starts = false;
@@ -253,14 +232,12 @@ class SolvedContacts {
       if (forces_.contact(j).has_constraint() && forces_.is_closed(j)) return true;
     return false;
   }
+  /// The largest complementarity residual of the changes since the start (contacts/friction_problem.hpp).
+  double largest_residual() const { return transitions_.largest_residual(); }
   /// Whether the motion has determined all forces since the start.
   bool forces_determined() const { return !forces_.undetermined(); }
   bool is_open(std::size_t j) const { return !forces_.is_closed(j); }
   const std::string& name(std::size_t j) const { return forces_.contact(j).name; }
-  bool can_open() const {
-    const auto& all = forces_.set().contacts;
-    return std::any_of(all.begin(), all.end(), [](const contacts::Description& at) { return at.unilateral; });
-  }
   /// The gap of a contact that can open, at a state; 0 for the others.
   double gap(double t, const double* x, std::size_t j) {
     if (!forces_.contact(j).unilateral) return 0;
@@ -269,23 +246,8 @@ class SolvedContacts {
   }
 
  private:
-  static constexpr int code_not_finite = 5;
-
   double sign(std::size_t j) const { return forces_.states()[j].normal_sign; }
   bool has_gap_row(std::size_t j) const { return forces_.contact(j).has_constraint() && forces_.is_closed(j); }
-
-  double negligible_speed() const {
-    constexpr double rounding = 1e-15, share = 1e-3, roundings = 1e-14;
-    return std::max({rounding, atol_, std::max(share * rtol_, roundings) * largest_speed_});
-  }
-  contacts::Tolerances tolerances() const {
-    constexpr double roundings = 1e-13;
-    return {negligible_speed(), std::max(negligible_speed(), forces_.least_slip()),
-            roundings * forces_.largest_acceleration()};
-  }
-
-  /// Rounding errors are no events: all bounds are wider by them.
-  static constexpr double force_roundings = 1e-11, speed_roundings = 1e-14;
 
   double bound_of_friction(std::size_t j, double rounding) const {
     const contacts::Description& at = forces_.contact(j);
@@ -296,34 +258,8 @@ class SolvedContacts {
     }
     if (at.slip.size() == 1)
       return static_cast<double>(forces_.states()[j].mode) * forces_.rate(at.slip[0]) +
-             speed_roundings * largest_speed_;
+             thresholds_.speed_rounding();
     return forces_.states()[j].starts ? 1 : forces_.slip_speed(j) - forces_.least_slip();
-  }
-
-  void observe(const double* x) {
-    const double* const rates = x + problem_.n();
-    for (std::size_t j = 0; j < size(); ++j) {
-      const contacts::Description& at = forces_.contact(j);
-      const auto see = [&](const contacts::Row& row) {
-        const double speed = forces_.terms(row, rates);
-        if (std::isfinite(speed)) largest_speed_ = std::max(largest_speed_, speed);
-      };
-      if (at.has_constraint()) {
-        see(at.normal);
-        const double terms = forces_.terms(at.normal, x);
-        if (std::isfinite(terms)) largest_terms_[j] = std::max(largest_terms_[j], terms);
-      }
-      for (const contacts::Row& row : at.slip) see(row);
-      if (at.unilateral && !forces_.is_closed(j) && std::isfinite(forces_.value(at.gap)))
-        largest_gap_[j] = std::max(largest_gap_[j], forces_.value(at.gap));
-    }
-  }
-
-  /// The rounding of a gap, from the sizes of its terms.
-  double gap_rounding(std::size_t j, const double* x) const {
-    constexpr double roundings = 16, of_gaps = 3e-14;
-    const double terms = std::max(largest_terms_[j], forces_.terms(forces_.contact(j).normal, x));
-    return std::max(roundings * std::numeric_limits<double>::epsilon() * terms, of_gaps * largest_gap_[j]);
   }
 
   /// Adds open contacts that meet at the same time.
@@ -333,7 +269,7 @@ class SolvedContacts {
       const contacts::Description& at = forces_.contact(i);
       if (!at.unilateral || forces_.is_closed(i) || std::find(touching.begin(), touching.end(), i) != touching.end())
         continue;
-      if (forces_.value(at.gap) <= gap_rounding(i, x.data()) && forces_.rate(at.normal) < negligible_speed())
+      if (forces_.value(at.gap) <= thresholds_.gap_rounding(i, x.data()) && forces_.rate(at.normal) < thresholds_.negligible_speed())
         touching.push_back(i);
     }
     std::sort(touching.begin(), touching.end());
@@ -348,7 +284,7 @@ class SolvedContacts {
     for (std::size_t i = 0; i < size(); ++i) {
       const contacts::Description& at = forces_.contact(i);
       if (i == j || !at.unilateral || forces_.is_closed(i) || hits_[i] < turns) continue;
-      if (forces_.value(at.gap) > low * largest_gap_[i]) continue;
+      if (forces_.value(at.gap) > low * thresholds_.sizes().gap[i]) continue;
       plastic[i] = true;
       if (std::find(touching.begin(), touching.end(), i) == touching.end()) touching.push_back(i);
     }
@@ -365,12 +301,12 @@ class SolvedContacts {
     for (const std::size_t i : touching) {
       const contacts::Description& at = forces_.contact(i);
       // A contact at rest may approach later in a sequence of impacts.
-      if (!at.unilateral || !(forces_.rate(at.normal) < -negligible_speed())) continue;
+      if (!at.unilateral || !(forces_.rate(at.normal) < -thresholds_.negligible_speed())) continue;
       const double speed = -forces_.rate(at.normal), away = speed * forces_.value(at.restitution);
       const double back = -forces_.acceleration(at.normal, qddot);
-      const double known = roundings * gap_rounding(i, x.data());
+      const double known = roundings * thresholds_.gap_rounding(i, x.data());
       if (away > 0 && back > 0 && away * away / (2 * back) <= known) plastic[i] = true;
-      if (away <= negligible_speed()) plastic[i] = true;
+      if (away <= thresholds_.negligible_speed()) plastic[i] = true;
       meets = true;
       rest = rest && back > 0 && speed * speed / (2 * back) <= known;
     }
@@ -378,7 +314,7 @@ class SolvedContacts {
     for (std::size_t i = 0; i < size(); ++i) {
       const contacts::Description& at = forces_.contact(i);
       if (!at.unilateral || std::find(touching.begin(), touching.end(), i) != touching.end()) continue;
-      if (forces_.value(at.gap) <= roundings * gap_rounding(i, x.data())) touching.push_back(i);
+      if (forces_.value(at.gap) <= roundings * thresholds_.gap_rounding(i, x.data())) touching.push_back(i);
     }
     std::sort(touching.begin(), touching.end());
     return true;
@@ -394,9 +330,9 @@ class SolvedContacts {
     contacts::Transitions::Result result;
     if (forces_.evaluate_rows(t, x.data(), model_.inputs_without_contacts(t)) == 0 && approaches(touching))
       result = transitions_.impact(t, x.data(), model_.inputs_without_contacts(t), touching, plastic, rest,
-                                   tolerances(), hit);
+                                   thresholds_.tolerances(), hit);
     if (result.outcome == contacts::Transitions::Outcome::done)
-      result = transitions_.decide(t, x.data(), model_.inputs_without_contacts(t), touching, hint, tolerances());
+      result = transitions_.decide(t, x.data(), model_.inputs_without_contacts(t), touching, hint, thresholds_.tolerances());
     model_.forget_contact_forces();
     if (result.outcome != contacts::Transitions::Outcome::done) {
       using Result = contacts::Transitions::Outcome;
@@ -413,7 +349,7 @@ class SolvedContacts {
   bool approaches(const std::vector<std::size_t>& touching) const {
     return std::any_of(touching.begin(), touching.end(), [&](std::size_t j) {
       const contacts::Description& at = forces_.contact(j);
-      return at.unilateral && forces_.rate(at.normal) < -negligible_speed();
+      return at.unilateral && forces_.rate(at.normal) < -thresholds_.negligible_speed();
     });
   }
 
@@ -450,10 +386,7 @@ class SolvedContacts {
   contacts::ContactForces& forces_;
   contacts::Transitions transitions_;
   Changed changed_;
-  double rtol_, atol_;
-  double largest_speed_ = 0;
-  std::vector<double> largest_gap_;                    // of open contacts
-  std::vector<double> largest_terms_, largest_force_;  // sums of the terms of gaps; of the forces of closed contacts
+  contacts::Thresholds thresholds_;
   std::vector<std::size_t> hits_;                      // number of impacts
   modes::ChatterDetector chatter_;
   std::vector<Change> changes_;  // of the last event

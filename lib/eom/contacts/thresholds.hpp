@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// What counts as zero at contacts: rounding errors, and errors of the run, are no events. In: the states of a run. Out:
+// the errors of gaps, speeds and forces, from the largest terms that were seen.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "eom/contacts/contact_forces.hpp"
+
+namespace eom::contacts {
+
+/// What may count as zero in one decision.
+struct Tolerances {
+  double speed = 1e-12;  // of gaps and slip
+  double slip = 1e-12;   // in two directions
+  double acceleration = 0;
+};
+
+class Thresholds {
+ public:
+  /// Sizes since the start of a run. Terms: the sums of the absolute values of the terms of a gap.
+  struct Sizes {
+    double speed = 0;
+    std::vector<double> gap = {}, terms = {}, force = {};  // per contact; gaps of open ones
+  };
+
+  Thresholds(const ContactForces& forces, std::size_t coordinates, double rtol, double atol)
+      : forces_(forces), n_(coordinates), rtol_(rtol), atol_(atol) {
+    start();
+  }
+
+  void start() {
+    const std::vector<double> zeros(forces_.set().contacts.size(), 0.0);
+    sizes_ = {0, zeros, zeros, zeros};
+  }
+  void set_tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
+  const Sizes& sizes() const { return sizes_; }
+  void restore(const Sizes& from) { sizes_ = from; }
+
+  /// The rows of the forces are evaluated at the state x.
+  void observe(const double* x) {
+    const double* const rates = x + n_;
+    for (std::size_t j = 0; j < sizes_.gap.size(); ++j) {
+      const Description& at = forces_.contact(j);
+      const auto observe_speed = [&](const Row& row) { grow(sizes_.speed, forces_.terms(row, rates)); };
+      if (at.has_constraint()) {
+        observe_speed(at.normal);
+        grow(sizes_.terms[j], forces_.terms(at.normal, x));
+      }
+      for (const Row& row : at.slip) observe_speed(row);
+      if (at.unilateral && !forces_.is_closed(j)) grow(sizes_.gap[j], forces_.value(at.gap));
+    }
+  }
+  /// The forces are solved for.
+  void observe_force(std::size_t j) { grow(sizes_.force[j], forces_.force_size(j)); }
+
+  double negligible_speed() const {
+    constexpr double rounding = 1e-15, share = 1e-3, roundings = 1e-14;
+    return std::max({rounding, atol_, std::max(share * rtol_, roundings) * sizes_.speed});
+  }
+  double speed_rounding() const { return 1e-14 * sizes_.speed; }
+  double force_rounding(std::size_t j) const { return 1e-11 * sizes_.force[j]; }
+  double gap_rounding(std::size_t j, const double* x) const {
+    constexpr double roundings = 16, of_gaps = 3e-14;
+    const double terms = std::max(sizes_.terms[j], forces_.terms(forces_.contact(j).normal, x));
+    return std::max(roundings * std::numeric_limits<double>::epsilon() * terms, of_gaps * sizes_.gap[j]);
+  }
+  /// The least slip in two directions whose direction is known at the state x.
+  double least_slip(const double* x) const {
+    constexpr double tolerances = 30;
+    double least = negligible_speed();
+    for (std::size_t j = 0; j < sizes_.gap.size(); ++j) {
+      if (forces_.contact(j).slip.size() != 2) continue;
+      for (const Row& row : forces_.contact(j).slip) {
+        double known = 0;
+        for (std::size_t k = 0; k < row.columns.size(); ++k)
+          known += std::abs(forces_.value(row.slope(k))) * (atol_ + rtol_ * std::abs(x[n_ + row.columns[k]]));
+        least = std::max(least, tolerances * known);
+      }
+    }
+    return least;
+  }
+  Tolerances tolerances() const {
+    constexpr double roundings = 1e-13;
+    return {negligible_speed(), std::max(negligible_speed(), forces_.least_slip()),
+            roundings * forces_.largest_acceleration()};
+  }
+
+ private:
+  static void grow(double& largest, double value) {
+    if (std::isfinite(value)) largest = std::max(largest, value);
+  }
+
+  const ContactForces& forces_;
+  std::size_t n_;
+  double rtol_, atol_;
+  Sizes sizes_;
+};
+
+}  // namespace eom::contacts
