@@ -96,8 +96,9 @@ std::string watched(const pipeline::Simulation& simulation) {
     out += line("contacts", "the motion does not determine all their forces: those of least norm are shown");
   constexpr double accurate = 1e-9;  // the accuracy of the laws that docs/theory.md states
   if (result.contact_residual > accurate)
-    out += line("contacts", fmt::format("at a change, their forces meet the laws of contact and friction to {:.1e} only",
-                                        result.contact_residual));
+    out +=
+        line("contacts", fmt::format("at a change, their forces meet the laws of contact and friction to {:.1e} only",
+                                     result.contact_residual));
   if (simulation.derived->mechanics.active.empty()) return out;
   const std::vector<bool>& holonomic = simulation.program.holonomic;
   const bool positions = std::find(holonomic.begin(), holonomic.end(), false) == holonomic.end();

@@ -265,8 +265,8 @@ py::dict linearize(const Model& model, const std::string& scene, const NumbersBy
   return result;
 }
 
-py::dict equilibria(const Model& model, const std::string& scene, const NumbersByName& parameters, const NumbersByName& hold,
-                    std::size_t starts, std::uint64_t seed, const Callbacks& callbacks) {
+py::dict equilibria(const Model& model, const std::string& scene, const NumbersByName& parameters,
+                    const NumbersByName& hold, std::size_t starts, std::uint64_t seed, const Callbacks& callbacks) {
   const SteadyOptions options{scene, parameters, hold, starts, seed};
   const SteadyMotions found =
       call_library(callbacks, [&](auto& c) { return model.steady_motions(options, c.control()); });

@@ -81,3 +81,21 @@ TEST_CASE("friction problem: held rows are eliminated, and friction may hang on 
   CHECK(forces.force(1) == doctest::Approx(-1.5));
   CHECK(forces.velocity(1) == doctest::Approx(0.5));
 }
+
+TEST_CASE("friction problem: the residual is that of the laws, not of the method") {
+  const FrictionProblem problem = particle(Eigen::Vector3d(-2, 3, 4), 0.5);
+  FrictionForces slides = solve_friction_problem(problem);
+  REQUIRE(slides.found);
+  CHECK(slides.residual < 1e-13);  // the iteration ends there
+  CHECK(eom::contacts::complementarity_residual(problem, slides) == slides.residual);
+  slides.force(1) += 0.01;  // no longer against the slip
+  slides.velocity = problem.G * slides.force + problem.q;
+  CHECK(eom::contacts::complementarity_residual(problem, slides) > 1e-3);
+  // A row that separates without a force, and one that is pressed together.
+  FrictionProblem gaps{Eigen::Matrix2d::Identity(), Eigen::Vector2d(1, -2), {Kind::closes, Kind::closes}, {}};
+  FrictionForces forces = solve_friction_problem(gaps);
+  CHECK(forces.residual < 1e-12);  // rows are softened by 1e-13
+  forces.force(0) = 0.1;           // holds what separates
+  forces.velocity = gaps.G * forces.force + gaps.q;
+  CHECK(eom::contacts::complementarity_residual(gaps, forces) == doctest::Approx(0.05));
+}

@@ -2,9 +2,9 @@
 // random_mechanisms PROGRAM FROM TO [N]: runs the program on the model of every seed; prints a line for each finding,
 // and the total. Every N-th model (each, if N is omitted) is also compiled, run and linearised.
 // random_mechanisms PROGRAM --found FOLDER: the same for models of earlier findings. Models with names run_* are also
-// run; models with names check_* are only checked, in a tenth of the time; a run of models with names refused_* is refused.
-// random_mechanisms PROGRAM --print SEED | --shrink SEED: prints the text of a model; prints the smallest text with the
-// same finding.
+// run; models with names check_* are only checked, in a tenth of the time; a run of models with names refused_* is
+// refused. random_mechanisms PROGRAM --print SEED | --shrink SEED: prints the text of a model; prints the smallest text
+// with the same finding.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -32,7 +32,8 @@ std::string_view compiled_fmi_functions() {
 
 std::vector<std::string> headers_of_fmi_functions() {
   // A list of dependencies as compilers write it, with absolute paths of the machine that compiled.
-  const std::string_view list(eomgen_fmi_headers, static_cast<std::size_t>(eomgen_fmi_headers_end - eomgen_fmi_headers));
+  const std::string_view list(eomgen_fmi_headers,
+                              static_cast<std::size_t>(eomgen_fmi_headers_end - eomgen_fmi_headers));
   std::istringstream words{std::string(list)};
   std::set<std::string> result;
   for (std::string word; words >> word;) {

@@ -20,8 +20,7 @@ class ContactProblem {
   using Kind = FrictionProblem::Kind;
 
   /// The rows and the free accelerations of `forces` are evaluated at (t, x); u has no contact forces.
-  ContactProblem(ContactForces& forces, double t, const double* x, double* u)
-      : forces_(forces), t_(t), x_(x), u_(u) {}
+  ContactProblem(ContactForces& forces, double t, const double* x, double* u) : forces_(forces), t_(t), x_(x), u_(u) {}
 
   /// A row with a unit force. Returns its index.
   Index add_row(std::size_t j, const Row& row, const ContactForces::Pattern& pattern, Kind kind) {

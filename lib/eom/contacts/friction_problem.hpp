@@ -43,8 +43,41 @@ struct FrictionForces {
   bool found = false;
   Eigen::VectorXd force, velocity;  // per row
   std::vector<double> speed;        // per law: of the slip
-  double residual = 0;              // largest violation of the laws, as a share of the forces; see residual_of()
+  double residual = 0;  // largest violation of the laws, as a share of the forces; see complementarity_residual()
 };
+
+/// How far the forces and velocities of all rows are from the laws: the largest change of a force in one step of
+/// projection, with the velocities divided by their own responses, as a share of the largest force. It is 0 exactly
+/// for solutions, and does not depend on the method that found them.
+inline double complementarity_residual(const FrictionProblem& p, const FrictionForces& forces) {
+  double largest = 0;
+  double size = forces.force.size() > 0 ? forces.force.lpNorm<Eigen::Infinity>() : 0;
+  const auto step = [&](Eigen::Index row, double response) {
+    size = std::max(size, std::abs(p.q(row)) / response);
+    return forces.velocity(row) / response;
+  };
+  for (Eigen::Index i = 0; i < p.q.size(); ++i) {
+    const FrictionProblem::Kind kind = p.kinds[static_cast<std::size_t>(i)];
+    const double response = std::abs(p.G(i, i));
+    if (kind == FrictionProblem::Kind::rubs || !(response > 0)) continue;
+    const double change = step(i, response);
+    const bool held = kind == FrictionProblem::Kind::holds;
+    largest = std::max(largest, std::abs(held ? change : std::min(forces.force(i), change)));
+  }
+  for (const FrictionLaw& law : p.laws) {
+    double slowest = 0, square = 0, moved = 0;
+    for (const Eigen::Index row : law.tangents) slowest = std::max(slowest, p.G(row, row));
+    if (!(slowest > 0)) continue;
+    const double normal = law.normal < 0 ? std::abs(law.given_normal) : law.normal_sign * forces.force(law.normal);
+    const double most = law.coefficient * std::max(0.0, normal);
+    for (const Eigen::Index row : law.tangents) square += std::pow(forces.force(row) - step(row, slowest), 2);
+    const double factor = square > most * most ? most / std::sqrt(square) : 1;
+    for (const Eigen::Index row : law.tangents)
+      moved = std::max(moved, std::abs(factor * (forces.force(row) - step(row, slowest)) - forces.force(row)));
+    largest = std::max(largest, moved);
+  }
+  return size > 0 ? largest / size : 0;
+}
 
 namespace friction {
 
@@ -69,7 +102,7 @@ class Solver {
     }
     const auto plane = [](const FrictionLaw& law) { return law.tangents.size() == 2; };
     if (result.found && std::any_of(p_.laws.begin(), p_.laws.end(), plane)) refine(result);
-    if (result.found) result.residual = residual_of(result);
+    if (result.found) result.residual = complementarity_residual(p_, result);
     return result;
   }
 
@@ -216,39 +249,6 @@ class Solver {
       if (moved <= enough * size) break;
     }
     result = complete(y);
-  }
-
-  /// How far the forces and velocities of all rows are from the laws: the largest change of a force in one step of
-  /// projection, with the velocities divided by their own responses, as a share of the largest force. It is 0 exactly
-  /// for solutions, and does not depend on the method that found them.
-  double residual_of(const FrictionForces& forces) const {
-    double largest = 0;
-    double size = forces.force.size() > 0 ? forces.force.lpNorm<Eigen::Infinity>() : 0;
-    const auto step = [&](Index row, double response) {
-      size = std::max(size, std::abs(p_.q(row)) / response);
-      return forces.velocity(row) / response;
-    };
-    for (Index i = 0; i < p_.q.size(); ++i) {
-      const FrictionProblem::Kind kind = p_.kinds[static_cast<std::size_t>(i)];
-      const double response = std::abs(p_.G(i, i));
-      if (kind == FrictionProblem::Kind::rubs || !(response > 0)) continue;
-      const double change = step(i, response);
-      const bool held = kind == FrictionProblem::Kind::holds;
-      largest = std::max(largest, std::abs(held ? change : std::min(forces.force(i), change)));
-    }
-    for (const FrictionLaw& law : p_.laws) {
-      double slowest = 0, square = 0, moved = 0;
-      for (const Index row : law.tangents) slowest = std::max(slowest, p_.G(row, row));
-      if (!(slowest > 0)) continue;
-      const double normal = law.normal < 0 ? std::abs(law.given_normal) : law.normal_sign * forces.force(law.normal);
-      const double most = law.coefficient * std::max(0.0, normal);
-      for (const Index row : law.tangents) square += std::pow(forces.force(row) - step(row, slowest), 2);
-      const double factor = square > most * most ? most / std::sqrt(square) : 1;
-      for (const Index row : law.tangents)
-        moved = std::max(moved, std::abs(factor * (forces.force(row) - step(row, slowest)) - forces.force(row)));
-      largest = std::max(largest, moved);
-    }
-    return size > 0 ? largest / size : 0;
   }
 
   template <class Set>

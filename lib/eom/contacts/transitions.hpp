@@ -110,8 +110,8 @@ class Transitions {
       const bool acts =
           at.unilateral ? std::find(acting.begin(), acting.end(), j) != acting.end() : at.has_constraint();
       if (!acts) continue;
-      const Index normal =
-          rows.add_row(j, at.normal, forces_.normal_pattern(j, false), at.unilateral && !rest ? Kind::closes : Kind::holds);
+      const Index normal = rows.add_row(j, at.normal, forces_.normal_pattern(j, false),
+                                        at.unilateral && !rest ? Kind::closes : Kind::holds);
       if (law != ImpactLaw::newton && at.sticks && !rest)
         rows.add_friction(j, normal, forces_.value(at.dynamic_coefficient));
     }
@@ -121,8 +121,7 @@ class Transitions {
     Vector approach(count), restitution(count);
     for (Index i = 0; i < count; ++i) {
       approach(i) = speed(rows.row(i), x);
-      const bool bounces =
-          rows.kind(i) == Kind::closes && !plastic[rows.contact(i)] && approach(i) < -tolerances.speed;
+      const bool bounces = rows.kind(i) == Kind::closes && !plastic[rows.contact(i)] && approach(i) < -tolerances.speed;
       restitution(i) = bounces ? forces_.value(forces_.contact(rows.contact(i)).restitution) : 0;
       const bool of_speeds = law != ImpactLaw::poisson;
       problem.q(i) = approach(i) * (of_speeds ? 1 + restitution(i) : 1);
@@ -138,8 +137,7 @@ class Transitions {
       if (!more.found) return {Outcome::no_solution, 0, rows.fastest_contact()};
       total += share + more.force;
     }
-    for (Index k = 0; k < count; ++k)
-      Eigen::Map<Vector>(x + n_, static_cast<Index>(n_)) += total(k) * rows.response(k);
+    for (Index k = 0; k < count; ++k) Eigen::Map<Vector>(x + n_, static_cast<Index>(n_)) += total(k) * rows.response(k);
     for (Index i = 0; i < count; ++i) {
       const std::size_t j = rows.contact(i);
       if (rows.kind(i) != Kind::rubs && forces_.contact(j).unilateral && approach(i) < -tolerances.speed &&
@@ -190,7 +188,8 @@ class Transitions {
       const Description& at = forces_.contact(j);
       Index normal = -1;
       if (at.has_constraint())
-        normal = rows.add_row(j, at.normal, forces_.normal_pattern(j, true), at.unilateral ? Kind::closes : Kind::holds);
+        normal =
+            rows.add_row(j, at.normal, forces_.normal_pattern(j, true), at.unilateral ? Kind::closes : Kind::holds);
       if (forces_.is_sticking(j))
         rows.add_friction(j, normal, forces_.value(broken[j] ? at.dynamic_coefficient : at.static_coefficient));
     }
@@ -200,8 +199,8 @@ class Transitions {
     Vector size(count);
     for (Index i = 0; i < count; ++i) {
       problem.q(i) = forces_.acceleration(rows.row(i), forces_.free_accelerations());
-      size(i) = std::abs(forces_.value(rows.row(i).bias())) +
-                forces_.terms(rows.row(i), forces_.free_accelerations().data());
+      size(i) =
+          std::abs(forces_.value(rows.row(i).bias())) + forces_.terms(rows.row(i), forces_.free_accelerations().data());
     }
     favour(rows, size, hint);
     const FrictionForces found = solve(problem);
@@ -212,7 +211,8 @@ class Transitions {
       if (rows.kind(i) == Kind::closes && !(found.force(i) > 0) &&
           (found.velocity(i) > least || (hint.parts && hint.contact == j)))
         forces_.states()[j].mode = Mode::open;
-      if (rows.kind(i) == Kind::holds && found.force(i) != 0) forces_.states()[j].normal_sign = found.force(i) < 0 ? -1 : 1;
+      if (rows.kind(i) == Kind::holds && found.force(i) != 0)
+        forces_.states()[j].normal_sign = found.force(i) < 0 ? -1 : 1;
     }
     const std::vector<std::size_t>& law_of = rows.contact_of_law();
     for (std::size_t l = 0; l < law_of.size(); ++l) {

@@ -93,9 +93,7 @@ class SolvedContacts {
     contacts::Thresholds::Sizes sizes = {};
     std::vector<std::size_t> hits = {};
   };
-  State save() const {
-    return {forces_.states(), chatter_, thresholds_.sizes(), hits_};
-  }
+  State save() const { return {forces_.states(), chatter_, thresholds_.sizes(), hits_}; }
   void restore(const State& from) {
     forces_.states() = from.states;
     chatter_ = from.chatter;
@@ -142,7 +140,9 @@ class SolvedContacts {
       if (at.sticks) value[1] = bound_of_friction(j, rounding);
       value[2] = forces_.margin(j);
     }
-    return std::any_of(g, g + functions(), [](double value) { return std::isnan(value); }) ? contacts::ContactForces::code_not_finite : 0;
+    return std::any_of(g, g + functions(), [](double value) { return std::isnan(value); })
+               ? contacts::ContactForces::code_not_finite
+               : 0;
   }
 
   /// Called at the start of each step.
@@ -257,8 +257,7 @@ class SolvedContacts {
              rounding;
     }
     if (at.slip.size() == 1)
-      return static_cast<double>(forces_.states()[j].mode) * forces_.rate(at.slip[0]) +
-             thresholds_.speed_rounding();
+      return static_cast<double>(forces_.states()[j].mode) * forces_.rate(at.slip[0]) + thresholds_.speed_rounding();
     return forces_.states()[j].starts ? 1 : forces_.slip_speed(j) - forces_.least_slip();
   }
 
@@ -269,7 +268,8 @@ class SolvedContacts {
       const contacts::Description& at = forces_.contact(i);
       if (!at.unilateral || forces_.is_closed(i) || std::find(touching.begin(), touching.end(), i) != touching.end())
         continue;
-      if (forces_.value(at.gap) <= thresholds_.gap_rounding(i, x.data()) && forces_.rate(at.normal) < thresholds_.negligible_speed())
+      if (forces_.value(at.gap) <= thresholds_.gap_rounding(i, x.data()) &&
+          forces_.rate(at.normal) < thresholds_.negligible_speed())
         touching.push_back(i);
     }
     std::sort(touching.begin(), touching.end());
@@ -332,7 +332,8 @@ class SolvedContacts {
       result = transitions_.impact(t, x.data(), model_.inputs_without_contacts(t), touching, plastic, rest,
                                    thresholds_.tolerances(), hit);
     if (result.outcome == contacts::Transitions::Outcome::done)
-      result = transitions_.decide(t, x.data(), model_.inputs_without_contacts(t), touching, hint, thresholds_.tolerances());
+      result =
+          transitions_.decide(t, x.data(), model_.inputs_without_contacts(t), touching, hint, thresholds_.tolerances());
     model_.forget_contact_forces();
     if (result.outcome != contacts::Transitions::Outcome::done) {
       using Result = contacts::Transitions::Outcome;
@@ -387,7 +388,7 @@ class SolvedContacts {
   contacts::Transitions transitions_;
   Changed changed_;
   contacts::Thresholds thresholds_;
-  std::vector<std::size_t> hits_;                      // number of impacts
+  std::vector<std::size_t> hits_;  // number of impacts
   modes::ChatterDetector chatter_;
   std::vector<Change> changes_;  // of the last event
   std::optional<Outcome> end_;
