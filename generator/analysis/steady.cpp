@@ -8,7 +8,6 @@
 
 #include "derive/imposition.hpp"
 #include "numeric/numbers.hpp"
-#include "pipeline/charts.hpp"
 #include "pipeline/simulate.hpp"
 #include "symbolic/calculus.hpp"
 
@@ -245,30 +244,20 @@ NonsmoothTerm find_nonsmooth_term(const SteadyProblem& p, const linear::State<Pr
   return {model.where(model.scene(p.scene.name).span), "the equations of motion have"};
 }
 
-SingularChart find_singular_chart(const SteadyProblem& p, const linear::State<Precise>& z) {
+model::SingularChart find_singular_chart(const SteadyProblem& p, const linear::State<Precise>& z) {
   constexpr double nearest = 1e-8;  // of the sine or cosine: half of its digits are lost
   const auto& free = p.system().free;
-  for (const model::ChartPair& chart : pipeline::list_charts(p.derived->mechanics)) {
-    if (chart.guarded >= chart.angles.size()) continue;
-    const std::uint32_t coordinate = chart.angles[chart.guarded];
+  const auto value_of = [&](std::uint32_t coordinate) -> std::optional<double> {
     const auto place = std::find(free.begin(), free.end(), coordinate) - free.begin();
-    const double angle = linear::to_double(z[static_cast<std::size_t>(place)]);
-    if (place == std::ssize(free) || std::abs(chart.at_sine ? std::sin(angle) : std::cos(angle)) > nearest) continue;
-    const bool rotation = chart.kind == model::ChartPair::Kind::rotation;
-    const std::string whose = rotation ? chart.of : chart.of.substr(0, chart.of.find('.'));
-    const std::string at = fmt::format("{} = {:.6g}", p.derived->model.coordinates[coordinate].name, angle);
-    if (!rotation)
-      return {fmt::format("the {} coordinates of '{}' are singular at {}", chart.own, whose, at),
-              fmt::format("give '{}' a position of another kind, such as cartesian", whose)};
-    return {fmt::format("the angles {} of '{}' are singular at {}", chart.own, whose, at),
-            fmt::format("give '{}' another rotation, such as euler = \"{}\" or euler_parameters", whose, chart.second)};
-  }
-  return {};
+    if (place == std::ssize(free)) return std::nullopt;
+    return linear::to_double(z[static_cast<std::size_t>(place)]);
+  };
+  return model::find_singular_chart(p.derived->model, value_of, nearest);
 }
 
 linear::Linearisation linearise_at_state(const SteadyProblem& p, std::uint64_t seed) {
   const work::Stage stage("linearising");
-  if (const SingularChart chart = find_singular_chart(p, p.z)) {
+  if (const model::SingularChart chart = find_singular_chart(p, p.z)) {
     const model::Model& model = p.derived->model;
     throw Error("linearize", model.where(model.scene(p.scene.name).span),
                 fmt::format("the equations have no slope at this state: {}", chart.what), chart.remedy);

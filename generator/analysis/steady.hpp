@@ -8,6 +8,7 @@
 #include <string>
 
 #include "linear/linearise.hpp"
+#include "model/charts.hpp"
 #include "pipeline/pipeline.hpp"
 
 namespace eomgen::analysis {
@@ -39,13 +40,8 @@ struct NonsmoothTerm {
 };
 NonsmoothTerm find_nonsmooth_term(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
 
-/// "the angles 321 of 'S' are singular at be = 1.5708" and what to do, if a chart of the model is singular at a state:
-/// the equations divide by a number that has no correct digit there. Empty if none is.
-struct SingularChart {
-  std::string what, remedy;
-  explicit operator bool() const { return !what.empty(); }
-};
-SingularChart find_singular_chart(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
+/// A chart of the model that is singular at a state: the equations divide by a number without a correct digit there.
+model::SingularChart find_singular_chart(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
 
 /// Linearises at the state of the problem. Throws Error{stage "linearize"} if a term is not differentiable there, or if
 /// the coordinates are singular.

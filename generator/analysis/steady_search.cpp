@@ -263,7 +263,7 @@ void classify_stability(SteadyMotions& result, const SteadyRequest& request, con
     note_singular_chart(result, z);
   }
   for (const linear::FoundPoint& point : result.search.points) {
-    if (const SingularChart chart = find_singular_chart(p, point.z)) {
+    if (const model::SingularChart chart = find_singular_chart(p, point.z)) {
       note_singular_chart(result, point.z);
       result.search.record_failure(chart.what, point.z);
       continue;

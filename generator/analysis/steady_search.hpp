@@ -36,7 +36,7 @@ struct SteadyMotions {
   linear::SearchResult search;
   std::vector<HeldValue> held;
   std::vector<SteadyMotion> points;
-  SingularChart singular;  // the first one where a start ended: motions there are not examined
+  model::SingularChart singular;  // the first one where a start ended: motions there are not examined
 };
 
 /// Throws Error{stage "equilibria"} if the equations depend on t, or for a name that cannot be held.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_set>
 
 #include "model/mentions.hpp"
@@ -176,6 +177,26 @@ std::vector<ChartPair> charts(const Model& model) {
     result.push_back(std::move(chart));
   }
   return result;
+}
+
+SingularChart find_singular_chart(const Model& model,
+                                  const std::function<std::optional<double>(std::uint32_t coordinate)>& value_of,
+                                  double distance) {
+  for (const ChartPair& chart : charts(model)) {
+    if (chart.guarded >= chart.angles.size()) continue;
+    const std::uint32_t coordinate = chart.angles[chart.guarded];
+    const std::optional<double> angle = value_of(coordinate);
+    if (!angle || std::abs(chart.at_sine ? std::sin(*angle) : std::cos(*angle)) > distance) continue;
+    const bool rotation = chart.kind == ChartPair::Kind::rotation;
+    const std::string whose = rotation ? chart.of : chart.of.substr(0, chart.of.find('.'));
+    const std::string at = fmt::format("{} = {:.6g}", model.coordinates[coordinate].name, *angle);
+    if (!rotation)
+      return {fmt::format("the {} coordinates of '{}' are singular at {}", chart.own, whose, at),
+              fmt::format("give '{}' a position of another kind, such as cartesian", whose)};
+    return {fmt::format("the angles {} of '{}' are singular at {}", chart.own, whose, at),
+            fmt::format("give '{}' another rotation, such as euler = \"{}\" or euler_parameters", whose, chart.second)};
+  }
+  return {};
 }
 
 Model in_second_charts(const Model& model, const std::vector<ChartPair>& charts, unsigned mask) {

@@ -9,6 +9,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +38,17 @@ struct ChartPair {
 
 /// All charts of a model with a singularity, rotations first, including those that cannot be exchanged.
 std::vector<ChartPair> charts(const Model& model);
+
+/// "the angles 321 of 'S' are singular at be = 1.5708" and what to do.
+struct SingularChart {
+  std::string what, remedy;
+  explicit operator bool() const { return !what.empty(); }
+};
+/// The first chart whose guarded sine or cosine is at most `distance` from 0. `value_of`: the value of a coordinate,
+/// none if it is not known. Empty if there is none.
+SingularChart find_singular_chart(const Model& model,
+                                  const std::function<std::optional<double>(std::uint32_t coordinate)>& value_of,
+                                  double distance);
 
 /// The model with the second charts of those whose bit in `mask` is set: the same names, other meanings of the angles.
 /// Scenes still refer to the own charts.

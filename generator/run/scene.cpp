@@ -10,8 +10,10 @@
 #include <eom/hybrid/samples.hpp>
 #include <eom/hybrid/time_analysis.hpp>
 #include <limits>
+#include <optional>
 
 #include "derive/imposition.hpp"
+#include "model/charts.hpp"
 #include "numeric/dense.hpp"
 #include "numeric/numbers.hpp"
 #include "run/bind.hpp"
@@ -208,6 +210,11 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
     regular = numeric::symmetric_eigenvalues(M)[0] > smallest_eigenvalue;
   }
   if (regular) return;
+  constexpr double near = 1e-6;  // of a sine or cosine: its square is lost in M
+  if (const model::SingularChart chart = model::find_singular_chart(
+          *m.model, [&](std::uint32_t coordinate) -> std::optional<double> { return start.q[coordinate]; }, near))
+    throw Error("scene", m.model->where(scene.span), "the start is a singular configuration: " + chart.what,
+                "start elsewhere, or " + chart.remedy);
   throw Error("scene", m.model->where(scene.span), "the start is a singular configuration: the coordinates fail there",
               "start elsewhere, or choose other coordinates or parameters; `check` lists the singular sets");
 }
