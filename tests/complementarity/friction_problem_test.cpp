@@ -99,3 +99,20 @@ TEST_CASE("friction problem: the residual is that of the laws, not of the method
   forces.velocity = gaps.G * forces.force + gaps.q;
   CHECK(eom::contacts::complementarity_residual(gaps, forces) == doctest::Approx(0.05));
 }
+
+TEST_CASE("friction problem: friction just above its limit slides, whatever the units") {
+  // The sleeve of a woodpecker toy: grams and millimetres, so that a force of 0.1 N belongs to 100 m/s^2.
+  for (const double unit : {1.0, 1e-6, 1e6}) {
+    CAPTURE(unit);
+    FrictionProblem sleeve = particle(Eigen::Vector2d(0, 0), 0.3);
+    sleeve.G << 1092.45, -1035.52, -1035.52, 1448.97;
+    sleeve.G *= unit;
+    const Eigen::Vector2d sticking(0.144777, 0.3 * 0.144777 * (1 + 2e-9));  // what would hold it
+    sleeve.q = -sleeve.G * sticking;
+    const FrictionForces forces = solve_friction_problem(sleeve);
+    REQUIRE(forces.found);
+    CHECK(forces.residual < 1e-12);
+    CHECK(forces.velocity(1) < -1e-8 * unit);
+    CHECK(forces.force(1) <= 0.3 * forces.force(0) * (1 + 1e-12));
+  }
+}

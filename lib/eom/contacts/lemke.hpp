@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -104,15 +105,39 @@ inline double violation(const Eigen::MatrixXd& M, const Eigen::VectorXd& q, cons
 
 }  // namespace lemke
 
-/// The rows of M and q are scaled together, which changes no solution.
-inline ComplementaritySolution solve_complementarity(Eigen::MatrixXd M, Eigen::VectorXd q) {
+namespace lemke {
+
+/// Positive factors d such that the rows and columns of diag(d) M diag(d) have largest entries near 1 (Ruiz 2001).
+/// They are powers of 2, so that scaling makes no rounding errors.
+inline Eigen::VectorXd equilibrate(Eigen::MatrixXd M) {
+  constexpr int rounds = 8;  // each takes the square root of what is left
+  Eigen::VectorXd factors = Eigen::VectorXd::Ones(M.rows());
+  for (int round = 0; round < rounds; ++round) {
+    Eigen::VectorXd step(M.rows());
+    for (Eigen::Index i = 0; i < M.rows(); ++i) {
+      const double size = std::max(M.row(i).lpNorm<Eigen::Infinity>(), M.col(i).lpNorm<Eigen::Infinity>());
+      step(i) = size > 0 ? std::exp2(std::round(-std::log2(size) / 2)) : 1;
+    }
+    M = step.asDiagonal() * M * step.asDiagonal();
+    factors = factors.cwiseProduct(step);
+  }
+  return factors;
+}
+
+}  // namespace lemke
+
+/// Positive factors d for w and 1/d for z change no solution. With them, and with q scaled to 1, the tolerances of the
+/// pivoting do not depend on units.
+inline ComplementaritySolution solve_complementarity(const Eigen::MatrixXd& M, const Eigen::VectorXd& q) {
   using Index = Eigen::Index;
   const Index n = q.size();
   ComplementaritySolution result{true, Eigen::VectorXd::Zero(n), 0};
   if (n == 0 || q.minCoeff() >= 0) return result;
-  const double size = q.lpNorm<Eigen::Infinity>();
-  const Eigen::VectorXd scaled = q / size;
-  lemke::Tableau tableau(M, scaled);
+  const Eigen::VectorXd factors = lemke::equilibrate(M);
+  Eigen::VectorXd scaled = factors.cwiseProduct(q);
+  const double size = scaled.lpNorm<Eigen::Infinity>();
+  scaled /= size;
+  lemke::Tableau tableau(factors.asDiagonal() * M * factors.asDiagonal(), scaled);
   Index row = 0;
   scaled.minCoeff(&row);
   Index entering = tableau.covering();
@@ -131,7 +156,8 @@ inline ComplementaritySolution solve_complementarity(Eigen::MatrixXd M, Eigen::V
   }
   for (Index i = 0; i < n; ++i) {
     const Index variable = tableau.basic(i);
-    if (variable >= n && variable < 2 * n) result.z(variable - n) = std::max(0.0, tableau.value(i)) * size;
+    if (variable >= n && variable < 2 * n)
+      result.z(variable - n) = std::max(0.0, tableau.value(i)) * size * factors(variable - n);
   }
   result.residual = lemke::violation(M, q, result.z);
   return result;

@@ -208,8 +208,9 @@ class Transitions {
     const double least = std::max(count > 0 ? negligible * size.maxCoeff() : 0.0, tolerances.acceleration);
     for (Index i = 0; i < count; ++i) {
       const std::size_t j = rows.contact(i);
-      if (rows.kind(i) == Kind::closes && !(found.force(i) > 0) &&
-          (found.velocity(i) > least || (hint.parts && hint.contact == j)))
+      // One of the two is 0, but for rounding.
+      const bool separates = !(found.force(i) > 0) || found.velocity(i) > problem.G(i, i) * found.force(i);
+      if (rows.kind(i) == Kind::closes && separates && (found.velocity(i) > least || (hint.parts && hint.contact == j)))
         forces_.states()[j].mode = Mode::open;
       if (rows.kind(i) == Kind::holds && found.force(i) != 0)
         forces_.states()[j].normal_sign = found.force(i) < 0 ? -1 : 1;
