@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models whose contacts are solved for at every evaluation: ladder, rocking block, cradle, thrown box.
+// Models whose contacts are solved for at every evaluation: ladder, rocking block, cradle, boxes, dominoes, woodpecker.
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
@@ -128,4 +128,64 @@ TEST_CASE("disc_pile: six discs come to rest without overlap") {
     }
   }
   CHECK(run.simulation.result.power_balance < 1e-9);
+}
+
+TEST_CASE("woodpecker: it reaches the limit cycle of its published data, with the same events at all tolerances") {
+  std::vector<run::RunEvent> first;
+  for (const double rtol : {1e-7, 1e-9, 1e-11}) {
+    const FinishedRun run = run_rough("woodpecker", "default", [&](pipeline::SimulationRequest& request) {
+      request.overrides.rtol = rtol;
+      request.overrides.atol = rtol / 100;
+    });
+    const std::vector<run::RunEvent> events = events_of(run);
+    std::vector<double> beak;
+    for (const run::RunEvent& event : events)
+      if (event.name == "beak" && event.kind == "contact") beak.push_back(event.t);
+    REQUIRE(beak.size() > 8);
+    // Leine, Glocker, van Campen 2003: 0.146 s between impacts of the beak.
+    const double period = beak.back() - beak[beak.size() - 2];
+    CHECK(std::abs(period - 0.146) < 1e-3);
+    CHECK(std::abs(period - (beak[beak.size() - 2] - beak[beak.size() - 3])) < 1e-6);
+    CHECK(run.simulation.result.power_balance < 1e3 * rtol);
+    if (first.empty()) first = events;
+    REQUIRE(events.size() == first.size());
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      CHECK(events[i].kind == first[i].kind);
+      CHECK(events[i].name == first[i].name);
+      CHECK(std::abs(events[i].t - first[i].t) < 1e-5);
+    }
+  }
+}
+
+TEST_CASE("dominoes: the first impact is that of a pendulum on a plate, and the wave reaches a steady speed") {
+  const FinishedRun run = run_rough("dominoes");
+  const double m = run.parameter("m"), a = run.parameter("a"), h = run.parameter("h"), g = run.parameter("g");
+  const double mu = run.parameter("mu"), inertia = m * (a * a + h * h) / 3;
+  std::vector<run::RunEvent> pushes;
+  for (const run::RunEvent& event : events_of(run))
+    if (event.kind == "contact" && event.name.starts_with("push")) pushes.push_back(event);
+  REQUIRE(pushes.size() > 15);
+  const double angle = std::asin((run.parameter("s") - a) / h), begin = 12 * std::numbers::pi / 180;
+  const auto height = [&](double th) { return (a * std::sin(th) + h * std::cos(th)) / 2; };
+  const double omega = std::sqrt(2 * m * g * (height(begin) - height(angle)) / inertia);
+  // Rates of the gap and of the slip of the corner on the face. The impact is plastic, with sliding friction.
+  const Eigen::Vector2d gap(-h * std::cos(angle), h * std::cos(angle)), slip(-h * std::sin(angle), -a);
+  const Eigen::Vector2d before(omega, 0);
+  const double impulse = -gap.dot(before) / (gap.dot(gap + mu * slip) / inertia);
+  const Eigen::Vector2d after = before + (gap + mu * slip) * impulse / inertia;
+  REQUIRE(slip.dot(after) < 0);
+  const double work = inertia / 2 * (after.squaredNorm() - before.squaredNorm());
+  CHECK(pushes.front().name == "push1");
+  CHECK(std::abs(pushes.front().work / work - 1) < 1e-7);
+  const auto interval = [&](std::size_t i) { return pushes[i].t - pushes[i - 1].t; };
+  CHECK(std::abs(interval(pushes.size() - 1) / interval(pushes.size() - 2) - 1) < 2e-3);
+  CHECK(run.simulation.result.power_balance < 1e-9);
+}
+
+TEST_CASE("box_stack: ten boxes stay at rest, and each bears the weight above it") {
+  const FinishedRun run = run_rough("box_stack");
+  CHECK(events_of(run).empty());
+  const double weight = 10 * run.parameter("m") * run.parameter("g");
+  CHECK(run.final("reaction.floor_left") + run.final("reaction.floor_right") == doctest::Approx(weight).epsilon(1e-12));
+  for (const char* name : {"x1", "x5", "x10", "th10"}) CHECK(std::abs(run.final(name)) < 1e-11);
 }
