@@ -21,10 +21,6 @@ std::string at_least(const Expression& e, Expression::Precedence precedence) {
   return e.precedence >= precedence && e.text[0] != '-' ? e.text : in_parentheses(e);
 }
 
-Expression conditional(const std::string& a, const std::string& b, const std::string& x, const std::string& y) {
-  return {fmt::format("({} < {} ? {} : {})", a, b, x, y), Expression::atom};
-}
-
 }  // namespace
 
 bool repeats_operands(Op op) { return op == Op::min || op == Op::max || op == Op::sign || op == Op::select; }
@@ -45,6 +41,7 @@ Expression Expressions::unsigned_value(const Operand& operand) const {
     case Slot::input: return {names_.inputs[operand.index], Expression::atom};
     case Slot::prepared:
       if (!dialect_.lane_prefix.empty()) return {names_.prepared.at(operand.index), Expression::atom};
+      if (dialect_.element != nullptr) return {dialect_.element(names_.w, operand.index), Expression::atom};
       return {fmt::format("{}[{}]", names_.w, operand.index), Expression::atom};
     case Slot::side: return {names_.sides[operand.index], Expression::atom};
     case Slot::contact: return {names_.contacts[operand.index], Expression::atom};
@@ -108,10 +105,22 @@ Expression Expressions::print(const Instruction& instruction) {
     case Op::select: return conditional(name(0), name(1), name(2), name(3));
     case Op::sign: {
       const std::string zero = dialect_.constant(0), one = dialect_.constant(1);
+      if (dialect_.conditional != nullptr)
+        return conditional(zero, name(0), one, conditional(name(0), zero, "-" + one, zero).text);
       return {fmt::format("({0} > {1} ? {2} : {0} < {1} ? -{2} : {1})", name(0), zero, one), Expression::atom};
     }
-    default: return rounded(call(symbolic::function_of(instruction.op).code, o));
+    default: return rounded(call(function_name(instruction.op), o));
   }
+}
+
+Expression Expressions::conditional(const std::string& a, const std::string& b, const std::string& x,
+                                    const std::string& y) const {
+  if (dialect_.conditional != nullptr) return {dialect_.conditional(a, b, x, y), Expression::atom};
+  return {fmt::format("({} < {} ? {} : {})", a, b, x, y), Expression::atom};
+}
+
+std::string Expressions::function_name(Op op) const {
+  return dialect_.function_name != nullptr ? dialect_.function_name(op) : symbolic::function_of(op).code;
 }
 
 Expression Expressions::rounded(Expression value) const {

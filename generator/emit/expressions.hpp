@@ -39,6 +39,8 @@ class Expressions {
  private:
   std::optional<Expression> print_lanes(const program::Instruction& instruction);
   Expression call(const std::string& name, const std::vector<program::Operand>& operands);
+  Expression conditional(const std::string& a, const std::string& b, const std::string& x, const std::string& y) const;
+  std::string function_name(symbolic::Op op) const;
   Expression rounded(Expression value) const;
   std::string first_factor(const program::Operand& operand) const;
   Expression product(const std::vector<program::Operand>& operands) const;

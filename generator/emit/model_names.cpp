@@ -5,8 +5,8 @@
 namespace eomgen::emit {
 
 ModelNames model_names(const program::Program& program, const EmissionContext& context,
-                       std::span<const std::string_view> taken) {
-  NameTable table;
+                       std::span<const std::string_view> taken, std::size_t longest) {
+  NameTable table(longest);
   for (const std::string_view word : taken) table.declare(std::string(word));
   ModelNames names;
   for (const std::string& prefix : {mangled_id(context.id), std::string("eom")}) {  // names of kernels
@@ -44,7 +44,7 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
   names.first_kink = program.mode_layout().kink(0);
   for (std::size_t k = 0; k < program.kinks.size(); ++k)
     names.sides.push_back(table.declare("side_" + std::to_string(k + 1)));
-  NameTable outputs, reactions, events;
+  NameTable outputs(longest), reactions(longest), events(longest);
   for (const std::string& name : program.outputs) names.outputs.push_back(outputs.declare(name));
   for (const std::string& name : program.reactions) names.reactions.push_back(reactions.declare(name));
   for (const std::string& name : program.events) names.events.push_back(events.declare(name));

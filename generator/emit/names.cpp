@@ -146,7 +146,13 @@ std::string NameTable::declare(const std::string& wanted) {
   const bool of_the_compiler =
       name.size() > 1 && name[0] == '_' && (name[1] == '_' || (name[1] >= 'A' && name[1] <= 'Z'));
   if (of_the_compiler) name = "n" + name;
-  while (is_reserved(name) || !taken_.insert(name).second) name += '_';
+  while (is_reserved(name) || taken_.contains(name)) name += '_';
+  if (name.size() > longest_) {
+    const std::string begin = name.substr(0, longest_ - 8);
+    do name = begin + '_' + std::to_string(++cut_);
+    while (taken_.contains(name));
+  }
+  taken_.insert(name);
   return name;
 }
 

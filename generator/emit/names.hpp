@@ -2,6 +2,7 @@
 // Conversion of user names to identifiers of C, C++ or JavaScript that are unique per scope.
 #pragma once
 
+#include <cstddef>
 #include <set>
 #include <span>
 #include <string>
@@ -19,12 +20,16 @@ std::string identifier(const std::string& text);
 /// Reserved words of JavaScript, and names in pages and modules, that C and C++ do not reserve.
 std::span<const std::string_view> javascript_reserved_words();
 
-/// Identifiers of one scope. `declare` returns the wanted name, with trailing underscores if it is taken.
+/// Identifiers of one scope. `declare` returns the wanted name, with trailing underscores if it is taken. A name of
+/// more than `longest` characters is cut and numbered.
 class NameTable {
  public:
+  static constexpr std::size_t unlimited = static_cast<std::size_t>(-1);
+  explicit NameTable(std::size_t longest = unlimited) : longest_(longest) {}
   std::string declare(const std::string& wanted);
 
  private:
+  std::size_t longest_, cut_ = 0;
   std::set<std::string> taken_;
 };
 

@@ -32,6 +32,11 @@ struct Dialect {
   std::string lane_prefix;               // prefix of the functions of templates/batch; empty: one state
   std::string lane_type;                 // type of one lane
   std::string rounding_function;         // function that rounds each value if the language has doubles only
+  // Languages outside the C family (languages/language.hpp). Null: as in C.
+  std::string (*conditional)(const std::string& a, const std::string& b, const std::string& x,
+                             const std::string& y) = nullptr;                     // x if a < b, else y
+  std::string (*element)(const std::string& array, std::size_t index) = nullptr;  // index from 0
+  const char* (*function_name)(symbolic::Op op) = nullptr;
 
   /// The start of a declaration.
   std::string declaration_prefix() const { return is_typed ? "const " + real : "const"; }
@@ -58,9 +63,10 @@ struct ModelNames {
   std::vector<std::string> prepared;         // entries of w, if lanes are loaded one by one
   std::string time = "t", x, p, w, u, mode;  // names of the other arguments
 };
-/// The identifiers of a model. `taken`: further reserved words.
+/// The identifiers of a model. `taken`: further reserved words. `longest`: the most characters of a name.
 ModelNames model_names(const program::Program& program, const EmissionContext& context,
-                       std::span<const std::string_view> taken = {});
+                       std::span<const std::string_view> taken = {},
+                       std::size_t longest = static_cast<std::size_t>(-1));
 
 struct FunctionText {
   std::vector<std::string> results;  // names of the result arguments, in order

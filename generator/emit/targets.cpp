@@ -5,10 +5,13 @@
 
 #include "emit/batch/batch.hpp"
 #include "emit/c/c.hpp"
+#include "emit/casadi/casadi.hpp"
 #include "emit/cpp/cpp.hpp"
 #include "emit/cuda/cuda.hpp"
 #include "emit/javascript/javascript.hpp"
+#include "emit/octave/octave.hpp"
 #include "emit/python/python.hpp"
+#include "emit/rust/rust.hpp"
 #include "error.hpp"
 
 namespace eomgen::emit {
@@ -22,6 +25,10 @@ constexpr TargetEntry registry[] = {
      emit_cuda, mangled_id},
     {"python", "Python module over the C sources: ctypes, numpy where it is there", emit_python, module_name},
     {"javascript", "JavaScript, a script and a module, without libraries", emit_javascript, script_name},
+    {"casadi", "C11 sources, and functions for CasADi's `external` with their derivatives", emit_casadi, mangled_id},
+    {"octave", "Function for Octave and MATLAB that returns the functions and names of the model", emit_octave,
+     octave_name},
+    {"rust", "Rust module without the standard library and allocation", emit_rust, rust_name},
 };
 
 }  // namespace

@@ -79,7 +79,7 @@ TEST_CASE("emit --with run: an eligible solver adds the functions that it needs"
 TEST_CASE("emit --with run: targets that do not write C report that there is no header of the run") {
   const Folder folder;
   folder.write("model.toml", particle(""));
-  for (const char* target : {"javascript", "cuda"})
+  for (const char* target : {"javascript", "cuda", "rust", "octave"})
     CHECK(contains(expect(0, folder, {"emit", "model.toml", "-o", target, "--target", target, "--with", "run"}).err,
                    "the target " + std::string(target) + " has no header of a run"));
   for (const char* target : {"cpp", "batch", "python"})

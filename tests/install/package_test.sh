@@ -40,6 +40,17 @@ while read -r command _; do
   [[ -s $prefix/share/man/man1/eomgen-$command.1 ]] || refuse "there is no page of the manual about $command"
 done < <("$prefix/bin/eomgen" --help | sed -n '/^Subcommands:/,/^$/p' | sed -e 1d -e '/^$/d')
 
+echo "-- its content: no file outside /usr, none of the tests and of the build, nothing that all may write"
+dpkg-deb -c "${package[0]}" >content.txt
+if grep -vE ' \./$| \./usr/' content.txt; then refuse "these files are not in /usr"; fi
+if grep -E '/(tests|build|\.git|CMakeFiles|__pycache__)(/|$)|\.(o|a\.tmp|pyc)$' content.txt; then refuse "these files are no part of the package"; fi
+if grep -E '^-.{7}w' content.txt; then refuse "everyone may write these files"; fi
+if grep -E '^d.{7}w' content.txt; then refuse "everyone may write these folders"; fi
+for file in bin/eomgen 'lib/(.*/)?libeomgen[.]' share/eomgen/models/P7_moving_sphere.toml include/eom/hybrid/run.hpp \
+  'lib/(.*/)?cmake/eomgen/eomgenConfig.cmake' share/doc/eomgen/LICENSE share/doc/eomgen/LICENSE.runtime; do
+  grep -qE " \./usr/$file" content.txt || refuse "the package has no $file"
+done
+
 echo "-- man renders every page without warnings"
 if command -v groff >/dev/null; then
   for page in "$prefix"/share/man/man1/*.1; do
