@@ -119,7 +119,7 @@ TEST_CASE("inverse: friction of a driven block counts beside free coordinates, a
   // A pendulum that hangs from the block changes its normal force.
   const char* const hung = "[\"x + sin(th)\", \"y\", \"z - cos(th)\"]";
   folder.write("hung.toml", block(hung, coulomb));
-  folder.write("smooth.toml", block(hung, "dynamic = 0.3, law = \"smooth\", width = \"1e-9 m/s\""));
+  folder.write("smooth.toml", block(hung, "dynamic = 0.3, law = \"smooth\", width = 1e-9"));
   for (const char* name : {"hung", "smooth"}) expect(0, folder, {"inverse", std::string(name) + ".toml"});
   const Table of_block = read_table(folder.read("hung_inverse.csv")),
               smooth = read_table(folder.read("smooth_inverse.csv"));
