@@ -48,6 +48,9 @@ Stated stated_in(const model::Model& model, const std::string& name) {
   }
   if (const auto state = run::find_state(model, name)) return {model.states[*state].unit.dimension, std::nullopt};
   const auto named = [&name](const model::Parameter& p) { return p.name == name; };
+  for (const model::Input& input : model.inputs) {
+    if (input.name == name) return {input.unit.dimension, std::nullopt};
+  }
   const auto found = std::find_if(model.parameters.begin(), model.parameters.end(), named);
   if (found == model.parameters.end()) return {};
   std::optional<model::MeasuredUnit> unit = model::trailing_unit(found->written);

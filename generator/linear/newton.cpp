@@ -13,6 +13,8 @@ namespace {
 constexpr int most_steps = 80;
 constexpr double longest_step = 0.7;  // of an entry, relative to 1 and its magnitude
 constexpr double settled = 1e-11;
+constexpr double turning = 0.5;    // of the last step: a step back over more does not converge
+constexpr double opposite = 0.99;  // cosine
 constexpr int most_halvings = 5, most_restorations = 40;
 constexpr double restored = 1e-9;  // of the last step: the error is its square
 constexpr double rank_tolerance = 1e-9;
@@ -155,13 +157,21 @@ RoughSolution rough_steady_state(const Flow& flow, const Symmetry& symmetry, con
   try {
     restore_constraints(flow, z, setting);
     Equations here = at(z);
+    // A step that turns back has gone over a root, as in a narrow well such as sqrt(x^2 + 1e-12): then steps are
+    // halved.
+    Eigen::VectorXd last;
+    double longest = longest_step;
     for (int k = 0; k < most_steps; ++k) {
       auto move = step(here, z, end.is_slope_missing);
       if (!move || !move->allFinite()) return end;
       *move *= known.step_factor(z, *move);
       if (!move->allFinite()) return end;
       const double size = move->cwiseAbs().maxCoeff();
-      double factor = std::min(1.0, longest_step / size);
+      if (last.size() > 0 && size > turning * last.cwiseAbs().maxCoeff() &&
+          move->dot(last) < -opposite * move->norm() * last.norm())
+        longest = std::min(longest, last.cwiseAbs().maxCoeff() / 2);
+      double factor = std::min(1.0, longest / size);
+      last = factor * *move;
       for (int halving = 0;; ++halving, factor /= 2) {
         State<double> next = z;
         for (std::size_t i = 0; i + 1 < z.size(); ++i)

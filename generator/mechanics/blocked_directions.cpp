@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Directions of slip that constraints block: always, as a rail on a rough floor does, or while a contact is closed, as
 // a stop at the end of a rough guide does. The motion does not determine the friction along them. If no other direction
-// is left, friction changes no equation of motion and is rejected.
+// is left, the constraints prescribe the slip. A prescribed slip that vanishes identically leaves friction without a
+// meaning, which is rejected. Otherwise friction acts against the slip and the contact never sticks: it gets the law of
+// a contact with a width, whose width is 0.
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "mechanics/pfaffian.hpp"
@@ -87,7 +90,11 @@ class Search {
     base_ = always_;
     if (contact.unilateral) base_.push_back(row(m_.constraints[contact.constraints[0]].gradient));
     const std::size_t free = free_directions(base_);
-    if (free == 0) refuse(contact);
+    if (free == 0) {
+      if (is_at_rest(contact)) refuse(contact);
+      contact.width = m_.dag->zero();
+      return;
+    }
     if (free < tangents_.size()) {
       std::optional<std::vector<Ref>> along = always_held(contact);
       if (!along) return;  // too many directions; is_determinate finds it
@@ -118,7 +125,7 @@ class Search {
   }
 
   std::size_t rank(const std::vector<DirectionRow>& rows, std::size_t point) const {
-    numeric::Matrix<Real> matrix(rows.size(), m_.free.size());
+    numeric::Matrix<Real> matrix(rows.size(), rows.empty() ? 0 : rows[0].size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const std::vector<Real> values = space_.values(rows[i], point);
       for (std::size_t j = 0; j < values.size(); ++j) matrix(i, j) = values[j];
@@ -135,6 +142,30 @@ class Search {
     for (std::size_t point = 0; point < space_.points(); ++point)
       most = std::max(most, rank(all, point) - rank(rows, point));
     return most;
+  }
+
+  /// Whether the slip that the constraints prescribe vanishes: then its equations, with the parts that do not depend on
+  /// the free rates, follow from those of the constraints.
+  bool is_at_rest(const Contact& contact) {
+    Dag& dag = *m_.dag;
+    std::vector<DirectionRow> rows;
+    for (const std::uint32_t k : m_.active) {
+      const bool can_open = std::any_of(m_.contacts.begin(), m_.contacts.end(), [&](const Contact& other) {
+        return other.unilateral && other.constraints[0] == k && &other != &contact;
+      });
+      if (!can_open) rows.push_back(space_.one_form(m_.constraints[k]));
+    }
+    std::map<symbolic::Symbol, Ref> no_rates;
+    for (const std::uint32_t i : m_.free) no_rates[{symbolic::SymbolKind::coordinate, i, 1}] = dag.zero();
+    symbolic::Substitution at_no_rates(dag, std::move(no_rates));
+    std::vector<DirectionRow> with_slip = rows;
+    for (std::size_t a = 0; a < contact.dimensions(); ++a) {
+      with_slip.push_back(row(contact.tangents[a]));
+      with_slip.back().push_back(space_.impose_and_expand(at_no_rates(contact.slip[a])));
+    }
+    for (std::size_t point = 0; point < space_.points(); ++point)
+      if (rank(with_slip, point) > rank(rows, point)) return false;
+    return true;
   }
 
   /// The direction, of two, that one permanent constraint blocks; empty if it takes several constraints.

@@ -46,14 +46,27 @@ bool solve_for_only_coordinate(const Mechanics& m, Ref psi, FixedCoordinate& res
   return true;
 }
 
+/// The constraints that fix the coordinates of psi: 'a', 'b' or 'c'.
+std::string constraints_that_fix(const Mechanics& m, Ref psi) {
+  const std::set<std::uint32_t> present = coordinates_in(*m.dag, psi);
+  std::string names, last;
+  for (const FixedCoordinate& fixed : m.fixed) {
+    if (!present.contains(fixed.coordinate)) continue;
+    if (!last.empty()) names += (names.empty() ? "" : ", ") + last;
+    last = "'" + m.constraints[fixed.constraint].label + "'";
+  }
+  return names.empty() ? last : names + " or " + last;
+}
+
 void refuse_repeated(const Mechanics& m, const Constraint& constraint, Ref reduced) {
   const bool same = vanishes(*m.dag, {reduced});
+  const std::string others = constraints_that_fix(m, constraint.psi);
   const std::string what = same ? "constraint '" + constraint.label + "' follows from the constraints before it"
                                 : "constraint '" + constraint.label +
                                       "' fixes nothing: the coordinates in it are already fixed, "
                                       "and it does not hold for all times and parameters";
   throw Error("mechanics", m.model->where(model_constraint(m, constraint).span), what,
-              same ? "remove it" : "remove it, or the constraint that it contradicts");
+              same || others.empty() ? "remove it" : "remove it, or " + others + ": they cannot hold together");
 }
 
 void add_position_form(const Mechanics& m, Lowering& lower, Constraint& result) {

@@ -270,9 +270,10 @@ std::vector<cln::cl_R> known_values(const Mechanics& m, const std::vector<Ref>& 
 
 void check_law(const Mechanics& m, const Contact& contact) {
   const Ref mu_d = contact.dynamic_coefficient;
-  const std::vector<cln::cl_R> mu =
-      known_values(m, {contact.width ? mu_d : contact.static_coefficient, mu_d},
-                   "a coefficient of friction of '" + contact.name + "'", friction_law_of(m, contact).span);
+  const model::Friction& law = friction_law_of(m, contact);
+  const bool is_smooth = law.width != model::no_node;
+  const std::vector<cln::cl_R> mu = known_values(m, {is_smooth ? mu_d : contact.static_coefficient, mu_d},
+                                                 "a coefficient of friction of '" + contact.name + "'", law.span);
   const bool negative = !mu.empty() && (cln::minusp(mu[0]) || cln::minusp(mu[1]));
   if (!mu.empty() && (negative || mu[0] < mu[1])) {
     throw Error("mechanics", m.model->where(friction_law_of(m, contact).span),
@@ -281,11 +282,11 @@ void check_law(const Mechanics& m, const Contact& contact) {
                 negative ? "friction opposes slip: give coefficients of 0 or more"
                          : "sliding friction must not exceed the limit of sticking: give static >= dynamic");
   }
-  if (!contact.width) return;
-  const std::vector<cln::cl_R> width = known_values(
-      m, {*contact.width}, "the width of the friction of '" + contact.name + "'", friction_law_of(m, contact).span);
+  if (!is_smooth) return;
+  const std::vector<cln::cl_R> width =
+      known_values(m, {*contact.width}, "the width of the friction of '" + contact.name + "'", law.span);
   if (width.empty() || cln::plusp(width[0])) return;
-  throw Error("mechanics", m.model->where(friction_law_of(m, contact).span),
+  throw Error("mechanics", m.model->where(law.span),
               "the width of the friction of '" + contact.name + "' is not positive",
               "give a slip speed above 0, small beside those of the motion; or Coulomb's law, which has no width");
 }

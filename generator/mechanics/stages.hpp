@@ -27,8 +27,9 @@ void drop_dependent_equations(Mechanics& mechanics, Lowering& lower);  // implie
 bool may_be_redundant(const Mechanics& mechanics, const Constraint& constraint);
 const model::Constraint& model_constraint(const Mechanics& mechanics, const Constraint& constraint);
 void drop_blocked_directions(Mechanics& mechanics);  // along which other constraints block sliding
-/// Finds directions that other contacts block while closed, or always. Throws Error if no direction is left for
-/// friction. False if contacts with one that can open could hold more directions than are free.
+/// Finds directions that other contacts block while closed, or always. Contacts whose slip the constraints prescribe
+/// get the width 0. Throws Error if no direction is left for friction and nothing slips. False if contacts with one
+/// that can open could hold more directions than are free.
 bool find_blocked_directions(Mechanics& mechanics);
 const model::Friction& friction_law_of(const Mechanics& mechanics, const Contact& contact);
 

@@ -68,6 +68,12 @@ void BodiesReader::check_initial_angular_velocities(const Scene& scene) const {
     const Frame& frame = model_.frames[rotation.frame];
     for (const NodeId entry : frame.entries) {
       const Node& node = model_.arena[entry];
+      if (node.op == Op::coordinate && std::find(scene.solve.begin(), scene.solve.end(),
+                                                 std::pair(node.index, std::uint8_t{1})) != scene.solve.end())
+        source_.fail(rotation.span,
+                     fmt::format("'{}_dot' in 'solve' follows from '{}.omega', which stays as it is given",
+                                 model_.coordinates[node.index].name, frame.name),
+                     "give the rates of its angles in place of it, or take them out of 'solve'");
       for (const InitialValue& initial : scene.initial) {
         if (node.op != Op::coordinate || initial.order != 1 || initial.coordinate != node.index) continue;
         source_.fail(initial.span,

@@ -133,12 +133,13 @@ class ContactFormulas {
     const auto w = [&](std::size_t a) { return slip(a); };
     const auto F = [&](std::size_t a) { return friction(a); };
     const Formula mu = read(contact_.dynamic_coefficient);
-    const std::optional<Formula> width = contact_.width ? std::optional(read(*contact_.width)) : std::nullopt;
+    const bool is_smooth = contact_.width && !dag_.is_zero(*contact_.width);
+    const std::optional<Formula> width = is_smooth ? std::optional(read(*contact_.width)) : std::nullopt;
     for (std::size_t a = 0; a < contact_.dimensions(); ++a) {
       const Formula drag = reading::fraction(reading::product({mu, normal_, slip(a)}), length(w, width));
       show(width ? "smooth law" : "slides", {friction(a), reading::negative(drag)});
     }
-    if (width) return;
+    if (contact_.width) return;
     for (std::size_t a = 0; a < contact_.dimensions(); ++a) show("sticks", {slip(a), reading::number(0)});
     show("sticks while", {reading::product({read(contact_.static_coefficient), normal_}), length(F)}, true);
   }

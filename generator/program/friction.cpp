@@ -122,6 +122,10 @@ class FrictionLawSolver {
   /// Component a of the unit vector of slip.
   Ref sliding_direction(std::uint32_t j, std::size_t a) const {
     const Contact& c = s_.contacts[j];
+    if (c.width && dag_.is_zero(*c.width)) {  // constraints prescribe the slip; at rest friction is not determined
+      const Ref square = squares(c);
+      return dag_.select(dag_.zero(), square, dag_.div(c.slip[a], root(square)), dag_.zero());
+    }
     if (c.width) return dag_.div(c.slip[a], root(dag_.add(squares(c), dag_.mul(*c.width, *c.width))));
     return c.slip.size() == 1 ? slides(j) : dag_.div(c.slip[a], speed(c));
   }

@@ -53,7 +53,11 @@ std::vector<Ref> parameter_formulas(Mechanics& m, const model::Scene& scene, con
   std::vector<Ref> formula = m.parameter_value;
   for (const auto& [index, value] : scene.parameters) formula[index] = mechanics::lower_scalar(m, value);
   for (const auto& [name, value] : overrides.values) {
-    if (is_start_value(*m.model, name)) continue;
+    const auto is_input = [&wanted = name](const model::Input& input) {
+      return input.source == model::Input::Source::scene && input.name == wanted;
+    };
+    if (is_start_value(*m.model, name) || std::any_of(m.model->inputs.begin(), m.model->inputs.end(), is_input))
+      continue;
     const auto found = std::find_if(m.model->parameters.begin(), m.model->parameters.end(),
                                     [&wanted = name](const model::Parameter& p) { return p.name == wanted; });
     if (found == m.model->parameters.end()) {
@@ -61,10 +65,8 @@ std::vector<Ref> parameter_formulas(Mechanics& m, const model::Scene& scene, con
       for (const model::Parameter& p : m.model->parameters) names.push_back(p.name);
       std::vector<std::string> known = state_columns(*m.model);
       known.insert(known.begin(), names.begin(), names.end());
+      for (const model::Input& input : m.model->inputs) known.push_back(input.name);
       std::string hint = model::did_you_mean(name, known);
-      for (const model::Input& input : m.model->inputs) {
-        if (input.name == name) hint = fmt::format("it is an input: a scene gives it, as inputs = {{ {} = 2 }}", name);
-      }
       if (hint.empty() && !names.empty()) hint = fmt::format("the parameters are {}", fmt::join(names, ", "));
       if (hint.empty()) hint = "the model has none; the start of a coordinate or state can be set";
       throw Error("scene", {}, fmt::format("there is no parameter {} to set", model::quote(name)), hint);

@@ -86,11 +86,17 @@ class SceneEvaluator {
   std::map<Symbol, cln::cl_R> given_;
 };
 
-std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene& scene, SceneEvaluator& value,
-                                               Scene& result) {
+std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene& scene, const Overrides& overrides,
+                                               SceneEvaluator& value, Scene& result) {
   std::vector<std::optional<Ref>> expressions;
   symbolic::Substitution written = derive::time_function_substitution(m);
   for (std::uint32_t i = 0; i < m.model->inputs.size(); ++i) {
+    if (const auto set = overrides.values.find(m.model->inputs[i].name); set != overrides.values.end()) {
+      const Ref constant = m.dag->constant(set->second);
+      result.inputs.emplace_back(*m.dag, constant, result.parameters);
+      expressions.emplace_back(constant);
+      continue;
+    }
     const auto given =
         std::find_if(scene.inputs.begin(), scene.inputs.end(), [&](const auto& s) { return s.input == i; });
     const model::InputTable* table =
@@ -335,7 +341,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
         "give a later --t-end");
   }
   require_span(m, scene, result, at_start);
-  const std::vector<std::optional<Ref>> inputs = resolve_inputs(m, scene, value, result);
+  const std::vector<std::optional<Ref>> inputs = resolve_inputs(m, scene, overrides, value, result);
 
   StartProblem problem{m, system, scene, result.t0, result.parameters, {}, {}, {}, {}, {}};
   const auto give = [&](const StartProblem::Key& key, double v, const model::Span& span) {

@@ -93,3 +93,44 @@ TEST_CASE("inverse: models without prescribed motion, unknown constraints and un
   CHECK(contains(expect(2, folder, {"run", "P10_rocket"}).err, "eomgen inverse"));
   CHECK(folder.names().empty());
 }
+
+TEST_CASE("inverse: friction of a driven block counts beside free coordinates, and there is none at rest") {
+  const Folder folder;
+  const auto block = [](const std::string& pendulum, const std::string& law) {
+    return "format = 1\n[parameters]\nM = 2\nm = 1\ng = 9.81\n[coordinates]\nth = \"rad\"\n[functions]\n"
+           "f = \"0.5*sin(2*t)\"\n[[particle]]\nname = \"B\"\nmass = \"M\"\nposition = { cartesian = [\"x\", \"y\", "
+           "\"z\"] }\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = " +
+           pendulum +
+           "\n[[force]]\ngravity = \"-g*E3\"\n[[constraint]]\nname = \"floor\"\nholonomic = \"z\"\nfriction = { " +
+           law +
+           " }\n[[constraint]]\nname = \"drive\"\nholonomic = \"x - f\"\n[[constraint]]\nname = \"rail\"\nholonomic = "
+           "\"y\"\n[scene.default]\nt = [0, 2]\nevery = 0.25\ninitial = { th = 0.4 }\n";
+  };
+  const char* const coulomb = "static = 0.4, dynamic = 0.3";
+  folder.write("beside.toml", block("[\"sin(th)\", 0, \"-cos(th)\"]", coulomb));
+  const Json found = document(folder, {"inverse", "beside.toml"});
+  CHECK(found["outcome"] == "done");
+  const Table beside = read_table(folder.read("beside_inverse.csv"));
+  REQUIRE(beside.rows.size() == 9);
+  for (std::size_t i = 0; i < beside.rows.size(); ++i) {
+    const double t = beside.rows[i][0], rub = 0.3 * 2 * 9.81 * (std::cos(2 * t) > 0 ? 1 : -1);
+    CHECK(beside.at(i, "force.x") == doctest::Approx(2 * -2 * std::sin(2 * t) + rub).epsilon(1e-12));
+  }
+  // A pendulum that hangs from the block changes its normal force.
+  const char* const hung = "[\"x + sin(th)\", \"y\", \"z - cos(th)\"]";
+  folder.write("hung.toml", block(hung, coulomb));
+  folder.write("smooth.toml", block(hung, "dynamic = 0.3, law = \"smooth\", width = 1e-9"));
+  for (const char* name : {"hung", "smooth"}) expect(0, folder, {"inverse", std::string(name) + ".toml"});
+  const Table of_block = read_table(folder.read("hung_inverse.csv")),
+              smooth = read_table(folder.read("smooth_inverse.csv"));
+  for (std::size_t i = 0; i < of_block.rows.size(); ++i)
+    CHECK(of_block.at(i, "force.x") == doctest::Approx(smooth.at(i, "force.x")).epsilon(1e-7));
+  // It starts at rest, where friction is not determined.
+  std::string rest = block(hung, coulomb);
+  rest.replace(rest.find("0.5*sin(2*t)"), 12, "0.5*t^2");
+  folder.write("rest.toml", rest);
+  CHECK(document(folder, {"inverse", "rest.toml"})["outcome"] == "done");
+  const Table from_rest = read_table(folder.read("rest_inverse.csv"));
+  const double s = std::sin(0.4), c = std::cos(0.4);  // the pendulum at rest: th_ddot = -(f'' cos + g sin)
+  CHECK(from_rest.at(0, "force.x") == doctest::Approx(3 - c * (c + 9.81 * s)).epsilon(1e-12));
+}

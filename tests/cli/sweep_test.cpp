@@ -86,6 +86,23 @@ TEST_CASE("sweep: initial values are varied like parameters, in processes and in
   CHECK(document(folder, {"run", "oscillator.toml", "--set", "x=3", "--t-end", "0"})["final"]["x"] == 3);
 }
 
+TEST_CASE("sweep: inputs are varied like parameters, in processes and in an ensemble") {
+  const Folder folder;
+  folder.write("cart.toml",
+               "format = 1\n[inputs]\nF = { default = 2 }\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n"
+               "[[force]]\ngeneralized = { x = \"F\" }\n[scene.default]\nt = [0, 2]\n");
+  for (const Words& more : {Words{}, Words{"--ensemble"}}) {
+    Words words{"sweep", "cart.toml", "--grid", "F=0,1,3", "-o", more.empty() ? "a.csv" : "b.csv"};
+    words.insert(words.end(), more.begin(), more.end());
+    document(folder, words);
+    const std::vector<Words> table = rows(folder.read(words[5]));
+    REQUIRE(table.size() == 5);
+    const auto x = static_cast<std::size_t>(std::find(table[1].begin(), table[1].end(), "x") - table[1].begin());
+    for (std::size_t i = 2; i < table.size(); ++i)
+      CHECK(std::abs(std::stod(table[i].at(x)) - 2 * std::stod(table[i][1])) < 1e-9);
+  }
+}
+
 TEST_CASE("sweep: continues from existing rows and gives the same bytes") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());

@@ -265,7 +265,7 @@ TEST_CASE("a scene without initial values reports where it starts") {
                  "no initial values: all coordinates and rates start at 0\n"));
 }
 
-TEST_CASE("check lists inputs; setting an input as a parameter is refused with the right option") {
+TEST_CASE("check lists inputs; --set gives an input a constant value, in runs and equilibria") {
   const Folder folder;
   folder.write("cart.toml",
                "format = 1\n[parameters]\nm = \"1 kg\"\n[inputs]\nF = { unit = \"N\", default = 2 }\nG = { unit = "
@@ -276,8 +276,18 @@ TEST_CASE("check lists inputs; setting an input as a parameter is refused with t
   CHECK(found["inputs"][0] == Json({{"name", "F"}, {"unit", "N"}, {"default", "2"}}));
   CHECK(found["inputs"][1]["default"] == "0");
   CHECK(contains(expect(0, folder, {"check", "cart.toml"}).out, "inputs\n  F "));
-  CHECK(contains(expect(2, folder, {"run", "cart.toml", "--set", "F=3"}).err,
-                 "it is an input: a scene gives it, as inputs = { F = 2 }"));
+  // x = (F + G) t^2/2, with F = 2 without --set.
+  const auto end = [&](const Words& set) {
+    Words words{"run", "cart.toml", "--t-end", "2"};
+    words.insert(words.end(), set.begin(), set.end());
+    return document(folder, words)["final"]["x"].get<double>();
+  };
+  CHECK(std::abs(end({}) - 4) < 1e-9);
+  CHECK(std::abs(end({"--set", "F=3"}) - 6) < 1e-9);
+  CHECK(std::abs(end({"--set", "F=1kN", "--set", "G=-1000"})) < 1e-9);
+  CHECK(contains(expect(2, folder, {"run", "cart.toml", "--set", "F=3kg"}).err, "'F' is set in kg"));
+  CHECK(contains(expect(2, folder, {"run", "cart.toml", "--set", "H=3"}).err, "there is no parameter 'H' to set"));
+  CHECK_FALSE(document(folder, {"equilibria", "cart.toml", "--set", "G=-2"})["points"].empty());
 }
 
 TEST_CASE("report: plots fit a hundred coordinates, and the page stays below 1 MB") {

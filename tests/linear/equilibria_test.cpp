@@ -169,6 +169,19 @@ TEST_CASE("a pendulum of six links has an equilibrium for each choice of up and 
   CHECK(stable == 1);
 }
 
+TEST_CASE("the minimum of a well of a width of 1e-6 is found, and is stable") {
+  for (const char* well : {"sqrt(x^2 + 1e-12)", "sqrt((x - 2)^2 + 1e-12) + x/2"}) {
+    CAPTURE(std::string(well));
+    const analysis::SteadyMotions all = found_in(
+        "well", std::string("format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = "
+                            "\"") +
+                    well + "\"\n[scene.default]\ninitial = { x = 0.3 }\n");
+    REQUIRE(all.points.size() == 1);
+    CHECK(all.points[0].verdict.stability == Stability::stable);
+    CHECK(all.search.converged > 270);
+  }
+}
+
 TEST_CASE("a pendulum above three magnets has seven equilibria, whatever the seed") {
   // U'(x) on the axis of symmetry y = 0 has three zeros: the centre, a saddle beside it and a well. Turned by 120
   // degrees, the last two give three each.

@@ -31,9 +31,9 @@ Refusal refusal(const std::string& text) {
   } catch (const Error& error) {
     CHECK(error.stage() == "mechanics");
     CHECK_FALSE(error.remedy().empty());
-    return {error.message(), error.where().line};
+    return {error.message(), error.where().line, error.remedy()};
   }
-  return {"accepted", 0};
+  return {"accepted", 0, ""};
 }
 
 }  // namespace
@@ -110,6 +110,7 @@ TEST_CASE("mechanics rejects: a constraint that contradicts an earlier one") {
                             "[[constraint]]\nname = \"a\"\nholonomic = \"x - 1\"\n"
                             "[[constraint]]\nname = \"b\"\nholonomic = \"x - 2\"\n");
   CHECK(r.message.starts_with("constraint 'b' fixes nothing"));
+  CHECK(r.remedy == "remove it, or 'a': they cannot hold together");
 }
 
 TEST_CASE("mechanics rejects: a constraint that is not linear in the velocities") {

@@ -128,6 +128,9 @@ TEST_CASE("scene: with a given angular velocity the violated equation is named, 
   CHECK(message.find("it is off by 1.15 (relative 1,") != std::string::npos);
   const run::Scene scene = resolve(ball + "initial = { x_dot = 0.6, \"ball.omega\" = [0.5, 2, 0.1] }\n");
   CHECK(scene.qdot[1] == doctest::Approx(-0.15).epsilon(rounding));
+  // The rates of its angles follow from it, so that naming one in solve would have no effect.
+  CHECK(refusal(ball + "initial = { \"ball.omega\" = [0.5, 2, 0.1] }\nsolve = [\"psi_dot\"]\n")
+            .find("'psi_dot' in 'solve' follows from 'ball.omega'") != std::string::npos);
 }
 
 TEST_CASE("scene: the spin of a rolling body follows from its velocity if only the velocity is given") {

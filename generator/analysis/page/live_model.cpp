@@ -8,6 +8,7 @@
 
 #include "emit/targets.hpp"
 #include "mechanics/imposition.hpp"
+#include "numeric/numbers.hpp"
 #include "pipeline/start_description.hpp"
 #include "program/from_dag.hpp"
 #include "program/restrict.hpp"
@@ -84,7 +85,7 @@ class Live {
                     [](const system::Event& event) { return event.reset.condition.has_value(); }))
       return "an event of the model has a condition";
     for (const model::SceneInput& input : model_scene().inputs) {
-      if (std::holds_alternative<model::InputTable>(input.signal))
+      if (std::holds_alternative<model::InputTable>(input.signal) && !is_set_input(input.input))
         return fmt::format("the input '{}' is a table of time", derived_.model.inputs[input.input].name);
     }
     return "";
@@ -120,6 +121,8 @@ class Live {
     const std::size_t n = m_.free.size();
     return derived_.model.coordinates[m_.free[k % n]].name + (k < n ? "" : "_dot");
   }
+  /// Whether the command line gives an input a constant value.
+  bool is_set_input(std::uint32_t i) const { return set_.contains(derived_.model.inputs[i].name); }
   bool overridden(std::size_t i) const { return set_.contains(derived_.model.parameters[i].name); }
 
   /// Sizes of drawn parts, as functions of the parameters.
@@ -130,6 +133,10 @@ class Live {
     std::vector<Ref> u;
     symbolic::Substitution written = mechanics::time_function_substitution(m_);
     for (std::uint32_t i = 0; i < derived_.model.inputs.size(); ++i) {
+      if (is_set_input(i)) {
+        u.push_back(dag_.constant(numeric::exact(s_.scene.inputs[i](s_.scene.t0, s_.scene.t0))));
+        continue;
+      }
       model::NodeId id = derived_.model.inputs[i].default_value;
       for (const model::SceneInput& input : model_scene().inputs) {
         if (input.input == i) id = std::get<model::NodeId>(input.signal);

@@ -53,11 +53,11 @@ void require_basins(const analysis::SweepPoints& points, const SweepOptions& opt
 void require_names(const analysis::SweepPoints& points, const SweepOptions& options, const model::Model& model) {
   const std::map<std::string, Quantity> set = parse_assignments("sweep", "--set", options.set);
   for (const std::string& name : points.names()) {
-    const auto named = [&](const model::Parameter& p) { return p.name == name; };
-    if (std::none_of(model.parameters.begin(), model.parameters.end(), named) && !run::is_start_value(model, name)) {
-      std::vector<std::string> known = run::state_columns(model);
-      for (const model::Parameter& p : model.parameters) known.push_back(p.name);
-      throw Error("sweep", {}, fmt::format("there is no parameter, coordinate or state '{}'", name),
+    std::vector<std::string> known = run::state_columns(model);
+    for (const model::Parameter& p : model.parameters) known.push_back(p.name);
+    for (const model::Input& input : model.inputs) known.push_back(input.name);
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw Error("sweep", {}, fmt::format("there is no parameter, input, coordinate or state '{}'", name),
                   suggest_choice(name, known));
     }
     if (set.contains(name)) {
