@@ -103,6 +103,7 @@ class ContactForces {
     for (std::size_t a = 0; a < at.slip.size(); ++a) w[a] = rate(at.slip[a]);
     if (at.width != none) {
       const double size = std::sqrt(w[0] * w[0] + w[1] * w[1] + c_[at.width] * c_[at.width]);
+      if (size == 0) return {};  // a slip that constraints prescribe has no width
       return {w[0] / size, w[1] / size};
     }
     if (at.slip.size() == 1) return {states_[j].mode == Mode::sliding_back ? -1.0 : 1.0, 0};
