@@ -339,7 +339,7 @@ std::string ensemble_obstacle(const Simulation& first) {
   if (code.reset_values > 0) return "events or samples of the model change the state";
   if (const std::string name = ranged(first, code); !name.empty())
     return fmt::format("'{}' has a range, which is checked after every step", name);
-  if (!run::narrow_functions(first.derived->candidates.front()).empty())
+  if (!run::narrow_functions(first.derived->candidates.front(), run::Tails::none).empty())
     return "exp, tanh, sinh, cosh or a high power of the state may give a force that is narrow, which is searched for "
            "in every step";
   if (!stands_still(first.scene)) return "inputs or functions of time vary, and their jumps and pulses are located";

@@ -2,6 +2,7 @@
 #include "run/monitored_functions.hpp"
 
 #include <algorithm>
+#include <set>
 #include <string>
 
 #include "run/expression_tables.hpp"
@@ -17,17 +18,39 @@ using symbolic::SymbolKind;
 constexpr int high_power = 20;
 constexpr int steep_power = 4;  // in a denominator: the tails of 1/(1 + x^2) are still visible to the error control
 
-/// The argument of a narrow function without tails (the function, its derivative or its inverse); nothing for functions
-/// with tails that the error control detects.
-std::vector<Ref> bumps(symbolic::Dag& dag, Ref r) {
+bool depends_on_state(const symbolic::Dag& dag, Ref r) {
+  const std::vector<symbolic::Symbol> symbols = dag.symbols({r});
+  return std::any_of(symbols.begin(), symbols.end(), [](const symbolic::Symbol& symbol) {
+    return symbol.kind == SymbolKind::coordinate || symbol.kind == SymbolKind::state;
+  });
+}
+
+/// Whether a divisor has a scale, as that of 1/(1 + (x/w)^2): a sum that depends on the state.
+bool has_scale(const symbolic::Dag& dag, Ref divisor) {
+  const std::vector<Ref> parts = dag.reachable({divisor});
+  return std::any_of(parts.begin(), parts.end(), [&](Ref part) {
+    return (dag[part].op == symbolic::Op::add || dag[part].op == symbolic::Op::sub) && depends_on_state(dag, part);
+  });
+}
+
+/// The functions whose values show a narrow part of r: r itself, its derivative or its inverse.
+std::vector<Ref> bumps(symbolic::Dag& dag, Ref r, Tails tails) {
   const symbolic::Node node = dag[r];
   const auto steep = [&](Ref part) { return dag[part].op == symbolic::Op::power && dag[part].payload >= steep_power; };
+  const auto inverse = [&](Ref divisor) { return std::vector{dag.div(dag.one(), divisor)}; };
   switch (node.op) {
     case symbolic::Op::div: {
       const std::vector<Ref> parts = dag.reachable({node.args[1]});
-      if (std::none_of(parts.begin(), parts.end(), steep)) return {};
-      return {dag.div(dag.one(), node.args[1])};
+      const bool is_steep = std::any_of(parts.begin(), parts.end(), steep);
+      if (!is_steep && !(tails == Tails::any && has_scale(dag, node.args[1]))) return {};
+      return inverse(node.args[1]);
     }
+    case symbolic::Op::atan:
+      if (tails == Tails::none) return {};
+      return inverse(dag.add(dag.one(), dag.power(node.args[0], 2)));
+    case symbolic::Op::atan2:
+      if (tails == Tails::none) return {};
+      return inverse(dag.add(dag.power(node.args[0], 2), dag.power(node.args[1], 2)));
     case symbolic::Op::exp: return {r, dag.call(symbolic::Op::exp, dag.neg(node.args[0]))};
     case symbolic::Op::tanh: return {dag.sub(dag.one(), dag.power(r, 2))};
     case symbolic::Op::cosh: return {dag.div(dag.one(), r)};
@@ -73,21 +96,15 @@ JumpFunctions jump_functions(const system::EquationSystem& s) {
   return result;
 }
 
-std::vector<Table> narrow_functions(const system::EquationSystem& s) {
+std::vector<Table> narrow_functions(const system::EquationSystem& s, Tails tails) {
   std::vector<Ref> roots;
   for (const auto* part : {&s.M, &s.f, &s.A, &s.b, &s.gamma}) roots.insert(roots.end(), part->begin(), part->end());
-  const auto of_state = [&s](Ref r) {
-    const std::vector<symbolic::Symbol> symbols = s.dag->symbols({r});
-    return std::any_of(symbols.begin(), symbols.end(), [](const symbolic::Symbol& symbol) {
-      return symbol.kind == SymbolKind::coordinate || symbol.kind == SymbolKind::state;
-    });
-  };
   const SymbolResolver variables = run_variables(s);
   std::vector<Table> result;
+  std::set<Ref> seen;
   for (const Ref r : s.dag->reachable(roots)) {
-    const std::vector<Ref> found = bumps(*s.dag, r);
-    if (found.empty() || !of_state(r)) continue;
-    for (const Ref bump : found) {
+    for (const Ref bump : bumps(*s.dag, r, tails)) {
+      if (!seen.insert(bump).second || !depends_on_state(*s.dag, bump)) continue;
       if (std::optional<Table> table = make_table(*s.dag, {bump}, variables)) result.push_back(std::move(*table));
     }
   }

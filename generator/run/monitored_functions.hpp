@@ -14,8 +14,12 @@ namespace eomgen::run {
 /// Energies, constraints, positions and velocities if the equations have kinks; otherwise empty.
 eom::hybrid::JumpFunctions jump_functions(const system::EquationSystem& system);
 
-/// Narrow functions without tails: exp, tanh, sinh, cosh, powers of the state.
-std::vector<eom::expressions::Table> narrow_functions(const system::EquationSystem& system);
+/// `none`: functions that vanish, for any error control, a few widths away: exp, tanh, sinh, cosh, high powers of the
+/// state. `any`: also those with tails: quotients whose divisor is a sum, such as 1/sqrt(1 + (x/w)^2)^3, and atan.
+enum class Tails { none, any };
+
+/// Functions that may be narrow in the state.
+std::vector<eom::expressions::Table> narrow_functions(const system::EquationSystem& system, Tails tails = Tails::any);
 
 /// Tables of event functions that depend on the state, by index among the event functions; empty if they have no
 /// bounds.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Forces that are narrow in the state. A barrier exp(-(x/w)^2) far narrower than a step lies between the points at
-// which the step evaluates the equations, and its tails are below any tolerance. In: functions without tails, a step
-// with its dense output, the right-hand side. Out: a shorter step, if the bounds of a function allow values that no
-// sample has and the path of the step violates the equations at such a point.
+// Forces that are narrow in the state. A barrier exp(-(x/w)^2) or 1/(1 + (x/w)^2) far narrower than a step lies between
+// the points at which the step evaluates the equations, and its tails are below the tolerance. In: functions that may
+// be narrow, a step with its dense output, the right-hand side. Out: a shorter step, if the bounds of a function allow
+// values that no sample has and the path of the step violates the equations at such a point.
 #pragma once
 
 #include <algorithm>
@@ -20,17 +20,21 @@ namespace eom::hybrid {
 class NarrowForces {
  public:
   explicit NarrowForces(const Problem& problem) : n_(problem.n()), variables_(step_variables(problem)) {
-    for (const expressions::Table& function : problem.bounded.narrow) codes_.emplace_back(function, problem.parameters);
+    const std::size_t variables = 1 + problem.code->layout().size() + problem.inputs.size();
+    for (const expressions::Table& function : problem.bounded.narrow) {
+      Function added{{function, problem.parameters}, has_tails(function) ? of_tails : of_values};
+      if (varies(added.code, variables)) functions_.push_back(std::move(added));
+    }
   }
 
-  bool any() const { return !codes_.empty(); }
+  bool any() const { return !functions_.empty(); }
 
   /// The longest step that may replace this one; infinity if it may be taken as it is.
   double longest(const StepView& step, const Sampling& sampling) const {
     const double h = std::abs(step.t1 - step.t0);
     double first = 1;
-    for (const expressions::Code& code : codes_)
-      first = std::min(first, first_hidden_value(code, step, sampling).value_or(1));
+    for (const Function& function : functions_)
+      first = std::min(first, first_hidden_value(function, step, sampling).value_or(1));
     if (first < 1) return first * h;
     if (sampling.series && unsatisfied(step, sampling, 1, 1)) return h / 2;
     return std::numeric_limits<double>::infinity();
@@ -41,20 +45,49 @@ class NarrowForces {
 
  private:
   static constexpr std::size_t most_boxes = 200;  // per function and step
-  static constexpr double shortest = 1e-9;        // of the step
+  static constexpr double shortest = 1e-12;       // of the step
   static constexpr double nothing = 1e-100;       // in the units of the function
   static constexpr double everything = 1e100;
   static constexpr double of_values = 1e-3;   // beyond the samples: variation of smooth functions between them
+  static constexpr double of_tails = 10;      // the same of functions whose tails the error control sees
+  static constexpr double any_state = 1e9;    // in the units of the model
+  static constexpr double hardly = 1e3;       // a ratio of values
   static constexpr double of_tolerance = 30;  // the path inside a step is less accurate than its end
   static constexpr double difference = 1e-3;  // of a width, for slopes of the path
   static constexpr double nearest = 1e-3;     // of a box
 
+  struct Function {
+    expressions::Code code;
+    double visible;  // how far values may lie beyond the samples, relative to them
+  };
+
+  /// Whether a function decreases algebraically, so that samples a few widths away show a part of it.
+  static bool has_tails(const expressions::Table& function) {
+    using expressions::Op;
+    constexpr int steep = 4;  // a power
+    return std::none_of(function.steps.begin(), function.steps.end(), [](const expressions::Step& step) {
+      return step.op == Op::exp || step.op == Op::tanh || step.op == Op::sinh || step.op == Op::cosh ||
+             step.op == Op::pow || (step.op == Op::power && step.a[1] >= steep);
+    });
+  }
+
+  /// Whether a function may vary by large factors, at any state: the inverse of m + M sin(q)^2 does not.
+  static bool varies(const expressions::Code& code, std::size_t variables) {
+    const expressions::Interval any{-any_state, any_state};
+    const std::vector<expressions::SlopedInterval> box(variables, {any, expressions::Interval::all()});
+    const expressions::Interval values = code.range(box).value;
+    const double least = std::min(std::abs(values.low), std::abs(values.high)),
+                 most = std::max(std::abs(values.low), std::abs(values.high));
+    return !(values.low * values.high > 0 && most < hardly * least);
+  }
+
   static double bounded(double v) { return std::clamp(v, -everything, everything); }
 
   /// The first point at which a function has a value outside of the samples and the equations are violated.
-  std::optional<double> first_hidden_value(const expressions::Code& code, const StepView& step,
+  std::optional<double> first_hidden_value(const Function& function, const StepView& step,
                                            const Sampling& sampling) const {
     using expressions::Interval;
+    const expressions::Code& code = function.code;
     const auto value = [&](const StepPlace& at) { return bounded(code.value(at.variables)); };
     std::vector<std::pair<StepPlace, StepPlace>> open(1);
     open[0].second.s = 1;
@@ -72,9 +105,11 @@ class NarrowForces {
       if (std::isfinite(range.slope.width()))
         range.value = intersection(range.value, Interval{middle, middle} + range.slope * Interval{-0.5, 0.5});
       range.value = {bounded(range.value.low), bounded(range.value.high)};
-      const double room =
-          std::max({seen.width(), of_values * std::max(std::abs(seen.low), std::abs(seen.high)), nothing});
-      const auto shown = [&](double v) { return v >= seen.low - room && v <= seen.high + room; };
+      const auto shown = [&](double v) {
+        const double largest = std::max(std::abs(seen.low), std::abs(seen.high)),
+                     room = std::max({seen.width(), function.visible * largest, nothing});
+        return v >= seen.low - room && v <= seen.high + room;
+      };
       if (shown(range.value.low) && shown(range.value.high)) continue;
       if (!shown(middle)) {
         if (unsatisfied(step, sampling, m.s, width)) return m.s;
@@ -85,7 +120,10 @@ class NarrowForces {
         }
         seen = hull(seen, {middle, middle});
       }
-      if (width < shortest) continue;
+      if (width < shortest) {
+        if (!unresolved_from_ && !(shown(range.value.low) && shown(range.value.high))) unresolved_from_ = step.t0;
+        continue;
+      }
       open.emplace_back(m, b);
       open.emplace_back(a, m);
     }
@@ -124,7 +162,7 @@ class NarrowForces {
 
   std::size_t n_;
   StepVariables variables_;
-  std::vector<expressions::Code> codes_;
+  std::vector<Function> functions_;
   mutable std::optional<double> unresolved_from_;
   mutable std::vector<double> x_, before_, after_, dx_;
 };

@@ -122,7 +122,7 @@ struct TimeFunctions {
 /// Functions that have bounds along a step; all others are only sampled. Variables as for JumpFunctions.
 struct BoundedFunctions {
   std::vector<expressions::Table> events = {};  // by their index among the event functions; empty: not available
-  std::vector<expressions::Table> narrow = {};  // of forces that are narrow in the state and have no tails
+  std::vector<expressions::Table> narrow = {};  // of forces that may be narrow in the state
 };
 
 /// Open range of a coordinate of the model; infinite if it has none.
