@@ -239,3 +239,18 @@ TEST_CASE("starts: the Python target follows changed values as run --set, and si
       CHECK(found["end"][state++].get<double>() == doctest::Approx(ends[k][name].get<double>()).epsilon(1e-5));
   }
 }
+
+TEST_CASE("emit: the JavaScript of a start in single precision loads, and finds the start") {
+  const Folder folder;
+  folder.write("rod.toml",
+               "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\", \"0\"] }\n"
+               "[[constraint]]\nname = \"rod\"\nholonomic = \"x^2 + y^2 - 4\"\n[[force]]\ngravity = \"-9.81*E2\"\n"
+               "[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\nguess = { y = -1 }\n");
+  expect(0, folder, {"emit", "rod.toml", "-o", "out", "--target", "javascript", "--real", "float", "--with", "start"});
+  folder.write("load.js", "process.exit(require('./out/rod.js').selftest());");
+  try {
+    CHECK(run_child({{"node", "load.js"}, folder.path()}).status == 0);
+  } catch (const std::runtime_error&) {
+    MESSAGE("skipped: there is no node");
+  }
+}

@@ -94,7 +94,7 @@ class Text {
                        field("v"));
   }
 
-  std::string number(double value) const { return decimal(value) + (language_.single ? "f" : ""); }
+  std::string number(double value) const { return decimal(value) + (language_.single && language_.is_c ? "f" : ""); }
 
   void add_numbers(Values& values) const {
     const auto add = [&](const char* name, std::size_t value) { values.emplace_back(name, std::to_string(value)); };
