@@ -201,6 +201,12 @@ void Flow::differentiate(const ValueAndJacobian<T>& s, const State<T>& z, Field<
     for (std::size_t d = 0; d < N + 1; ++d) field.jacobian(n_ + i, d) = jacobian(i, d);
     for (std::size_t u = 0; u < inputs_; ++u) field.input_jacobian(n_ + i, u) = jacobian(i, N + 1 + u);
   }
+  field.multipliers = Matrix<T>(m_, 1);
+  field.multiplier_jacobian = Matrix<T>(m_, count);
+  for (std::size_t k = 0; k < m_; ++k) {
+    field.multipliers(k, 0) = y(n_ + k, 0);
+    for (std::size_t d = 0; d < count; ++d) field.multiplier_jacobian(k, d) = jacobian(n_ + k, d);
+  }
   const std::size_t first_order = eom::StateLayout{n_}.first_order_begin();
   for (std::size_t k = 0; first_order + k < N; ++k) {
     field.X(first_order + k, 0) = s.value[rates0 + k];

@@ -34,6 +34,8 @@ struct Field {
   Matrix<T> phi_jacobian;                 // by z
   Matrix<T> inertia_force = {};           // M a, n x 1; in binary64 only
   Matrix<T> inertia_force_jacobian = {};  // n x (N + 1)
+  Matrix<T> multipliers = {};             // of the active constraints, m x 1
+  Matrix<T> multiplier_jacobian = {};     // m x (N + 1 + inputs), by z, then the inputs
 };
 
 class Flow {

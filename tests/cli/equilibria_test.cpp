@@ -25,6 +25,53 @@ TEST_CASE("equilibria: points with values, eigenvalues and stability, the same f
   CHECK(document(folder, {"equilibria", "R6_rolling_disk"})["points"][0]["stable"] == "unknown");
 }
 
+TEST_CASE("equilibria --trim: inputs that hold a pose, a steady motion, and a pose on constraints") {
+  const Folder folder;
+  folder.write("arm.toml",
+               "format = 1\n[parameters]\nm = 2\nl = 0.5\ng = 9.81\n[inputs]\nM = { default = 7 }\nN = {}\nidle = { "
+               "default = 4 }\n"
+               "[coordinates]\ntheta = {}\nz = {}\n[energy]\nkinetic = \"m*l^2*theta_dot^2/2 + z_dot^2/2\"\n"
+               "potential = \"-m*g*l*cos(theta)\"\n[[force]]\ngeneralized = { theta = \"M + 2*N - 3*theta_dot\" }\n"
+               "[scene.default]\nt = [0, 1]\ninitial = { theta = 0.5 }\n");
+  const double torque = 2 * 0.5 * 9.81 * std::sin(0.5);
+  const Json one = document(folder, {"equilibria", "arm.toml", "--trim", "M"})["trim"];
+  CHECK(one["inputs"]["M"].get<double>() == doctest::Approx(torque).epsilon(1e-15));
+  CHECK(one["inputs"]["idle"] == 4.0);
+  CHECK(one["unique"] == true);
+  CHECK(one["residual"].get<double>() < 1e-15);
+  // Rates belong to the state.
+  const Json turning = document(folder, {"equilibria", "arm.toml", "--trim", "M", "--set", "theta_dot=2"})["trim"];
+  CHECK(turning["inputs"]["M"].get<double>() == doctest::Approx(torque + 6).epsilon(1e-15));
+  // M = 7 + d, N = 2 d: the smallest changes.
+  const Json two = document(folder, {"equilibria", "arm.toml", "--trim", "M,N"})["trim"];
+  CHECK(two["unique"] == false);
+  CHECK(two["inputs"]["M"].get<double>() == doctest::Approx(7 + (torque - 7) / 5).epsilon(1e-14));
+  CHECK(two["inputs"]["N"].get<double>() == doctest::Approx(2 * (torque - 7) / 5).epsilon(1e-14));
+  const std::string text = expect(0, folder, {"equilibria", "arm.toml", "--trim", "M,N"}).out;
+  CHECK(contains(text, "these are the smallest changes"));
+  CHECK(contains(text, "as in the scene"));
+
+  folder.write(
+      "track.toml",
+      "format = 1\n[parameters]\nm = \"2 kg\"\nL = \"0.5 m\"\ng = \"9.81 m/s^2\"\n[inputs]\nF = { unit = \"N\" }\n"
+      "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
+      "[[force]]\ngravity = \"-g*E3\"\n[[force]]\non = \"P\"\nforce = \"F*E1\"\n"
+      "[[constraint]]\nname = \"plane\"\nholonomic = \"y\"\n[[constraint]]\nname = \"rod\"\n"
+      "holonomic = \"x^2 + z^2 - L^2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 0.3, z = -0.4 }\n");
+  const Json track = document(folder, {"equilibria", "track.toml", "--trim", "F"})["trim"];
+  CHECK(track["inputs"]["F"].get<double>() == doctest::Approx(2 * 9.81 * 0.75).epsilon(1e-14));
+}
+
+TEST_CASE("equilibria --trim: states that inputs cannot hold, unknown names and options without meaning are refused") {
+  const Folder folder;
+  const std::string error = expect(3, folder, {"equilibria", "cart_pendulum", "--trim", "F", "--set", "theta=0.4"}).err;
+  CHECK(contains(error, "F cannot hold this state: "));
+  CHECK(contains(error, "_dot"));
+  CHECK(contains(expect(2, folder, {"equilibria", "cart_pendulum", "--trim", "G"}).err, "there is no input 'G'"));
+  CHECK(contains(expect(2, folder, {"equilibria", "cart_pendulum", "--trim", "F", "--hold", "x=1"}).err, "exclude"));
+  CHECK(contains(expect(2, folder, {"equilibria", "cart_pendulum", "--at", "1"}).err, "--trim"));
+}
+
 TEST_CASE("equilibria: zero coordinates are shown without sign, and a force that ends the search is named") {
   const Folder folder;
   const std::string text = expect(0, folder, {"equilibria", "S5_double_pendulum"}).out;

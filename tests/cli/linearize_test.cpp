@@ -52,6 +52,53 @@ TEST_CASE("linearize: another parameter, another time") {
   CHECK(faint["A"].back().back() == -1.0);
 }
 
+TEST_CASE("linearize: C and D of outputs, with what they depend on through accelerations and constraint forces") {
+  const Folder folder;
+  folder.write("driven.toml",
+               "format = 1\n[parameters]\nk = 4\nc = 1\n[inputs]\nF = {}\n[coordinates]\nx = {}\n[energy]\nkinetic = "
+               "\"x_dot^2/2\"\npotential = \"k*x^2/2 + x^4/12\"\n"
+               "[[force]]\ngeneralized = { x = \"F - c*x_dot\" }\n[definitions]\nlift = \"F*x_dot\"\n"
+               "[scene.default]\nt = [0, 1]\ninitial = { x = 1, x_dot = 2 }\ninputs = { F = 3 }\n"
+               "outputs = [\"lift\", \"x_ddot\", \"energy\"]\n");
+  const Json found = document(folder, {"linearize", "driven.toml"});
+  CHECK(found["outputs"] == Json({{"lift", 6.0}, {"x_ddot", 3 - 2 - 4 - 1.0 / 3}, {"energy", 2 + 2 + 1.0 / 12}}));
+  CHECK(found["C"][0] == Json({0.0, 3.0}));
+  CHECK(found["D"][0] == Json({2.0}));
+  CHECK(found["C"][1] == found["A"][1]);  // the acceleration
+  CHECK(found["D"][1] == found["B"][1]);
+  CHECK(found["C"][2][0].get<double>() == doctest::Approx(4 + 1.0 / 3).epsilon(1e-15));
+  CHECK(found["C"][2][1] == 2.0);
+  const std::string text = expect(0, folder, {"linearize", "driven.toml", "--output", "energy,x"}).out;
+  CHECK(contains(text, "\nC "));
+  CHECK(contains(text, "\nD "));
+  CHECK(document(folder, {"linearize", "driven.toml", "--output", "x"})["C"] == Json({{1.0, 0.0}}));
+
+  // A pendulum in cartesian coordinates at the lowest point: the rod pulls with m g + m x_dot^2/L.
+  folder.write(
+      "rod.toml",
+      "format = 1\n[parameters]\nm = \"2 kg\"\nL = \"0.5 m\"\ng = \"9.81 m/s^2\"\n[[particle]]\nname = \"P\"\n"
+      "mass = \"m\"\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n[[force]]\ngravity = \"-g*E3\"\n"
+      "[[constraint]]\nname = \"plane\"\nholonomic = \"y\"\n"
+      "[[constraint]]\nname = \"rod\"\nholonomic = \"sqrt(x^2 + z^2) - L\"\n"
+      "[scene.default]\nt = [0, 1]\ninitial = { x = 0, z = -0.5, x_dot = 0.75 }\noutputs = [\"reaction.rod\"]\n");
+  const Json rod = document(folder, {"linearize", "rod.toml"});
+  REQUIRE(rod["states"] == Json({"x", "x_dot"}));
+  CHECK(rod["outputs"]["reaction.rod"].get<double>() == doctest::Approx(-(2 * 9.81 + 2 * 0.5625 / 0.5)).epsilon(1e-14));
+  CHECK(rod["C"][0][0] == 0.0);
+  CHECK(rod["C"][0][1].get<double>() == doctest::Approx(-2 * 2 * 0.75 / 0.5).epsilon(1e-14));
+  CHECK(contains(expect(2, folder, {"linearize", "rod.toml", "--output", "nothing"}).err, "nothing"));
+}
+
+TEST_CASE("linearize: an output without a slope at the state is refused by its name") {
+  const Folder folder;
+  folder.write(
+      "kink.toml",
+      "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"x^2/2\"\n"
+      "[definitions]\nsize = \"abs(x)\"\n[scene.default]\ninitial = { x = 0, x_dot = 1 }\noutputs = [\"size\"]\n");
+  CHECK(contains(expect(2, folder, {"linearize", "kink.toml"}).err, "the output 'size' has no slope at this state"));
+  expect(0, folder, {"linearize", "kink.toml", "--output", "x"});
+}
+
 TEST_CASE("linearize: a state that is moved to the equilibrium beside it is reported") {
   const Folder folder;
   const auto start_at = [&](const char* x) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Target octave through Octave, if installed.
+// Target octave through Octave, if installed. tests/models/languages_test.cpp compares shipped models with their C
+// code.
 #include "emit/octave/octave.hpp"
 
 #include <doctest/doctest.h>

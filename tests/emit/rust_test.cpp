@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Target rust through rustc, if installed: as a module of a crate without the standard library, and its own test.
+// tests/models/languages_test.cpp compares shipped models with their C code.
 #include "emit/rust/rust.hpp"
 
 #include <doctest/doctest.h>

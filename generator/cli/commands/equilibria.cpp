@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <eom/layout.hpp>
+#include <optional>
 
 #include "analysis/steady_search.hpp"
+#include "analysis/trim.hpp"
 #include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/eigenvalues.hpp"
@@ -22,7 +25,8 @@ namespace {
 
 struct Options : SceneOptions {
   std::string model;
-  std::vector<std::string> hold;
+  std::vector<std::string> hold, trim;
+  std::optional<double> at;
   std::size_t starts = 300;
 };
 
@@ -128,7 +132,59 @@ std::string text(const analysis::SteadyMotions& found, const Options& options) {
              options.starts, found.search.converged, completeness(found.search), found.problem.certificate);
 }
 
+Json to_json(const analysis::SteadyProblem& problem, const analysis::Trim& trim) {
+  Json inputs = Json::object(), values = Json::object();
+  const std::vector<model::Input>& all = problem.derived->model.inputs;
+  for (std::size_t i = 0; i < all.size(); ++i) inputs[all[i].name] = display_value(trim.inputs[i]);
+  for (std::size_t i = 0; i + 1 < trim.z.size(); ++i) values[problem.flow->names()[i]] = display_value(trim.z[i]);
+  return {{"format", 1},
+          {"points", Json::array()},
+          {"trim",
+           {{"chosen", trim.chosen},
+            {"inputs", inputs},
+            {"values", values},
+            {"residual", trim.residual},
+            {"unique", trim.unique}}},
+          {"certificate", problem.certificate}};
+}
+
+std::string text(const analysis::SteadyProblem& problem, const analysis::Trim& trim) {
+  std::string out = fmt::format("{}, scene {}, t = {}: inputs that hold this state\n\n", problem.derived->model.id,
+                                problem.scene.name, problem.t);
+  for (std::size_t i = 0; i + 1 < trim.z.size(); ++i)
+    out += fmt::format("  {:<24} {:>24}\n", problem.flow->names()[i], display_value(trim.z[i]));
+  out += "\ninputs\n";
+  const std::vector<model::Input>& all = problem.derived->model.inputs;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool kept = std::find(trim.chosen.begin(), trim.chosen.end(), all[i].name) == trim.chosen.end();
+    out += fmt::format("  {:<24} {:>24}{}\n", all[i].name, display_value(trim.inputs[i]),
+                       kept ? "   as in the scene" : "");
+  }
+  if (!trim.unique) out += "\nunique            no: other inputs hold it too; these are the smallest changes\n";
+  return out + fmt::format("\nresidual          {:.1e}, the largest acceleration that remains\ncertificate       {}\n",
+                           trim.residual, problem.certificate);
+}
+
+int execute_trim(const Options& options, const CommonOptions& common) {
+  if (!options.hold.empty())
+    throw Error("equilibria", {}, "--trim and --hold exclude one another",
+                "hold quantities with --hold, or a state with --trim");
+  const std::shared_ptr<const model::Model> model = load_model(options.model);
+  const analysis::SteadyProblem problem = analysis::steady_problem(
+      "equilibria", model, options.scene, overrides_of("equilibria", options, *model), options.at, common.seed);
+  const analysis::Trim trim = analysis::trim_inputs(problem, options.trim);
+  if (common.json) {
+    print_document(to_json(problem, trim));
+  } else {
+    fmt::print("{}", text(problem, trim));
+  }
+  return 0;
+}
+
 int execute(const Options& options, const CommonOptions& common) {
+  if (!options.trim.empty()) return execute_trim(options, common);
+  if (options.at)
+    throw Error("equilibria", {}, "--at chooses the state of --trim", "give --trim too, or leave --at out");
   analysis::SteadyRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
@@ -168,6 +224,10 @@ Execute declare_equilibria(Arguments& app) {
       .show_default();
   add_values(app, *options);
   app.add_list("--hold", options->hold, "OUTPUT=VALUE in place of the conserved momenta; may be repeated");
+  app.add_list("--trim", options->trim,
+               "in place of the search: values of these inputs that hold the start of the scene");
+  app.add_option("--at", options->at, "with --trim: the state that the scene's run has reached then")
+      .check(finite_number());
   app.add_option("--starts", options->starts, "how many starts the search has")
       .check(whole_number(limits::search_starts.least, limits::search_starts.most))
       .show_default();

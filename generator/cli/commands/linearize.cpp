@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "analysis/output_slopes.hpp"
 #include "analysis/steady.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/eigenvalues.hpp"
@@ -19,11 +20,13 @@ namespace {
 struct Options : SceneOptions {
   std::string model;
   std::optional<double> at;
+  std::vector<std::string> outputs;
 };
 
 struct Answer {
   const analysis::SteadyProblem& problem;
   const linear::Linearisation& l;
+  const analysis::OutputSlopes& outputs;
 
   std::vector<std::string> names(const std::vector<std::size_t>& places) const {
     std::vector<std::string> result;
@@ -75,6 +78,12 @@ Json rows(const linear::Matrix<linear::Precise>& A) {
   return result;
 }
 
+Json values_of(const analysis::OutputSlopes& outputs) {
+  Json values = Json::object();
+  for (std::size_t k = 0; k < outputs.names.size(); ++k) values[outputs.names[k]] = display_value(outputs.values[k]);
+  return values;
+}
+
 Json to_json(const Answer& a) {
   Json eigenvalues = Json::array(), point = Json::object(), moved = Json::object();
   for (const linear::Eigenvalue& e : a.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
@@ -90,6 +99,9 @@ Json to_json(const Answer& a) {
           {"inputs", a.inputs()},
           {"A", rows(a.l.A)},
           {"B", rows(a.l.B)},
+          {"outputs", values_of(a.outputs)},
+          {"C", rows(a.outputs.C)},
+          {"D", rows(a.outputs.D)},
           {"eigenvalues", eigenvalues},
           {"eigenvalues_hold", a.l.spectrum.is_reliable()},
           {"off", a.l.parameter_change},
@@ -129,6 +141,10 @@ std::string text(const Answer& a) {
     out += fmt::format("moved             {} by {:.1e}, to where the balance holds\n", name, distance);
   out += matrix_text("A", a.l.A, a.states(), a.states());
   if (!a.inputs().empty()) out += matrix_text("B", a.l.B, a.states(), a.inputs());
+  if (!a.outputs.names.empty()) {
+    out += matrix_text("C", a.outputs.C, a.outputs.names, a.states());
+    if (!a.inputs().empty()) out += matrix_text("D", a.outputs.D, a.outputs.names, a.inputs());
+  }
   out += "\neigenvalues\n";
   for (std::size_t i = 0; i < a.l.spectrum.values.size(); ++i)
     out += fmt::format("  {}\n", eigenvalue_text(a.l.spectrum, i));
@@ -143,7 +159,8 @@ int execute(const Options& options, const CommonOptions& common) {
   const analysis::SteadyProblem problem = analysis::steady_problem(
       "linearize", model, options.scene, overrides_of("linearize", options, *model), options.at, common.seed);
   const linear::Linearisation l = analysis::linearise_at_state(problem, common.seed);
-  const Answer answer{problem, l};
+  const analysis::OutputSlopes outputs = analysis::linearise_outputs(problem, l, options.outputs);
+  const Answer answer{problem, l, outputs};
   if (common.json) {
     print_document(to_json(answer));
   } else {
@@ -160,6 +177,7 @@ Execute declare_linearize(Arguments& app) {
   add_scene(app, *options);
   app.add_option("--at", options->at, "a time: the state that the scene's run has reached then; without it the start")
       .check(finite_number());
+  app.add_list("--output", options->outputs, "the outputs of C and D, in place of the scene's");
   add_values(app, *options);
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }

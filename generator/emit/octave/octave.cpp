@@ -283,7 +283,7 @@ std::vector<EmittedFile> emit_octave(const program::Program& program, const Emis
   // A run needs the start too: the command warns that the target has none.
   if (context.start_functions && !context.run)
     throw Error("emit", {}, "the target octave has no function start",
-                "leave start out of --with, or use the target c or javascript");
+                "leave start out of --with, or use the target c, javascript or rust");
   const std::string name = octave_name(context.id);
   const bool single_precision = context.single_error.has_value();
   const Language language = octave_language(single_precision);

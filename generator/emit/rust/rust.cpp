@@ -14,8 +14,8 @@
 #include "emit/self_test.hpp"
 #include "emit/signature.hpp"
 #include "emit/single_precision.hpp"
+#include "emit/start/start.hpp"
 #include "emit/text.hpp"
-#include "error.hpp"
 #include "program/internal_functions.hpp"
 #include "skeletons/rust_model_rs.hpp"
 
@@ -309,6 +309,14 @@ std::string rust_selftest(const EmissionContext& context, const Dialect& dialect
     text +=
         "  let mut x = [Real::NAN; STATES];\n  let mut p = [Real::NAN; PARAMETERS];\n  defaults(&mut x, &mut p);\n"
         "  if x != VECTORS[0].x || p != VECTORS[0].p { return 1; }\n";
+  if (context.start_functions)
+    text += fmt::format(
+        "  let (mut t, mut x, mut p) = ([0.0; 2], [Real::NAN; STATES], [Real::NAN; PARAMETERS]);\n"
+        "  let (mut x0, mut p0) = ([0.0; STATES], [0.0; PARAMETERS]);\n"
+        "  if start(None, &mut t, &mut x, &mut p, None) != 0 {{ return 1; }}\n  defaults(&mut x0, &mut p0);\n"
+        "  if x.iter().zip(&x0).any(|(a, b)| !(abs(a - b) <= {0}*(1.0 + abs(*b)))) {{ return 1; }}\n"
+        "  if p.iter().zip(&p0).any(|(a, b)| !(abs(a - b) <= {0}*abs(*b) + {0})) {{ return 1; }}\n",
+        single ? "1e-3" : "1e-7");
   for (std::size_t k = 0; k < context.tests.size(); ++k) {
     for (const FunctionValues& f : context.tests[k].functions) text += rust_comparison(f, k, dialect);
   }
@@ -325,10 +333,6 @@ std::string rust_name(const std::string& id) {
 std::vector<EmittedFile> emit_rust(const program::Program& program, const EmissionContext& context) {
   require_consistent(program, context);
   require_plain(program, "rust");
-  // A run needs the start too: the command warns that the target has none.
-  if (context.start_functions && !context.run)
-    throw Error("emit", {}, "the target rust has no function start",
-                "leave start out of --with, or use the target c or javascript");
   const bool single = context.single_error.has_value();
   const Language language = rust_language(single);
   const ModelNames names = model_names(program, context, rust_words);
@@ -337,6 +341,14 @@ std::vector<EmittedFile> emit_rust(const program::Program& program, const Emissi
   for (const program::Function& function : program.functions)
     functions.push_back({{"purpose", function_purpose(function.name)},
                          {"definition", rust_definition(function, names, context, language)}});
+  std::string start;
+  if (context.start_functions) {
+    for (const program::Function* function : {&context.start_functions->values, &context.start_functions->rows}) {
+      if (function == &context.start_functions->rows && context.start_functions->row_count() == 0) continue;
+      start += "\n" + rust_definition(*function, names, context, language);
+    }
+    start += rust_start(program, context);
+  }
   const Json parsed = Json::parse(info);
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", banner(program, context, "// ", "// ", "")},
@@ -345,6 +357,7 @@ std::vector<EmittedFile> emit_rust(const program::Program& program, const Emissi
       {"constants", rust_constants(program, context, parsed, language.dialect)},
       {"info", quoted(parsed.dump(-1, ' ', true, Json::error_handler_t::replace))},
       {"defaults", defaults_body(program, context, language.dialect)},
+      {"start", start},
       {"count", std::to_string(context.tests.size())},
       {"vectors", rust_vectors(program, context, language.dialect)},
       {"selftest", rust_selftest(context, language.dialect, single)}};

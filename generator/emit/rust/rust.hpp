@@ -12,6 +12,9 @@ namespace eomgen::emit {
 /// Throws Error if the program has features that the target does not support (require_plain).
 std::vector<EmittedFile> emit_rust(const program::Program& program, const EmissionContext& context);
 
+/// The function `start` of the module, but for the functions start_values and start_rows.
+std::string rust_start(const program::Program& program, const EmissionContext& context);
+
 /// The module's name: NAME, or NAME_ if Rust reserves that name.
 std::string rust_name(const std::string& id);
 

@@ -33,15 +33,16 @@ class Text {
        const StartLanguage& language)
       : start_(start),
         context_(context),
+        program_(program),
         states_(program.state_count()),
         n_(program.free.size()),
-        mode_size_(program.mode_layout().size()),
         language_(language),
         prefix_(language.prefix + "start_") {}
 
   std::string operator()() const {
     Values values = syntax();
-    add_numbers(values);
+    const Values numbers = start_numbers(start_, context_, program_, language_.single, language_.is_c ? "f" : "");
+    values.insert(values.end(), numbers.begin(), numbers.end());
     std::string constraints = tables();
     if (has_rows()) constraints += render_template(skeleton::kernels_start_constraints, values, {});
     values.emplace_back("constraints", structure() + constraints);
@@ -95,34 +96,6 @@ class Text {
   }
 
   std::string number(double value) const { return decimal(value) + (language_.single && language_.is_c ? "f" : ""); }
-
-  void add_numbers(Values& values) const {
-    const auto add = [&](const char* name, std::size_t value) { values.emplace_back(name, std::to_string(value)); };
-    add("states", states_);
-    add("parameters", context_.parameters.size());
-    add("n", n_);
-    add("rows", start_.row_count());
-    add("rounds", start_.dependent.size() / 2 + start_.stated.size() / 2 + 3);
-    add("dependent_count", start_.dependent.size() / 2);
-    add("stated_count", start_.stated.size() / 2);
-    add("initial_count", start_.initial.size() / 3);
-    add("early_count", start_.early.size() / 2);
-    add("late_count", start_.late.size() / 2);
-    add("first_order_count", start_.first_order.size() / 2);
-    add("fixed_count", start_.fixed.size() / 2);
-    add("inside_count", start_.inside.size());
-    add("contact_count", start_.contacts.size());
-    add("mode_size", mode_size_);
-    add("open_state", static_cast<std::size_t>(eom::contact_states) / 2);
-    add("hold_held", start_.holds_angles ? 1 : 0);
-    add("hold_loose", start_.tries_angles ? 1 : 0);
-    // Those of run/start.cpp, with the digits of the type.
-    values.emplace_back("last_digit", number(language_.single ? 2.2e-7 : 4e-16));
-    values.emplace_back("rounding", number(language_.single ? 5e-6 : 1e-14));
-    values.emplace_back("tolerance", number(language_.single ? 1e-4 : 1e-8));
-    values.emplace_back("rank_tolerance", number(language_.single ? 1e-4 : 1e-10));
-    values.emplace_back("tenth", number(0.1));
-  }
 
   std::string tables() const {
     std::vector<Table> list{{"dependent", &start_.dependent}, {"stated", &start_.stated},
@@ -204,7 +177,8 @@ class Text {
 
   const StartDescription& start_;
   const EmissionContext& context_;
-  std::size_t states_, n_, mode_size_;
+  const program::Program& program_;
+  std::size_t states_, n_;
   const StartLanguage& language_;
   std::string prefix_;
 };
@@ -217,6 +191,42 @@ const char* const start_purpose =
 std::string start_head(const std::string& prefix, const std::string& real) {
   return wrapped(fmt::format("int {0}start(const int* given, {1}* t, {1}* x, {1}* p, int* mode)", prefix, real),
                  std::string(prefix.size() + 10, ' '));
+}
+
+std::vector<std::pair<std::string, std::string>> start_numbers(const StartDescription& start,
+                                                               const EmissionContext& context,
+                                                               const program::Program& program, bool single,
+                                                               const std::string& suffix) {
+  std::vector<std::pair<std::string, std::string>> values;
+  const auto add = [&](const char* name, std::size_t value) { values.emplace_back(name, std::to_string(value)); };
+  const auto add_real = [&](const char* name, double value) {
+    values.emplace_back(name, decimal(value) + (single ? suffix : ""));
+  };
+  add("states", program.state_count());
+  add("parameters", context.parameters.size());
+  add("n", program.free.size());
+  add("rows", start.row_count());
+  add("rounds", start.dependent.size() / 2 + start.stated.size() / 2 + 3);
+  add("dependent_count", start.dependent.size() / 2);
+  add("stated_count", start.stated.size() / 2);
+  add("initial_count", start.initial.size() / 3);
+  add("early_count", start.early.size() / 2);
+  add("late_count", start.late.size() / 2);
+  add("first_order_count", start.first_order.size() / 2);
+  add("fixed_count", start.fixed.size() / 2);
+  add("inside_count", start.inside.size());
+  add("contact_count", start.contacts.size());
+  add("mode_size", program.mode_layout().size());
+  add("open_state", static_cast<std::size_t>(eom::contact_states) / 2);
+  add("hold_held", start.holds_angles ? 1 : 0);
+  add("hold_loose", start.tries_angles ? 1 : 0);
+  // Those of run/start.cpp, with the digits of the type.
+  add_real("last_digit", single ? 2.2e-7 : 4e-16);
+  add_real("rounding", single ? 5e-6 : 1e-14);
+  add_real("tolerance", single ? 1e-4 : 1e-8);
+  add_real("rank_tolerance", single ? 1e-4 : 1e-10);
+  add_real("tenth", 0.1);
+  return values;
 }
 
 std::string start_text(const StartDescription& start, const EmissionContext& context, const program::Program& program,

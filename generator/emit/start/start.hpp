@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "emit/straight_line.hpp"
@@ -51,6 +52,13 @@ struct StartLanguage {
   std::string prefix;  // of functions of the file, "NAME_" or ""
   bool single = false;
 };
+
+/// The sizes and tolerances of the function, by their names in the skeletons. `suffix`: of literals in single
+/// precision.
+std::vector<std::pair<std::string, std::string>> start_numbers(const StartDescription& start,
+                                                               const EmissionContext& context,
+                                                               const program::Program& program, bool single,
+                                                               const std::string& suffix);
 
 /// The tables, the functions of the constraints and NAME_start. The functions start_values and start_rows precede it.
 std::string start_text(const StartDescription& start, const EmissionContext& context, const program::Program& program,
