@@ -13,7 +13,8 @@ using namespace test_systems;
 namespace {
 
 bool has_octave() {
-  if (emit::run_process({"octave-cli", "--norc", "--no-history", "--eval", "1;"}).status == 0) return true;
+  const emit::ProcessResult tried = emit::run_process({"octave-cli", "--norc", "--no-history", "--eval", "1;"});
+  if (tried.started && tried.status == 0) return true;
   MESSAGE("skipped: there is no octave-cli");
   return false;
 }

@@ -13,7 +13,8 @@ using namespace test_systems;
 namespace {
 
 bool has_rustc() {
-  if (emit::run_process({"rustc", "--version"}).status == 0) return true;
+  const emit::ProcessResult tried = emit::run_process({"rustc", "--version"});
+  if (tried.started && tried.status == 0) return true;
   MESSAGE("skipped: there is no rustc");
   return false;
 }
