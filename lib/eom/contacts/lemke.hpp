@@ -126,14 +126,15 @@ inline Eigen::VectorXd equilibrate(Eigen::MatrixXd M) {
 
 }  // namespace lemke
 
-/// Positive factors d for w and 1/d for z change no solution. With them, and with q scaled to 1, the tolerances of the
+/// `scaled_rows`: with positive factors d for w and 1/d for z, which change no solution. Then the tolerances of the
 /// pivoting do not depend on units.
-inline ComplementaritySolution solve_complementarity(const Eigen::MatrixXd& M, const Eigen::VectorXd& q) {
+inline ComplementaritySolution solve_complementarity(const Eigen::MatrixXd& M, const Eigen::VectorXd& q,
+                                                     bool scaled_rows = false) {
   using Index = Eigen::Index;
   const Index n = q.size();
   ComplementaritySolution result{true, Eigen::VectorXd::Zero(n), 0};
   if (n == 0 || q.minCoeff() >= 0) return result;
-  const Eigen::VectorXd factors = lemke::equilibrate(M);
+  const Eigen::VectorXd factors = scaled_rows ? lemke::equilibrate(M) : Eigen::VectorXd::Ones(n);
   Eigen::VectorXd scaled = factors.cwiseProduct(q);
   const double size = scaled.lpNorm<Eigen::Infinity>();
   scaled /= size;
