@@ -150,8 +150,6 @@ class EndErrorEstimator {
     if (!(part > 0)) return;
     for (std::size_t i = 0; i < error_.states.size(); ++i) raise_estimate(i, part * std::abs(first_.x[i]));
     if (part < warning_threshold) return;
-    // A narrow force that was gone over and seen here has a known effect.
-    if (error_.warning.kind == EstimateWarning::Kind::missed_narrow_force) error_.warning = {};
     warn({EstimateWarning::Kind::impulse, at, part});
   }
 
