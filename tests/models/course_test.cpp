@@ -409,8 +409,10 @@ TEST_CASE("R7_decoupled_orbit: a circle at Kepler's rate does not feel the attit
         const Eigen::Vector3d moment = 3 * e.cross(J.cwiseProduct(e)) - w.cross(J.cwiseProduct(w));
         Eigen::Matrix3d cross;
         cross << 0, -w(2), w(1), w(2), 0, -w(0), -w(1), w(0), 0;
-        Eigen::Map<Eigen::Matrix3d>(dx) = A * cross;
-        Eigen::Map<Eigen::Vector3d>(dx + 9) = moment.cwiseQuotient(J);
+        Eigen::Map<Eigen::Matrix3d> rate(dx);
+        Eigen::Map<Eigen::Vector3d> acceleration(dx + 9);
+        rate = A * cross;
+        acceleration = moment.cwiseQuotient(J);
       },
       0, start);
   for (std::size_t i = 1; i < run.rows.size(); i += 50) {
