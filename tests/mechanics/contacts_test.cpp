@@ -47,9 +47,17 @@ TEST_CASE("mechanics: friction acts on a particle in the plane with any number o
   }
 }
 
+TEST_CASE("mechanics: friction acts at the point that the constraint names, which needs no mass") {
+  const std::string point =
+      "[[point]]\nname = \"tip\"\nposition = { cartesian = [\"l*sin(a1)\", \"h - l*cos(a1)\"] }\n";
+  const model::Model model = model::read_model_text(chain(1, "dot(tip, E1)") + point, "c.toml");
+  const mechanics::Mechanics m = mechanics::build_mechanics(model);
+  REQUIRE(m.contacts.size() == 1);
+  CHECK(m.model->places[m.contacts[0].place].name == "tip");
+}
+
 TEST_CASE("mechanics rejects: friction on a constraint that is no function of the particle's position") {
   const model::Model model = model::read_model_text(chain(2, "dot(P, E1) + l*a2"), "c.toml");
   CHECK_THROWS_WITH_AS(mechanics::build_mechanics(model),
-                       doctest::Contains("'wall' depends on 'a2' otherwise than by the position of the particle"),
-                       Error);
+                       doctest::Contains("'wall' depends on 'a2' otherwise than by the position of 'P'"), Error);
 }
