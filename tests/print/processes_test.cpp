@@ -10,7 +10,8 @@
 
 namespace {
 
-constexpr std::size_t long_output = 1000000;  // bytes; takes seconds, so only two processes are compared
+// Two processes find what depends on addresses or serial numbers, over all models; every few models take two more.
+constexpr int models_per_group = 8;
 
 std::string output_of(const std::string& command) {
   std::string result;
@@ -33,8 +34,7 @@ TEST_CASE("every shipped model prints equal bytes in fresh processes") {
     const std::string first = output_of(command + "0");
     CHECK(first.size() > 500);
     CHECK(output_of(command + "4242") == first);
-    ++models;
-    if (first.size() > long_output) continue;
+    if (models++ % models_per_group != 0) continue;
     for (const char* burnt : {"1", "17"}) CHECK(output_of(command + burnt) == first);
   }
   CHECK(models > 10);
