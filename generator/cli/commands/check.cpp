@@ -99,7 +99,10 @@ void print_readable(const Json& found) {
   }
   if (!found["conserved"].empty()) heading("conserved");
   for (const Json& c : found["conserved"]) {
-    fmt::print("  {:<20} {} = {}{}\n", text(c["name"]), text(c["title"]), text(c["expression"]),
+    std::string where;
+    for (const Json& parameter : c.value("where_zero", Json::array()))
+      where += (where.empty() ? ", where " : " and ") + text(parameter) + " = 0";
+    fmt::print("  {:<20} {}{} = {}{}\n", text(c["name"]), text(c["title"]), where, text(c["expression"]),
                c["certainty"] == "numerical" ? "   (shown by numbers)" : "");
   }
   if (!found["singular"].empty()) heading("singular sets");
