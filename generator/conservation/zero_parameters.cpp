@@ -32,8 +32,7 @@ class Replaced {
       : mechanics(m), system(s), at_zero_(*m.dag, zeros(m, parameters)) {
     replace_forces();
     replace_masses();
-    for (mechanics::FixedCoordinate& fixed : mechanics.fixed)
-      replace({&fixed.value, &fixed.rate, &fixed.acceleration});
+    for (mechanics::FixedCoordinate& fixed : mechanics.fixed) replace({&fixed.value, &fixed.rate, &fixed.acceleration});
     replace_all(mechanics.function_value);
     mechanics.integrals.clear();  // known already
     replace({&system.energy, &system.kinetic, &system.potential, &system.power});

@@ -100,7 +100,8 @@ void print_readable(const Json& found) {
   if (!found["conserved"].empty()) heading("conserved");
   for (const Json& c : found["conserved"]) {
     std::string where;
-    for (const Json& parameter : c.value("where_zero", Json::array()))
+    const Json none = Json::array();
+    for (const Json& parameter : c.contains("where_zero") ? c["where_zero"] : none)
       where += (where.empty() ? ", where " : " and ") + text(parameter) + " = 0";
     fmt::print("  {:<20} {}{} = {}{}\n", text(c["name"]), text(c["title"]), where, text(c["expression"]),
                c["certainty"] == "numerical" ? "   (shown by numbers)" : "");
