@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <string>
 
 #include "support/folders.hpp"
@@ -27,10 +28,13 @@ std::string output_of(const std::string& command) {
 
 TEST_CASE("every shipped model prints equal bytes in fresh processes") {
   int models = 0;
+  std::set<std::filesystem::path> paths;  // sorted
   for (const auto& entry : std::filesystem::directory_iterator(eomgen::test::source_folder() + "/models")) {
-    if (entry.path().extension() != ".toml") continue;
-    CAPTURE(entry.path().filename().string());
-    const std::string command = std::string(PRINT_EVERYTHING) + " '" + entry.path().string() + "' ";
+    if (entry.path().extension() == ".toml") paths.insert(entry.path());
+  }
+  for (const std::filesystem::path& path : paths) {
+    CAPTURE(path.filename().string());
+    const std::string command = std::string(PRINT_EVERYTHING) + " '" + path.string() + "' ";
     const std::string first = output_of(command + "0");
     CHECK(first.size() > 500);
     CHECK(output_of(command + "4242") == first);
