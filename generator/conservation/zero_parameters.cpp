@@ -104,7 +104,7 @@ std::vector<ConservedQuantity> conserved_at(const Mechanics& m, const system::Eq
 std::vector<ConservedQuantity> conserved_where_zero(const Mechanics& m, const system::EquationSystem& s,
                                                     const std::vector<ConservedQuantity>& known) {
   const Parameters all = zero_parameters(m);
-  if (all.empty() || all.size() > most_zero_parameters) return {};
+  if (all.empty()) return {};
   std::vector<ConservedQuantity> result;
   for (ConservedQuantity& c : conserved_at(m, s, all)) {
     // The Jacobi integral is that energy, if the energy is conserved too.
@@ -112,6 +112,7 @@ std::vector<ConservedQuantity> conserved_where_zero(const Mechanics& m, const sy
     c.zero_parameters = all;
     result.push_back(std::move(c));
   }
+  if (all.size() > most_zero_parameters) return result;
   std::map<Parameters, std::vector<ConservedQuantity>> tried;
   for (ConservedQuantity& c : result) {
     for (const std::uint32_t parameter : all) {

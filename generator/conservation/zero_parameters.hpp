@@ -7,7 +7,7 @@
 namespace eomgen::conservation {
 
 /// Quantities beside `known` that are conserved where parameters whose value is 0 are 0, each with the parameters that
-/// must be (ConservedQuantity::zero_parameters). Not searched if more than `most_zero_parameters` have the value 0.
+/// must be (ConservedQuantity::zero_parameters): a least set, or all if they are more than `most_zero_parameters`.
 std::vector<ConservedQuantity> conserved_where_zero(const mechanics::Mechanics& mechanics,
                                                     const system::EquationSystem& system,
                                                     const std::vector<ConservedQuantity>& known);

@@ -102,8 +102,9 @@ void print_readable(const Json& found) {
     std::string where;
     const Json none = Json::array();
     for (const Json& parameter : c.contains("where_zero") ? c["where_zero"] : none)
-      where += (where.empty() ? ", where " : " and ") + text(parameter) + " = 0";
-    fmt::print("  {:<20} {}{} = {}{}\n", text(c["name"]), text(c["title"]), where, text(c["expression"]),
+      where += (where.empty() ? "   (where " : " and ") + text(parameter) + " = 0";
+    if (!where.empty()) where += ")";
+    fmt::print("  {:<20} {} = {}{}{}\n", text(c["name"]), text(c["title"]), text(c["expression"]), where,
                c["certainty"] == "numerical" ? "   (shown by numbers)" : "");
   }
   if (!found["singular"].empty()) heading("singular sets");
