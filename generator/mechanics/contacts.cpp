@@ -170,6 +170,7 @@ class ContactReader {
       if (extends_basis(gradient(i))) own_.push_back(i);
     }
     if (own_.empty()) fail("the particle of '" + contact_.name + "' does not move", "remove the friction");
+    if (own_.size() == all.size()) return;
     std::vector<Vec3> a;
     for (const std::uint32_t i : own_) a.push_back(gradient(i));
     const std::vector<Vec3> normals = gradients(a);
