@@ -58,6 +58,14 @@ std::string wrong_templates(const std::string& folder, const Example& e, const s
   return emit::run_process({folder + "/use_cpp"}).status == 0 ? "" : "the templates' self test";
 }
 
+std::string failed_test(const std::string& folder, const std::string& file) {
+  const emit::ProcessResult built = emit::run_process(
+      {"rustc", "--edition", "2021", "-D", "warnings", "--test", "-o", folder + "/run", folder + "/" + file});
+  if (built.status != 0) return "rustc: " + built.output;
+  const emit::ProcessResult run = emit::run_process({folder + "/run"});
+  return run.status == 0 && run.output.find("1 passed") != std::string::npos ? "" : "test: " + run.output;
+}
+
 namespace {
 
 std::string wrong_module(const std::string& folder, const Example& e) {
@@ -95,13 +103,7 @@ std::string wrong_script(const std::string& folder, const Example& e) {
 }
 
 std::string wrong_crate(const std::string& folder, const Example& e) {
-  if (!runs("rustc")) return "";
-  const std::string source = folder + "/" + emit::rust_name(e.context.id) + ".rs", program = folder + "/use";
-  const emit::ProcessResult built =
-      emit::run_process({"rustc", "--edition", "2021", "-D", "warnings", "--test", "-o", program, source});
-  if (built.status != 0) return built.output;
-  const emit::ProcessResult finished = emit::run_process({program});
-  return finished.status == 0 && finished.output.find("1 passed") != std::string::npos ? "" : finished.output;
+  return runs("rustc") ? failed_test(folder, emit::rust_name(e.context.id) + ".rs") : "";
 }
 
 std::string wrong_script_of_octave(const std::string& folder, const Example& e) {

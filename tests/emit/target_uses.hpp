@@ -23,6 +23,8 @@ std::vector<std::string> with(std::vector<std::string> command, const std::vecto
 /// Whether a program is installed: it answers to --version.
 bool runs(const char* program);
 std::string wrong_c(const std::string& folder, const Example& e);
+/// Runs the test of the Rust module `file`; "rustc: .." or "test: .." with the output if it fails.
+std::string failed_test(const std::string& folder, const std::string& file);
 /// Calls the C++ templates of `header` in namespace `space`; `selftest` is added to their status.
 std::string wrong_templates(const std::string& folder, const Example& e, const std::string& header,
                             const std::string& space, const std::string& selftest);
