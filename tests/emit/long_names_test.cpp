@@ -17,7 +17,14 @@ std::string name(char letter, char last) { return std::string(longest - 1, lette
 Example with_long_names() {
   std::vector<std::string> parameters;
   for (const char last : {'a', 'b', 'c', 'd', 'e'}) parameters.push_back(name('p', last));
-  Example e = example(name('m', 'm'), cart_pendulum(), {name('q', 'a'), name('q', 'b')}, parameters, {name('u', 'u')});
+  system::EquationSystem system = cart_pendulum();
+  // The statement of a rate and its comment, both of one word, do not fit in a line.
+  const system::Output rate{"", system.dag->symbol({symbolic::SymbolKind::coordinate, 0, 1}),
+                            system::OutputKind::kinetic};
+  system.outputs.push_back(rate);
+  for (std::size_t i = 0; i < system.outputs.size(); ++i)
+    system.outputs[i].name = name('y', static_cast<char>('a' + i));
+  Example e = example(name('m', 'm'), system, {name('q', 'a'), name('q', 'b')}, parameters, {name('u', 'u')});
   e.context.title = name('t', 't') + " " + name('t', 'u');
   for (emit::Quantity& parameter : e.context.parameters) parameter.note = name('n', 'n') + " " + name('n', 'o');
   return e;
@@ -28,7 +35,7 @@ Example with_long_names() {
 TEST_CASE("long names: the code of every target compiles and passes its self-test") {
   const Example e = with_long_names();
   for (const emit::TargetEntry& target : emit::targets()) {
-    INFO(target.name);
+    INFO(std::string(target.name));
     const auto use = target_uses().find(target.name);
     REQUIRE((use != target_uses().end()));
     const Folder folder;

@@ -40,7 +40,7 @@ TEST_CASE(
     "single precision: every target of languages that have it supports it, passes its self-test, and reports the loss "
     "of accuracy") {
   for (const emit::TargetEntry& target : emit::targets()) {
-    INFO(target.name);
+    INFO(std::string(target.name));
     if (targets_of_doubles.contains(target.name)) {
       for (const Example& e : single_examples())
         CHECK_THROWS_WITH_AS(target.emit(e.program, e.context), doctest::Contains("no single precision"), Error);
