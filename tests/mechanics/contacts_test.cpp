@@ -61,3 +61,25 @@ TEST_CASE("mechanics rejects: friction on a constraint that is no function of th
   CHECK_THROWS_WITH_AS(mechanics::build_mechanics(model),
                        doctest::Contains("'wall' depends on 'a2' otherwise than by the position of 'P'"), Error);
 }
+
+TEST_CASE("mechanics rejects: friction where the coordinates of the particle are singular") {
+  // On the axis, psi = z + f(phi) has no gradient: phi changes and the position does not.
+  const auto wire = [](const std::string& position, const std::string& psi) {
+    return "format = 1\n[parameters]\nm = { value = 1, positive = true }\nk = 0.3\n[[particle]]\nname = \"P\"\n"
+           "mass = \"m\"\nposition = { " +
+           position + " }\n[[force]]\ngravity = \"-9.81*E3\"\n[[constraint]]\nname = \"wire\"\nholonomic = [" + psi +
+           "]\nfriction = { ";
+  };
+  for (const char* position :
+       {"cylindrical = [\"r\", \"phi\", \"z\"]", "helical = [\"phi\", \"r\", \"z\"], pitch = \"k\""}) {
+    for (const char* law : {"static = 0.3, dynamic = 0.2 }\n", "law = \"smooth\", dynamic = 0.2, width = 0.01 }\n"}) {
+      CAPTURE(position);
+      CAPTURE(law);
+      const std::string on_axis = wire(position, "\"r\", \"z - k*phi\"") + law;
+      CHECK_THROWS_WITH_AS(mechanics::build_mechanics(model::read_model_text(on_axis, "w.toml")),
+                           doctest::Contains("the friction of 'wire' has no direction"), Error);
+      const std::string beside = wire(position, "\"r - 1\", \"z - k*phi\"") + law;
+      CHECK_NOTHROW(mechanics::build_mechanics(model::read_model_text(beside, "w.toml")));
+    }
+  }
+}
