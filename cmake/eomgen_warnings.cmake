@@ -4,4 +4,4 @@ add_library(eomgen_warnings INTERFACE)
 target_compile_options(eomgen_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion $<$<BOOL:${EOMGEN_WERROR}>:-Werror>
   # Where several files are one, a name in one of them is no outer scope of another, and no file is a header.
-  $<$<BOOL:${EOMGEN_UNITY}>:-Wno-shadow> $<$<AND:$<BOOL:${EOMGEN_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
+  $<$<BOOL:${EOMGEN_UNITY}>:-Wno-shadow> $<$<AND:$<BOOL:${EOMGEN_UNITY}>,$<COMPILE_LANG_AND_ID:CXX,GNU>>:-Wno-subobject-linkage>)

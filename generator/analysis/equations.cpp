@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "analysis/named_functions.hpp"
+#include "conservation/zero_parameters.hpp"
 #include "derive/formulations/lagrange.hpp"
 #include "error.hpp"
 #include "mechanics/dependent_coordinates.hpp"
@@ -88,11 +89,18 @@ void add_conserved(mechanics::Mechanics& mechanics, reading::DisplayForms& forms
   if (!wanted) return;
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const reading::DisplayForm& form = forms(system::Approach::two, reading::Extent::equations);
-  for (const conservation::ConservedQuantity& c : conservation::conserved_quantities(mechanics, system)) {
+  std::vector<conservation::ConservedQuantity> all = conservation::conserved_quantities(mechanics, system);
+  for (conservation::ConservedQuantity& c : conservation::conserved_where_zero(mechanics, system, all))
+    all.push_back(std::move(c));
+  for (const conservation::ConservedQuantity& c : all) {
     const auto named = express_in_named_functions(mechanics, form, c);
     print::PrintedFormula item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
                                        : print::render_expression(mechanics, "conserved", c.name, c.expression);
     item.role = c.title;
+    for (const std::uint32_t p : c.zero_parameters) {
+      item.role += p == c.zero_parameters.front() ? ", where " : " and ";
+      item.role += mechanics.model->parameters[p].name + " = 0";
+    }
     items.push_back(std::move(item));
   }
 }

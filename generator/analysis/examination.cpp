@@ -8,6 +8,7 @@
 
 #include "conservation/conservative.hpp"
 #include "conservation/conserved.hpp"
+#include "conservation/zero_parameters.hpp"
 #include "derive/formulations/lagrange.hpp"
 #include "pipeline/charts.hpp"
 #include "reading/reading.hpp"
@@ -204,8 +205,14 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
   add_charts(m, found);
   add_forces(m, found);
   system::EquationSystem system = derive::lagrange(m, system::Approach::two);
-  for (const conservation::ConservedQuantity& c : conservation::conserved_quantities(m, system))
-    found.conserved.push_back({c.name, c.title, item_of(m, c.expression), conservation::name(c.certainty)});
+  const std::vector<conservation::ConservedQuantity> conserved = conservation::conserved_quantities(m, system);
+  for (const auto& list : {conserved, conservation::conserved_where_zero(m, system, conserved)}) {
+    for (const conservation::ConservedQuantity& c : list) {
+      found.conserved.push_back({c.name, c.title, item_of(m, c.expression), conservation::name(c.certainty), {}});
+      for (const std::uint32_t p : c.zero_parameters)
+        found.conserved.back().where_zero.push_back(model.parameters[p].name);
+    }
+  }
   add_singular(m, found);
 }
 

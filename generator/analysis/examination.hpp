@@ -81,7 +81,8 @@ struct ExaminedContact {
 struct ExaminedConserved {
   std::string name, title;
   print::PrintedFormula expression;
-  std::string certainty;  // "proven" or "numerical"
+  std::string certainty;                // "proven" or "numerical"
+  std::vector<std::string> where_zero;  // parameters that must be 0 for it, as they are; usually none
 };
 
 struct ExaminedSet {

@@ -91,6 +91,7 @@ Json to_json(const model::Model& model, const analysis::Examination& found) {
   for (const auto& c : found.conserved) {
     conserved.push_back(
         {{"name", c.name}, {"title", c.title}, {"expression", c.expression.text}, {"certainty", c.certainty}});
+    if (!c.where_zero.empty()) conserved.back()["where_zero"] = c.where_zero;
   }
   for (const auto& s : found.singular) singular.push_back({{"set", s.set.text}, {"approach", s.approach}});
   for (const auto& c : found.charts) {

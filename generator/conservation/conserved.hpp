@@ -28,6 +28,8 @@ struct ConservedQuantity {
   std::uint32_t index = 0, part = 0;                     // of that output
   Certainty certainty = Certainty::numerical;
   std::optional<symbolic::Ref> magnitude = {};  // size of the summed terms, for the drift of a run
+  /// Parameters that must be 0 for it (conserved_where_zero); usually none.
+  std::vector<std::uint32_t> zero_parameters = {};
 };
 
 /// Appends an output for each quantity that is not an output already (momenta, Jacobi integral, integrals of

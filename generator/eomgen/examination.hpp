@@ -31,7 +31,8 @@ struct ForceClass {
 struct ConservedQuantity {
   std::string name, title;
   Formula expression;
-  bool proven = false;  // symbolically; false: confirmed numerically only
+  bool proven = false;                       // symbolically; false: confirmed numerically only
+  std::vector<std::string> where_zero = {};  // parameters that must be 0 for it, as they are; usually none
 };
 
 /// A coordinate, a parameter, or an input with its default value.

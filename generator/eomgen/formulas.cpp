@@ -89,7 +89,7 @@ Examination Model::examine(const CallControl& control) const {
       if (f.potential) result.forces.back().potential = formula_of(*f.potential);
     }
     for (const auto& c : found.conserved)
-      result.conserved.push_back({c.name, c.title, formula_of(c.expression), c.certainty != "numerical"});
+      result.conserved.push_back({c.name, c.title, formula_of(c.expression), c.certainty != "numerical", c.where_zero});
     for (const auto& s : found.singular) result.singular.push_back(formula_of(s.set));
     result.left_out = omissions_of(found.left_out);
     return result;

@@ -65,16 +65,33 @@ State<Precise> on_constraints(const Flow& flow, const State<Precise>& z, const S
   return move_onto_constraints(flow, z, setting, columns).value_or(z);
 }
 
+/// Relative to 1 and the magnitude of the entry; the largest over all entries.
+Precise largest_move(const Matrix<Precise>& move, const State<Precise>& z) {
+  Precise largest(0);
+  for (std::size_t i = 0; i + 1 < z.size(); ++i)
+    largest = std::max(largest, magnitude(move(i, 0)) / (Precise(1) + magnitude(z[i])));
+  return largest;
+}
+
 std::optional<State<Precise>> newton(const Flow& flow, const Symmetry& symmetry, const State<Precise>& start,
                                      const Setting<Precise>& setting, const ExtraEquations& extra, const Rank& rank) {
   constexpr int most_steps = 40, exact = 120;
+  constexpr int patience = 8;  // starts are near a root: then a step of more than 1/10 means that there is none
+  constexpr int most_repetitions = 12;  // of a step that the return to the constraints takes back
   State<Precise> z = start;
+  Precise last(0);
+  int repetitions = 0;
   for (int step = 0; step < most_steps; ++step) {
     z = on_constraints(flow, z, setting);
     PreciseEquations e = steady_equations(flow, symmetry, z, start, setting, extra);
     for (std::size_t i = 0; i < e.jacobian.rows; ++i) e.jacobian(i, e.jacobian.cols - 1) = Precise(0);  // t stays
     const Matrix<Precise> move =
         Elimination<Precise>(e.jacobian, tiny<Precise>(rank.cutoff), tiny<Precise>(rank.floor)).solve(e.value);
+    const Precise size = largest_move(move, z);
+    if (step >= patience && size > Precise(1) / 10) return std::nullopt;
+    repetitions = magnitude(size - last) < size / 1000 ? repetitions + 1 : 0;
+    if (repetitions == most_repetitions) return std::nullopt;
+    last = size;
     bool done = true;
     for (std::size_t i = 0; i + 1 < z.size(); ++i) {
       z[i] = z[i] - move(i, 0);
@@ -108,13 +125,6 @@ Precise inner(const Matrix<Precise>& a, const Matrix<Precise>& b, const State<Pr
     sum = sum + a(i, 0) * b(i, 0) / (scale * scale);
   }
   return sum;
-}
-
-Precise largest_move(const Matrix<Precise>& move, const State<Precise>& z) {
-  Precise largest(0);
-  for (std::size_t i = 0; i + 1 < z.size(); ++i)
-    largest = std::max(largest, magnitude(move(i, 0)) / (Precise(1) + magnitude(z[i])));
-  return largest;
 }
 
 // At a root of multiplicity m, Newton steps shrink by 1 - 1/m each. Once the ratio is constant, the remaining distance

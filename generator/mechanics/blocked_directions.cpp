@@ -11,6 +11,7 @@
 #include "mechanics/pfaffian.hpp"
 #include "mechanics/stages.hpp"
 #include "numeric/elimination.hpp"
+#include "symbolic/arithmetic.hpp"
 
 namespace eomgen::mechanics {
 namespace {
@@ -18,7 +19,8 @@ namespace {
 using DirectionRow = std::vector<Ref>;  // by the free coordinates
 using Real = cln::cl_R;
 
-bool sticks(const Contact& contact) { return contact.dimensions() > 0 && !contact.width; }
+bool has_friction(const Contact& contact) { return contact.dimensions() > 0; }
+bool sticks(const Contact& contact) { return has_friction(contact) && !contact.width; }
 
 /// A subset of the unilateral contacts that are closed.
 using ClosedContacts = std::vector<bool>;
@@ -39,6 +41,9 @@ class Search {
         return contact.unilateral && contact.constraints[0] == k;
       });
       if (leavable == m.contacts.end()) always_.push_back(row(m.constraints[k].gradient));
+    }
+    for (const Contact& contact : m.contacts) {
+      if (has_friction(contact)) require_directions(contact);
     }
   }
 
@@ -114,6 +119,23 @@ class Search {
   }
 
  private:
+  /// Keeps the sample points at which the directions of slip have values. Throws Error if they have none at any, as on
+  /// the axis of polar coordinates, along which the gradient of a constraint on the angle has no length.
+  void require_directions(const Contact& contact) {
+    if (!has_sample_points()) return;
+    std::vector<Ref> needed = contact.gram;
+    for (const std::vector<Ref>& tangent : contact.tangents)
+      needed.insert(needed.end(), tangent.begin(), tangent.end());
+    needed.insert(needed.end(), contact.slip.begin(), contact.slip.end());
+    for (Ref& r : needed) r = space_.impose_and_expand(r);
+    const std::string reason = space_.keep_points_with_values(needed);
+    if (has_sample_points() || reason != symbolic::division_by_zero) return;
+    throw Error(
+        "mechanics", m_.model->where(friction_law_of(m_, contact).span),
+        "the friction of '" + contact.name +
+            "' has no direction where the constraints hold: the coordinates of its particle are singular there",
+        "describe the position by coordinates that are regular where the constraints hold, as x, y, z on an axis");
+  }
   bool can_any_open() const {
     return std::any_of(m_.contacts.begin(), m_.contacts.end(),
                        [](const Contact& contact) { return contact.unilateral; });
@@ -253,7 +275,7 @@ class Search {
 }  // namespace
 
 bool find_blocked_directions(Mechanics& m) {
-  if (std::none_of(m.contacts.begin(), m.contacts.end(), sticks)) return true;
+  if (std::none_of(m.contacts.begin(), m.contacts.end(), has_friction)) return true;
   if (m.free.empty()) return true;                   // the motion is prescribed, and friction acts against it
   if (m.free.size() < m.active.size()) return true;  // reported elsewhere
   // Sample points on the constraints, if any are found: some directions are blocked only there.

@@ -36,7 +36,8 @@ class ContactReader {
     }
     if (!constraint.friction) return add();
     if (constraint.contact) return read_body(*constraint.contact, *constraint.friction);
-    find_particle();
+    find_place();
+    choose_basis();
     find_tangents();
     const Vec3 v = lower_.ddt(lower_.position(contact_.place), constraint.friction->span);
     const Vec3 relative = lower_.subtract(v, lower_.vector(constraint.friction->surface_velocity));
@@ -104,35 +105,91 @@ class ContactReader {
     return result;
   }
 
-  // The particle with the fewest coordinates among those that have all coordinates of the constraint.
-  void find_particle() {
+  std::vector<std::uint32_t> named_places() const {
+    std::set<std::uint32_t> bodies, found;
+    for (const model::Body& body : m_.model->bodies) bodies.insert(body.place);
+    std::set<model::NodeId> seen{model::no_node};
+    std::vector<model::NodeId> stack = constraint_->psi;
+    while (!stack.empty()) {
+      const model::NodeId id = stack.back();
+      stack.pop_back();
+      if (!seen.insert(id).second) continue;
+      const model::Node& node = m_.model->arena[id];
+      if (node.op == model::Op::place && node.index != 0 && !bodies.contains(node.index)) found.insert(node.index);
+      if (node.op == model::Op::definition) stack.push_back(m_.model->definitions[node.index].expression);
+      stack.insert(stack.end(), node.args.begin(), node.args.end());
+    }
+    return {found.begin(), found.end()};
+  }
+  std::vector<std::uint32_t> particle_places() const {
+    std::vector<std::uint32_t> result;
+    for (const model::Particle& particle : m_.model->particles) result.push_back(particle.place);
+    return result;
+  }
+
+  // A particle or point that the constraint names, or else a particle; with the fewest coordinates among those that
+  // have all coordinates of the constraint.
+  void find_place() {
     std::set<std::uint32_t> needed;
     for (std::size_t k = 0; k < contact_.constraints.size(); ++k) {
       for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
         if (!dag_.is_zero(slope(k)[i])) needed.insert(i);
       }
     }
-    std::size_t fewest = 4;
+    if (choose_place(named_places(), needed) || choose_place(particle_places(), needed)) return;
+    fail("'" + contact_.name + "' touches no particle: none has all coordinates of the constraint",
+         "friction acts where a particle or a point is held on a surface or a curve: write the constraint with it, as "
+         "dot(P, E1); for a coordinate alone write a force dry = { .. }");
+  }
+  bool choose_place(const std::vector<std::uint32_t>& places, const std::set<std::uint32_t>& needed) {
+    std::size_t fewest = m_.q.size() + 1;
     bool several = false;
-    for (const model::Particle& particle : m_.model->particles) {
-      const std::set<std::uint32_t> own = coordinates_of(lower_.position(particle.place));
+    for (const std::uint32_t place : places) {
+      const std::set<std::uint32_t> own = coordinates_of(lower_.position(place));
       if (!std::includes(own.begin(), own.end(), needed.begin(), needed.end()) || own.size() > fewest) continue;
       several = own.size() == fewest;
       if (several) continue;
       fewest = own.size();
-      contact_.place = particle.place;
+      contact_.place = place;
       own_ = {own.begin(), own.end()};
-    }
-    if (contact_.place == 0 || fewest > 3) {
-      fail("'" + contact_.name + "' touches no particle: none has all coordinates of the constraint, and at most three",
-           "friction acts where a particle is held on a surface or a curve; for a coordinate alone write a force dry = "
-           "{ .. }");
     }
     if (several) {
       fail("several particles have the coordinates of '" + contact_.name +
                "', so that it is open which of them has the friction",
-           "write the constraint in coordinates of one particle");
+           "write the constraint with the position of one particle or point, as dot(P, E1)");
     }
+    return contact_.place != 0;
+  }
+
+  /// Limits own_ to coordinates whose vectors a_i are independent and span all others: a point of a mechanism in the
+  /// plane may depend on any number of coordinates. Throws Error if psi is no function of the particle's position.
+  void choose_basis() {
+    const std::vector<std::uint32_t> all = own_;
+    own_.clear();
+    for (const std::uint32_t i : all) {
+      if (extends_basis(gradient(i))) own_.push_back(i);
+    }
+    if (own_.empty()) fail("the particle of '" + contact_.name + "' does not move", "remove the friction");
+    if (own_.size() == all.size()) return;
+    std::vector<Vec3> a;
+    for (const std::uint32_t i : own_) a.push_back(gradient(i));
+    const std::vector<Vec3> normals = gradients(a);
+    for (std::size_t k = 0; k < normals.size(); ++k) {
+      for (const std::uint32_t i : all) {
+        if (std::find(own_.begin(), own_.end(), i) != own_.end()) continue;
+        if (vanishes(dag_, {dag_.sub(lower_.dot(normals[k], gradient(i)), slope(k)[i])})) continue;
+        fail("'" + contact_.name + "' depends on '" + m_.model->coordinates[i].name +
+                 "' otherwise than by the position of '" + m_.model->places[contact_.place].name + "'",
+             "write the constraint with the position of the particle or point that touches, as dot(P, E1)");
+      }
+    }
+  }
+  bool extends_basis(const Vec3& a) {
+    const auto is_zero = [&](const Vec3& v) { return vanishes(dag_, {v[0], v[1], v[2]}); };
+    if (own_.empty()) return !is_zero(a);
+    if (own_.size() == 1) return !is_zero(symbolic::cross(dag_, gradient(own_[0]), a));
+    const Vec3 normal = symbolic::cross(dag_, gradient(own_[0]), gradient(own_[1]));
+    return own_.size() == 2 && !vanishes(dag_, {lower_.dot(normal, a)});
   }
 
   // a_i - (psi_i / psi_c) a_c lies in the surface; c is a coordinate on which psi depends. The vector would reverse
@@ -188,7 +245,6 @@ class ContactReader {
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j <= i; ++j) metric[i * n + j] = metric[j * n + i] = tidy(lower_.dot(a[i], a[j]));
     }
-    if (dag_.is_zero(metric[0])) fail("the particle of '" + contact_.name + "' does not move", "remove the friction");
     const symbolic::Factorisation factors(dag_, metric, n, symbolic::Ties::ascending);
     std::vector<Vec3> result;
     for (std::size_t k = 0; k < contact_.constraints.size(); ++k) {
@@ -233,7 +289,7 @@ class ContactReader {
   Dag& dag_;
   symbolic::Expander expand_;
   const model::Constraint* constraint_ = nullptr;
-  std::vector<std::uint32_t> own_;  // coordinates of the particle
+  std::vector<std::uint32_t> own_;  // coordinates of the place
   Contact contact_;
 };
 

@@ -111,6 +111,19 @@ std::vector<cln::cl_R> OneFormSpace::values(const std::vector<Ref>& expressions,
       dag_, expressions, [&](const Symbol& symbol) { return value(symbol, point); }, sample_digits);
 }
 
+std::string OneFormSpace::keep_points_with_values(const std::vector<Ref>& expressions) {
+  std::string reason;
+  for (std::size_t point = points_.size(); point-- > 0;) {
+    try {
+      values(expressions, point);
+    } catch (const std::domain_error& error) {
+      reason = error.what();
+      points_.erase(points_.begin() + static_cast<std::ptrdiff_t>(point));
+    }
+  }
+  return reason;
+}
+
 cln::cl_R OneFormSpace::value(const Symbol& symbol, std::size_t point) const {
   const auto found = points_[point].find(symbol);
   return found == points_[point].end() ? value_at(symbol, point) : found->second;

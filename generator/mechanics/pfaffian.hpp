@@ -7,6 +7,7 @@
 #include <cln/real.h>
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "mechanics/mechanics.hpp"
@@ -48,6 +49,9 @@ class OneFormSpace {
   std::vector<cln::cl_R> values(const std::vector<Ref>& expressions, std::size_t point) const;
   cln::cl_R value(const symbolic::Symbol& symbol, std::size_t point) const;
   std::size_t points() const { return points_.size(); }
+  /// Drops the sample points at which an expression has no value. Returns the reason at the last of them, empty if all
+  /// points are kept.
+  std::string keep_points_with_values(const std::vector<Ref>& expressions);
 
   /// Whether the effort is used up. Later tests then return `unknown`, and eliminations end early.
   bool is_effort_spent() const { return effort_.left == 0; }

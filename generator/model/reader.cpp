@@ -110,10 +110,11 @@ void Reader::read() {
 }
 
 void Reader::read_head() {
-  check_keys(root_, {"a model",
-                     {"format", "title",    "notes", "parameters", "functions", "inputs", "coordinates", "definitions",
-                      "energy", "particle", "body",  "frame",      "point",     "chain",  "force",       "constraint",
-                      "joint",  "event",    "state", "discrete",   "sample",    "draw",   "scene",       "impacts"}});
+  check_keys(root_,
+             {"a model", {"format",      "title",      "notes",    "parameters", "functions", "inputs", "coordinates",
+                          "definitions", "energy",     "particle", "body",       "frame",     "point",  "chain",
+                          "force",       "constraint", "contact",  "joint",      "event",     "state",  "discrete",
+                          "sample",      "draw",       "scene",    "impacts"}});
   const Value& format = require_value(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {
     source_.fail(format.span, fmt::format("the format {} is not known", quote(format.text)), "write format = 1");

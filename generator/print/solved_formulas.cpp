@@ -40,7 +40,8 @@ class SolvedStatements {
       show("", name, "closed form", coordinate(closed.coordinate, 0), closed.value);
     }
     if (form_.has_undetermined)
-      out_.push_back(left_out("solved", "", "some forces", "the motion does not determine them"));
+      out_.push_back(left_out("solved", "", holds ? "some forces where contacts hold" : "some forces",
+                              "the motion does not determine them"));
   }
 
  private:

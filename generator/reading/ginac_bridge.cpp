@@ -132,7 +132,17 @@ Sum GinacBridge::convert_function(const ex& e) {
   return call(op, std::move(args));
 }
 
-Sum GinacBridge::derivative(const Sum& sum, const Symbol& by) { return from_ginac(to_ginac(sum).diff(symbol(by))); }
+Sum GinacBridge::derivative(const Sum& sum, const Symbol& by) {
+  GiNaC::exvector terms;  // those that contain the symbol: few of many, in the energy of a large system
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    bool holds = false;
+    for (const Factor& factor : monomial) {
+      for_each_atom(factor, [&](const Atom& atom) { holds = holds || (atom.op == Op::symbol && atom.symbol == by); });
+    }
+    if (holds) terms.push_back(term_to_ginac(monomial, coefficient));
+  }
+  return from_ginac(ex(GiNaC::add(terms)).diff(symbol(by)));
+}
 
 Sum GinacBridge::total_derivative(const Sum& sum) {
   std::map<Symbol, GiNaC::exvector> slopes;  // of the terms that contain the symbol

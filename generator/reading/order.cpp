@@ -47,7 +47,16 @@ int rank(const Atom& atom) {
 }
 
 int sign_of(bool less, bool greater) { return less ? -1 : greater ? 1 : 0; }
-int compare_numbers(const Rational& a, const Rational& b) { return cln::compare(a, b); }
+
+// Almost all exponents and coefficients are small integers, which CLN stores as tagged words.
+int compare_numbers(const Rational& a, const Rational& b) {
+  if (a.word == b.word) return 0;
+  if (cln::cl_immediate_p(a.word) && cln::cl_immediate_p(b.word)) {
+    const auto value = [](cln::cl_uint word) { return static_cast<cln::cl_sint>(word); };
+    return sign_of(value(a.word) < value(b.word), value(a.word) > value(b.word));
+  }
+  return cln::compare(a, b);
+}
 
 // The degree of each kind in a term, in order: accelerations, rates, rates of coordinates, positions.
 using Weight = std::array<Rational, 4>;

@@ -11,6 +11,7 @@
 #include "reading/forms.hpp"
 #include "reading/lagrangian.hpp"
 #include "reading/no_value.hpp"
+#include "reading/sum_memo.hpp"
 #include "reading/trig.hpp"
 
 namespace eomgen::reading {
@@ -181,9 +182,13 @@ std::vector<symbolic::Ref> residuals_on_dag(const DisplayForm& form, mechanics::
 }
 
 Sum display_sum(const Mechanics& m, symbolic::Ref expression) try {
+  static SumMemo memo;
+  if (const std::optional<Sum> known = memo.find(m.dag, expression)) return *known;
   const work::Budget budget(item_budget);
   GinacBridge bridge(m);
-  return bridge.sum(expression);
+  const Sum sum = bridge.sum(expression);
+  memo.store(m.dag, expression, sum);
+  return sum;
 } catch (const std::domain_error&) {
   throw no_value_error(m);
 }

@@ -35,6 +35,14 @@ class Solver {
         one_(one),
         values_(imposed_values(reduced_, bridge_)) {
     form_.mode = mode;
+    // Contacts whose forces are inputs of the code are closed here too, unless they are more than could be.
+    std::vector<std::uint32_t> closed;
+    for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+      if (m.constraints[k].force_input && m.is_independent(k)) closed.push_back(k);
+    }
+    if (reduced_.active.size() + closed.size() > reduced_.free.size()) closed.clear();
+    reduced_.active.insert(reduced_.active.end(), closed.begin(), closed.end());
+    std::sort(reduced_.active.begin(), reduced_.active.end());
   }
 
   SolvedForm solve() {

@@ -15,6 +15,9 @@
 
 namespace eomgen::symbolic {
 
+/// What the std::domain_error of a division by zero says.
+inline constexpr const char* division_by_zero = "division by zero";
+
 /// Arithmetic with CLN floats of one format. Exact rationals are rounded once. Throws std::domain_error outside the
 /// real domain of a function and for a division by zero.
 struct ClnArithmetic {
@@ -29,7 +32,7 @@ struct ClnArithmetic {
     if (!ok) throw std::domain_error(what);
   }
   cln::cl_R divide(const cln::cl_R& a, const cln::cl_R& b) const {
-    require(!cln::zerop(b), "division by zero");
+    require(!cln::zerop(b), division_by_zero);
     return a / b;
   }
   static cln::cl_R power(const cln::cl_R& a, long n) { return cln::expt(a, cln::cl_I(n)); }

@@ -152,12 +152,14 @@ class ForceClass(Record):
 
 
 class ConservedQuantity(Record):
-    """A quantity that is constant along every motion. ``proven``: symbolically, otherwise by numbers only."""
+    """A quantity that is constant along every motion. ``proven``: symbolically, otherwise by numbers only.
+    ``where_zero``: parameters that must be 0 for it, as they are; usually none."""
 
     name: str
     title: str
     expression: Formula
     proven: bool
+    where_zero: List[str]
 
 
 class Examination(Record):

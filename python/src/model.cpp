@@ -51,7 +51,7 @@ py::dict check(const Model& model, const Callbacks& callbacks) {
   });
   result["conserved"] = list_of(found.conserved, [](const ConservedQuantity& c) {
     return py::dict(py::arg("name") = c.name, py::arg("title") = c.title, py::arg("expression") = formula(c.expression),
-                    py::arg("proven") = c.proven);
+                    py::arg("proven") = c.proven, py::arg("where_zero") = c.where_zero);
   });
   result["singular"] = list_of(found.singular, formula);
   result["left_out"] = left_out(found.left_out);

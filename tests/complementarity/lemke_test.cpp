@@ -15,6 +15,20 @@ using eom::contacts::solve_least_norm;
 
 namespace {
 
+/// The largest violation of w = M z + q, w >= 0, w . z = 0, relative to the terms of each row.
+double violation(const Eigen::MatrixXd& M, const Eigen::VectorXd& q, const Eigen::VectorXd& z) {
+  const Eigen::VectorXd w = M * z + q;
+  const Eigen::VectorXd terms = M.cwiseAbs() * z.cwiseAbs() + q.cwiseAbs();
+  double largest = 0;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    if (terms(i) == 0) continue;
+    const double size = 1 / terms(i);
+    largest = std::max(largest, -w(i) * size);
+    if (z(i) > 0) largest = std::max(largest, std::abs(w(i)) * size);
+  }
+  return largest;
+}
+
 Eigen::MatrixXd random_matrix(std::mt19937& generator, Eigen::Index rows, Eigen::Index columns) {
   std::uniform_real_distribution<double> value(-1, 1);
   Eigen::MatrixXd result(rows, columns);
@@ -45,9 +59,12 @@ TEST_CASE("lemke: random positive semidefinite problems of any rank are solved t
       const Eigen::MatrixXd A = random_matrix(generator, n, rank);
       // q in the range of A plus something positive: the problem is feasible, hence solvable.
       const Eigen::VectorXd q = A * random_matrix(generator, rank, 1) + random_matrix(generator, n, 1).cwiseAbs();
-      const ComplementaritySolution solution = solve_complementarity(A * A.transpose(), q);
-      REQUIRE(solution.found);
-      CHECK(solution.residual < 1e-10);
+      for (const bool scaled : {false, true}) {
+        CAPTURE(scaled);
+        const ComplementaritySolution solution = solve_complementarity(A * A.transpose(), q, scaled);
+        REQUIRE(solution.found);
+        CHECK(violation(A * A.transpose(), q, solution.z) < 1e-10);
+      }
     }
   }
 }
@@ -59,7 +76,7 @@ TEST_CASE("lemke: four corners of a plate share its weight, and a problem withou
   const ComplementaritySolution shared = solve_complementarity(J * J.transpose(), Eigen::VectorXd::Constant(4, -1));
   REQUIRE(shared.found);
   CHECK(shared.z.sum() == doctest::Approx(1));
-  CHECK(shared.residual < 1e-12);
+  CHECK(violation(J * J.transpose(), Eigen::VectorXd::Constant(4, -1), shared.z) < 1e-12);
 
   Eigen::MatrixXd pulled(1, 1);
   pulled << -1;

@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <map>
 
+#include "conservation/zero_parameters.hpp"
 #include "derive/formulations/lagrange.hpp"
 #include "support/particles.hpp"
 
@@ -62,6 +64,46 @@ name = "turn"
 holonomic = "theta - W*t"
 )toml");
   CHECK(found == std::vector<std::string>{"jacobi"});
+}
+
+TEST_CASE("conserved: of a top with a spring and a moment that are 0, each quantity names the parameters it needs") {
+  using Needs = std::map<std::string, std::vector<std::string>>;
+  const auto needs = [](const std::string& moment) {
+    const model::Model model = model::read_model_text(with(R"toml(format = 1
+[parameters]
+m = "1 kg"
+g = "9.81 m/s^2"
+L = "0.1 m"
+J = "1 kg*m^2"
+K = { value = 0, unit = "N*m/rad" }
+G = { value = MOMENT, unit = "N*m" }
+[[body]]
+name = "top"
+mass = "m"
+inertia = { principal = ["J", "J", "2*J"] }
+position = "L*top.e3"
+rotation = { euler = "313", angles = ["psi", "theta", "phi"] }
+[[force]]
+gravity = "-g*E3"
+[[force]]
+torsion = { angle = "psi", stiffness = "K" }
+[[force]]
+moment = "G*E3"
+on = "top"
+)toml",
+                                                           "MOMENT", moment),
+                                                      "top");
+    mechanics::Mechanics m = mechanics::build_mechanics(model);
+    system::EquationSystem s = derive::lagrange(m, system::Approach::two);
+    const auto known = conservation::conserved_quantities(m, s);
+    Needs result;
+    for (const conservation::ConservedQuantity& c : conservation::conserved_where_zero(m, s, known)) {
+      for (const std::uint32_t p : c.zero_parameters) result[c.name].push_back(m.model->parameters[p].name);
+    }
+    return result;
+  };
+  CHECK(needs("0") == Needs{{"energy", {"G"}}, {"momentum.phi", {"G"}}, {"momentum.psi", {"K", "G"}}});
+  CHECK(needs("1").empty());
 }
 
 TEST_CASE("conserved: with a damper nothing is conserved") {

@@ -10,7 +10,10 @@ using namespace test_systems;
 
 namespace {
 
-bool has_node() { return emit::run_process({"node", "--version"}).status == 0; }
+bool has_node() {
+  const emit::ProcessResult tried = emit::run_process({"node", "--version"});
+  return tried.started && tried.status == 0;
+}
 
 /// Loads the module, runs its self-test, and then `more`.
 void loads(const Example& e, const std::string& more = "") {

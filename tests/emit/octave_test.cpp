@@ -14,7 +14,8 @@ using namespace test_systems;
 namespace {
 
 bool has_octave() {
-  if (emit::run_process({"octave-cli", "--norc", "--no-history", "--eval", "1;"}).status == 0) return true;
+  const emit::ProcessResult tried = emit::run_process({"octave-cli", "--norc", "--no-history", "--eval", "1;"});
+  if (tried.started && tried.status == 0) return true;
   MESSAGE("skipped: there is no octave-cli");
   return false;
 }
@@ -33,7 +34,7 @@ std::string emitted(const Example& e) {
 }
 
 /// Loads the model, runs its self-test, and then `more`.
-void loads(const Example& e, const std::string& more = "") {
+void loads_octave(const Example& e, const std::string& more = "") {
   const Folder folder;
   const std::string name = emit::octave_name(e.context.id);
   emit::write_files(folder.path, {{name + ".m", emitted(e)}});
@@ -50,7 +51,7 @@ void loads(const Example& e, const std::string& more = "") {
 TEST_CASE("target octave: every function agrees with its high-precision values") {
   for (const Example& e : examples()) {
     INFO(e.context.id);
-    loads(e, "[dx, code] = m.rhs(0, m.x); assert(code, 0); assert(size(dx), size(m.x));");
+    loads_octave(e, "[dx, code] = m.rhs(0, m.x); assert(code, 0); assert(size(dx), size(m.x));");
   }
 }
 
@@ -87,7 +88,7 @@ TEST_CASE("target octave: MATLAB reads the file too: no syntax of Octave alone, 
         CHECK(line.find(operation) == std::string::npos);
     }
   }
-  loads(e);
+  loads_octave(e);
 }
 
 TEST_CASE("target octave: its self-test detects a wrong value, wrong defaults and entries that are never written") {
@@ -122,22 +123,22 @@ TEST_CASE("target octave: names of Octave, and hostile texts, cause no harm") {
     e.context.title = "'; exit(7); %{ ' \" ... \\n \n exit(8)";
     e.context.parameters[0].note = "'];\nexit(9)";
     e.context.parameters[1].unit = "'); exit(10) % \xff";
-    loads(e,
-          "assert(m.parameters, {'NaN', 'zeros', 'choose', 'pi', 'side'}); "
-          "assert(jsondecode(m.info).title(1:3), \"'; \");");
+    loads_octave(e,
+                 "assert(m.parameters, {'NaN', 'zeros', 'choose', 'pi', 'side'}); "
+                 "assert(jsondecode(m.info).title(1:3), \"'; \");");
   }
 }
 
 TEST_CASE("target octave: single precision passes its self-test, and results are single") {
   Example e = examples()[1];
   emit::convert_to_single(e.program, e.context);
-  loads(e, "assert(class(m.rhs(0, m.x)), 'single');");
+  loads_octave(e, "assert(class(m.rhs(0, m.x)), 'single');");
 }
 
 TEST_CASE("target octave: ode45 and lsode integrate the model") {
   const Example e = example("pendulum", pendulum(), {"theta"}, {"m", "l", "g"});
-  loads(e,
-        "o = odeset('RelTol', 1e-8, 'AbsTol', 1e-10); [t, x] = ode45(@(t, x) m.rhs(t, x), [0, 1], m.x, o); "
-        "lsode_options('relative tolerance', 1e-9); y = lsode(@(x, t) m.rhs(t, x), m.x, [0, 1]); "
-        "assert(x(end, :), y(end, :), 1e-5);");
+  loads_octave(e,
+               "o = odeset('RelTol', 1e-8, 'AbsTol', 1e-10); [t, x] = ode45(@(t, x) m.rhs(t, x), [0, 1], m.x, o); "
+               "lsode_options('relative tolerance', 1e-9); y = lsode(@(x, t) m.rhs(t, x), m.x, [0, 1]); "
+               "assert(x(end, :), y(end, :), 1e-5);");
 }

@@ -4,11 +4,10 @@
 
 #include <doctest/doctest.h>
 
-#include <map>
 #include <random>
 #include <set>
 
-#include "emit/examples.hpp"
+#include "emit/target_uses.hpp"
 #include "error.hpp"
 
 using namespace eomgen;
@@ -22,8 +21,6 @@ std::vector<Example> single_examples() {
   return all;
 }
 
-bool runs(const char* program) { return emit::run_process({program, "--version"}).status == 0; }
-
 /// The numbers in the output of a command.
 std::vector<double> printed(const std::vector<std::string>& command) {
   const emit::ProcessResult finished = emit::run_process(command);
@@ -34,103 +31,6 @@ std::vector<double> printed(const std::vector<std::string>& command) {
   return values;
 }
 
-const std::vector<std::string>& compile_c() {
-  static const std::vector<std::string> command{EOMGEN_TEST_CC, "-std=c11", "-O1", "-ffp-contract=off",
-                                                "-Wdouble-promotion"};
-  return command;
-}
-
-std::vector<std::string> with(std::vector<std::string> command, const std::vector<std::string>& more) {
-  command.insert(command.end(), more.begin(), more.end());
-  return command;
-}
-
-/// The failure of the self-test of the C code in this folder; empty if it passes.
-std::string wrong_c(const std::string& folder, const Example& e) {
-  const std::string name = emit::mangled_id(e.context.id), use = folder + "/use";
-  std::ofstream(use + ".c") << fmt::format("#include \"{0}.h\"\nint main(void) {{ return {0}_selftest(); }}\n", name);
-  const std::string said =
-      compiler_diagnostics(with(compile_c(), {"-o", use}), {use + ".c", folder + "/" + name + ".c", "-lm"});
-  if (!said.empty()) return said;
-  return emit::run_process({use}).status == 0 ? "" : "its self test";
-}
-
-/// C++ source that calls the templates of `header` with floats at the start state.
-std::string wrong_templates(const std::string& folder, const std::string& header, const std::string& space,
-                            const std::string& selftest) {
-  std::ofstream(folder + "/use.cpp") << fmt::format(
-      "#include \"{0}\"\nint main() {{\n  float x[16], p[16], dx[16];\n  {1}::defaults(x, p);\n"
-      "  return {1}::rhs(0.0f, x, p, static_cast<const float*>(nullptr), 0, dx){2};\n}}\n",
-      header, space, selftest);
-  const std::string said =
-      compiler_diagnostics({EOMGEN_TEST_CXX, "-std=c++20", "-o", folder + "/use_cpp"}, {folder + "/use.cpp"});
-  if (!said.empty()) return said;
-  return emit::run_process({folder + "/use_cpp"}).status == 0 ? "" : "the templates' self test";
-}
-
-std::string wrong_module(const std::string& folder, const Example& e) {
-  if (!runs("python3")) return "";
-  const std::string c = folder + "/" + emit::mangled_id(e.context.id) + "_simulate.c";
-  const std::string said =
-      compiler_diagnostics(with(compile_c(), {"-c", "-Wno-double-promotion", "-o", folder + "/c.o"}), {c});
-  if (!said.empty()) return said;
-  const ScopedEnvironmentVariable cache("EOMGEN_CACHE_DIR", folder);
-  const emit::ProcessResult finished = emit::run_process(
-      {"python3", "-c",
-       fmt::format("import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{}'); import {} as m\n"
-                   "import ctypes\n"
-                   "def single(values): return all(ctypes.c_float(v).value == v for v in values)\n"
-                   "assert m.info['real'] == 'float'\n"
-                   "dx = m.rhs(0, m.defaults['x']); assert len(dx) == len(m.states) and single(dx), dx\n"
-                   "motion = m.simulate(m.defaults['t'] + 1e-3, samples=5); assert motion.outcome == 'done'\n"
-                   "assert all(single(row) for row in motion.x) and not single(motion.t)\n"
-                   "for wrong in (dict(x0=[1e60] * len(m.states)), dict(rtol=1e-9)):\n"
-                   "    try: m.simulate(m.defaults['t'] + 1e-3, **wrong)\n"
-                   "    except ValueError: continue\n"
-                   "    raise AssertionError(wrong)\n",
-                   folder, emit::module_name(e.context.id))});
-  return finished.status == 0 ? "" : finished.output;
-}
-
-std::string wrong_script(const std::string& folder, const Example& e) {
-  if (!runs("node")) return "";
-  const emit::ProcessResult finished = emit::run_process(
-      {"node", "-e",
-       fmt::format("const assert = require('assert'), m = require('{}/{}.js'); assert.strictEqual(m.selftest(), 0); "
-                   "assert.strictEqual(m.info.real, 'float')",
-                   folder, emit::script_name(e.context.id))});
-  return finished.status == 0 ? "" : finished.output;
-}
-
-/// Checks of the output of each target: a description of the failure, or empty. A target without an entry fails the
-/// test.
-const std::map<std::string, std::string (*)(const std::string& folder, const Example& e)> uses = {
-    {"c", wrong_c},
-    {"batch",  // batch_test.cpp tests the values of lanes
-     [](const std::string& folder, const Example& e) {
-       const std::string of_c = wrong_c(folder, e), c = folder + "/" + emit::mangled_id(e.context.id) + "_batch.c";
-       return of_c.empty() ? compiler_diagnostics(with(compile_c(), {"-c", "-o", folder + "/batch.o"}), {c}) : of_c;
-     }},
-    {"cpp",
-     [](const std::string& folder, const Example& e) {
-       const std::string name = emit::mangled_id(e.context.id), of_c = wrong_c(folder, e);
-       return of_c.empty() ? wrong_templates(folder, name + ".hpp", "eom::" + name, " + eom::" + name + "::selftest()")
-                           : of_c;
-     }},
-    {"cuda",
-     [](const std::string& folder, const Example& e) {
-       const std::string name = emit::mangled_id(e.context.id);
-       return wrong_templates(folder, name + ".cuh", "eom::" + name + "::device", "");
-     }},
-    {"python",
-     [](const std::string& folder, const Example& e) {
-       const std::string of_c = wrong_c(folder, e);
-       return of_c.empty() ? wrong_module(folder, e) : of_c;
-     }},
-    {"javascript", wrong_script},
-    {"rust", [](const std::string&, const Example&) { return std::string(); }},     // rust_test.cpp runs it
-    {"octave", [](const std::string&, const Example&) { return std::string(); }}};  // octave_test.cpp runs it
-
 // Their language has no single precision.
 const std::set<std::string> targets_of_doubles = {"casadi"};
 
@@ -140,14 +40,14 @@ TEST_CASE(
     "single precision: every target of languages that have it supports it, passes its self-test, and reports the loss "
     "of accuracy") {
   for (const emit::TargetEntry& target : emit::targets()) {
-    INFO(target.name);
+    INFO(std::string(target.name));
     if (targets_of_doubles.contains(target.name)) {
       for (const Example& e : single_examples())
         CHECK_THROWS_WITH_AS(target.emit(e.program, e.context), doctest::Contains("no single precision"), Error);
       continue;
     }
-    const auto use = uses.find(target.name);
-    REQUIRE((use != uses.end()));
+    const auto use = target_uses().find(target.name);
+    REQUIRE((use != target_uses().end()));
     for (const Example& e : single_examples()) {
       INFO(e.context.id);
       const Folder folder;
@@ -253,7 +153,7 @@ TEST_CASE("single precision: the template header passes its self-test too, in do
   emit::convert_to_single(e.program, e.context);
   const Folder folder;
   emit::write_files(folder.path, emit::emit(e.program, e.context, "cpp"));
-  CHECK(wrong_templates(folder.path, "two.hpp", "eom::two", " + eom::two::selftest()") == "");
+  CHECK(wrong_templates(folder.path, e, "two.hpp", "eom::two", " + eom::two::selftest()") == "");
 }
 
 TEST_CASE("single precision: underflow gives 0, and states that overflow are not in the self-test") {

@@ -22,6 +22,7 @@ position = { cartesian = ["x", "y"] }
 struct Refusal {
   std::string message;
   std::uint32_t line;
+  std::string remedy;
 };
 
 Refusal refusal(const std::string& text) {

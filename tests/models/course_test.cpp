@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a student of the source asks beyond the equations of motion: odometers, integrals of the motion, dual Euler
-// bases, balance laws in omega, contravariant equations, forces and moments of potentials.
+// bases, balance laws in omega, contravariant equations, forces and moments of potentials; motions of the models of
+// exercises.
 #include <doctest/doctest.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "conservation/conserved.hpp"
 #include "derive/formulations/lagrange.hpp"
 #include "models/displayed_model.hpp"
+#include "models/rough.hpp"
+#include "numeric/numbers.hpp"
 #include "reading/balance_form.hpp"
 #include "reading/body_forces.hpp"
 #include "reading/contravariant.hpp"
@@ -355,4 +359,115 @@ initial = { th1 = 0, th2 = 0 }
   CHECK(about.right[0].is_zero());
   CHECK_THROWS(
       reading::linear_equations(s.mechanics, form, {{{symbolic::SymbolKind::coordinate, 0, 0}, Sum(Rational(1) / 3)}}));
+}
+
+namespace {
+
+FinishedRun run_tightly(const std::string& model,
+                        const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
+  return run_model(model, [&](pipeline::SimulationRequest& request) {
+    request.overrides.rtol = 1e-12;
+    request.overrides.atol = 1e-13;
+    if (adjust) adjust(request);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("E3_5_pole: the speed beside the pole is that of the energy") {
+  const FinishedRun run = run_tightly("E3_5_pole");
+  const double g = run.parameter("g"), L = run.parameter("L"), first = run.rows.at(0, "speed");
+  const double height = L * std::cos(run.rows.at(0, "phi"));
+  double nearest = 1;
+  for (std::size_t i = 0; i < run.rows.size(); ++i) {
+    const double phi = run.rows.at(i, "phi");
+    nearest = std::min(nearest, std::abs(std::sin(phi)));
+    const double square = first * first + 2 * g * (height - L * std::cos(phi));
+    CHECK(std::abs(run.rows.at(i, "speed") - std::sqrt(square)) < 1e-10);
+  }
+  CHECK(nearest < 0.1);
+}
+
+TEST_CASE("R7_decoupled_orbit: a circle at Kepler's rate does not feel the attitude, which follows from a moment") {
+  const FinishedRun run = run_tightly("R7_decoupled_orbit");
+  // Euler's equations with the gravity gradient of a body at rest beside the moving centre, in the columns of Q.
+  const Eigen::Vector3d J(run.parameter("J1"), run.parameter("J2"), run.parameter("J3"));
+  const auto attitude = [&](double n1, double n2, double n3) {
+    return Eigen::Matrix3d(Eigen::AngleAxisd(n1, Eigen::Vector3d::UnitX()) *
+                           Eigen::AngleAxisd(n2, Eigen::Vector3d::UnitY()) *
+                           Eigen::AngleAxisd(n3, Eigen::Vector3d::UnitZ()));
+  };
+  const Eigen::Matrix3d Q = attitude(run.rows.at(0, "n1"), run.rows.at(0, "n2"), run.rows.at(0, "n3"));
+  const Eigen::Map<const Eigen::VectorXd> columns(Q.data(), 9);
+  std::vector<double> start(columns.begin(), columns.end());
+  for (const char* name : {"S.omega1", "S.omega2", "S.omega3"}) start.push_back(run.rows.at(0, name));
+  HandWrittenMotion hand(
+      [&](double t, const double* x, double* dx) {
+        const Eigen::Map<const Eigen::Matrix3d> A(x);
+        const Eigen::Map<const Eigen::Vector3d> w(x + 9);
+        const Eigen::Vector3d e = A.transpose() * Eigen::Vector3d(std::cos(t), std::sin(t), 0);
+        const Eigen::Vector3d moment = 3 * e.cross(J.cwiseProduct(e)) - w.cross(J.cwiseProduct(w));
+        Eigen::Matrix3d cross;
+        cross << 0, -w(2), w(1), w(2), 0, -w(0), -w(1), w(0), 0;
+        Eigen::Map<Eigen::Matrix3d> rate(dx);
+        Eigen::Map<Eigen::Vector3d> acceleration(dx + 9);
+        rate = A * cross;
+        acceleration = moment.cwiseQuotient(J);
+      },
+      0, start);
+  for (std::size_t i = 1; i < run.rows.size(); i += 50) {
+    const double t = run.rows.t[i];
+    CHECK(std::abs(run.rows.at(i, "R") - 1) < 1e-11);
+    CHECK(std::abs(run.rows.at(i, "theta") - t) < 1e-10);
+    CHECK(std::abs(run.rows.at(i, "orbital") + 0.5) < 1e-11);
+    hand.advance_to(t);
+    for (std::size_t k = 0; k < 3; ++k)
+      CHECK(std::abs(run.rows.at(i, "S.omega" + std::to_string(k + 1)) - hand.x[9 + k]) < 1e-8);
+  }
+}
+
+TEST_CASE("S5_pin_and_ball: rods and pin hold, and the moment of momentum about the pin is that of the particles") {
+  const FinishedRun run = run_tightly("S5_pin_and_ball");
+  const double m1 = run.parameter("m1"), m2 = run.parameter("m2"), L1 = run.parameter("L1"), L2 = run.parameter("L2");
+  const auto moment = [&](std::size_t i) {
+    const auto at = [&](const char* name) { return run.rows.at(i, name); };
+    const double s = std::sin(at("phi2")), c = std::cos(at("phi2"));
+    const Eigen::Vector2d r1(L1 * std::cos(at("theta1")), L1 * std::sin(at("theta1")));
+    const Eigen::Vector2d v1 = at("theta1_dot") * Eigen::Vector2d(-r1(1), r1(0));
+    const Eigen::Vector2d along(std::cos(at("theta2")), std::sin(at("theta2"))), across(-along(1), along(0));
+    const Eigen::Vector2d r2 = r1 + L2 * s * along;
+    const Eigen::Vector2d v2 = v1 + L2 * (c * at("phi2_dot") * along + s * at("theta2_dot") * across);
+    return m1 * (r1(0) * v1(1) - r1(1) * v1(0)) + m2 * (r2(0) * v2(1) - r2(1) * v2(0));
+  };
+  const double first = moment(0);
+  for (std::size_t i = 0; i < run.rows.size(); ++i) CHECK(std::abs(moment(i) - first) < 1e-10);
+  CHECK(run.drift("energy") < 1e-10);
+  CHECK(std::abs(run.final("r1") - L1) < 1e-12);
+  CHECK(std::abs(run.final("z1")) < 1e-12);
+}
+
+TEST_CASE("R18: every shipped representation gives the motion of Rodrigues' parameters from the same attitude") {
+  const auto turned = [](char axis, double angle) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::Unit(axis - '1')));
+  };
+  const FinishedRun rodrigues = run_tightly("R18_rodrigues");
+  const auto check = [&](const FinishedRun& run, const Eigen::Quaterniond& attitude) {
+    run::Overrides overrides;
+    overrides.rtol = 1e-12;
+    overrides.atol = 1e-13;
+    for (int k = 0; k < 3; ++k)
+      overrides.values["l" + std::to_string(k + 1)] = numeric::exact(attitude.vec()(k) / attitude.w());
+    const run::RunResult other = pipeline::rerun(rodrigues.simulation, overrides);
+    for (const char* name : {"B.omega1", "B.omega2", "B.omega3", "A.position1", "A.position2", "A.position3"})
+      CHECK(std::abs(run.final(name) - value_of(other.final, name)) < 1e-9);
+  };
+  for (const char* axes : {"121", "123", "131", "132", "212", "213", "231", "232", "312", "313", "321", "323"}) {
+    CAPTURE(std::string(axes));
+    const FinishedRun run = run_tightly("R18_euler_" + std::string(axes));
+    const auto start = [&](const char* name) { return run.rows.at(0, name); };
+    check(run, turned(axes[0], start("n1")) * turned(axes[1], start("n2")) * turned(axes[2], start("n3")));
+  }
+  const FinishedRun parameters = run_tightly("R18_euler_parameters");
+  const auto start = [&](const char* name) { return parameters.rows.at(0, name); };
+  check(parameters, Eigen::Quaterniond(start("e0"), start("e1"), start("e2"), start("e3")));
 }

@@ -124,6 +124,24 @@ initial = { th = 0.3 }
   CHECK(same(form.multipliers[1].value(), m * g - half(m * L * (sn * rate + cs * w2))));
 }
 
+TEST_CASE(
+    "ladder: contacts whose forces are inputs of the code have normal forces as functions of state and friction") {
+  DisplayedModel ladder("ladder");
+  const SolvedForm form = solved(ladder);
+  REQUIRE(form.skip_reason.empty());
+  CHECK_FALSE(form.has_undetermined);
+  reading::AtomTable atoms(ladder.s.model);
+  const Sum floor = atoms({symbolic::SymbolKind::friction, 0, 0}), wall = atoms({symbolic::SymbolKind::friction, 1, 0});
+  const Sum m = ladder("m"), L = ladder("L"), g = ladder("g"), w2 = square(ladder("theta_dot"));
+  const Sum sn = sin(ladder("theta")), cs = cos(ladder("theta"));
+  const Sum rate =
+      reading::Rational(3) / 2 * over(g * sn, L) - reading::Rational(3) * over(wall * sn + floor * cs, m * L);
+  CHECK(same(acceleration(ladder, form, "theta"), rate));
+  // Newton's law along z and x, with z = L/2 cos(theta) and x = -L/2 sin(theta).
+  CHECK(same(multiplier(ladder, form, "floor"), m * g - half(m * L * (sn * rate + cs * w2)) - wall));
+  CHECK(same(multiplier(ladder, form, "wall"), -half(m * L * (cs * rate - sn * w2)) - floor));
+}
+
 TEST_CASE("a pendulum in Cartesian coordinates: x^2 + y^2 is L^2 in its tension") {
   DisplayedModel s5("S5_double_pendulum_cartesian");
   CHECK(solved(s5).skip_reason.empty());

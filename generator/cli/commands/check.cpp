@@ -99,7 +99,12 @@ void print_readable(const Json& found) {
   }
   if (!found["conserved"].empty()) heading("conserved");
   for (const Json& c : found["conserved"]) {
-    fmt::print("  {:<20} {} = {}{}\n", text(c["name"]), text(c["title"]), text(c["expression"]),
+    std::string where;
+    const Json none = Json::array();
+    for (const Json& parameter : c.contains("where_zero") ? c["where_zero"] : none)
+      where += (where.empty() ? "   (where " : " and ") + text(parameter) + " = 0";
+    if (!where.empty()) where += ")";
+    fmt::print("  {:<20} {} = {}{}{}\n", text(c["name"]), text(c["title"]), text(c["expression"]), where,
                c["certainty"] == "numerical" ? "   (shown by numbers)" : "");
   }
   if (!found["singular"].empty()) heading("singular sets");

@@ -18,10 +18,10 @@ namespace {
 // Shorter values that are used once are printed inline.
 constexpr std::size_t longest_inline_value = 64;
 
-class Statements {
+class StatementPrinter {
  public:
-  Statements(const program::Function& function, const ModelNames& names, const EmissionContext& context,
-             const Language& language)
+  StatementPrinter(const program::Function& function, const ModelNames& names, const EmissionContext& context,
+                   const Language& language)
       : function_(function),
         names_(names),
         context_(context),
@@ -219,7 +219,7 @@ FunctionText print_statements(const program::Function& function, const ModelName
                               const EmissionContext& context, const Language& language) {
   program::Function alone = function;  // sines and cosines one by one
   for (program::Instruction& instruction : alone.code) instruction.pack = instruction.lane = 0;
-  return Statements(alone, names, context, language).run();
+  return StatementPrinter(alone, names, context, language).run();
 }
 
 std::string quoted(const std::string& text, const std::string& also) {

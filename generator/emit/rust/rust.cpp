@@ -230,6 +230,13 @@ std::string rust_list(const std::vector<double>& values, const Dialect& dialect)
   return "[" + text + "]";
 }
 
+/// Reference values in full, also those that single precision rounds to 0.
+std::string rust_references(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + rust_number(value);
+  return "[" + text + "]";
+}
+
 std::string names_constant(const char* constant, const char* size, const Json& names) {
   std::string list;
   for (const Json& name : names) list += (list.empty() ? "" : ", ") + quoted(name.get<std::string>());
@@ -293,7 +300,7 @@ std::string rust_comparison(const FunctionValues& f, std::size_t k, const Dialec
         "    let mut w = [Real::NAN; PREPARED_SIZE];\n    if prepare(&v.p, &mut w) != 0 {{ return {}; }}\n", k + 1);
   std::string comparisons;
   for (std::size_t r = 0; r < f.values.size(); ++r) {
-    text += fmt::format("    static Y{}: [Real; {}] = {};\n", r, f.values[r].size(), rust_list(f.values[r], dialect));
+    text += fmt::format("    static Y{}: [Real; {}] = {};\n", r, f.values[r].size(), rust_references(f.values[r]));
     text += fmt::format("    let mut y{} = [Real::NAN; {}];\n", r, f.values[r].size());
     const bool optional = program::may_be_null(f.function, r);
     call += fmt::format(", {}&mut y{}{}", optional ? "Some(" : "", r, optional ? ")" : "");

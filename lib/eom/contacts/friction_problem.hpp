@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "eom/contacts/least_norm.hpp"
@@ -94,16 +95,24 @@ class Solver {
     eliminate_held();
   }
 
+  /// The pivoting without scaling is least disturbed by dependent rows; with scaling it does not depend on units. The
+  /// residual decides between them.
   FrictionForces run() {
-    FrictionForces result;
+    constexpr double accurate = 1e-10;
+    const bool planar =
+        std::any_of(p_.laws.begin(), p_.laws.end(), [](const FrictionLaw& law) { return law.tangents.size() == 2; });
+    FrictionForces best;
     for (const double softness : {1e-13, 1e-10}) {
-      result = by_pivoting(softness);
-      if (result.found) break;
+      for (const bool scaled : {false, true}) {
+        FrictionForces result = by_pivoting(softness, scaled);
+        if (!result.found) continue;
+        if (planar) refine(result);
+        result.residual = complementarity_residual(p_, result);
+        if (!best.found || result.residual < best.residual) best = std::move(result);
+        if (planar || best.residual <= accurate) return best;  // the iteration does not depend on its start
+      }
     }
-    const auto plane = [](const FrictionLaw& law) { return law.tangents.size() == 2; };
-    if (result.found && std::any_of(p_.laws.begin(), p_.laws.end(), plane)) refine(result);
-    if (result.found) result.residual = complementarity_residual(p_, result);
-    return result;
+    return best;
   }
 
  private:
@@ -157,7 +166,7 @@ class Solver {
     return 0;
   }
 
-  FrictionForces by_pivoting(double softness) const {
+  FrictionForces by_pivoting(double softness, bool scaled) const {
     std::vector<Column> columns;
     for (const Index row : free_)
       if (p_.kinds[static_cast<std::size_t>(row)] == FrictionProblem::Kind::closes)
@@ -201,7 +210,7 @@ class Solver {
         M(c, n + l) = 1;
       }
     }
-    const ComplementaritySolution solution = solve_complementarity(M, q);
+    const ComplementaritySolution solution = solve_complementarity(M, q, scaled);
     FrictionForces result = complete(B * solution.z.head(n));
     result.found = solution.found;
     return result;

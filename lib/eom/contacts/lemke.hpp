@@ -18,7 +18,6 @@ namespace eom::contacts {
 struct ComplementaritySolution {
   bool found = false;  // false: the method ended on a ray, or after too many pivots
   Eigen::VectorXd z;
-  double residual = 0;  // largest violation of w = M z + q, w >= 0, w . z = 0, relative to the terms of each row
 };
 
 namespace lemke {
@@ -90,23 +89,6 @@ class Tableau {
   std::vector<Index> basic_;
 };
 
-inline double violation(const Eigen::MatrixXd& M, const Eigen::VectorXd& q, const Eigen::VectorXd& z) {
-  const Eigen::VectorXd w = M * z + q;
-  const Eigen::VectorXd terms = M.cwiseAbs() * z.cwiseAbs() + q.cwiseAbs();
-  double largest = 0;
-  for (Eigen::Index i = 0; i < q.size(); ++i) {
-    if (terms(i) == 0) continue;
-    const double size = 1 / terms(i);
-    largest = std::max(largest, -w(i) * size);
-    if (z(i) > 0) largest = std::max(largest, std::abs(w(i)) * size);
-  }
-  return largest;
-}
-
-}  // namespace lemke
-
-namespace lemke {
-
 /// Positive factors d such that the rows and columns of diag(d) M diag(d) have largest entries near 1 (Ruiz 2001).
 /// They are powers of 2, so that scaling makes no rounding errors.
 inline Eigen::VectorXd equilibrate(Eigen::MatrixXd M) {
@@ -126,14 +108,15 @@ inline Eigen::VectorXd equilibrate(Eigen::MatrixXd M) {
 
 }  // namespace lemke
 
-/// Positive factors d for w and 1/d for z change no solution. With them, and with q scaled to 1, the tolerances of the
+/// `scaled_rows`: with positive factors d for w and 1/d for z, which change no solution. Then the tolerances of the
 /// pivoting do not depend on units.
-inline ComplementaritySolution solve_complementarity(const Eigen::MatrixXd& M, const Eigen::VectorXd& q) {
+inline ComplementaritySolution solve_complementarity(const Eigen::MatrixXd& M, const Eigen::VectorXd& q,
+                                                     bool scaled_rows = false) {
   using Index = Eigen::Index;
   const Index n = q.size();
-  ComplementaritySolution result{true, Eigen::VectorXd::Zero(n), 0};
+  ComplementaritySolution result{true, Eigen::VectorXd::Zero(n)};
   if (n == 0 || q.minCoeff() >= 0) return result;
-  const Eigen::VectorXd factors = lemke::equilibrate(M);
+  const Eigen::VectorXd factors = scaled_rows ? lemke::equilibrate(M) : Eigen::VectorXd::Ones(n);
   Eigen::VectorXd scaled = factors.cwiseProduct(q);
   const double size = scaled.lpNorm<Eigen::Infinity>();
   scaled /= size;
@@ -159,7 +142,6 @@ inline ComplementaritySolution solve_complementarity(const Eigen::MatrixXd& M, c
     if (variable >= n && variable < 2 * n)
       result.z(variable - n) = std::max(0.0, tableau.value(i)) * size * factors(variable - n);
   }
-  result.residual = lemke::violation(M, q, result.z);
   return result;
 }
 

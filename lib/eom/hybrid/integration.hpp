@@ -65,8 +65,12 @@ class Integration {
   const Reason& reason() const { return reason_; }
   /// The time at which functions of time belong to the state of the end: that of the end, or beside a kink there.
   double end_time() const { return end_time_; }
-  /// The time at which fixed steps first skipped a force that is narrow in the state.
-  std::optional<double> missed_narrow_force() const { return missed_narrow_force_; }
+  /// Where fixed steps first skipped a force that is narrow in the state.
+  struct MissedForce {
+    double t;
+    bool has_tails;
+  };
+  const std::optional<MissedForce>& missed_narrow_force() const { return missed_narrow_force_; }
   /// The first time at which a narrow force in a step could not be excluded.
   std::optional<double> narrow_forces_unresolved_from() const { return narrow_.unresolved_from(); }
 
@@ -101,7 +105,7 @@ class Integration {
   NarrowForces narrow_;
   Resets resets_;
   MethodChoice choice_;
-  std::optional<double> missed_narrow_force_;
+  std::optional<MissedForce> missed_narrow_force_;
   double fixed_step_ = 0;  // of the run
   double end_time_ = 0;
   bool stopped_ = false, exchange_due_ = false;
@@ -361,10 +365,10 @@ inline EventAction Integration::handle_event(const EventPoint& point, const OnEv
 /// The longest admissible step: infinity, unless the step misses a force that is narrow in the state.
 inline double Integration::longest_step(const StepView& step) {
   if (context_.charts.second_charts() != 0) return std::numeric_limits<double>::infinity();
-  const double longest = narrow_.longest(step, sampling_);
-  if (fixed_step_ > 0 && !slow_slip_.is_active() && !missed_narrow_force_ && longest < step.t1 - step.t0)
-    missed_narrow_force_ = step.t0;
-  return longest;
+  const NarrowForces::Limit limit = narrow_.longest(step, sampling_);
+  if (fixed_step_ > 0 && !slow_slip_.is_active() && !missed_narrow_force_ && limit.length < step.t1 - step.t0)
+    missed_narrow_force_ = {step.t0, limit.has_tails};
+  return limit.length;
 }
 
 }  // namespace eom::hybrid

@@ -29,15 +29,22 @@ class NarrowForces {
 
   bool any() const { return !functions_.empty(); }
 
+  struct Limit {
+    double length;
+    bool has_tails = false;  // the force that the step goes over has tails, which estimates may see
+  };
   /// The longest step that may replace this one; infinity if it may be taken as it is.
-  double longest(const StepView& step, const Sampling& sampling) const {
+  Limit longest(const StepView& step, const Sampling& sampling) const {
     const double h = std::abs(step.t1 - step.t0);
     double first = 1;
-    for (const Function& function : functions_)
-      first = std::min(first, first_hidden_value(function, step, sampling).value_or(1));
-    if (first < 1) return first * h;
-    if (sampling.series && unsatisfied(step, sampling, 1, 1)) return h / 2;
-    return std::numeric_limits<double>::infinity();
+    bool has_tails = false;
+    for (const Function& function : functions_) {
+      const double at = first_hidden_value(function, step, sampling).value_or(1);
+      if (at < first) first = at, has_tails = function.visible == of_tails;
+    }
+    if (first < 1) return {first * h, has_tails};
+    if (sampling.series && unsatisfied(step, sampling, 1, 1)) return {h / 2};
+    return {std::numeric_limits<double>::infinity()};
   }
 
   /// Start of the first step since the last call for which the bounds were too wide to decide.

@@ -98,8 +98,11 @@ inline RunResult run(const Problem& problem) {
   context.outputs(at, end.x.data(), result.outputs);
   result.state = context.own_state(at, end.x);
   require_parameters(problem, result);
-  if (const std::optional<double> missed_narrow_force = integration.missed_narrow_force())
-    result.error.warning = {EstimateWarning::Kind::missed_narrow_force, *missed_narrow_force};
+  const std::optional<Integration::MissedForce>& missed = integration.missed_narrow_force();
+  const auto report_missed_force = [&] {
+    result.error.warning = {EstimateWarning::Kind::missed_narrow_force, missed->t};
+  };
+  if (missed && !missed->has_tails) report_missed_force();
   result.narrow_forces_unresolved_from = integration.narrow_forces_unresolved_from();
   const bool ended = result.ended();
   if (problem.estimate && ended && moves) {
@@ -109,6 +112,11 @@ inline RunResult run(const Problem& problem) {
                                          [](const Event& event) { return event.kind == "pole"; });
     EndErrorEstimator(problem, own, options, adequacy ? &*adequacy : nullptr, passes_pole, result.error).run();
   }
+  // An estimate that saw a force with tails states its effect.
+  const EstimateWarning::Kind found = result.error.warning.kind;
+  if (missed && missed->has_tails && found != EstimateWarning::Kind::impulse &&
+      found != EstimateWarning::Kind::tighter_run_differs && found != EstimateWarning::Kind::sensitive_start)
+    report_missed_force();
   if (ended) require_balance(problem, result);
   result.detail = sentence(result.reason);
   result.error.note = sentence(result.error.warning);

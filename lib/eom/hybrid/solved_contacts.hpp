@@ -140,9 +140,8 @@ class SolvedContacts {
       if (at.sticks) value[1] = bound_of_friction(j, rounding);
       value[2] = forces_.margin(j);
     }
-    return std::any_of(g, g + functions(), [](double value) { return std::isnan(value); })
-               ? contacts::ContactForces::code_not_finite
-               : 0;
+    const bool failed = std::any_of(g, g + functions(), [](double value) { return std::isnan(value); });
+    return failed ? contacts::ContactForces::code_not_finite : 0;
   }
 
   /// Called at the start of each step.
