@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <stdexcept>
 
 namespace eomgen::analysis {
 namespace {
@@ -37,77 +39,122 @@ std::size_t place_of(const std::vector<std::uint32_t>& list, std::uint32_t index
   return static_cast<std::size_t>(std::find(list.begin(), list.end(), index) - list.begin());
 }
 
-Error refusal(const SteadyProblem& p, const std::string& message, const std::string& remedy) {
-  const model::Model& model = p.derived->model;
-  return Error("linearize", model.where(model.scene(p.scene.name).span), message, remedy);
+/// Whether the output depends on the state, t, inputs and parameters alone.
+bool is_known(const SteadyProblem& p, const system::Output& output, const Directions& directions) {
+  const std::vector<Symbol> symbols = p.derived->mechanics.dag->symbols({output.value});
+  return std::all_of(symbols.begin(), symbols.end(), [&](const Symbol& symbol) {
+    return symbol.kind == SymbolKind::parameter || symbol.kind == SymbolKind::integral ||
+           symbol.kind == SymbolKind::state ||
+           std::find(directions.symbols.begin(), directions.symbols.end(), symbol) != directions.symbols.end();
+  });
 }
 
-/// Throws Error if the output depends on something that a linearisation has not.
-void require_known(const SteadyProblem& p, const system::Output& output, const Directions& directions) {
-  for (const Symbol& symbol : p.derived->mechanics.dag->symbols({output.value})) {
-    const bool constant = symbol.kind == SymbolKind::parameter || symbol.kind == SymbolKind::integral;
-    const bool is_state = symbol.kind == SymbolKind::state;
-    if (constant || is_state ||
-        std::find(directions.symbols.begin(), directions.symbols.end(), symbol) != directions.symbols.end())
-      continue;
-    throw refusal(p, fmt::format("the output '{}' depends on quantities that only a run has", output.name),
-                  "choose other outputs: --output NAMES");
-  }
-}
-
+/// The requested outputs, among them coordinates, rates and states of first order, which no table lists as outputs.
 std::vector<std::string> chosen_names(const SteadyProblem& p, const std::vector<std::string>& names) {
   if (names.empty()) return p.scene.outputs;
-  std::vector<model::OutputReference> wanted;
-  for (const std::string& name : names) wanted.push_back({name, {}});
-  return run::expand_outputs(p.derived->mechanics, p.system(), wanted);
+  const std::vector<std::string> states = run::state_columns(p.derived->model);
+  std::vector<std::string> result;
+  for (const std::string& name : names) {
+    const bool is_state = std::find(states.begin(), states.end(), name) != states.end();
+    const std::vector<std::string> expanded =
+        is_state ? std::vector<std::string>{name}
+                 : run::expand_outputs(p.derived->mechanics, p.system(), {{name, {}}});
+    for (const std::string& one : expanded) {
+      if (std::find(result.begin(), result.end(), one) == result.end()) result.push_back(one);
+    }
+  }
+  return result;
 }
+
+/// The slopes of outputs about one state.
+class Slopes {
+ public:
+  Slopes(const SteadyProblem& p, const linear::Linearisation& at)
+      : p_(p),
+        at_(at),
+        directions_(directions_of(p)),
+        n_(p.flow->coordinates()),
+        of_state_(p.flow->lookup(at.z, at.setting)) {}
+
+  std::size_t inputs() const { return directions_.inputs; }
+  std::size_t columns() const { return at_.symmetry.chart.independent.size(); }
+
+  struct Row {
+    Precise value;
+    std::vector<Precise> by_state, by_input;
+  };
+
+  /// Throws std::domain_error if the output has no slope.
+  Row operator()(const system::Output& output) const {
+    if (!is_known(p_, output, directions_)) throw std::domain_error("it depends on quantities that only a run has");
+    const linear::ValueAndJacobian<Precise> partial =
+        linear::Tape(*p_.derived->mechanics.dag, {output.value}, directions_.symbols)
+            .at<Precise>([this](const Symbol& symbol) { return value_of(symbol); });
+    Row row{partial.value[0], std::vector<Precise>(columns()), {}};
+    for (std::size_t d = 0; d < directions_.state; ++d) {
+      const Precise slope = total(partial.jacobian, d, at_.field.jacobian, d);
+      for (std::size_t j = 0; j < columns(); ++j) row.by_state[j] = row.by_state[j] + slope * at_.tangent(d, j);
+    }
+    for (std::size_t u = 0; u < inputs(); ++u)
+      row.by_input.push_back(total(partial.jacobian, directions_.state + u, at_.field.input_jacobian, u));
+    return row;
+  }
+
+ private:
+  Precise value_of(const Symbol& symbol) const {
+    const system::EquationSystem& system = p_.system();
+    if (symbol.kind == SymbolKind::multiplier) return at_.field.multipliers(place_of(system.active, symbol.index), 0);
+    if (symbol.kind == SymbolKind::coordinate && symbol.order == 2)
+      return at_.field.X(n_ + place_of(system.free, symbol.index), 0);
+    return of_state_(symbol);
+  }
+
+  /// The total derivative by an entry of z, or by an input: accelerations and multipliers are functions of them.
+  Precise total(const Matrix<Precise>& partial, std::size_t direction, const Matrix<Precise>& rates,
+                std::size_t column) const {
+    const std::size_t accelerations = directions_.state + directions_.inputs, multipliers = accelerations + n_;
+    Precise sum = partial(0, direction);
+    for (std::size_t i = 0; i < n_; ++i) sum = sum + partial(0, accelerations + i) * rates(n_ + i, column);
+    for (std::size_t m = 0; m < p_.system().active.size(); ++m)
+      sum = sum + partial(0, multipliers + m) * at_.field.multiplier_jacobian(m, direction);
+    return sum;
+  }
+
+  const SteadyProblem& p_;
+  const linear::Linearisation& at_;
+  Directions directions_;
+  std::size_t n_;
+  std::function<Precise(const Symbol&)> of_state_;
+};
 
 }  // namespace
 
 OutputSlopes linearise_outputs(const SteadyProblem& p, const linear::Linearisation& at,
                                const std::vector<std::string>& names) {
   OutputSlopes result;
-  result.names = chosen_names(p, names);
-  const Directions directions = directions_of(p);
-  const system::EquationSystem& system = p.system();
-  const linear::Field<Precise>& field = at.field;
-  const std::size_t n = p.flow->coordinates(), columns = at.symmetry.chart.independent.size();
-  const std::size_t accelerations = directions.state + directions.inputs, multipliers = accelerations + n;
-  result.C = Matrix<Precise>(result.names.size(), columns);
-  result.D = Matrix<Precise>(result.names.size(), directions.inputs);
-  const auto of_state = p.flow->lookup(at.z, at.setting);
-  const std::function<Precise(const Symbol&)> lookup = [&](const Symbol& symbol) {
-    if (symbol.kind == SymbolKind::multiplier) return field.multipliers(place_of(system.active, symbol.index), 0);
-    if (symbol.kind == SymbolKind::coordinate && symbol.order == 2)
-      return field.X(n + place_of(system.free, symbol.index), 0);
-    return of_state(symbol);
-  };
-  for (std::size_t k = 0; k < result.names.size(); ++k) {
-    const system::Output* const output = system::find(system.outputs, result.names[k]);
-    require_known(p, *output, directions);
+  const Slopes slopes(p, at);
+  std::vector<Slopes::Row> rows;
+  for (const std::string& name : chosen_names(p, names)) {
     try {
-      const linear::ValueAndJacobian<Precise> partial =
-          linear::Tape(*p.derived->mechanics.dag, {output->value}, directions.symbols).at<Precise>(lookup);
-      result.values.push_back(partial.value[0]);
-      const auto by = [&](std::size_t direction) { return partial.jacobian(0, direction); };
-      // The total derivative by an entry of z, or by an input.
-      const auto total = [&](std::size_t direction, const Matrix<Precise>& rates, std::size_t column) {
-        Precise sum = by(direction);
-        for (std::size_t i = 0; i < n; ++i) sum = sum + by(accelerations + i) * rates(n + i, column);
-        for (std::size_t m = 0; m < system.active.size(); ++m)
-          sum = sum + by(multipliers + m) * field.multiplier_jacobian(m, direction);
-        return sum;
-      };
-      for (std::size_t d = 0; d < directions.state; ++d) {
-        const Precise slope = total(d, field.jacobian, d);
-        for (std::size_t j = 0; j < columns; ++j) result.C(k, j) = result.C(k, j) + slope * at.tangent(d, j);
-      }
-      for (std::size_t u = 0; u < directions.inputs; ++u)
-        result.D(k, u) = total(directions.state + u, field.input_jacobian, u);
+      rows.push_back(slopes(*system::find(p.system().outputs, name)));
+      result.names.push_back(name);
     } catch (const std::domain_error& error) {
-      throw refusal(p, fmt::format("the output '{}' has no slope at this state: {}", output->name, error.what()),
-                    "linearise at another state, or choose other outputs: --output NAMES");
+      if (names.empty()) {
+        result.left_out.push_back({name, error.what()});
+        continue;
+      }
+      const model::Model& model = p.derived->model;
+      throw Error("linearize", model.where(model.scene(p.scene.name).span),
+                  fmt::format("the output '{}' has no slope at this state: {}", name, error.what()),
+                  "linearise at another state, or choose other outputs: --output NAMES");
     }
+  }
+  result.C = Matrix<Precise>(rows.size(), slopes.columns());
+  result.D = Matrix<Precise>(rows.size(), slopes.inputs());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    result.values.push_back(rows[k].value);
+    for (std::size_t j = 0; j < slopes.columns(); ++j) result.C(k, j) = rows[k].by_state[j];
+    for (std::size_t u = 0; u < slopes.inputs(); ++u) result.D(k, u) = rows[k].by_input[u];
   }
   return result;
 }

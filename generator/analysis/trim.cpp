@@ -35,6 +35,8 @@ std::vector<std::size_t> places_of(const SteadyProblem& p, const std::vector<std
           "equilibria", {}, fmt::format("there is no input {}", model::quote(name)),
           known.empty() ? "the model has no inputs: declare them in [inputs]" : model::suggest_choice(name, known));
     places.push_back(static_cast<std::size_t>(found - known.begin()));
+    if (std::find(places.begin(), places.end() - 1, places.back()) != places.end() - 1)
+      throw Error("equilibria", {}, fmt::format("the input {} is named twice", model::quote(name)), "name it once");
   }
   return places;
 }

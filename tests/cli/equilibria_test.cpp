@@ -68,6 +68,7 @@ TEST_CASE("equilibria --trim: states that inputs cannot hold, unknown names and 
   CHECK(contains(error, "F cannot hold this state: "));
   CHECK(contains(error, "_dot"));
   CHECK(contains(expect(2, folder, {"equilibria", "cart_pendulum", "--trim", "G"}).err, "there is no input 'G'"));
+  CHECK(contains(expect(2, folder, {"equilibria", "cart_pendulum", "--trim", "F,F"}).err, "'F' is named twice"));
   CHECK(contains(expect(2, folder, {"equilibria", "cart_pendulum", "--trim", "F", "--hold", "x=1"}).err, "exclude"));
   CHECK(contains(expect(2, folder, {"equilibria", "cart_pendulum", "--at", "1"}).err, "--trim"));
 }

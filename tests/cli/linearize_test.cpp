@@ -89,13 +89,20 @@ TEST_CASE("linearize: C and D of outputs, with what they depend on through accel
   CHECK(contains(expect(2, folder, {"linearize", "rod.toml", "--output", "nothing"}).err, "nothing"));
 }
 
-TEST_CASE("linearize: an output without a slope at the state is refused by its name") {
+TEST_CASE("linearize: an output without a slope at the state is left out of those of the scene, and refused where it is requested") {
   const Folder folder;
   folder.write(
       "kink.toml",
       "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"x^2/2\"\n"
       "[definitions]\nsize = \"abs(x)\"\n[scene.default]\ninitial = { x = 0, x_dot = 1 }\noutputs = [\"size\"]\n");
-  CHECK(contains(expect(2, folder, {"linearize", "kink.toml"}).err, "the output 'size' has no slope at this state"));
+  const std::string text = expect(0, folder, {"linearize", "kink.toml"}).out;
+  CHECK(contains(text, "left out          the output 'size' has no slope at this state: it lies on the edge of abs"));
+  const Json kink = document(folder, {"linearize", "kink.toml"});
+  CHECK(kink["outputs"].empty());
+  CHECK(kink["C"].empty());
+  CHECK(kink["outputs_left_out"][0]["name"] == "size");
+  CHECK(contains(expect(2, folder, {"linearize", "kink.toml", "--output", "size"}).err,
+                 "the output 'size' has no slope at this state"));
   expect(0, folder, {"linearize", "kink.toml", "--output", "x"});
 }
 

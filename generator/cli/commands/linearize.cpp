@@ -84,6 +84,13 @@ Json values_of(const analysis::OutputSlopes& outputs) {
   return values;
 }
 
+Json left_out(const analysis::OutputSlopes& outputs) {
+  Json list = Json::array();
+  for (const analysis::OutputSlopes::LeftOut& output : outputs.left_out)
+    list.push_back({{"name", output.name}, {"reason", output.reason}});
+  return list;
+}
+
 Json to_json(const Answer& a) {
   Json eigenvalues = Json::array(), point = Json::object(), moved = Json::object();
   for (const linear::Eigenvalue& e : a.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
@@ -102,6 +109,7 @@ Json to_json(const Answer& a) {
           {"outputs", values_of(a.outputs)},
           {"C", rows(a.outputs.C)},
           {"D", rows(a.outputs.D)},
+          {"outputs_left_out", left_out(a.outputs)},
           {"eigenvalues", eigenvalues},
           {"eigenvalues_hold", a.l.spectrum.is_reliable()},
           {"off", a.l.parameter_change},
@@ -145,6 +153,9 @@ std::string text(const Answer& a) {
     out += matrix_text("C", a.outputs.C, a.outputs.names, a.states());
     if (!a.inputs().empty()) out += matrix_text("D", a.outputs.D, a.outputs.names, a.inputs());
   }
+  if (!a.outputs.left_out.empty()) out += "\n";
+  for (const analysis::OutputSlopes::LeftOut& output : a.outputs.left_out)
+    out += fmt::format("left out          the output '{}' has no slope at this state: {}\n", output.name, output.reason);
   out += "\neigenvalues\n";
   for (std::size_t i = 0; i < a.l.spectrum.values.size(); ++i)
     out += fmt::format("  {}\n", eigenvalue_text(a.l.spectrum, i));
