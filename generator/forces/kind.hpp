@@ -52,6 +52,7 @@ struct Key {
   std::string what = {};              // in messages: "gravity"; empty: "the KEY of FORCE"
   std::string remedy = {};            // if it is missing or depends on a forbidden variable
   std::vector<Choice> choices = {};
+  bool is_stiffness = false;  // of a spring: `stress` varies it
 };
 
 /// A condition on two keys. Messages follow the name of the force: "'f' has both a stiffness and an energy".
@@ -107,6 +108,12 @@ struct Line {
   std::string from, to;
 };
 
+/// Keys of a linear spring between the points of a potential: with s = a - b the energy is k (|s| - l)^2/2. Empty
+/// names: none.
+struct LinearSpring {
+  std::string stiffness, length;
+};
+
 struct Kind {
   std::string name;   // unique; the key KIND of a model file
   std::string title;  // for lists
@@ -114,7 +121,8 @@ struct Kind {
   std::vector<Key> keys = {};
   std::vector<Rule> rules = {};
   std::vector<Term> terms = {};
-  Line spring = {}, damper = {};  // drawn by `report`
+  Line spring = {}, damper = {};    // drawn by `report`
+  LinearSpring linear_spring = {};  // its energy as textbooks write it, its forces as arrows
 };
 
 std::span<const Kind> registry();

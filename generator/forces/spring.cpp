@@ -10,7 +10,7 @@ Kind spring() {
       .title = "a potential energy of the distance of two points",
       .keys = {{.name = "between", .type = ValueType::ends, .dependency = Dependency::motion},
                {.name = "length", .unit = "m", .optional = true, .default_value = "0"},
-               {.name = "stiffness", .unit = "N/m", .required_unless = "energy"},
+               {.name = "stiffness", .unit = "N/m", .required_unless = "energy", .is_stiffness = true},
                {.name = "energy",
                 .type = ValueType::energy,
                 .unit = "J",
@@ -26,6 +26,7 @@ Kind spring() {
                  .conditions = {{Predicate::given, "energy"}},
                  .extension = "norm(a - b) - length"}},
       .spring = {"a", "b"},
+      .linear_spring = {"stiffness", "length"},
   };
 }
 

@@ -8,7 +8,7 @@ Kind spring_damper() {
       .name = "spring_damper",
       .title = "a linear spring and a damper between two points",
       .keys = {{.name = "between", .type = ValueType::ends, .dependency = Dependency::motion},
-               {.name = "stiffness", .unit = "N/m"},
+               {.name = "stiffness", .unit = "N/m", .is_stiffness = true},
                {.name = "length", .unit = "m", .optional = true, .default_value = "0"},
                {.name = "coefficient", .unit = "N*s/m", .dependency = Dependency::state}},
       .terms = {{.formula = "stiffness*dot(a - b, a - b)/2", .conditions = {{Predicate::zero, "length"}}},
@@ -16,6 +16,7 @@ Kind spring_damper() {
                 {.load_type = LoadType::damping, .formula = "coefficient"}},
       .spring = {"a", "b"},
       .damper = {"a", "b"},
+      .linear_spring = {"stiffness", "length"},
   };
 }
 

@@ -8,7 +8,7 @@ Kind torsion() {
       .name = "torsion",
       .title = "a spring, a damper, or both, of an angle",
       .keys = {{.name = "angle", .unit = "rad", .dependency = Dependency::motion},
-               {.name = "stiffness", .unit = "N*m", .optional = true},
+               {.name = "stiffness", .unit = "N*m", .optional = true, .is_stiffness = true},
                {.name = "rest", .unit = "rad", .optional = true, .default_value = "0", .default_requires = "stiffness"},
                {.name = "coefficient", .unit = "N*m*s", .dependency = Dependency::state, .optional = true}},
       .rules = {{Rule::Type::one_of, "stiffness", "coefficient", "has neither a stiffness nor a coefficient",

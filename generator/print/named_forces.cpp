@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "forces/kind.hpp"
 #include "print/formulas.hpp"
 #include "print/vector_formula.hpp"
 
@@ -74,7 +75,8 @@ std::optional<Formula> NamedForces::line(std::uint32_t j, std::uint32_t k) {
 
 std::optional<Formula> NamedForces::spring_energy(std::uint32_t j) {
   const model::Force& force = m_.model->forces[j];
-  const model::NodeId stiffness = force.value("stiffness"), length = force.value("length");
+  const forces::LinearSpring& keys = forces::find(force.kind)->linear_spring;
+  const model::NodeId stiffness = force.value(keys.stiffness), length = force.value(keys.length);
   std::vector<Formula> terms;
   for (std::uint32_t k = 0; k < force.effects.size(); ++k) {
     const model::Effect& effect = force.effects[k];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "forces/kind.hpp"
 #include "stress/stress.hpp"
 
 namespace eomgen::stress {
@@ -84,8 +85,12 @@ class Cases {
   // Whether it is the stiffness of a spring, for parameters without known units.
   bool is_stiffness(std::uint32_t p) const {
     for (const model::Force& force : m_.model->forces) {
-      for (const model::Argument& argument : force.arguments) {
-        if (argument.name.find("stiffness") != std::string::npos && mentions(argument.value, p)) return true;
+      for (const forces::Key& key : forces::find(force.kind)->keys) {
+        if (!key.is_stiffness) continue;
+        const bool triple = key.type == forces::ValueType::triple;
+        for (const char* component : {"", "1", "2", "3"}) {
+          if (triple != (*component == 0) && mentions(force.value(key.name + component), p)) return true;
+        }
       }
     }
     return false;

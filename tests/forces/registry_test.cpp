@@ -65,6 +65,17 @@ TEST_CASE("keys, rules and terms of a kind refer to existing keys") {
       for (const forces::Condition& when : term.conditions) CHECK(has_key(kind, when.key));
     }
     for (const forces::Line& line : {kind.spring, kind.damper}) CHECK(line.from.empty() == line.to.empty());
+    // A linear spring has the energy of its stiffness and its length between two points, and stress varies the
+    // stiffness.
+    const forces::LinearSpring& linear = kind.linear_spring;
+    CHECK(linear.stiffness.empty() == linear.length.empty());
+    if (!linear.stiffness.empty()) {
+      CHECK(has_key(kind, linear.length));
+      CHECK(std::any_of(kind.keys.begin(), kind.keys.end(), [&](const forces::Key& key) {
+        return key.name == linear.stiffness && key.is_stiffness && key.unit == "N/m";
+      }));
+      CHECK(has_potential(kind));
+    }
     const bool data = kind.form == forces::InputFormat::table || kind.form == forces::InputFormat::value;
     CHECK(data == !kind.terms.empty());
     if (kind.form == forces::InputFormat::value) CHECK(kind.keys.at(0).name == kind.name);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "analysis/drawing/force_decomposition.hpp"
+#include "forces/kind.hpp"
 #include "mechanics/particle_force.hpp"
 #include "mechanics/vanishes.hpp"
 
@@ -164,7 +165,8 @@ class Collection {
 
   /// Forces of a stiffness between two points.
   bool spring(const model::Force& force, const model::Effect& effect) {
-    const model::NodeId stiffness = force.value("stiffness"), length = force.value("length");
+    const forces::LinearSpring& keys = forces::find(force.kind)->linear_spring;
+    const model::NodeId stiffness = force.value(keys.stiffness), length = force.value(keys.length);
     if (effect.other == model::no_node || stiffness == model::no_node) return false;
     const Vec3 a = mechanics::lower_vector(m_, effect.at), b = mechanics::lower_vector(m_, effect.other),
                d = symbolic::subtract(dag_, b, a);
