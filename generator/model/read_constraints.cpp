@@ -200,26 +200,29 @@ void ConstraintsReader::read_equations(Constraint& constraint, const Value& valu
   }
 }
 
-void ConstraintsReader::read_energy() {
+void ConstraintsReader::read_energy(const std::optional<TypedNode>& armatures) {
   const Value* table = section("energy");
-  if (table == nullptr) return;
-  check_keys(*table, {"[energy]", {"kinetic", "potential"}});
-  if (table->entries.empty())
-    source_.fail(table->span, "[energy] is empty", "add kinetic = \"..\" and potential = \"..\"");
-  const auto energy = [&](const char* key, Dependencies allowed, const char* remedy) {
-    const Value* value = table->find(key);
-    if (value == nullptr) return no_node;
-    return resolver_
-        .value(*value, Context{fmt::format("the {} energy", key), allowed, Shape::scalar, dimension_of("J"), remedy})
-        .node;
+  if (table != nullptr) {
+    check_keys(*table, {"[energy]", {"kinetic", "potential"}});
+    if (table->entries.empty())
+      source_.fail(table->span, "[energy] is empty", "add kinetic = \"..\" and potential = \"..\"");
+  }
+  const auto energy = [&](const char* key, Dependencies allowed, const char* remedy) -> std::optional<TypedNode> {
+    const Value* value = table == nullptr ? nullptr : table->find(key);
+    if (value == nullptr) return std::nullopt;
+    return resolver_.value(
+        *value, Context{fmt::format("the {} energy", key), allowed, Shape::scalar, dimension_of("J"), remedy});
   };
-  model_.energy.kinetic = energy("kinetic", on_motion | on_velocity,
-                                 "energies are made of coordinates, velocities, functions of time and parameters; an "
-                                 "input acts through a [[force]]");
-  model_.energy.potential =
+  std::optional<TypedNode> kinetic = energy("kinetic", on_motion | on_velocity,
+                                            "energies are made of coordinates, velocities, functions of time and "
+                                            "parameters; an input acts through a [[force]]");
+  if (armatures) kinetic = kinetic ? resolver_.sum_of(*kinetic, *armatures, table->span) : armatures;
+  if (kinetic) model_.energy.kinetic = kinetic->node;
+  const std::optional<TypedNode> potential =
       energy("potential", on_motion,
              "a potential is made of coordinates, functions of time and parameters; what depends on velocities "
              "belongs to kinetic, and an input acts through a [[force]]");
+  if (potential) model_.energy.potential = potential->node;
 }
 
 void ConstraintsReader::read_impacts() {

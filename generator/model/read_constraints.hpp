@@ -2,6 +2,8 @@
 // Reader of [[constraint]], [energy] and [impacts].
 #pragma once
 
+#include <optional>
+
 #include "model/section_reader.hpp"
 
 namespace eomgen::model {
@@ -11,7 +13,8 @@ class ConstraintsReader : private SectionReader {
   explicit ConstraintsReader(ReaderContext& context) : SectionReader(context) {}
   void declare();
   void read();
-  void read_energy();
+  /// `armatures`: a kinetic energy beside that of [energy].
+  void read_energy(const std::optional<TypedNode>& armatures);
   void read_impacts();
 
  private:

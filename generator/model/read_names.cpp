@@ -64,7 +64,7 @@ void NamesReader::read_coordinate(const Entry& entry) {
   } else {
     require_kind(Value::Kind::table, entry.value, fmt::format("the coordinate {}", what),
                  "write x = \"m\", x = {} or x = { unit = \"m\" }");
-    check_keys(entry.value, {fmt::format("the coordinate {}", what), {"unit", "tex", "range"}});
+    check_keys(entry.value, {fmt::format("the coordinate {}", what), {"unit", "tex", "range", "armature"}});
     unit = entry.value.find("unit");
     coordinate.tex = tex_of(entry.value, what);
     if (entry.value.find("range") != nullptr) coordinates_with_range_.insert(index);
@@ -100,6 +100,32 @@ void NamesReader::read_ranges() {
       source_.fail(range->span, "the range is empty", "write the smaller end first: range = [a, b] with a < b");
     }
   }
+}
+
+// A rotor of inertia J behind a gear of ratio n has the kinetic energy a q_dot^2/2 with the armature a = n^2 J.
+std::optional<TypedNode> NamesReader::armature_energy() {
+  std::optional<TypedNode> total;
+  const Value* table = section("coordinates");
+  if (table == nullptr) return total;
+  for (const Entry& entry : table->entries) {
+    const Value* armature = entry.value.find("armature");
+    if (armature == nullptr) continue;
+    const Span span = armature->span;
+    const std::uint32_t index = scope_.find(entry.key)->index;
+    Context context{fmt::format("the armature of '{}'", entry.key), 0, Shape::scalar, std::nullopt,
+                    "an armature is made of numbers and parameters, such as \"n^2*J\""};
+    const Unit& unit = model_.coordinates[index].unit;
+    if (unit.dimension) context.dimension = quotient(dimension_of("kg*m^2"), raised(*unit.dimension, 2));
+    const TypedNode value = resolver_.value(*armature, context);
+    if (value.constant && cln::minusp(*value.constant))
+      source_.fail(span, fmt::format("{} is negative", context.what),
+                   "write the inertia of the rotor times the square of its gear ratio");
+    const TypedNode rate = resolver_.coordinate(index, 1, span);
+    const TypedNode half = resolver_.product_of(resolver_.number(Rational(1) / 2, span), value, span);
+    const TypedNode energy = resolver_.product_of(half, resolver_.product_of(rate, rate, span), span);
+    total = total ? resolver_.sum_of(*total, energy, span) : energy;
+  }
+  return total;
 }
 
 TypedNode NamesReader::define(Symbol& symbol) {

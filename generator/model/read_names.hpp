@@ -3,6 +3,8 @@
 // values are read on demand.
 #pragma once
 
+#include <optional>
+
 #include "model/section_reader.hpp"
 
 namespace eomgen::model {
@@ -14,6 +16,8 @@ class NamesReader : private SectionReader {
   std::uint32_t declare_coordinate(const std::string& name, Span span, const Entry* entry);
   TypedNode define(Symbol& symbol);
   void read_ranges();
+  /// The kinetic energy of all armatures, if there are any.
+  std::optional<TypedNode> armature_energy();
   void warn_misspelt(const std::string& name, Span span);
   void warn_unused();
 

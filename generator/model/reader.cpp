@@ -87,7 +87,7 @@ void Reader::read() {
   PlacesReader(context_).read_particles();
   BodiesReader(context_).read();
   for (Symbol* symbol : scope_.all(SymbolKind::definition)) resolver_.symbol(*symbol, symbol->span);
-  ConstraintsReader(context_).read_energy();
+  ConstraintsReader(context_).read_energy(NamesReader(context_).armature_energy());
   ForcesReader(context_).read();
   ConstraintsReader(context_).read();
   ConstraintsReader(context_).read_impacts();

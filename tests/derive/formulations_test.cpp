@@ -4,8 +4,10 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 
@@ -206,4 +208,68 @@ x = {}
     symbolic::Derivation ddt = symbolic::total_time_derivative(*mechanics.dag, mechanics.q.size(), 2);
     CHECK(point.evaluate(ddt(system.energy)) == doctest::Approx(point.evaluate(system.power)).epsilon(rounding));
   });
+}
+
+TEST_CASE("formulations: an armature a adds a qddot to the force on its coordinate, and keeps trees of bodies") {
+  const std::string arm = R"toml(format = 1
+[parameters]
+m = 2
+g = 9.81
+L = 0.7
+J = 0.3
+a1 = 0.11
+a2 = 0.23
+[[body]]
+name = "b1"
+mass = "m"
+inertia = { principal = ["J", "J/2", "2*J/3"] }
+position = "L*b1.e1"
+rotation = { axis = "E2", angle = "q1" }
+[[body]]
+name = "b2"
+mass = "m"
+inertia = { principal = ["2*J/3", "J/2", "J"] }
+position = "2*L*b1.e1 + L*b2.e1"
+rotation = { axis = "b1.e3", angle = "q2" }
+relative_to = "b1"
+[[force]]
+gravity = "-g*E3"
+)toml";
+  const auto accelerations = [](const std::string& text) {
+    std::map<std::string, std::array<double, 2>> found;
+    for_each_formulation(model::read_model_text(text, "arm"),
+                         [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
+                           test::Point point(mechanics, {{"m", 2},
+                                                         {"g", 9.81},
+                                                         {"L", 0.7},
+                                                         {"J", 0.3},
+                                                         {"a1", 0.11},
+                                                         {"a2", 0.23},
+                                                         {"q1", 0.4},
+                                                         {"q1_dot", 1.3},
+                                                         {"q2", -0.8},
+                                                         {"q2_dot", 0.6}});
+                           point.solve(system);
+                           found[named(system)] = {point.at("q1_ddot"), point.at("q2_ddot")};
+                         });
+    return found;
+  };
+  const std::string by_key = "[coordinates]\nq1 = { armature = \"a1\" }\nq2 = { armature = \"a2\" }\n";
+  const std::string by_energy = "[energy]\nkinetic = \"a1*q1_dot^2/2 + a2/2*q2_dot^2\"\n";
+  const auto bare = accelerations(arm);
+  for (const std::string& rotors : {by_key, by_energy, by_key + "[energy]\nkinetic = \"J*q1_dot^2 - q1_dot^2*J\"\n"}) {
+    const auto found = accelerations(arm + rotors);
+    REQUIRE(found.contains("lagrange I"));
+    for (const char* name : {"recursive II", "articulated II"}) CHECK_MESSAGE(found.contains(name), name);
+    const std::array<double, 2> expected = found.at("lagrange I");
+    CHECK(std::abs(expected[0] - bare.at("lagrange I")[0]) > 0.01);
+    for (const auto& [name, value] : found) {
+      CHECK_MESSAGE(value[0] == doctest::Approx(expected[0]).epsilon(rounding), name);
+      CHECK_MESSAGE(value[1] == doctest::Approx(expected[1]).epsilon(rounding), name);
+    }
+  }
+  // A product of two rates belongs to no single joint.
+  const auto mixed = accelerations(arm + "[energy]\nkinetic = \"a1*q1_dot*q2_dot\"\n");
+  CHECK(mixed.contains("lagrange I"));
+  CHECK_FALSE(mixed.contains("recursive II"));
 }

@@ -68,6 +68,18 @@ const Example examples[] = {
          body("b1", "L*table.e1 + L*b1.e1", "{ axis = \"table.e2\", angle = \"q1\" }", "table") +
          body("b2", "L*table.e1 + 2*L*b1.e1 + L*b2.e1", "{ axis = \"b1.e3\", angle = \"q2\" }", "b1") +
          "[[force]]\ngeneralized = { q1 = \"-A*q1_dot*abs(q2)\" }\n"},
+    {"armatures of pins and of a slider",
+     constants +
+         "[coordinates]\nq1 = { armature = \"A\" }\nq3 = { armature = \"w^2*B\" }\nx = { unit = \"m\", armature = "
+         "\"m/3\" }\n" +
+         body("b1", "L*b1.e1", "{ axis = \"E2\", angle = \"q1\" }") +
+         body("b2", "2*L*b1.e1 + L*b2.e1", "{ axis = \"b1.e3\", angle = \"q2\" }", "b1") +
+         body("b3", "2*L*b1.e1 + 2*L*b2.e1 + x*b2.e1 + L*b3.e2", "{ axis = \"b2.e1\", angle = \"q3\" }", "b2") +
+         "[[force]]\ngeneralized = { q2 = \"-A*q2_dot - B*q3\" }\n"},
+    {"an armature of one of three angles in one joint",
+     constants + "[coordinates]\nb = { armature = \"A\" }\n" +
+         body("b1", "L*b1.e3", "{ euler = \"313\", angles = [\"a\", \"b\", \"c\"] }") +
+         body("b2", "b1 + L*b1.e3 + L*b2.e1", "{ axis = \"b1.e2\", angle = \"q\" }", "b1")},
     {"Rodrigues parameters", constants + body("b1", "L*b1.e1", "{ rodrigues = [\"r1\", \"r2\", \"r3\"] }") +
                                  body("b2", "2*L*b1.e1 + L*b2.e1", "{ axis = \"b1.e3\", angle = \"q\" }", "b1")},
 };

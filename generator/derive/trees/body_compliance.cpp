@@ -35,7 +35,7 @@ struct Joint {
   Vec6 s, c, U;  // direction; U/D; the wrench per unit of acceleration
   Ref D;
   Vec3 rotation;     // per angular velocity of a disturbance, over D
-  std::size_t axis;  // the number of the component, if s is a unit vector; otherwise 6
+  std::size_t axis;  // the number of the component, if s is a unit vector and no armature acts; otherwise 6
 };
 
 /// Wrench that a link and all links beyond it need at free joints, per angular velocity of a disturbance.
@@ -160,7 +160,8 @@ class Compliance {
     RotatingResponse& B = rotating_[l];
     for (const Eliminated& e : articulated_.eliminated[l]) {
       Joint joint{e.index, joined(e.angular, e.linear), {}, joined(e.N, e.F), e.D, {}, 0};
-      joint.axis = axis_number(joint.s);
+      // With an armature, D is no component of the inertia, and something remains along the freedom.
+      joint.axis = dag_.is_zero(tree_.armature[e.index]) ? axis_number(joint.s) : 6;
       for (std::size_t i = 0; i < 6; ++i) joint.c[i] = dag_.div(joint.U[i], e.D);
       const Vec3 W = plus(times(dag_, transposed(B.moment), e.angular), times(dag_, transposed(B.force), e.linear));
       for (std::size_t k = 0; k < 3; ++k) joint.rotation[k] = dag_.div(W[k], e.D);

@@ -70,7 +70,7 @@ class Elimination {
       Eliminated e{
           s, v, {}, {}, symbolic::add(dag_, times(dag_, body.I, s), times(dag_, body.H, v)), {}, freedom.index};
       e.F = symbolic::add(dag_, times(dag_, transposed(body.H), s), times(dag_, body.M, v));
-      e.D = dag_.add(dot(dag_, s, e.N), dot(dag_, v, e.F));
+      e.D = dag_.add(dag_.add(dot(dag_, s, e.N), dot(dag_, v, e.F)), tree_.armature[freedom.index]);
       e.r = dag_.sub(Q, dag_.add(dot(dag_, s, body.n), dot(dag_, v, body.f)));
       result_.pivots.push_back({e.D, dag_.zero()});
       reduce(body.I, e.N, e.N, e.D, true);
@@ -79,7 +79,7 @@ class Elimination {
       const Ref rate = dag_.div(e.r, e.D);
       body.n = symbolic::add(dag_, body.n, symbolic::scale(dag_, rate, e.N));
       body.f = symbolic::add(dag_, body.f, symbolic::scale(dag_, rate, e.F));
-      clear(body, s, v, Q);
+      if (dag_.is_zero(tree_.armature[freedom.index])) clear(body, s, v, Q);
       eliminated_[l].push_back(e);
     }
   }

@@ -83,7 +83,8 @@ class Recursion {
     for (int inner = static_cast<int>(l); inner >= 0; inner = tree_.links[place(inner)].parent) {
       const BodyLink& link = tree_.links[place(inner)];
       for (const Freedom& other : link.freedoms) {
-        const Ref entry = dag_.add(dot(dag_, other.angular, p.angular), dot(dag_, other.linear, p.linear));
+        Ref entry = dag_.add(dot(dag_, other.angular, p.angular), dot(dag_, other.linear, p.linear));
+        if (other.index == freedom.index) entry = dag_.add(entry, tree_.armature[freedom.index]);
         result_.M[freedom.index * n + other.index] = result_.M[other.index * n + freedom.index] = entry;
       }
       p.linear = link.rotation.to_parent(dag_, p.linear);

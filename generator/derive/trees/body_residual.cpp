@@ -167,7 +167,10 @@ std::optional<system::Residual> body_residual(Mechanics& m) {
   residual.applied = tree->Q;
   residual.inertia.assign(tree->Q.size(), dag.zero());
   for (std::size_t l = 0; l < dynamics.size(); ++l) {
-    for (const Freedom& f : tree->links[l].freedoms) residual.inertia[f.index] = along(dag, f, dynamics[l].wrench);
+    for (const Freedom& f : tree->links[l].freedoms) {
+      const Ref own = dag.mul(tree->armature[f.index], dag.symbol({SymbolKind::coordinate, m.free[f.index], 2}));
+      residual.inertia[f.index] = dag.add(along(dag, f, dynamics[l].wrench), own);
+    }
   }
   Rows(dag, *tree, motion, dynamics)(residual);
   add_compliance(dag, *tree, motion, dynamics, residual);

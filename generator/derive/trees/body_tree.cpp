@@ -7,6 +7,7 @@
 
 #include "derive/trees/place_decomposition.hpp"
 #include "derive/trees/tree_forces.hpp"
+#include "mechanics/vanishes.hpp"
 
 namespace eomgen::derive {
 namespace {
@@ -37,7 +38,7 @@ class Builder {
     for (const Spinning& body : spinning_) {
       if (!add_spinning(body)) return std::nullopt;
     }
-    if (!covers_coordinates()) return std::nullopt;
+    if (!covers_coordinates() || !add_armatures()) return std::nullopt;
     Ref potential;
     tree_.gravity = extract_gravity(m_, expanded_, potential);
     tree_.Q = non_gravity_forces(m_, of_, expanded_, potential);
@@ -242,6 +243,23 @@ class Builder {
     return std::all_of(joints.begin(), joints.end(), [](int count) { return count == 1; });
   }
 
+  /// Whether the given kinetic energy is a sum of a qdot^2/2 with constants a.
+  bool add_armatures() {
+    tree_.armature.assign(of_.size(), dag_.zero());
+    Ref rest = m_.kinetic_given;
+    for (std::uint32_t i = 0; i < m_.q.size() && !dag_.is_zero(rest); ++i) {
+      symbolic::Derivation by = symbolic::partial_derivative(dag_, {SymbolKind::coordinate, i, 1});
+      const Ref a = by(by(m_.kinetic_given));
+      if (dag_.is_zero(a)) continue;
+      if (!is_constant(a)) return false;
+      const Ref twice = dag_.mul(a, dag_.mul(m_.qdot[i], m_.qdot[i]));
+      rest = dag_.sub(rest, dag_.div(twice, dag_.integer(2)));
+      const auto free = std::find(of_.begin(), of_.end(), i);
+      if (free != of_.end()) tree_.armature[static_cast<std::size_t>(free - of_.begin())] = a;
+    }
+    return !mechanics::is_somewhere_nonzero(dag_, rest);
+  }
+
   bool is_constant(Ref r) const {
     const std::vector<Symbol> symbols = dag_.symbols({r});
     return std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::parameter; });
@@ -269,14 +287,15 @@ class Builder {
 }  // namespace
 
 std::optional<BodyTree> body_tree(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
-  if (m.body_rotations.empty() || of.empty() || !m.dag->is_zero(m.kinetic_given)) return std::nullopt;
+  if (m.body_rotations.empty() || of.empty()) return std::nullopt;
   return Builder(m, of, imposed).build();
 }
 
 void use_angular_velocities(Dag& dag, BodyTree& tree) {
   for (BodyLink& link : tree.links) {
-    const bool turns = std::all_of(link.freedoms.begin(), link.freedoms.end(),
-                                   [&](const Freedom& f) { return is_zero(dag, f.linear); });
+    const bool turns = std::all_of(link.freedoms.begin(), link.freedoms.end(), [&](const Freedom& f) {
+      return is_zero(dag, f.linear) && dag.is_zero(tree.armature[f.index]);  // an armature belongs to its own rate
+    });
     link.absolute = turns && (link.freedoms.size() == 3 || (link.freedoms.size() == 4 && !link.parameters.empty()));
     if (!link.absolute) continue;
     link.angles = link.freedoms;

@@ -41,10 +41,12 @@ struct BodyTree {
   std::vector<BodyLink> links;  // parents first
   Vec3 gravity;                 // acceleration, of uniform gravity, along E1, E2, E3
   std::vector<Ref> Q;           // all other generalised forces
+  std::vector<Ref> armature;    // per coordinate: a constant a of the kinetic energy a qdot^2/2 beside the bodies
 };
 
 /// The tree for the coordinates `of`. With `imposed`, the eliminated coordinates are functions of time. Empty if the
-/// model has no bodies, if a coordinate moves no joint or several, if a mass varies, or if kinetic energy is given.
+/// model has no bodies, if a coordinate moves no joint or several, if a mass varies, or if kinetic energy is given that
+/// is no sum of constants times squares of rates.
 std::optional<BodyTree> body_tree(Mechanics& mechanics, const std::vector<std::uint32_t>& of, bool imposed);
 
 /// Replaces the rates of three angles, or of four Euler parameters, of a link by its angular velocity. With fewer
