@@ -292,6 +292,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["active_constraints"] = program.active_constraints;
   for (const bool holonomic : program.holonomic)
     info["constraint_kinds"].push_back(holonomic ? "holonomic" : "velocity");
+  if (program.result_size("contact_rows") > 0) info["contact_row_values"] = program.result_size("contact_rows");
   if (program.result_size("resets") > 0) info["reset_values"] = program.result_size("resets");
   info["mode_size"] = program.mode_layout().size();
   info["prepared"] = program.prepared_count();

@@ -36,8 +36,11 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 
 program::Request request_of(const EmissionRequest& options, DerivedModel& derived, const run::Scene& scene) {
   program::Request request;
-  if (has(options.with, "run"))
+  std::vector<std::string> of_run;  // after those that are requested
+  if (has(options.with, "run")) {
     request = functions_for_run(derived, scene, run::choose_solver(scene.solver, scene).first);
+    of_run.swap(request.outputs);
+  }
   for (const std::string& name : options.with) {
     if (name == "energy") {
       request.outputs.push_back("energy");
@@ -57,6 +60,7 @@ program::Request request_of(const EmissionRequest& options, DerivedModel& derive
   for (const std::string& name : run::expand_outputs(derived.mechanics, derived.candidates.front(), wanted)) {
     request.outputs.push_back(name);
   }
+  request.outputs.insert(request.outputs.end(), of_run.begin(), of_run.end());
   std::vector<std::string> unique;
   for (const std::string& name : request.outputs) {
     if (std::find(unique.begin(), unique.end(), name) == unique.end()) unique.push_back(name);

@@ -52,8 +52,9 @@ std::shared_ptr<const emit::RunDescription> run_text(const DerivedModel& derived
   if (described->problem.charts.empty()) described->problem.jumps = run::jump_functions(derived.candidates.front());
   auto text = std::make_shared<emit::RunDescription>();
   if (!(scene.every > 0)) text->rows = default_rows;
-  for (std::size_t i = 0; i < run::state_columns(derived.model).size(); ++i) text->columns.push_back(i);
-  for (const std::string& name : scene.outputs) {
+  std::vector<std::string> columns = run::state_columns(derived.model);
+  columns.insert(columns.end(), scene.outputs.begin(), scene.outputs.end());
+  for (const std::string& name : columns) {
     const auto place = std::find(program.outputs.begin(), program.outputs.end(), name);
     text->columns.push_back(static_cast<std::size_t>(place - program.outputs.begin()));
   }

@@ -76,6 +76,18 @@ TEST_CASE("emit --with run: an eligible solver adds the functions that it needs"
   }
 }
 
+TEST_CASE("emit --with run: requested outputs come first, in their order, and the columns of the run remain") {
+  const Folder folder;
+  folder.write("model.toml", particle("outputs = [\"P.velocity1\"]\n"));
+  expect(0, folder,
+         {"emit", "model.toml", "-o", ".", "--target", "c", "--with", "run", "--output", "potential,kinetic,energy"});
+  std::string code = folder.read("model.c");
+  for (std::size_t at = 0; (at = code.find("\"\n", at)) != std::string::npos;)  // joined lines of one literal
+    code.erase(at, code.find('"', at + 1) + 1 - at);
+  CHECK(contains(code, R"(\"outputs\":[\"potential\",\"kinetic\",\"energy\",\"x\",\"x_dot\")"));
+  CHECK(contains(folder.read("model_run.hpp"), "return {3, 4, 6};"));
+}
+
 TEST_CASE("emit --with run: targets that do not write C report that there is no header of the run") {
   const Folder folder;
   folder.write("model.toml", particle(""));

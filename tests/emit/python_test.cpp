@@ -3,6 +3,7 @@
 // examples/python_run and examples/scipy compare the results of the module with `eomgen run`.
 #include <doctest/doctest.h>
 
+#include "abi/functions.hpp"
 #include "emit/examples.hpp"
 
 using namespace eomgen;
@@ -60,11 +61,29 @@ TEST_CASE("target python: momenta and series are there if they were emitted, and
                        "  else: raise AssertionError(f)\n");
 }
 
+TEST_CASE("target python: the module wraps every optional function of the ABI") {
+  const Example e = examples()[0];
+  const std::string module = emit::emit(e.program, e.context, "python").back().text;
+  for (const std::string& name : abi::optional_functions())
+    CHECK_MESSAGE(module.find(fmt::format("_{0} = _function(\"{0}\"", name)) != std::string::npos, name);
+}
+
 TEST_CASE("target python: simulate ends with the outcomes of eomgen run") {
   compiles_and_imports(examples()[0],
                        "assert m._ERRORS == {1: 'singular_mass_matrix', 2: 'chart_left', 3: 'friction_no_solution', "
                        "4: 'friction_many_solutions', 5: 'not_finite', 10: 'step_too_small', 11: 'max_steps', "
                        "12: 'diverged'}; assert m.simulate(m.defaults['t'] + 100, max_steps=3).outcome == 'max_steps'");
+}
+
+TEST_CASE("target python: inputs that are functions are refused, with what takes them") {
+  compiles_and_imports(example("cart", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"}),
+                       "\n"
+                       "for u in (lambda t: [t], {'F': lambda t: t}, [lambda t: t]):\n"
+                       "  for call in (lambda: m.simulate(1, u=u), lambda: m.rhs(0, m.defaults['x'], u=u)):\n"
+                       "    try: call()\n"
+                       "    except TypeError as e: assert 'solve_ivp' in str(e), e\n"
+                       "    else: raise AssertionError(u)\n"
+                       "assert m.simulate(m.defaults['t'] + 1e-3, u={'F': 2}).outcome == 'done'\n");
 }
 
 TEST_CASE("target python: hostile names and texts cause no harm") {
