@@ -57,8 +57,7 @@ std::vector<std::string> chosen_names(const SteadyProblem& p, const std::vector<
   for (const std::string& name : names) {
     const bool is_state = std::find(states.begin(), states.end(), name) != states.end();
     const std::vector<std::string> expanded =
-        is_state ? std::vector<std::string>{name}
-                 : run::expand_outputs(p.derived->mechanics, p.system(), {{name, {}}});
+        is_state ? std::vector<std::string>{name} : run::expand_outputs(p.derived->mechanics, p.system(), {{name, {}}});
     for (const std::string& one : expanded) {
       if (std::find(result.begin(), result.end(), one) == result.end()) result.push_back(one);
     }

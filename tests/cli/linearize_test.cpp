@@ -89,7 +89,9 @@ TEST_CASE("linearize: C and D of outputs, with what they depend on through accel
   CHECK(contains(expect(2, folder, {"linearize", "rod.toml", "--output", "nothing"}).err, "nothing"));
 }
 
-TEST_CASE("linearize: an output without a slope at the state is left out of those of the scene, and refused where it is requested") {
+TEST_CASE(
+    "linearize: an output without a slope at the state is left out of those of the scene, and refused where it is "
+    "requested") {
   const Folder folder;
   folder.write(
       "kink.toml",

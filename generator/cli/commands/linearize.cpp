@@ -155,7 +155,8 @@ std::string text(const Answer& a) {
   }
   if (!a.outputs.left_out.empty()) out += "\n";
   for (const analysis::OutputSlopes::LeftOut& output : a.outputs.left_out)
-    out += fmt::format("left out          the output '{}' has no slope at this state: {}\n", output.name, output.reason);
+    out +=
+        fmt::format("left out          the output '{}' has no slope at this state: {}\n", output.name, output.reason);
   out += "\neigenvalues\n";
   for (std::size_t i = 0; i < a.l.spectrum.values.size(); ++i)
     out += fmt::format("  {}\n", eigenvalue_text(a.l.spectrum, i));
