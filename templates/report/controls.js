@@ -138,7 +138,10 @@ function slider(name, unitText, note, value, low, high, change) {
   range.addEventListener("input", () => { number.value = short(Number(range.value)); change(Number(range.value)); });
   number.addEventListener("change", () => { if (number.value !== "" && Number.isFinite(Number(number.value))) { range.value = number.value; change(Number(number.value)); } });
   row.append(label, number, range);
-  return {row, set: (v) => { range.value = v; number.value = short(v); }};
+  return {row, set: (v) => {
+    Object.assign(range, {min: Math.min(range.min, v), max: Math.max(range.max, v), value: v});
+    number.value = short(v);
+  }};
 }
 
 function rangeOf(value, positive) {

@@ -18,15 +18,19 @@ view.append(canvas, bar, tools, message);
 stage.append(view);
 
 const scene = new Scene(canvas, data.parts, data.down), plots = new Plots(document.getElementById("plots"), data.panels, (t) => { player.play(false); player.jump(t); });
+const results = new Results(document.getElementById("results"), data.panels, data.kept);
+let showStart = () => {};  // puts the sliders of the start on that of the current model
 const player = new Player(bar, (t) => { scene.show(t); plots.show(t); });
 const redraw = () => scene.show(player.at);
 if (data.parts.places.length === 0) canvas.hidden = true;
 
-function take(next, find) {
+// Takes a motion for the drawing, the plots and the tables; `about` of the tables: see Results.
+function take(next, find, about) {
   motion = next;
   scene.take(motion, live ? live.sizes : data.sizes, find, {code: surfaceCode, p: live ? live.p : Float64Array.from(data.p)});
   player.take(motion, data.speed);
   plots.take(motion);
+  results.show(motion === recorded ? null : motion, about);
   player.jump(Math.min(player.at, player.t1));
 }
 
@@ -36,9 +40,10 @@ function run(play) {
   player.play(false);
   live.prepare();
   if (live.refusal !== "") {
-    message.textContent = "no run with these values: " + live.refusal;
+    message.textContent = "no run with these values: " + live.refusal + ". The run before is shown.";
     return;
   }
+  showStart();
   const integration = live.integration(500);
   const work = () => {
     if (mine !== pending) return;
@@ -47,7 +52,7 @@ function run(play) {
     message.textContent = integration.outcome === "done" ? steps : steps + "; " + integration.outcome;
     if (integration.times.length > 1) {
       player.at = live.t0;
-      take(new Motion(integration.times, integration.states, null, live, integration.found), false);
+      take(new Motion(integration.times, integration.states, null, live, integration.found), false, [["outcome", integration.outcome], ["steps", String(integration.steps)]]);
       player.play(play);
     }
   };
@@ -70,7 +75,7 @@ function grab(at) {
       pulled = true;
       const here = drag.place(x), p = scene.camera.project(here);
       drag.move(x, plus(here, scene.camera.lift(now[0] - p[0], now[1] - p[1])));
-      take(new Motion([live.t0, live.t1], [x, x].map((state) => Float64Array.from(state)), null, live, []), false);
+      take(new Motion([live.t0, live.t1], [x, x].map((state) => Float64Array.from(state)), null, live, []), false, null);
       player.jump(live.t0);
     },
     release: () => {
@@ -108,7 +113,7 @@ function legend() {
 }
 
 function panel() {
-  const place = document.createElement("div"), sliders = [];
+  const place = document.createElement("div"), sliders = [], places = [];
   place.className = "panel";
   const group = (title, open) => {
     const field = document.createElement("fieldset"), details = document.createElement("details"), summary = document.createElement("summary");
@@ -131,8 +136,10 @@ function panel() {
     const value = live.x[k], reach = state.unit === "rad" ? Math.PI : Math.max(1, 2 * Math.abs(value));
     const made = slider(state.name, state.unit, "", value, Math.min(-reach, value), Math.max(reach, value), (v) => { live.placed = null; live.starts_chosen.set(k, v); run(true); });
     sliders.push(() => made.set(value));
+    places.push(made);
     starts.append(made.row);
   });
+  showStart = () => places.forEach((made, k) => made.set(live.x[k]));
   place.append(button("As in the model", "All values as the model has them", () => {
     ++pending;
     live.reset();

@@ -115,6 +115,21 @@ function forces(page, report) {
           moments: report.data.parts.arrows.filter((arrow) => arrow.turns).length, legend_of_moments: page.querySelector(".legend").textContent.includes("moments")};
 }
 
+// Largest differences of the tables below the plots from the end of the motion that is drawn, and of the numbers of the start from its begin.
+function tables(page, report) {
+  const motion = report.motion(), first = motion.x[0], last = motion.x[motion.x.length - 1], found = {table_off: 0, start_off: 0, in_table: 0};
+  const cells = new Map([...page.querySelectorAll("#results tr")].map((row) => [row.cells[0].textContent, row.cells[1].textContent]));
+  const numbers = new Map([...page.querySelectorAll(".slider input[type=number]")].map((input) => [input.dataset.name, Number(input.value)]));
+  const off = (a, b) => Math.abs(a - b) / Math.max(1, Math.abs(b));
+  report.live.states.forEach((state, k) => {
+    if (!cells.has(state.name)) return;
+    ++found.in_table;
+    found.table_off = Math.max(found.table_off, off(Number(cells.get(state.name)), last[k]));
+    found.start_off = Math.max(found.start_off, off(numbers.get(state.name), first[k]));
+  });
+  return found;
+}
+
 async function wait(condition) {
   for (let k = 0; k < 30000 && !condition(); ++k) await later(20);
   return condition();
@@ -135,8 +150,9 @@ async function drag(frame, report, name) {
   await wait(() => report.motion().t.length === 501);
   report.player.play(false);
   const {psi} = report.live.constraintsAt(report.live.t0, report.motion().x[0]);
+  const shown = tables(page, report);
   return {moved: Math.hypot(reached[0] - begin[0], reached[1] - begin[1]), nearer: Math.hypot(reached[0] - end[0], reached[1] - end[1]) < Math.hypot(begin[0] - end[0], begin[1] - end[1]) - 3,
-          psi: Math.max(0, ...Array.from(psi, Math.abs)), ran: report.motion().t.length === 501};
+          psi: Math.max(0, ...Array.from(psi, Math.abs)), ran: report.motion().t.length === 501, ...shown};
 }
 
 async function look(entry) {
@@ -174,6 +190,7 @@ async function look(entry) {
         at.end = {};
         report.live.states.forEach((state, k) => { at.end[state.name] = x[k]; });
         at.rows = old;
+        Object.assign(at, tables(page, report));
       }
       report.player.jump(report.player.t0 + 0.37 * (report.player.t1 - report.player.t0));
       at.forces = forces(page, report);

@@ -167,6 +167,13 @@ Json positions(const Folder& folder, const std::string& model, const Json& parts
   return {{"columns", table.columns}, {"rows", table.rows}};
 }
 
+/// The tables and the start show the run that is drawn: numbers of 10 and 6 digits.
+void check_tables(const Json& shown) {
+  CHECK(shown["in_table"] > 0);
+  CHECK(shown["table_off"] < 1e-9);
+  CHECK(shown["start_off"] < 1e-5);
+}
+
 void check(const Json& found, const PageCase& c, const Json& wanted) {
   CAPTURE(c.model);
   CAPTURE(found.dump());
@@ -214,9 +221,11 @@ void check(const Json& found, const PageCase& c, const Json& wanted) {
     CHECK(wide["drag"]["nearer"] == true);
     CHECK(wide["drag"]["psi"] < 1e-9);
     CHECK(wide["drag"]["ran"] == true);
+    check_tables(wide["drag"]);
   }
   if (c.slider.empty()) return;
   CHECK(wide["ran"] == true);
+  check_tables(wide);
   for (const auto& [name, value] : wide["end"].items()) {
     const auto& shown = name;
     CAPTURE(shown);

@@ -188,6 +188,7 @@ void add_run(Html& html, const pipeline::Simulation& simulation, const Json& run
                                recorded.size()),
                    "quiet");
   }
+  html.markup("<section id=\"results\">");  // a page whose model moves puts the tables of its own runs there
   html.table({"", ""},
              {{"outcome", text(run["outcome"]) + (text(run["detail"]).empty() ? "" : ": " + text(run["detail"]))},
               {"solver", fmt::format("{} ({})", text(run["solver"]), text(run["solver_reason"]))},
@@ -219,6 +220,7 @@ void add_run(Html& html, const pipeline::Simulation& simulation, const Json& run
     html.heading(3, "Events");
     html.table({"t", "kind", "of"}, rows, {0});
   }
+  html.markup("</section>");
 }
 
 int execute(const Options& options, const CommonOptions& common) {
@@ -270,10 +272,13 @@ int execute(const Options& options, const CommonOptions& common) {
   Html html, plots, rest;
   add_model(rest, model, to_json(model, analysis::examine(simulation.derived->shared)));
   add_certificate(rest, simulation.certificate);
+  Json kept = Json::array();  // names of conserved quantities
+  for (const auto& [name, values] : run["invariants"].items()) kept.push_back(name);
   std::string motion;
   std::size_t taken = 0;
   for (bool coarser = *request.rows < most_rows;; coarser = true) {
-    const Json moving = recorded.json(simulation, *drawing, *forces, live, outputs, curves);
+    Json moving = recorded.json(simulation, *drawing, *forces, live, outputs, curves);
+    if (!moving.is_null()) moving["kept"] = kept;
     motion = moving.is_null() ? "" : moving.dump();
     plots = Html();
     add_run(plots, simulation, run, recorded, curves, coarser);

@@ -20,6 +20,7 @@
 #include "cli/report_skeletons/page_html.hpp"
 #include "cli/report_skeletons/pencil_js.hpp"
 #include "cli/report_skeletons/plots_js.hpp"
+#include "cli/report_skeletons/results_js.hpp"
 #include "cli/report_skeletons/scene_js.hpp"
 #include "cli/report_skeletons/shapes_js.hpp"
 #include "cli/report_skeletons/surfaces_js.hpp"
@@ -88,7 +89,7 @@ std::string render_page(const PageParts& parts) {
   for (const char* script :
        {report::linear_js, report::integrator_js, report::motion_js, report::shapes_js, report::camera_js,
         report::pencil_js, report::links_js, report::surfaces_js, report::scene_js, report::plots_js, report::drag_js,
-        report::controls_js, report::fit_js, report::main_js}) {
+        report::controls_js, report::fit_js, report::results_js, report::main_js}) {
     scripts += script;
   }
   all.set("scripts", scripts);
