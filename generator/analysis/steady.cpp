@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "derive/imposition.hpp"
+#include "model/open_contacts.hpp"
 #include "numeric/numbers.hpp"
 #include "pipeline/simulate.hpp"
 #include "symbolic/calculus.hpp"
+#include "symbolic/evaluate.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -23,23 +26,23 @@ using pipeline::SimulationRequest;
 
 constexpr int neighbour_count = 2;
 
-void require_one_mode(const std::string& command, const DerivedModel& derived) {
-  const std::vector<mechanics::Contact>& contacts = derived.mechanics.contacts;
-  if (contacts.empty()) return;
-  const model::Model& model = derived.model;
+[[noreturn]] void refuse_contact(const std::string& command, const model::Model& model, const std::string& name,
+                                 Contacts allowed) {
   SourceLocation where{model.file, 0, 0, 1, ""};
   for (const model::Constraint& c : model.constraints) {
-    if (c.name == contacts.front().name) where = model.where(c.span);
+    if (c.name == name) where = model.where(c.span);
   }
   for (const model::Force& f : model.forces) {
-    if (f.name == contacts.front().name) where = model.where(f.span);
+    if (f.name == name) where = model.where(f.span);
   }
   throw Error(
       command, where,
       fmt::format("'{}' sticks, slides or opens, and each mode has equations of its own, so there is no linearisation "
                   "across modes",
-                  contacts.front().name),
-      "linearise a copy of the model without the friction (or with the contact held) where it stays in one mode");
+                  name),
+      fmt::format("linearise a copy of the model without the friction (or with the contact held) where it stays in one "
+                  "mode{}",
+                  allowed == Contacts::open ? ", or a state at which all contacts are open" : ""));
 }
 
 /// Rejects a motion that the constraints determine.
@@ -158,19 +161,58 @@ Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, c
   return setting;
 }
 
+constexpr double smallest_gap = 1e-8;  // relative to the coordinates, as for a start
+
+/// Whether the gap of a contact is positive at a state.
+bool is_open(SteadyProblem& p, const mechanics::Contact& contact, const Reached& state) {
+  mechanics::Mechanics& m = p.derived->mechanics;
+  if (!contact.unilateral) return false;
+  const symbolic::Ref gap = derive::time_function_substitution(m)(m.constraints[contact.constraints[0]].psi);
+  std::vector<symbolic::Ref> roots{gap};
+  for (std::uint32_t i = 0; i < m.q.size(); ++i)
+    roots.push_back(symbolic::partial_derivative(*m.dag, {symbolic::SymbolKind::coordinate, i, 0})(gap));
+  const std::vector<double> values = symbolic::evaluate(*m.dag, roots, [&](const symbolic::Symbol& symbol) -> double {
+    switch (symbol.kind) {
+      case symbolic::SymbolKind::parameter: return p.scene.parameters[symbol.index];
+      case symbolic::SymbolKind::time: return p.t;
+      case symbolic::SymbolKind::input: return p.scene.inputs[symbol.index](p.t, p.t);
+      case symbolic::SymbolKind::coordinate: return (symbol.order == 0 ? state.q : state.qdot)[symbol.index];
+      default: return std::numeric_limits<double>::quiet_NaN();
+    }
+  });
+  double size = 0;
+  for (std::size_t i = 0; i < m.q.size(); ++i) size += std::abs(values[1 + i]) * std::max(1.0, std::abs(state.q[i]));
+  return values[0] > smallest_gap * size;
+}
+
+/// The scene without the outputs that the equations no longer have.
+model::Scene with_known_outputs(const DerivedModel& derived, const std::string& name,
+                                std::vector<std::string>& without_value) {
+  model::Scene scene = derived.model.scene(name);
+  const std::vector<system::Output>& known = derived.candidates.front().outputs;
+  std::erase_if(scene.outputs, [&](const model::OutputReference& wanted) {
+    const bool found =
+        wanted.name == "all" || std::any_of(known.begin(), known.end(), [&](const system::Output& output) {
+          return output.name == wanted.name || output.vector == wanted.name;
+        });
+    if (!found) without_value.push_back(wanted.name);
+    return !found;
+  });
+  return scene;
+}
+
 }  // namespace
 
 SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const model::Model> model,
                              const std::string& scene, const run::Overrides& overrides, std::optional<double> at,
-                             std::uint64_t seed) {
+                             std::uint64_t seed, Contacts contacts) {
   SteadyProblem p;
   p.derived = pipeline::derive_model(model, ApproachChoice::two);
-  DerivedModel& d = *p.derived;
-  require_one_mode(command, d);
-  require_freedom(command, d);
-  put_cheapest_first(d);
-  p.certificate = certified(d, seed);
-  p.scene = run::resolve_scene(d.mechanics, p.system(), d.model.scene(scene), overrides);
+  for (const mechanics::Contact& contact : p.derived->mechanics.contacts) {
+    if (contacts == Contacts::none || !contact.unilateral)
+      refuse_contact(command, p.derived->model, contact.name, contacts);
+  }
+  p.scene = run::resolve_scene(p.derived->mechanics, p.system(), p.derived->model.scene(scene), overrides);
   p.t = at.value_or(p.scene.t0);
   Reached state{p.scene.q, p.scene.qdot, {}};
   if (p.t < p.scene.t0) {
@@ -185,6 +227,19 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
     request.seed = seed;
     state = run_until(command, std::move(request), p.t, p.scene);
   }
+  if (!p.derived->mechanics.contacts.empty()) {
+    for (const mechanics::Contact& contact : p.derived->mechanics.contacts) {
+      if (!is_open(p, contact, state)) refuse_contact(command, p.derived->model, contact.name, contacts);
+      p.open_contacts.push_back(contact.name);
+    }
+    p.derived = pipeline::derive_model(model::without_unilateral_constraints(*model), ApproachChoice::two);
+    p.scene = run::resolve_scene(p.derived->mechanics, p.system(),
+                                 with_known_outputs(*p.derived, scene, p.without_value), overrides);
+  }
+  DerivedModel& d = *p.derived;
+  require_freedom(command, d);
+  put_cheapest_first(d);
+  p.certificate = certified(d, seed);
   p.flow = std::make_unique<linear::Flow>(d.mechanics, p.system());
   for (const auto* values : {&state.q, &state.qdot}) {
     for (const std::uint32_t i : p.system().free) p.z.push_back(linear::number<Precise>(numeric::exact((*values)[i])));

@@ -22,15 +22,20 @@ struct SteadyProblem {
   std::vector<linear::Setting<linear::Precise>> neighbours;  // `setting` with perturbed parameters
   double t = 0;
   std::string certificate;
+  std::vector<std::string> open_contacts;  // unilateral constraints that are open at the state, and left out
+  std::vector<std::string> without_value;  // outputs of the scene that belong to them
 
   const system::EquationSystem& system() const { return derived->candidates.front(); }
 };
+
+/// What unilateral constraints may be for equations without a mode: absent, or open at the state.
+enum class Contacts { none, open };
 
 /// Throws Error{stage `command`} if contacts make the equations depend on a mode, or if a derivation fails the check
 /// against the independent oracle. `at`: time in s at which an integrated motion gives the state.
 SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const model::Model> model,
                              const std::string& scene, const run::Overrides& overrides, std::optional<double> at,
-                             std::uint64_t seed);
+                             std::uint64_t seed, Contacts contacts);
 
 /// A term that is not differentiable at a state: a force, an energy or a constraint of the model. `what`: start of a
 /// sentence, "'F' has" or, if no single term is found, "the equations of motion have".

@@ -283,7 +283,11 @@ void classify_stability(SteadyMotions& result, const SteadyRequest& request, con
 
 SteadyMotions steady_motions(const SteadyRequest& request) {
   SteadyMotions result{
-      steady_problem(command, request.model, request.scene, request.overrides, {}, request.seed), {}, {}, {}, {}};
+      steady_problem(command, request.model, request.scene, request.overrides, {}, request.seed, Contacts::none),
+      {},
+      {},
+      {},
+      {}};
   SteadyProblem& p = result.problem;
   const model::Model& model = p.derived->model;
   try {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "eomgen/steady.hpp"
 
+#include "analysis/output_slopes.hpp"
 #include "analysis/steady_search.hpp"
 #include "eomgen/call.hpp"
 #include "eomgen/model.hpp"
@@ -30,14 +31,19 @@ Linearisation Model::linearise(const LineariseOptions& options, const CallContro
   return with_lock(control, [&](CallListener&) {
     run::Overrides overrides;
     overrides.values = exact_rationals(options.parameters);
-    const analysis::SteadyProblem problem =
-        analysis::steady_problem("linearize", read_, options.scene, overrides, options.time, options.seed);
+    const analysis::SteadyProblem problem = analysis::steady_problem(
+        "linearize", read_, options.scene, overrides, options.time, options.seed, analysis::Contacts::open);
     Linearisation result;
     const linear::Linearisation l = analysis::linearise_at_state(problem, options.seed);
     result.kind = linear::name(l.kind);
     for (const std::size_t i : l.symmetry.chart.independent) result.states.push_back(problem.flow->names()[i]);
     result.A = entries(l.A);
     result.B = entries(l.B);
+    const analysis::OutputSlopes slopes = analysis::linearise_outputs(problem, l, options.outputs);
+    result.outputs = slopes.names;
+    for (const linear::Precise& value : slopes.values) result.output_values.push_back(analysis::display_value(value));
+    result.C = entries(slopes.C);
+    result.D = entries(slopes.D);
     result.eigenvalues = eigenvalues(l.spectrum);
     result.structural_zeros = l.structural_zeros;
     result.inputs = inputs();

@@ -15,14 +15,18 @@ struct LineariseOptions {
   std::map<std::string, double> parameters = {};
   std::optional<double> time = {};  // s, a time of the scene's motion; default: its start
   std::uint64_t seed = 1;
+  std::vector<std::string> outputs = {};  // of C and D; empty: those of the scene that have a slope
 };
 
-/// Linearised equations y' = A y + B u in independent coordinates and speeds, on the constraint manifold.
+/// Linearised equations y' = A y + B u and outputs o = C y + D u in independent coordinates and speeds, on the
+/// constraint manifold.
 struct Linearisation {
   std::string kind;                               // "equilibrium", "steady motion", "motion"
   std::vector<std::string> states;                // n, names
   std::vector<std::string> inputs;                // k, names
-  std::vector<double> A, B;                       // n x n and n x k, row-major
+  std::vector<std::string> outputs;               // m, names
+  std::vector<double> A, B, C, D;                 // n x n, n x k, m x n, m x k; row-major
+  std::vector<double> output_values;              // m, at the state
   std::vector<std::complex<double>> eigenvalues;  // of A, in 1/s, by decreasing real part
   std::size_t structural_zeros = 0;               // eigenvalues 0 for all parameters
   std::string certificate;

@@ -77,7 +77,13 @@ class Model:
         callbacks: Callbacks,
     ) -> Dict[str, Any]: ...
     def linearize(
-        self, scene: str, parameters: Dict[str, float], time: Optional[float], seed: int, callbacks: Callbacks
+        self,
+        scene: str,
+        parameters: Dict[str, float],
+        time: Optional[float],
+        seed: int,
+        outputs: List[str],
+        callbacks: Callbacks,
     ) -> Dict[str, Any]: ...
     def equilibria(
         self,

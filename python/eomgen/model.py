@@ -388,12 +388,17 @@ class Model:
         parameters: Values = None,
         *,
         time: Optional[float] = None,
+        outputs: "Sequence[str] | str | None" = None,
         seed: int = 1,
         on_stage: Stage = None,
     ) -> Linearization:
-        """Linearises the equations about a state of a scene: its start, or the state at ``time`` in s."""
+        """Linearises the equations about a state of a scene: its start, or the state at ``time`` in s.
+
+        ``outputs``: names for C and D; without them those of the scene that have a slope there.
+        """
         callbacks = _callbacks(on_stage, None)
-        return Linearization(**self._core.linearize(scene, dict(parameters or {}), time, seed, callbacks))
+        values = dict(parameters or {})
+        return Linearization(**self._core.linearize(scene, values, time, seed, _names(outputs), callbacks))
 
     def equilibria(
         self,

@@ -388,9 +388,10 @@ class Sweep(Record):
 
 
 class Linearization(Record):
-    """y' = A y + B u about a state, in independent coordinates and speeds.
+    """y' = A y + B u and o = C y + D u about a state, in independent coordinates and speeds.
 
-    ``A``: n x n, ``B``: n x k, rows in the order of ``states``, columns of B in that of ``inputs``.
+    ``A``: n x n, ``B``: n x k, ``C``: m x n, ``D``: m x k, in the order of ``states``, ``inputs`` and ``outputs``.
+    ``output_values``: the outputs at the state.
     ``eigenvalues``: n complex numbers in 1/s. ``kind``: "equilibrium", "steady motion" or "motion".
     """
 
@@ -399,6 +400,10 @@ class Linearization(Record):
     inputs: List[str]
     A: "NDArray[Any]"
     B: "NDArray[Any]"
+    outputs: List[str]
+    output_values: "NDArray[Any]"
+    C: "NDArray[Any]"
+    D: "NDArray[Any]"
     eigenvalues: "NDArray[Any]"
     structural_zeros: int
     certificate: str

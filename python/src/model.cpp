@@ -250,8 +250,8 @@ py::dict inverse(const Model& model, const std::string& scene, const NumbersByNa
 }
 
 py::dict linearize(const Model& model, const std::string& scene, const NumbersByName& parameters, Real time,
-                   std::uint64_t seed, const Callbacks& callbacks) {
-  const LineariseOptions options{scene, parameters, time, seed};
+                   std::uint64_t seed, const Names& outputs, const Callbacks& callbacks) {
+  const LineariseOptions options{scene, parameters, time, seed, outputs};
   const Linearisation l = call_library(callbacks, [&](auto& c) { return model.linearise(options, c.control()); });
   py::dict result;
   result["kind"] = l.kind;
@@ -259,6 +259,10 @@ py::dict linearize(const Model& model, const std::string& scene, const NumbersBy
   result["inputs"] = l.inputs;
   result["A"] = matrix_of(l.A, l.states.size(), l.states.size());
   result["B"] = matrix_of(l.B, l.states.size(), l.inputs.size());
+  result["outputs"] = l.outputs;
+  result["output_values"] = array_of(l.output_values);
+  result["C"] = matrix_of(l.C, l.outputs.size(), l.states.size());
+  result["D"] = matrix_of(l.D, l.outputs.size(), l.inputs.size());
   result["eigenvalues"] = array_of(l.eigenvalues);
   result["structural_zeros"] = l.structural_zeros;
   result["certificate"] = l.certificate;

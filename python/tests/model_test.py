@@ -164,6 +164,11 @@ class ModelTest(unittest.TestCase):
         self.assertEqual(at.B.shape, (4, 1))
         self.assertAlmostEqual(at.B[2, 0], 1 / 2)  # 1/M
         self.assertAlmostEqual(at.B[3, 0], 1 / (2 * 0.8))  # 1/(M l)
+        measured = cart.linearize(parameters=upright, outputs=["theta", "theta_ddot"])
+        self.assertEqual(measured.outputs, ["theta", "theta_ddot"])
+        np.testing.assert_allclose(measured.C, [[0, 1, 0, 0], at.A[3]])
+        np.testing.assert_allclose(measured.D, [[0], at.B[3]])
+        self.assertAlmostEqual(measured.output_values[0], math.pi)
         np.testing.assert_allclose(np.sort(np.linalg.eigvals(at.A).real), np.sort(at.eigenvalues.real), atol=1e-9)
         found = self.model.equilibria()
         self.assertEqual({m.stability for m in found}, {"stable", "unstable"})

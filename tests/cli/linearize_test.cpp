@@ -138,12 +138,54 @@ TEST_CASE("linearize: nondifferentiable terms, contacts, unknown names and inval
   const std::string edge = expect(2, folder, {"linearize", "edge.toml"}).err;
   CHECK(contains(edge, "edge.toml:6:"));
   CHECK(contains(edge, "the edge of abs"));
-  CHECK(contains(expect(2, folder, {"linearize", "bouncing_ball"}).err, "linearise a copy"));
+  CHECK(contains(expect(2, folder, {"linearize", "P4_moving_cone"}).err, "linearise a copy"));
   CHECK(
       contains(expect(2, folder, {"linearize", "cart_pendulum", "--scene", "defualt"}).err, "did you mean 'default'?"));
   CHECK(contains(expect(2, folder, {"linearize", "cart_pendulum", "--set", "mm=1"}).err, "there is no parameter 'mm'"));
   CHECK(contains(expect(2, folder, {"linearize", "cart_pendulum", "--at", "-1"}).err, "before the scene's start"));
   CHECK(contains(expect(2, folder, {"linearize", "cart_pendulum", "--at", "soon"}).err, "soon"));
+}
+
+TEST_CASE("linearize: end stops that are open have no part in the equations, and closed ones are refused") {
+  const Folder folder;
+  const auto stopped = [&](const std::string& start, const std::string& stops) {
+    folder.write("stopped.toml",
+                 "format = 1\n[parameters]\nw = 1.5\n[functions]\nwall = \"1 + t/10\"\n[inputs]\nF = {}\n"
+                 "[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"x_dot^2/2 + y_dot^2/2\"\npotential = "
+                 "\"w^2*x^2/2 + x*y/4 + y^2\"\n[[force]]\ngeneralized = { x = \"F\" }\n" +
+                     stops + "[scene.default]\nt = [0, 1]\ninitial = { " + start + " }\noutputs = [\"energy\"]\n");
+  };
+  const std::string stops =
+      "[[constraint]]\nname = \"right\"\nholonomic = \"wall - x\"\nholds = \"unilateral\"\nrestitution = "
+      "0.5\n[[constraint]]\nname = "
+      "\"left\"\nholonomic = \"x + 1\"\nholds = \"unilateral\"\n[[constraint]]\nname = \"floor\"\nholonomic = \"y + "
+      "2\"\nholds = \"unilateral\"\n[[constraint]]\n"
+      "name = \"ceiling\"\nholonomic = \"2 - y\"\nholds = \"unilateral\"\n[[event]]\nname = \"pressed\"\nwhen = "
+      "\"reaction.left - 1\"\n";
+  stopped("x = 0.25, y = 0.5, x_dot = 0.5", "");
+  const Json free = document(folder, {"linearize", "stopped.toml"});
+  CHECK(free["open_contacts"].empty());
+  stopped("x = 0.25, y = 0.5, x_dot = 0.5", stops);
+  const Json open = document(folder, {"linearize", "stopped.toml"});
+  for (const char* key : {"states", "A", "B", "C", "D", "eigenvalues"}) CHECK(open[key] == free[key]);
+  CHECK(open["open_contacts"] == Json({"right", "left", "floor", "ceiling"}));
+  CHECK(
+      contains(expect(0, folder, {"linearize", "stopped.toml"}).out, "open contacts     right, left, floor, ceiling"));
+  CHECK(document(folder, {"linearize", "stopped.toml", "--at", "0.25"})["open_contacts"].size() == 4);
+  CHECK(document(folder, {"equilibria", "stopped.toml", "--trim", "F", "--set", "y=-0.03125", "--set",
+                          "x_dot=0"})["trim"]["inputs"]["F"]
+            .get<double>() == doctest::Approx(2.25 * 0.25 - 0.03125 / 4));
+  // A closed one is refused by its name, also where a run reaches it.
+  stopped("x = -1, y = 0.5", stops);
+  CHECK(contains(expect(2, folder, {"linearize", "stopped.toml"}).err, "'left' sticks, slides or opens"));
+  // The force of an open contact is no output.
+  stopped("x = 0.25, y = 0.5, x_dot = 0.5", stops);
+  const std::string text = folder.read("stopped.toml");
+  folder.write("stopped.toml", text.substr(0, text.rfind("[\"energy\"]")) + "[\"energy\", \"reaction.left\"]\n");
+  const Json left_out = document(folder, {"linearize", "stopped.toml"});
+  CHECK(left_out["outputs"].size() == 1);
+  CHECK(left_out["outputs_left_out"] ==
+        Json({{{"name", "reaction.left"}, {"reason", "it belongs to a contact that is open"}}}));
 }
 
 TEST_CASE("linearize: a state at a singularity of its coordinates is refused, with other coordinates to take") {

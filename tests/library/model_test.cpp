@@ -127,6 +127,10 @@ TEST_CASE("library: linearisation, steady motions, inverse dynamics, benchmark, 
   const Linearisation l = model.linearise();
   CHECK(l.kind == "equilibrium");
   CHECK(l.A == std::vector<double>{0, 1, -4, 0});
+  CHECK(l.outputs.empty());
+  const Linearisation with_outputs = model.linearise({.parameters = {{"q_dot", 3}}, .outputs = {"q_dot", "kinetic"}});
+  CHECK(with_outputs.C == std::vector<double>{0, 1, 0, 3});
+  CHECK(with_outputs.output_values == std::vector<double>{3, 4.5});
   REQUIRE(l.eigenvalues.size() == 2);
   CHECK(std::abs(l.eigenvalues[0].imag()) == doctest::Approx(2).epsilon(1e-14));
   const SteadyMotions steady = model.steady_motions({.starts = 40});

@@ -170,8 +170,9 @@ int execute_trim(const Options& options, const CommonOptions& common) {
     throw Error("equilibria", {}, "--trim and --hold exclude one another",
                 "hold quantities with --hold, or a state with --trim");
   const std::shared_ptr<const model::Model> model = load_model(options.model);
-  const analysis::SteadyProblem problem = analysis::steady_problem(
-      "equilibria", model, options.scene, overrides_of("equilibria", options, *model), options.at, common.seed);
+  const analysis::SteadyProblem problem =
+      analysis::steady_problem("equilibria", model, options.scene, overrides_of("equilibria", options, *model),
+                               options.at, common.seed, analysis::Contacts::open);
   const analysis::Trim trim = analysis::trim_inputs(problem, options.trim);
   if (common.json) {
     print_document(to_json(problem, trim));

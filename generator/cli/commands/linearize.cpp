@@ -84,10 +84,13 @@ Json values_of(const analysis::OutputSlopes& outputs) {
   return values;
 }
 
-Json left_out(const analysis::OutputSlopes& outputs) {
+constexpr const char* of_open_contact = "it belongs to a contact that is open";
+
+Json left_out(const analysis::OutputSlopes& outputs, const std::vector<std::string>& open_outputs) {
   Json list = Json::array();
   for (const analysis::OutputSlopes::LeftOut& output : outputs.left_out)
     list.push_back({{"name", output.name}, {"reason", output.reason}});
+  for (const std::string& name : open_outputs) list.push_back({{"name", name}, {"reason", of_open_contact}});
   return list;
 }
 
@@ -109,7 +112,7 @@ Json to_json(const Answer& a) {
           {"outputs", values_of(a.outputs)},
           {"C", rows(a.outputs.C)},
           {"D", rows(a.outputs.D)},
-          {"outputs_left_out", left_out(a.outputs)},
+          {"outputs_left_out", left_out(a.outputs, a.problem.without_value)},
           {"eigenvalues", eigenvalues},
           {"eigenvalues_hold", a.l.spectrum.is_reliable()},
           {"off", a.l.parameter_change},
@@ -117,6 +120,7 @@ Json to_json(const Answer& a) {
           {"other_zeros", a.accidental()},
           {"ignorable", a.ignorable()},
           {"dependent", a.names(a.l.symmetry.chart.dependent)},
+          {"open_contacts", a.problem.open_contacts},
           {"certificate", a.problem.certificate}};
 }
 
@@ -153,23 +157,30 @@ std::string text(const Answer& a) {
     out += matrix_text("C", a.outputs.C, a.outputs.names, a.states());
     if (!a.inputs().empty()) out += matrix_text("D", a.outputs.D, a.outputs.names, a.inputs());
   }
-  if (!a.outputs.left_out.empty()) out += "\n";
+  std::string left_out;
   for (const analysis::OutputSlopes::LeftOut& output : a.outputs.left_out)
-    out +=
+    left_out +=
         fmt::format("left out          the output '{}' has no slope at this state: {}\n", output.name, output.reason);
+  for (const std::string& name : a.problem.without_value)
+    left_out += fmt::format("left out          the output '{}': {}\n", name, of_open_contact);
+  if (!left_out.empty()) out += "\n" + left_out;
   out += "\neigenvalues\n";
   for (std::size_t i = 0; i < a.l.spectrum.values.size(); ++i)
     out += fmt::format("  {}\n", eigenvalue_text(a.l.spectrum, i));
   out += fmt::format("\nzeros             {} structural (there for all parameters), {} at these parameters only\n",
                      a.l.structural_zeros, a.accidental());
+  if (!a.problem.open_contacts.empty())
+    out += fmt::format("open contacts     {}: the equations hold while they are open\n",
+                       fmt::join(a.problem.open_contacts, ", "));
   if (!a.ignorable().empty()) out += fmt::format("nothing feels     {}\n", fmt::join(a.ignorable(), ", "));
   return out + fmt::format("certificate       {}\n", a.problem.certificate);
 }
 
 int execute(const Options& options, const CommonOptions& common) {
   const std::shared_ptr<const model::Model> model = load_model(options.model);
-  const analysis::SteadyProblem problem = analysis::steady_problem(
-      "linearize", model, options.scene, overrides_of("linearize", options, *model), options.at, common.seed);
+  const analysis::SteadyProblem problem =
+      analysis::steady_problem("linearize", model, options.scene, overrides_of("linearize", options, *model),
+                               options.at, common.seed, analysis::Contacts::open);
   const linear::Linearisation l = analysis::linearise_at_state(problem, common.seed);
   const analysis::OutputSlopes outputs = analysis::linearise_outputs(problem, l, options.outputs);
   const Answer answer{problem, l, outputs};
