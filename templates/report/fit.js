@@ -6,7 +6,7 @@ function breakFormula(math, betweenFactors) {
     for (const child of [...node.children]) {
       if (child.localName === "mrow" && child.attributes.length === 0) { flat(child); continue; }
       const sign = child.localName === "mo" && child.getAttribute("form") === "infix" && ["+", "\u2212", "="].includes(child.textContent);
-      if (sign && pieces[pieces.length - 1].length > 3) pieces.push([]);
+      if (sign && pieces[pieces.length - 1].length > (betweenFactors ? 0 : 3)) pieces.push([]);  // a fraction is one piece
       pieces[pieces.length - 1].push(child);
       if (betweenFactors && child.textContent === "\u2062" && pieces[pieces.length - 1].length > 12) pieces.push([]);
     }
