@@ -7,6 +7,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "run/requested_outputs.hpp"
+
 namespace eomgen::analysis {
 namespace {
 
@@ -47,22 +49,6 @@ bool is_known(const SteadyProblem& p, const system::Output& output, const Direct
            symbol.kind == SymbolKind::state ||
            std::find(directions.symbols.begin(), directions.symbols.end(), symbol) != directions.symbols.end();
   });
-}
-
-/// The requested outputs, among them coordinates, rates and states of first order, which no table lists as outputs.
-std::vector<std::string> chosen_names(const SteadyProblem& p, const std::vector<std::string>& names) {
-  if (names.empty()) return p.scene.outputs;
-  const std::vector<std::string> states = run::state_columns(p.derived->model);
-  std::vector<std::string> result;
-  for (const std::string& name : names) {
-    const bool is_state = std::find(states.begin(), states.end(), name) != states.end();
-    const std::vector<std::string> expanded =
-        is_state ? std::vector<std::string>{name} : run::expand_outputs(p.derived->mechanics, p.system(), {{name, {}}});
-    for (const std::string& one : expanded) {
-      if (std::find(result.begin(), result.end(), one) == result.end()) result.push_back(one);
-    }
-  }
-  return result;
 }
 
 /// The slopes of outputs about one state.
@@ -133,7 +119,9 @@ OutputSlopes linearise_outputs(const SteadyProblem& p, const linear::Linearisati
   OutputSlopes result;
   const Slopes slopes(p, at);
   std::vector<Slopes::Row> rows;
-  for (const std::string& name : chosen_names(p, names)) {
+  const std::vector<std::string> chosen =
+      names.empty() ? p.scene.outputs : run::requested_outputs(p.derived->mechanics, p.system(), names);
+  for (const std::string& name : chosen) {
     try {
       rows.push_back(slopes(*system::find(p.system().outputs, name)));
       result.names.push_back(name);

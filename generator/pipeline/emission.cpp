@@ -15,6 +15,7 @@
 #include "pipeline/run_text.hpp"
 #include "pipeline/simulate.hpp"
 #include "pipeline/start_description.hpp"
+#include "run/requested_outputs.hpp"
 #include "work.hpp"
 
 namespace eomgen::pipeline {
@@ -55,11 +56,9 @@ program::Request request_of(const EmissionRequest& options, DerivedModel& derive
       request.with.push_back(name);
     }
   }
-  std::vector<model::OutputReference> wanted;
-  for (const std::string& name : options.outputs) wanted.push_back({name, {}});
-  for (const std::string& name : run::expand_outputs(derived.mechanics, derived.candidates.front(), wanted)) {
-    request.outputs.push_back(name);
-  }
+  const std::vector<std::string> named =
+      run::requested_outputs(derived.mechanics, derived.candidates.front(), options.outputs);
+  request.outputs.insert(request.outputs.end(), named.begin(), named.end());
   request.outputs.insert(request.outputs.end(), of_run.begin(), of_run.end());
   std::vector<std::string> unique;
   for (const std::string& name : request.outputs) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "run/requested_outputs.hpp"
 #include "run/scene.hpp"
 
 namespace eomgen::run {
@@ -72,6 +73,21 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
       }
       const SourceLocation where = want.span.line > 0 ? m.model->where(want.span) : SourceLocation{};
       throw Error("scene", where, fmt::format("there is no output '{}'", want.name), "choose from: " + names + ", all");
+    }
+  }
+  return result;
+}
+
+std::vector<std::string> requested_outputs(const Mechanics& m, const system::EquationSystem& system,
+                                           const std::vector<std::string>& names) {
+  const std::vector<std::string> states = state_columns(*m.model);
+  std::vector<std::string> result;
+  for (const std::string& name : names) {
+    const bool is_state = std::find(states.begin(), states.end(), name) != states.end();
+    const std::vector<std::string> expanded =
+        is_state ? std::vector<std::string>{name} : expand_outputs(m, system, {{name, {}}});
+    for (const std::string& one : expanded) {
+      if (std::find(result.begin(), result.end(), one) == result.end()) result.push_back(one);
     }
   }
   return result;

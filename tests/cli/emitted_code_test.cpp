@@ -160,3 +160,14 @@ TEST_CASE("--fix: a parameter becomes a number, and the array of parameters keep
   CHECK(all["selftest"] == 0);
   CHECK(all["info"]["parameters"].size() == 6);
 }
+
+TEST_CASE("C: --output takes coordinates and rates too, in the requested order") {
+  const Folder folder;
+  expect(0, folder, {"emit", "cart_pendulum", "-o", ".", "--target", "c", "--output", "energy,theta_dot,x"});
+  folder.write("caller.c", c_caller("cart_pendulum"));
+  compile(folder, {"gcc", "-std=c11", "-o", "caller", "caller.c", "cart_pendulum.c", "-lm"});
+  CHECK(printed(folder, "caller")["info"]["outputs"] == Json({"energy", "theta_dot", "x"}));
+  expect(0, folder,
+         {"emit", "P7_moving_sphere", "-o", ".", "--target", "c", "--output", "R"});  // follows from the sphere
+  CHECK(contains(folder.read("P7_moving_sphere.h"), "P7_moving_sphere_outputs"));
+}
