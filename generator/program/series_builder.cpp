@@ -14,6 +14,48 @@ using symbolic::Op;
 // and {side, 1}.
 constexpr Operand time_rate{Slot::side, 0}, one_over_k{Slot::side, 1}, order_k{Slot::time, 0};
 
+/// Entries that are used, and their indices without the others.
+class Used {
+ public:
+  explicit Used(std::size_t count) : used_(count, false) {}
+
+  /// Whether the entry was unused before.
+  bool mark(std::size_t i) {
+    if (used_[i]) return false;
+    return used_[i] = true;
+  }
+  bool operator[](std::size_t i) const { return used_[i]; }
+  /// Removes the unused entries. `renumber` maps indices afterwards.
+  template <class T>
+  void compact(std::vector<T>& entries) {
+    index_.assign(entries.size(), 0);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      index_[i] = static_cast<std::uint32_t>(count);
+      if (!used_[i]) continue;
+      if (count != i) entries[count] = std::move(entries[i]);
+      ++count;
+    }
+    entries.resize(count);
+  }
+  void renumber(Operand& operand) const { operand.index = index_[operand.index]; }
+
+ private:
+  std::vector<bool> used_;
+  std::vector<std::uint32_t> index_;
+};
+
+/// The heading of an instruction that goes belongs to the next one of the section.
+void keep_sections(std::vector<Instruction>& code, const Used& used) {
+  std::string pending;
+  for (std::size_t i = 0; i < code.size(); ++i) {
+    if (!code[i].section.empty()) pending = code[i].section;
+    if (!used[i]) continue;
+    code[i].section.swap(pending);
+    pending.clear();
+  }
+}
+
 }  // namespace
 
 SeriesBuilder::SeriesBuilder(const Function& rhs) {
@@ -78,6 +120,67 @@ void SeriesBuilder::write_results(const Function& rhs) {
     if (!result.is_test()) next_.results.push_back({result.name, next});
   }
   for (const PivotTest& test : rhs.pivots) start_.pivots.push_back({read(test.pivot).zero, read(test.scale).zero});
+}
+
+/// Removes the instructions, sums and values of order 0 on which no coefficient depends. The condition of a branch has
+/// such ones: only its value of order 0 counts.
+void SeriesBuilder::drop_unused_of_next() {
+  Used code(next_.code.size()), sums(factors_.size()), zeros(zeros_.size());
+  std::vector<Operand> open;
+  for (const Result& result : next_.results) open.insert(open.end(), result.entries.begin(), result.entries.end());
+  while (!open.empty()) {
+    const Operand operand = open.back();
+    open.pop_back();
+    if (operand.slot == Slot::value && code.mark(operand.index)) {
+      const std::vector<Operand>& operands = next_.code[operand.index].operands;
+      open.insert(open.end(), operands.begin(), operands.end());
+    }
+    if (operand.slot == Slot::input && sums.mark(operand.index))
+      open.insert(open.end(), factors_[operand.index].begin(), factors_[operand.index].end());
+    if (operand.slot == Slot::prepared) zeros.mark(operand.index);
+  }
+  code.compact(next_.code);
+  sums.compact(factors_);
+  zeros.compact(zeros_);
+  const auto renumber = [&](Operand& operand) {
+    if (operand.slot == Slot::value) code.renumber(operand);
+    if (operand.slot == Slot::input) sums.renumber(operand);
+    if (operand.slot == Slot::prepared) zeros.renumber(operand);
+  };
+  for (Instruction& instruction : next_.code)
+    std::for_each(instruction.operands.begin(), instruction.operands.end(), renumber);
+  for (Result& result : next_.results) std::for_each(result.entries.begin(), result.entries.end(), renumber);
+  for (std::array<Operand, 2>& pair : factors_) std::for_each(pair.begin(), pair.end(), renumber);
+}
+
+/// The same for `start`, whose values of order 0 are results.
+void SeriesBuilder::drop_unused_of_start() {
+  const auto each_root = [this](auto&& visit) {
+    for (Result& result : start_.results) std::for_each(result.entries.begin(), result.entries.end(), visit);
+    for (PivotTest& test : start_.pivots) visit(test.pivot), visit(test.scale);
+  };
+  Used code(start_.code.size());
+  each_root([&code](const Operand& operand) {
+    if (operand.slot == Slot::value) code.mark(operand.index);
+  });
+  for (std::size_t i = start_.code.size(); i-- > 0;) {  // operands stand before
+    if (!code[i]) continue;
+    for (const Operand& operand : start_.code[i].operands) {
+      if (operand.slot == Slot::value) code.mark(operand.index);
+    }
+  }
+  keep_sections(start_.code, code);
+  code.compact(start_.code);
+  const auto renumber = [&code](Operand& operand) {
+    if (operand.slot == Slot::value) code.renumber(operand);
+  };
+  each_root(renumber);
+  for (Instruction& instruction : start_.code)
+    std::for_each(instruction.operands.begin(), instruction.operands.end(), renumber);
+}
+
+/// The factors of the sums, filled up to whole lanes, as results.
+void SeriesBuilder::write_factors() {
   const Operand none = constant(next_, 0);
   while (factors_.empty() || factors_.size() % taylor_lanes != 0) factors_.push_back({none, none});
   std::array<std::vector<Operand>, 2> columns;
@@ -86,7 +189,6 @@ void SeriesBuilder::write_results(const Function& rhs) {
     columns[1].push_back(pair[1]);
   }
   next_.results.insert(next_.results.begin(), {{"a", columns[0]}, {"b", columns[1]}});
-  start_.results.insert(start_.results.begin(), {"z", zeros_});
 }
 
 /// Resolves an operand of `next` that was created before the length of w was known.
@@ -115,6 +217,10 @@ void SeriesBuilder::number_packs() {
 
 Taylor SeriesBuilder::finished(const Function& rhs) {
   write_results(rhs);
+  drop_unused_of_next();
+  start_.results.insert(start_.results.begin(), {"z", zeros_});
+  drop_unused_of_start();
+  write_factors();
   number_packs();
   for (Instruction& instruction : next_.code)
     std::for_each(instruction.operands.begin(), instruction.operands.end(), [this](Operand& o) { place(o); });

@@ -53,6 +53,9 @@ class SeriesBuilder {
 
  private:
   void write_results(const Function& rhs);
+  void drop_unused_of_next();
+  void drop_unused_of_start();
+  void write_factors();
   void place(Operand& operand) const;
   void number_packs();
 

@@ -171,3 +171,10 @@ TEST_CASE("C: --output takes coordinates and rates too, in the requested order")
          {"emit", "P7_moving_sphere", "-o", ".", "--target", "c", "--output", "R"});  // follows from the sphere
   CHECK(contains(folder.read("P7_moving_sphere.h"), "P7_moving_sphere_outputs"));
 }
+
+TEST_CASE("C: the Taylor series of branches has no unused variable, for one state and for a batch") {
+  const Folder folder;
+  expect(0, folder, {"emit", "R6_rough_disk", "-o", ".", "--target", "batch", "--with", "taylor"});
+  for (const char* file : {"R6_rough_disk.c", "R6_rough_disk_batch.c"})
+    compile(folder, {"gcc", "-std=c11", "-fsyntax-only", file});
+}

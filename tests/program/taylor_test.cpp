@@ -159,5 +159,8 @@ TEST_CASE("taylor: a program that is too large for series is rejected") {
     huge.code.push_back(square);
     huge.code.back().operands[1] = {program::Slot::value, static_cast<std::uint32_t>(huge.code.size() - 2)};
   }
+  const std::size_t products = program::taylor_series(huge).product_count;
+  CHECK(products == program::taylor_series(built.functions[0]).product_count);  // nothing depends on them
+  huge.results[0].entries[0] = {program::Slot::value, static_cast<std::uint32_t>(huge.code.size() - 1)};
   CHECK_THROWS_WITH_AS(program::taylor_series(huge), doctest::Contains("too large for Taylor series"), Error);
 }
