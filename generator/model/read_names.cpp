@@ -122,7 +122,9 @@ std::optional<TypedNode> NamesReader::armature_energy() {
                    "write the inertia of the rotor times the square of its gear ratio");
     const TypedNode rate = resolver_.coordinate(index, 1, span);
     const TypedNode half = resolver_.product_of(resolver_.number(Rational(1) / 2, span), value, span);
-    const TypedNode energy = resolver_.product_of(half, resolver_.product_of(rate, rate, span), span);
+    TypedNode energy = resolver_.product_of(half, resolver_.product_of(rate, rate, span), span);
+    energy.dimension = dimension_of("J");  // a bare number has its unit
+    energy.has_uncertain_dimension = false;
     total = total ? resolver_.sum_of(*total, energy, span) : energy;
   }
   return total;

@@ -108,3 +108,21 @@ TEST_CASE("a pin of bodies in plane motion has its axis in E3 for every start, g
   }
   CHECK_THROWS_AS(linkage("[\"E1\", \"E1\"]"), eomgen::Error);
 }
+
+TEST_CASE("bodies: armatures that are bare numbers cause no warning, with coordinates in m and in rad") {
+  const Model bare = read(R"toml(format = 1
+[parameters]
+m = "2 kg"
+[coordinates]
+x = { unit = "m", armature = 0.4 }
+q = { armature = "0.03" }
+[[body]]
+name = "A"
+mass = "m"
+inertia = { principal = ["0.3 kg*m^2", "0.3 kg*m^2", "0.3 kg*m^2"] }
+position = ["x", 0, 0]
+rotation = { axis = "E3", angle = "q" }
+)toml");
+  CHECK(bare.warnings.empty());
+  CHECK(bare.energy.kinetic != no_node);
+}
