@@ -27,12 +27,12 @@ namespace eomgen::model {
 namespace {
 
 // Whether the model states any unit. Without units nothing is checked: the metres and radians of coordinates have no
-// effect.
-bool states_units(const Value& value, std::string_view section, std::string_view key) {
+// effect. `section` is that of a value in it, empty for the whole file; `is_unit`: a text is a unit.
+bool states_units(const Value& value, std::string_view section, bool is_unit) {
   if (value.is(Value::Kind::text)) {
     // Angles are numbers: their units do not imply that other quantities have units.
     const auto says = [](const std::optional<MeasuredUnit>& unit) { return unit && !is_one(unit->dimension); };
-    if (key == "unit" || section == "coordinates") {
+    if (is_unit) {
       const std::optional<MeasuredUnit> unit = parse_unit(value.text);
       return !unit || says(unit);
     }
@@ -48,9 +48,10 @@ bool states_units(const Value& value, std::string_view section, std::string_view
     return name == "title" || name == "notes" || name == "note" || name == "tex" || name == "name" || name == "scene";
   };
   return std::any_of(value.items.begin(), value.items.end(),
-                     [&](const Value& item) { return states_units(item, section, key); }) ||
+                     [&](const Value& item) { return states_units(item, section, false); }) ||
          std::any_of(value.entries.begin(), value.entries.end(), [&](const Entry& entry) {
-           return !words(entry.key) && states_units(entry.value, section.empty() ? entry.key : section, entry.key);
+           const bool unit = entry.key == "unit" || section == "coordinates";  // x = "m"
+           return !words(entry.key) && states_units(entry.value, section.empty() ? entry.key : "inside", unit);
          });
 }
 
@@ -123,7 +124,7 @@ void Reader::read_head() {
     if (root_.find(key) != nullptr)
       (key[0] == 't' ? model_.title : model_.notes) = text_of_key(root_, key, "the model");
   }
-  resolver_.set_units_stated(states_units(root_, "", ""));
+  resolver_.set_units_stated(states_units(root_, "", false));
   Place origin;
   origin.name = "origin";
   origin.position =

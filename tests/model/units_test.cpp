@@ -200,3 +200,18 @@ TEST_CASE("gravity beside a potential with the same parameter warns") {
         "that of the weights");
   CHECK(warnings("k*R^2/2").empty());
 }
+
+TEST_CASE("units: formulas in a range or an armature of a coordinate state no unit") {
+  const std::string model =
+      "format = 1\n[parameters]\nL = 2\n[coordinates]\nq = KEYS\n[[particle]]\nname = \"P\"\nmass = \"1 + t\"\n"
+      "position = [\"L*sin(q)\", 0, \"-L*cos(q)\"]\n";
+  const auto with_keys = [&](const std::string& keys) {
+    std::string text = model;
+    return text.replace(text.find("KEYS"), 4, keys);
+  };
+  for (const char* keys : {"{}", "\"rad\"", "{ range = [\"-pi\", \"L*pi\"] }", "{ armature = \"L/3\" }"}) {
+    CAPTURE(std::string(keys));
+    CHECK(read(with_keys(keys)).coordinates.size() == 1);
+  }
+  CHECK_THROWS_WITH_AS(read(with_keys("{ unit = \"m\" }")), doctest::Contains("the units clash"), eomgen::Error);
+}
