@@ -138,6 +138,8 @@ class MechanismBuilder {
   void contact(const std::string& kind, const std::string& lines);
   void add_contacts();
 
+  // mechanisms.cpp
+  void add_armatures();
   // mechanism_states.cpp
   std::string free_coordinate();
   void add_states();
@@ -149,7 +151,7 @@ class MechanismBuilder {
   Mechanism result_;
   bool contacts_ = false, planar_ = false, equal_ = false, rolling_ = false;
   bool between_ = false;
-  bool small_ = false, states_ = false;
+  bool small_ = false, states_ = false, armatures_ = false;
   int named_parameters_ = 50, parameters_ = 0, functions_ = 0, inputs_ = 0, constraints_ = 0, joints_ = 0;
   std::vector<Place> places_;
   std::vector<std::string> coordinates_, spins_;

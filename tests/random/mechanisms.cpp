@@ -11,7 +11,8 @@ namespace {
 // their seeds.
 constexpr std::uint64_t first_with_contacts = 1001, first_with_forces_between_bodies = 2001,
                         first_small = 10001,  // one or two places, otherwise the same: many models in a short time
-    first_with_states = 20001;                // small ones with states and resets in place of contacts
+    first_with_states = 20001,                // small ones with states and resets in place of contacts
+    first_with_armatures = 1000001;           // of any size, with armatures and without states
 
 }  // namespace
 
@@ -19,8 +20,9 @@ MechanismBuilder::MechanismBuilder(std::uint64_t seed)
     : dice_(seed),
       contacts_(seed >= first_with_contacts),
       between_(seed >= first_with_forces_between_bodies),
-      small_(seed >= first_small),
-      states_(seed >= first_with_states) {}
+      small_(seed >= first_small && seed < first_with_armatures),
+      states_(seed >= first_with_states && seed < first_with_armatures),
+      armatures_(seed >= first_with_armatures) {}
 
 Mechanism MechanismBuilder::build() {
   planar_ = dice_.chance(35);
@@ -50,7 +52,22 @@ Mechanism MechanismBuilder::build() {
     force_lines_ += forces_between(dice_, turning, planar_, result_.features);
   }
   if (states_) add_states();
+  if (armatures_) add_armatures();
   return finish();
+}
+
+void MechanismBuilder::add_armatures() {
+  std::string lines;
+  for (const std::string& q : coordinates_) {
+    const bool declared = coordinate_lines_.find(q + " = {}\n") != std::string::npos;
+    if (dice_.chance(50)) {
+      feature("armature");
+      lines += q + " = { armature = \"" + value(10, 90) + "\" }\n";
+    } else if (declared) {
+      lines += q + " = {}\n";
+    }
+  }
+  coordinate_lines_ = lines;
 }
 
 Mechanism MechanismBuilder::finish() {
