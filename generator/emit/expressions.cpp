@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "symbolic/functions.hpp"
 
 namespace eomgen::emit {
@@ -92,7 +94,15 @@ std::optional<Expression> Expressions::print_lanes(const Instruction& instructio
 Expression Expressions::print(const Instruction& instruction) {
   if (!dialect_.lane_prefix.empty()) {
     if (std::optional<Expression> special = print_lanes(instruction)) return *special;
+    const Expression value = print_operation(instruction);
+    const auto is_number = [](const Operand& o) { return o.slot == Slot::constant || o.slot == Slot::pi; };
+    if (!std::all_of(instruction.operands.begin(), instruction.operands.end(), is_number)) return value;
+    return {fmt::format("{}all({})", dialect_.lane_prefix, value.text), Expression::atom};  // such as 2 pi
   }
+  return print_operation(instruction);
+}
+
+Expression Expressions::print_operation(const Instruction& instruction) {
   const auto& o = instruction.operands;
   const auto name = [&](std::size_t i) { return at_least(signed_value(o[i]), Expression::atom); };
   switch (instruction.op) {

@@ -37,6 +37,7 @@ class Expressions {
   void call(const std::string& name) { library_calls_.insert(name); }
 
  private:
+  Expression print_operation(const program::Instruction& instruction);
   std::optional<Expression> print_lanes(const program::Instruction& instruction);
   Expression call(const std::string& name, const std::vector<program::Operand>& operands);
   Expression conditional(const std::string& a, const std::string& b, const std::string& x, const std::string& y) const;

@@ -172,9 +172,11 @@ TEST_CASE("C: --output takes coordinates and rates too, in the requested order")
   CHECK(contains(folder.read("P7_moving_sphere.h"), "P7_moving_sphere_outputs"));
 }
 
-TEST_CASE("C: the Taylor series of branches has no unused variable, for one state and for a batch") {
+TEST_CASE("C: Taylor series have no unused variable, for one state and for a batch, and numbers alone fill lanes") {
   const Folder folder;
-  expect(0, folder, {"emit", "R6_rough_disk", "-o", ".", "--target", "batch", "--with", "taylor"});
-  for (const char* file : {"R6_rough_disk.c", "R6_rough_disk_batch.c"})
-    compile(folder, {"gcc", "-std=c11", "-fsyntax-only", file});
+  for (const std::string model : {"R6_rough_disk", "quarter_car"}) {  // branches; 2 pi t
+    expect(0, folder, {"emit", model, "-o", ".", "--target", "batch", "--with", "taylor"});
+    for (const std::string& file : {model + ".c", model + "_batch.c"})
+      compile(folder, {"gcc", "-std=c11", "-fsyntax-only", file});
+  }
 }
