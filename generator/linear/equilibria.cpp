@@ -12,6 +12,7 @@ namespace eomgen::linear {
 namespace {
 
 constexpr double same_point = 1e-8;
+constexpr double farthest_correction = 1e-2;  // of a state that is expected to be, or to be beside, a steady motion
 
 State<double> rounded(const State<Precise>& z) {
   State<double> result;
@@ -75,8 +76,10 @@ class Search {
       const State<double> start = spread_start(r_, symmetry_, turns_, k);
       const Outcome plain = follow(start, targets, {});
       result_.converged += plain == Outcome::nothing ? 0 : 1;
+      if (plain != Outcome::known) continue;
       // A start whose iteration goes to a known point is used once more, to reach another one.
-      if (plain == Outcome::known) follow(start, targets, known_points());
+      const KnownPoints known = known_points();
+      if (!known.points.empty()) follow(start, targets, known);
     }
   }
 
@@ -121,17 +124,16 @@ class Search {
     return result;
   }
 
-  std::optional<SteadyState> steady(const State<Precise>& z) const {
-    return find_steady_state(flow_, symmetry_, z, r_.setting,
-                             [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& jacobian) {
-                               value = Matrix<Precise>(held_->targets.size(), 1);
-                               jacobian = Matrix<Precise>(held_->targets.size(), at.size());
-                               if (held_->targets.empty()) return;
-                               const ValueAndJacobian<Precise> s = held_->at(at, r_.setting);
-                               for (std::size_t k = 0; k < held_->targets.size(); ++k)
-                                 value(k, 0) = s.value[k] - held_->targets[k];
-                               jacobian = s.jacobian;
-                             });
+  std::optional<SteadyState> steady(const State<Precise>& z, double farthest = far_away) const {
+    const auto all_held = [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& jacobian) {
+      value = Matrix<Precise>(held_->targets.size(), 1);
+      jacobian = Matrix<Precise>(held_->targets.size(), at.size());
+      if (held_->targets.empty()) return;
+      const ValueAndJacobian<Precise> s = held_->at(at, r_.setting);
+      for (std::size_t k = 0; k < held_->targets.size(); ++k) value(k, 0) = s.value[k] - held_->targets[k];
+      jacobian = s.jacobian;
+    };
+    return find_steady_state(flow_, symmetry_, z, r_.setting, all_held, farthest);
   }
 
   /// The quantities held by the request.
@@ -264,7 +266,7 @@ class Search {
 
   // The other triple of the same attitude; not if a held quantity or a force distinguishes them.
   void take_if_steady(State<Precise>& z, const State<Precise>& other) const {
-    const auto found = steady(other);
+    const auto found = steady(other, farthest_correction);
     if (found && is_same(rounded(other), found->z)) z = other;
   }
 
@@ -314,10 +316,11 @@ class Search {
     State<Precise> beside = z;
     const Precise step = tiny<Precise>(3) / size;
     for (std::size_t i = 0; i < N.rows; ++i) beside[i] = beside[i] + step * N(i, k);
-    const std::optional<SteadyState> found = find_steady_state(flow_, symmetry_, beside, r_.setting, held_equations_);
+    // Along a family the correction is of second order in the step.
+    const std::optional<SteadyState> found =
+        find_steady_state(flow_, symmetry_, beside, r_.setting, held_equations_, farthest_correction);
     if (!found) return false;
-    for (std::size_t i = 0; i < N.rows;
-         ++i) {  // no falling back: along a family the correction is of second order in the step
+    for (std::size_t i = 0; i < N.rows; ++i) {  // no falling back
       if (magnitude(found->z[i] - beside[i]) > tiny<Precise>(3) / 4 * (Precise(1) + magnitude(z[i]))) return false;
     }
     return true;

@@ -13,8 +13,9 @@ namespace {
 constexpr int most_steps = 80;
 constexpr double longest_step = 0.7;  // of an entry, relative to 1 and its magnitude
 constexpr double settled = 1e-11;
-constexpr double turning = 0.5;    // of the last step: a step back over more does not converge
-constexpr double opposite = 0.99;  // cosine
+constexpr double most_residual = 1e-3;  // of scaled equations at a root, also at a multiple one
+constexpr double turning = 0.5;         // of the last step: a step back over more does not converge
+constexpr double opposite = 0.99;       // cosine
 constexpr int most_halvings = 5, most_restorations = 40;
 constexpr double restored = 1e-9;  // of the last step: the error is its square
 constexpr double rank_tolerance = 1e-9;
@@ -67,7 +68,15 @@ Equations equations(const Flow& flow, const Symmetry& symmetry, const State<doub
 
 /// The least-norm step, with entries relative to 1 and their magnitude, and rows relative to their largest derivative.
 /// A row that nearly vanishes compared with the others is ignored, since scaling would amplify its rounding.
-std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z, bool& open) {
+/// `open`: directions are left along which no derivative is known to differ from 0. `residual`: what the step leaves of
+/// the scaled equations.
+struct NewtonStep {
+  Eigen::VectorXd move;
+  bool open;
+  double residual;
+};
+
+std::optional<NewtonStep> step(const Equations& e, const State<double>& z) {
   const auto rows = static_cast<Eigen::Index>(e.value.size()), columns = static_cast<Eigen::Index>(z.size() - 1);
   Eigen::MatrixXd J(rows, columns);
   Eigen::VectorXd r(rows), scale(columns);
@@ -87,8 +96,8 @@ std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z, 
   }
   if (!J.allFinite() || !r.allFinite()) return std::nullopt;
   numeric::LeastSquares found = numeric::least_squares(J, r, rank_tolerance);
-  open = found.rank < columns;
-  return std::move(found.x);
+  const double residual = rows > 0 ? (r - J * found.x).cwiseAbs().maxCoeff() : 0;
+  return NewtonStep{std::move(found.x), found.rank < columns, residual};
 }
 
 /// Moves z onto the constraints by least-norm steps. Leaves z as it is if they do not get there. Off the constraints, a
@@ -100,15 +109,36 @@ void restore_constraints(const Flow& flow, State<double>& z, const Setting<doubl
     if (field.phi.rows == 0) return;
     Equations e;
     for (std::size_t i = 0; i < field.phi.rows; ++i) add(e, field.phi, field.phi_jacobian, i);
-    bool open = false;
-    const auto move = step(e, moved, open);
-    if (!move || !move->allFinite()) return;
-    const double size = move->cwiseAbs().maxCoeff(), factor = std::min(1.0, longest_step / size);
+    const auto taken = step(e, moved);
+    if (!taken || !taken->move.allFinite()) return;
+    const Eigen::VectorXd& move = taken->move;
+    const double size = move.cwiseAbs().maxCoeff(), factor = std::min(1.0, longest_step / size);
     for (std::size_t i = 0; i + 1 < moved.size(); ++i)
-      moved[i] -= factor * (*move)(static_cast<Eigen::Index>(i)) * (1 + std::abs(moved[i]));
+      moved[i] -= factor * move(static_cast<Eigen::Index>(i)) * (1 + std::abs(moved[i]));
     if (size > restored) continue;
     z = std::move(moved);
     return;
+  }
+}
+
+/// Whether a Newton step of the accelerations is short. Throws std::domain_error if they have no values at z.
+bool is_near_root(const Flow& flow, const Symmetry& symmetry, const State<double>& z, const Setting<double>& setting,
+                  const HeldQuantities& held, const std::vector<double>& targets, double nearness) {
+  const auto taken = step(equations(flow, symmetry, z, z, setting, held, targets, SteadyEquations::accelerations), z);
+  return taken && taken->move.allFinite() && taken->move.cwiseAbs().maxCoeff() < nearness &&
+         taken->residual < most_residual;
+}
+
+/// The same after a search with inertia forces. They vanish for some accelerations where the coordinates are singular,
+/// as beside the pole of Euler angles.
+bool has_small_accelerations(const Flow& flow, const Symmetry& symmetry, const State<double>& z,
+                             const Setting<double>& setting, const HeldQuantities& held,
+                             const std::vector<double>& targets) {
+  constexpr double nearness = 0.1;  // beside a multiple root, or where rounding is amplified
+  try {
+    return is_near_root(flow, symmetry, z, setting, held, targets, nearness);
+  } catch (const std::domain_error&) {  // the search in many digits gives the reason
+    return true;
   }
 }
 
@@ -162,20 +192,24 @@ RoughSolution rough_steady_state(const Flow& flow, const Symmetry& symmetry, con
     Eigen::VectorXd last;
     double longest = longest_step;
     for (int k = 0; k < most_steps; ++k) {
-      auto move = step(here, z, end.is_slope_missing);
-      if (!move || !move->allFinite()) return end;
-      *move *= known.step_factor(z, *move);
-      if (!move->allFinite()) return end;
-      const double size = move->cwiseAbs().maxCoeff();
+      auto taken = step(here, z);
+      if (!taken || !taken->move.allFinite()) return end;
+      end.is_slope_missing = taken->open;
+      Eigen::VectorXd& move = taken->move;
+      move *= known.step_factor(z, move);
+      if (!move.allFinite()) return end;
+      const double size = move.cwiseAbs().maxCoeff();
+      // A minimum of the sum of squares that is no root: steps are short, and the equations stay open.
+      if (size < settled && taken->residual > most_residual) return end;
       if (last.size() > 0 && size > turning * last.cwiseAbs().maxCoeff() &&
-          move->dot(last) < -opposite * move->norm() * last.norm())
+          move.dot(last) < -opposite * move.norm() * last.norm())
         longest = std::min(longest, last.cwiseAbs().maxCoeff() / 2);
       double factor = std::min(1.0, longest / size);
-      last = factor * *move;
+      last = factor * move;
       for (int halving = 0;; ++halving, factor /= 2) {
         State<double> next = z;
         for (std::size_t i = 0; i + 1 < z.size(); ++i)
-          next[i] -= factor * (*move)(static_cast<Eigen::Index>(i)) * (1 + std::abs(z[i]));
+          next[i] -= factor * move(static_cast<Eigen::Index>(i)) * (1 + std::abs(z[i]));
         try {
           if (size >= settled) restore_constraints(flow, next, setting);
           here = at(next);
@@ -186,8 +220,10 @@ RoughSolution rough_steady_state(const Flow& flow, const Symmetry& symmetry, con
         z = std::move(next);
         break;
       }
-      end.found = size < settled;
-      if (end.found) return end;
+      if (size >= settled) continue;
+      end.found =
+          kind == SteadyEquations::accelerations || has_small_accelerations(flow, symmetry, z, setting, held, targets);
+      return end;
     }
   } catch (const std::domain_error& error) {
     end.reason = error.what();
@@ -200,10 +236,7 @@ bool is_rough_steady_state(const Flow& flow, const Symmetry& symmetry, const Sta
                            const std::vector<double>& targets) {
   constexpr double nearness = 1e-8;
   try {
-    bool open = false;
-    const auto move =
-        step(equations(flow, symmetry, z, z, setting, held, targets, SteadyEquations::accelerations), z, open);
-    return move && move->allFinite() && move->cwiseAbs().maxCoeff() < nearness;
+    return is_near_root(flow, symmetry, z, setting, held, targets, nearness);
   } catch (const std::domain_error&) {
     return false;
   }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "numeric/numbers.hpp"
+
 namespace eomgen::linear {
 namespace {
 
@@ -74,11 +76,13 @@ Precise largest_move(const Matrix<Precise>& move, const State<Precise>& z) {
 }
 
 std::optional<State<Precise>> newton(const Flow& flow, const Symmetry& symmetry, const State<Precise>& start,
-                                     const Setting<Precise>& setting, const ExtraEquations& extra, const Rank& rank) {
+                                     const Setting<Precise>& setting, const ExtraEquations& extra, const Rank& rank,
+                                     double farthest) {
   constexpr int most_steps = 40, exact = 120;
-  constexpr int patience = 8;  // starts are near a root: then a step of more than 1/10 means that there is none
+  constexpr int patience = 4;  // starts are near a root: then a step of more than 1/10 means that there is none
   constexpr int most_repetitions = 12;  // of a step that the return to the constraints takes back
   State<Precise> z = start;
+  const Precise limit = number<Precise>(numeric::exact(farthest));
   Precise last(0);
   int repetitions = 0;
   for (int step = 0; step < most_steps; ++step) {
@@ -95,7 +99,7 @@ std::optional<State<Precise>> newton(const Flow& flow, const Symmetry& symmetry,
     bool done = true;
     for (std::size_t i = 0; i + 1 < z.size(); ++i) {
       z[i] = z[i] - move(i, 0);
-      if (magnitude(move(i, 0)) > Precise(1000) * (Precise(1) + magnitude(start[i]))) return std::nullopt;
+      if (magnitude(z[i] - start[i]) > limit * (Precise(1) + magnitude(start[i]))) return std::nullopt;
       done = done && magnitude(move(i, 0)) <= tiny<Precise>(exact) * (Precise(1) + magnitude(z[i]));
     }
     if (done) return is_satisfied(e, z) ? std::optional(z) : std::nullopt;  // before the last step, far below tolerance
@@ -236,10 +240,11 @@ void snap_to_zero(const Problem& p, SteadyState& found) {
 // In a family of steady motions the Jacobian is rank-deficient there, and nearly so nearby: such pivots count as 0. If
 // that drops a needed equation, the iteration does not converge, and smaller pivots count.
 std::optional<State<Precise>> solve_steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
-                                                 const Setting<Precise>& setting, const ExtraEquations& extra) {
+                                                 const Setting<Precise>& setting, const ExtraEquations& extra,
+                                                 double farthest) {
   for (const Rank rank : {Rank{5, 11}, Rank{10, 14}, Rank{20, 30}}) {
     try {
-      if (auto found = newton(flow, symmetry, z, setting, extra, rank)) return found;
+      if (auto found = newton(flow, symmetry, z, setting, extra, rank, farthest)) return found;
     } catch (const std::domain_error&) {
       continue;
     }
@@ -248,12 +253,13 @@ std::optional<State<Precise>> solve_steady_state(const Flow& flow, const Symmetr
 }
 
 std::optional<SteadyState> find_steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
-                                             const Setting<Precise>& setting, const ExtraEquations& extra) {
+                                             const Setting<Precise>& setting, const ExtraEquations& extra,
+                                             double farthest) {
   constexpr int near = 7;     // digits of the equations where such a root is sought
   constexpr int exact = 140;  // and after convergence to a simple root
   std::optional<SteadyState> found;
   State<Precise> start = z;
-  if (const auto plain = solve_steady_state(flow, symmetry, z, setting, extra)) {
+  if (const auto plain = solve_steady_state(flow, symmetry, z, setting, extra, farthest)) {
     found = SteadyState{*plain, 0, known_digits};
     start = *plain;
   }
