@@ -47,6 +47,11 @@ struct EventDescription {
   eom::hybrid::Reset reset = {};
 };
 
+/// Period and offset of a sample in the language of model files; empty where they do not depend on parameters.
+struct SampleFormulas {
+  std::string every, offset;
+};
+
 /// Data that a program needs to run the model as `run` does: the default scene, whose code is described, and the output
 /// indices of the columns of its table.
 struct RunDescription {
@@ -71,8 +76,9 @@ struct EmissionContext {
   double start_time = 0;
   /// Whether an event or a sample changes the state.
   bool has_resets() const;
-  std::vector<eom::hybrid::Sample> samples;  // with the periods of the default scene
-  std::vector<double> start;                 // x at the start of the default scene
+  std::vector<eom::hybrid::Sample> samples;     // with the periods of the default scene
+  std::vector<SampleFormulas> sample_formulas;  // of each sample
+  std::vector<double> start;                    // x at the start of the default scene
   std::vector<TestVector> tests;
   std::shared_ptr<const RunDescription> run = {};                // if requested
   std::shared_ptr<const StartDescription> start_functions = {};  // of NAME_start, if requested (start/start.hpp)

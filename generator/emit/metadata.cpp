@@ -279,8 +279,14 @@ std::string info_json(const program::Program& program, const EmissionContext& co
     info["events"].push_back({{"name", event.name}, {"direction", event.direction}, {"action", event.action}});
     add_reset(event.reset, info["events"].back());
   }
-  for (const eom::hybrid::Sample& sample : context.samples) {
+  for (std::size_t i = 0; i < context.samples.size(); ++i) {
+    const eom::hybrid::Sample& sample = context.samples[i];
     json one{{"name", sample.name}, {"every", sample.every}, {"offset", sample.offset}};
+    if (i < context.sample_formulas.size()) {
+      const SampleFormulas& formulas = context.sample_formulas[i];
+      if (!formulas.every.empty()) one["every_formula"] = formulas.every;
+      if (!formulas.offset.empty()) one["offset_formula"] = formulas.offset;
+    }
     for (const eom::hybrid::Noise& noise : sample.noise)
       one["noise"].push_back({noise.component, noise.normal ? "normal" : "uniform", noise.seed});
     add_reset(sample.reset, one);

@@ -126,6 +126,15 @@ void add_start(const EmissionRequest& request, DerivedModel& derived, emit::Emis
               "leave start out of --with, or choose coordinates with fewer constraints");
 }
 
+/// Adds the functions that `simulate` of the target python calls where events or samples change the state.
+EmissionRequest with_resets(EmissionRequest request, const DerivedModel& derived) {
+  const system::EquationSystem& system = derived.candidates.front();
+  if (request.target != "python" || !system.has_resets()) return request;
+  if (!system.events.empty() && !has(request.with, "events")) request.with.emplace_back("events");
+  if (!has(request.with, "resets")) request.with.emplace_back("resets");
+  return request;
+}
+
 /// The request with everything that an archive requires. Throws Error if the archive has no such version.
 EmissionRequest complete(const EmissionRequest& asked, const Archive& archive, const model::Model& model) {
   EmissionRequest request = asked;
@@ -162,8 +171,9 @@ Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionReq
   const Archive* archive = find_archive(asked.target);
   if (archive == nullptr && asked.format_version != 0)
     throw Error("emit", {}, fmt::format("the target {} has no versions", asked.target), "leave the version out");
-  const EmissionRequest request = archive != nullptr ? complete(asked, *archive, *model) : asked;
-  const auto derived = derive_model(std::move(model), request.approach, request.form);
+  const EmissionRequest completed = archive != nullptr ? complete(asked, *archive, *model) : asked;
+  const auto derived = derive_model(std::move(model), completed.approach, completed.form);
+  const EmissionRequest request = with_resets(completed, *derived);
   model::Scene read = derived->model.scene("default");
   if (archive != nullptr) read.inputs.clear();
   const run::Scene scene = run::resolve_scene(derived->mechanics, derived->candidates.front(), read, {});

@@ -354,13 +354,21 @@ emit::EmissionContext emission_context(DerivedModel& derived, const program::Pro
   context.verdict = fmt::format("{}: {} points at {} digits, {} comparisons", certificate.verdict(), certificate.points,
                                 certificate.options.digits, certificate.comparisons.size());
   for (const model::Coordinate& c : model.coordinates) context.coordinates.push_back({c.name, c.unit.text, "", 0});
-  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-    const symbolic::Ref formula = derived.mechanics.parameter_value[i];
-    if (derived.mechanics.dag->symbols({formula}).empty()) continue;
-    if (const auto written = reading::as_written(model, model.parameters[i].value)) {
-      context.parameters[i].expression =
-          print::print(*written, print::Notation(derived.mechanics), print::Format::model_language);
-    }
+  // Of values that depend on parameters.
+  const auto in_model_language = [&](symbolic::Ref formula, model::NodeId id) -> std::string {
+    if (derived.mechanics.dag->symbols({formula}).empty()) return "";
+    const auto written = reading::as_written(model, id);
+    if (!written) return "";
+    return print::print(*written, print::Notation(derived.mechanics), print::Format::model_language);
+  };
+  for (std::size_t i = 0; i < model.parameters.size(); ++i)
+    context.parameters[i].expression =
+        in_model_language(derived.mechanics.parameter_value[i], model.parameters[i].value);
+  for (const model::Sample& sample : model.samples) {
+    const auto formula = [&](model::NodeId id) {
+      return id == model::no_node ? "" : in_model_language(mechanics::lower_scalar(derived.mechanics, id), id);
+    };
+    context.sample_formulas.push_back({formula(sample.every), formula(sample.offset)});
   }
   ResetPlaces resets = reset_places(derived, scene);
   for (std::size_t i = 0; i < model.events.size(); ++i) {

@@ -240,6 +240,53 @@ TEST_CASE("starts: the Python target follows changed values as run --set, and si
   }
 }
 
+TEST_CASE(
+    "resets: simulate of the Python target ends where run does, with the same resets, and takes changed periods") {
+  const Folder folder;
+  if (run_child({{"sh", "-c", "python3 -c 'import ctypes'"}, folder.path()}).status != 0) {
+    MESSAGE("skipped: there is no python3");
+    return;
+  }
+  folder.write("hybrid.py", R"(import importlib, json, sys
+sys.dont_write_bytecode = True
+sys.path.insert(0, ".")
+model = importlib.import_module(sys.argv[1])
+motion = model.simulate(float(sys.argv[2]), p=json.loads(sys.argv[3]), rtol=1e-11, atol=1e-13)
+print(json.dumps({"outcome": motion.outcome, "end": dict(zip(model.states, map(float, motion.x[-1]))),
+                  "resets": [t for t, kind, _ in motion.events if kind == "reset"]}))
+)");
+  const std::vector<Case> list{{"simplest_walker", {}},
+                               {"thermostat", {}},
+                               {"clock_escapement", {}},
+                               {"rimless_wheel", {}},
+                               {"sampled_cart_pole", {}},
+                               {"clock_escapement", {{"k", 9e-7}}},
+                               {"sampled_cart_pole", {{"Ts", 0.0125}}}};
+  constexpr double of_solvers = 1e-7;  // relative: both methods at rtol = 1e-11
+  for (const Case& c : list) {
+    CAPTURE(std::string(c.model));
+    expect(0, folder, {"emit", c.model, "--target", "python", "-o", "."});
+    Words words{"run", c.model, "--rtol", "1e-11", "--atol", "1e-13"};
+    for (const auto& [name, value] : c.set) words.insert(words.end(), {"--set", name + "=" + Json(value).dump()});
+    const Json expected = document(folder, words);
+    const ChildResult result =
+        run_child({{"python3", "hybrid.py", c.model, expected["t"].dump(), in_json(c.set).dump()}, folder.path()});
+    CAPTURE(result.err);
+    REQUIRE(result.status == 0);
+    const Json found = Json::parse(result.out);
+    CHECK(found["outcome"] == expected["outcome"]);
+    for (const auto& [name, value] : found["end"].items())
+      CHECK(value.get<double>() == doctest::Approx(expected["final"][name].get<double>()).epsilon(of_solvers));
+    std::vector<double> resets;
+    for (const Json& event : expected["events"]) {
+      if (event["kind"] == "reset") resets.push_back(event["t"].get<double>());
+    }
+    REQUIRE(found["resets"].size() == resets.size());
+    for (std::size_t k = 0; k < resets.size(); ++k)
+      CHECK(found["resets"][k].get<double>() == doctest::Approx(resets[k]).epsilon(of_solvers));
+  }
+}
+
 TEST_CASE("emit: the JavaScript of a start in single precision loads, and finds the start") {
   const Folder folder;
   folder.write("rod.toml",
