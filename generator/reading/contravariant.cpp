@@ -41,7 +41,10 @@ std::optional<Geometry> of_system(const Mechanics& m, ContravariantForm& form) {
   std::vector<LeftOut> unseen;
   std::optional<Geometry> g = configuration_space(m, &unseen);
   if (!unseen.empty()) throw work::BudgetExceeded(unseen.front().why);
-  if (g && g->second.empty()) form.skip_reason = "the inverse of a metric of more than three coordinates is too long";
+  if (g && g->second.empty())
+    form.skip_reason =
+        "the inverse of the metric is shown for at most three coordinates, and for particles that have all "
+        "coordinates of their space";
   return form.skip_reason.empty() ? std::move(g) : std::nullopt;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "reading/contravariant.hpp"
 #include "reading/lagrangian.hpp"
 #include "reading/no_value.hpp"
 #include "reading/rational_function.hpp"
@@ -143,6 +144,32 @@ Geometry of_place(GinacBridge& bridge, Mechanics& m, std::uint32_t index, const 
   return g;
 }
 
+/// With all coordinates of E^3N: M^ik = sum_p (a^i . a^k)_p / m_p by the dual basis of E^3N, (3.72), and det M =
+/// prod_p m_p^3 det(a_ik)_p. Nothing for other systems.
+void add_inverse_of_particles(const Mechanics& m, GinacBridge& bridge, Geometry& g) {
+  const std::optional<SystemBasis> basis = m.fixed.empty() ? system_basis(m) : std::nullopt;
+  if (!basis || basis->contravariant.empty()) return;
+  const std::size_t n = g.coordinates.size();
+  std::vector<Sum> reciprocal, inverse(n * n);
+  Sum product(1);
+  for (const mechanics::PointMass& mass : m.masses) {
+    const Sum value = bridge.sum(mass.mass);
+    reciprocal.push_back(quotient(Sum(1), value));
+    product = product * value * value * value;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = i; k < n; ++k) {
+      Sum entry;
+      for (std::size_t c = 0; c < n; ++c)
+        entry += basis->contravariant[i][c] * basis->contravariant[k][c] * reciprocal[c / 3];
+      inverse[i * n + k] = inverse[k * n + i] = simplify(entry);
+    }
+  }
+  for (const Geometry& particle : geometry(m)) product = simplify(product * particle.determinant);
+  g.determinant = std::move(product);
+  g.inverse = std::move(inverse);
+}
+
 }  // namespace
 
 std::vector<Geometry> geometry(const Mechanics& mechanics, std::vector<LeftOut>* left_out) try {
@@ -182,6 +209,8 @@ std::optional<Geometry> configuration_space(const Mechanics& m, std::vector<Left
     if (n <= 3) {
       g.determinant = determinant(g.metric, n);
       if (!g.determinant.is_zero()) g.inverse = inverse_matrix(g.metric, n);
+    } else {
+      add_inverse_of_particles(m, bridge, g);
     }
     add_christoffel(bridge, g);
     g.line_element = quadratic_form(bridge, g);

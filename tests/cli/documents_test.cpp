@@ -287,3 +287,14 @@ TEST_CASE("run: the readable report has the same contents") {
   CHECK_FALSE(contains(expect(0, folder, {"run", "P2_planar_pendulum", "--t-end", "1", "--no-error-estimate"}).out,
                        "error estimate"));
 }
+
+TEST_CASE("derive: geometry of several particles names the particle, or the configuration manifold") {
+  const Folder folder;
+  const std::string text = expect(0, folder, {"derive", "--show", "basis,metric,line_element", "S4_two_particles"}).out;
+  for (const char* heading : {"basis: covariant of 'P1'", "basis: contravariant of 'P2'", "metric: determinant of 'P2'",
+                              "line_element of 'P1'", "metric: covariant of the configuration manifold",
+                              "basis: covariant basis of E^6 (e_1 to e_3: 'P1'"}) {
+    CAPTURE(heading);
+    CHECK(contains(text, std::string("\n") + heading));
+  }
+}

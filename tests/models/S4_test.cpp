@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "models/displayed_model.hpp"
+#include "reading/contravariant.hpp"
 #include "reading/ginac_bridge.hpp"
 #include "support/simulation.hpp"
 
@@ -54,6 +55,31 @@ TEST_CASE("S4: the six covariant basis vectors are (3.71), and (3.72) is dual to
       for (std::size_t c = 0; c < 6; ++c) product += a[c] * dual[k][c];
       CHECK(same(product, Sum(i == k ? 1 : 0)));
     }
+  }
+}
+
+// In E^6, which is flat, each particle has the symbols of its own coordinates, (2.185).
+TEST_CASE(
+    "S4: the contravariant equations are those of two particles with the spring's force over m1 and the reduced mass") {
+  DisplayedModel s4("S4_two_particles");
+  const Sum r = s4("r1"), R = s4("R2"), sp = sin(s4("phi2")), cp = cos(s4("phi2"));
+  const Sum dth1 = s4("theta1_dot"), dR = s4("R2_dot"), dphi = s4("phi2_dot"), dth2 = s4("theta2_dot");
+  const Sum c = cos(s4("theta2") - s4("theta1")), s = sin(s4("theta2") - s4("theta1")), m1 = s4("m1"), m2 = s4("m2");
+  const Sum pull = s4("k") * (R - s4("L")), two(2), o;
+  const reading::ContravariantForm form = reading::contravariant_form(s4.s.mechanics);
+  REQUIRE(form.skip_reason.empty());
+  const std::array<std::array<Sum, 2>, 6> expected{
+      {{-r * square(dth1), over(pull * sp * c, m1)},
+       {over(two * s4("r1_dot") * dth1, r), over(pull * sp * s, m1 * r)},
+       {o, over(pull * cp, m1)},
+       {-R * square(dphi) - R * square(sp * dth2), -over(pull * (m1 + m2), m1 * m2)},
+       {over(two * dR * dphi, R) - sp * cp * square(dth2), o},
+       {over(two * dR * dth2, R) + over(two * cp * dphi * dth2, sp), o}}};
+  REQUIRE(form.equations.size() == expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    CAPTURE(i);
+    CHECK(same(form.equations[i].curvature, expected[i][0]));
+    CHECK(same(form.equations[i].force, expected[i][1]));
   }
 }
 

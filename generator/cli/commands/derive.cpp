@@ -61,6 +61,11 @@ std::string solved_heading(const print::PrintedFormula& item) {
   return (of_place ? fmt::format("{} on '{}'", item.role, item.name) : item.role) + ", as a function of the state";
 }
 
+/// Whether such formulas are of a particle, a body, or the configuration manifold.
+bool is_geometry(const std::string& key) {
+  return key == "basis" || key == "metric" || key == "line_element" || key == "christoffel";
+}
+
 /// Heading of a group of formulas.
 std::string heading_of(const print::PrintedFormula& item) {
   const auto named = [&](const std::string& what) {
@@ -89,8 +94,11 @@ std::string heading_of(const print::PrintedFormula& item) {
   if (item.key == "parts") return "where";
   if (item.key == "states") return "states of first order";
   if (item.key == "resets") return fmt::format("new values at {} '{}', from those before", item.role, item.name);
-  if (item.key == "basis" && (item.role.starts_with("tangent") || item.role.starts_with("dual")))
-    return fmt::format("basis: {} of '{}'", item.role, item.name);
+  if (is_geometry(item.key) && !item.name.empty() && item.name != "system") {
+    const std::string what = item.role.empty() ? item.key : item.key + ": " + item.role;
+    return item.name == "configuration manifold" ? what + " of the configuration manifold"
+                                                 : fmt::format("{} of '{}'", what, item.name);
+  }
   if (item.role.empty()) return item.key;
   return item.key + ": " + item.role;
 }
