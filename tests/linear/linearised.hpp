@@ -60,7 +60,7 @@ inline Linearised linearised(const std::string& model, const std::string& scene 
   run::Overrides overrides;
   overrides.values = set;
   analysis::SteadyProblem problem =
-      analysis::steady_problem("linearize", test::model_at(path), scene, overrides, at, 1);
+      analysis::steady_problem("linearize", test::model_at(path), scene, overrides, at, 1, analysis::Contacts::none);
   linear::Linearisation l = linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, 1);
   return {std::move(problem), std::move(l)};
 }

@@ -21,7 +21,8 @@ std::string written(const std::string& name, const std::string& text) {
 }
 
 Linearised linearised_at(const std::string& path) {
-  analysis::SteadyProblem problem = analysis::steady_problem("linearize", test::model_at(path), "default", {}, {}, 1);
+  analysis::SteadyProblem problem =
+      analysis::steady_problem("linearize", test::model_at(path), "default", {}, {}, 1, analysis::Contacts::none);
   linear::Linearisation l = linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, 1);
   return {std::move(problem), std::move(l)};
 }

@@ -166,8 +166,9 @@ TEST_CASE("freedom: a wheel that rolls along a prescribed path turns, and needs 
   };
   CHECK(analysis::inverse_dynamics(request).outcome == eom::Outcome::done);
   CHECK(rows > 100);
-  check_refused("the constraints determine the motion: no other motion is near it",
-                [&] { analysis::steady_problem("linearize", test::model_at(path), "default", {}, {}, 1); });
+  check_refused("the constraints determine the motion: no other motion is near it", [&] {
+    analysis::steady_problem("linearize", test::model_at(path), "default", {}, {}, 1, analysis::Contacts::none);
+  });
 }
 
 TEST_CASE("freedom: friction along a prescribed path counts in the force that the path needs") {
