@@ -337,6 +337,8 @@ bool has_inertia(const Oracle& oracle, State at, const std::vector<Real>& lambda
   return false;
 }
 
+constexpr long most_exponent = 600;  // of quotients of terms: squares of numbers that binary64 can hold
+
 /// Residuals of the display form for the motion by the oracle. The form also has to detect a wrong acceleration: 0 = 0
 /// holds for every motion.
 double display_form_residual(const DisplayForm& form, const mechanics::Mechanics& mechanics, const Motion& motion,
@@ -347,12 +349,17 @@ double display_form_residual(const DisplayForm& form, const mechanics::Mechanics
   for (const std::uint32_t i : mechanics.free) {
     if (!try_wrong_ones) break;
     const Real right = lookup.state.qddot[i];
+    const auto is_noticed = [&](const Real& error) {
+      lookup.state.qddot[i] = right + error;
+      const bool noticed = largest_residual(form, *mechanics.dag, lookup, motion, oracle) > 1e-9;
+      lookup.state.qddot[i] = right;
+      return noticed;
+    };
     // The error is as large as the terms, so that it is not lost among them.
-    const Real wrong = right + cln::abs(right) + motion.scale[i] + 1;
-    lookup.state.qddot[i] = wrong;
-    const bool noticed = largest_residual(form, *mechanics.dag, lookup, motion, oracle) > 1e-9;
-    lookup.state.qddot[i] = right;
-    if (!noticed && has_inertia(oracle, lookup.state, lookup.lambda, i, wrong)) return 1;
+    const Real error = cln::abs(right) + motion.scale[i] + 1;
+    if (is_noticed(error) || !has_inertia(oracle, lookup.state, lookup.lambda, i, right + error)) continue;
+    // Beside lengths of 1e30 it takes a larger one.
+    if (!is_noticed(error * cln::expt(cln::cl_I(10), cln::cl_I(most_exponent)))) return 1;
   }
   return largest;
 }

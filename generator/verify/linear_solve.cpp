@@ -267,7 +267,7 @@ Solution solve(std::vector<Real> A, std::vector<Real> b, bool with_inverse) {
   }
   Solution solution;
   solution.unknowns.assign(n, Real(0));
-  if (with_inverse) solution.inverse.assign(n, std::vector<double>(n, 0.0));
+  if (with_inverse) solution.inverse.assign(n, std::vector<Real>(n, Real(0)));
   const auto singular = [] {
     Solution none;
     none.condition = std::numeric_limits<double>::infinity();
@@ -288,10 +288,9 @@ Solution solve(std::vector<Real> A, std::vector<Real> b, bool with_inverse) {
     for (std::size_t k = 0; k < part.columns.size(); ++k)
       solution.unknowns[part.columns[k]] = found.x[k] * column_scale[part.columns[k]];
     for (std::size_t i = 0; i < found.inverse.size(); ++i) {
-      const double from = cln::double_approx(row_scale[part.rows[i]]);
       for (std::size_t k = 0; k < part.columns.size(); ++k)
         solution.inverse[part.rows[i]][part.columns[k]] =
-            std::fabs(found.inverse[i][k]) * from * cln::double_approx(column_scale[part.columns[k]]);
+            exact(std::fabs(found.inverse[i][k])) * row_scale[part.rows[i]] * column_scale[part.columns[k]];
     }
   }
   if (n > 0) solution.condition = largest / smallest;

@@ -14,7 +14,8 @@ struct Solution {
   /// Ratio of the extreme pivots after rows and columns were scaled to 1: a measure of the condition. Infinite if the
   /// matrix is singular.
   double condition = 1;
-  std::vector<std::vector<double>> inverse;  // absolute values of its columns' entries, if requested
+  /// Absolute values of its columns' entries, if requested. They may be outside the range of binary64.
+  std::vector<std::vector<Real>> inverse;
 
   bool exists() const { return !std::isinf(condition); }
   const std::vector<Real>& x() const { return unknowns; }

@@ -51,11 +51,17 @@ Motion solve_motion(const Oracle& oracle, const State& at) {
     for (std::size_t k = 0; k < size; ++k)
       row_scale[i] = row_scale[i] + cln::abs(matrix[i * size + k] * solution.x()[k]);
   for (std::size_t i = 0; i < n; ++i) s.qddot[i] = solution.x()[i];
+  // The check of power needs digits in proportion.
+  constexpr int most_bits = 8192;
+  for (const Real& a : s.qddot) {
+    if (!cln::zerop(a) && cln::float_exponent(cln::cl_float(a, cln::float_format(20))) > most_bits)
+      throw Singular("an acceleration is above 10^2466");
+  }
   motion.lambda = motion.lambda_scale = no_forces;
   for (std::size_t k = 0; k < m; ++k) motion.lambda[bound[k]] = solution.x()[n + k];
   for (std::size_t i = 0; i < size; ++i) {
     Real scale = 0;
-    for (std::size_t k = 0; k < size; ++k) scale = scale + exact(solution.inverse[k][i]) * row_scale[k];
+    for (std::size_t k = 0; k < size; ++k) scale = scale + solution.inverse[k][i] * row_scale[k];
     if (i >= n) {
       motion.lambda_scale[bound[i - n]] = scale;
       continue;

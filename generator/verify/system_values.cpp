@@ -24,7 +24,7 @@ namespace {
 constexpr double worst_condition = 1e8;
 
 struct Solved {
-  std::vector<std::vector<double>> inverse;  // absolute values of the columns of [M A^T; A 0]^-1, if requested
+  std::vector<std::vector<Real>> inverse;  // absolute values of the columns of [M A^T; A 0]^-1, if requested
   std::vector<Real> qddot, lambda;
   std::vector<Real> psi, A, b, gamma;
   std::vector<Real> M;
@@ -146,7 +146,7 @@ void complete_accelerations(const mechanics::Mechanics& mechanics, const Oracle&
 std::vector<Real> propagate(const Solved& solved, const std::vector<Real>& row_scale) {
   std::vector<Real> scale(row_scale.size(), Real(0));
   for (std::size_t k = 0; k < scale.size(); ++k)
-    for (std::size_t i = 0; i < scale.size(); ++i) scale[i] = scale[i] + exact(solved.inverse[k][i]) * row_scale[k];
+    for (std::size_t i = 0; i < scale.size(); ++i) scale[i] = scale[i] + solved.inverse[k][i] * row_scale[k];
   return scale;
 }
 
