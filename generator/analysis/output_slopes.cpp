@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <stdexcept>
 
@@ -82,10 +83,19 @@ class Slopes {
     }
     for (std::size_t u = 0; u < inputs(); ++u)
       row.by_input.push_back(total(partial.jacobian, directions_.state + u, at_.field.input_jacobian, u));
+    require_finite({row.value});
+    require_finite(row.by_state);
+    require_finite(row.by_input);
     return row;
   }
 
  private:
+  static void require_finite(const std::vector<Precise>& numbers) {
+    for (const Precise& x : numbers) {
+      if (!std::isfinite(linear::to_double(x)))
+        throw std::domain_error("its value or a slope is above the range of binary64");
+    }
+  }
   Precise value_of(const Symbol& symbol) const {
     const system::EquationSystem& system = p_.system();
     if (symbol.kind == SymbolKind::multiplier) return at_.field.multipliers(place_of(system.active, symbol.index), 0);
