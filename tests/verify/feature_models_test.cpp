@@ -270,3 +270,29 @@ kinetic = "m/2*x_dot^2"
 potential = "k*x^2/2"
 )toml");
 }
+
+// A mass above the roots of binary64, whose inverse is below its range, in a prescribed motion.
+TEST_CASE("features: a mass of 1e300 that is moved by constraints") {
+  check_passes(R"toml(
+[parameters]
+m0 = "1e300"
+[functions]
+m = "m0 - 8*t"
+climb = "10*t^2 + 6378"
+[[particle]]
+name = "P"
+mass = "m"
+position = { spherical = ["R", "phi", "theta"] }
+[[force]]
+central_gravity = { GM = 3 }
+[[constraint]]
+name = "radial"
+holonomic = "R - climb"
+[[constraint]]
+name = "meridian"
+holonomic = "theta - 0.3"
+[scene.default]
+t = [0, 5]
+initial = { phi = 1.1 }
+)toml");
+}
