@@ -296,7 +296,7 @@ NonsmoothTerm find_nonsmooth_term(const SteadyProblem& p, const linear::State<Pr
       if (written_one.name == c.name) return {model.where(written_one.span), fmt::format("'{}' has", c.name)};
     }
   }
-  return {model.where(model.scene(p.scene.name).span), "the equations of motion have"};
+  return {model.where(model.scene(p.scene.name).span), "the equations of motion have", false};
 }
 
 model::SingularChart find_singular_chart(const SteadyProblem& p, const linear::State<Precise>& z) {

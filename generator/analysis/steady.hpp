@@ -42,6 +42,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
 struct NonsmoothTerm {
   SourceLocation where;
   std::string what;
+  bool is_single = true;
 };
 NonsmoothTerm find_nonsmooth_term(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
 

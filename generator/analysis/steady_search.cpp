@@ -233,10 +233,11 @@ void note_singular_chart(SteadyMotions& result, const linear::State<Precise>& z)
   if (!result.singular) result.singular = find_singular_chart(result.problem, z);
 }
 
-/// For a search without result: throws Error if the equations are undefined where more than `most` of its starts ended.
+/// For a search without result: throws Error if the equations are undefined where its starts ended, by a singular
+/// chart, by a term of the model, or otherwise for more than `most` starts.
 void require_ends(const SteadyMotions& result, std::size_t most) {
   const linear::SearchResult& search = result.search;
-  if (search.failed_starts <= most) return;
+  if (search.failed_starts == 0) return;
   const SteadyProblem& p = result.problem;
   linear::State<Precise> z;
   for (const double x : search.failure_point) z.push_back(linear::number<Precise>(numeric::exact(x)));
@@ -247,6 +248,7 @@ void require_ends(const SteadyMotions& result, std::size_t most) {
                 result.singular.remedy);
   }
   const NonsmoothTerm source = find_nonsmooth_term(p, z);
+  if (!source.is_single && search.failed_starts <= most) return;
   throw Error(
       command, source.where,
       fmt::format("no equilibrium and no steady motion found: {} of the starts end where {} no slope ({})",
