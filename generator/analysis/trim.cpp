@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <eom/layout.hpp>
 
 #include "model/names.hpp"
 #include "numeric/elimination.hpp"
@@ -80,7 +81,8 @@ Precise largest_of(const std::vector<Precise>& values) {
 Trim trim_inputs(const SteadyProblem& p, const std::vector<std::string>& names) {
   const work::Stage stage("finding the inputs");
   const std::vector<std::size_t> places = places_of(p, names);
-  const std::size_t n = p.flow->coordinates(), N = p.flow->entries(), first_order = N - 2 * n;
+  const std::size_t n = p.flow->coordinates(), N = p.flow->entries(), states = eom::StateLayout{n}.first_order_begin(),
+                    first_order = N - states;
   Trim trim{names, p.setting.inputs, p.z, 0, true};
   if (const model::SingularChart chart = find_singular_chart(p, p.z))
     throw trim_error(p, fmt::format("the equations have no slope at this state: {}", chart.what), chart.remedy,
@@ -98,7 +100,7 @@ Trim trim_inputs(const SteadyProblem& p, const std::vector<std::string>& names) 
         rates[i] = field.X(n + i, 0);
         right(i, 0) = -rates[i];
         for (std::size_t j = 0; j < places.size(); ++j) J(i, j) = field.input_jacobian(n + i, places[j]);
-        for (std::size_t j = 0; j < first_order; ++j) J(i, places.size() + j) = field.jacobian(n + i, 2 * n + j);
+        for (std::size_t j = 0; j < first_order; ++j) J(i, places.size() + j) = field.jacobian(n + i, states + j);
       }
       if (k == 0) before = std::max(1.0, linear::to_double(largest_of(rates)));
       const Step step = smallest_solution(J, right);
@@ -106,7 +108,7 @@ Trim trim_inputs(const SteadyProblem& p, const std::vector<std::string>& names) 
       for (std::size_t j = 0; j < places.size(); ++j)
         trim.inputs[places[j]] = trim.inputs[places[j]] + step.change(j, 0);
       for (std::size_t j = 0; j < first_order; ++j)
-        trim.z[2 * n + j] = trim.z[2 * n + j] + step.change(places.size() + j, 0);
+        trim.z[states + j] = trim.z[states + j] + step.change(places.size() + j, 0);
       if (largest_of(step.change.a) <= linear::tiny<Precise>(settled_digits)) break;
     }
   } catch (const std::domain_error& error) {

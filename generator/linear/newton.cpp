@@ -66,8 +66,6 @@ Equations equations(const Flow& flow, const Symmetry& symmetry, const State<doub
   return e;
 }
 
-/// The least-norm step, with entries relative to 1 and their magnitude, and rows relative to their largest derivative.
-/// A row that nearly vanishes compared with the others is ignored, since scaling would amplify its rounding.
 /// `open`: directions are left along which no derivative is known to differ from 0. `residual`: what the step leaves of
 /// the scaled equations.
 struct NewtonStep {
@@ -76,6 +74,8 @@ struct NewtonStep {
   double residual;
 };
 
+/// The least-norm step, with entries relative to 1 and their magnitude, and rows relative to their largest derivative.
+/// A row that nearly vanishes compared with the others is ignored, since scaling would amplify its rounding.
 std::optional<NewtonStep> step(const Equations& e, const State<double>& z) {
   const auto rows = static_cast<Eigen::Index>(e.value.size()), columns = static_cast<Eigen::Index>(z.size() - 1);
   Eigen::MatrixXd J(rows, columns);

@@ -282,6 +282,7 @@ bool find_blocked_directions(Mechanics& m) {
   std::optional<Search> search;
   search.emplace(m, OneFormSpace::SampleSet::on_constraints);
   if (!search->has_sample_points()) search.emplace(m, OneFormSpace::SampleSet::unrestricted);
+  if (std::none_of(m.contacts.begin(), m.contacts.end(), sticks)) return true;
   if (search->has_sample_points()) {
     for (std::uint32_t j = 0; j < m.contacts.size(); ++j)
       if (sticks(m.contacts[j])) search->examine_contact(j);
