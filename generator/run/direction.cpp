@@ -145,7 +145,7 @@ class DirectionFinder {
       }
       beside.push_back(values_of(direction_.beside.back()));
       if (beside.back().size() != values.size() || direction_.beside.back().open != middle_.open)
-        return "the kinks in time, or the contacts at the start, change";
+        return "the kinks in time, the samples, or the contacts at the start, change";
     }
     const Slopes found = slopes(values, beside, direction_.step, noise_of(middle_));
     if (!found.smooth) return "the scene does not change smoothly";
@@ -230,6 +230,7 @@ std::vector<eom::hybrid::Breakpoint> kink_times(const Scene& scene) {
   problem.t1 = scene.t1;
   problem.inputs = input_signals(scene);
   problem.breakpoints = scene.clock.breakpoints;
+  for (const auto& [every, offset] : scene.samples) problem.samples.push_back({{}, every, offset, {}, {}});
   std::vector<eom::hybrid::Breakpoint> times;
   for (const eom::hybrid::Segment& segment : eom::hybrid::segments(problem))
     times.push_back({segment.end, segment.next});

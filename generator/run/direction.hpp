@@ -19,7 +19,7 @@ struct Direction {
   std::vector<double> dp;     // of the parameters of the model, dependent ones too
   std::vector<double> dx;     // of the start, per state
   double dt0 = 0, dt1 = 0;    // of the span
-  std::vector<double> dt;     // of the times at which something jumps or bends, as in kink_times()
+  std::vector<double> dt;     // of the times in kink_times()
   std::vector<Signal> du;     // of the inputs at fixed t; empty: none depends on the value
 };
 
@@ -38,7 +38,8 @@ struct ModelScene {
 /// Error{stage "run"} if the scene does not follow a change of it, or not smoothly.
 Direction find_direction(const ModelScene& of, const std::string& name);
 
-/// Times inside the span of a scene at which an input or a function of time jumps or bends: before and after.
+/// Times inside the span of a scene at which an input or a function of time jumps or bends, or a sample is taken:
+/// before and after.
 std::vector<eom::hybrid::Breakpoint> kink_times(const Scene& scene);
 
 }  // namespace eomgen::run

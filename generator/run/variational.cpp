@@ -10,6 +10,7 @@
 #include <eom/hybrid/resets.hpp>
 #include <eom/hybrid/run_context.hpp>
 #include <functional>
+#include <tuple>
 
 #include "run/bind.hpp"
 #include "run/central_differences.hpp"
@@ -45,6 +46,8 @@ Problem problem_in(const Scene& scene, Problem problem) {
   problem.inputs = input_signals(scene);
   problem.breakpoints = scene.clock.breakpoints;
   problem.bounds = scene.clock.bounds;
+  for (std::size_t i = 0; i < problem.samples.size(); ++i)
+    std::tie(problem.samples[i].every, problem.samples[i].offset) = scene.samples[i];
   problem.t0 = scene.t0;
   problem.t1 = scene.t1;
   return problem;
@@ -64,6 +67,21 @@ double largest(const std::vector<double>& values) {
 
 [[noreturn]] void refuse(const std::string& what) {
   throw Error("run", {}, "--sensitivity: " + what, "compare runs with changed values (--set), or sweep over them");
+}
+
+/// A sample that is due at a boundary: its kind and its number.
+struct DueSample {
+  std::size_t kind;
+  std::int64_t k;
+};
+
+/// The samples at the boundary from the end of a segment to the start of the next one, at `until`.
+std::vector<DueSample> due_samples(const Problem& problem, double from, double until) {
+  std::vector<DueSample> due;
+  for (std::size_t i = 0; i < problem.samples.size(); ++i) {
+    if (const auto k = eom::hybrid::sample_between(problem.samples[i], from, until)) due.push_back({i, *k});
+  }
+  return due;
 }
 
 constexpr int smaller_differences = -4, most_differences = 8;  // powers of 2; number of the differences tried
@@ -100,7 +118,7 @@ class VariationalRun::Run {
       const double end = last ? motion_.t : own_.kinks[segment_].before;
       own_.enter(segment_);
       context.freeze_branches(total.t, total.x.data(), true);
-      if (segment_ == 0 && !shift(total, [](std::size_t, const Direction& d) { return -d.dt0; })) return total;
+      if (segment_ == 0 && !begin(total)) return total;
       eom::Result part = integrate(total, end, options);
       part.statistics += total.statistics;
       total = std::move(part);
@@ -203,6 +221,25 @@ class VariationalRun::Run {
     return true;
   }
 
+  /// At the start: the samples there, and s at the fixed time t0. False: f has no value, and the run ends.
+  bool begin(eom::Result& total) {
+    const std::vector<DueSample> due = due_samples(own_.problem, scene_.t0, scene_.t0);
+    if (!due.empty()) {
+      for (std::size_t d = 0; d < directions_.size(); ++d) {
+        for (const auto& neighbour : neighbours(d)) {
+          const Problem& in = neighbour->problem;
+          for (const DueSample& sample : due) {
+            if (eom::hybrid::sample_between(in.samples[sample.kind], in.t0, in.t0) != sample.k)
+              refuse(fmt::format("the sample '{}' at the start moves away from it with {}",
+                                 own_.problem.samples[sample.kind].name, directions_[d].name));
+          }
+        }
+      }
+      change_by_samples(due, 0, total, [](const Direction& d) { return d.dt0; });
+    }
+    return shift(total, [](std::size_t, const Direction& d) { return -d.dt0; });
+  }
+
   /// At the end of a segment.
   bool cross_kink_in_time(eom::Result& total) {
     const Breakpoint& kink = own_.kinks[segment_];
@@ -216,6 +253,9 @@ class VariationalRun::Run {
     }
     total.t = kink.after;
     own_.enter(segment_ + 1);
+    const std::vector<DueSample> due = due_samples(own_.problem, kink.before, kink.after);
+    if (!due.empty())
+      change_by_samples(due, segment_ + 1, total, [this](const Direction& d) { return d.dt[segment_]; });
     own_.context.freeze_branches(total.t, total.x.data(), true);
     return shift(total, [this](std::size_t, const Direction& d) { return -d.dt[segment_]; });
   }
@@ -258,6 +298,56 @@ class VariationalRun::Run {
       return at;
     });
     for (std::size_t i = 0; i < n_; ++i) out[(d + 1) * n_ + i] = direction.scale * (by_state[i] + by_scene.value[i]);
+  }
+
+  /// The state after samples, and the events that they cause.
+  static void take_samples(Equations& in, const std::vector<DueSample>& due, double t, std::vector<double>& x) {
+    const eom::ModeArray mode = in.context.model.mode();
+    std::vector<int> sides(in.problem.events.size(), 0);
+    in.resets.crossed(sides, in.resets.event_values(t, x.data()));
+    for (const DueSample& sample : due) {
+      if (in.resets.take_sample(sample.kind, sample.k, t, x, {}))
+        refuse(fmt::format("the sample '{}' at t = {} is undetermined", in.problem.samples[sample.kind].name, t));
+    }
+    const std::vector<std::size_t> caused = in.resets.crossed(sides, in.resets.event_values(t, x.data()));
+    const eom::hybrid::Resets::Changes made = in.resets.occur(caused, sides, t, x, {});
+    in.context.model.set_mode(mode);
+    if (made.failed || made.stopped)
+      refuse(fmt::format("the sample at t = {} causes an event that {}", t,
+                         made.failed ? "is undetermined" : "ends the run"));
+  }
+
+  /// x and s after samples at the start of a segment: s becomes dJ/dx s + dJ/dt dt + dJ.
+  template <class ChangeOfTime>
+  void change_by_samples(const std::vector<DueSample>& due, std::size_t segment, eom::Result& total,
+                         const ChangeOfTime& dt) {
+    const std::vector<double> x = total.x, own(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n_));
+    std::vector<double> after = own;
+    take_samples(own_, due, total.t, after);
+    for (std::size_t d = 0; d < directions_.size(); ++d) {
+      const Direction& direction = directions_[d];
+      const auto what = [&] {
+        return fmt::format("the sample '{}' at t = {} does not change the state smoothly with {}",
+                           own_.problem.samples[due.front().kind].name, total.t, direction.name);
+      };
+      std::vector<std::vector<double>> beside;
+      for (const auto& neighbour : neighbours(d)) {
+        neighbour->enter(segment);
+        neighbour->context.model.set_mode(own_.context.model.mode());
+        beside.push_back(own);
+        take_samples(*neighbour, due, total.t, beside.back());
+      }
+      const Slopes by_scene = slopes(after, beside, direction.step);
+      if (!by_scene.smooth) refuse(what());
+      const std::vector<double> by_state =
+          along(total.t, own, dt(direction), sensitivity(x, d), what, [&](double at, std::vector<double> state) {
+            take_samples(own_, due, at, state);
+            return state;
+          });
+      for (std::size_t i = 0; i < n_; ++i)
+        total.x[(d + 1) * n_ + i] = direction.scale * (by_state[i] + by_scene.value[i]);
+    }
+    std::copy(after.begin(), after.end(), total.x.begin());
   }
 
   /// The derivative of a function of (t, x) along (dt, dx), by differences as wide as it is smooth.

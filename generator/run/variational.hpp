@@ -3,7 +3,7 @@
 // without contacts. In: a run, directions. Out: the state and the derivatives at its end.
 //
 //   between interruptions        s' = df/dx s + df/dp dp + df/du du,   s(t0) = dx0 - f dt0
-//   where t = t_k(p), or where a surface g(t, x) = 0 of a kink is crossed at t_k, with x+ = J(x-):
+//   where t = t_k(p) (samples too), or where a surface g(t, x) = 0 of a kink is crossed at t_k, with x+ = J(x-):
 //                                s+ = dJ/dx (s- + f- dt) + dJ - f+ dt
 //   at the end                   s + f dt1
 //

@@ -295,6 +295,68 @@ atol = 1e-12
   CHECK(by_g["bounces"].get<double>() == 0);
 }
 
+namespace {
+
+/// x'' = u/m, where samples set u from x and the times of the samples.
+std::string sampled_text(const std::string& start, const std::string& more) {
+  return "format = 1\n[parameters]\nm = 2\nTs = 0.25\nkp = 3\nstart = " + start +
+         "\n[coordinates]\nx = {}\n[discrete]\nu = 0\nold = { initial = \"x\" }\n"
+         "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n"
+         "[[force]]\non = \"P\"\nforce = \"u*E1\"\n"
+         "[[sample]]\nname = \"controller\"\nevery = \"Ts\"\noffset = \"start\"\n" +
+         more;
+}
+
+}  // namespace
+
+// One sample at t1 = start: x = 1 + 0.3 t before it, then u = -kp x1 + t1, x = x1 + 0.3 s + u s^2/(2 m), s = 2 - t1.
+TEST_CASE("sensitivity: a sample changes them by its values and by the change of its time") {
+  const Folder folder;
+  folder.write("model.toml",
+               sampled_text("0.5",
+                            "set = { u = \"-kp*x + t\" }\n[scene.default]\n"
+                            "initial = { x = 1, x_dot = 0.3 }\nt = [0, 2]\nrtol = 1e-11\natol = 1e-12\n") +
+                   "parameters = { Ts = 10 }\n");
+  const double m = 2, kp = 3, t1 = 0.5, v = 0.3, x1 = 1 + v * t1, u = -kp * x1 + t1, s = 2 - t1;
+  const Json by_start = derivatives(folder, "start"), by_kp = derivatives(folder, "kp"),
+             by_m = derivatives(folder, "m");
+  const double du = -kp * v + 1;  // du/dt1
+  CHECK(std::abs(by_start["x"].get<double>() - (du * s * s / (2 * m) - u * s / m)) < 1e-9);
+  CHECK(std::abs(by_start["x_dot"].get<double>() - (du * s / m - u / m)) < 1e-9);
+  CHECK(std::abs(by_start["u"].get<double>() - du) < 1e-9);
+  CHECK(std::abs(by_kp["x"].get<double>() + x1 * s * s / (2 * m)) < 1e-9);
+  CHECK(std::abs(by_m["x"].get<double>() + u * s * s / (2 * m * m)) < 1e-9);
+  CHECK(derivatives(folder, "x_dot")["u"].get<double>() == doctest::Approx(-kp * t1).epsilon(1e-10));
+}
+
+TEST_CASE("sensitivity: samples from the start on, with events that they cause, agree with differences of runs") {
+  const Folder folder;
+  folder.write("model.toml", sampled_text("0",
+                                          "set = { u = \"-kp*x - 0.7*(x - old)/Ts\", old = \"x\" }\n"
+                                          "[[event]]\nname = \"limit\"\nwhen = \"u - 1\"\ndirection = \"up\"\n"
+                                          "set = { u = \"1 + 0.1*u\" }\n"
+                                          "[scene.default]\ninitial = { x = 1, x_dot = 0.3 }\nt = [0, 4.1]\n"
+                                          "rtol = 1e-11\natol = 1e-12\n"));
+  const Json run = document(folder, {"run", "model.toml"});
+  const auto limits = [&] {
+    int count = 0;
+    for (const Json& event : run["events"]) count += event["name"] == "limit" ? 1 : 0;
+    return count;
+  };
+  CHECK(limits() >= 1);
+  for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"kp", 3}, {"Ts", 0.25}, {"m", 2}}) {
+    CAPTURE(name);
+    const Json found = derivatives(folder, name);
+    for (const char* state : {"x", "x_dot", "u", "old"}) {
+      CAPTURE(state);
+      const double expected = by_runs(folder, "model.toml", name, value, state);
+      CHECK(std::abs(found[state].get<double>() - expected) < of_order_four * (1 + std::abs(expected)));
+    }
+  }
+  const ChildResult refused = expect(2, folder, {"run", "model.toml", "--sensitivity", "start"});
+  CHECK(contains(refused.err, "the samples, or the contacts at the start, change with start"));
+}
+
 TEST_CASE("sensitivity: resets with constraints, conditions and chains agree with differences of runs") {
   const Folder folder;
   // A pendulum in x, y that is struck where x = c; the second event follows from the state that the first one sets.
@@ -359,7 +421,8 @@ TEST_CASE("sensitivity: values without derivative are refused with a remedy") {
   };
   refused({"run", "model.toml", "--sensitivity", "q"}, "there is no parameter or coordinate 'q'");
   refused({"run", "bouncing_ball", "--sensitivity", "g"}, "contacts and friction change the equations");
-  refused({"run", "sampled_cart_pole", "--sensitivity", "g"}, "samples change the state");
+  // The sample at the end of the run, t = 6, is taken or not.
+  refused({"run", "sampled_cart_pole", "--sensitivity", "Ts"}, "the samples, or the contacts at the start, change");
   // The run shortens its steps for a force that is narrow in the state, and the variational equations do not.
   folder.write("model.toml",
                line_text("w = 1e-3\n", "1000*exp(-((x - 3)/w)^2)", "initial = { x_dot = 1 }\nt = [0, 10]\n"));

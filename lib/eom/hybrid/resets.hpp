@@ -57,14 +57,20 @@ class Resets {
   /// Takes the samples that belong to the boundary between two segments, `until` being the start of the next one.
   Reason take_samples(double from, double until, std::span<double> x, const OnEvent& event) {
     for (std::size_t i = 0; i < problem_.samples.size(); ++i) {
-      const Sample& sample = problem_.samples[i];
-      const std::optional<std::int64_t> k = sample_between(sample, from, until);
+      const std::optional<std::int64_t> k = sample_between(problem_.samples[i], from, until);
       if (!k || *k <= taken_[i]) continue;
       taken_[i] = *k;
-      bool made = false;
-      if (const Reason failed = change(until, x, sample.reset, sample.noise, *k, sample.name, made)) return failed;
-      if (made && event) event({until, "sample", sample.name}, x);
+      if (const Reason failed = take_sample(i, *k, until, x, event)) return failed;
     }
+    return {};
+  }
+
+  /// Takes sample k of kind i at the time t, whether or not it belongs there.
+  Reason take_sample(std::size_t i, std::int64_t k, double t, std::span<double> x, const OnEvent& event) {
+    const Sample& sample = problem_.samples[i];
+    bool made = false;
+    if (const Reason failed = change(t, x, sample.reset, sample.noise, k, sample.name, made)) return failed;
+    if (made && event) event({t, "sample", sample.name}, x);
     return {};
   }
 
