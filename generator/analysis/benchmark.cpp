@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <eom/hybrid/samples.hpp>
+#include <memory>
 
-#include "analysis/impulse_in_digits.hpp"
+#include "analysis/reference_boundaries.hpp"
 #include "bench/libraries.hpp"
 #include "error.hpp"
 #include "run/integration.hpp"
@@ -17,74 +20,89 @@ namespace {
 using pipeline::Simulation;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t looks = 100;  // samples of the error along the run
-constexpr int fewest_digits = 8;    // required of the reference solution
+constexpr std::size_t looks = 100;                      // samples of the error along the run
+constexpr int fewest_digits = 8;                        // required of the reference solution
+constexpr double golden_section = 0.38196601125010515;  // of the spacing: errors are not measured at round times
 
-[[noreturn]] void unsupported(const std::string& what, const std::string& remedy) {
-  throw Error("bench", {}, "there is no reference for this scene: " + what, remedy);
-}
-
-/// The run before any measurement: reports if there can be no reference solution. Returns the times at which supports
-/// give an impulse.
-std::vector<double> require_smooth(const Simulation& simulation, const run::RunRequest& request) {
+/// The run before any measurement: reports if there can be no reference solution.
+ReferenceTrial require_reference(const Simulation& simulation, const run::RunRequest& request) {
   if (!simulation.program.contacts.empty() || !simulation.program.contact_set.empty())
-    unsupported("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
-  if (request.has_resets()) unsupported("events or samples change the state", "eomgen run gives an error_estimate");
+    refuse_reference("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
   for (const run::Signal& signal : simulation.scene.inputs) {
     if (signal.is_varying())
-      unsupported("an input is an expression of t", "write it into the force, or give it as a table");
+      refuse_reference("an input is an expression of t", "write it into the force, or give it as a table");
   }
   // A scene with a fixed step may not be solvable with adaptive steps.
   run::Integration trial(request, simulation.scene.step > 0 ? "rk4" : "dop853");
   eom::Options options;
   options.fixed_step = simulation.scene.step;
   options.interrupt = request.interrupt;
-  std::vector<double> impulses;
+  if (request.has_resets() && options.fixed_step == 0) options.rtol = options.atol = trial_tolerance;
+  ReferenceTrial found;
+  const auto named = [](const auto& list, const std::string& name) {
+    const auto at = std::find_if(list.begin(), list.end(), [&](const auto& entry) { return entry.name == name; });
+    return static_cast<std::size_t>(at - list.begin());
+  };
   const eom::Result end = trial.run(options, {}, [&](const eom::hybrid::Event& event, std::span<const double>) {
-    if (event.kind == "impulse") impulses.push_back(event.t);
+    if (event.kind == "impulse") found.impulses.push_back(event.t);
+    if (event.kind == "before_reset")
+      found.changes.push_back({StateChange::Kind::event, named(request.events, event.name), event.t});
+    if (event.kind == "sample") {
+      const std::size_t i = named(request.samples, event.name);
+      const auto k = eom::hybrid::sample_between(request.samples[i], event.t, event.t);
+      found.changes.push_back({StateChange::Kind::sample, i, event.t, k.value()});
+    }
   });
   if (trial.kink_crossings() > 0)
-    unsupported("the motion crosses a kink (abs, sign, min, max, if)", "shorten the run (--t-end), or smooth the law");
-  if (end.outcome == eom::Outcome::done) return impulses;
+    refuse_reference("the motion crosses a kink (abs, sign, min, max, if)",
+                     "shorten the run (--t-end), or smooth the law");
+  if (end.outcome == eom::Outcome::done) {
+    found.x = end.x;
+    return found;
+  }
   throw Error("bench", {},
               fmt::format("the run ends at t = {} with '{}' {}", end.t, eom::name(end.outcome), end.detail),
               "give an end before that: --t-end",
               end.outcome == eom::Outcome::stopped_by_event ? ErrorKind::input : ErrorKind::numerical);
 }
 
-std::vector<double> inputs_at(const run::Scene& scene, double t) {
-  std::vector<double> u;
-  for (const run::Signal& signal : scene.inputs) u.push_back(signal(t, t));
-  return u;
+/// Times at which errors are measured; the last is the end. States that jump have no error near their jumps.
+std::vector<double> times_of_errors(const run::Scene& scene, const std::vector<StateChange>& changes) {
+  const double spacing = (scene.t1 - scene.t0) / looks, shift = changes.empty() ? 0 : golden_section;
+  std::vector<double> times;
+  for (std::size_t k = 1; k < looks; ++k) {
+    const double t = scene.t0 + (static_cast<double>(k) - shift) * spacing;
+    const bool jumps = std::any_of(changes.begin(), changes.end(), [&](const StateChange& change) {
+      // A sample is at a known time, an event at one that has the error of the run.
+      const double near = change.kind == StateChange::Kind::sample ? eom::hybrid::equal_times(t) : spacing / 4;
+      return std::abs(t - change.t) <= near;
+    });
+    if (!jumps) times.push_back(t);
+  }
+  times.push_back(scene.t1);
+  return times;
 }
 
-/// impulses: times at which supports give one.
 reference::Problem make_problem(const Simulation& simulation, const run::RunRequest& request,
-                                const std::vector<double>& times, const std::vector<double>& impulses) {
-  const run::Scene& scene = simulation.scene;
+                                const std::vector<double>& times,
+                                const std::shared_ptr<ReferenceBoundaries>& boundaries) {
   const run::Integration trial(request, "dop853");
-  const std::vector<eom::hybrid::Segment> segments = trial.segments();
-  reference::Problem problem{
-      simulation.program.functions.front(), trial.initial_state(), scene.parameters, trial.begin(), {}, times};
+  reference::Problem problem{simulation.program.functions.front(),
+                             trial.initial_state(),
+                             simulation.scene.parameters,
+                             trial.begin(),
+                             boundaries->segments(trial.begin(), trial.segments()),
+                             times};
   problem.interrupt = request.interrupt;
   problem.coordinates = simulation.program.free.size();
   for (const program::Function& function : simulation.program.functions) {
     if (function.name == "constraints") problem.constraints = &function;
   }
-  double from = problem.t0;
-  std::vector<ImpulseInDigits::Kink> kinks;
-  for (const auto& [end, next, step] : segments) {
-    problem.segments.push_back({end, inputs_at(scene, (from + end) / 2), next});
-    if (!kinks.empty()) kinks.back().u_behind = problem.segments.back().u;
-    kinks.push_back({end, next, problem.segments.back().u, problem.segments.back().u});
-    from = next;
-  }
-  const auto impulse = std::make_shared<ImpulseInDigits>(simulation.derived->candidates.front(), scene.parameters);
-  problem.cross_kink = [=, t1 = scene.t1](std::size_t segment, std::vector<cln::cl_F>& x, int digits) {
-    const ImpulseInDigits::Kink& kink = kinks[segment];
-    if (std::find(impulses.begin(), impulses.end(), std::min(kink.behind, t1)) != impulses.end())
-      impulse->apply(kink, x, digits);
+  problem.change = [boundaries](std::size_t boundary, const cln::cl_F& t, std::vector<cln::cl_F>& x, int digits) {
+    boundaries->change(boundary, t, x, digits);
   };
+  problem.event_value = [boundaries](std::size_t segment, const cln::cl_F& t, const std::vector<cln::cl_F>& x,
+                                     int digits) { return boundaries->event_value(segment, t, x, digits); };
   return problem;
 }
 
@@ -134,22 +152,23 @@ Benchmark benchmark(const BenchmarkRequest& asked) {
   run::RunRequest request = pipeline::make_run_request(*simulation.derived, simulation.scene, code, false);
   request.watch_power = false;
   request.interrupt = asked.interrupt;
-  const std::vector<double> impulses = require_smooth(simulation, request);
+  ReferenceTrial trial = require_reference(simulation, request);
   const run::Scene& scene = simulation.scene;
-  std::vector<double> times;
-  for (std::size_t k = 1; k < looks; ++k)
-    times.push_back(scene.t0 + (scene.t1 - scene.t0) * static_cast<double>(k) / looks);
-  times.push_back(scene.t1);
-
-  reference::Problem problem = make_problem(simulation, request, times, impulses);
+  const std::vector<double> times = times_of_errors(scene, trial.changes);
+  const auto boundaries = std::make_shared<ReferenceBoundaries>(
+      simulation.program, simulation.derived->candidates.front(), request, std::move(trial));
+  reference::Problem problem = make_problem(simulation, request, times, boundaries);
   problem.progress = [&show](double fraction) { show(fmt::format("reference: {:.0f} %", 100 * fraction)); };
   const Clock::time_point start = Clock::now();
   result.reference = reference::solve(problem);
   result.reference_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  boundaries->require_same_end(result.reference);
 
   bench::Request measured{request, result.reference, times, solvers_for(asked, scene, request.code, result.left_out)};
   measured.seconds_limit = asked.max_seconds;
-  if (asked.other_libraries && asked.solvers.empty()) {
+  if (asked.other_libraries && asked.solvers.empty() && request.has_resets()) {
+    result.left_out.emplace_back("solvers of other libraries", "events or samples change the state");
+  } else if (asked.other_libraries && asked.solvers.empty()) {
     show("compiling what calls other libraries");
     bench::FoundLibraries found = bench::find_libraries(request, problem.x, asked.max_seconds);
     measured.external_solvers = std::move(found.external_solvers);

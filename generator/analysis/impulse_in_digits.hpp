@@ -24,10 +24,15 @@ class ImpulseInDigits {
   };
   /// Changes the rates in x = (q, qdot, integrals).
   void apply(const Kink& kink, std::vector<cln::cl_F>& x, int digits) const;
+  /// Changes rates by impulses of the constraints alone, until they satisfy the constraints.
+  void make_consistent(const cln::cl_R& t, const std::vector<double>& u, std::vector<cln::cl_F>& x, int digits) const;
 
  private:
-  std::vector<cln::cl_R> values(const std::vector<symbolic::Ref>& roots, double t, const std::vector<double>& u,
-                                const std::vector<cln::cl_F>& x, int digits) const;
+  std::vector<cln::cl_R> values(const std::vector<symbolic::Ref>& roots, const cln::cl_R& t,
+                                const std::vector<double>& u, const std::vector<cln::cl_F>& x, int digits) const;
+  /// Changes the rates by an impulse and those of the constraints.
+  void change(const std::vector<cln::cl_R>& impulse, const cln::cl_R& t, const std::vector<double>& u,
+              std::vector<cln::cl_F>& x, int digits) const;
 
   const system::EquationSystem& system_;
   const std::vector<double>& parameters_;

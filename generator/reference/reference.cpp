@@ -22,6 +22,8 @@ using States = std::vector<std::vector<Number>>;
 
 constexpr int guard = 4;  // digits between the last terms and the rounding error of the arithmetic
 constexpr std::size_t most_steps = 1000000;
+constexpr double event_tolerance = 1e-8;  // of the span: between an event of the run and that in all digits
+constexpr int most_secants = 40;
 
 [[noreturn]] void fail(const Number& t, const std::string& why) {
   throw Error("reference", {}, fmt::format("the reference ends at t = {:.6g}: {}", cln::double_approx(t), why),
@@ -55,13 +57,18 @@ class Run {
   }
 
   States run() {
-    for (const InputSegment& segment : problem_.segments) {
+    if (problem_.change) problem_.change(0, t_, x_, settings_.digits);
+    for (std::size_t k = 0; k < problem_.segments.size(); ++k) {
+      const InputSegment& segment = problem_.segments[k];
       // The last segment ends with the run, unless a kink at the end of the run is to be crossed.
       const bool last = &segment == &problem_.segments.back() && segment.next == segment.until;
       const double until = last ? problem_.times.back() : segment.until;
       const Number end = expand_.number(until);
       while (t_ != end) step(segment, end);
-      if (segment.next != segment.until) cross_kink(segment);
+      if (segment.event) move_to_event(k);
+      if (segment.next != segment.until) cross_gap(segment);
+      if (!last && problem_.change) problem_.change(k + 1, t_, x_, settings_.digits);
+      if (!last) last_.clear();
     }
     while (wanted_.size() < problem_.times.size()) wanted_.push_back(x_);
     return std::move(wanted_);
@@ -69,12 +76,37 @@ class Run {
   std::size_t steps() const { return steps_; }
 
  private:
-  void cross_kink(const InputSegment& segment) {
+  void cross_gap(const InputSegment& segment) {
     const Number next = expand_.number(segment.next);
     if (continues_in_gaps_ && !last_.empty()) x_ = at(last_, next - last_t_);
     t_ = next;
-    if (problem_.cross_kink)
-      problem_.cross_kink(static_cast<std::size_t>(&segment - problem_.segments.data()), x_, settings_.digits);
+  }
+
+  /// Moves to the zero of the event function by the secant method on the series of the last step.
+  void move_to_event(std::size_t segment) {
+    const auto value = [&](const Number& t) {
+      return problem_.event_value(segment, t, at(last_, t - last_t_), settings_.digits);
+    };
+    const auto lost = [&] { fail(t_, "an event that follows has no zero near the time at which the run has it"); };
+    if (last_.empty()) lost();
+    const Number from = t_, span = cln::abs(expand_.number(problem_.times.back()) - expand_.number(problem_.t0)),
+                 width = expand_.number(event_tolerance) * span,
+                 rounding = cln::scale_float(cln::max(cln::abs(t_), span), -settings_.bits());
+    Number a = t_, b = t_ - width;
+    Number at_a = value(a), at_b = value(b);
+    for (int i = 0; i < most_secants && !cln::zerop(at_a) && at_a != at_b; ++i) {
+      const Number next = a - at_a * (a - b) / (at_a - at_b);
+      if (next == a) break;
+      if (cln::abs(next - from) > width) lost();
+      b = a;
+      at_b = at_a;
+      a = next;
+      at_a = value(a);
+      if (cln::abs(a - b) <= rounding) break;
+      if (i + 1 == most_secants) lost();
+    }
+    x_ = at(last_, a - last_t_);
+    t_ = a;
   }
 
   void step(const InputSegment& segment, const Number& end) {

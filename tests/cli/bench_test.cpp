@@ -100,6 +100,99 @@ TEST_CASE("bench: scenes without reference solution and unknown solvers are repo
   refused({"bench", "P2_planar_pendulum", "--solver", "rk5"}, "there is no solver 'rk5'");
 }
 
+namespace {
+
+/// A particle of 1 kg on a line, with `more`.
+std::string line_text(const std::string& more) {
+  return "format = 1\n[coordinates]\nx = {}\n[[particle]]\nname = \"P\"\nmass = 1\nposition = [\"x\", 0, 0]\n" + more;
+}
+
+/// The reference of a scene. Runs by dop853 come as near to it as their tolerances.
+Json reference(const Folder& folder, const std::string& text) {
+  folder.write("resets.toml", text);
+  const Json found = document(folder, {"bench", "resets.toml", "--solver", "dop853"});
+  double least = 1;
+  for (const Json& row : found["rows"]) {
+    REQUIRE(row["outcome"] == "done");
+    least = std::min(least, row["error_along"].get<double>());
+  }
+  CHECK(least < 1e-10);
+  CHECK(found["reference"]["digits_at_end"].get<int>() >= 20);
+  return found["reference"]["end"];
+}
+
+constexpr double rounding = 1e-14;  // of the closed forms in long double, and of the end in binary64
+
+}  // namespace
+
+// x = 1 - 5 t^2 between bounces at speeds v, e v, e^2 v, ..
+TEST_CASE("bench: the reference has resets at events, at the times of the closed form") {
+  const Folder folder;
+  const Json end = reference(folder, line_text("[[force]]\ngravity = \"-10*E1\"\n[discrete]\nbounces = 0\n"
+                                               "[[event]]\nname = \"bounce\"\nwhen = \"x\"\ndirection = \"down\"\n"
+                                               "set = { x_dot = \"-x_dot*4/5\", bounces = \"bounces + 1\" }\n"
+                                               "[scene.default]\ninitial = { x = 1 }\nt = [0, 2]\n"));
+  long double v = std::sqrt(20.0L), t = std::sqrt(0.2L);
+  int bounces = 0;
+  for (; t < 2; ++bounces) {
+    v *= 4.0L / 5;
+    if (t + v / 5 > 2) break;
+    t += v / 5;
+  }
+  const long double s = 2 - t;
+  CHECK(end["bounces"].get<int>() == bounces + 1);
+  CHECK(std::abs(end["x"].get<double>() - static_cast<double>(v * s - 5 * s * s)) < rounding);
+  CHECK(std::abs(end["x_dot"].get<double>() - static_cast<double>(v - 10 * s)) < rounding);
+}
+
+// x'' = u between samples, from the start on; a limit of u is an event that samples cause.
+TEST_CASE("bench: the reference has samples, and events that they cause") {
+  const Folder folder;
+  const Json end =
+      reference(folder, line_text("[[force]]\non = \"P\"\nforce = \"u*E1\"\n[discrete]\nu = 0\n"
+                                  "[[sample]]\nname = \"c\"\nevery = 0.125\nset = { u = \"-8*x - 3*x_dot\" }\n"
+                                  "[[event]]\nname = \"limit\"\nwhen = \"u + 3\"\ndirection = \"down\"\n"
+                                  "set = { u = -2 }\n[scene.default]\ninitial = { x = 1 }\nt = [0, 2]\n"));
+  long double x = 1, v = 0, u = 0;
+  const long double h = 0.125L;
+  for (int k = 0; k < 16; ++k) {
+    const long double before = u;
+    u = -8 * x - 3 * v;
+    if (before > -3 && u < -3) u = -2;
+    x += v * h + u * h * h / 2;
+    v += u * h;
+  }
+  CHECK(std::abs(end["x"].get<double>() - static_cast<double>(x)) < rounding);
+  CHECK(std::abs(end["x_dot"].get<double>() - static_cast<double>(v)) < rounding);
+}
+
+TEST_CASE("bench: resets of a model with constraints keep them, as in a run; what has no order is refused") {
+  const Folder folder;
+  const std::string pendulum =
+      "format = 1\n[coordinates]\nx = {}\ny = {}\n[[particle]]\nname = \"P\"\nmass = 1\n"
+      "position = [\"x\", \"y\", 0]\n[[force]]\ngravity = \"-10*E2\"\n"
+      "[[constraint]]\nname = \"rod\"\nholonomic = \"x^2 + y^2 - 1\"\n"
+      "[[event]]\nname = \"struck\"\nwhen = \"x - 0.3\"\ndirection = \"up\"\nset = { SET }\n"
+      "[scene.default]\ninitial = { x = 0, y = -1, x_dot = 1 }\nt = [0, 3]\n";
+  const auto with = [&](const char* set) {
+    std::string text = pendulum;
+    return text.replace(text.find("SET"), 3, set);
+  };
+  const Json end = reference(folder, with("x_dot = \"x_dot + 0.5\""));
+  const Json run = document(folder, {"run", "resets.toml", "--rtol", "1e-13", "--atol", "1e-13"});
+  for (const char* name : {"x", "y", "x_dot", "y_dot"})
+    CHECK(std::abs(end[name].get<double>() - run["final"][name].get<double>()) < 1e-10);
+  folder.write("resets.toml", with("x = \"-x\", x_dot = \"-x_dot\""));
+  const ChildResult moved = expect(2, folder, {"bench", "resets.toml", "--solver", "dop853"});
+  CHECK(contains(moved.err, "'struck' moves coordinates that are subject to constraints"));
+  // The event occurs at the end of the run.
+  folder.write("resets.toml", line_text(""
+                                        "[[event]]\nname = \"there\"\nwhen = \"t - 2\"\nset = { x_dot = 2 }\n"
+                                        "[scene.default]\ninitial = { x = 1 }\nt = [0, 2]\n"));
+  const ChildResult order = expect(2, folder, {"bench", "resets.toml", "--solver", "dop853"});
+  CHECK(contains(order.err, "too close to the end or to another change"));
+}
+
 TEST_CASE("bench: the reference has the impulses and kinks in time of the run") {
   const Folder folder;
   const std::string pendulum =

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Segments of a reference solution, and what changes the state between them: impulses of supports, resets at events,
+// samples. In: a run with tight tolerances, which has their order. Out: segments whose ends are found in all digits,
+// and the changes there.
+#pragma once
+
+#include <cstdint>
+#include <eom/hybrid/segments.hpp>
+#include <string>
+#include <vector>
+
+#include "analysis/resets_in_digits.hpp"
+#include "reference/reference.hpp"
+
+namespace eomgen::analysis {
+
+inline constexpr double trial_tolerance = 1e-12;  // of the run that the reference follows
+
+/// A change of the state by the model itself: a reset at an event, or a sample.
+struct StateChange {
+  enum class Kind { event, sample } kind;
+  std::size_t index;  // of the event or sample
+  double t;
+  std::int64_t k = 0;  // of a sample
+};
+
+/// The end of the run that the reference follows, and what interrupts it.
+struct ReferenceTrial {
+  std::vector<double> impulses;  // times at which supports give one
+  std::vector<StateChange> changes;
+  std::vector<double> x;
+};
+
+class ReferenceBoundaries {
+ public:
+  /// program, system and request have to outlive this object.
+  ReferenceBoundaries(const program::Program& program, const system::EquationSystem& system,
+                      const run::RunRequest& request, ReferenceTrial trial);
+  ReferenceBoundaries(const ReferenceBoundaries&) = delete;
+  ReferenceBoundaries& operator=(const ReferenceBoundaries&) = delete;
+
+  /// The segments of a run, in which `kinks` are known in advance. Called once, before the functions below. Throws
+  /// Error{stage "bench"} if the order of two changes is not determined.
+  std::vector<reference::InputSegment> segments(double begin, const std::vector<eom::hybrid::Segment>& kinks);
+
+  /// See reference::Problem.
+  void change(std::size_t boundary, const cln::cl_F& t, std::vector<cln::cl_F>& x, int digits) const;
+  cln::cl_F event_value(std::size_t segment, const cln::cl_F& t, const std::vector<cln::cl_F>& x, int digits) const;
+
+  /// Throws Error{stage "bench"} if the reference does not end where the run that it follows did.
+  void require_same_end(const reference::Solution& reference) const;
+
+ private:
+  /// Takes the changes at the time t. caused: an event at t may follow from what happens there; otherwise a sample has
+  /// to come first.
+  void add_boundary(double t, bool caused);
+  void add_segment(reference::InputSegment segment);
+  [[noreturn]] void refuse_order(const StateChange& change) const;
+  std::vector<double> inputs_at(double t) const;
+  bool has_impulse(double t) const;
+
+  ReferenceTrial trial_;
+  ImpulseInDigits impulse_;
+  ResetsInDigits resets_;
+  const run::RunRequest& request_;
+  std::size_t next_ = 0;  // of the changes, while segments are made
+  std::vector<reference::InputSegment> segments_;
+  std::vector<ImpulseInDigits::Kink> kinks_;       // per segment, at its end
+  std::vector<std::vector<StateChange>> changes_;  // per boundary
+};
+
+/// Throws Error{stage "bench"}.
+[[noreturn]] void refuse_reference(const std::string& what, const std::string& remedy);
+
+}  // namespace eomgen::analysis
