@@ -58,7 +58,7 @@ void ResetsInDigits::apply(const eom::hybrid::Reset& reset, const std::string& n
     if (entry.component < n && !system_.active.empty())
       throw Error("bench", {}, fmt::format("'{}' moves coordinates that are subject to constraints", name),
                   "eomgen run gives an error_estimate");
-    moves = moves || entry.component < 2 * n;
+    moves = moves || entry.component < system_.layout().first_order_begin();
     at.x[entry.component] = r[entry.value];
   }
   if (moves) impulses_.make_consistent(at.t, at.u, at.x, at.digits);

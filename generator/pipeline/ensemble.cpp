@@ -53,7 +53,7 @@ std::string ranged(const Simulation& first, const run::Code& code) {
   for (const run::Signal& input : scene.inputs) u.push_back(input(scene.t0, scene.t0));
   std::vector<double> here(code.output_names.size()), there(here.size());
   const auto at = [&](double away, std::vector<double>& y) {
-    std::vector<double> x(2 * n);
+    std::vector<double> x(code.layout().size());
     for (std::size_t i = 0; i < n; ++i) {
       x[i] = scene.q[code.free[i]] + away * (0.37 + 0.11 * static_cast<double>(i));
       x[n + i] = scene.qdot[code.free[i]] - away * (0.23 + 0.07 * static_cast<double>(i));

@@ -229,10 +229,10 @@ class Description {
   }
 
   void held_angles() {
-    const std::size_t n = system_.free.size();
-    result_->movable.assign(2 * n, 0);
-    result_->angle.assign(2 * n, 0);
-    result_->unit.assign(2 * n, none);
+    const std::size_t moved = system_.layout().first_order_begin();
+    result_->movable.assign(moved, 0);
+    result_->angle.assign(moved, 0);
+    result_->unit.assign(moved, none);
     for (const auto& [coordinate, order] : scene_.solve) {
       if (const int at = state(coordinate, order); at != none) result_->movable[static_cast<std::size_t>(at)] = 1;
     }
