@@ -37,6 +37,20 @@ class SimulationTest(unittest.TestCase):
         np.testing.assert_allclose(simulation.state(), [final[name] for name in self.f.state_names], atol=1e-9)
         np.testing.assert_array_equal(simulation.outputs()[:4], [final_of(simulation, n) for n in self.f.output_names[:4]])
 
+    def test_pieces_follow_resets_and_samples_of_the_model(self):
+        for name in ("thermostat", "clock_escapement", "sampled_cart_pole", "rimless_wheel"):
+            with self.subTest(name):
+                model = shipped(name)
+                run = model.run(rtol=1e-11, atol=1e-12, error_estimate=False)
+                simulation = model.compile().simulate(rtol=1e-11, atol=1e-12)
+                events = []
+                for k in range(1, 8):  # also from a state that was saved between two changes
+                    simulation.restore(simulation.save())
+                    events += simulation.advance(run.t * k / 7).events
+                self.assertEqual([e.name for e in events], [e.name for e in run.events])
+                expected = [run.final[state] for state in simulation.model.state_names]
+                np.testing.assert_allclose(simulation.state(), expected, rtol=1e-7, atol=1e-9)
+
     def test_inputs_are_held_functions_or_tables(self):
         # Momentum of cart and pendulum without friction: F integrated over time.
         def momentum(simulation):
