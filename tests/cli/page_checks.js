@@ -57,7 +57,9 @@ function picture(canvas) {
 // Largest distance, in pixels, of drawn positions from those in the rows of the run.
 function furthest(report, csv) {
   let far = 0;
-  for (const row of csv.rows) {
+  // Without the two rows at a reset, whose time a page has in 10 digits.
+  const apart = (k, other) => other < 0 || other === csv.rows.length || csv.rows[k][0] !== csv.rows[other][0];
+  for (const row of csv.rows.filter((_, k) => apart(k, k - 1) && apart(k, k + 1))) {
     const y = report.motion().at(row[0]);
     report.data.parts.places.forEach((place) => {
       const column = csv.columns.indexOf(place.name + ".position1");
@@ -125,7 +127,7 @@ function tables(page, report) {
     if (!cells.has(state.name)) return;
     ++found.in_table;
     found.table_off = Math.max(found.table_off, off(Number(cells.get(state.name)), last[k]));
-    found.start_off = Math.max(found.start_off, off(numbers.get(state.name), first[k]));
+    if (numbers.has(state.name)) found.start_off = Math.max(found.start_off, off(numbers.get(state.name), first[k]));
   });
   return found;
 }
@@ -147,12 +149,12 @@ async function drag(frame, report, name) {
   for (let k = 1; k <= 8; ++k) send("pointermove", [begin[0] + (end[0] - begin[0]) * k / 8, begin[1] + (end[1] - begin[1]) * k / 8]);
   const reached = at();
   send("pointerup", end);
-  await wait(() => report.motion().t.length === 501);
+  await wait(() => report.motion().t.length >= 501);
   report.player.play(false);
   const {psi} = report.live.constraintsAt(report.live.t0, report.motion().x[0]);
   const shown = tables(page, report);
   return {moved: Math.hypot(reached[0] - begin[0], reached[1] - begin[1]), nearer: Math.hypot(reached[0] - end[0], reached[1] - end[1]) < Math.hypot(begin[0] - end[0], begin[1] - end[1]) - 3,
-          psi: Math.max(0, ...Array.from(psi, Math.abs)), ran: report.motion().t.length === 501, ...shown};
+          psi: Math.max(0, ...Array.from(psi, Math.abs)), ran: report.motion().t.length >= 501, ...shown};
 }
 
 async function look(entry) {
@@ -183,7 +185,7 @@ async function look(entry) {
         range.value = entry.slider.value;
         range.dispatchEvent(new frame.contentWindow.Event("change"));
         const old = report.data.t.length;
-        at.ran = await wait(() => report.motion().x !== null && report.motion().t.length === 501 && page.getElementById("status").textContent.includes("steps in"));
+        at.ran = await wait(() => report.motion().x !== null && report.motion().t.length >= 501 && page.getElementById("status").textContent.includes("steps in"));
         report.player.play(false);
         at.status = page.getElementById("status").textContent;
         const x = report.motion().x[report.motion().x.length - 1];

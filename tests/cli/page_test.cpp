@@ -267,6 +267,8 @@ TEST_CASE("page: reports show complete equations, replay the run, and integrate 
                                    {"R16_disk_on_disk", false},
                                    {"six_bar_spatial", true, "k", 170, "plate"},
                                    {"n_four_bar_2", true, "", 0, "K1"},
+                                   {"rimless_wheel", true, "gamma", 0.1},
+                                   {"sampled_cart_pole", true, "kp", 44},
                                    {"chain_10.toml", true, "L", 1.2}};
   Json cases = Json::array();
   std::vector<Json> wanted;
