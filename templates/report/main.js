@@ -124,7 +124,7 @@ function panel() {
     place.append(field);
     return details;
   };
-  const parameters = group("Parameters", true), starts = group("Start", false);
+  const parameters = group("Parameters", true), starts = group("Initial values", false);
   live.parameters.forEach((p, i) => {
     if (!p.moved) return;
     const [low, high] = rangeOf(p.value, p.positive);

@@ -132,6 +132,26 @@ function tables(page, report) {
   return found;
 }
 
+// Layout of the page without scrolling: lowest edge of the controls, fields that cut off a number, words that name two controls.
+function controls(page) {
+  const fields = [...page.querySelectorAll(".slider input[type=number]")], kept = fields.map((field) => field.value);
+  fields.forEach((field) => { field.value = "-1.23457e-12"; });
+  const cut = fields.filter((field) => field.scrollWidth > field.clientWidth).length;
+  fields.forEach((field, k) => { field.value = kept[k]; });
+  const words = [...page.querySelectorAll("#stage button, #stage summary")].map((node) => node.textContent);
+  return {bottom: Math.max(...[...page.querySelectorAll(".bar")].map((bar) => box(bar).bottom)), fields: fields.length, cut, twice: words.filter((word, k) => words.indexOf(word) < k)};
+}
+
+// Smallest gap in pixels between a letter and the dots above it.
+function dotGap(page) {
+  let least = Infinity;
+  for (const mover of page.querySelectorAll("mover[accent=true]")) {
+    const [letter, mark] = mover.children, room = parseFloat(page.defaultView.getComputedStyle(mark).paddingBottom);
+    if (mark.textContent === "\u02d9" || mark.textContent === "\u00a8") least = Math.min(least, box(letter).top - box(mark).bottom + room);
+  }
+  return least;
+}
+
 async function wait(condition) {
   for (let k = 0; k < 30000 && !condition(); ++k) await later(20);
   return condition();
@@ -161,7 +181,7 @@ async function look(entry) {
   const found = {name: entry.name, widths: {}};
   for (const width of widths) {
     const frame = await open(entry.page, width), page = frame.contentDocument, report = frame.contentWindow.report;
-    const at = {formulas: formulas(frame), sideways: page.documentElement.scrollWidth - page.documentElement.clientWidth};
+    const at = {dot_gap: dotGap(page), controls: controls(page), formulas: formulas(frame), sideways: page.documentElement.scrollWidth - page.documentElement.clientWidth};
     if (report) {
       const canvas = page.getElementById("scene");
       report.player.play(false);

@@ -22,6 +22,7 @@ namespace {
 constexpr std::size_t largest_page = 1000000;  // bytes
 constexpr double as_run_does = 1e-5;  // the page integrates with rtol 1e-8, the run with 1e-9 and another method
 constexpr double a_pixel = 1;
+constexpr double first_view = 900;  // height of the frames, in pixels
 constexpr std::size_t longest_formula = 60000;  // bytes, as in report
 constexpr double on_the_sphere = 1e-3;  // for radius 1: intersections of surface lines with cells are found by secants
 
@@ -187,6 +188,10 @@ void check(const Json& found, const PageCase& c, const Json& wanted) {
     CHECK(at["formulas"]["overlaps"][0] == 0);
     CHECK(at["formulas"]["tight"][0] == 0);
     CHECK(at["formulas"]["wide"][0] == 0);
+    CHECK(at["dot_gap"] > 1);  // pixels
+    CHECK(at["controls"]["cut"] == 0);
+    CHECK(at["controls"]["twice"] == Json::array());
+    if (width == "1280") CHECK(at["controls"]["bottom"] < first_view);
     CHECK(at["ink"] > 500);
     CHECK(at["moves"] == true);
     CHECK(at["plays"] == true);
