@@ -197,6 +197,7 @@ async function look(entry) {
       const before = report.player.at;
       at.plays = await wait(() => report.player.at !== before);
       report.player.play(false);
+      at.covered = [...page.querySelectorAll("#plots.drawn text")].map((node) => node.textContent).filter((text) => text.includes("(as "));
       at.curves = page.querySelectorAll("#plots.drawn path").length;
       if (width === widths[0] && entry.csv) at.furthest = furthest(report, entry.csv);
       if (width === widths[0] && entry.corner) Object.assign(at, {corner: cornerOff(report, entry.csv, entry.corner), faces: report.scene.shapes[0].map((shape) => shape.faces.length)});

@@ -196,6 +196,7 @@ void check(const Json& found, const PageCase& c, const Json& wanted) {
     CHECK(at["moves"] == true);
     CHECK(at["plays"] == true);
     CHECK(at["curves"] >= 4);
+    if (c.model == "S5_double_pendulum") CHECK(at["covered"] == Json::array({"r2 (as r1)"}));
     CHECK(at["live"] == c.live);
     REQUIRE(at["forces"].is_object());
     CHECK(at["forces"]["drawn"] == true);
