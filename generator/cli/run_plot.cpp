@@ -36,6 +36,9 @@ RunPlot::RunPlot(std::vector<Panel> panels, const std::vector<system::Output>& o
   };
   for (const Panel& panel : panels_) {
     std::for_each(panel.names.begin(), panel.names.end(), keep);
+    equal_scales_.push_back(!panel.x_name.empty() && unit_of(outputs, panel.x_name) == "m" &&
+                            std::all_of(panel.names.begin(), panel.names.end(),
+                                        [&](const std::string& name) { return unit_of(outputs, name) == "m"; }));
     x_labels_.push_back(panel.x_name.empty() ? "t in s" : with_unit(outputs, panel.x_name));
     if (!panel.x_name.empty()) keep(panel.x_name);
   }
@@ -60,6 +63,7 @@ std::string RunPlot::svg(const std::string& title, const run::RunResult& result)
     plot.title = k == 0 ? title : "";
     plot.x_label = x_labels_[k];
     plot.y_label = panel.title;
+    plot.equal_scales = equal_scales_[k];
     plot.width = width;
     plot.height = panel_height + (k == 0 ? 28 : 0);
     for (const std::string& name : panel.names) {

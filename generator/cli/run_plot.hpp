@@ -27,6 +27,7 @@ class RunPlot {
 
   std::vector<Panel> panels_;
   std::vector<std::string> names_, x_labels_;  // stored columns; horizontal axis labels, per panel
+  std::vector<bool> equal_scales_;             // per panel: a path of lengths over lengths
   std::vector<std::size_t> index_;
   std::vector<double> t_;
   std::vector<std::vector<double>> columns_;

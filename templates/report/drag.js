@@ -29,7 +29,7 @@ class Drag {
     }
     const saved = live.x;
     live.x = x;
-    x.fill(0, n);
+    x.fill(0, live.layout.rates, live.layout.first_order);
     live.meetPositions();
     live.meetRates();
     live.x = saved;

@@ -1,6 +1,6 @@
 // Dormand and Prince's pair of orders 5 and 4 with its dense output of order 4 (Hairer, Norsett, Wanner: Solving
 // ordinary differential equations I, II.5 and II.6). The error estimate controls the step size; the state may be
-// projected after each step; sign changes of event functions are located on the dense output.
+// projected after each step. A step ends at the first sign change of an event function within it, and at the next sample.
 const pair = {
   c: [0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1, 1],
   a: [[], [1 / 5], [3 / 40, 9 / 40], [44 / 45, -56 / 15, 32 / 9], [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729],
@@ -9,9 +9,12 @@ const pair = {
   d: [-12715105075 / 11282082432, 0, 87487479700 / 32700410799, -10690763975 / 1880347072, 701980252875 / 199316789632, -1453857185 / 822651844,
       69997945 / 29380423]};
 
+const looks = 8, longestLook = 10;  // states of a step at which event functions are evaluated; rows that such a step covers at most
+const mostJumps = 2000;  // changes of the state that have rows of their own
+const shortest = 1e-6, mostInARow = 6;  // times between resets that become ever shorter: a part of the run, and how many may follow
+
 class Integration {
-  // problem: rhs(t, x, dx) -> code, project(t, x) -> whether x was changed, events(t, x, g), eventKinds: [{name, stop,
-  // direction}]
+  // problem: rhs(t, x, dx) -> code, project(t, x) -> whether x was changed, and what Resets needs
   constructor(problem, t0, t1, x0, rows) {
     this.problem = problem;
     this.t = t0;
@@ -25,19 +28,39 @@ class Integration {
     this.stage = new Float64Array(x0.length);
     this.next = new Float64Array(x0.length);
     this.dense = pair.c.slice(0, 5).map(() => new Float64Array(x0.length));
-    this.g = problem.eventKinds.map(() => 0);
-    this.found = [];
     this.times = [];
     this.states = [];
     this.spacing = (t1 - t0) / rows;
     this.rows = rows;
+    this.longest = problem.eventKinds.length > 0 ? longestLook * this.spacing : Infinity;
+    this.even = 1;  // rows at even spacing, so far
+    this.jumps = 0;
+    this.near = 0;  // resets that followed one another ever faster
+    this.between = Infinity;  // time between the last two resets
+    this.lastReset = -Infinity;
+    this.resets = new Resets(problem, t0, t1);
+    this.resets.crossed(t0, this.x);
     this.keep(t0, this.x);
-    if (problem.rhs(t0, this.x, this.k[0]) !== 0) this.outcome = "the equations have no value at this start";
-    if (this.g.length > 0) problem.events(t0, this.x, this.g);
+    const {changed, stopped} = this.resets.sample(t0, this.x);
+    if (changed) this.keep(t0, this.x);
+    this.outcome = this.resets.failure !== "" ? this.ended() : stopped ? "done" : "";
+    this.restart();
     this.h = this.firstStep();
   }
 
+  get found() { return this.resets.found; }
+
   keep(t, x) { this.times.push(t); this.states.push(Float64Array.from(x)); }
+
+  ended() { return "it ended: " + this.resets.failure; }
+
+  // Begins a smooth part of the motion.
+  restart() {
+    if (this.outcome === "" && this.problem.rhs(this.t, this.x, this.k[0]) !== 0)
+      this.outcome = this.steps === 0 ? "the equations have no value at this start" : "the equations have no value at t = " + this.t.toPrecision(6) + " s";
+    this.begin = this.resets.values(this.t, this.x);
+    this.until = this.resets.until(this.t);
+  }
 
   firstStep() {
     let size = 0, slope = 0;
@@ -47,7 +70,7 @@ class Integration {
       slope += (this.k[0][i] / scale) ** 2;
     });
     const h = slope > 1e-10 && size > 1e-10 ? 0.01 * Math.sqrt(size / slope) : 1e-6;
-    return Math.min(h, (this.t1 - this.t) / 10);
+    return Math.min(h, (this.t1 - this.t) / 10, this.longest);
   }
 
   // Works for at most the given milliseconds; returns true when finished.
@@ -57,25 +80,36 @@ class Integration {
     return this.outcome !== "";
   }
 
-  step() {
-    const {k, x, t, next, problem} = this, n = x.length;
-    let h = Math.min(this.h, this.t1 - t), failed = false, error = 0;
-    if (t + 1.01 * h >= this.t1) h = this.t1 - t;
-    for (let s = 1; s < 7 && !failed; ++s) {
+  // A step of size h to `next`; returns whether the equations have values there.
+  attempt(h) {
+    const {k, x, t, next, problem} = this;
+    for (let s = 1; s < 7; ++s) {
       const target = s === 6 ? next : this.stage;
-      for (let i = 0; i < n; ++i) {
+      for (let i = 0; i < x.length; ++i) {
         let sum = 0;
         for (let j = 0; j < s; ++j) sum += pair.a[s][j] * k[j][i];
         target[i] = x[i] + h * sum;
       }
-      failed = problem.rhs(t + pair.c[s] * h, target, k[s]) !== 0;
+      if (problem.rhs(t + pair.c[s] * h, target, k[s]) !== 0) return false;
     }
-    for (let i = 0; i < n && !failed; ++i) {
+    return true;
+  }
+
+  errorOf(h) {
+    const {k, x, next} = this;
+    let error = 0;
+    for (let i = 0; i < x.length; ++i) {
       let sum = 0;
       for (let s = 0; s < 7; ++s) sum += pair.e[s] * k[s][i];
       error += (h * sum / (this.atol + this.rtol * Math.max(Math.abs(x[i]), Math.abs(next[i])))) ** 2;
     }
-    error = failed ? Infinity : Math.sqrt(error / n);
+    return Math.sqrt(error / x.length);
+  }
+
+  step() {
+    const {k, x, t, next, problem} = this, isCut = t + 1.01 * this.h >= this.until;
+    let h = isCut ? this.until - t : this.h;
+    const error = this.attempt(h) ? this.errorOf(h) : Infinity;
     ++this.steps;
     if (!(error <= 1)) {
       this.h = h * (Number.isFinite(error) ? Math.max(0.2, 0.9 * error ** -0.2) : 0.2);
@@ -83,30 +117,65 @@ class Integration {
       if (this.steps > 400000) this.outcome = "it was given up at t = " + t.toPrecision(4) + " s after 400000 steps: eomgen run has methods for stiff systems";
       return;
     }
+    const grown = h * Math.min(5, Math.max(0.3, 0.9 * Math.max(error, 1e-10) ** -0.2));
     this.makeDense(h);
-    let end = t + h;
-    if (end >= this.t1 - 1e-14 * Math.abs(this.t1)) end = this.t1;
-    const stopped = this.watch(t, h, end);
-    if (stopped !== null) end = stopped;
-    while (this.times.length <= this.rows) {
-      const at = this.times.length === this.rows ? this.t1 : this.times[0] + this.times.length * this.spacing;
+    const occurred = this.locate(h);
+    let end = isCut ? this.until : t + h;
+    if (occurred !== null) {
+      h = occurred.h;
+      end = t + h;
+      this.makeDense(h);
+    }
+    for (; this.even <= this.rows; ++this.even) {
+      const at = this.even === this.rows ? this.t1 : this.times[0] + this.even * this.spacing;
       if (at > end) break;
       this.interpolate((at - t) / h, this.stage);
       this.keep(at, this.stage);
     }
-    if (stopped !== null) this.interpolate((stopped - t) / h, next);
     x.set(next);
     this.t = end;
     const moved = problem.project(end, x);
-    if (stopped !== null || end >= this.t1) {
-      if (this.times[this.times.length - 1] < end) this.keep(end, x);
-      else this.states[this.states.length - 1].set(x);
-      this.outcome = "done";
-      return;
+    if (occurred !== null || end >= this.until) {
+      this.cross(occurred);
+    } else if (moved) {
+      problem.rhs(end, x, k[0]);
+    } else {
+      k[0].set(k[6]);
     }
-    if (moved) problem.rhs(end, x, k[0]);
-    else k[0].set(k[6]);
-    this.h = h * Math.min(5, Math.max(0.3, 0.9 * Math.max(error, 1e-10) ** -0.2));
+    this.h = Math.min(isCut ? Math.max(this.h, grown) : grown, this.longest);
+    if (occurred !== null && this.outcome === "") this.h = Math.min(this.h, this.firstStep());
+  }
+
+  // The events at the end of a step, the samples that are due there, and the end of the run.
+  cross(occurred) {
+    const {x, t} = this, before = Float64Array.from(x), {resets} = this;
+    let {changed, stopped} = occurred === null ? {changed: false, stopped: false} : resets.happen(occurred.events, this.begin, t, x);
+    if (changed) {
+      const between = t - this.lastReset;
+      this.near = between < Math.min(this.between, shortest * (this.t1 - this.times[0])) ? this.near + 1 : 0;
+      Object.assign(this, {between, lastReset: t});
+      if (this.near > mostInARow) resets.fail("events follow one another ever faster", t);
+    }
+    if (!stopped && resets.failure === "" && t >= this.until && t < this.t1) {
+      const sampled = resets.sample(t, x);
+      changed = changed || sampled.changed;
+      stopped = sampled.stopped;
+    }
+    const last = () => this.times[this.times.length - 1];
+    if (changed && this.jumps < mostJumps) {
+      ++this.jumps;
+      if (last() < t) this.keep(t, before);
+      this.keep(t, x);
+    }
+    if (resets.failure !== "") this.outcome = this.ended();
+    else if (stopped || t >= this.t1) this.outcome = "done";
+    if (this.outcome === "") {
+      this.restart();
+    } else if (last() < t) {
+      this.keep(t, x);
+    } else {
+      this.states[this.states.length - 1].set(x);
+    }
   }
 
   makeDense(h) {
@@ -128,32 +197,28 @@ class Integration {
     for (let i = 0; i < out.length; ++i) out[i] = d[0][i] + theta * (d[1][i] + rest * (d[2][i] + theta * (d[3][i] + rest * d[4][i])));
   }
 
-  // Records events within the step; returns the time of the first that ends the run, or null.
-  watch(t, h, end) {
-    const kinds = this.problem.eventKinds;
-    if (kinds.length === 0) return null;
-    const after = new Float64Array(this.g.length), probe = new Float64Array(this.g.length), state = new Float64Array(this.x.length), hits = [];
-    this.problem.events(end, this.next, after);
-    kinds.forEach((kind, i) => {
-      const up = this.g[i] < 0 && after[i] >= 0, down = this.g[i] > 0 && after[i] <= 0;
-      if (!(up && kind.direction !== "down") && !(down && kind.direction !== "up")) return;
-      let low = 0, high = 1;
-      for (let bisection = 0; bisection < 50; ++bisection) {
-        const middle = (low + high) / 2;
-        this.interpolate(middle, state);
-        this.problem.events(t + middle * h, state, probe);
-        if ((probe[i] < 0) === (this.g[i] < 0) && probe[i] !== 0) low = middle;
-        else high = middle;
-      }
-      hits.push({t: t + high * h, name: kind.name, stop: kind.stop});
-    });
-    this.g = Array.from(after);
-    hits.sort((a, b) => a.t - b.t);
-    for (const hit of hits) {
-      this.found.push({t: hit.t, name: hit.name});
-      if (hit.stop) return hit.t;
+  // The first events within the step, {h, events}, where `next` and k are then those of the step that ends there; or null.
+  locate(h) {
+    const {resets, t} = this, state = new Float64Array(this.x.length);
+    if (this.problem.eventKinds.length === 0) return null;
+    let low = 0, high = 0, isBehind = false;
+    for (let look = 1; look <= looks && !isBehind; ++look) {
+      low = high;
+      high = look / looks;
+      if (look < looks) this.interpolate(high, state);
+      else state.set(this.next);
+      isBehind = resets.crossing(t + high * h, state).length > 0;
+      if (!isBehind) resets.crossed(t + high * h, state);
     }
-    return null;
+    if (!isBehind) return null;
+    while (high - low > 2 ** -51 && h * (high - low) > 2 ** -51 * Math.abs(t)) {
+      const middle = low + (high - low) / 2;
+      if (!this.attempt(middle * h)) break;
+      if (resets.crossing(t + middle * h, this.next).length > 0) high = middle;
+      else low = middle;
+    }
+    this.attempt(high * h);
+    return {h: high * h, events: resets.crossing(t + high * h, this.next)};
   }
 }
 

@@ -124,7 +124,7 @@ function panel() {
     place.append(field);
     return details;
   };
-  const parameters = group("Parameters", true), starts = group("Start", false);
+  const parameters = group("Parameters", true), starts = group("Initial values", false);
   live.parameters.forEach((p, i) => {
     if (!p.moved) return;
     const [low, high] = rangeOf(p.value, p.positive);
@@ -133,13 +133,14 @@ function panel() {
     parameters.append(made.row);
   });
   live.states.forEach((state, k) => {
+    if (!state.moved) return;
     const value = live.x[k], reach = state.unit === "rad" ? Math.PI : Math.max(1, 2 * Math.abs(value));
     const made = slider(state.name, state.unit, "", value, Math.min(-reach, value), Math.max(reach, value), (v) => { live.placed = null; live.starts_chosen.set(k, v); run(true); });
     sliders.push(() => made.set(value));
-    places.push(made);
+    places.push(() => made.set(live.x[k]));
     starts.append(made.row);
   });
-  showStart = () => places.forEach((made, k) => made.set(live.x[k]));
+  showStart = () => places.forEach((show) => show());
   place.append(button("As in the model", "All values as the model has them", () => {
     ++pending;
     live.reset();

@@ -12,21 +12,30 @@ class Motion {
     return low;
   }
 
-  // Coordinates are interpolated by cubic Hermite polynomials, since their rates are in the state.
+  // The row before t, its distance to the next one, and the part of it at t. Two rows at the same time are the state
+  // before and after a jump: the later one holds there.
+  between(t) {
+    const k = this.row(t), h = this.t[k + 1] - this.t[k];
+    return {k, h, s: h > 0 ? Math.min(1, Math.max(0, (t - this.t[k]) / h)) : 1};
+  }
+
+  // Coordinates are interpolated by cubic Hermite polynomials, since their rates are in the state. Discrete values are
+  // constant up to the next row.
   state(t) {
-    const k = this.row(t), h = this.t[k + 1] - this.t[k], s = h > 0 ? Math.min(1, Math.max(0, (t - this.t[k]) / h)) : 0;
-    const a = this.x[k], b = this.x[k + 1], n = this.live.n, x = new Float64Array(a.length);
+    const {k, h, s} = this.between(t), {rates, first_order, discrete, size} = this.live.layout;
+    const a = this.x[k], b = this.x[k + 1], n = this.live.n, x = new Float64Array(size);
     const ha = (1 + 2 * s) * (1 - s) ** 2, hb = s * s * (3 - 2 * s), ga = s * (1 - s) ** 2 * h, gb = s * s * (s - 1) * h;
     for (let i = 0; i < n; ++i) {
-      x[i] = ha * a[i] + hb * b[i] + ga * a[n + i] + gb * b[n + i];
-      x[n + i] = (1 - s) * a[n + i] + s * b[n + i];
+      x[i] = ha * a[i] + hb * b[i] + ga * a[rates + i] + gb * b[rates + i];
+      x[rates + i] = (1 - s) * a[rates + i] + s * b[rates + i];
     }
+    for (let i = first_order; i < size; ++i) x[i] = i < discrete ? (1 - s) * a[i] + s * b[i] : s < 1 ? a[i] : b[i];
     return x;
   }
 
   at(t) {
     if (this.x) return this.live.outputs(t, this.state(t));
-    const k = this.row(t), h = this.t[k + 1] - this.t[k], s = h > 0 ? Math.min(1, Math.max(0, (t - this.t[k]) / h)) : 0;
+    const {k, s} = this.between(t);
     return this.y[k].map((value, i) => (1 - s) * value + s * this.y[k + 1][i]);
   }
 
@@ -79,7 +88,7 @@ class Live {
 
   // Takes the start that follows from these initial values, pairs of a state and its value. Returns a refusal, or "".
   follow(initial) {
-    const states = 2 * this.n, count = this.chosen.length, given = new Int32Array(states + count + 2);
+    const states = this.layout.size, count = this.chosen.length, given = new Int32Array(states + count + 2);
     const x = new Float64Array(states), p = Float64Array.from(this.chosen), t = Float64Array.of(0, this.end === null ? 0 : this.end);
     for (const [k, value] of initial) {
       given[k] = 1;
@@ -91,7 +100,9 @@ class Live {
     if (code !== 0) return refusals[code];
     if (!(t[1] > t[0])) return "the run would end at t = " + t[1].toPrecision(4) + " s, before its start at t = " + t[0].toPrecision(4) + " s";
     Object.assign(this, {x, p, t0: t[0], t1: t[1], sizes: new Float64Array(this.size_count)});
-    this.code.setup(this.t0, x, p, null, 0, this.sizes);
+    const periods = new Float64Array(2 * this.samples.length);
+    this.code.setup(this.t0, x, p, null, 0, this.sizes, periods);
+    this.samples.forEach((sample, i) => Object.assign(sample, {every: periods[2 * i], offset: periods[2 * i + 1]}));
     return "";
   }
 
@@ -135,16 +146,16 @@ class Live {
     return met(this.constraintsAt(this.t0, this.x), 1e-10);
   }
   meetRates() {
-    const {n, m} = this;
+    const {n, m} = this, {rates} = this.layout;
     if (m === 0) return;
     const {A, b} = this.constraintsAt(this.t0, this.x);
-    const d = smallestCorrection(this.identity(), A, A.map((row, k) => -b[k] - row.reduce((sum, a, i) => sum + a * this.x[n + i], 0)));
-    for (let i = 0; i < n; ++i) this.x[n + i] += d[i];
+    const d = smallestCorrection(this.identity(), A, A.map((row, k) => -b[k] - row.reduce((sum, a, i) => sum + a * this.x[rates + i], 0)));
+    for (let i = 0; i < n; ++i) this.x[rates + i] += d[i];
   }
 
   // Projection onto the constraints after a step, by the smallest change in the mass norm.
   project(t, x) {
-    const {n, m} = this;
+    const {n, m} = this, {rates} = this.layout;
     if (m === 0) return false;
     let {psi, A, b} = this.constraintsAt(t, x);
     const M = this.massAt(t, x);
@@ -155,18 +166,33 @@ class Live {
       for (let i = 0; i < n; ++i) x[i] += d[i];
       ({psi, A, b} = this.constraintsAt(t, x));
     }
-    const r = A.map((row, k) => -b[k] - row.reduce((sum, a, i) => sum + a * x[n + i], 0));
+    const r = A.map((row, k) => -b[k] - row.reduce((sum, a, i) => sum + a * x[rates + i], 0));
     const d = smallestCorrection(M, A, r);
-    for (let i = 0; i < n; ++i) x[n + i] += d[i];
+    for (let i = 0; i < n; ++i) x[rates + i] += d[i];
     return true;
   }
 
+  // After a reset: adds the impulses of the constraints to the new velocities. Returns whether new coordinates satisfy
+  // the constraints.
+  meet(t, x, set) {
+    const before = x.slice(0, this.n), size = Math.max(1, ...Array.from(before, Math.abs));
+    this.project(t, x);
+    return !set.some(([place]) => place < this.n) || before.every((value, i) => Math.abs(x[i] - value) <= 1e-8 * size);
+  }
+
   integration(rows) {
+    const g = new Float64Array(this.event_count);
     const problem = {
       rhs: (t, x, dx) => this.code.rhs(t, x, this.p, this.input(t), 0, dx),
       project: (t, x) => this.project(t, x),
-      events: (t, x, g) => { const all = new Float64Array(this.event_count); this.code.events(t, x, this.p, this.input(t), 0, all); g.forEach((_, i) => { g[i] = all[i]; }); },
-      eventKinds: this.events};
+      events: (t, x, values) => {
+        const code = this.code.events(t, x, this.p, this.input(t), 0, g);  // those of kinks follow
+        values.forEach((_, i) => { values[i] = g[i]; });
+        return code;
+      },
+      resets: (t, x, r) => this.code.resets(t, x, this.p, this.input(t), 0, r),
+      meet: (t, x, set) => this.meet(t, x, set),
+      eventKinds: this.events, samples: this.samples, resetCount: this.reset_count, moving: this.layout.first_order};
     return new Integration(problem, this.t0, this.t1, this.x, rows);
   }
 }

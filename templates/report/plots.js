@@ -62,8 +62,10 @@ class Plots {
       mark.append(this.element("title", {}, event.name + ", t = " + event.t.toPrecision(5) + " s"));
       svg.append(mark);
     }
+    // The first curve that this one covers, or -1: they differ by less than a line width everywhere.
+    const covered = curves.map((curve, i) => curves.findIndex((other, j) => j < i && other.every((value, k) => value === curve[k] || Math.abs(Y(value) - Y(curve[k])) < 1)));
     curves.forEach((curve, i) => {
-      const style = {stroke: palette[i % palette.length], "stroke-width": 1.8, fill: "none", "stroke-linejoin": "round", "stroke-dasharray": dashes[Math.floor(i / palette.length) % dashes.length]};
+      const style = {stroke: palette[i % palette.length], "stroke-width": 1.8, fill: "none", "stroke-linejoin": "round", "stroke-dasharray": covered[i] < 0 ? dashes[Math.floor(i / palette.length) % dashes.length] : "8 8"};
       let d = "", pen = false;
       curve.forEach((value, k) => {
         if (!Number.isFinite(value)) { pen = false; return; }
@@ -73,7 +75,7 @@ class Plots {
       svg.append(this.element("path", {...style, d}));
       const x = left + (i % columns) * (right - left) / columns, y = 14 + row * Math.floor(i / columns);
       svg.append(this.element("line", {...style, x1: x, x2: x + 22, y1: y - 4, y2: y - 4}));
-      svg.append(this.element("text", {x: x + 27, y}, panel.of[i].name));
+      svg.append(this.element("text", {x: x + 27, y}, panel.of[i].name + (covered[i] < 0 ? "" : " (as " + panel.of[covered[i]].name + ")")));
     });
     const now = this.element("line", {class: "now", y1: top, y2: bottom});
     svg.append(now);

@@ -41,6 +41,72 @@ t = ["1/k", "10*m/k"]
 initial = { x = "1 + c", x_dot = "x*c" }
 )";
 
+// A pendulum in Cartesian coordinates; a blow at the lowest point, which the rod changes to one along its circle.
+const char* const pushed_pendulum = R"toml(format = 1
+[parameters]
+push = 0.5
+[[particle]]
+name = "P"
+mass = 1
+position = { cartesian = ["x", "y", 0] }
+[[force]]
+gravity = "-9.81*E2"
+[[constraint]]
+name = "rod"
+holonomic = "x^2 + y^2 - 1"
+[[event]]
+name = "strike"
+when = "x - 0.1"
+direction = "up"
+if = "x_dot < 2"
+set = { x_dot = "push", y_dot = "y_dot - 0.1" }
+[scene.default]
+t = [0, 3]
+initial = { x = 0.3, x_dot = 0 }
+guess = { y = -1 }
+)toml";
+
+// Samples that trigger an event, at times that meet those of another sample; an integral over time.
+const char* const counted = R"toml(format = 1
+[parameters]
+every = "0.1 s"
+[[particle]]
+name = "P"
+mass = "1 kg"
+position = { cartesian = ["x", 0, 0] }
+[[force]]
+generalized = { x = "-(4 + n/10)*1[N/m]*x + F" }
+[discrete]
+n = 0
+kicks = 0
+w = 0
+F = "0 N"
+[[sample]]
+name = "count"
+every = "every"
+set = { n = "n + 1", F = "0.1[kg/s]*x_dot + 0.01[N]*w" }
+[[sample]]
+name = "noise"
+every = "0.2 s"
+offset = "0.05 s"
+noise = { w = { uniform = 3 } }
+[[event]]
+name = "kick"
+when = "n - 4.5"
+direction = "up"
+set = { x_dot = "x_dot + 0.5[m/s]", kicks = "kicks + 1" }
+[[event]]
+name = "passing"
+when = "x"
+[[state]]
+name = "way"
+unit = "m"
+rate = "x_dot*sign(x_dot)"
+[scene.default]
+t = [0, 4]
+initial = { x = 1 }
+)toml";
+
 struct Case {
   const char* model;
   std::map<std::string, double> set;
@@ -106,25 +172,38 @@ const data = JSON.parse(DATA), live = new Live(model, data.live, data), asked = 
 const names = live.states.map((s) => s.name), find = (name) => live.parameters.findIndex((p) => p.name === name);
 for (const name in asked) names.includes(name) ? live.starts_chosen.set(names.indexOf(name), asked[name]) : live.chosen[find(name)] = asked[name];
 live.prepare();
+)";
+const char* const start_on_page = R"(
 const states = {}, parameters = {};
 names.forEach((name, k) => { states[name] = live.x[k]; });
 live.parameters.forEach((p, i) => { parameters[p.name] = live.p[i]; });
 console.log(JSON.stringify({refusal: live.refusal, t0: live.t0, t1: live.t1, states, parameters, psi: Array.from(live.constraintsAt(live.t0, live.x).psi)}));
 )";
 
+// The whole run in the page, at the tolerances of the run that it is compared with.
+const char* const run_on_page = R"(
+const integration = live.integration(500);
+Object.assign(integration, {rtol: 1e-11, atol: 1e-13});
+while (!integration.advance(1000));
+const last = integration.states.length - 1, end = {};
+names.forEach((name, k) => { end[name] = integration.states[last][k]; });
+console.log(JSON.stringify({outcome: integration.outcome, t: integration.times[last], end, events: integration.found, rising: integration.times.every((t, k) => k === 0 || t >= integration.times[k - 1]),
+  rows: integration.times.length}));
+)";
+
 /// The contents of the page after these values were chosen; nothing without Node.
 std::optional<Json> page(const Folder& folder, const std::string& model, const std::map<std::string, double>& set,
-                         const Words& options = {}) {
-  expect(0, folder, with({"report", model, "-o", "page.html"}, options));
+                         const Words& options = {}, const char* wanted = start_on_page, int status = 0) {
+  expect(status, folder, with({"report", model, "-o", "page.html"}, options));
   const std::string html = folder.read("page.html");
   std::string script = "\"use strict\";\nconst DATA = " + Json(between(html, "id=\"motion\">", "</script>")).dump() +
                        ";\nconst model = (() => {" +
                        between(html, "const model = (() => {", "})();\nconst surfaceCode") + "})();\n";
-  for (const char* part : {"linear.js", "integrator.js", "motion.js"}) {
+  for (const char* part : {"linear.js", "resets.js", "integrator.js", "motion.js"}) {
     std::ifstream file(source_folder() + "/templates/report/" + part);
     script.append(std::istreambuf_iterator<char>(file), {});
   }
-  folder.write("page.js", script + on_page);
+  folder.write("page.js", script + on_page + wanted);
   try {
     const ChildResult result = run_child({{"node", "page.js", in_json(set).dump()}, folder.path()});
     CAPTURE(result.err);
@@ -285,6 +364,86 @@ print(json.dumps({"outcome": motion.outcome, "end": dict(zip(model.states, map(f
     for (std::size_t k = 0; k < resets.size(); ++k)
       CHECK(found["resets"][k].get<double>() == doctest::Approx(resets[k]).epsilon(of_solvers));
   }
+}
+
+TEST_CASE("resets: the run on a page ends where run does, with the same events, and takes changed values") {
+  const Folder folder;
+  folder.write("pushed_pendulum.toml", pushed_pendulum);
+  folder.write("counted.toml", counted);
+  const std::vector<Case> list{{"simplest_walker", {}},
+                               {"thermostat", {}},
+                               {"thermostat", {{"band", 1}, {"T", 19.5}}},
+                               {"clock_escapement", {{"k", 9e-7}}},
+                               {"rimless_wheel", {{"gamma", 0.1}, {"steps", 3}}},
+                               {"sampled_cart_pole", {}},
+                               {"sampled_cart_pole", {{"Ts", 0.0125}}},
+                               {"dc_motor", {}},
+                               {"maxwell_element", {}},
+                               {"hill_muscle", {}},
+                               {"brake_temperature", {}},
+                               {"pushed_pendulum.toml", {{"push", 0.7}}},
+                               {"counted.toml", {{"every", 0.15}}}};
+  constexpr double of_solvers = 1e-7;  // relative: both methods at rtol = 1e-11
+  for (const Case& c : list) {
+    CAPTURE(std::string(c.model));
+    CAPTURE(in_json(c.set).dump());
+    Words words{"run", c.model, "--rtol", "1e-11", "--atol", "1e-13"};
+    for (const auto& [name, value] : c.set) words.insert(words.end(), {"--set", name + "=" + Json(value).dump()});
+    const Json expected = document(folder, words);
+    const std::optional<Json> found = page(folder, c.model, c.set, {}, run_on_page);
+    if (!found) return;
+    CAPTURE(found->dump());
+    CHECK((*found)["outcome"] == "done");
+    CHECK((*found)["rising"] == true);
+    CHECK((*found)["t"].get<double>() == doctest::Approx(expected["t"].get<double>()).epsilon(of_solvers));
+    for (const auto& [name, value] : (*found)["end"].items()) {
+      const double end = expected["final"][name].get<double>();
+      CAPTURE(name);
+      CHECK(std::abs(value.get<double>() - end) <= of_solvers * (1 + std::abs(end)));
+    }
+    std::vector<std::pair<std::string, double>> events;
+    for (const Json& event : expected["events"]) {
+      if (event["kind"] == "reset" || event["kind"] == "custom")
+        events.emplace_back(event["name"].get<std::string>(), event["t"].get<double>());
+    }
+    REQUIRE((*found)["events"].size() == events.size());
+    for (std::size_t k = 0; k < events.size(); ++k) {
+      CHECK((*found)["events"][k]["name"] == events[k].first);
+      CHECK((*found)["events"][k]["t"].get<double>() == doctest::Approx(events[k].second).epsilon(of_solvers));
+    }
+  }
+}
+
+TEST_CASE("resets: bounces that become ever shorter, and a place beside a constraint, end the run on a page by name") {
+  const Folder folder;
+  folder.write("bounces.toml", R"toml(format = 1
+[[particle]]
+name = "P"
+mass = 1
+position = { cartesian = ["x", 0, 0] }
+[[force]]
+gravity = "-9.81*E1"
+[[event]]
+name = "floor"
+when = "x"
+direction = "down"
+set = { x_dot = "-x_dot/2" }
+[scene.default]
+t = [0, 5]
+initial = { x = 1 }
+)toml");
+  std::optional<Json> found = page(folder, "bounces.toml", {}, {}, run_on_page);
+  if (!found) return;
+  const double rests = 3 * std::sqrt(2 / 9.81);  // sqrt(2 h/g) (1 + 2 e/(1 - e)), e = 1/2
+  CHECK(contains((*found)["outcome"].get<std::string>(), "ever faster"));
+  CHECK((*found)["t"].get<double>() == doctest::Approx(rests).epsilon(1e-6));
+  std::string text = pushed_pendulum;
+  const std::string was = "x_dot = \"push\"";
+  text.replace(text.find(was), was.size(), "x = \"x/2\"");
+  folder.write("moved.toml", text);
+  found = page(folder, "moved.toml", {}, {}, run_on_page, 3);
+  REQUIRE(found);
+  CHECK(contains((*found)["outcome"].get<std::string>(), "that \u201cstrike\u201d sets break a constraint"));
 }
 
 TEST_CASE("emit: the JavaScript of a start in single precision loads, and finds the start") {

@@ -57,7 +57,9 @@ function picture(canvas) {
 // Largest distance, in pixels, of drawn positions from those in the rows of the run.
 function furthest(report, csv) {
   let far = 0;
-  for (const row of csv.rows) {
+  // Without the two rows at a reset, whose time a page has in 10 digits.
+  const apart = (k, other) => other < 0 || other === csv.rows.length || csv.rows[k][0] !== csv.rows[other][0];
+  for (const row of csv.rows.filter((_, k) => apart(k, k - 1) && apart(k, k + 1))) {
     const y = report.motion().at(row[0]);
     report.data.parts.places.forEach((place) => {
       const column = csv.columns.indexOf(place.name + ".position1");
@@ -125,9 +127,29 @@ function tables(page, report) {
     if (!cells.has(state.name)) return;
     ++found.in_table;
     found.table_off = Math.max(found.table_off, off(Number(cells.get(state.name)), last[k]));
-    found.start_off = Math.max(found.start_off, off(numbers.get(state.name), first[k]));
+    if (numbers.has(state.name)) found.start_off = Math.max(found.start_off, off(numbers.get(state.name), first[k]));
   });
   return found;
+}
+
+// Layout of the page without scrolling: lowest edge of the controls, fields that cut off a number, words that name two controls.
+function controls(page) {
+  const fields = [...page.querySelectorAll(".slider input[type=number]")], kept = fields.map((field) => field.value);
+  fields.forEach((field) => { field.value = "-1.23457e-12"; });
+  const cut = fields.filter((field) => field.scrollWidth > field.clientWidth).length;
+  fields.forEach((field, k) => { field.value = kept[k]; });
+  const words = [...page.querySelectorAll("#stage button, #stage summary")].map((node) => node.textContent);
+  return {bottom: Math.max(...[...page.querySelectorAll(".bar")].map((bar) => box(bar).bottom)), fields: fields.length, cut, twice: words.filter((word, k) => words.indexOf(word) < k)};
+}
+
+// Smallest gap in pixels between a letter and the dots above it.
+function dotGap(page) {
+  let least = Infinity;
+  for (const mover of page.querySelectorAll("mover[accent=true]")) {
+    const [letter, mark] = mover.children, room = parseFloat(page.defaultView.getComputedStyle(mark).paddingBottom);
+    if (mark.textContent === "\u02d9" || mark.textContent === "\u00a8") least = Math.min(least, box(letter).top - box(mark).bottom + room);
+  }
+  return least;
 }
 
 async function wait(condition) {
@@ -147,19 +169,19 @@ async function drag(frame, report, name) {
   for (let k = 1; k <= 8; ++k) send("pointermove", [begin[0] + (end[0] - begin[0]) * k / 8, begin[1] + (end[1] - begin[1]) * k / 8]);
   const reached = at();
   send("pointerup", end);
-  await wait(() => report.motion().t.length === 501);
+  await wait(() => report.motion().t.length >= 501);
   report.player.play(false);
   const {psi} = report.live.constraintsAt(report.live.t0, report.motion().x[0]);
   const shown = tables(page, report);
   return {moved: Math.hypot(reached[0] - begin[0], reached[1] - begin[1]), nearer: Math.hypot(reached[0] - end[0], reached[1] - end[1]) < Math.hypot(begin[0] - end[0], begin[1] - end[1]) - 3,
-          psi: Math.max(0, ...Array.from(psi, Math.abs)), ran: report.motion().t.length === 501, ...shown};
+          psi: Math.max(0, ...Array.from(psi, Math.abs)), ran: report.motion().t.length >= 501, ...shown};
 }
 
 async function look(entry) {
   const found = {name: entry.name, widths: {}};
   for (const width of widths) {
     const frame = await open(entry.page, width), page = frame.contentDocument, report = frame.contentWindow.report;
-    const at = {formulas: formulas(frame), sideways: page.documentElement.scrollWidth - page.documentElement.clientWidth};
+    const at = {dot_gap: dotGap(page), controls: controls(page), formulas: formulas(frame), sideways: page.documentElement.scrollWidth - page.documentElement.clientWidth};
     if (report) {
       const canvas = page.getElementById("scene");
       report.player.play(false);
@@ -175,6 +197,7 @@ async function look(entry) {
       const before = report.player.at;
       at.plays = await wait(() => report.player.at !== before);
       report.player.play(false);
+      at.covered = [...page.querySelectorAll("#plots.drawn text")].map((node) => node.textContent).filter((text) => text.includes("(as "));
       at.curves = page.querySelectorAll("#plots.drawn path").length;
       if (width === widths[0] && entry.csv) at.furthest = furthest(report, entry.csv);
       if (width === widths[0] && entry.corner) Object.assign(at, {corner: cornerOff(report, entry.csv, entry.corner), faces: report.scene.shapes[0].map((shape) => shape.faces.length)});
@@ -183,7 +206,7 @@ async function look(entry) {
         range.value = entry.slider.value;
         range.dispatchEvent(new frame.contentWindow.Event("change"));
         const old = report.data.t.length;
-        at.ran = await wait(() => report.motion().x !== null && report.motion().t.length === 501 && page.getElementById("status").textContent.includes("steps in"));
+        at.ran = await wait(() => report.motion().x !== null && report.motion().t.length >= 501 && page.getElementById("status").textContent.includes("steps in"));
         report.player.play(false);
         at.status = page.getElementById("status").textContent;
         const x = report.motion().x[report.motion().x.length - 1];

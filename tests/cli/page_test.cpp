@@ -22,6 +22,7 @@ namespace {
 constexpr std::size_t largest_page = 1000000;  // bytes
 constexpr double as_run_does = 1e-5;  // the page integrates with rtol 1e-8, the run with 1e-9 and another method
 constexpr double a_pixel = 1;
+constexpr double first_view = 900;              // height of the frames, in pixels
 constexpr std::size_t longest_formula = 60000;  // bytes, as in report
 constexpr double on_the_sphere = 1e-3;  // for radius 1: intersections of surface lines with cells are found by secants
 
@@ -187,10 +188,15 @@ void check(const Json& found, const PageCase& c, const Json& wanted) {
     CHECK(at["formulas"]["overlaps"][0] == 0);
     CHECK(at["formulas"]["tight"][0] == 0);
     CHECK(at["formulas"]["wide"][0] == 0);
+    CHECK(at["dot_gap"] > 1);  // pixels
+    CHECK(at["controls"]["cut"] == 0);
+    CHECK(at["controls"]["twice"] == Json::array());
+    if (width == "1280") CHECK(at["controls"]["bottom"] < first_view);
     CHECK(at["ink"] > 500);
     CHECK(at["moves"] == true);
     CHECK(at["plays"] == true);
     CHECK(at["curves"] >= 4);
+    if (c.model == "S5_double_pendulum") CHECK(at["covered"] == Json::array({"r2 (as r1)"}));
     CHECK(at["live"] == c.live);
     REQUIRE(at["forces"].is_object());
     CHECK(at["forces"]["drawn"] == true);
@@ -267,6 +273,8 @@ TEST_CASE("page: reports show complete equations, replay the run, and integrate 
                                    {"R16_disk_on_disk", false},
                                    {"six_bar_spatial", true, "k", 170, "plate"},
                                    {"n_four_bar_2", true, "", 0, "K1"},
+                                   {"rimless_wheel", true, "gamma", 0.1},
+                                   {"sampled_cart_pole", true, "kp", 44},
                                    {"chain_10.toml", true, "L", 1.2}};
   Json cases = Json::array();
   std::vector<Json> wanted;

@@ -2,6 +2,8 @@
 // Plots of `run` (panels by units, phase planes, events, estimated errors, text), of `bench` and of `stress`.
 #include <doctest/doctest.h>
 
+#include <map>
+#include <regex>
 #include <sstream>
 
 #include "program.hpp"
@@ -58,6 +60,31 @@ TEST_CASE("plot: requested outputs by units; a phase plane is one quantity over 
   CHECK(count(chosen, ">t in s<") == 2);
   CHECK(contains(plotted(folder, {"S5_double_pendulum", "--plot-of", "P2.position1,P2.position2"}),
                  ">P2.position2 in m<"));
+}
+
+TEST_CASE("plot: a path of lengths over lengths has equal scales, other phase planes do not") {
+  const Folder folder;
+  // Distances of neighbouring grid lines, per unit, along both axes.
+  const auto scales = [&](const std::string& of) {
+    expect(0, folder, {"run", "S5_double_pendulum", "--t-end", "2", "--plot", "p.svg", "--plot-of", of});
+    const std::string svg = folder.read("p.svg");
+    const std::regex label("<text x=\"([-0-9.]+)\" y=\"([-0-9.]+)\" text-anchor=\"(middle|end)\">([^<]+)</text>");
+    std::map<std::string, std::vector<std::pair<double, double>>> axes;
+    for (std::sregex_iterator at(svg.begin(), svg.end(), label), end; at != end; ++at) {
+      std::string value = (*at)[4];
+      if (value.rfind("\u2212", 0) == 0) value.replace(0, 3, "-");
+      axes[(*at)[3]].emplace_back(std::stod(value), std::stod((*at)[(*at)[3] == "middle" ? 1 : 2]));
+    }
+    const auto scale = [](const auto& ticks) {
+      REQUIRE(ticks.size() > 1);
+      return std::abs((ticks[1].second - ticks[0].second) / (ticks[1].first - ticks[0].first));
+    };
+    return std::pair{scale(axes["middle"]), scale(axes["end"])};
+  };
+  const auto [across, up] = scales("P2.position1,P2.position2");
+  CHECK(across == doctest::Approx(up).epsilon(1e-3));
+  const auto [angle, rate] = scales("theta1,theta1_dot");
+  CHECK(angle > 1.5 * rate);
 }
 
 TEST_CASE("plot: events are marked by name, and an estimated error wider than a line is a bar") {

@@ -153,3 +153,15 @@ TEST_CASE("svg: a legend of a hundred names increases the height of the drawing"
   const std::size_t at = text.find("height=\"") + 8;
   CHECK(std::stoi(text.substr(at)) > 500);
 }
+
+TEST_CASE("svg: a curve that covers an earlier one is dashed, and its legend names that one") {
+  eom::Plot plot;
+  plot.series = {
+      {"first", {0, 1, 2}, {0, 1, 0}}, {"second", {0, 1, 2}, {0, 1.001, 0}}, {"third", {0, 1, 2}, {0, 0.9, 0}}};
+  const std::string svg = eom::svg(plot);
+  CHECK(count(svg, "stroke-dasharray") == 2);  // curve and legend
+  CHECK(svg.find(">second (as first)<") != std::string::npos);
+  CHECK(svg.find(">third<") != std::string::npos);
+  plot.log_y = true;
+  CHECK(eom::svg(plot).find(" (as ") == std::string::npos);
+}

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <eom/layout.hpp>
 
 #include "emit/targets.hpp"
 #include "mechanics/imposition.hpp"
 #include "numeric/numbers.hpp"
+#include "pipeline/reset_places.hpp"
 #include "pipeline/start_description.hpp"
 #include "program/from_dag.hpp"
 #include "program/restrict.hpp"
@@ -43,7 +43,8 @@ class Live {
     program.chart_variants.clear();
     program.charts.clear();
     for (const program::Function& function : s_.program.functions) {
-      if (function.name == "rhs" || function.name == "mass" || function.name == "constraints")
+      if (function.name == "rhs" || function.name == "mass" || function.name == "constraints" ||
+          function.name == "resets")
         program.functions.push_back(function);
       if (function.name == "events" && s_.program.event_count() > 0) program.functions.push_back(function);
       if (function.name == "outputs") program.functions.push_back(program::restrict_results(function, chosen()));
@@ -77,13 +78,6 @@ class Live {
       return "its contacts stick, slide or open, and each mode has equations of its own";
     if (!s_.scene.jumps.functions.empty())
       return "a velocity jumps during the run, and the page does not compute impulses";
-    if (!s_.program.states.empty())
-      return "the model has a state of first order, a discrete value, or an integral over time";
-    const system::EquationSystem& system = derived_.candidates.front();
-    if (system.has_resets()) return "events or samples of the model change the state";
-    if (std::any_of(system.events.begin(), system.events.end(),
-                    [](const system::Event& event) { return event.reset.condition.has_value(); }))
-      return "an event of the model has a condition";
     for (const model::SceneInput& input : model_scene().inputs) {
       if (std::holds_alternative<model::InputTable>(input.signal) && !is_set_input(input.input))
         return fmt::format("the input '{}' is a table of time", derived_.model.inputs[input.input].name);
@@ -117,16 +111,19 @@ class Live {
     const bool given = std::any_of(set.begin(), set.end(), [i](const auto& p) { return p.first == i; });
     return !given && !overridden(i) && !dag_.symbols({m_.parameter_value[i]}).empty();
   }
-  std::string state_name(std::size_t k) const {
-    const std::size_t n = m_.free.size();
-    return derived_.model.coordinates[m_.free[k % n]].name + (k < n ? "" : "_dot");
-  }
   /// Whether the command line gives an input a constant value.
   bool is_set_input(std::uint32_t i) const { return set_.contains(derived_.model.inputs[i].name); }
   bool overridden(std::size_t i) const { return set_.contains(derived_.model.parameters[i].name); }
 
-  /// Sizes of drawn parts, as functions of the parameters.
-  program::Function setup() { return function("setup", {{"sizes", drawing_.sizes()}}); }
+  /// Sizes of drawn parts, and the period and offset of each sample, as functions of the parameters.
+  program::Function setup() {
+    std::vector<Ref> periods;
+    for (const model::Sample& sample : derived_.model.samples) {
+      for (const model::NodeId id : {sample.every, sample.offset})
+        periods.push_back(id == model::no_node ? dag_.zero() : mechanics::lower_scalar(m_, id));
+    }
+    return function("setup", {{"sizes", drawing_.sizes()}, {"periods", periods}});
+  }
 
   /// Inputs of the scene over time.
   program::Function signals() {
@@ -146,18 +143,39 @@ class Live {
     return function("signals", {{"u_now", u}});
   }
 
+  static std::string rate_unit(const std::string& unit) {
+    return unit.empty() ? "" : unit == "1" ? "1/s" : unit + "/s";
+  }
+
+  /// The states of the layout in order, with the start that the command line sets.
+  void add_states(LiveStart& start) const {
+    const model::Model& model = derived_.model;
+    const std::vector<std::string> names = pipeline::state_names(derived_);
+    start.layout = s_.program.layout();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      double value = 0;
+      LiveState state{names[k], ""};
+      if (k < start.layout.first_order_begin()) {
+        const bool is_rate = start.layout.is_rate(k);
+        const std::uint32_t c = m_.free[is_rate ? k - start.layout.rates_begin() : k];
+        value = (is_rate ? s_.scene.qdot : s_.scene.q)[c];
+        state.unit = is_rate ? rate_unit(model.coordinates[c].unit.text) : model.coordinates[c].unit.text;
+      } else {
+        const std::size_t other = k - start.layout.first_order_begin();
+        const model::State& of = model.states[s_.program.states[other].index];
+        value = s_.scene.z[other];
+        state.unit = of.unit.text;
+        state.is_adjustable = !of.integral;
+      }
+      if (set_.contains(names[k])) start.set.emplace_back(k, value);
+      start.states.push_back(std::move(state));
+    }
+  }
+
   LiveStart start() const {
     const model::Model& model = derived_.model;
-    const std::size_t n = m_.free.size();
     LiveStart start;
-    start.coordinates = n;
-    for (std::size_t k = 0; k < eom::StateLayout{n}.first_order_begin(); ++k) {
-      const std::uint32_t c = m_.free[k % n];
-      const std::uint8_t order = k < n ? 0 : 1;
-      if (set_.contains(state_name(k))) start.set.emplace_back(k, (order == 0 ? s_.scene.q : s_.scene.qdot)[c]);
-      const std::string& unit = model.coordinates[c].unit.text;
-      start.states.push_back({state_name(k), k < n ? unit : unit.empty() ? "" : unit == "1" ? "1/s" : unit + "/s"});
-    }
+    add_states(start);
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
       const model::Parameter& p = model.parameters[i];
       start.parameters.push_back({p.name, p.unit.text, p.note, s_.scene.parameters[i], p.positive,
@@ -166,9 +184,13 @@ class Live {
           p.initial_value_of ? std::find(m_.free.begin(), m_.free.end(), *p.initial_value_of) : m_.free.end();
       if (place != m_.free.end()) start.starts.emplace_back(i, static_cast<std::size_t>(place - m_.free.begin()));
     }
-    for (std::size_t i = 0; i < model.events.size(); ++i)
-      start.events.push_back(
-          {model.events[i].name, bool(s_.scene.ends_run[i]), model::name(model.events[i].direction)});
+    pipeline::ResetPlaces resets = pipeline::reset_places(derived_, s_.scene);
+    for (std::size_t i = 0; i < model.events.size(); ++i) {
+      start.events.push_back({model.events[i].name, bool(s_.scene.ends_run[i]), model::name(model.events[i].direction),
+                              std::move(resets.events[i])});
+    }
+    start.samples = std::move(resets.samples);
+    start.reset_values = s_.program.result_size("resets");
     for (const std::uint32_t c : m_.free) {
       start.lower.push_back(s_.scene.lower[c]);
       start.upper.push_back(s_.scene.upper[c]);

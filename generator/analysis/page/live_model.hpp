@@ -4,6 +4,8 @@
 // model, it replays the run, and the reason is given.
 #pragma once
 
+#include <eom/hybrid/reset_types.hpp>
+#include <eom/layout.hpp>
 #include <set>
 #include <string>
 #include <utility>
@@ -16,6 +18,7 @@ namespace eomgen::analysis {
 
 struct LiveState {
   std::string name, unit;
+  bool is_adjustable = true;  // has a slider; integrals over time are 0 at the start
 };
 struct LiveParameter {
   std::string name, unit, note;
@@ -27,19 +30,21 @@ struct LiveEvent {
   std::string name;
   bool is_terminal = false;
   const char* direction = "";
+  eom::hybrid::Reset reset = {};
 };
 
-/// Initial data of the page's integrator. The state has n free coordinates, then their n rates.
+/// Initial data of the page's integrator.
 struct LiveStart {
-  std::size_t coordinates = 0;                              // n
-  std::vector<LiveState> states;                            // 2 n
+  eom::StateLayout layout;
+  std::vector<LiveState> states;                            // of the whole layout
   std::vector<double> lower, upper;                         // n bounds of the coordinates; infinite: no bound
   std::vector<std::pair<std::size_t, double>> set;          // (state, initial value) that the command line sets
   std::vector<LiveParameter> parameters;                    // all
   std::vector<std::pair<std::size_t, std::size_t>> starts;  // (parameter, coordinate whose initial value it is)
   std::size_t inputs = 0;
   std::vector<LiveEvent> events;
-  std::size_t constraints = 0, event_functions = 0, sizes = 0;
+  std::vector<eom::hybrid::Sample> samples;  // the page computes their periods from its parameters
+  std::size_t constraints = 0, event_functions = 0, reset_values = 0, sizes = 0;
 };
 
 struct LiveModel {

@@ -19,6 +19,21 @@ Json list_of(const std::vector<T>& list, Write&& write) {
   return result;
 }
 
+/// What an event or a sample sets: entries [place in the state, place in the values of `resets`].
+void add_reset(Json& of, const eom::hybrid::Reset& reset) {
+  of["set"] = list_of(reset.set, [](const eom::hybrid::Reset::Entry& entry) {
+    return Json::array({entry.component, entry.value});
+  });
+  of["condition"] = reset.condition ? Json(*reset.condition) : Json(nullptr);
+}
+
+Json to_json(const eom::StateLayout& layout) {
+  return {{"rates", layout.rates_begin()},
+          {"first_order", layout.first_order_begin()},
+          {"discrete", layout.discrete_begin()},
+          {"size", layout.size()}};
+}
+
 Json line(const analysis::DrawnLine& l) { return {{"a", l.a}, {"b", l.b}}; }
 
 }  // namespace
@@ -87,10 +102,11 @@ void add_forces(Json& parts, const analysis::DrawnForces& forces) {
 }
 
 Json to_json(const analysis::LiveStart& start) {
-  return {{"n", start.coordinates},
+  return {{"n", start.layout.coordinates},
+          {"layout", to_json(start.layout)},
           {"states", list_of(start.states,
                              [](const analysis::LiveState& s) -> Json {
-                               return {{"name", s.name}, {"unit", s.unit}};
+                               return {{"name", s.name}, {"unit", s.unit}, {"moved", s.is_adjustable}};
                              })},
           {"lower", bounds(start.lower)},
           {"upper", bounds(start.upper)},
@@ -110,8 +126,20 @@ Json to_json(const analysis::LiveStart& start) {
           {"inputs", start.inputs},
           {"events", list_of(start.events,
                              [](const analysis::LiveEvent& e) -> Json {
-                               return {{"name", e.name}, {"stop", e.is_terminal}, {"direction", e.direction}};
+                               Json event{{"name", e.name}, {"stop", e.is_terminal}, {"direction", e.direction}};
+                               add_reset(event, e.reset);
+                               return event;
                              })},
+          {"samples", list_of(start.samples,
+                              [](const eom::hybrid::Sample& s) -> Json {
+                                Json sample{{"name", s.name},
+                                            {"noise", list_of(s.noise, [](const auto& noise) {
+                                               return Json::array({noise.component, noise.normal, noise.seed});
+                                             })}};
+                                add_reset(sample, s.reset);
+                                return sample;
+                              })},
+          {"reset_count", start.reset_values},
           {"constraints", start.constraints},
           {"event_count", start.event_functions},
           {"size_count", start.sizes}};

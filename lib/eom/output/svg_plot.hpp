@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A line plot as a self-contained SVG document. In: named series, labels, linear or logarithmic axes. Out: a string.
+// A curve that coincides with an earlier one is dashed, and the legend says so.
 // Values that cannot be drawn (not finite, beyond 1e300, not positive on a logarithmic axis) interrupt the line. All
 // text is escaped.
 #pragma once
@@ -78,6 +79,8 @@ inline std::string number(double value) {
 class Drawing {
  public:
   explicit Drawing(const Plot& given) : plot_(given) {
+    find_ranges();
+    find_coinciding();
     place_legend();
     const double legend_height = legend_rows_ > 0 ? 20.0 * legend_rows_ + 4 : 0;
     left_ = 78;
@@ -114,18 +117,47 @@ class Drawing {
     }
   };
 
-  void make_axes() {
-    Range x;
-    Range y;
+  void find_ranges() {
     for (const PlotSeries& series : plot_.series) {
       if (series.x.size() != series.y.size())
         throw std::invalid_argument("svg plot: series '" + series.name + "' has x and y of different lengths");
       for (std::size_t i = 0; i < series.x.size(); ++i) {
         if (!is_showable(series.x[i], plot_.log_x) || !is_showable(series.y[i], plot_.log_y)) continue;
-        x.include(series.x[i]);
-        y.include(series.y[i]);
+        x_range_.include(series.x[i]);
+        y_range_.include(series.y[i]);
       }
     }
+  }
+
+  /// Finds for each curve the first one that it covers: they differ by less than a line width everywhere.
+  void find_coinciding() {
+    coinciding_.assign(plot_.series.size(), none);
+    for (std::size_t k = 1; k < plot_.series.size(); ++k) {
+      for (std::size_t j = 0; j < k && coinciding_[k] == none; ++j) {
+        if (coinciding_[j] == none && coincide(plot_.series[j], plot_.series[k])) coinciding_[k] = j;
+      }
+    }
+  }
+
+  bool coincide(const PlotSeries& a, const PlotSeries& b) const {
+    if (!a.line || !b.line || a.name.empty() || b.name.empty() || a.x.empty() || a.x.size() != b.x.size()) return false;
+    const auto near = [](double u, double v, const Range& range, bool log) {
+      return u == v || (!log && std::abs(u - v) < line_width / 400 * (range.high - range.low)) ||
+             (std::isnan(u) && std::isnan(v));
+    };
+    for (std::size_t i = 0; i < a.x.size(); ++i) {
+      if (!near(a.x[i], b.x[i], x_range_, plot_.log_x) || !near(a.y[i], b.y[i], y_range_, plot_.log_y)) return false;
+    }
+    return true;
+  }
+
+  std::string legend_text(std::size_t k) const {
+    const std::string& name = plot_.series[k].name;
+    return coinciding_[k] == none ? name : name + " (as " + plot_.series[coinciding_[k]].name + ")";
+  }
+
+  void make_axes() {
+    Range x = x_range_, y = y_range_;
     if (plot_.equal_scales && !plot_.log_x && !plot_.log_y && x.low <= x.high) equalise(x, y);
     x_ = make_axis(x.low, x.high, plot_.log_x, static_cast<int>((right_ - left_) / 90));
     y_ = make_axis(y.low, y.high, plot_.log_y, static_cast<int>((bottom_ - top_) / 50));
@@ -225,8 +257,8 @@ class Drawing {
     }
   }
 
-  static std::string stroke_of(std::size_t k) {
-    const std::string dash = dashes[(k / colours.size()) % dashes.size()];
+  std::string stroke_of(std::size_t k) const {
+    const std::string dash = coinciding_[k] == none ? dashes[(k / colours.size()) % dashes.size()] : "8 8";
     return std::string("stroke=\"") + colours[k % colours.size()] + "\" stroke-width=\"1.9\"" +
            (dash.empty() ? "" : " stroke-dasharray=\"" + dash + "\"");
   }
@@ -295,7 +327,7 @@ class Drawing {
     double x = 0;
     for (std::size_t k = 0; k < plot_.series.size(); ++k) {
       if (plot_.series[k].name.empty()) continue;
-      const double width = 44 + 7.2 * static_cast<double>(characters(plot_.series[k].name));
+      const double width = 44 + 7.2 * static_cast<double>(characters(legend_text(k)));
       if (legend_rows_ == 0 || x + width > plot_.width - 100) {
         ++legend_rows_;
         x = 0;
@@ -319,7 +351,7 @@ class Drawing {
       if (series.markers)
         out_ += "<circle cx=\"" + number(x + 11) + "\" cy=\"" + number(y) + "\" r=\"3.2\" fill=\"" +
                 colours[entry.series % colours.size()] + "\"/>\n";
-      text(x + 28, y + 4.3, "", escaped(series.name));
+      text(x + 28, y + 4.3, "", escaped(legend_text(entry.series)));
     }
   }
 
@@ -331,10 +363,13 @@ class Drawing {
 
   static constexpr double least_height = 160;  // of the axes
   static constexpr double line_width = 1.9;
+  static constexpr auto none = static_cast<std::size_t>(-1);
 
   const Plot& plot_;
   int height_ = 0;
   double left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;
+  Range x_range_, y_range_;
+  std::vector<std::size_t> coinciding_;  // per series: the earlier one that it covers, or none
   Axis x_, y_;
   std::vector<Entry> legend_;
   int legend_rows_ = 0;
