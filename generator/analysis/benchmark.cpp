@@ -44,7 +44,8 @@ std::vector<double> require_smooth(const Simulation& simulation, const run::RunR
     if (event.kind == "impulse") impulses.push_back(event.t);
   });
   if (trial.kink_crossings() > 0)
-    unsupported("the motion crosses a kink (abs, sign, min, max, if)", "shorten the run (--t-end), or smooth the law");
+    unsupported("the motion crosses a kink (abs, sign, min, max, if, atan2)",
+                "shorten the run (--t-end), or smooth the law");
   if (end.outcome == eom::Outcome::done) return impulses;
   throw Error("bench", {},
               fmt::format("the run ends at t = {} with '{}' {}", end.t, eom::name(end.outcome), end.detail),
