@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The targets of generator/emit/targets.cpp: stages read the properties of their entries, and never compare their names.
+// The targets of generator/emit/targets.cpp: stages read the properties of their entries, and never compare their
+// names.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -21,11 +22,13 @@ TEST_CASE("no file compares the name of a target: what differs between targets i
     for (std::sregex_iterator at(text.begin(), text.end(), pattern), end; at != end; ++at) use((*at)[1].str());
   };
   std::set<std::string> targets;
-  each_match(read_text(generator / "emit" / "targets.cpp"), entry, [&](const std::string& name) { targets.insert(name); });
+  each_match(read_text(generator / "emit" / "targets.cpp"), entry,
+             [&](const std::string& name) { targets.insert(name); });
   REQUIRE(targets.size() > 5);
   for (const auto& file : fs::recursive_directory_iterator(generator)) {
     if (file.path().extension() != ".cpp" && file.path().extension() != ".hpp") continue;
     CAPTURE(file.path().string());
-    each_match(read_text(file.path()), comparison, [&](const std::string& name) { CHECK_FALSE(targets.contains(name)); });
+    each_match(read_text(file.path()), comparison,
+               [&](const std::string& name) { CHECK_FALSE(targets.contains(name)); });
   }
 }
