@@ -251,7 +251,8 @@ class StartSolver {
     for (const std::size_t i : free) {
       const std::uint32_t c = s_.free[i];
       if (found[c] == begin[c]) continue;
-      if (!may_branch(c) || p_.guess.contains({c, 0})) return;
+      // A guess, or a value near the solution, has selected the branch.
+      if (!may_branch(c) || p_.guess.contains({c, 0}) || p_.given.contains({c, 0})) return;
       solved.push_back(i);
     }
     if (solved.empty()) return;
