@@ -54,7 +54,7 @@ ReferenceTrial require_reference(const Simulation& simulation, const run::RunReq
     }
   });
   if (trial.kink_crossings() > 0)
-    refuse_reference("the motion crosses a kink (abs, sign, min, max, if)",
+    refuse_reference("the motion crosses a kink (abs, sign, min, max, if, atan2)",
                      "shorten the run (--t-end), or smooth the law");
   if (end.outcome == eom::Outcome::done) {
     found.x = end.x;

@@ -120,4 +120,16 @@ std::map<std::string, Rational> in_model_units(const std::string& command, const
   return result;
 }
 
+void warn_of_other_units(const model::Model& model, const std::vector<std::string>& names, const std::string& option) {
+  for (const std::string& name : names) {
+    const Stated stated = stated_in(model, name);
+    if (!stated.unit) continue;
+    const std::string si = si_unit(stated.unit->dimension);
+    print_message(format_warning(
+        {SourceLocation{},
+         fmt::format("the model states {} in {}, and {} takes its values as {}", name, stated.unit->text, option, si),
+         fmt::format("give its values in {}, or state {} in {} in the model if they are", si, name, si)}));
+  }
+}
+
 }  // namespace eomgen::cli

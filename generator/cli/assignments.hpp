@@ -33,4 +33,8 @@ std::map<std::string, Quantity> parse_assignments(const std::string& command, co
 std::map<std::string, symbolic::Rational> in_model_units(const std::string& command, const model::Model& model,
                                                          const std::map<std::string, Quantity>& values);
 
+/// Prints a warning for each of `names`, whose numbers an option takes in SI units, that the model states in another
+/// unit.
+void warn_of_other_units(const model::Model& model, const std::vector<std::string>& names, const std::string& option);
+
 }  // namespace eomgen::cli

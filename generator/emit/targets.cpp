@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "emit/batch/batch.hpp"
 #include "emit/c/c.hpp"
 #include "emit/casadi/casadi.hpp"
@@ -22,8 +25,8 @@ constexpr TargetEntry registry[] = {
     {"c", "C11 sources with the C ABI", emit_c, mangled_id},
     {"batch", "C11 sources, and the same functions for any number of states at once", emit_batch, mangled_id},
     {"cuda", "CUDA and HIP, or C++20 as the host form: the functions for threads of a device, and ensembles on it",
-     emit_cuda, mangled_id},
-    {"python", "Python module over the C sources: ctypes, numpy where it is there", emit_python, module_name},
+     emit_cuda, mangled_id, false, false},
+    {"python", "Python module over the C sources: ctypes, numpy where it is there", emit_python, module_name, true},
     {"javascript", "JavaScript, a script and a module, without libraries", emit_javascript, script_name},
     {"casadi", "C11 sources, and functions for CasADi's `external` with their derivatives", emit_casadi, mangled_id},
     {"octave", "Function for Octave and MATLAB that returns the functions and names of the model", emit_octave,
@@ -41,11 +44,15 @@ std::vector<std::string> target_names() {
   return names;
 }
 
+const TargetEntry* find_target(const std::string& name) {
+  const auto* found = std::find_if(std::begin(registry), std::end(registry),
+                                   [&](const TargetEntry& entry) { return entry.name == name; });
+  return found == std::end(registry) ? nullptr : found;
+}
+
 std::vector<EmittedFile> emit(const program::Program& program, const EmissionContext& context,
                               const std::string& target) {
-  for (const TargetEntry& entry : registry) {
-    if (entry.name == target) return entry.emit(program, context);
-  }
+  if (const TargetEntry* entry = find_target(target)) return entry->emit(program, context);
   throw Error("emit", {}, fmt::format("there is no target `{}`", target),
               fmt::format("targets: {}", fmt::join(target_names(), ", ")));
 }

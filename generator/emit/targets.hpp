@@ -21,10 +21,14 @@ struct TargetEntry {
   const char* title;
   std::vector<EmittedFile> (*emit)(const program::Program&, const EmissionContext&);
   std::string (*mangle)(const std::string& id);  // NAME of files and symbols, from the model's id
+  bool integrates = false;     // its files set starts and integrate: they need start, events and resets
+  bool can_set_starts = true;  // whether --with start has a form in it
 };
 
 std::span<const TargetEntry> targets();
 std::vector<std::string> target_names();
+/// nullptr if there is no target of this name, as for archives.
+const TargetEntry* find_target(const std::string& name);
 
 /// Emits the sources for `target`. Throws Error with the list of known targets if it is unknown.
 std::vector<EmittedFile> emit(const program::Program& program, const EmissionContext& context,

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mechanics/domain.hpp"
 
+#include <cln/float.h>
 #include <cln/real.h>
 
+#include <algorithm>
+#include <functional>
+#include <limits>
 #include <set>
 #include <stdexcept>
 
 #include "mechanics/vanishes.hpp"
+#include "symbolic/arithmetic.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::mechanics {
@@ -14,6 +19,8 @@ namespace {
 
 using symbolic::Dag;
 using symbolic::Op;
+
+constexpr const char* out_of_range = "it is larger than the largest double, 1.8e308";
 
 /// Whether a product has a factor that vanishes identically. Rounding residues would be larger under a root.
 bool is_zero_everywhere(const Dag& dag, Ref expression) {
@@ -38,16 +45,25 @@ bool is_zero_everywhere(const Dag& dag, Ref expression) {
   return false;
 }
 
-/// The reason why an expression without symbols has no value.
-std::string why_no_number(const Dag& dag, Ref expression) {
+/// The reason why an expression of parameters alone has no value that a double holds; empty if it has one, or if other
+/// symbols occur.
+std::string why_no_number(const Dag& dag, Ref expression, const ParameterValue& parameter) {
   constexpr int digits = 40;
-  static const cln::cl_R beyond = cln::expt(cln::cl_RA(10), 30);  // a pole after rounding
-  const auto nothing = [](const symbolic::Symbol&) -> cln::cl_R { throw std::logic_error("a symbol"); };
+  static const cln::cl_R pole = cln::expt(cln::cl_RA(10), 30);  // a pole after rounding
+  static const cln::cl_R largest = cln::rational(cln::cl_float(std::numeric_limits<double>::max()));
+  const std::vector<symbolic::Symbol> symbols = dag.symbols({expression});
+  const auto moves = [](const symbolic::Symbol& symbol) { return symbol.kind != symbolic::SymbolKind::parameter; };
+  if (std::any_of(symbols.begin(), symbols.end(), moves)) return "";
+  const bool has_parameters = !symbols.empty();
+  const std::function<cln::cl_R(const symbolic::Symbol&)> value_of = [&](const symbolic::Symbol& symbol) {
+    return symbolic::evaluate(dag, {parameter(symbol.index)}, value_of, digits)[0];
+  };
   try {
-    const cln::cl_R value = symbolic::evaluate(dag, {expression}, nothing, digits)[0];
-    return dag[expression].op == Op::tan && cln::abs(value) > beyond ? "a tangent at its pole" : "";
+    const cln::cl_R value = symbolic::evaluate(dag, {expression}, value_of, digits)[0];
+    if (cln::abs(value) > largest && (has_parameters || dag[expression].op != Op::tan)) return out_of_range;
+    return dag[expression].op == Op::tan && cln::abs(value) > pole && !has_parameters ? "a tangent at its pole" : "";
   } catch (const std::domain_error& outside) {
-    return outside.what();
+    return has_parameters && std::string(outside.what()) != symbolic::exponent_too_large ? "" : outside.what();
   }
 }
 
@@ -66,7 +82,7 @@ void require_nonzero_length(const Mechanics& m, Ref length, const model::Span& p
               "give a vector that is not 0, or two points that are not one and the same");
 }
 
-void require_value(const Mechanics& m, Ref expression, const model::Span& place) {
+void require_value(const Mechanics& m, Ref expression, const model::Span& place, const ParameterValue& parameter) {
   const Dag& dag = *m.dag;
   const symbolic::Node& node = dag[expression];
   const auto is_zero = [&](std::size_t i) { return is_zero_everywhere(dag, node.args[i]); };
@@ -88,13 +104,24 @@ void require_value(const Mechanics& m, Ref expression, const model::Span& place)
       if (is_zero(0) && is_zero(1)) refuse("this is the angle of a direction of length 0", "check the arguments");
       break;
     case Op::tan:
+    case Op::exp:
+    case Op::sinh:
+    case Op::cosh:
+    case Op::power:
+    case Op::constant:
+    case Op::mul:
+    case Op::div:
     case Op::asin:
     case Op::acos: break;
     default: return;
   }
-  if (!dag.symbols({expression}).empty()) return;
-  if (const std::string why = why_no_number(dag, expression); !why.empty())
-    refuse("this has no value: " + why, "check the argument");
+  const std::string why = why_no_number(dag, expression, parameter);
+  if (why.empty()) return;
+  if (!dag.symbols({expression}).empty()) {
+    throw Error("mechanics", m.model->where(place), "this has no value for these parameters: " + why,
+                "correct the values of the parameters, or the formula");
+  }
+  refuse("this has no value: " + why, "check the argument");
 }
 
 }  // namespace eomgen::mechanics

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Operations of the model that have no value in any state: division by an expression that is identically 0, its
-// logarithm, roots of negative numbers. In: the operation and its place in the source, which later stages do not know.
+// logarithm, roots of negative numbers, constants above all doubles. In: the operation and its place in the source,
+// which later stages do not know.
 #pragma once
+
+#include <cstdint>
+#include <functional>
 
 #include "mechanics/mechanics.hpp"
 
@@ -13,7 +17,12 @@ void require_nonzero_divisor(const Mechanics& mechanics, Ref divisor, const mode
 /// The same for the length of a vector that is normalised.
 void require_nonzero_length(const Mechanics& mechanics, Ref length, const model::Span& place);
 
-/// The same if `expression` is a function or a power without a value, or a root of 0 that has no derivative.
-void require_value(const Mechanics& mechanics, Ref expression, const model::Span& place);
+/// The lowered formula of a parameter of the model, by its index.
+using ParameterValue = std::function<Ref(std::uint32_t)>;
+
+/// The same if `expression` is a function or a power without a value, a root of 0 that has no derivative, or above all
+/// doubles for the parameters of the model.
+void require_value(const Mechanics& mechanics, Ref expression, const model::Span& place,
+                   const ParameterValue& parameter);
 
 }  // namespace eomgen::mechanics

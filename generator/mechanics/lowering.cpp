@@ -194,7 +194,7 @@ Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {
     return of(Vec3{combine(a[0], b[0]), combine(a[1], b[1]), combine(a[2], b[2])});
   };
   const auto valued = [&](Ref r) {
-    require_value(m_, r, node.span);
+    require_value(m_, r, node.span, [this](std::uint32_t i) { return scalar(m_.model->parameters[i].value); });
     return of(r);
   };
   switch (node.op) {
@@ -208,11 +208,11 @@ Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {
       if (node.vector) return of(scale(dag_.integer(-1), arg(0).components));
       return of(dag_.neg(arg(0).scalar));
     case Op::multiply:
-      if (!node.vector) return of(dag_.mul(arg(0).scalar, arg(1).scalar));
+      if (!node.vector) return valued(dag_.mul(arg(0).scalar, arg(1).scalar));
       return arg(0).vector ? of(scale(arg(1).scalar, arg(0).components)) : of(scale(arg(0).scalar, arg(1).components));
     case Op::divide:
       require_nonzero_divisor(m_, arg(1).scalar, node.span);
-      if (!node.vector) return of(dag_.div(arg(0).scalar, arg(1).scalar));
+      if (!node.vector) return valued(dag_.div(arg(0).scalar, arg(1).scalar));
       return of(scale(dag_.div(dag_.one(), arg(1).scalar), arg(0).components));
     case Op::power:
       if (dag_.is_constant(arg(1).scalar) && cln::minusp(dag_.value(arg(1).scalar)))

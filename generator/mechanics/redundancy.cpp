@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -15,6 +16,7 @@
 #include "mechanics/pfaffian.hpp"
 #include "mechanics/small.hpp"
 #include "mechanics/stages.hpp"
+#include "symbolic/evaluate.hpp"
 
 namespace eomgen::mechanics {
 namespace {
@@ -29,6 +31,7 @@ using Rows = std::vector<std::vector<cl_R>>;
 struct Combination {
   std::vector<cl_R> coefficients;  // of the rows before it
   bool same_rate = false;          // b is the same combination
+  bool same_value = true;          // psi of holonomic constraints is not the same combination and a constant
 };
 
 /// Independent rows at one point, orthonormalised without their b, in order.
@@ -172,6 +175,43 @@ bool are_closed_together(const Mechanics& m, OneFormSpace& space, const std::vec
   return true;
 }
 
+/// Whether holonomic constraint k is a fixed combination of the others and a constant that is not 0 for the values of
+/// the parameters: no position satisfies them all.
+bool is_contradiction(const Mechanics& m, OneFormSpace& space, const std::vector<std::uint32_t>& constraints,
+                      const std::vector<std::size_t>& independent, std::size_t k, const Combination& here,
+                      const Combination& there) {
+  const Constraint& constraint = m.constraints[constraints[k]];
+  if (!constraint.holonomic() || named(m, constraints, independent, here, there).empty()) return false;
+  std::vector<Ref> psi{space.impose_and_expand(constraint.psi)};
+  std::vector<cl_R> coefficients{cl_R(1)};
+  for (std::size_t a = 0; a < independent.size(); ++a) {
+    if (cln::abs(here.coefficients[a]) < small(25)) continue;
+    const Constraint& other = m.constraints[constraints[independent[a]]];
+    if (!other.holonomic() || other.unilateral) return false;
+    psi.push_back(space.impose_and_expand(other.psi));
+    coefficients.push_back(-here.coefficients[a]);
+  }
+  constexpr int digits = 40;
+  for (std::size_t point = 0; point < space.points(); ++point) {
+    const std::function<cl_R(const symbolic::Symbol&)> value = [&](const symbolic::Symbol& symbol) {
+      if (symbol.kind != symbolic::SymbolKind::parameter) return space.value(symbol, point);
+      return symbolic::evaluate(*m.dag, {m.parameter_value[symbol.index]}, value, digits)[0];
+    };
+    try {
+      const std::vector<cl_R> values = symbolic::evaluate(*m.dag, psi, value, digits);
+      cl_R rest = 0, size = 0;
+      for (std::size_t a = 0; a < psi.size(); ++a) {
+        rest = rest + coefficients[a] * values[a];
+        size = size + cln::abs(coefficients[a] * values[a]);
+      }
+      if (cln::abs(rest) <= small(12) * size) return false;
+    } catch (const std::domain_error&) {
+      continue;
+    }
+  }
+  return space.points() > 0;
+}
+
 Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints, std::size_t k,
               const std::vector<std::size_t>& independent, const Combination& here, const Combination& there) {
   const Constraint& constraint = m.constraints[constraints[k]];
@@ -179,6 +219,10 @@ Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints,
                     formula = named(m, constraints, independent, here, there);
   const SourceLocation where = m.model->where(m.model->arena[constraint.model_expression].span);
   std::string what = "constraint '" + constraint.label + "' ";
+  if (!here.same_value) {
+    what += "contradicts " + others + ": " + constraint.label + " = " + formula + " and a constant that is not 0";
+    return Error("mechanics", where, what, "remove one of them: no position satisfies them all");
+  }
   if (here.same_rate) {
     what += others.empty() ? "follows from the constraints that fix its coordinates"
                            : "follows from " + others +
@@ -233,12 +277,13 @@ Refusals drop_repeated(Mechanics& m) {
   for (std::size_t k = 0; k < constraints.size(); ++k) {
     if (leavable(k)) continue;
     if (spans[0].contains(at[0][k]) && spans[1].contains(at[1][k])) {
-      const std::optional<Combination> here = combination(at[0], independent, k),
-                                       there = combination(at[1], independent, k);
+      std::optional<Combination> here = combination(at[0], independent, k);
+      const std::optional<Combination> there = combination(at[1], independent, k);
       if (here && there && !spans_all(at[0], independent, *here, k)) {
+        here->same_value = !here->same_rate || !is_contradiction(m, space, constraints, independent, k, *here, *there);
         Constraint& constraint = m.constraints[constraints[k]];
         Error why = refusal(m, constraints, k, independent, *here, *there);
-        if (!here->same_rate || !may_be_redundant(m, constraint)) throw why;
+        if (!here->same_rate || !here->same_value || !may_be_redundant(m, constraint)) throw why;
         refusals.emplace(constraint.name, std::move(why));
         constraint.redundancy = Redundancy::redundant;
         std::erase(m.active, constraints[k]);

@@ -7,6 +7,7 @@
 
 #include "abi/functions.hpp"
 #include "emit/single_precision.hpp"
+#include "emit/targets.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
 #include "numeric/numbers.hpp"
@@ -114,9 +115,11 @@ void add_all_charts(DerivedModel& derived, program::Program& program, const Char
 /// NAME_start: where it is requested, and for all that sets starts itself.
 void add_start(const EmissionRequest& request, DerivedModel& derived, emit::EmissionContext& context) {
   const bool requested = has(request.with, "start");
-  if (!requested && !has(request.with, "run") && request.target != "python") return;
-  if (requested && request.target == "cuda")
-    throw Error("emit", {}, "the target cuda has no function start", "use the target c, or leave start out of --with");
+  const emit::TargetEntry* target = emit::find_target(request.target);
+  if (!requested && !has(request.with, "run") && (target == nullptr || !target->integrates)) return;
+  if (requested && target != nullptr && !target->can_set_starts)
+    throw Error("emit", {}, fmt::format("the target {} has no function start", target->name),
+                "use the target c, or leave start out of --with");
   context.start_functions = describe_start(derived, derived.model.scene("default"));
   if (context.start_functions || !requested) return;
   throw Error("emit", {},
@@ -126,10 +129,11 @@ void add_start(const EmissionRequest& request, DerivedModel& derived, emit::Emis
               "leave start out of --with, or choose coordinates with fewer constraints");
 }
 
-/// Adds the functions that `simulate` of the target python calls where events or samples change the state.
+/// Adds the functions that a target that integrates calls where events or samples change the state.
 EmissionRequest with_resets(EmissionRequest request, const DerivedModel& derived) {
   const system::EquationSystem& system = derived.candidates.front();
-  if (request.target != "python" || !system.has_resets()) return request;
+  const emit::TargetEntry* target = emit::find_target(request.target);
+  if (target == nullptr || !target->integrates || !system.has_resets()) return request;
   if (!system.events.empty() && !has(request.with, "events")) request.with.emplace_back("events");
   if (!has(request.with, "resets")) request.with.emplace_back("resets");
   return request;

@@ -331,7 +331,7 @@ std::string ensemble_obstacle(const Simulation& first) {
   const run::Code code = first.code.code_for_run();
   if (!code.contacts.empty() || !code.contact_set.empty())
     return "the model has contacts with friction, or unilateral contacts";
-  if (!code.kinks.empty()) return "the equations have kinks (abs, sign, min, max, if), which are located";
+  if (!code.kinks.empty()) return "the equations have kinks (abs, sign, min, max, if, atan2), which are located";
   if (code.active_constraints > 0) return "constraints keep multipliers, and each step is projected onto them";
   if (first.charts != nullptr) return "the run may change to second charts near singularities";
   if (code.layout().others() > 0)

@@ -126,7 +126,8 @@ std::vector<Formula> rotational_terms(const reading::DisplayRotation& spin, bool
   return terms;
 }
 
-/// T as squares of velocities and of components of angular velocities; unchanged for a model without bodies.
+/// T as squares of velocities and of components of angular velocities; unchanged for a model without bodies, and where
+/// translation and rotation together have fewer terms, as m L^2/8 + m L^2/24.
 Formula kinetic_formula(const DisplayForm& form) {
   if (form.body_rotations.empty()) return arrange(form.kinetic);
   std::vector<Formula> terms =
@@ -134,6 +135,7 @@ Formula kinetic_formula(const DisplayForm& form) {
   for (const reading::DisplayRotation& spin : form.body_rotations) {
     for (Formula& term : rotational_terms(spin, false)) terms.push_back(std::move(term));
   }
+  if (form.kinetic.size() < terms.size()) return arrange(form.kinetic);
   return reading::sum(std::move(terms));
 }
 

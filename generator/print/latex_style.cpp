@@ -61,6 +61,7 @@ class LatexStyle final : public Style {
   }
   Piece literal(const std::string& digits) const override { return {digits, Piece::atom}; }
   Piece pi() const override { return {"\\pi", Piece::atom}; }
+  Piece degrees(const std::string& digits) const override { return {digits + "^{\\circ}", Piece::product}; }
   Piece symbol(const Glyph& glyph) const override { return {latex(glyph), Piece::atom}; }
   Piece mark(const std::string& word, const std::vector<std::string>& lower,
              const std::vector<std::string>& upper) const override {

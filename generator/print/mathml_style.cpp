@@ -115,6 +115,9 @@ class MathmlStyle final : public Style {
   }
   Piece literal(const std::string& digits) const override { return {"<mn>" + digits + "</mn>", Piece::atom}; }
   Piece pi() const override { return {"<mi>π</mi>", Piece::atom}; }
+  Piece degrees(const std::string& digits) const override {
+    return {"<mrow><mn>" + digits + "</mn><mo>°</mo></mrow>", Piece::product};
+  }
   Piece symbol(const Glyph& glyph) const override { return {mathml(glyph), Piece::atom}; }
   Piece mark(const std::string& word, const std::vector<std::string>& lower,
              const std::vector<std::string>& upper) const override {

@@ -18,16 +18,30 @@ using reading::FormulaKind;
 using reading::Op;
 
 /// 9.81 instead of 981/100: fractions with denominators from 100 on that end within four decimals; otherwise nothing.
-std::optional<std::string> as_decimal(const reading::Rational& value) {
+std::optional<std::string> as_decimal(const reading::Rational& value, long least_denominator = 100) {
   constexpr long most = 10000;
   const cln::cl_I bottom = cln::denominator(value);
-  if (bottom < 100 || cln::mod(most, bottom) != 0) return std::nullopt;
+  if (bottom < least_denominator || cln::mod(most, bottom) != 0) return std::nullopt;
   const cln::cl_I shifted = cln::numerator(value) * cln::exquo(cln::cl_I(most), bottom),
                   whole = cln::floor1(shifted, most);
   if (whole > most) return std::nullopt;
   std::string decimals = std::to_string(cln::cl_I_to_long(most + cln::mod(shifted, most))).substr(1);
   decimals.erase(decimals.find_last_not_of('0') + 1);
   return std::to_string(cln::cl_I_to_long(whole)) + "." + decimals;
+}
+
+/// 48.85 for 977 pi/3600: fractions of pi with denominators from 100 on whose degrees end within four decimals.
+std::optional<std::string> as_degrees(const Formula& f) {
+  if (f.kind != FormulaKind::fraction || f.args[1].kind != FormulaKind::number) return std::nullopt;
+  const Formula& above = f.args[0];
+  const bool scaled = above.kind == FormulaKind::product && above.args.size() == 2 &&
+                      above.args[0].kind == FormulaKind::number && above.args[1].kind == FormulaKind::pi;
+  if (!scaled && above.kind != FormulaKind::pi) return std::nullopt;
+  const reading::Rational of_pi = (scaled ? above.args[0].number : reading::Rational(1)) / f.args[1].number;
+  if (cln::denominator(of_pi) < 100) return std::nullopt;
+  std::optional<std::string> degrees = as_decimal(180 * of_pi, 1);
+  if (degrees && degrees->ends_with('.')) degrees->pop_back();
+  return degrees;
 }
 
 class FormulaPrinter {
@@ -40,7 +54,7 @@ class FormulaPrinter {
       case FormulaKind::pi: return style_.pi();
       case FormulaKind::symbol: return symbol(f.symbol);
       case FormulaKind::mark: return style_.mark(f.word, texts(f.lower), texts(f.upper));
-      case FormulaKind::call: return style_.call(f.op, pieces(f.args));
+      case FormulaKind::call: return style_.call(f.op, arguments(f));
       case FormulaKind::power: return power(f);
       case FormulaKind::negative: return {style_.leading_minus() + at_least(f.args[0], Piece::product), Piece::sum};
       case FormulaKind::product: return product(f);
@@ -108,6 +122,14 @@ class FormulaPrinter {
     }
     return style_.symbol(notation_(of));
   }
+  /// The arguments of a call. Those of trigonometric functions are angles, in degrees where these are shorter.
+  std::vector<Piece> arguments(const Formula& call) const {
+    using symbolic::Op;
+    if (call.op == Op::sin || call.op == Op::cos || call.op == Op::tan) {
+      if (const auto degrees = as_degrees(call.args[0])) return {style_.degrees(*degrees)};
+    }
+    return pieces(call.args);
+  }
   std::vector<Piece> pieces(const std::vector<Formula>& list) const {
     std::vector<Piece> result;
     for (const Formula& f : list) result.push_back((*this)(f));
@@ -128,7 +150,7 @@ class FormulaPrinter {
     const std::string exponent = (*this)(f.args[1]).text;
     const bool whole = f.args[1].kind == FormulaKind::number && reading::is_integer(f.args[1].number);
     if (base.kind == FormulaKind::call && whole && symbolic::function_of(base.op).raised)
-      return style_.call_power(base.op, pieces(base.args), exponent);
+      return style_.call_power(base.op, arguments(base), exponent);
     Piece piece = (*this)(base);
     if (piece.precedence < Piece::atom) piece = {style_.bracket(piece.text), Piece::atom};
     return style_.power(piece, exponent);

@@ -36,6 +36,7 @@ class Style {
   virtual Piece number(const reading::Rational& value) const = 0;  // not negative
   virtual Piece literal(const std::string& digits) const = 0;      // a decimal number as written in the model
   virtual Piece pi() const = 0;
+  virtual Piece degrees(const std::string& digits) const = 0;  // the angle of a decimal number of degrees
   virtual Piece symbol(const Glyph& glyph) const = 0;
   virtual Piece mark(const std::string& word, const std::vector<std::string>& lower,
                      const std::vector<std::string>& upper) const = 0;

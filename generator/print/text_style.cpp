@@ -25,6 +25,7 @@ class TextStyle final : public Style {
   }
   Piece literal(const std::string& digits) const override { return {digits, Piece::atom}; }
   Piece pi() const override { return {"pi", Piece::atom}; }
+  Piece degrees(const std::string& digits) const override { return {digits + "[deg]", Piece::product}; }
   Piece symbol(const Glyph& glyph) const override { return {glyph.name, Piece::atom}; }
   Piece mark(const std::string& word, const std::vector<std::string>& lower,
              const std::vector<std::string>& upper) const override {

@@ -2,6 +2,7 @@
 #include "program/kinks.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -44,6 +45,7 @@ class KinkFreezing {
       }
       Ref result = changed ? symbolic::with_operands(dag_, node, a) : r;
       if (is_kink(node.op)) result = held(node, a, result);
+      if (node.op == Op::atan2 && !dag_.is_positive(a[1])) result = held_turn(a[0], a[1], result);
       memo_.emplace(r.id, result);
     }
     return memo_.at(expression.id);
@@ -55,9 +57,9 @@ class KinkFreezing {
     return op == Op::abs || op == Op::sign ? first : dag_.sub(first, second);
   }
 
-  Ref held(const symbolic::Node& node, const std::array<Ref, 4>& a, Ref live) {
-    const Op op = node.op;
-    const Ref value = surface(op, a[0], a[1]);
+  /// The value whose sign selects the branch, held on its side; none if it is no surface. At side 0 it follows the
+  /// state.
+  std::optional<Ref> chosen_side(Op op, Ref value) {
     const auto [own, opposite] = both_signs(value);
     const auto of_value = [own = own, opposite = opposite](Ref surface) {
       return surface == own || surface == opposite;
@@ -65,7 +67,7 @@ class KinkFreezing {
     auto known = std::find_if(surfaces_.begin(), surfaces_.end(), of_value);
     if (known == surfaces_.end()) {
       const bool left = std::find(left_.begin(), left_.end(), own) != left_.end();
-      if (!collects || left || !moves(value)) return live;
+      if (!collects || left || !moves(value)) return std::nullopt;
       surfaces_.push_back(own);
       found.push_back({op, value});
       known = surfaces_.end() - 1;
@@ -74,14 +76,34 @@ class KinkFreezing {
     const auto index = static_cast<std::uint32_t>(known - surfaces_.begin());
     const Ref zero = dag_.zero(), side = dag_.symbol({SymbolKind::branch, index, 0});
     const Ref first = dag_.select(side, zero, side, dag_.select(zero, side, side, found[index].value));
-    const Ref chosen = *known == own ? first : dag_.neg(first);
+    return *known == own ? first : dag_.neg(first);
+  }
+
+  Ref held(const symbolic::Node& node, const std::array<Ref, 4>& a, Ref live) {
+    const Op op = node.op;
+    const std::optional<Ref> chosen = chosen_side(op, surface(op, a[0], a[1]));
+    if (!chosen) return live;
+    const Ref zero = dag_.zero();
     switch (op) {
-      case Op::abs: return dag_.select(chosen, zero, dag_.neg(a[0]), a[0]);
-      case Op::sign: return dag_.call(Op::sign, chosen);
-      case Op::min: return dag_.select(chosen, zero, a[0], a[1]);
-      case Op::max: return dag_.select(chosen, zero, a[1], a[0]);
-      default: return dag_.select(chosen, zero, a[2], a[3]);
+      case Op::abs: return dag_.select(*chosen, zero, dag_.neg(a[0]), a[0]);
+      case Op::sign: return dag_.call(Op::sign, *chosen);
+      case Op::min: return dag_.select(*chosen, zero, a[0], a[1]);
+      case Op::max: return dag_.select(*chosen, zero, a[1], a[0]);
+      default: return dag_.select(*chosen, zero, a[2], a[3]);
     }
+  }
+
+  /// atan2(y, x), which jumps where y = 0 and x < 0, continued beyond its cut: with the sign s of the side of y it is
+  /// s (pi/2 - atan2(x, s y)) where x <= 0.
+  Ref held_turn(Ref y, Ref x, Ref live) {
+    const std::optional<Ref> chosen = chosen_side(Op::atan2, y);
+    if (!chosen) return live;
+    const Ref zero = dag_.zero(), one = dag_.one(), quarter = dag_.div(dag_.pi(), dag_.integer(2));
+    const auto on_side = [&](Ref below, Ref above) { return dag_.select(*chosen, zero, below, above); };
+    const auto by_x = [&](Ref behind, Ref ahead) { return dag_.select(zero, x, ahead, behind); };
+    const Ref turn = dag_.call(Op::atan2, by_x(x, y), by_x(on_side(dag_.neg(y), y), x));
+    const Ref factor = by_x(on_side(one, dag_.neg(one)), one);
+    return dag_.add(by_x(on_side(dag_.neg(quarter), quarter), zero), dag_.mul(factor, turn));
   }
 
   /// The expanded forms of a value and of its opposite, which are the same for all ways to write them.
@@ -108,6 +130,7 @@ const char* name(const Kink& kink) {
     case Op::sign: return "sign";
     case Op::min: return "min";
     case Op::max: return "max";
+    case Op::atan2: return "atan2";
     default: return "if";
   }
 }

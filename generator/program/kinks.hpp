@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kinks of the equations of motion (abs, sign, min, max, select) as switching surfaces. In: a system as derived. Out:
-// the same system with branches that can be frozen, and the surfaces.
+// Kinks of the equations of motion (abs, sign, min, max, select, the cut of atan2) as switching surfaces. In: a system
+// as derived. Out: the same system with branches that can be frozen, and the surfaces.
 //
 // Surface k is the argument of abs and sign, and a - b for min(a, b), max(a, b) and select(a < b). The symbol
 // {SymbolKind::branch, k} selects the branch if it is not 0: 1 for positive values of the surface function, -1 for
@@ -18,7 +18,7 @@ struct Kink {
   symbolic::Ref value;  // changes sign at the surface; may contain sides of earlier ones
 };
 
-/// The name of the function that has the kink: "abs", "sign", "min", "max", "if".
+/// The name of the function that has the kink: "abs", "sign", "min", "max", "if", "atan2".
 const char* name(const Kink& kink);
 
 /// Whether the equations of motion have kinks that can be frozen.

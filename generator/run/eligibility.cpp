@@ -30,7 +30,7 @@ const char* with(Feature feature) {
     case Feature::modes:
       return "the model has contacts with friction, unilateral contacts, or events that change the state";
     case Feature::velocity_constraints: return "the model has a constraint on velocities";
-    case Feature::kinks: return "the equations have kinks (abs, sign, min, max, if)";
+    case Feature::kinks: return "the equations have kinks (abs, sign, min, max, if, atan2)";
     case Feature::other_states:
       return "the model has states of first order, discrete values, or an integral of a function of time";
     case Feature::moving_inputs: return "an input is an expression of t";

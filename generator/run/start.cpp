@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "derive/imposition.hpp"
@@ -223,6 +224,85 @@ class StartSolver {
     Eigen::Index k = 0;
     if (rows_.largest_residual(order, &k) > start_tolerance)
       refuse_start(p_, rows_, order, static_cast<std::size_t>(k), free);
+    if (order == 0) note_other_branch(begin, free);
+  }
+
+  /// Whether a coordinate may have a second value of its own. Angles and parameters of rotations have other names of
+  /// the same attitude, and a range selects a branch.
+  bool may_branch(std::uint32_t coordinate) const {
+    const model::Model& model = *p_.mechanics.model;
+    if (model.coordinates[coordinate].lower != model::no_node || model.coordinates[coordinate].upper != model::no_node)
+      return false;
+    for (const model::Frame& frame : model.frames) {
+      if (frame.entries.size() < 2) continue;
+      for (const model::NodeId entry : frame.entries) {
+        const model::Node& node = model.arena[entry];
+        if (node.op == model::Op::coordinate && node.index == coordinate) return false;
+      }
+    }
+    return true;
+  }
+
+  /// Equations such as x^2 + y^2 = L^2 determine an unknown up to its branch: looks for a second solution on the other
+  /// side, and reports it with the guess that selects it.
+  void note_other_branch(const std::vector<double>& begin, const std::vector<std::size_t>& free) {
+    const std::vector<double> found = p_.q;
+    std::vector<std::size_t> solved;
+    for (const std::size_t i : free) {
+      const std::uint32_t c = s_.free[i];
+      if (found[c] == begin[c]) continue;
+      // A guess, or a value near the solution, has selected the branch.
+      if (!may_branch(c) || p_.guess.contains({c, 0}) || p_.given.contains({c, 0})) return;
+      solved.push_back(i);
+    }
+    if (solved.empty()) return;
+    const auto negative = [](double x, double) { return -x; };
+    const auto mirrored = [](double x, double from) { return 2 * from - x; };
+    const auto supplement = [](double x, double) { return std::numbers::pi - x; };
+    using Reflection = double (*)(double, double);
+    std::vector<std::vector<double>> starts;
+    for (const Reflection reflect : {Reflection(negative), Reflection(mirrored), Reflection(supplement)}) {
+      const std::size_t all = (std::size_t{1} << std::min(solved.size(), most_reflected)) - 1;
+      for (std::size_t subset = all; subset > 0; --subset) {  // unknowns beyond the first few are reflected together
+        starts.push_back(found);
+        for (std::size_t k = 0; k < solved.size(); ++k) {
+          const std::uint32_t c = s_.free[solved[k]];
+          if (((subset >> std::min(k, most_reflected - 1)) & 1u) != 0) starts.back()[c] = reflect(found[c], begin[c]);
+        }
+      }
+    }
+    for (const std::vector<double>& from : starts) {
+      p_.q = from;
+      if (!iterate(0, free, false) || !differs(found, free) || !are_open_contacts_open()) continue;
+      std::string values;
+      std::size_t count = 0;
+      for (const std::size_t i : free) {
+        const std::uint32_t c = s_.free[i];
+        if (!is_other(found[c], p_.q[c])) continue;
+        values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", rows_.label({c, 0}), p_.q[c]);
+        ++count;
+      }
+      p_.solved_notes.push_back(fmt::format("{} {} them too: the run starts there with guess = {{ {} }}", values,
+                                            count == 1 ? "satisfies" : "satisfy", values));
+      break;
+    }
+    p_.q = found;
+  }
+  static bool is_other(double first, double second) {
+    return std::abs(first - second) > branch_tolerance * std::max({1.0, std::abs(first), std::abs(second)});
+  }
+  /// Whether the current values are another configuration: full turns are none.
+  bool differs(const std::vector<double>& found, const std::vector<std::size_t>& free) const {
+    return std::any_of(free.begin(), free.end(), [&](std::size_t i) {
+      const std::uint32_t c = s_.free[i];
+      return is_other(0, std::remainder(found[c] - p_.q[c], 2 * std::numbers::pi)) && is_other(found[c], p_.q[c]);
+    });
+  }
+  bool are_open_contacts_open() {
+    for (std::size_t j = 0; j < rows_.contacts().size(); ++j) {
+      if (p_.open[j] && !(rows_.evaluate({rows_.psi()[*rows_.contacts()[j].row]})[0] >= 0)) return false;
+    }
+    return true;
   }
 
   /// If several choices satisfy the constraints (as for rolling without a given spin about the normal), solves for the
@@ -320,6 +400,8 @@ class StartSolver {
     return rows_.largest_residual(order) <= rounding;
   }
 
+  static constexpr std::size_t most_reflected = 2;  // subsets of so many unknowns are tried
+  static constexpr double branch_tolerance = 1e-6;  // solutions that are nearer are one, found with rounding
   static constexpr double rounding = 1e-14;  // of rows_.relative(): a few units in the last place of a sum of terms
 
   StartProblem& p_;

@@ -17,6 +17,8 @@ namespace eomgen::symbolic {
 
 /// What the std::domain_error of a division by zero says.
 inline constexpr const char* division_by_zero = "division by zero";
+/// What the std::domain_error of an exponential above the exponent range of CLN's floats says.
+inline constexpr const char* exponent_too_large = "the exponential of a number above 1e18";
 
 /// Arithmetic with CLN floats of one format. Exact rationals are rounded once. Throws std::domain_error outside the
 /// real domain of a function and for a division by zero.
@@ -50,8 +52,8 @@ struct ClnArithmetic {
       case Op::asin: return arcsine(x);
       case Op::acos: return cln::pi(format) / 2 - arcsine(x);
       case Op::atan: return cln::atan(x);
-      case Op::sinh: return cln::sinh(x);
-      case Op::cosh: return cln::cosh(x);
+      case Op::sinh: return cln::sinh(exponent(x));
+      case Op::cosh: return cln::cosh(exponent(x));
       case Op::tanh: return cln::tanh(x);
       case Op::exp: return exp(x);
       case Op::log: require(cln::plusp(x), "log of a number that is not positive"); return cln::ln(x);
@@ -69,9 +71,17 @@ struct ClnArithmetic {
   }
   /// 0 if the result is below the exponent range of CLN's floats.
   static cln::cl_R exp(const cln::cl_F& x) {
-    static const cln::cl_I faintest = -cln::expt_pos(cln::cl_I(10), 18);
-    if (x < faintest) return 0;
-    return cln::exp(x);
+    if (x < -largest_exponent()) return 0;
+    return cln::exp(exponent(x));
+  }
+  /// The argument of an exponential, within the exponent range of CLN's floats.
+  static const cln::cl_F& exponent(const cln::cl_F& x) {
+    require(cln::abs(x) <= largest_exponent(), exponent_too_large);
+    return x;
+  }
+  static const cln::cl_I& largest_exponent() {
+    static const cln::cl_I value = cln::expt_pos(cln::cl_I(10), 18);
+    return value;
   }
   cln::cl_R arcsine(const cln::cl_F& x) const {
     require(cln::abs(x) <= cln::cl_R(1), "asin or acos outside [-1, 1]");

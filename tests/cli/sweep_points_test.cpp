@@ -36,6 +36,17 @@ TEST_CASE("sweep: the lines of a file are points, alone and with a grid") {
                           "a.csv"})["resumed"] == 0);
 }
 
+TEST_CASE("sweep: values of a parameter that the model states in degrees are radians, with a warning") {
+  const Folder folder;
+  folder.write("slope.toml",
+               "format = 1\n[parameters]\nm = \"1 kg\"\nal = \"30 deg\"\ng = \"9.81 m/s^2\"\n[coordinates]\nx = \"m\"\n"
+               "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x*cos(al)\", 0, \"x*sin(al)\"]\n"
+               "[[force]]\ngravity = \"-g*E3\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n");
+  const std::string warning = "the model states al in deg, and sweep takes its values as rad";
+  CHECK(contains(expect(0, folder, {"sweep", "slope.toml", "--grid", "al=0.1,0.2", "--out", "a.csv"}).err, warning));
+  CHECK_FALSE(contains(expect(0, folder, {"sweep", "slope.toml", "--grid", "m=1,2", "--out", "b.csv"}).err, warning));
+}
+
 TEST_CASE("sweep: errors in a file of points are reported with their line") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());

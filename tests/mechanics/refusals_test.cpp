@@ -114,6 +114,49 @@ TEST_CASE("mechanics rejects: a constraint that contradicts an earlier one") {
   CHECK(r.remedy == "remove it, or 'a': they cannot hold together");
 }
 
+TEST_CASE("mechanics rejects: a constraint that is an earlier one and a constant, as a contradiction") {
+  const auto circles = [](const std::string& first, const std::string& second) {
+    return refusal(
+        "format = 1\n[parameters]\nL = 2\nR = 3\nS = 2\n[[particle]]\nname = \"P\"\nmass = 1\n"
+        "position = { cartesian = [\"x\", \"y\", \"z\"] }\n"
+        "[[constraint]]\nname = \"rod\"\nholonomic = \"" +
+        first + "\"\n[[constraint]]\nname = \"longer\"\nholonomic = \"" + second + "\"\n");
+  };
+  for (const char* other : {"x^2 + y^2 - 2*L^2", "x^2 + y^2 - R^2", "x^2 + y^2 - L^2 + 1e-6"}) {
+    CAPTURE(std::string(other));
+    const Refusal r = circles("x^2 + y^2 - L^2", other);
+    CHECK(r.message == "constraint 'longer' contradicts 'rod': longer = rod and a constant that is not 0");
+    CHECK(r.remedy == "remove one of them: no position satisfies them all");
+    CHECK(r.line == 15);
+  }
+  // The same circle, also by a parameter of equal value.
+  for (const char* other : {"2*x^2 + 2*y^2 - 2*L^2", "x^2 + y^2 - S^2"}) {
+    CAPTURE(std::string(other));
+    CHECK(circles("x^2 + y^2 - L^2", other).message.starts_with("constraint 'longer' follows from 'rod'"));
+  }
+}
+
+TEST_CASE("mechanics rejects: constants above all doubles, with their place, in every stage that lowers them") {
+  const auto of = [](const std::string& energy) {
+    return refusal(planar + "[energy]\npotential = \"" + energy + "\"\n");
+  };
+  for (const char* energy : {"x*exp(1e9)", "x*exp(1000)", "x*cosh(-1e9)", "x*exp(1e30)", "x*exp(500)^2",
+                             "x*(exp(700)*exp(700))", "x*(exp(700)/exp(-700))"}) {
+    CAPTURE(std::string(energy));
+    const Refusal r = of(energy);
+    CHECK(r.message.starts_with("this has no value: "));
+    CHECK(r.message.ends_with(", whatever the state and the time"));
+    CHECK(r.line == 10);
+  }
+  const Refusal r = of("x*exp(1e9*m)");
+  CHECK(r.message == "this has no value for these parameters: it is larger than the largest double, 1.8e308");
+  CHECK(r.line == 10);
+  for (const char* energy : {"x*exp(700)", "x*exp(-1e9)", "x*exp(-1e9*m)", "exp(1e9*m*x)", "x*tanh(1e9*m)"}) {
+    CAPTURE(std::string(energy));
+    CHECK(of(energy).message == "accepted");
+  }
+}
+
 TEST_CASE("mechanics rejects: a constraint that is not linear in the velocities") {
   const Refusal r = refusal(planar + "[[constraint]]\nname = \"speed\"\nvelocity = \"x_dot^2 + y_dot^2 - 1\"\n");
   CHECK(r.message == "constraint 'speed' is not linear in the velocities");

@@ -92,6 +92,26 @@ TEST_CASE("P7 by approach II reads as (2.109), without the constraint force") {
   CHECK(two.of("energies")[0].text == "T~ = 1/2 m (d^2 phi_dot^2 + d^2 sin^2(phi) theta_dot^2 + d_dot^2)");
 }
 
+TEST_CASE("a rod about its end: energies of translation and rotation are one term; angles are shown in degrees") {
+  const auto rod = [](const std::string& angle) {
+    return Printed(
+        model::read_model_text("format = 1\n[parameters]\nm = 1\nL = 1\n[coordinates]\ntheta = \"rad\"\n[[body]]\n"
+                               "name = \"B\"\nmass = \"m\"\ninertia = \"m*L^2/12\"\n"
+                               "position = [\"L/2*sin(theta)\", \"-L/2*cos(theta)\", 0]\n"
+                               "rotation = { axis = \"E3\", angle = \"theta\" }\n[[force]]\non = \"B\"\n"
+                               "force = \"2*sin(" +
+                                   angle + ")*E2\"\n",
+                               "rod.toml"),
+        system::Approach::two, {"equations", "energies"});
+  };
+  const Printed given = rod("48.85*pi/180");
+  CHECK(given.of("energies")[0].text == "T~ = 1/6 m L^2 theta_dot^2");
+  CHECK(given.of("equations")[0].text == "d/dt(1/3 m L^2 theta_dot) = L sin(48.85[deg]) sin(theta)");
+  CHECK(given.of("equations")[0].latex.find("48.85^{\\circ}") != std::string::npos);
+  CHECK(rod("37*pi/180").of("equations")[0].text == "d/dt(1/3 m L^2 theta_dot) = L sin(37[deg]) sin(theta)");
+  CHECK(rod("pi/1024").of("equations")[0].text == "d/dt(1/3 m L^2 theta_dot) = L sin(pi/1024) sin(theta)");
+}
+
 TEST_CASE("common parameter factors come first") {
   const Printed one(model::read_model(shipped_file("S5_double_pendulum")), system::Approach::two, {"equations"});
   CHECK(one.of("explicit")[0].text ==

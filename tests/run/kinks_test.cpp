@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "support/run_text.hpp"
 
@@ -147,4 +148,44 @@ TEST_CASE("sliding: forces coupled by one mass matrix hold together, and a produ
       test::run_text("product", masses({"F*(sign(x_dot)*sign(y_dot)/2 - sign(x_dot))", "-F*sign(y_dot)"}, moving),
                      [](pipeline::SimulationRequest&) {});
   CHECK(product.simulation.result.outcome == eom::Outcome::step_too_small);
+}
+
+TEST_CASE("kinks: the cut of atan2 is located, crossed and slid along") {
+  const auto run = [](const std::string& force, const std::string& start) {
+    return test::run_text("cut",
+                          masses({force}, "t = [0, 5]\nrtol = 1e-12\natol = 1e-13\ninitial = { " + start + " }\n"));
+  };
+  // Across the cut: v^2/2 + V(|x|) with V' = pi - atan is conserved.
+  const auto energy = [](double x, double v) {
+    const double s = std::abs(x);
+    return v * v / 2 + std::numbers::pi * s - s * std::atan(s) + std::log(1 + s * s) / 2;
+  };
+  const test::FinishedRun across = run("-1[N]*atan2(x, -1[m])", "x = 0.2, x_dot = 0.3");
+  CHECK(across.simulation.result.outcome == eom::Outcome::done);
+  REQUIRE(across.simulation.result.kinks.size() == 1);
+  CHECK(across.simulation.result.kinks[0].kink == "atan2");
+  CHECK(across.simulation.result.kinks[0].count >= 5);
+  CHECK(std::abs(energy(across.final("x"), across.final("x_dot")) - energy(0.2, 0.3)) < 1e-10);
+  // Friction that jumps at rest: v' = -atan2(v, -1) + 0.1 ends in v = 0, after the integral of dv/(pi - atan(v) - 0.1).
+  const test::FinishedRun slides = run("-1[N]*atan2(x_dot, -1[m/s]) + 0.1[N]", "x = 0, x_dot = 1");
+  CHECK(slides.simulation.result.outcome == eom::Outcome::done);
+  CHECK(slides.simulation.result.statistics.steps < 1000);
+  const auto events = sliding_events(slides);
+  REQUIRE(events.size() == 1);
+  double time = 0, way = 0;
+  constexpr int intervals = 2000;  // of Simpson's rule, with an error below 1e-14
+  for (int i = 0; i <= intervals; ++i) {
+    const double v = static_cast<double>(i) / intervals;
+    const double weight = (i == 0 || i == intervals ? 1 : i % 2 == 1 ? 4 : 2) / (3.0 * intervals);
+    time += weight / (std::numbers::pi - std::atan(v) - 0.1);
+    way += weight * v / (std::numbers::pi - std::atan(v) - 0.1);
+  }
+  CHECK(std::abs(events[0].second - time) < 1e-10);
+  CHECK(std::abs(slides.final("x") - way) < 1e-10);
+  CHECK(std::abs(slides.final("x_dot")) < 1e-12);
+  // Ahead of the cut atan2 is smooth.
+  const test::FinishedRun smooth = run("-1[N]*atan2(x, 1[m])", "x = 0.2, x_dot = 0.3"),
+                          same = run("-1[N]*atan(x/1[m])", "x = 0.2, x_dot = 0.3");
+  CHECK(std::abs(smooth.final("x") - same.final("x")) < 1e-10);
+  CHECK(std::abs(smooth.final("x_dot") - same.final("x_dot")) < 1e-10);
 }

@@ -138,6 +138,34 @@ TEST_CASE("scene: the spin of a rolling body follows from its velocity if only t
   CHECK(scene.qdot[4] == doctest::Approx(2).epsilon(rounding));  // th_dot
 }
 
+TEST_CASE("scene: a start on one of two branches reports the other, and the guess that starts there") {
+  const auto notes = [](const std::string& scene) { return resolve(rod + scene).solved_notes; };
+  const std::vector<std::string> expected{
+      "y = 1.6 follows from the constraints",
+      "y = -1.6 satisfies them too: the run starts there with guess = { y = -1.6 }"};
+  CHECK(notes("initial = { x = 1.2 }\n") == expected);
+  const run::Scene below = resolve(rod + "initial = { x = 1.2 }\nguess = { y = -1.6 }\n");
+  CHECK(below.q[1] == doctest::Approx(-1.6).epsilon(rounding));
+  CHECK(below.solved_notes.size() <= 1);
+  CHECK(notes("initial = { x = 2 }\n").size() <= 1);  // both branches are y = 0
+  // Two rods of a knee: both unknowns have other values on the other branch.
+  const std::string knee =
+      "format = 1\n[coordinates]\na = \"rad\"\nb = \"rad\"\n[[particle]]\nname = \"P\"\nmass = 1\n"
+      "position = [\"cos(a) + sin(b)\", \"sin(a) - cos(b)\", 0]\n"
+      "[[constraint]]\nname = \"x\"\nholonomic = \"cos(a) + sin(b) - 1.2\"\n"
+      "[[constraint]]\nname = \"y\"\nholonomic = \"sin(a) - cos(b) - 0.7\"\n[scene.default]\n";
+  const std::vector<std::string> both = resolve(knee).solved_notes;
+  CHECK(std::any_of(both.begin(), both.end(),
+                    [](const std::string& note) { return note.find("satisfy them too") != std::string::npos; }));
+  // Full turns, and branches outside a range, are none.
+  const std::string turn =
+      "format = 1\n[coordinates]\na = \"rad\"\nb = \"rad\"\n[[particle]]\nname = \"P\"\nmass = 1\n"
+      "position = [\"cos(a)\", \"sin(a)\", 0]\n[[particle]]\nname = \"Q\"\nmass = 1\n"
+      "position = [\"cos(b)\", \"sin(b)\", 0]\n"
+      "[[constraint]]\nname = \"gear\"\nholonomic = \"2*a - b\"\n[scene.default]\ninitial = { a = 0.4 }\n";
+  CHECK(resolve(turn).solved_notes.size() == 1);
+}
+
 TEST_CASE("scene: values that violate a constraint are rejected with the amount, unless solve may change them") {
   const std::string broken = "initial = { x = 1.2, y = -1.7 }\n";
   const std::string message = refusal(rod + broken);
