@@ -28,6 +28,7 @@ struct StateChange {
 struct ReferenceTrial {
   std::vector<double> impulses;  // times at which supports give one
   std::vector<StateChange> changes;
+  bool crosses_kinks = false;
   std::vector<double> x;
 };
 

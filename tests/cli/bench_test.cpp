@@ -193,6 +193,21 @@ TEST_CASE("bench: resets of a model with constraints keep them, as in a run; wha
   CHECK(contains(order.err, "too close to the end or to another change"));
 }
 
+// The motion crosses y = 0 ahead of the cut of atan2, where nothing bends; the other one crosses the cut.
+TEST_CASE("bench: a surface at which the equations are smooth has a reference, the cut of atan2 has none") {
+  const Folder folder;
+  const auto text = [](const char* x) {
+    return "format = 1\n[coordinates]\nx = {}\ny = {}\n[[particle]]\nname = \"P\"\nmass = 1\n"
+           "position = [\"x\", \"y\", 0]\n[[force]]\non = \"P\"\nforce = \"-atan2(y, x)*E2\"\n"
+           "[scene.default]\nt = [0, 2]\ninitial = { y = 0.3, y_dot = -0.4, x = " +
+           std::string(x) + " }\n";
+  };
+  reference(folder, text("1"));
+  folder.write("resets.toml", text("-1"));
+  const ChildResult cut = expect(2, folder, {"bench", "resets.toml", "--solver", "dop853"});
+  CHECK(contains(cut.err, "crosses a kink"));
+}
+
 TEST_CASE("bench: the reference has the impulses and kinks in time of the run") {
   const Folder folder;
   const std::string pendulum =
