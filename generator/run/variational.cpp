@@ -7,14 +7,12 @@
 #include <cmath>
 #include <eom/events/integrate.hpp>
 #include <eom/hybrid/impulses.hpp>
-#include <eom/hybrid/resets.hpp>
-#include <eom/hybrid/run_context.hpp>
 #include <functional>
-#include <tuple>
 
 #include "run/bind.hpp"
 #include "run/central_differences.hpp"
 #include "run/methods.hpp"
+#include "run/variational_equations.hpp"
 
 namespace eomgen::run {
 namespace {
@@ -23,65 +21,10 @@ using eom::hybrid::Breakpoint;
 using eom::hybrid::Problem;
 using eom::hybrid::RunContext;
 
-/// The equations in one scene.
-struct Equations {
-  explicit Equations(Problem of, std::vector<Breakpoint> times)
-      : problem(std::move(of)), kinks(std::move(times)), context(problem), resets(context) {}
-  Equations(const Equations&) = delete;
-  Equations& operator=(const Equations&) = delete;
-
-  double end_of(std::size_t segment) const { return segment < kinks.size() ? kinks[segment].before : problem.t1; }
-  double begin_of(std::size_t segment) const { return segment > 0 ? kinks[segment - 1].after : problem.t0; }
-  /// Tables return their values of this segment.
-  void enter(std::size_t segment) { context.model.set_segment_time((begin_of(segment) + end_of(segment)) / 2); }
-
-  Problem problem;
-  std::vector<Breakpoint> kinks;
-  RunContext context;
-  eom::hybrid::Resets resets;
-};
-
-Problem problem_in(const Scene& scene, Problem problem) {
-  problem.parameters = scene.parameters;
-  problem.inputs = input_signals(scene);
-  problem.breakpoints = scene.clock.breakpoints;
-  problem.bounds = scene.clock.bounds;
-  for (std::size_t i = 0; i < problem.samples.size(); ++i)
-    std::tie(problem.samples[i].every, problem.samples[i].offset) = scene.samples[i];
-  problem.t0 = scene.t0;
-  problem.t1 = scene.t1;
-  return problem;
-}
-
-Problem problem_of(const RunRequest& request, const std::string& solver) {
-  Problem problem = make_problem(request, solver);
-  problem.power.reset();  // the work is not part of the state here
-  return problem;
-}
-
 double largest(const std::vector<double>& values) {
   double size = 0;
   for (const double v : values) size = std::max(size, std::abs(v));
   return size;
-}
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw Error("run", {}, "--sensitivity: " + what, "compare runs with changed values (--set), or sweep over them");
-}
-
-/// A sample that is due at a boundary: its kind and its number.
-struct DueSample {
-  std::size_t kind;
-  std::int64_t k;
-};
-
-/// The samples at the boundary from the end of a segment to the start of the next one, at `until`.
-std::vector<DueSample> due_samples(const Problem& problem, double from, double until) {
-  std::vector<DueSample> due;
-  for (std::size_t i = 0; i < problem.samples.size(); ++i) {
-    if (const auto k = eom::hybrid::sample_between(problem.samples[i], from, until)) due.push_back({i, *k});
-  }
-  return due;
 }
 
 constexpr int smaller_differences = -4, most_differences = 8;  // powers of 2; number of the differences tried
@@ -230,8 +173,8 @@ class VariationalRun::Run {
           const Problem& in = neighbour->problem;
           for (const DueSample& sample : due) {
             if (eom::hybrid::sample_between(in.samples[sample.kind], in.t0, in.t0) != sample.k)
-              refuse(fmt::format("the sample '{}' at the start moves away from it with {}",
-                                 own_.problem.samples[sample.kind].name, directions_[d].name));
+              refuse_sensitivity(fmt::format("the sample '{}' at the start moves away from it with {}",
+                                             own_.problem.samples[sample.kind].name, directions_[d].name));
           }
         }
       }
@@ -261,7 +204,7 @@ class VariationalRun::Run {
   }
 
   /// Applies the impulse at the end of the current segment, if there is one.
-  bool cross(Equations& in, std::vector<double>& x) const {
+  bool cross(VariationalEquations& in, std::vector<double>& x) const {
     if (segment_ >= in.kinks.size() || !in.context.events.jumps().has_time_kinks()) return false;
     const Breakpoint& kink = in.kinks[segment_];
     if (kink.after == kink.before) return false;
@@ -273,7 +216,7 @@ class VariationalRun::Run {
     const auto note = [&](const eom::hybrid::Event&, std::span<const double>) { changed = true; };
     const eom::hybrid::Reason open = cross_impulse(in.context, {kink.before, kink.after, 0}, at, note);
     x = std::move(at.x);
-    if (open) refuse(fmt::format("the impulse at t = {} is undetermined", kink.before));
+    if (open) refuse_sensitivity(fmt::format("the impulse at t = {} is undetermined", kink.before));
     return changed;
   }
 
@@ -292,29 +235,12 @@ class VariationalRun::Run {
                          direction.name);
     };
     Slopes by_scene = slopes(after, beside, direction.step);
-    if (!by_scene.smooth) refuse(what());
+    if (!by_scene.smooth) refuse_sensitivity(what());
     const std::vector<double> by_state = along(0, own, 0, sensitivity(x, d), what, [&](double, std::vector<double> at) {
       cross(own_, at);
       return at;
     });
     for (std::size_t i = 0; i < n_; ++i) out[(d + 1) * n_ + i] = direction.scale * (by_state[i] + by_scene.value[i]);
-  }
-
-  /// The state after samples, and the events that they cause.
-  static void take_samples(Equations& in, const std::vector<DueSample>& due, double t, std::vector<double>& x) {
-    const eom::ModeArray mode = in.context.model.mode();
-    std::vector<int> sides(in.problem.events.size(), 0);
-    in.resets.crossed(sides, in.resets.event_values(t, x.data()));
-    for (const DueSample& sample : due) {
-      if (in.resets.take_sample(sample.kind, sample.k, t, x, {}))
-        refuse(fmt::format("the sample '{}' at t = {} is undetermined", in.problem.samples[sample.kind].name, t));
-    }
-    const std::vector<std::size_t> caused = in.resets.crossed(sides, in.resets.event_values(t, x.data()));
-    const eom::hybrid::Resets::Changes made = in.resets.occur(caused, sides, t, x, {});
-    in.context.model.set_mode(mode);
-    if (made.failed || made.stopped)
-      refuse(fmt::format("the sample at t = {} causes an event that {}", t,
-                         made.failed ? "is undetermined" : "ends the run"));
   }
 
   /// x and s after samples at the start of a segment: s becomes dJ/dx s + dJ/dt dt + dJ.
@@ -338,7 +264,7 @@ class VariationalRun::Run {
         take_samples(*neighbour, due, total.t, beside.back());
       }
       const Slopes by_scene = slopes(after, beside, direction.step);
-      if (!by_scene.smooth) refuse(what());
+      if (!by_scene.smooth) refuse_sensitivity(what());
       const std::vector<double> by_state =
           along(total.t, own, dt(direction), sensitivity(x, d), what, [&](double at, std::vector<double> state) {
             take_samples(own_, due, at, state);
@@ -371,18 +297,7 @@ class VariationalRun::Run {
       Slopes found = slopes(middle, beside, step);
       if (found.smooth) return found.value;
     }
-    refuse(what());
-  }
-
-  /// The state after event i and the events that its reset causes.
-  static void apply_reset(Equations& in, std::size_t i, double t, std::vector<double>& x) {
-    const eom::ModeArray mode = in.context.model.mode();
-    std::vector<int> sides(in.problem.events.size(), 0);
-    in.resets.crossed(sides, in.resets.event_values(t, x.data()));
-    sides[i] = 0;
-    const eom::hybrid::Resets::Changes made = in.resets.occur({i}, sides, t, x, {});
-    in.context.model.set_mode(mode);
-    if (made.failed) refuse(fmt::format("the event '{}' at t = {} is undetermined", in.problem.events[i].name, t));
+    refuse_sensitivity(what());
   }
 
   /// At an event that changes the state. False: its condition does not hold.
@@ -394,8 +309,9 @@ class VariationalRun::Run {
     if (!own_.resets.occurs(i, t, own.data())) return false;
     for (const std::size_t j : point.simultaneous) {
       if (j < own_.problem.events.size())
-        refuse(fmt::format("the events '{}' and '{}' occur at the same time t = {}, and their order changes", name,
-                           own_.problem.events[j].name, t));
+        refuse_sensitivity(
+            fmt::format("the events '{}' and '{}' occur at the same time t = {}, and their order changes", name,
+                        own_.problem.events[j].name, t));
     }
     std::vector<double> before(n_), behind(n_), after = own;
     if (rhs(t, own.data(), before) != 0) return true;  // the integration reports it
@@ -415,7 +331,7 @@ class VariationalRun::Run {
         apply_reset(*neighbour, i, t, beside.back());
       }
       const Slopes by_scene = slopes(after, beside, direction.step);
-      if (!by_scene.smooth) refuse(what());
+      if (!by_scene.smooth) refuse_sensitivity(what());
       std::vector<double> s = sensitivity(x, d);
       for (std::size_t k = 0; k < n_; ++k) s[k] += before[k] * times[d];
       const std::vector<double> by_state = along(t, own, times[d], s, what, [&](double at, std::vector<double> state) {
@@ -461,7 +377,8 @@ class VariationalRun::Run {
   double time_change(std::size_t function, double t, const std::vector<double>& x, std::size_t d) {
     const Direction& direction = directions_[d];
     const std::vector<double> own(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n_));
-    const auto value = [&](Equations& in, double at, const std::vector<double>& state) -> std::vector<double> {
+    const auto value = [&](VariationalEquations& in, double at,
+                           const std::vector<double>& state) -> std::vector<double> {
       std::vector<double> g(in.context.events.size());
       if (in.context.events(at, state.data(), g.data()) != 0) return {std::nan("")};
       return {g[function]};
@@ -477,13 +394,13 @@ class VariationalRun::Run {
       beside.push_back(value(*neighbour, t, own));
     }
     const Slopes by_scene = slopes(middle, beside, direction.step);
-    if (!by_scene.smooth) refuse(what());
+    if (!by_scene.smooth) refuse_sensitivity(what());
     const auto own_value = [&](double at, const std::vector<double>& state) { return value(own_, at, state); };
     const double by_state = along(t, own, 0, sensitivity(x, d), what, own_value)[0];
     std::vector<double> f(n_);
-    if (rhs(t, own.data(), f) != 0) refuse(what());
+    if (rhs(t, own.data(), f) != 0) refuse_sensitivity(what());
     const double dt = -(by_scene.value[0] + by_state) / along(t, own, 1, f, what, own_value)[0];
-    if (!std::isfinite(dt)) refuse(what());
+    if (!std::isfinite(dt)) refuse_sensitivity(what());
     return dt;
   }
 
@@ -494,12 +411,12 @@ class VariationalRun::Run {
     return s;
   }
 
-  const std::vector<std::unique_ptr<Equations>>& neighbours(std::size_t d) {
+  const std::vector<std::unique_ptr<VariationalEquations>>& neighbours(std::size_t d) {
     neighbours_.resize(directions_.size());
-    std::vector<std::unique_ptr<Equations>>& made = neighbours_[d];
+    std::vector<std::unique_ptr<VariationalEquations>>& made = neighbours_[d];
     if (!made.empty()) return made;
     for (const Scene& scene : directions_[d].beside)
-      made.push_back(std::make_unique<Equations>(problem_in(scene, own_.problem), kink_times(scene)));
+      made.push_back(std::make_unique<VariationalEquations>(problem_in(scene, own_.problem), kink_times(scene)));
     return made;
   }
 
@@ -512,18 +429,18 @@ class VariationalRun::Run {
         if (own_.problem.events[i].name == event->name) return i;
       }
     }
-    refuse("the run is stopped by what is no event of the model");
+    refuse_sensitivity("the run is stopped by what is no event of the model");
   }
 
   const Scene& scene_;
   const RunResult& motion_;
   const std::string& solver_;
   const std::vector<Direction>& directions_;
-  Equations own_;
+  VariationalEquations own_;
   std::size_t n_;
   std::size_t segment_ = 0;  // between kinks in time
   std::vector<double> u_, dfdx_, dfdt_, dfdp_, dfdu_, f_, slopes_;
-  std::vector<std::vector<std::unique_ptr<Equations>>> neighbours_;  // per direction, made where needed
+  std::vector<std::vector<std::unique_ptr<VariationalEquations>>> neighbours_;  // per direction, made where needed
 };
 
 VariationalRun::VariationalRun(const RunRequest& request, const RunResult& motion, const std::string& solver,
