@@ -216,6 +216,22 @@ TEST_CASE("resets without a valid result end the run with their reason") {
        eom::Outcome::not_finite, "'root' sets is not finite");
 }
 
+// x = 1 - 5 t^2, and each bounce takes half of the velocity: they end at t = 3 sqrt(1/5), 40 of them above rounding.
+TEST_CASE("bounces that become ever shorter end the run where they end, and do not fall through the floor") {
+  for (const double direction : {1.0, -1.0}) {
+    CAPTURE(direction);
+    const std::string sign = direction > 0 ? "" : "-";
+    const test::FinishedRun run = run_text(
+        "[[force]]\ngravity = \"" + std::string(direction > 0 ? "-" : "") +
+        "10*E1\"\n[[event]]\nname = \"bounce\"\nwhen = \"x\"\ndirection = \"" + (direction > 0 ? "down" : "up") +
+        "\"\nset = { x_dot = \"-x_dot/2\" }\n[scene.default]\nt = [0, 5]\ninitial = { x = " + sign + "1 }\n");
+    CHECK(run.simulation.result.outcome == eom::Outcome::step_too_small);
+    CHECK(run.simulation.result.detail.find("events follow one another") != std::string::npos);
+    CHECK(run.simulation.result.t == doctest::Approx(3 * std::sqrt(0.2)).epsilon(followed));
+    CHECK(std::abs(run.final("x")) < 1e-12);
+  }
+}
+
 TEST_CASE("samples whose times cannot be told apart, or that are too many, are refused") {
   const auto refused = [](const std::string& keys, const std::string& scene, const char* words) {
     const std::string model =

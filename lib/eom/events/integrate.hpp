@@ -99,6 +99,11 @@ class Run {
   bool observe(const StepView& view) {
     if (values_.empty()) return observer_(view);
     locator_.begin_step(view, g_);
+    if (turned_back_ && locator_.side(*turned_back_) != 0) {
+      lost_ = locator_.side(*turned_back_) != locator_.from_side(*turned_back_);
+      turned_back_.reset();
+      if (lost_) return false;
+    }
     while (const std::optional<Crossing> crossing = locator_.next_crossing(view, g_)) {
       if (locator_.functions()[crossing->function].watch == Watch::breaking) {
         cut(view, *crossing);
@@ -137,6 +142,7 @@ class Run {
   /// with the options `piece`.
   bool continue_after_piece(const Result& part, Options& piece) {
     total_.statistics += part.statistics;
+    if (lost_) return end(Outcome::step_too_small, no_progress);
     if (!cut_) {
       total_.outcome = part.outcome;
       total_.detail = part.detail;
@@ -248,12 +254,29 @@ class Run {
     const EventAction answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions(), simultaneous});
     if (!continues) return end(Outcome::stopped_by_event, answer == EventAction::stop ? "" : "stopped by the observer");
     if (answer == EventAction::stop) return end(Outcome::stopped_by_event, "");
-    if (events_without_progress_ >= events_without_progress)
-      return end(Outcome::step_too_small, "events follow one another without progress in time");
+    if (events_without_progress_ >= events_without_progress) return end(Outcome::step_too_small, no_progress);
     piece.initial_step = answer == EventAction::resume ? std::abs(h) : options_.initial_step;
     if (answer == EventAction::resume) return true;
     const int code = locator_.start(total_.t, total_.x.data(), g_, h > 0, {&crossing, 1});
+    turned_back_.reset();
+    if (code == 0 && is_turned_back(crossing.function)) turned_back_ = crossing.function;
     return code == 0 || end(outcome_of_abi_code(code), "an event function returned code " + std::to_string(code));
+  }
+
+  /// Whether a function of a reset that was crossed in its direction moves back after the change of the state. The rate
+  /// is that of an Euler step.
+  bool is_turned_back(std::size_t i) {
+    const Direction direction = locator_.functions()[i].direction;
+    if (!locator_.functions()[i].resets || direction == Direction::any ||
+        g_(total_.t, total_.x.data(), values_.data()) != 0)
+      return false;
+    const double here = values_[i], h = euler_part * (t1_ - t0_);
+    std::vector<double> x(total_.x.size());
+    if (rhs_(total_.t, total_.x.data(), x.data()) != 0) return false;
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] = total_.x[k] + h * x[k];
+    if (g_(total_.t + h, x.data(), values_.data()) != 0) return false;
+    const double rise = h > 0 ? values_[i] - here : here - values_[i];
+    return direction == Direction::down ? rise > 0 : rise < 0;
   }
 
   bool end(Outcome outcome, std::string detail) {
@@ -266,9 +289,11 @@ class Run {
     return false;
   }
 
+  static constexpr const char* no_progress = "events follow one another without progress in time";
   static constexpr int most_corrections = 6;
   static constexpr double smallest_parts = 1e-13;  // of the time
   static constexpr double most_at_end = 1e-9;      // of the run: later events are not those at its end
+  static constexpr double euler_part = 1e-3;       // of the run
   static constexpr double farthest = 0.01;         // of the step: larger corrections are rejected
 
   std::string_view method_;
@@ -286,6 +311,8 @@ class Run {
   double cut_t_ = 0, cut_h_ = 0;
   std::vector<double> cut_x_;
   int events_without_progress_ = 0;
+  std::optional<std::size_t> turned_back_;  // a function that has to return to the side from which it was crossed
+  bool lost_ = false;                       // it did not: what it does there is below the rounding of its values
 };
 
 }  // namespace events

@@ -42,6 +42,7 @@ struct EventFunction {
   Watch watch = Watch::breaking;
   bool guard =
       false;  // for a direction up or down: starting beyond the surface, or leaving it on that side, is a crossing too
+  bool resets = false;  // a handler may turn it back at its crossing: it then has to return to the side it came from
 };
 
 struct Crossing {
@@ -70,6 +71,9 @@ class EventLocator {
   std::span<const EventFunction> functions() const { return functions_; }
   /// Current side of a function: -1, 0 (unknown) or 1.
   int side(std::size_t function) const { return side_[function]; }
+
+  /// The side from which a function with a direction is crossed.
+  int from_side(std::size_t function) const { return inner_side(functions_[function], forward_); }
 
   /// Determines the sides at (t, x). Values within rounding of zero have an unknown side, and so do `crossed` functions
   /// that are as close to zero as at the crossing (a mode may give a function another meaning).
@@ -186,10 +190,9 @@ class EventLocator {
 
   // Points close to both ends reveal a dip between the last sample of one step and the first of the next.
   static constexpr std::array<double, 9> places{0, 1e-4, 0.067, 0.25, 0.5, 0.75, 0.933, 1 - 1e-4, 1};
-  static constexpr double tolerance = 1e-12;  // of the step
-  static constexpr double rounding = 1e-13;   // of the largest value so far: smaller values have no sign
-  static constexpr double crossed_rounding =
-      1e-10;  // the same for a function that has just crossed: its root is corrected, not exact
+  static constexpr double tolerance = 1e-12;         // of the step
+  static constexpr double rounding = 1e-13;          // of the largest value so far: smaller values have no sign
+  static constexpr double crossed_rounding = 1e-10;  // for a function that has just crossed: its root is not exact
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   static constexpr double least_slope = 0.6;  // at the end of a step, relative to the slope before
 

@@ -53,7 +53,8 @@ class EventFunctions {
   std::vector<EventFunction> watched() const {
     std::vector<EventFunction> functions;
     for (const WatchedEvent& event : problem_.events)
-      functions.push_back({event.direction, event.stop || !event.reset.set.empty() ? Watch::breaking : Watch::passing});
+      functions.push_back({event.direction, event.stop || !event.reset.set.empty() ? Watch::breaking : Watch::passing,
+                           false, !event.reset.set.empty()});
     functions.resize(size());
     if (contacts_) contacts_->watch(of_contacts(functions));
     if (solved_contacts_ != nullptr) solved_contacts_->watch(of_solved_contacts(functions));
