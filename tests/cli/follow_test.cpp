@@ -432,7 +432,7 @@ set = { x_dot = "-x_dot/2" }
 t = [0, 5]
 initial = { x = 1 }
 )toml");
-  std::optional<Json> found = page(folder, "bounces.toml", {}, {}, run_on_page);
+  std::optional<Json> found = page(folder, "bounces.toml", {}, {}, run_on_page, 3);  // as run does
   if (!found) return;
   const double rests = 3 * std::sqrt(2 / 9.81);  // sqrt(2 h/g) (1 + 2 e/(1 - e)), e = 1/2
   CHECK(contains((*found)["outcome"].get<std::string>(), "ever faster"));
