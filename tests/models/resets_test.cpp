@@ -232,6 +232,21 @@ TEST_CASE("bounces that become ever shorter end the run where they end, and do n
   }
 }
 
+// A fast rotor counts its turns at zeros of sin(x), which it passes without turning back. Steps of `taylor` hold many
+// turns.
+TEST_CASE("a reset at an event that the motion passes on does not end the run, however fast the event function is") {
+  for (const char* solver : {"dop853", "taylor"}) {
+    CAPTURE(solver);
+    const test::FinishedRun run = run_text(
+        "[discrete]\nturns = 0\n[[event]]\nname = \"turn\"\nwhen = \"sin(x)\"\ndirection = \"up\"\n"
+        "set = { turns = \"turns + 1\" }\n[scene.default]\nt = [0, 4]\ninitial = { x = -0.5, x_dot = 1000 }\n"
+        "solver = \"" +
+        std::string(solver) + "\"\n");
+    CHECK(run.simulation.result.outcome == eom::Outcome::done);
+    CHECK(run.final("turns") == std::floor(3999.5 / (2 * std::numbers::pi)) + 1);
+  }
+}
+
 TEST_CASE("samples whose times cannot be told apart, or that are too many, are refused") {
   const auto refused = [](const std::string& keys, const std::string& scene, const char* words) {
     const std::string model =

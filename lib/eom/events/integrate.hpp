@@ -263,20 +263,28 @@ class Run {
     return code == 0 || end(outcome_of_abi_code(code), "an event function returned code " + std::to_string(code));
   }
 
-  /// Whether a function of a reset that was crossed in its direction moves back after the change of the state. The rate
-  /// is that of an Euler step.
+  /// Whether a function of a reset that was crossed in its direction moves back after the change of the state. Its rate
+  /// is that along the new derivatives, over times that double until it is proportional to them. False: it moves on, or
+  /// rounding hides what it does.
   bool is_turned_back(std::size_t i) {
     const Direction direction = locator_.functions()[i].direction;
     if (!locator_.functions()[i].resets || direction == Direction::any ||
         g_(total_.t, total_.x.data(), values_.data()) != 0)
       return false;
-    const double here = values_[i], h = euler_part * (t1_ - t0_);
-    std::vector<double> x(total_.x.size());
-    if (rhs_(total_.t, total_.x.data(), x.data()) != 0) return false;
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] = total_.x[k] + h * x[k];
-    if (g_(total_.t + h, x.data(), values_.data()) != 0) return false;
-    const double rise = h > 0 ? values_[i] - here : here - values_[i];
-    return direction == Direction::down ? rise > 0 : rise < 0;
+    const double here = values_[i], sign = direction == Direction::down ? 1 : -1;
+    std::vector<double> x(total_.x.size()), dx(total_.x.size());
+    if (rhs_(total_.t, total_.x.data(), dx.data()) != 0) return false;
+    // From the shortest time on: over long ones a function that oscillates may seem proportional.
+    double h = std::ldexp(cut_h_, -doublings), before = 0;
+    int proportional = 0;
+    for (int k = 0; k < doublings && proportional < least_proportional; ++k, h *= 2) {
+      for (std::size_t c = 0; c < x.size(); ++c) x[c] = total_.x[c] + h * dx[c];
+      const bool known = g_(total_.t + h, x.data(), values_.data()) == 0;
+      const double rise = known ? (h > 0 ? 1 : -1) * (values_[i] - here) : 0, ratio = rise / before;
+      proportional = ratio > 1.9 && ratio < 2.1 ? proportional + 1 : 0;
+      before = rise;
+    }
+    return proportional == least_proportional && sign * before > 0;
   }
 
   bool end(Outcome outcome, std::string detail) {
@@ -293,8 +301,8 @@ class Run {
   static constexpr int most_corrections = 6;
   static constexpr double smallest_parts = 1e-13;  // of the time
   static constexpr double most_at_end = 1e-9;      // of the run: later events are not those at its end
-  static constexpr double euler_part = 1e-3;       // of the run
-  static constexpr double farthest = 0.01;         // of the step: larger corrections are rejected
+  static constexpr int doublings = 40, least_proportional = 6;
+  static constexpr double farthest = 0.01;  // of the step: larger corrections are rejected
 
   std::string_view method_;
   F& rhs_;
