@@ -83,9 +83,9 @@ void ReferenceBoundaries::require_same_end(const reference::Solution& reference)
   for (std::size_t i = 0; i < scales.size(); ++i) {
     if (!(std::abs(trial_.x[i] - reference.x.back()[i]) <= trial_agreement * scales[i]))
       throw Error("bench", {},
-                  fmt::format("the reference ends at {} = {}, and a run with tolerances of {} at {}: its events are "
+                  fmt::format("the reference ends at {} = {}, and the run that it follows at {}: its events are "
                               "others, or the motion is chaotic",
-                              request_.state_names[i], reference.x.back()[i], trial_tolerance, trial_.x[i]),
+                              request_.state_names[i], reference.x.back()[i], trial_.x[i]),
                   "shorten the run (--t-end)", ErrorKind::numerical);
   }
 }

@@ -176,7 +176,7 @@ bool are_closed_together(const Mechanics& m, OneFormSpace& space, const std::vec
 }
 
 /// Whether holonomic constraint k is a fixed combination of the others and a constant that is not 0 for the values of
-/// the parameters: no position satisfies them all.
+/// the parameters: no position satisfies them all. False if no sample point gives them values.
 bool is_contradiction(const Mechanics& m, OneFormSpace& space, const std::vector<std::uint32_t>& constraints,
                       const std::vector<std::size_t>& independent, std::size_t k, const Combination& here,
                       const Combination& there) {
@@ -192,6 +192,7 @@ bool is_contradiction(const Mechanics& m, OneFormSpace& space, const std::vector
     coefficients.push_back(-here.coefficients[a]);
   }
   constexpr int digits = 40;
+  bool has_values = false;
   for (std::size_t point = 0; point < space.points(); ++point) {
     const std::function<cl_R(const symbolic::Symbol&)> value = [&](const symbolic::Symbol& symbol) {
       if (symbol.kind != symbolic::SymbolKind::parameter) return space.value(symbol, point);
@@ -205,11 +206,12 @@ bool is_contradiction(const Mechanics& m, OneFormSpace& space, const std::vector
         size = size + cln::abs(coefficients[a] * values[a]);
       }
       if (cln::abs(rest) <= small(12) * size) return false;
+      has_values = true;
     } catch (const std::domain_error&) {
       continue;
     }
   }
-  return space.points() > 0;
+  return has_values;
 }
 
 Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints, std::size_t k,
