@@ -141,6 +141,7 @@ bool Benchmark::conclusive() const {
 }
 
 Benchmark benchmark(const BenchmarkRequest& asked) {
+  run::select_solvers("bench", asked.solvers);  // an unknown name is refused before the derivation
   Benchmark result{pipeline::simulate(simulation_request(asked)), {}, {}, {}, {}, 0};
   const Simulation& simulation = result.simulation;
   const work::DeferInterrupt kept;

@@ -82,6 +82,11 @@ std::string watched(const pipeline::Simulation& simulation) {
   if (!result.error_estimate.empty()) {
     out += line("error estimate", fmt::format("{:.2e} at most, from {} further evaluations",
                                               result.error_estimate.back().second, result.estimate_rhs_evaluations));
+    if (result.estimate_is_by_looser_run)
+      out +=
+          line("",
+               "by a run at ten times the tolerances: a tighter one needs more than twice the steps; --estimate full "
+               "makes it");
     if (!result.estimate_note.empty()) out += line("", result.estimate_note);
   }
   for (const run::Invariant& i : result.invariants) {
@@ -202,6 +207,7 @@ Json RunReport::json() const {
   for (const auto& [name, value] : result.error_estimate) estimate[name] = std::isfinite(value) ? value : unbounded;
   document["error_estimate"] = estimate;
   document["error_estimate_rhs_evaluations"] = result.estimate_rhs_evaluations;
+  document["error_estimate_by_looser_run"] = result.estimate_is_by_looser_run;
   document["error_estimate_note"] = result.estimate_note;
   return document;
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "cli/assignments.hpp"
+#include "pipeline/estimate_cost.hpp"
 #include "pipeline/pipeline.hpp"
 #include "pipeline/tier.hpp"
 #include "run/eligibility.hpp"
@@ -70,6 +71,24 @@ void add_tier(Arguments& app, std::string& tier) {
                              fmt::join(words, ", ")))
       .show_default()
       .suggest_values(words);
+}
+
+void add_estimate(Arguments& app, std::string& estimate, bool& without) {
+  const std::vector<std::string> words = pipeline::estimate_cost_names();
+  app.add_option("--estimate", estimate,
+                 fmt::format("{}: error estimates take about three times the steps of a run, or as many as they need",
+                             fmt::join(words, ", ")))
+      .show_default()
+      .suggest_values(words);
+  app.add_flag("--no-error-estimate", without, "leave error estimates out");
+}
+
+eom::EstimateCost chosen_estimate(const std::string& estimate, bool without) {
+  const eom::EstimateCost cost = pipeline::parse_estimate_cost(estimate);
+  if (without && cost == eom::EstimateCost::full)
+    throw Error("cli", {}, "--estimate full asks for an error estimate, and another option leaves it out",
+                "leave --estimate out, or --no-error-estimate and --ensemble");
+  return cost;
 }
 
 }  // namespace eomgen::cli

@@ -3,6 +3,7 @@
 // supports.
 #pragma once
 
+#include <eom/run_types.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,5 +33,9 @@ void add_outputs(Arguments& app, SceneOptions& options);     // --output
 void add_approach(Arguments& app, std::string& approach);
 void add_form(Arguments& app, std::string& form);
 void add_tier(Arguments& app, std::string& tier);
+/// --estimate and --no-error-estimate.
+void add_estimate(Arguments& app, std::string& estimate, bool& without);
+/// The cost that --estimate names. Throws Error if `without` leaves no estimate that could be full.
+eom::EstimateCost chosen_estimate(const std::string& estimate, bool without);
 
 }  // namespace eomgen::cli

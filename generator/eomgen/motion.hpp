@@ -30,8 +30,10 @@ struct RunOptions {
   /// have the same bits.
   std::string tier = "auto";
   std::size_t max_steps = 0;   // 0: the solver's default
-  bool error_estimate = true;  // costs a second run
-  bool charts = true;          // allow changes of angle coordinates near their singularities
+  bool error_estimate = true;  // costs further runs
+  /// "bounded": they take about three times the steps of the run; "full": as many as they need.
+  std::string estimate = "bounded";
+  bool charts = true;  // allow changes of angle coordinates near their singularities
   std::uint64_t seed = 1;
   /// If set, receives each row instead of Motion::rows. t in s; `values` in the order of Motion::columns.
   std::function<void(double t, std::span<const double> values)> row = {};

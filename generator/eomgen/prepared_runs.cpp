@@ -127,9 +127,9 @@ run::Scene PreparedRuns::scene(const PreparedRun& run, const run::Overrides& rep
   take(replaced.step, overrides.step);
   take(replaced.max_step, overrides.max_step);
   take(replaced.solver, overrides.solver);
-  const pipeline::DerivedModel& derived = *run.derived;
-  return run::resolve_scene(run.derived->mechanics, derived.candidates.front(),
-                            derived.model.scene(run.plan->scene.name), overrides);
+  pipeline::DerivedModel& derived = *run.derived;
+  return run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(run.plan->scene.name),
+                            overrides, derived.scene_tables);
 }
 
 std::shared_ptr<const pipeline::Compilation> PreparedRuns::compile(Derivation& derivation,

@@ -41,15 +41,17 @@ BoundRun::BoundRun(const DerivedModel& derived, const Compilation& compilation, 
   allow_charts(request_, compilation.charts);
 }
 
-run::RunResult rerun(const Simulation& simulation, const run::Overrides& overrides, bool estimate) {
+run::RunResult rerun(const Simulation& simulation, const run::Overrides& overrides, bool estimate,
+                     eom::EstimateCost cost) {
   DerivedModel& derived = *simulation.derived;
   run::Overrides allowed = overrides;
   allowed.can_exchange_charts = simulation.charts != nullptr;
-  return BoundRun(derived, simulation,
-                  run::resolve_scene(derived.mechanics, derived.candidates.front(),
-                                     derived.model.scene(simulation.scene.name), allowed),
-                  estimate)
-      .integrate();
+  BoundRun run(derived, simulation,
+               run::resolve_scene(derived.mechanics, derived.candidates.front(),
+                                  derived.model.scene(simulation.scene.name), allowed, derived.scene_tables),
+               estimate);
+  run.request().estimate_cost = cost;
+  return run.integrate();
 }
 
 }  // namespace eomgen::pipeline

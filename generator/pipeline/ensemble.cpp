@@ -210,7 +210,7 @@ class Runs {
     DerivedModel& derived = *first_.derived;
     try {
       return run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(first_.scene.name),
-                                asked_.overrides(asked_.runs[member]));
+                                asked_.overrides(asked_.runs[member]), derived.scene_tables);
     } catch (const Error& error) {
       if (error.stage() != "scene") throw;
       asked_.on_refusal(asked_.runs[member], error.message());

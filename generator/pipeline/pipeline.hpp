@@ -44,6 +44,7 @@ struct DerivedModel {
   mechanics::Mechanics mechanics;
   std::vector<system::EquationSystem> candidates;  // applicable formulations, in the requested approaches
   std::vector<conservation::ConservedQuantity> conserved;
+  run::SceneTables scene_tables;  // of the first candidate
   Timings seconds;
   bool certificate_from_cache = false;  // the certificate comes from an earlier command for the same model and program
 };

@@ -220,7 +220,8 @@ RunPlan plan_run(DerivedModel& derived, const SimulationRequest& request, const 
   const bool possible = request.charts && !exchangeable_charts(list_charts(mechanics)).empty();
   plan.overrides = request.overrides;
   plan.overrides.can_exchange_charts = possible;
-  plan.scene = run::resolve_scene(mechanics, system, derived.model.scene(request.scene), plan.overrides);
+  plan.scene =
+      run::resolve_scene(mechanics, system, derived.model.scene(request.scene), plan.overrides, derived.scene_tables);
   // Reports a wrong name before the compilation.
   plan.solver = run::choose_solver(plan.scene.solver, plan.scene).first;
   const eom::Refusal* const keeps_charts = run::get_method(plan.solver).needs.refusal(eom::Feature::charts);
@@ -286,6 +287,7 @@ Simulation simulate(const SimulationRequest& request) {
   run.progress = request.progress;
   run.interrupt = request.interrupt;
   run.max_steps = request.max_steps;
+  run.estimate_cost = request.estimate_cost;
   if (request.integrate) simulation.result = bound.integrate();
   simulation.result.reason.charts_refused = plan.charts_refused;
   simulation.result.reason.charts_kept_for_jumps = plan.charts_kept_for_jumps;

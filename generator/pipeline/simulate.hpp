@@ -30,6 +30,7 @@ struct SimulationRequest {
   ApproachChoice approach = ApproachChoice::automatic;
   FormChoice form = std::nullopt;
   bool estimate = true;
+  eom::EstimateCost estimate_cost = eom::EstimateCost::bounded;
   bool integrate = true;          // false: everything but the run; `result` stays empty
   std::vector<std::string> with;  // further functions of the code
   bool every_solver = false;      // the code has the functions for every eligible solver
@@ -112,6 +113,7 @@ std::vector<eom::expressions::Table> bounded_events(const DerivedModel& derived,
 
 /// Runs the same compiled code with other values, for sweeps and for tests over tolerances. `overrides` may change all
 /// values; outputs are limited to those in the code. No rows.
-run::RunResult rerun(const Simulation& simulation, const run::Overrides& overrides, bool estimate = true);
+run::RunResult rerun(const Simulation& simulation, const run::Overrides& overrides, bool estimate = true,
+                     eom::EstimateCost cost = eom::EstimateCost::bounded);
 
 }  // namespace eomgen::pipeline

@@ -99,6 +99,7 @@ Problem make_problem(const RunRequest& request, const std::string& solver) {
   problem.state_names = request.state_names;
   problem.constraint_names = request.constraint_names;
   problem.estimate = request.estimate;
+  problem.estimate_cost = request.estimate_cost;
   problem.output_interval = request.every;
   problem.row = request.row;
   problem.progress = request.progress;

@@ -72,6 +72,7 @@ void report_error(const RunRequest& request, const eom::hybrid::RunResult& run, 
         error.warning.t);
   }
   result.estimate_rhs_evaluations = error.rhs_evaluations;
+  result.estimate_is_by_looser_run = error.is_by_looser_run;
   if (error.states.empty()) return;
   for (std::size_t i = 0; i < request.state_names.size(); ++i)
     result.error_estimate.emplace_back(request.state_names[i], error.states[i]);

@@ -62,6 +62,7 @@ struct RunResult {
   std::vector<double> state;  // at the end, in the model's own charts: all components, not only outputs
   std::vector<std::pair<std::string, double>> error_estimate;  // per state, then "max"; empty if not requested
   std::size_t estimate_rhs_evaluations = 0;
+  bool estimate_is_by_looser_run = false;
   std::string estimate_note;  // the warning about the estimate, in terms of the command line, or ""
   std::vector<Invariant> invariants;
   double power_balance = 0;     // largest |E - E(0) - W| relative to the energies exchanged
@@ -119,6 +120,7 @@ struct RunRequest {
   std::function<bool(std::uint32_t coordinate, double t, std::span<const double> x)> holds_beyond_range = {};
   std::vector<std::string> constraint_names = {};  // of Code::active_constraints
   std::vector<eom::hybrid::Sample> samples = {};
+  eom::EstimateCost estimate_cost = eom::EstimateCost::bounded;
   std::size_t max_steps = 0;  // accepted and rejected together; 0: the limit of eom::Options, and no limit for fixed
                               // steps, whose number is known
 

@@ -129,14 +129,13 @@ std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene&
 }
 
 // Functions of time alone, and the jumps that they cause.
-void resolve_clock(const Mechanics& m, const system::EquationSystem& system, Scene& result) {
+void resolve_clock(const Mechanics& m, const system::EquationSystem& system, const SceneTable& table, Scene& result) {
   for (Signal& input : result.inputs) input.set_parameters(result.parameters);
   result.clock =
       eom::hybrid::analyse_time_functions(result.time, result.parameters, input_signals(result), result.t0, result.t1);
-  eom::hybrid::JumpFunctions jumps = jump_functions(system);
-  const eom::hybrid::Jumps found(jumps, system.layout(), m.model->inputs.size(), result.parameters,
+  const eom::hybrid::Jumps found(table.jumps, system.layout(), m.model->inputs.size(), result.parameters,
                                  !result.clock.breakpoints.empty());
-  if (!found.none()) result.jumps = std::move(jumps);
+  if (!found.none()) result.jumps = table.jumps;
 }
 
 // The equations do not hold for a start outside its chart.
@@ -174,33 +173,35 @@ void require_span(const Mechanics& m, const model::Scene& scene, const Scene& re
     fail("step, max_step and every must be positive", "leave them out for the defaults");
 }
 
+// The entries of M, then those of A, at the start.
+std::vector<double> mass_and_rows(const Mechanics& m, const system::EquationSystem& system, const SceneTable& table,
+                                  const Scene& start) {
+  std::vector<double> values(system.M.size() + system.A.size(), std::nan(""));
+  std::vector<double> variables{start.t0};
+  for (const std::uint32_t i : system.free) variables.push_back(start.q[i]);
+  for (const std::uint32_t i : system.free) variables.push_back(start.qdot[i]);
+  variables.insert(variables.end(), start.z.begin(), start.z.end());
+  variables.resize(variables.size() + m.model->inputs.size(), std::nan(""));
+  const eom::expressions::Code code(table.mass_and_rows, start.parameters);
+  code.values(variables, values);
+  return values;
+}
+
 // Coordinates are singular where M has no inverse. With multipliers M may be singular if the constraints compensate it:
 // then it has to be regular in the directions that they leave free.
-void require_regular(const Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
-                     const Scene& start) {
+void require_regular(const Mechanics& m, const system::EquationSystem& system, const SceneTable& table,
+                     const model::Scene& scene, const Scene& start) {
   constexpr double smallest_eigenvalue = 5e-15;  // of M scaled to a unit diagonal; rounding leaves 1e-16 per operation
   constexpr double smallest_row = 1e-10;         // of a constraint outside the span of the others
   const auto n = static_cast<Eigen::Index>(system.free.size());
-  const std::vector<symbolic::Symbol> states = system.state_symbols();
-  const auto values_of = [&](const std::vector<symbolic::Ref>& entries) {
-    return symbolic::evaluate(*system.dag, entries, [&](const symbolic::Symbol& s) {
-      if (s.kind == symbolic::SymbolKind::parameter) return start.parameters[s.index];
-      if (s.kind == symbolic::SymbolKind::time) return start.t0;
-      if (const auto found = std::find(states.begin(), states.end(), s); found != states.end())
-        return start.z[static_cast<std::size_t>(found - states.begin())];
-      if (s.kind == symbolic::SymbolKind::coordinate) return (s.order == 0 ? start.q : start.qdot)[s.index];
-      return std::nan("");
-    });
-  };
-  const std::vector<double> values = values_of(system.M);
+  const std::vector<double> values = mass_and_rows(m, system, table, start);
   Eigen::MatrixXd M = Eigen::Map<const Eigen::MatrixXd>(values.data(), n, n);
   if (!M.allFinite() || n == 0) return;  // reported with the undefined value; no free coordinates
   Eigen::VectorXd scale = M.diagonal().cwiseSqrt();
   bool regular = scale.minCoeff() > 0;
   if (!system.active.empty()) {
-    const std::vector<double> rows = values_of(system.A);
     Eigen::MatrixXd gradients =  // in columns
-        Eigen::Map<const Eigen::MatrixXd>(rows.data(), n, static_cast<Eigen::Index>(system.active.size()));
+        Eigen::Map<const Eigen::MatrixXd>(values.data() + n * n, n, static_cast<Eigen::Index>(system.active.size()));
     if (!gradients.allFinite()) return;
     for (double& s : scale) s = s > 0 ? s : 1;
     gradients = scale.cwiseInverse().asDiagonal() * gradients;
@@ -303,7 +304,13 @@ std::optional<StartProblem::Key> find_start(const model::Model& model, const std
 }
 
 Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
-                    const Overrides& overrides) try {
+                    const Overrides& overrides) {
+  SceneTables tables;
+  return resolve_scene(m, system, scene, overrides, tables);
+}
+
+Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
+                    const Overrides& overrides, SceneTables& tables) try {
   Scene result;
   result.name = scene.name;
   const std::vector<cln::cl_R> parameters = exact_parameters(m, scene, overrides, digits);
@@ -374,14 +381,18 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
                                                           : 0;
   }
   for (Signal& input : result.inputs) input.set_parameters(result.parameters);
-  result.time = time_functions(system, inputs);
+  const bool is_scenes_own =
+      std::none_of(m.model->inputs.begin(), m.model->inputs.end(),
+                   [&](const model::Input& input) { return overrides.values.contains(input.name); });
+  const SceneTable& table = tables.of(system, scene, inputs, is_scenes_own);
+  result.time = table.time;
   problem.t0 =
       eom::hybrid::time_behind_start(result.time, result.parameters, input_signals(result), result.t0, result.t1);
   solve_start(problem);
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     if (const auto& start_of = m.model->parameters[i].initial_value_of) result.parameters[i] = problem.q[*start_of];
   }
-  resolve_clock(m, system, result);  // parameters may depend on the start
+  resolve_clock(m, system, table, result);  // parameters may depend on the start
   result.q = problem.q;
   result.qdot = problem.qdot;
   for (std::size_t i = 0; i < rounded.size(); ++i) rounded[i] = numeric::exact(result.parameters[i]);
@@ -398,7 +409,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   for (const model::Event& event : m.model->events) result.ends_run.push_back(event.stop);
   for (const std::uint32_t i : scene.stop) result.ends_run[i] = true;
   resolve_samples(m, value, result);
-  if (!overrides.can_exchange_charts) require_regular(m, system, scene, result);
+  if (!overrides.can_exchange_charts) require_regular(m, system, table, scene, result);
 
   std::vector<model::OutputReference> wanted = scene.outputs;
   if (!overrides.outputs.empty()) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "mechanics/mechanics.hpp"
+#include "run/scene_tables.hpp"
 #include "run/signal.hpp"
 #include "system/equation_system.hpp"
 
@@ -76,6 +77,9 @@ inline constexpr double start_tolerance = 1e-8;  // relative; the contract's
 /// constraint.
 Scene resolve_scene(mechanics::Mechanics& mechanics, const system::EquationSystem& system, const model::Scene& scene,
                     const Overrides& overrides);
+/// The same with the tables of earlier runs.
+Scene resolve_scene(mechanics::Mechanics& mechanics, const system::EquationSystem& system, const model::Scene& scene,
+                    const Overrides& overrides, SceneTables& tables);
 
 /// Parameters of a scene in many digits. With a seed `moved` each independent parameter is multiplied by a random
 /// number near 1 (0 stays 0), and dependent parameters are computed from them.

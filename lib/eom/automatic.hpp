@@ -10,6 +10,11 @@
 // Therefore 50 steps of dop853 in a row with three times the |h lambda| of a motion that is itself that fast also count
 // as stiff. radau5: h rho(df/dx) by power iteration; 15 steps in a row below half of that value lead back. If this
 // happens early, the next change requires twice as many stiff steps. With fixed steps the method does not change.
+//
+// The first steps of radau5 are a trial. Its cost per unit of time, in evaluations of the right-hand side, is compared
+// with that of the explicit method in the steps that led to the change. If it is higher, the explicit method continues,
+// and the next trial requires eight times as many stiff steps. Operations are counted, never clocks, so that every
+// process makes the same choice.
 #pragma once
 
 #include <cmath>
@@ -134,6 +139,7 @@ class Automatic {
       0.2;  // of the logarithm: in a vibration the estimate varies like the tangent of its phase
   static constexpr int nonstiff_run = 6;  // this many steps in a row that are not stiff reset the count
   static constexpr int required_stiff_steps = MethodChoice::min_stiff_steps;
+  static constexpr int trial_steps = 10;  // of radau5; its step grows in the first half of them
   static constexpr int short_implicit_phase = 4 * required_stiff_steps;
 
   const char* explicit_name() const {
@@ -163,6 +169,7 @@ class Automatic {
     if (seen > 0 && std::isfinite(seen)) level_ += (std::log(seen) - level_) * (level_ == 0 ? 1 : smoothing);
     const double value = std::exp(level_);
     const double limit = fifth ? limit_of_dopri5 : limit_of_dop853;
+    if (stiff_steps_ == 0 && inaccurate_steps_ == 0) stiff_from_ = progress();
     if (value > limit) {
       nonstiff_steps_ = 0;
       if (++stiff_steps_ >= choice_.required_stiff_steps)
@@ -181,6 +188,8 @@ class Automatic {
 
   void detect_end_of_stiffness() {
     ++implicit_steps_;
+    if (explicit_cost_ > 0 && implicit_steps_ == trial_steps / 2) trial_from_ = progress();
+    if (explicit_cost_ > 0 && implicit_steps_ == trial_steps && is_costlier()) return;
     const double value = h_ * spectral_radius();
     nonstiff_steps_ = value < explicit_limit() ? nonstiff_steps_ + 1 : 0;
     if (nonstiff_steps_ < required_stiff_steps) return;
@@ -188,6 +197,40 @@ class Automatic {
         implicit_steps_ < short_implicit_phase ? 2 * choice_.required_stiff_steps : required_stiff_steps;
     plan(options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853, ChangeReason::no_longer_stiff,
          explicit_limit(), nonstiff_steps_);
+  }
+
+  struct Progress {
+    double t = 0, cost = 0;
+  };
+
+  /// Cost of the active method up to t1, in evaluations of the right-hand side.
+  Progress progress() {
+    constexpr double operations = 40;  // of the right-hand side, for each component
+    constexpr double of_jacobian =
+        6;  // evaluations that a compiled df/dx takes; differences are evaluations themselves
+    const Statistics s = with_active([](auto& m) -> Statistics { return m.statistics(); });
+    const double m = static_cast<double>(size() - options_.quadratures);
+    // A real and a complex matrix are factorised, and a real and a complex system solved.
+    const double of_factorisation = 10.0 / 3 * m * m / operations, of_iteration = 10 * m / operations;
+    const auto count = [](std::size_t n) { return static_cast<double>(n); };
+    return {t1_, count(s.rhs_evaluations) + (s.difference_evaluations > 0 ? 0 : of_jacobian * count(s.jacobians)) +
+                     of_factorisation * count(s.factorisations) + of_iteration * count(s.newton_iterations)};
+  }
+
+  static double cost_per_time(const Progress& from, const Progress& to) {
+    return (to.cost - from.cost) / std::abs(to.t - from.t);
+  }
+
+  /// End of the trial of radau5: whether it costs more than the explicit method, which then continues.
+  bool is_costlier() {
+    const double ratio = cost_per_time(trial_from_, progress()) / explicit_cost_;
+    explicit_cost_ = 0;
+    if (!(ratio > 1)) return false;
+    constexpr int after_failed_trial = 8, most = 1 << 24;
+    choice_.required_stiff_steps = std::min(most, after_failed_trial * choice_.required_stiff_steps);
+    plan(options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853, ChangeReason::costlier, ratio,
+         trial_steps - trial_steps / 2);
+    return true;
   }
 
   /// sqrt(|J J v| / |v|): exact at once if J J v = -omega^2 v. v turns towards the fastest motion from step to step.
@@ -224,6 +267,7 @@ class Automatic {
 
   void plan(Active next, ChangeReason why, double limit, int steps) {
     planned_ = {t1_, choice_.method, choice_.method, why, limit, steps};
+    if (next == Active::radau5) explicit_cost_ = cost_per_time(stiff_from_, progress());
     next_ = next;
   }
 
@@ -258,6 +302,8 @@ class Automatic {
   MethodChange planned_{};
   Statistics past_;
   double t1_ = 0, h_ = 0, level_ = 0;
+  Progress stiff_from_, trial_from_;
+  double explicit_cost_ = 0;  // per unit of time, before the trial of radau5; 0: no trial
   int stiff_steps_ = 0, inaccurate_steps_ = 0, nonstiff_steps_ = 0, vibration_steps_ = 0, implicit_steps_ = 0;
 };
 

@@ -27,7 +27,8 @@ enum class ChangeReason : std::uint8_t {
   beyond_stability,  // |h lambda| exceeded the stability limit: stiff
   beyond_accuracy,   // |h lambda| exceeded the value that accuracy would allow for so fast a motion: stiff
   vibrations,        // |h lambda| was near the stability limit along vibrations
-  no_longer_stiff    // h rho(df/dx) was low
+  no_longer_stiff,   // h rho(df/dx) was low
+  costlier           // the first steps of the implicit method cost more per unit of time
 };
 
 /// One change of method by `auto`.
@@ -35,7 +36,7 @@ struct MethodChange {
   double t;
   const char *from, *to;
   ChangeReason why;
-  double limit;  // on |h lambda|, or on h rho(df/dx)
+  double limit;  // on |h lambda|, or on h rho(df/dx); for costlier: the ratio of the costs
   int steps;     // number of steps beyond the limit
 };
 
@@ -59,6 +60,8 @@ inline std::string to_text(const MethodChange& change) {
                   change.from);
     case ChangeReason::no_longer_stiff:
       return text("h rho(df/dx) was below %.1f for %d steps in a row, which %s can take: no longer stiff", change.to);
+    case ChangeReason::costlier:
+      return text("it cost %.1f times as much per unit of time in %d steps as %s", change.to);
   }
   return "";
 }
@@ -74,6 +77,12 @@ struct MethodChoice {
 /// Upper bound on chosen steps: from t to the next bound, no step that overlaps this interval is longer than `step`.
 struct StepBound {
   double t, step;
+};
+
+/// Cost of an error estimate (error_estimate.hpp) of a run with chosen steps.
+enum class EstimateCost : std::uint8_t {
+  bounded,  // three times the steps of the run, ten if no looser run reaches the same end
+  full      // as many steps as the tighter runs need
 };
 
 /// One accepted step with its dense output. Valid only during the call that receives it.

@@ -260,6 +260,7 @@ class Model:
         tier: str = "auto",
         max_steps: int = 0,
         error_estimate: bool = True,
+        estimate: str = "bounded",
         charts: bool = True,
         seed: int = 1,
         row: "Optional[Callable[[float, NDArray[Any]], None]]" = None,
@@ -271,8 +272,9 @@ class Model:
         ``parameters`` replaces values of parameters and initial values of coordinates and rates. ``t_end``, ``step``
         (fixed), ``max_step`` and ``every`` (interval of rows) are in s. ``outputs``: columns beside the coordinates;
         "all": every output. ``solver``: one of eomgen.solvers(), or "auto". ``tier``: "jit" (machine code in memory),
-        "compiled" (the C compiler) or "auto". ``max_steps``: 0 is the solver's default. ``row(t, values)`` receives the
-        rows instead of the result. A run that fails numerically returns its outcome and raises nothing.
+        "compiled" (the C compiler) or "auto". ``max_steps``: 0 is the solver's default. ``estimate``: "bounded"
+        (about three times the steps of the run) or "full" (as many as tighter runs need). ``row(t, values)`` receives
+        the rows instead of the result. A run that fails numerically returns its outcome and raises nothing.
         """
         options = {
             "scene": scene,
@@ -290,6 +292,7 @@ class Model:
             "tier": tier,
             "max_steps": max_steps,
             "error_estimate": error_estimate,
+            "estimate": estimate,
             "charts": charts,
             "seed": seed,
         }
@@ -348,7 +351,7 @@ class Model:
         names, values = _sweep_points(dict(points or {}), dict(grid or {}))
         known = {
             "scene", "parameters", "t_end", "rtol", "atol", "step", "max_step", "solver", "outputs", "approach", "form",
-            "tier", "max_steps", "error_estimate", "charts", "seed",
+            "tier", "max_steps", "error_estimate", "estimate", "charts", "seed",
         }  # fmt: skip
         for name in options:
             if name not in known:

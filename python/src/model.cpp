@@ -152,6 +152,7 @@ RunOptions run_options(const py::dict& given) {
   take(given, "tier", options.tier);
   take(given, "max_steps", options.max_steps);
   take(given, "error_estimate", options.error_estimate);
+  take(given, "estimate", options.estimate);
   take(given, "charts", options.charts);
   take(given, "seed", options.seed);
   std::string approach = "auto";

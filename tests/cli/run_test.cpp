@@ -176,6 +176,32 @@ TEST_CASE("the error estimate bounds the error against a much tighter run, withi
   }
 }
 
+TEST_CASE("--estimate full compares with tighter runs, however many steps they need") {
+  const Folder folder;
+  // On its smooth solution, where rounding of the spring's force exceeds the tighter tolerances.
+  folder.write("spring.toml",
+               "format = 1\n[parameters]\nm = \"1 kg\"\nk = \"1e8 N/m\"\nl = \"1 m\"\ng = \"9.81 "
+               "m/s^2\"\n[coordinates]\nr = \"m\"\n"
+               "th = \"rad\"\n[energy]\nkinetic = \"m/2*(r_dot^2 + r^2*th_dot^2)\"\n"
+               "potential = \"k/2*(r - l)^2 - m*g*r*cos(th)\"\n[scene.default]\nt = [0, 0.1]\n"
+               "initial = { th = 1, r = \"l + m*g/k*cos(1)\" }\nrtol = 1e-12\natol = 1e-12\n");
+  const Json bounded = document(folder, {"run", "spring.toml"}),
+             full = document(folder, {"run", "spring.toml", "--estimate", "full"});
+  CHECK(bounded["error_estimate_by_looser_run"] == true);
+  CHECK(full["error_estimate_by_looser_run"] == false);
+  CHECK(bounded["final"] == full["final"]);
+  CHECK(bounded["error_estimate_rhs_evaluations"].get<double>() < 4 * bounded["rhs_evaluations"].get<double>());
+  CHECK(full["error_estimate_rhs_evaluations"] > bounded["error_estimate_rhs_evaluations"]);
+  CHECK(contains(expect(0, folder, {"run", "spring.toml"}).out, "by a run at ten times the tolerances"));
+  CHECK(contains(expect(2, folder, {"run", "spring.toml", "--estimate", "ful"}).err, "did you mean 'full'"));
+  for (const Words& words : {Words{"run", "spring.toml", "--no-error-estimate"},
+                             Words{"sweep", "spring.toml", "--grid", "m=1:2:2", "--ensemble"}}) {
+    Words both = words;
+    both.insert(both.end(), {"--estimate", "full"});
+    CHECK(contains(expect(2, folder, both).err, "--estimate full asks for an error estimate"));
+  }
+}
+
 TEST_CASE("run: the constraint force on a particle is mass times acceleration minus the applied forces") {
   const Folder folder;
   const double m = 2, g = 9.81;

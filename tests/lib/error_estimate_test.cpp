@@ -122,3 +122,53 @@ TEST_CASE("estimate: infinite, with the outcome reported, if the repeated run fa
   CHECK(std::isinf(estimate.max));
   CHECK(estimate.outcome == eom::Outcome::max_steps);
 }
+
+namespace {
+
+/// A pendulum on a spring of 1e8 N/m in polar coordinates, on its smooth solution. Rounding of the force exceeds what
+/// tolerances of 1e-14 allow for steps at the limit of stability.
+int stiff_pendulum(double, const double* x, double* dx) {
+  dx[0] = x[2];
+  dx[1] = x[3];
+  dx[2] = x[0] * x[3] * x[3] + 9.81 * std::cos(x[1]) - 1e8 * (x[0] - 1);
+  dx[3] = (-9.81 * std::sin(x[1]) - 2 * x[2] * x[3]) / x[0];
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("estimate: a tighter run that rounding makes expensive is replaced by a looser one") {
+  const problems::State start{1 + 9.81e-8 * std::cos(1.0), 1, 0, 0};
+  const auto cost = [](const eom::Statistics& s) { return static_cast<double>(s.steps + s.rejected); };
+  eom::Options options;
+  options.rtol = options.atol = 1e-12;
+  const auto result = eom::integrate("dop853", stiff_pendulum, 0, start, 0.1, options);
+  const auto run = [&](const eom::Options& tighter) {
+    return eom::integrate("dop853", stiff_pendulum, 0, start, result.t, tighter);
+  };
+  const auto bounded = eom::estimate_error(8, 0.0, result, options, run);
+  const auto full = eom::estimate_error(8, 0.0, result, options, run, eom::EstimateCost::full);
+  CHECK(bounded.is_by_looser_run);
+  CHECK_FALSE(full.is_by_looser_run);
+  CHECK(bounded.outcome == eom::Outcome::done);
+  CHECK(bounded.has_same_outcome);
+  CHECK(cost(bounded.statistics) < 3.3 * cost(result.statistics));
+  CHECK(cost(full.statistics) > 20 * cost(result.statistics));
+  CHECK(bounded.max < tolerances::estimate_factor * full.max);
+  CHECK(full.max < tolerances::estimate_factor * bounded.max);
+}
+
+TEST_CASE("estimate: chosen steps cost about three times the steps of the run, for every method and tolerance") {
+  for (const char* method : problems::adaptive_methods())
+    for (int digits = 4; digits <= 14; ++digits) {
+      CAPTURE(std::string(method));
+      CAPTURE(digits);
+      const problems::Kepler kepler{0.5};
+      eom::Options options;
+      options.rtol = options.atol = std::pow(10, -digits);
+      const auto result = eom::integrate(method, kepler, 0, kepler.start, 25, options);
+      const auto estimate = eom::estimate_error(method, kepler, 0, kepler.start, result, options);
+      const auto steps = [](const eom::Statistics& s) { return static_cast<double>(s.steps + s.rejected); };
+      CHECK(steps(estimate.statistics) < 3.3 * steps(result.statistics) + 60);
+    }
+}

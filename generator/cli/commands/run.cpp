@@ -26,7 +26,7 @@ namespace eomgen::cli {
 namespace {
 
 struct Options : SceneOptions {
-  std::string model, out, plot, approach = "auto", form = "auto", tier = "auto";
+  std::string model, out, plot, approach = "auto", form = "auto", tier = "auto", estimate = "bounded";
   std::vector<std::string> sensitivity, plot_of;
   std::size_t max_steps = 0;
   bool no_error_estimate = false, no_charts = false, yes = false;
@@ -140,6 +140,7 @@ int execute(const Options& options, const CommonOptions& common) {
   request.form = pipeline::parse_form(options.form);
   request.tier = pipeline::parse_tier(options.tier);
   request.estimate = !options.no_error_estimate;
+  request.estimate_cost = chosen_estimate(options.estimate, options.no_error_estimate);
   request.charts =
       !options.no_charts && options.sensitivity.empty();  // derivatives refer to the model's own coordinates
   if (!options.sensitivity.empty()) request.with = analysis::sensitivity_functions(*request.model);
@@ -227,7 +228,7 @@ Execute declare_run(Arguments& app) {
   add_approach(app, options->approach);
   add_form(app, options->form);
   add_tier(app, options->tier);
-  app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second run out");
+  add_estimate(app, options->estimate, options->no_error_estimate);
   app.add_flag("--no-charts", options->no_charts, "keep to the model's angles where they fail");
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }

@@ -79,7 +79,7 @@ Execute declare_sweep(Arguments& app) {
   add_outputs(app, *options);
   app.add_option("--jobs", options->jobs, "processes, or threads of an ensemble; without it one for each processor")
       .check(whole_number(1, 1024));
-  app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second runs out");
+  add_estimate(app, options->estimate, options->no_error_estimate);
   app.add_flag("--ensemble", options->ensemble,
                "many runs side by side in the lanes of vector registers, without error estimates");
   return [options](const CommonOptions& common) { return execute(*options, common); };

@@ -14,7 +14,7 @@ namespace eomgen::cli {
 std::string sweep_key(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
                       const std::string& points_hash) {
   std::string text = model.content_hash + '\n' + options.scene + '\n' +
-                     (options.no_error_estimate || options.ensemble ? "plain" : "estimate");
+                     (options.no_error_estimate || options.ensemble ? "plain" : "estimate " + options.estimate);
   for (const auto* list : {&options.grid, &options.set, &options.outputs}) {
     text += '\n';
     for (const std::string& entry : *list) text += entry + '\x1f';

@@ -14,7 +14,7 @@
 namespace eomgen::cli {
 
 struct SweepOptions : SceneOptions {
-  std::string model, out, points;
+  std::string model, out, points, estimate = "bounded";
   std::vector<std::string> grid, sample;
   std::optional<std::string> design, shard;
   std::optional<double> basins;

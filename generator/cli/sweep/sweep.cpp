@@ -88,6 +88,7 @@ std::size_t threads_of(const SweepOptions& options) {
 Sweep::Sweep(const SweepOptions& options, const CommonOptions& common, const model::Model& model)
     : options_(options),
       overrides_(overrides_of("sweep", options, model)),
+      estimate_cost_(chosen_estimate(options.estimate, options.no_error_estimate || options.ensemble)),
       seed_(common.seed),
       points_(points_of(options, common.seed, points_hash_)),
       shard_(shard_of(options, points_, common.group != nullptr ? common.group->workers() : 1)),
@@ -207,6 +208,7 @@ bool Sweep::simulate_first(std::size_t run, bool integrate) {
   request.model = load_model(options_.model);
   request.scene = options_.scene;
   request.estimate = !options_.no_error_estimate && !options_.ensemble;
+  request.estimate_cost = estimate_cost_;
   request.integrate = integrate;
   request.seed = seed_;
   request.ready = [this] { interrupt_.emplace(); };
@@ -276,7 +278,8 @@ void Sweep::take_first(std::size_t run, std::vector<RunRange>& open) {
 
 std::string Sweep::compute_row(std::size_t run) const {
   try {
-    const run::RunResult result = pipeline::rerun(*first_, overrides_of_run(run), !options_.no_error_estimate);
+    const run::RunResult result =
+        pipeline::rerun(*first_, overrides_of_run(run), !options_.no_error_estimate, estimate_cost_);
     return InterruptGuard::flag() ? std::string() : text_.format_row(run, points_.point(run), result);
   } catch (const Error& error) {
     if (error.stage() != "scene") throw;

@@ -69,6 +69,7 @@ class Sweep {
 
   const SweepOptions& options_;
   run::Overrides overrides_;  // of every run, besides its point
+  eom::EstimateCost estimate_cost_;
   std::uint64_t seed_;
   std::string points_hash_;  // of the file of --points
   analysis::SweepPoints points_;

@@ -50,7 +50,8 @@ class EndErrorEstimator {
     error_.rhs_evaluations = estimate.statistics.rhs_evaluations + impulses_.evaluations();
     if (estimate.outcome != Outcome::done)
       error_.warning = {EstimateWarning::Kind::tighter_run_differs, 0, 0, estimate.outcome};
-    if (!has_same_end_) warn({EstimateWarning::Kind::event_not_reached});
+    error_.is_by_looser_run = estimate.is_by_looser_run;
+    if (!estimate.has_same_outcome) warn({EstimateWarning::Kind::event_not_reached});
     if (adequacy_ != nullptr) check_resolution();
     impulses_.finish();
     check_impulses();
@@ -88,7 +89,7 @@ class EndErrorEstimator {
     RunContext& context = again.context();
     bool compared = false;
     stop_ = std::numeric_limits<double>::epsilon() * std::abs(first_.t);
-    return estimate_error(method_.order, problem_.t0, first_, options_, [&](const Options& tighter) {
+    const auto run = [&](const Options& tighter) {
       const Observer compare = [&](const StepView& step) {
         if (context.charts.second_charts() != 0) return true;
         adequacy_->compare(step, [&](const auto& one, auto& two) { align(one, two); });
@@ -101,10 +102,11 @@ class EndErrorEstimator {
         other.x = context.own_state(other.t, other.x);
         align(first_.x, other.x);
       }
-      has_same_end_ = has_same_end_ && other.outcome == first_.outcome;
-      stop_ = std::max(stop_, std::abs(other.t - first_.t));
+      if (other.outcome == Outcome::done || other.outcome == first_.outcome)
+        stop_ = std::max(stop_, std::abs(other.t - first_.t));
       return other;
-    });
+    };
+    return estimate_error(method_.order, problem_.t0, first_, options_, run, problem_.estimate_cost);
   }
 
   /// For fixed steps: the effect of the last digits of the start on the end.
@@ -176,7 +178,6 @@ class EndErrorEstimator {
   bool passes_pole_;
   EndErrorEstimate& error_;
   UnresolvedImpulses impulses_;
-  bool has_same_end_ = true;
   double stop_ = 0;
 };
 

@@ -166,7 +166,8 @@ struct Problem {
   std::vector<std::string> state_names = {};       // of x
   std::vector<std::string> constraint_names = {};  // of Code::active_constraints
 
-  bool estimate = true;        // estimate the error by repeated runs
+  bool estimate = true;  // estimate the error by repeated runs
+  EstimateCost estimate_cost = EstimateCost::bounded;
   double output_interval = 0;  // of rows; 0: no rows
   std::function<void(double t, std::span<const double> y)> row = {};
   std::function<void(double fraction)> progress = {};

@@ -25,6 +25,7 @@ struct EndErrorEstimate {
   std::optional<double> t = {};     // of an event that stopped the run
   double max = 0;                   // the largest of the states
   std::size_t rhs_evaluations = 0;  // of the repeated runs
+  bool is_by_looser_run = false;    // a tighter run was too expensive
   double seconds = 0;
   EstimateWarning warning;
   std::string note;  // the warning as a sentence, or ""
