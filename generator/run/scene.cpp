@@ -182,8 +182,8 @@ std::vector<double> mass_and_rows(const Mechanics& m, const system::EquationSyst
   for (const std::uint32_t i : system.free) variables.push_back(start.qdot[i]);
   variables.insert(variables.end(), start.z.begin(), start.z.end());
   variables.resize(variables.size() + m.model->inputs.size(), std::nan(""));
-  const eom::expressions::Code code(table.mass_and_rows, start.parameters);
-  code.values(variables, values);
+  variables.insert(variables.end(), start.parameters.begin(), start.parameters.end());
+  table.mass_and_rows.values(variables, values);
   return values;
 }
 

@@ -24,9 +24,15 @@ std::vector<Ref> expressions_of(const system::EquationSystem& system) {
 SceneTable make_tables(const system::EquationSystem& system, const std::vector<std::optional<Ref>>& inputs) {
   std::vector<Ref> roots = system.M;
   roots.insert(roots.end(), system.A.begin(), system.A.end());
-  std::optional<Table> mass_and_rows = make_table(*system.dag, roots, run_variables(system));
+  const std::size_t run = 1 + system.layout().size() + inputs.size();
+  const SymbolResolver variables = [of_run = run_variables(system), run](const symbolic::Symbol& symbol) {
+    return symbol.kind == symbolic::SymbolKind::parameter ? SymbolMeaning::of_variable(run + symbol.index)
+                                                          : of_run(symbol);
+  };
+  std::optional<Table> mass_and_rows = make_table(*system.dag, roots, variables);
   if (!mass_and_rows) throw std::logic_error("the mass matrix depends on symbols that a run does not have");
-  return {time_functions(system, inputs), jump_functions(system), std::move(*mass_and_rows)};
+  return {time_functions(system, inputs), jump_functions(system),
+          eom::expressions::Code(std::move(*mass_and_rows), {})};
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ namespace eomgen::run {
 struct SceneTable {
   eom::hybrid::TimeFunctions time;
   eom::hybrid::JumpFunctions jumps;
-  Table mass_and_rows;  // M, then A; arguments as in run_variables
+  /// M, then A. Variables: those of run_variables, then the parameters.
+  eom::expressions::Code mass_and_rows;
 };
 
 /// The latest tables. A thread at a time may use them.

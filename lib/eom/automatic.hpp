@@ -12,9 +12,9 @@
 // happens early, the next change requires twice as many stiff steps. With fixed steps the method does not change.
 //
 // The first steps of radau5 are a trial. Its cost per unit of time, in evaluations of the right-hand side, is compared
-// with that of the explicit method in the steps that led to the change. If it is higher, the explicit method continues,
-// and the next trial requires eight times as many stiff steps. Operations are counted, never clocks, so that every
-// process makes the same choice.
+// with that of the explicit method in the steps that led to the change. If it is 1.5 times as high, the explicit method
+// continues, and the next trial requires eight times as many stiff steps. Operations are counted, never clocks, so that
+// every process makes the same choice.
 #pragma once
 
 #include <cmath>
@@ -139,7 +139,8 @@ class Automatic {
       0.2;  // of the logarithm: in a vibration the estimate varies like the tangent of its phase
   static constexpr int nonstiff_run = 6;  // this many steps in a row that are not stiff reset the count
   static constexpr int required_stiff_steps = MethodChoice::min_stiff_steps;
-  static constexpr int trial_steps = 10;  // of radau5; its step grows in the first half of them
+  static constexpr int trial_steps = 10;       // of radau5; its step grows most in the first half of them
+  static constexpr double trial_margin = 1.5;  // and somewhat in the second half
   static constexpr int short_implicit_phase = 4 * required_stiff_steps;
 
   const char* explicit_name() const {
@@ -225,7 +226,7 @@ class Automatic {
   bool is_costlier() {
     const double ratio = cost_per_time(trial_from_, progress()) / explicit_cost_;
     explicit_cost_ = 0;
-    if (!(ratio > 1)) return false;
+    if (!(ratio > trial_margin)) return false;
     constexpr int after_failed_trial = 8, most = 1 << 24;
     choice_.required_stiff_steps = std::min(most, after_failed_trial * choice_.required_stiff_steps);
     plan(options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853, ChangeReason::costlier, ratio,

@@ -131,6 +131,30 @@ TEST_CASE("auto: it changes back while the motion itself is fast, repeatedly") {
   }
 }
 
+TEST_CASE("auto: radau5 is given up if its steps cost more than those of the explicit method") {
+  constexpr std::size_t components = 300;  // matrices of this size cost more than the few steps that stability takes
+  const auto decays = [](double t, const double* x, double* dx) {
+    for (std::size_t i = 0; i < components; ++i)
+      dx[i] = -(100 + static_cast<double>(i)) * (x[i] - std::cos(t)) - std::sin(t);
+    return 0;
+  };
+  MethodChoice choice;
+  const State start(components, 1.0);
+  const Result found = eom::integrate("auto", decays, 0, start, 3, options_for(1e-9, choice));
+  MethodChoice of_plain;
+  const Result plain = eom::integrate("dop853", decays, 0, start, 3, options_for(1e-9, of_plain));
+  CHECK(found.outcome == eom::Outcome::done);
+  REQUIRE(choice.changes.size() >= 2);
+  CHECK(choice.changes[0].to == std::string("radau5"));
+  CHECK(choice.changes[1].to == std::string("dop853"));
+  CHECK(choice.changes[1].why == eom::ChangeReason::costlier);
+  CHECK(choice.changes[1].limit > 1.5);
+  CHECK(eom::to_text(choice.changes[1]).find("as much per unit of time") != std::string::npos);
+  CHECK(found.statistics.rhs_evaluations < plain.statistics.rhs_evaluations);
+  CHECK(found.statistics.factorisations < 20);  // of few trials
+  CHECK(std::abs(found.x[0] - std::cos(3.0)) < 1e-7);
+}
+
 TEST_CASE("auto: dense output and events work across changes; the method is kept after an event") {
   MethodChoice choice;
   double worst = 0;
