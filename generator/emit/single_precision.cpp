@@ -127,7 +127,7 @@ Dialect single_dialect() {
   dialect.constant = [](const symbolic::Rational& value) { return literal(nearest_double(value)); };
   dialect.value = literal;
   dialect.pi = "3.14159265f";
-  dialect.abs_function = "fabs";  // from tgmath.h, like all functions
+  dialect.abs_function = "fabs";  // of both precisions, like all functions (c/c.cpp)
   dialect.sincos_range = "2048.0f";
   dialect.pivot_tolerance = pivot_tolerance;
   return dialect;

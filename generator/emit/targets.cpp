@@ -12,6 +12,8 @@
 #include "emit/cpp/cpp.hpp"
 #include "emit/cuda/cuda.hpp"
 #include "emit/javascript/javascript.hpp"
+#include "emit/julia/julia.hpp"
+#include "emit/modelica/modelica.hpp"
 #include "emit/octave/octave.hpp"
 #include "emit/python/python.hpp"
 #include "emit/rust/rust.hpp"
@@ -32,6 +34,8 @@ constexpr TargetEntry registry[] = {
     {"octave", "Function for Octave and MATLAB that returns the functions and names of the model", emit_octave,
      octave_name},
     {"rust", "Rust module without the standard library and allocation", emit_rust, rust_name},
+    {"julia", "Julia module with functions in the form of DifferentialEquations.jl", emit_julia, julia_name},
+    {"modelica", "Flat Modelica model with explicit equations", emit_modelica, modelica_name},
 };
 
 }  // namespace

@@ -91,7 +91,7 @@ TEST_CASE("emit --with run: requested outputs come first, in their order, and th
 TEST_CASE("emit --with run: targets that do not write C report that there is no header of the run") {
   const Folder folder;
   folder.write("model.toml", particle(""));
-  for (const char* target : {"javascript", "cuda", "rust", "octave"})
+  for (const char* target : {"javascript", "cuda", "rust", "octave", "julia", "modelica"})
     CHECK(contains(expect(0, folder, {"emit", "model.toml", "-o", target, "--target", target, "--with", "run"}).err,
                    "the target " + std::string(target) + " has no header of a run"));
   for (const char* target : {"cpp", "batch", "python"})

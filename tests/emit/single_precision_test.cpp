@@ -32,7 +32,7 @@ std::vector<double> printed(const std::vector<std::string>& command) {
 }
 
 // Their language has no single precision.
-const std::set<std::string> targets_of_doubles = {"casadi"};
+const std::set<std::string> targets_of_doubles = {"casadi", "modelica"};
 
 }  // namespace
 
@@ -180,7 +180,7 @@ TEST_CASE("single precision: every target rejects numbers that overflow") {
   e.context.parameters[0].value = other.context.parameters[0].value = 1e60;
   CHECK_THROWS_WITH_AS(emit::convert_to_single(other.program, other.context),
                        doctest::Contains("the parameter m = 1e+60 is outside the range of single precision"), Error);
-  for (const char* target : {"c", "batch", "python", "javascript", "rust", "octave"}) {
+  for (const char* target : {"c", "batch", "python", "javascript", "rust", "octave", "julia"}) {
     INFO(target);
     CHECK_THROWS_AS(emit::emit(e.program, e.context, target), Error);
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/target_uses.hpp"
 
+#include "emit/julia/julia.hpp"
+#include "emit/modelica/modelica.hpp"
 #include "emit/octave/octave.hpp"
 #include "emit/rust/rust.hpp"
 
@@ -114,6 +116,44 @@ std::string wrong_script_of_octave(const std::string& folder, const Example& e) 
   return finished.status == 0 && finished.output.find("warning") == std::string::npos ? "" : finished.output;
 }
 
+/// Runs Python with the evaluators of tests/emit. Failed statements are the description of the failure.
+std::string failure_of_evaluation(const std::string& statements) {
+  if (!runs("python3")) return "";
+  const emit::ProcessResult finished =
+      emit::run_process({"python3", "-c",
+                         fmt::format("import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{}')\n"
+                                     "from evaluators import julia, modelica\n{}",
+                                     EOMGEN_TEST_EVALUATORS, statements)});
+  return finished.status == 0 ? "" : finished.output;
+}
+
+std::string wrong_module_of_julia(const std::string& folder, const Example& e) {
+  if (runs("julia")) {
+    const std::string name = emit::julia_name(e.context.id);
+    const emit::ProcessResult finished = emit::run_process(
+        {"julia", "--startup-file=no", "-e",
+         fmt::format("include(\"{0}/{1}.jl\"); {1}.selftest() == 0 || error(\"self test\")", folder, name)});
+    if (finished.status != 0) return finished.output;
+  }
+  return failure_of_evaluation(
+      fmt::format("m = julia('{}/{}.jl')\nassert m['selftest']() == 0, m['selftest']()\n"
+                  "assert len(m['STATES']) == {}",
+                  folder, emit::julia_name(e.context.id), e.context.start.size()));
+}
+
+std::string python_list(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
+
+std::string wrong_flat_model(const std::string& folder, const Example& e) {
+  std::string statements = fmt::format("m = modelica('{}/{}.mo')\n", folder, emit::modelica_name(e.context.id));
+  for (const emit::TestVector& test : e.context.tests)
+    statements += fmt::format(
+        "dx, code = m.derivatives({}, {}, {}, {})\nassert code == 0\n"
+        "assert all(abs(a - b) <= {} for a, b in zip(dx, {}, strict=True)), dx\n",
+        test.t, python_list(test.x), python_list(test.p), python_list(test.u), test.functions[0].tolerances[0],
+        python_list(test.functions[0].values[0]));
+  return failure_of_evaluation(statements);
+}
+
 std::string wrong_external(const std::string& folder, const Example& e) {
   const std::string of_c = wrong_c(folder, e), c = folder + "/" + emit::mangled_id(e.context.id) + "_casadi.c";
   return of_c.empty() ? compiler_diagnostics(with(compile_c(), {"-c", "-o", folder + "/casadi.o"}), {c}) : of_c;
@@ -146,6 +186,8 @@ const std::map<std::string, TargetUse> uses = {
     {"javascript", wrong_script},
     {"rust", wrong_crate},
     {"octave", wrong_script_of_octave},
+    {"julia", wrong_module_of_julia},
+    {"modelica", wrong_flat_model},
     {"casadi", wrong_external}};
 
 }  // namespace

@@ -69,7 +69,8 @@ Results results() {
   d.parameter("c", Value(0.0123)).parameter("large", Value(12345.5));
   d.add("force", {{"on", "P"}, {"force", "c*1234.5/large*1e-3*E1"}});
   const Model model = Model::from(d, "pendulum");
-  for (const char* target : {"c", "cpp", "batch", "javascript", "python", "cuda", "rust", "octave", "casadi"}) {
+  for (const char* target :
+       {"c", "cpp", "batch", "javascript", "python", "cuda", "rust", "octave", "casadi", "julia", "modelica"}) {
     const bool whole = std::string(target) == "c" || std::string(target) == "cpp" ||
                        std::string(target) == "javascript" || std::string(target) == "python";
     const Sources sources = model.emit({.target = target,

@@ -19,6 +19,7 @@
 #include "program/taylor.hpp"
 #include "skeletons/c_model_c.hpp"
 #include "skeletons/c_model_h.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -31,6 +32,22 @@ Dialect c_dialect() {
   dialect.pi = "3.141592653589793";
   dialect.abs_function = "fabs";
   return dialect;
+}
+
+/// The functions of math.h for float and double, as tgmath.h has them. Small C libraries lack the complex functions
+/// that their tgmath.h names.
+std::string generic_functions() {
+  std::string text = "\n/* Functions of the precision of their arguments. */\n";
+  const auto add = [&](const std::string& function, bool two) {
+    text += fmt::format("#define {0}({1}) _Generic({2}, float: {0}f, default: {0})({1})\n", function,
+                        two ? "a, b" : "a", two ? "(a) + (b)" : "(a)");
+  };
+  add("fabs", false);
+  for (const symbolic::Function& function : symbolic::function_table) {
+    if (function.code != nullptr) add(function.code, function.arity == 2);
+  }
+  text.pop_back();
+  return text;
 }
 
 std::string head_of(const std::string& name, const std::string& arguments) {
@@ -148,7 +165,7 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
       {"includes", fmt::format("{}{}",
                                packs || program.taylor ? "#include <float.h>\n#include <math.h>\n#include <string.h>"
                                                        : "#include <math.h>",
-                               single ? "\n#include <tgmath.h>" : "")},
+                               single ? "\n" + generic_functions() : "")},
       {"real", dialect.real},
       {"abi", std::to_string(abi::version)},
       {"kernels", packs ? sincos_kernel(name + "_", "static inline", "", single) + "\n" : ""},
