@@ -11,6 +11,12 @@
 
 using namespace eomgen::test;
 
+TEST_CASE("bench: an unknown solver is refused before the model is derived") {
+  const Folder folder;
+  // The motion of this model is given, so that its derivation ends with an error of its own.
+  CHECK(contains(expect(2, folder, {"bench", "P10_rocket", "--solver", "dop583"}).err, "there is no solver 'dop583'"));
+}
+
 TEST_CASE("bench: the error of every solver decreases with its tolerance or step, and the document lists all") {
   const Folder folder;
   const Json found =
