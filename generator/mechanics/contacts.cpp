@@ -7,6 +7,7 @@
 #include "mechanics/imposition.hpp"
 #include "mechanics/stages.hpp"
 #include "mechanics/vanishes.hpp"
+#include "model/lone_parameter.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/factorisation.hpp"
 #include "symbolic/polynomial.hpp"
@@ -332,7 +333,8 @@ void check_law(const Mechanics& m, const Contact& contact) {
                                                  "a coefficient of friction of '" + contact.name + "'", law.span);
   const bool negative = !mu.empty() && (cln::minusp(mu[0]) || cln::minusp(mu[1]));
   if (!mu.empty() && (negative || mu[0] < mu[1])) {
-    throw Error("mechanics", m.model->where(friction_law_of(m, contact).span),
+    const model::NodeId wrong = is_smooth || cln::minusp(mu[1]) ? law.dynamic_coefficient : law.static_coefficient;
+    throw Error("mechanics", m.model->where(model::origin_of(*m.model, wrong, law.span)),
                 negative ? "a coefficient of friction of '" + contact.name + "' is negative"
                          : "the static coefficient of friction of '" + contact.name + "' is less than the dynamic one",
                 negative ? "friction opposes slip: give coefficients of 0 or more"
@@ -342,7 +344,7 @@ void check_law(const Mechanics& m, const Contact& contact) {
   const std::vector<cln::cl_R> width =
       known_values(m, {*contact.width}, "the width of the friction of '" + contact.name + "'", law.span);
   if (width.empty() || cln::plusp(width[0])) return;
-  throw Error("mechanics", m.model->where(law.span),
+  throw Error("mechanics", m.model->where(model::origin_of(*m.model, law.width, law.span)),
               "the width of the friction of '" + contact.name + "' is not positive",
               "give a slip speed above 0, small beside those of the motion; or Coulomb's law, which has no width");
 }
@@ -355,7 +357,7 @@ void check_restitution(const Mechanics& m, const Contact& contact) {
   const std::vector<cln::cl_R> e =
       known_values(m, {contact.restitution}, "the coefficient of restitution of '" + contact.name + "'", span);
   if (e.empty() || (!cln::minusp(e[0]) && e[0] <= 1)) return;
-  throw Error("mechanics", m.model->where(span),
+  throw Error("mechanics", m.model->where(model::origin_of(*m.model, found->restitution, span)),
               "the coefficient of restitution of '" + contact.name + "' is not between 0 and 1",
               "0 stays after an impact, 1 bounces without loss");
 }

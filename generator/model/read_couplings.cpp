@@ -105,9 +105,8 @@ void CouplingsReader::read(Constraint& constraint, const Entry& entry) {
   if (constraint.coupled) constraint.coupled->ratio = local["ratio"].node;
   const auto& constant = local["ratio"].constant;
   if (constant && cln::zerop(*constant))
-    source_.fail(ratio.span,
-                 fmt::format("the ratio of {} is 0, which holds the first and leaves the second free", what),
-                 "give a ratio that is not 0");
+    resolver_.refuse_value(local["ratio"], ratio.span, number.what,
+                           "is 0, which holds the first and leaves the second free", "give a ratio that is not 0");
   const TypedNode psi = resolver_.text(bodies != nullptr ? kind.body_equation : kind.angle_equation, local, table.span,
                                        {what, on_anything, Shape::scalar, std::nullopt, ""});
   if ((psi.dependencies & on_velocity) == 0 && resolver_.coordinates_in(psi.node).empty())

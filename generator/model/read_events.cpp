@@ -96,7 +96,8 @@ void EventsReader::read_samples() {
     };
     const TypedNode period = resolver_.value(every, seconds("the period of " + what));
     if (period.constant && !cln::plusp(*period.constant))
-      source_.fail(every.span, fmt::format("the period of {} is not positive", what), "write a time greater than 0");
+      resolver_.refuse_value(period, every.span, "the period of " + what, "is not positive",
+                             "write a time greater than 0");
     sample.every = period.node;
     if (const Value* offset = table->find("offset"))
       sample.offset = resolver_.value(*offset, seconds("the offset of " + what)).node;

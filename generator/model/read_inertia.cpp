@@ -89,16 +89,16 @@ std::array<NodeId, 3> InertiaReader::shape_moments(const Body& body, const Entry
     for (std::size_t k = 0; k < 3; ++k) {
       J[k] = resolver_.value(shape.value.items[k], moment_context("a principal moment"));
       if (J[k].constant && cln::minusp(*J[k].constant))
-        source_.fail(shape.value.items[k].span, "a moment of inertia is negative",
-                     "it is a sum of masses times squares");
+        resolver_.refuse_value(J[k], shape.value.items[k].span, "a moment of inertia", "is negative",
+                               "it is a sum of masses times squares");
       result[k] = J[k].node;
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const auto &a = J[k].constant, &b = J[(k + 1) % 3].constant, &c = J[(k + 2) % 3].constant;
       if (!a || !b || !c || cln::zerop(*a) || cln::zerop(*b) || cln::zerop(*c) || *a <= *b + *c) continue;
-      source_.fail(shape.value.items[k].span,
-                   "no body has these moments of inertia: this one is larger than the other two together",
-                   "check the values and their units");
+      resolver_.refuse_value(J[k], shape.value.items[k].span, "a principal moment",
+                             "is larger than the other two together, as that of no body",
+                             "check the values and their units");
     }
     return result;
   }

@@ -118,8 +118,8 @@ std::optional<TypedNode> NamesReader::armature_energy() {
     if (unit.dimension) context.dimension = quotient(dimension_of("kg*m^2"), raised(*unit.dimension, 2));
     const TypedNode value = resolver_.value(*armature, context);
     if (value.constant && cln::minusp(*value.constant))
-      source_.fail(span, fmt::format("{} is negative", context.what),
-                   "write the inertia of the rotor times the square of its gear ratio");
+      resolver_.refuse_value(value, span, context.what, "is negative",
+                             "write the inertia of the rotor times the square of its gear ratio");
     const TypedNode rate = resolver_.coordinate(index, 1, span);
     const TypedNode half = resolver_.product_of(resolver_.number(Rational(1) / 2, span), value, span);
     TypedNode energy = resolver_.product_of(half, resolver_.product_of(rate, rate, span), span);

@@ -174,7 +174,7 @@ NodeId ScenesReader::positive_number(const Value& value, const std::string& what
                  "write one, which holds for all");
   const TypedNode typed = resolver_.value(value, plain(what, unit == "1" ? "1" : unit));
   if (typed.constant && !cln::plusp(*typed.constant))
-    source_.fail(value.span, fmt::format("{} is not positive", what), "write a number greater than 0");
+    resolver_.refuse_value(typed, value.span, what, "is not positive", "write a number greater than 0");
   return typed.node;
 }
 

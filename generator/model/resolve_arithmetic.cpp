@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "model/lone_parameter.hpp"
 #include "model/resolver.hpp"
 
 namespace eomgen::model {
@@ -50,6 +51,11 @@ void Resolver::require_same_dimension(TypedNode& result, const TypedNode& a, con
     result.dimension = a.has_uncertain_dimension ? b.dimension : a.dimension;
     result.has_uncertain_dimension = a.has_uncertain_dimension && b.has_uncertain_dimension;
     return;
+  }
+  if (known_a && known_b) {
+    for (const TypedNode* side : {&a, &b}) {
+      if (const auto parameter = lone_parameter(model_, side->node)) parameters_that_fit_.insert(*parameter);
+    }
   }
   const bool literal = a.literal && b.literal;
   if (known_a || known_b) {
@@ -199,8 +205,7 @@ TypedNode Resolver::divide(const TypedNode& a, const TypedNode& b, Span span) {
 TypedNode Resolver::power(const TypedNode& a, const TypedNode& b, Span span) {
   if (a.vector || b.vector) source_.fail(span, "a vector stands in a power", "write dot(a, a) or norm(a)^2");
   if (b.dimension && !is_one(*b.dimension)) {
-    report_mismatch(span, fmt::format("an exponent is a pure number, and this one is in {}", text_of(*b.dimension)),
-                    b.has_uncertain_dimension);
+    report_wrong_dimension(b, span, "an exponent is a pure number", b.has_uncertain_dimension);
   }
   TypedNode result = make(Op::power, false, {a, b}, span);
   result.literal = a.literal && b.literal;

@@ -61,9 +61,9 @@ TypedNode Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, co
     const TypedNode& a = arguments[k];
     if (!same_kind && !keeps && function.fn != Fn::sqrt && function.fn != Fn::sign && a.dimension &&
         !is_one(*a.dimension)) {
-      report_mismatch(syntax.nodes[node.children[k]].span,
-                      fmt::format("{}() takes a pure number, and this is in {}", function.name, text_of(*a.dimension)),
-                      a.has_uncertain_dimension || a.is_bare_time);
+      report_wrong_dimension(a, syntax.nodes[node.children[k]].span,
+                             fmt::format("{}() takes a pure number", function.name),
+                             a.has_uncertain_dimension || a.is_bare_time);
     }
     if (function.fn == Fn::sin || function.fn == Fn::cos || function.fn == Fn::tan)
       warn_of_degrees(a.node, function.name);

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "model/lone_parameter.hpp"
+
 namespace eomgen::model {
 namespace {
 
@@ -34,6 +36,13 @@ std::string facts_text(Dependencies dependencies) {
   if (dependencies & on_acceleration) words.emplace_back("accelerations");
   if (dependencies & on_reaction) words.emplace_back("constraint forces");
   return fmt::format("{}", fmt::join(words, ", "));
+}
+
+// The value of a parameter that is declared as name = value or as name = { value = .., .. }.
+const Value& declared_value(const Symbol& parameter) {
+  const Value& declared = parameter.entry->value;
+  const Value* value = declared.is(Value::Kind::table) ? declared.find("value") : nullptr;
+  return value != nullptr ? *value : declared;
 }
 
 }  // namespace
@@ -125,38 +134,55 @@ TypedNode Resolver::check_context(TypedNode typed, Span span, const Context& con
     source_.fail(span, fmt::format("{} is a scalar, and this is a vector", context.what),
                  "take dot(a, b), norm(a), or a component dot(a, E1)");
   }
-  if (context.dimension && typed.dimension && !same(*context.dimension, *typed.dimension)) {
-    const std::string mismatch = fmt::format("{} must be in {}, and this is in {}", context.what,
-                                             text_of(*context.dimension), text_of(*typed.dimension));
-    const Symbol* parameter = lone_parameter(typed);
-    if (parameter != nullptr && units_stated_ && !typed.has_uncertain_dimension) {
-      source_.fail(span, "the units clash: " + mismatch,
-                   fmt::format("use another name here, or correct the unit of '{}' in line {}", parameter->name,
-                               source_.where(parameter->span).line));
+  if (context.dimension && typed.dimension) {
+    if (!same(*context.dimension, *typed.dimension)) {
+      report_wrong_dimension(typed, span, fmt::format("{} must be in {}", context.what, text_of(*context.dimension)),
+                             typed.has_uncertain_dimension);
+    } else if (const auto parameter = lone_parameter(model_, typed.node)) {
+      parameters_that_fit_.insert(*parameter);
     }
-    report_mismatch(span, mismatch, typed.has_uncertain_dimension);
   }
   return typed;
 }
 
-const Symbol* Resolver::lone_parameter(const TypedNode& value) {
-  const Node& node = model_.arena[value.node];
-  if (node.op != Op::parameter) return nullptr;
+const Symbol* Resolver::declared_parameter(const TypedNode& value) {
+  const auto parameter = lone_parameter(model_, value.node);
+  if (!parameter) return nullptr;
   for (const Symbol* symbol : scope_.all(SymbolKind::parameter)) {
-    if (symbol->state == Symbol::State::resolved && symbol->index == node.index) return symbol;
+    const bool same = symbol->state == Symbol::State::resolved && symbol->index == *parameter;
+    if (same && symbol->entry != nullptr) return symbol;
   }
   return nullptr;
 }
 
+void Resolver::refuse_value(const TypedNode& value, Span span, const std::string& what, const std::string& problem,
+                            std::string remedy) {
+  const Symbol* parameter = declared_parameter(value);
+  if (parameter == nullptr) source_.fail(span, fmt::format("{} {}", what, problem), std::move(remedy));
+  source_.fail(declared_value(*parameter).span,
+               fmt::format("{}, the parameter '{}', {}", what, parameter->name, problem), std::move(remedy));
+}
+
 void Resolver::require_positive_mass(const TypedNode& mass, Span span, const std::string& what) {
   if (!mass.constant || cln::plusp(*mass.constant)) return;
-  const Symbol* parameter = lone_parameter(mass);
-  if (parameter != nullptr && parameter->entry != nullptr) {
-    source_.fail(parameter->entry->value.span,
-                 fmt::format("the mass of {}, the parameter '{}', is not positive", what, parameter->name),
-                 "a mass is greater than 0");
+  refuse_value(mass, span, fmt::format("the mass of {}", what), "is not positive", "a mass is greater than 0");
+}
+
+void Resolver::report_wrong_dimension(const TypedNode& value, Span span, const std::string& requirement, bool loose) {
+  const std::string unit = text_of(*value.dimension);
+  const Symbol* parameter = units_stated_ && !loose ? declared_parameter(value) : nullptr;
+  if (parameter == nullptr)
+    return report_mismatch(span, fmt::format("{}, and this is in {}", requirement, unit), loose);
+  // A unit that suits another use is right, and the name at this one is wrong.
+  if (parameters_that_fit_.contains(parameter->index)) {
+    source_.fail(span, fmt::format("the units clash: {}, and this is in {}", requirement, unit),
+                 fmt::format("use another name here, or correct the unit of '{}' in line {}", parameter->name,
+                             source_.where(parameter->span).line));
   }
-  source_.fail(span, fmt::format("the mass of {} is not positive", what), "a mass is greater than 0");
+  source_.fail(declared_value(*parameter).span,
+               fmt::format("the units clash: {}, and the parameter '{}' is in {}", requirement, parameter->name, unit),
+               fmt::format("correct the unit of '{}', or use another name in line {}", parameter->name,
+                           source_.where(span).line));
 }
 
 void Resolver::report_mismatch(Span span, std::string what, bool loose) {

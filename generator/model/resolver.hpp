@@ -108,12 +108,16 @@ class Resolver {
   void warn(Span span, std::string message, std::string remedy);
   /// Throws Error if a mass is a number that is not positive. `what`: the name of the particle or body, in quotes.
   void require_positive_mass(const TypedNode& mass, Span span, const std::string& what);
+  /// Throws Error for a value that stands at `span`: at the parameter that it is, where it is one.
+  /// `what`, `problem`: "the period of 'S'", "is not positive".
+  [[noreturn]] void refuse_value(const TypedNode& value, Span span, const std::string& what, const std::string& problem,
+                                 std::string remedy);
   /// Parameters that an expression contains, also through definitions.
   std::set<std::uint32_t> parameters_in(NodeId node) const;
 
  private:
-  /// The parameter that an expression consists of; nullptr if it is none.
-  const Symbol* lone_parameter(const TypedNode& value);
+  /// The declaration of the parameter that an expression consists of; nullptr if it is none.
+  const Symbol* declared_parameter(const TypedNode& value);
   /// Warns of parameters above one turn without a unit in the argument of a trigonometric function.
   void warn_of_degrees(NodeId argument, std::string_view function);
   TypedNode syntax(const Syntax& syntax, const Context& context);
@@ -156,6 +160,8 @@ class Resolver {
   void require_same_dimension(TypedNode& result, const TypedNode& a, const TypedNode& b, Span span,
                               std::string_view relation);
   void report_mismatch(Span span, std::string what, bool loose);
+  /// Reports a value of the wrong dimension. `requirement`: "the mass of 'P' must be in kg".
+  void report_wrong_dimension(const TypedNode& value, Span span, const std::string& requirement, bool loose);
   void require_allowed(Dependencies dependencies, Span span, std::string_view what);
   void check_size(TypedNode& typed, Span span);
   void arity(const SyntaxNode& node, std::size_t least, std::size_t most);
@@ -169,6 +175,7 @@ class Resolver {
   const std::map<std::string, TypedNode>* local_ = nullptr;
   std::map<NodeId, CoordinateSet> coordinates_of_;  // of places and definitions
   std::set<std::uint32_t> parameters_in_angles_;    // whose unit was checked
+  std::set<std::uint32_t> parameters_that_fit_;     // whose unit is the one that some use requires
   std::vector<std::string> open_;                   // names being resolved, for detecting cycles
 };
 

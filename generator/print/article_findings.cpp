@@ -147,8 +147,8 @@ void write_routh(Article& a) {
   }
   std::vector<Formula> rates;
   for (std::size_t i = 0; i < form.cyclic.size(); ++i) {
-    rates.push_back(reading::relation(
-        {reading::symbol({symbolic::SymbolKind::coordinate, form.cyclic[i], 1}), reading::arrange(form.rates[i])}));
+    rates.push_back(reading::relation({reading::symbol({symbolic::SymbolKind::coordinate, form.cyclic[i], 1}),
+                                       reading::arrange_fractions(form.rates[i])}));
   }
   a.out.paragraph("The momenta of the cyclic coordinates are constants of the motion, and give the rates");
   a.out.display(rates);
@@ -156,14 +156,15 @@ void write_routh(Article& a) {
       "With these the Routhian, the Lagrangian of Approach II less " +
       std::string(form.cyclic.size() == 1 ? "the product of momentum and rate" : "the products of momenta and rates") +
       ", is");
-  a.out.display({reading::relation({mark("cal R"), reading::arrange(form.routhian)})});
+  a.out.display({reading::relation({mark("cal R"), reading::arrange_fractions(form.routhian)})});
   if (form.equations.empty()) return;
   a.out.paragraph(form.equations.size() == 1 ? "and one equation is left:" : "and the equations that are left are");
   for (const reading::Equation& equation : form.equations)
-    a.out.numbered_display(a.out.next_number(), explicit_form(equation));
+    a.out.numbered_display(a.out.next_number(), explicit_form(equation, true));
   if (!form.energy) return;
   a.out.paragraph("The reduced motion keeps");
-  a.out.display({reading::relation({mark(free_letter(a.model, "h", "cal H")), reading::arrange(*form.energy)})});
+  a.out.display(
+      {reading::relation({mark(free_letter(a.model, "h", "cal H")), reading::arrange_fractions(*form.energy)})});
 }
 
 void write_steady_motions(Article& a) {

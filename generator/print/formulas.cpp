@@ -174,17 +174,21 @@ Formula right_side(const Equation& equation) {
 
 }  // namespace
 
-Formula momentum_form(const Equation& equation) {
+Formula momentum_form(const Equation& equation, bool joined) {
   std::vector<Formula> terms;
   if (!equation.momentum.is_zero()) {
     terms.push_back(reading::make_formula(FormulaKind::rate, {arrange(equation.momentum, Layout::terms)}));
   }
-  for (Formula& term : reading::arranged_terms(-equation.slope, Layout::terms)) terms.push_back(std::move(term));
+  for (Formula& term : joined ? reading::arranged_fractions(-equation.slope, Layout::terms)
+                              : reading::arranged_terms(-equation.slope, Layout::terms))
+    terms.push_back(std::move(term));
   return reading::relation({reading::sum(std::move(terms)), right_side(equation)});
 }
 
-Formula explicit_form(const Equation& equation) {
-  return reading::relation({arrange(equation.expanded, Layout::terms), right_side(equation)});
+Formula explicit_form(const Equation& equation, bool joined) {
+  return reading::relation({joined ? reading::arrange_fractions(equation.expanded, Layout::terms)
+                                   : arrange(equation.expanded, Layout::terms),
+                            right_side(equation)});
 }
 
 void add_angular_velocities(const DisplayForm& form, std::vector<Statement>& out) {
@@ -312,8 +316,10 @@ void add_equations(const Mechanics& m, const DisplayForm& form, std::vector<Stat
     out.push_back(left_out("equations written out", "", "", "the longest has " + std::to_string(terms) + " terms"));
     return;
   }
-  for (const bool of_motion : {true, false}) add("equations", of_motion, momentum_form);
-  for (const bool of_motion : {true, false}) add("explicit", of_motion, explicit_form);
+  for (const bool of_motion : {true, false})
+    add("equations", of_motion, [](const Equation& e) { return momentum_form(e); });
+  for (const bool of_motion : {true, false})
+    add("explicit", of_motion, [](const Equation& e) { return explicit_form(e); });
 }
 
 void add_states(const Mechanics& m, std::vector<Statement>& out) {

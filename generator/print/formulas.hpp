@@ -40,10 +40,10 @@ std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const 
 void add_statements(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form,
                     const std::vector<std::string>& show, std::vector<Statement>& out);
 
-/// d/dt(dL/dqdot) - dL/dq = Q + lambda grad psi, eq. (2.109).
-reading::Formula momentum_form(const reading::Equation& equation);
+/// d/dt(dL/dqdot) - dL/dq = Q + lambda grad psi, eq. (2.109). `joined`: fractions with factors in one.
+reading::Formula momentum_form(const reading::Equation& equation, bool joined = false);
 /// M qddot + h = Q + lambda grad psi.
-reading::Formula explicit_form(const reading::Equation& equation);
+reading::Formula explicit_form(const reading::Equation& equation, bool joined = false);
 
 void add_energies(const mechanics::Mechanics& mechanics, const reading::DisplayForm& form, std::vector<Statement>& out);
 /// Components of the angular velocities along the axes of the inertia tensors.

@@ -30,18 +30,22 @@ std::optional<std::string> as_decimal(const reading::Rational& value, long least
   return std::to_string(cln::cl_I_to_long(whole)) + "." + decimals;
 }
 
-/// 48.85 for 977 pi/3600: fractions of pi with denominators from 100 on whose degrees end within four decimals.
+/// The degrees of a fraction of pi with a denominator from 100 on, if they end within four decimals.
+std::optional<std::string> as_degrees(const reading::Rational& of_pi) {
+  if (cln::denominator(of_pi) < 100) return std::nullopt;
+  std::optional<std::string> degrees = as_decimal(180 * of_pi, 1);
+  if (degrees && degrees->ends_with('.')) degrees->pop_back();
+  return degrees;
+}
+
+/// 48.85 for 977 pi/3600.
 std::optional<std::string> as_degrees(const Formula& f) {
   if (f.kind != FormulaKind::fraction || f.args[1].kind != FormulaKind::number) return std::nullopt;
   const Formula& above = f.args[0];
   const bool scaled = above.kind == FormulaKind::product && above.args.size() == 2 &&
                       above.args[0].kind == FormulaKind::number && above.args[1].kind == FormulaKind::pi;
   if (!scaled && above.kind != FormulaKind::pi) return std::nullopt;
-  const reading::Rational of_pi = (scaled ? above.args[0].number : reading::Rational(1)) / f.args[1].number;
-  if (cln::denominator(of_pi) < 100) return std::nullopt;
-  std::optional<std::string> degrees = as_decimal(180 * of_pi, 1);
-  if (degrees && degrees->ends_with('.')) degrees->pop_back();
-  return degrees;
+  return as_degrees((scaled ? above.args[0].number : reading::Rational(1)) / f.args[1].number);
 }
 
 class FormulaPrinter {
@@ -125,10 +129,20 @@ class FormulaPrinter {
   /// The arguments of a call. Those of trigonometric functions are angles, in degrees where these are shorter.
   std::vector<Piece> arguments(const Formula& call) const {
     using symbolic::Op;
-    if (call.op == Op::sin || call.op == Op::cos || call.op == Op::tan) {
-      if (const auto degrees = as_degrees(call.args[0])) return {style_.degrees(*degrees)};
-    }
+    if (call.op == Op::sin || call.op == Op::cos || call.op == Op::tan) return {angle(call.args[0])};
     return pieces(call.args);
+  }
+  /// An angle, or a sum of some.
+  Piece angle(const Formula& f) const {
+    if (const auto degrees = as_degrees(f)) return style_.degrees(*degrees);
+    if (f.kind != FormulaKind::sum && f.kind != FormulaKind::negative) return (*this)(f);
+    std::vector<std::string> terms;
+    add_signed(f, [&](const Formula& term, bool minus) {
+      const auto degrees = as_degrees(term);
+      terms.push_back(sign(minus, terms.empty()) +
+                      (degrees ? style_.degrees(*degrees).text : at_least(term, Piece::product)));
+    });
+    return {joined(terms), Piece::sum};
   }
   std::vector<Piece> pieces(const std::vector<Formula>& list) const {
     std::vector<Piece> result;
@@ -157,8 +171,14 @@ class FormulaPrinter {
   }
   Piece product(const Formula& f) const {
     std::vector<Piece> factors;
-    for (const Formula& factor : f.args) {
-      Piece piece = (*this)(factor);
+    std::size_t first = 0;
+    const bool of_pi = f.args.size() > 2 && f.args[0].kind == FormulaKind::number && f.args[1].kind == FormulaKind::pi;
+    if (const auto degrees = of_pi ? as_degrees(f.args[0].number) : std::nullopt) {  // 48.85 deg times the rest
+      factors.push_back({style_.degrees(*degrees).text, Piece::atom});
+      first = 2;
+    }
+    for (std::size_t i = first; i < f.args.size(); ++i) {
+      Piece piece = (*this)(f.args[i]);
       if (piece.precedence < Piece::product) piece = {style_.bracket(piece.text), Piece::atom};
       factors.push_back(std::move(piece));
     }

@@ -2,6 +2,7 @@
 #include "print/render.hpp"
 
 #include "print/formulas.hpp"
+#include "print/named_lengths.hpp"
 
 namespace eomgen::print {
 
@@ -34,6 +35,7 @@ std::vector<PrintedFormula> render(const mechanics::Mechanics& mechanics, const 
     kept.emplace();
     *interrupted = true;
   }
+  name_lengths(mechanics, all);
   return render(mechanics, all);
 }
 

@@ -23,14 +23,15 @@ std::vector<PrintedFormula> render_routh(const mechanics::Mechanics& m, const Ro
       const Formula p = reading::symbol(reading::momentum_symbol(c));
       add("momentum." + name, name, "constant momentum", reading::relation({p, arrange(form.momenta[i])}));
       add(name + "_dot", name, "rate that it gives",
-          reading::relation({reading::symbol({symbolic::SymbolKind::coordinate, c, 1}), arrange(form.rates[i])}));
+          reading::relation(
+              {reading::symbol({symbolic::SymbolKind::coordinate, c, 1}), reading::arrange_fractions(form.rates[i])}));
     }
     add("Routhian", "", "Routhian",
         reading::relation({reading::mark("cal R"), reading::arrange_fractions(form.routhian)}));
     for (const reading::Equation& equation : form.equations) {
       const std::string& name = m.model->coordinates[equation.coordinate].name;
-      add("", name, "reduced motion", momentum_form(equation));
-      add("", name, "reduced motion", explicit_form(equation));
+      add("", name, "reduced motion", momentum_form(equation, true));
+      add("", name, "reduced motion", explicit_form(equation, true));
     }
     if (form.energy) add("energy", "", "energy of the reduced motion", reading::arrange_fractions(*form.energy));
   }

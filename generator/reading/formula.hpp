@@ -62,12 +62,14 @@ enum class Layout {
 Formula arrange(const Sum& sum, Layout layout = Layout::grouped);
 /// A sum of few terms with the factors taken out that save most: m g L x + k L^2 (x - y).
 Formula arrange_by_factors(const Sum& sum);
-/// The same with terms over common denominators joined, where their numerator has factors: (p - q cos(x))^2/(I
+/// arrange() with terms over common denominators joined, where their numerator has factors: (p - q cos(x))^2/(I
 /// sin^2(x)) in place of three fractions.
-Formula arrange_fractions(const Sum& sum);
+Formula arrange_fractions(const Sum& sum, Layout layout = Layout::grouped);
 /// The sum as a product of irreducible factors, for determinants.
 Formula factored(const Sum& sum);
 /// The terms of arrange(), each possibly `negative`.
 std::vector<Formula> arranged_terms(const Sum& sum, Layout layout);
+/// The terms of arrange_fractions(), each possibly `negative`.
+std::vector<Formula> arranged_fractions(const Sum& sum, Layout layout);
 
 }  // namespace eomgen::reading

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "reading/rational_function.hpp"
+#include "reading/signs.hpp"
 
 namespace eomgen::reading {
 namespace {
@@ -216,7 +217,7 @@ Sum simplify(const Sum& sum) {
   Sum best = sum;
   for (int round = 0; round < most_rounds; ++round) {
     const Sum before = best;
-    best = absorb_roots(cancel(recombine_angles(reduce_squares(best))));
+    best = absorb_roots(cancel(recombine_angles(reduce_squares(reduce_signs(best)))));
     if (best == before) break;
   }
   return best;

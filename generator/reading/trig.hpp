@@ -6,8 +6,8 @@
 
 namespace eomgen::reading {
 
-/// Cancels common denominators, uses sin^2 + cos^2 = 1 where that makes the sum shorter, and recombines angle
-/// differences. The result is never longer.
+/// Reduces products of x, |x| and sign(x), cancels common denominators, uses sin^2 + cos^2 = 1 where that makes the sum
+/// shorter, and recombines angle differences. The result is never longer.
 Sum simplify(const Sum& sum);
 
 /// Replaces sin(x)^2 by 1 - cos(x)^2 or the reverse, per angle, whichever keeps the sum shorter.

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "model/lone_parameter.hpp"
 #include "model/names.hpp"
 #include "run/scene.hpp"
 #include "symbolic/evaluate.hpp"
@@ -134,7 +135,7 @@ std::optional<std::vector<cln::cl_R>> known_values(const Mechanics& m, const std
 
 }  // namespace
 
-void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values) {
+void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values, const model::Scene& scene) {
   struct Heavy {
     std::uint32_t place;
     model::NodeId mass;
@@ -149,7 +150,11 @@ void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values) {
     const auto mass = known_values(m, {mechanics::lower_scalar(m, particle.mass)}, values, what, particle.span);
     if (mass) require_normal(what, mass->front(), m.model->where(particle.span));
     if (!mass || cln::plusp(mass->front())) continue;
-    throw Error("scene", m.model->where(particle.span),
+    const auto set = std::find_if(scene.parameters.begin(), scene.parameters.end(), [&](const auto& parameter) {
+      return model::lone_parameter(*m.model, particle.mass) == parameter.first;
+    });
+    const bool by_scene = set != scene.parameters.end() && !cln::plusp(values[set->first]);
+    throw Error("scene", m.model->where(by_scene ? m.model->arena[set->second].span : particle.span),
                 fmt::format("{} is {} here", what, cln::double_approx(mass->front())), "a mass is greater than 0");
   }
 }

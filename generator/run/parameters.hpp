@@ -12,7 +12,8 @@
 namespace eomgen::run {
 
 /// Throws if a mass that depends on parameters is not positive, or undefined.
-void require_masses(mechanics::Mechanics& mechanics, const std::vector<cln::cl_R>& parameters);
+void require_masses(mechanics::Mechanics& mechanics, const std::vector<cln::cl_R>& parameters,
+                    const model::Scene& scene);
 
 /// Throws if a coefficient of friction is negative or undefined, or the static one is less than the dynamic one.
 void require_friction_coefficients(const mechanics::Mechanics& mechanics, const std::vector<cln::cl_R>& parameters,

@@ -314,7 +314,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   Scene result;
   result.name = scene.name;
   const std::vector<cln::cl_R> parameters = exact_parameters(m, scene, overrides, digits);
-  require_masses(m, parameters);
+  require_masses(m, parameters, scene);
   require_friction_coefficients(m, parameters, scene);
   for (const cln::cl_R& p : parameters) result.parameters.push_back(cln::double_approx(p));
   // The start is computed with the binary64 parameters that the run will use.

@@ -19,7 +19,12 @@ stage.append(view);
 
 const scene = new Scene(canvas, data.parts, data.down), plots = new Plots(document.getElementById("plots"), data.panels, (t) => { player.play(false); player.jump(t); });
 const results = new Results(document.getElementById("results"), data.panels, data.kept);
-let showStart = () => {};  // puts the sliders of the start on that of the current model
+let showStart = () => {}, showParameters = () => {};  // put the sliders on the values of the current model
+let notice = "";  // of the address of the page
+const link = document.createElement("a");  // to the page with the values of the current model
+link.textContent = "Link to these values";
+link.id = "link";
+const updateLink = () => { link.href = "#" + fragmentOf(live); };
 const player = new Player(bar, (t) => { scene.show(t); plots.show(t); });
 const redraw = () => scene.show(player.at);
 if (data.parts.places.length === 0) canvas.hidden = true;
@@ -39,8 +44,9 @@ function run(play) {
   const mine = ++pending;
   player.play(false);
   live.prepare();
+  updateLink();
   if (live.refusal !== "") {
-    message.textContent = "no run with these values: " + live.refusal + ". The run before is shown.";
+    message.textContent = notice + "no run with these values: " + live.refusal + ". The run before is shown.";
     return;
   }
   showStart();
@@ -49,7 +55,7 @@ function run(play) {
     if (mine !== pending) return;
     if (!integration.advance(25)) { message.textContent = "running: t = " + integration.t.toPrecision(3) + " s"; setTimeout(work, 0); return; }
     const steps = integration.steps + " steps in this page";
-    message.textContent = integration.outcome === "done" ? steps : steps + "; " + integration.outcome;
+    message.textContent = notice + (integration.outcome === "done" ? steps : steps + "; " + integration.outcome);
     if (integration.times.length > 1) {
       player.at = live.t0;
       take(new Motion(integration.times, integration.states, null, live, integration.found), false, [["outcome", integration.outcome], ["steps", String(integration.steps)]]);
@@ -129,27 +135,31 @@ function panel() {
     if (!p.moved) return;
     const [low, high] = rangeOf(p.value, p.positive);
     const made = slider(p.name, p.unit, p.note, p.value, low, high, (v) => { live.chosen[i] = v; run(true); });
-    sliders.push(() => made.set(p.value));
+    sliders.push(() => made.set(live.chosen[i]));
     parameters.append(made.row);
   });
   live.states.forEach((state, k) => {
     if (!state.moved) return;
     const value = live.x[k], reach = state.unit === "rad" ? Math.PI : Math.max(1, 2 * Math.abs(value));
     const made = slider(state.name, state.unit, "", value, Math.min(-reach, value), Math.max(reach, value), (v) => { live.placed = null; live.starts_chosen.set(k, v); run(true); });
-    sliders.push(() => made.set(value));
     places.push(() => made.set(live.x[k]));
     starts.append(made.row);
   });
+  showParameters = () => sliders.forEach((show) => show());
   showStart = () => places.forEach((show) => show());
   place.append(button("As in the model", "All values as the model has them", () => {
     ++pending;
     live.reset();
-    sliders.forEach((set) => set());
+    showParameters();
+    showStart();
+    notice = "";
+    updateLink();
     message.textContent = "";
     player.at = recorded.t[0];
     take(recorded, true);
     player.play(true);
-  }));
+  }), link);
+  updateLink();
   stage.append(place);
   stage.classList.add("live");
 }
@@ -173,5 +183,15 @@ window.addEventListener("resize", () => { redraw(); fitFormulas(); });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
 player.jump(player.t0);
 if (!matchMedia("(prefers-reduced-motion: reduce)").matches) player.play(true);
+// The values in the address of the page.
+function followAddress() {
+  if (!live || location.hash.length < 2 || location.hash.slice(1) === fragmentOf(live)) return;
+  const unknown = takeFragment(live, location.hash.slice(1));
+  notice = unknown.length > 0 ? "not taken from the address: " + unknown.slice(0, 6).join(", ") + ". " : "";
+  showParameters();
+  run(true);
+}
+window.addEventListener("hashchange", followAddress);
+followAddress();
 // For inspection from the console of the browser.
 window.report = {data, live, scene, player, run, motion: () => motion};

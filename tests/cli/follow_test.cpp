@@ -199,7 +199,7 @@ std::optional<Json> page(const Folder& folder, const std::string& model, const s
   std::string script = "\"use strict\";\nconst DATA = " + Json(between(html, "id=\"motion\">", "</script>")).dump() +
                        ";\nconst model = (() => {" +
                        between(html, "const model = (() => {", "})();\nconst surfaceCode") + "})();\n";
-  for (const char* part : {"linear.js", "resets.js", "integrator.js", "motion.js"}) {
+  for (const char* part : {"linear.js", "resets.js", "integrator.js", "motion.js", "address.js"}) {
     std::ifstream file(source_folder() + "/templates/report/" + part);
     script.append(std::istreambuf_iterator<char>(file), {});
   }
@@ -364,6 +364,31 @@ print(json.dumps({"outcome": motion.outcome, "end": dict(zip(model.states, map(f
     for (std::size_t k = 0; k < resets.size(); ++k)
       CHECK(found["resets"][k].get<double>() == doctest::Approx(resets[k]).epsilon(of_solvers));
   }
+}
+
+TEST_CASE("starts: the address of a page carries its values; other names and texts are not taken") {
+  const Folder folder;
+  const std::optional<Json> found = page(folder, "rimless_wheel", {{"gamma", 0.1}, {"theta_dot", 2}}, {}, R"(
+const fragment = fragmentOf(live), before = Array.from(live.x);
+takeFragment(live, "m=3");
+const others = [live.chosen[find("gamma")], live.chosen[find("m")]];
+takeFragment(live, fragment);
+live.prepare();
+const after = Array.from(live.x);
+live.placed = Float64Array.of(0.1, 0, 5, 2);
+const placed = fragmentOf(live);
+takeFragment(live, placed);
+live.prepare();
+const unknown = takeFragment(live, "gamma=0.2&theta=x&__proto__=1&m=&L=1,2&(state)=1&q=<b>");
+console.log(JSON.stringify({fragment, before, after, others, placed, x: Array.from(live.x), unknown, gamma: live.chosen[find("gamma")]}));
+)");
+  if (!found) return;
+  CHECK((*found)["fragment"] == "gamma=0.1&theta_dot=2");
+  CHECK((*found)["after"] == (*found)["before"]);
+  CHECK((*found)["others"] == Json::parse("[0.08, 3]"));
+  CHECK(contains((*found)["placed"].get<std::string>(), "=0.1%2C0%2C5%2C2"));
+  CHECK((*found)["unknown"] == Json::array({"theta", "__proto__", "m", "L", "(state)", "q"}));
+  CHECK((*found)["gamma"] == 0.2);
 }
 
 TEST_CASE("resets: the run on a page ends where run does, with the same events, and takes changed values") {

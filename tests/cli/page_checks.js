@@ -214,6 +214,7 @@ async function look(entry) {
         report.live.states.forEach((state, k) => { at.end[state.name] = x[k]; });
         at.rows = old;
         Object.assign(at, tables(page, report));
+        at.link = page.getElementById("link").hash;
       }
       report.player.jump(report.player.t0 + 0.37 * (report.player.t1 - report.player.t0));
       at.forces = forces(page, report);
@@ -224,6 +225,15 @@ async function look(entry) {
         at.floor = {lines: lines.length, off: Math.max(...lines.flat().map(([, y]) => Math.abs(y)))};
       }
       at.live = report.live !== null;
+      if (width === widths[0] && at.link) {  // the page at this address
+        [...page.querySelectorAll("button")].find((node) => node.textContent === "As in the model").click();
+        at.link_reset = page.getElementById("link").hash;
+        frame.contentWindow.location.hash = at.link;
+        await wait(() => page.getElementById("status").textContent.includes("steps in"));
+        const taken = [...page.querySelectorAll(".slider input[type=number]")].find((input) => input.dataset.name === entry.slider.name);
+        at.link_value = Number(taken.value);
+        report.player.play(false);
+      }
       if (width === widths[0] && entry.drag) at.drag = await drag(frame, report, entry.drag);
     }
     at.messages = frame.contentWindow.messages;

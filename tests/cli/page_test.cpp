@@ -231,6 +231,9 @@ void check(const Json& found, const PageCase& c, const Json& wanted) {
   }
   if (c.slider.empty()) return;
   CHECK(wide["ran"] == true);
+  CHECK(contains(wide["link"].get<std::string>(), "#" + c.slider + "="));
+  CHECK(wide["link_reset"] == "");
+  CHECK(wide["link_value"].get<double>() == doctest::Approx(c.value));
   check_tables(wide);
   for (const auto& [name, value] : wide["end"].items()) {
     const auto& shown = name;

@@ -101,7 +101,7 @@ TEST_CASE("sums, arguments and required values must agree in dimension") {
   CHECK(sum("exp(R)") == "the units clash: exp() takes a pure number, and this is in m");
   CHECK(sum("atan2(R, L) + atan2(R, t)") == "the units clash: m on one side and s on the other side of atan2()");
   CHECK(sum("if(R < t, 1, 2)") == "the units clash: m on one side and s on the other side of the comparison");
-  CHECK(sum("2^R") == "the units clash: an exponent is a pure number, and this one is in m");
+  CHECK(sum("2^R") == "the units clash: an exponent is a pure number, and this is in m");
   CHECK(sum("R_dot - ddt(R)") == "accepted");
   CHECK(sum("R_dot - dot(velocity(P), P.e_R)") == "accepted");
   CHECK(sum("dot(P.g_theta, P.a_theta) - 1") == "accepted");

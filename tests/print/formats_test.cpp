@@ -109,6 +109,16 @@ TEST_CASE("a rod about its end: energies of translation and rotation are one ter
   CHECK(given.of("equations")[0].text == "d/dt(1/3 m L^2 theta_dot) = L sin(48.85[deg]) sin(theta)");
   CHECK(given.of("equations")[0].latex.find("48.85^{\\circ}") != std::string::npos);
   CHECK(rod("37*pi/180").of("equations")[0].text == "d/dt(1/3 m L^2 theta_dot) = L sin(37[deg]) sin(theta)");
+  // In sums too.
+  CHECK(rod("2*theta - 48.85*pi/180").of("equations")[0].text ==
+        "d/dt(1/3 m L^2 theta_dot) = L sin(theta) sin(2 theta - 48.85[deg])");
+  CHECK(rod("-48.85*pi/180 - m*theta").of("equations")[0].text.find("48.85[deg]") != std::string::npos);
+  const Printed spring(
+      model::read_model_text("format = 1\n[parameters]\nm = 1\nk = 1\n[coordinates]\nphi = \"rad\"\n[energy]\n"
+                             "kinetic = \"m*phi_dot^2/2\"\npotential = \"k*(phi - 48.85*pi/180)^2/2\"\n",
+                             "spring.toml"),
+      system::Approach::two, {"equations"});
+  CHECK(spring.of("explicit")[0].text == "m phi_ddot + k phi - 48.85[deg] k = 0");
   CHECK(rod("pi/1024").of("equations")[0].text == "d/dt(1/3 m L^2 theta_dot) = L sin(pi/1024) sin(theta)");
 }
 

@@ -48,6 +48,22 @@ TEST_CASE("trigonometry: squares and angle differences are recombined") {
   CHECK(simplify(sin(b) * cos(a) - cos(b) * sin(a)) == -sin(a - b));
 }
 
+TEST_CASE("signs: products of x, |x| and sign(x) have one form") {
+  System s = some_symbols();
+  const Sum a = s.symbol("a"), m = s.symbol("m"), x = sin(a);
+  const auto abs = [](const Sum& of) { return reading::call(reading::Op::abs, {of}); };
+  const auto sign = [](const Sum& of) { return reading::call(reading::Op::sign, {of}); };
+  CHECK(simplify(m * square(x) * power(abs(x), -1)) == m * abs(x));
+  CHECK(simplify(x * power(abs(x), -1)) == sign(x));
+  CHECK(simplify(sign(x) * abs(x)) == x);
+  CHECK(simplify(square(sign(x))) == Sum(1));
+  CHECK(simplify(x * sign(x)) == abs(x));
+  CHECK(simplify(power(abs(x), 2)) == square(x));
+  CHECK(simplify(cos(a) * x - cos(a) * abs(x) * sign(x)).is_zero());
+  CHECK(simplify(power(x, 3) * power(abs(x), -1)) == square(x) * sign(x));
+  CHECK(simplify(abs(x) * sign(m)) == abs(x) * sign(m));
+}
+
 TEST_CASE("trigonometry: the shorter of the two forms is kept, and nothing gets longer") {
   System s = some_symbols();
   const Sum a = s.symbol("a"), m = s.symbol("m"), k = s.symbol("k"), x = s.symbol("x");

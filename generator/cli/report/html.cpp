@@ -7,6 +7,7 @@
 #include <kainjow/mustache.hpp>
 #include <stdexcept>
 
+#include "cli/report_skeletons/address_js.hpp"
 #include "cli/report_skeletons/camera_js.hpp"
 #include "cli/report_skeletons/controls_js.hpp"
 #include "cli/report_skeletons/drag_js.hpp"
@@ -87,10 +88,10 @@ std::string render_page(const PageParts& parts) {
   all.set("model", returned(parts.model, parts.name));
   all.set("surfaces", returned(parts.surfaces, parts.surfaces_name));
   std::string scripts;
-  for (const char* script :
-       {report::linear_js, report::resets_js, report::integrator_js, report::motion_js, report::shapes_js,
-        report::camera_js, report::pencil_js, report::links_js, report::surfaces_js, report::scene_js, report::plots_js,
-        report::drag_js, report::controls_js, report::fit_js, report::results_js, report::main_js}) {
+  for (const char* script : {report::linear_js, report::resets_js, report::integrator_js, report::motion_js,
+                             report::address_js, report::shapes_js, report::camera_js, report::pencil_js,
+                             report::links_js, report::surfaces_js, report::scene_js, report::plots_js, report::drag_js,
+                             report::controls_js, report::fit_js, report::results_js, report::main_js}) {
     scripts += script;
   }
   all.set("scripts", scripts);

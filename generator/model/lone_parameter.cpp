@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/lone_parameter.hpp"
+
+namespace eomgen::model {
+
+std::optional<std::uint32_t> lone_parameter(const Model& model, NodeId expression) {
+  std::optional<std::uint32_t> found;
+  while (expression != no_node) {
+    const Node& node = model.arena[expression];
+    if (node.op == Op::parameter) {
+      found = node.index;
+      expression = model.parameters[node.index].value;
+    } else if (node.op == Op::definition) {
+      expression = model.definitions[node.index].expression;
+    } else {
+      break;
+    }
+  }
+  return found;
+}
+
+Span origin_of(const Model& model, NodeId expression, const Span& span) {
+  const std::optional<std::uint32_t> parameter = lone_parameter(model, expression);
+  return parameter ? model.parameters[*parameter].span : span;
+}
+
+}  // namespace eomgen::model

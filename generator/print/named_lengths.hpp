@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lengths that occur again and again, such as that of a spring between two pendulums, by a letter. In: statements. Out:
+// the same with the letter, and its definition.
+#pragma once
+
+#include <vector>
+
+#include "print/formulas.hpp"
+
+namespace eomgen::print {
+
+/// Names square roots of at least four terms that energies and equations contain more than once. The definitions have
+/// the key "parts".
+void name_lengths(const mechanics::Mechanics& mechanics, std::vector<Statement>& statements);
+
+}  // namespace eomgen::print
