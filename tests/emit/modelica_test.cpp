@@ -45,8 +45,8 @@ TEST_CASE("target modelica: parameters, inputs and states have units and values"
   const std::string text = emitted(e);
   for (const char* line : {"  parameter Real M(unit = \"kg\") = 0.5;\n", "(unit = \"kg.m2/s2\")",
                            "  parameter Real g = 0.875 \"a root\";\n", "  input Real F(start = 0.25, unit = \"N\");\n",
-                           "fixed = true, unit = \"m\");\n", "fixed = true, unit = \"m/s\");\n",
-                           "  der(x) = x_dot;", "// Without the functions jac"})
+                           "fixed = true, unit = \"m\");\n", "fixed = true, unit = \"m/s\");\n", "  der(x) = x_dot;",
+                           "// Without the functions jac"})
     CHECK_MESSAGE(text.find(line) != std::string::npos, line);
 }
 
@@ -79,8 +79,8 @@ TEST_CASE("target modelica: what a flat model cannot state is refused by name") 
   e.context.events.push_back({"bump", "rising", "record", {}});
   CHECK(emitted(e).find("// Without the events bump") != std::string::npos);
   e.context.events[0].reset.set = {{}};
-  CHECK_THROWS_WITH_AS(emit::emit(e.program, e.context, "modelica"),
-                       doctest::Contains("the reset at the event 'bump'"), Error);
+  CHECK_THROWS_WITH_AS(emit::emit(e.program, e.context, "modelica"), doctest::Contains("the reset at the event 'bump'"),
+                       Error);
   e.context.events.clear();
   e.context.samples.push_back({"clock", 0.1, 0, {}, {}});
   CHECK_THROWS_WITH_AS(emit::emit(e.program, e.context, "modelica"), doctest::Contains("the sample 'clock'"), Error);
