@@ -100,6 +100,7 @@ Problem make_problem(const RunRequest& request, const std::string& solver) {
   problem.constraint_names = request.constraint_names;
   problem.estimate = request.estimate;
   problem.output_interval = request.every;
+  problem.row_subdivisions = request.row_subdivisions;
   problem.row = request.row;
   problem.progress = request.progress;
   problem.interrupt = request.interrupt;
