@@ -123,7 +123,9 @@ void look_for_steady_motions(const Mechanics& m, const DisplayForm& two, std::ui
 
 }  // namespace
 
-std::string latex_document(std::shared_ptr<const model::Model> model, std::uint64_t seed) {
+std::string latex_document(std::shared_ptr<const model::Model> model, std::uint64_t seed,
+                           const std::vector<std::string>& omitted) {
+  print::require_document_parts(omitted);
   const work::Stage stage("deriving the equations");
   Mechanics m = mechanics::build_mechanics(std::move(model));
   reading::DisplayForms forms(m);
@@ -137,8 +139,9 @@ std::string latex_document(std::shared_ptr<const model::Model> model, std::uint6
   if (!cyclic.empty()) findings.routh = forms.routh(cyclic);
   draw_figure(m, system, findings);
   check_against_oracle(m, one, two, seed, findings);
-  look_for_steady_motions(m, two, seed, findings);
-  return print::latex_document(m, one, two, findings);
+  if (std::find(omitted.begin(), omitted.end(), "steady") == omitted.end())
+    look_for_steady_motions(m, two, seed, findings);
+  return print::latex_document(m, one, two, findings, omitted);
 }
 
 }  // namespace eomgen::analysis

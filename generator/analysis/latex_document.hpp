@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "model/model.hpp"
 
@@ -14,7 +15,8 @@ namespace eomgen::analysis {
 inline constexpr const char* latex_document_target = "latex";
 
 /// Returns the LaTeX source. Checks the equations against the independent oracle first; throws Error{ErrorKind::check}
-/// if they disagree.
-std::string latex_document(std::shared_ptr<const model::Model> model, std::uint64_t seed);
+/// if they disagree. `omitted`: names of print::document_parts; throws Error if one is not.
+std::string latex_document(std::shared_ptr<const model::Model> model, std::uint64_t seed,
+                           const std::vector<std::string>& omitted = {});
 
 }  // namespace eomgen::analysis

@@ -163,26 +163,44 @@ Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, c
 
 constexpr double smallest_gap = 1e-8;  // relative to the coordinates, as for a start
 
-/// Whether the gap of a contact is positive at a state.
-bool is_open(SteadyProblem& p, const mechanics::Contact& contact, const Reached& state) {
-  mechanics::Mechanics& m = p.derived->mechanics;
+/// Whether the gap of a contact is positive, by the values of all symbols.
+bool is_open(DerivedModel& d, const mechanics::Contact& contact,
+             const std::function<double(const symbolic::Symbol&)>& value) {
+  mechanics::Mechanics& m = d.mechanics;
   if (!contact.unilateral) return false;
-  const symbolic::Ref gap = derive::time_function_substitution(m)(m.constraints[contact.constraints[0]].psi);
+  symbolic::Substitution imposed = derive::constraint_substitution(m), written = derive::time_function_substitution(m);
+  const symbolic::Ref gap = written(imposed(m.constraints[contact.constraints[0]].psi));
   std::vector<symbolic::Ref> roots{gap};
-  for (std::uint32_t i = 0; i < m.q.size(); ++i)
+  for (const std::uint32_t i : m.free)
     roots.push_back(symbolic::partial_derivative(*m.dag, {symbolic::SymbolKind::coordinate, i, 0})(gap));
-  const std::vector<double> values = symbolic::evaluate(*m.dag, roots, [&](const symbolic::Symbol& symbol) -> double {
-    switch (symbol.kind) {
-      case symbolic::SymbolKind::parameter: return p.scene.parameters[symbol.index];
-      case symbolic::SymbolKind::time: return p.t;
-      case symbolic::SymbolKind::input: return p.scene.inputs[symbol.index](p.t, p.t);
-      case symbolic::SymbolKind::coordinate: return (symbol.order == 0 ? state.q : state.qdot)[symbol.index];
-      default: return std::numeric_limits<double>::quiet_NaN();
-    }
-  });
+  const std::vector<double> values = symbolic::evaluate(*m.dag, roots, value);
   double size = 0;
-  for (std::size_t i = 0; i < m.q.size(); ++i) size += std::abs(values[1 + i]) * std::max(1.0, std::abs(state.q[i]));
+  for (std::size_t k = 0; k < m.free.size(); ++k) {
+    const double q = value({symbolic::SymbolKind::coordinate, m.free[k], 0});
+    size += std::abs(values[1 + k]) * std::max(1.0, std::abs(q));
+  }
   return values[0] > smallest_gap * size;
+}
+
+/// The value of a symbol that is the same at all states of the problem; NaN for others.
+double fixed_value(const SteadyProblem& p, const symbolic::Symbol& symbol) {
+  switch (symbol.kind) {
+    case symbolic::SymbolKind::parameter: return p.scene.parameters[symbol.index];
+    case symbolic::SymbolKind::time: return p.t;
+    case symbolic::SymbolKind::input: return p.scene.inputs[symbol.index](p.t, p.t);
+    default: return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+/// Whether the gap of a contact is positive at a state of the scene, or of its run.
+bool is_open(SteadyProblem& p, const mechanics::Contact& contact, const Reached& state) {
+  return is_open(*p.derived, contact, [&](const symbolic::Symbol& symbol) {
+    if (symbol.kind == symbolic::SymbolKind::coordinate)
+      return (symbol.order == 0 ? state.q : state.qdot)[symbol.index];
+    if (symbol.kind == symbolic::SymbolKind::state)
+      return state.z.empty() ? start_of(p, symbol.index) : state.z[symbol.index];
+    return fixed_value(p, symbol);
+  });
 }
 
 /// The scene without the outputs that the equations no longer have.
@@ -232,6 +250,7 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
       if (!is_open(p, contact, state)) refuse_contact(command, p.derived->model, contact.name, contacts);
       p.open_contacts.push_back(contact.name);
     }
+    p.with_contacts = std::move(p.derived);
     p.derived = pipeline::derive_model(model::without_unilateral_constraints(*model), ApproachChoice::two);
     p.scene = run::resolve_scene(p.derived->mechanics, p.system(),
                                  with_known_outputs(*p.derived, scene, p.without_value), overrides);
@@ -261,6 +280,26 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
                 "start elsewhere");
   }
   return p;
+}
+
+bool leaves_contacts_open(const SteadyProblem& p, const linear::State<Precise>& z) {
+  if (!p.with_contacts) return true;
+  const system::EquationSystem& s = p.system();
+  const auto value = [&](const symbolic::Symbol& symbol) {
+    const std::size_t n = s.free.size();
+    if (symbol.kind == symbolic::SymbolKind::coordinate) {
+      const auto place =
+          static_cast<std::size_t>(std::find(s.free.begin(), s.free.end(), symbol.index) - s.free.begin());
+      if (place < n && symbol.order < 2) return linear::to_double(z[place + symbol.order * n]);
+    }
+    for (std::size_t k = 0; k < s.layout().first_order; ++k) {
+      if (s.states[k].symbol == symbol) return linear::to_double(z[2 * n + k]);
+    }
+    return fixed_value(p, symbol);
+  };
+  const std::vector<mechanics::Contact>& contacts = p.with_contacts->mechanics.contacts;
+  return std::all_of(contacts.begin(), contacts.end(),
+                     [&](const mechanics::Contact& contact) { return is_open(*p.with_contacts, contact, value); });
 }
 
 NonsmoothTerm find_nonsmooth_term(const SteadyProblem& p, const linear::State<Precise>& z) {

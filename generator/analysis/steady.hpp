@@ -23,7 +23,8 @@ struct SteadyProblem {
   double t = 0;
   std::string certificate;
   std::vector<std::string> open_contacts;  // unilateral constraints that are open at the state, and left out
-  std::vector<std::string> without_value;  // outputs of the scene that belong to them
+  std::shared_ptr<pipeline::DerivedModel> with_contacts;  // the model with them; null if there are none
+  std::vector<std::string> without_value;                 // outputs of the scene that belong to them
 
   const system::EquationSystem& system() const { return derived->candidates.front(); }
 };
@@ -36,6 +37,9 @@ enum class Contacts { none, open };
 SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const model::Model> model,
                              const std::string& scene, const run::Overrides& overrides, std::optional<double> at,
                              std::uint64_t seed, Contacts contacts);
+
+/// Whether all contacts that were left out are open at another state of the problem.
+bool leaves_contacts_open(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
 
 /// A term that is not differentiable at a state: a force, an energy or a constraint of the model. `what`: start of a
 /// sentence, "'F' has" or, if no single term is found, "the equations of motion have".

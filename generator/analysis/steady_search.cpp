@@ -265,6 +265,10 @@ void classify_stability(SteadyMotions& result, const SteadyRequest& request, con
     note_singular_chart(result, z);
   }
   for (const linear::FoundPoint& point : result.search.points) {
+    if (!leaves_contacts_open(p, point.z)) {
+      ++result.in_contact;
+      continue;
+    }
     if (const model::SingularChart chart = find_singular_chart(p, point.z)) {
       note_singular_chart(result, point.z);
       result.search.record_failure(chart.what, point.z);
@@ -285,7 +289,7 @@ void classify_stability(SteadyMotions& result, const SteadyRequest& request, con
 
 SteadyMotions steady_motions(const SteadyRequest& request) {
   SteadyMotions result{
-      steady_problem(command, request.model, request.scene, request.overrides, {}, request.seed, Contacts::none),
+      steady_problem(command, request.model, request.scene, request.overrides, {}, request.seed, Contacts::open),
       {},
       {},
       {},
@@ -312,7 +316,14 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
     }
     require_not_ignored(result, request);
     const bool none = result.search.points.empty();
-    if (none) require_ends(result, request.starts / 2);  // the others met no obstacle: there was nothing to find
+    bool found_beyond = false;
+    if (request.second_charts && !result.search.interrupted) {
+      result.second_charts = search_second_charts(result, request);
+      found_beyond = std::any_of(result.second_charts.begin(), result.second_charts.end(),
+                                 [](const auto& beyond) { return beyond.found && !beyond.found->points.empty(); });
+    }
+    if (none && !found_beyond)
+      require_ends(result, request.starts / 2);  // the others met no obstacle: there was nothing to find
     if (!result.search.symmetry.autonomous) {
       throw Error(command, SourceLocation{model.file, 0, 0, 1, ""},
                   "the accelerations depend on t: no motion stays what it is",
@@ -326,7 +337,7 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
     }
     const work::Stage stage("judging stability");
     classify_stability(result, request, quantities);
-    if (result.points.empty() && !none) require_ends(result, 0);
+    if (result.points.empty() && !none && !found_beyond && result.in_contact == 0) require_ends(result, 0);
   } catch (const std::domain_error& error) {
     const NonsmoothTerm source = find_nonsmooth_term(p, p.z);
     throw Error(command, source.where,

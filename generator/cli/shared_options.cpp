@@ -7,6 +7,7 @@
 #include "pipeline/estimate_cost.hpp"
 #include "pipeline/pipeline.hpp"
 #include "pipeline/tier.hpp"
+#include "print/article.hpp"
 #include "run/eligibility.hpp"
 
 namespace eomgen::cli {
@@ -62,6 +63,13 @@ void add_form(Arguments& app, std::string& form) {
   app.add_option("--form", form, fmt::format("{}: how constraints that stay are solved", fmt::join(words, ", ")))
       .show_default()
       .suggest_values(words);
+}
+
+void add_omit(Arguments& app, std::vector<std::string>& parts) {
+  std::vector<std::string> names;
+  for (const print::DocumentPart& part : print::document_parts) names.emplace_back(part.name);
+  app.add_list("--omit", parts, fmt::format("parts that the document leaves out: {}", fmt::join(names, ", ")))
+      .suggest_values(names);
 }
 
 void add_tier(Arguments& app, std::string& tier) {

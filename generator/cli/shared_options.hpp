@@ -32,6 +32,7 @@ void add_outputs(Arguments& app, SceneOptions& options);     // --output
 
 void add_approach(Arguments& app, std::string& approach);
 void add_form(Arguments& app, std::string& form);
+void add_omit(Arguments& app, std::vector<std::string>& parts);  // --omit
 void add_tier(Arguments& app, std::string& tier);
 /// --estimate and --no-error-estimate.
 void add_estimate(Arguments& app, std::string& estimate, bool& without);

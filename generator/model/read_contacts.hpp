@@ -18,7 +18,9 @@ class ContactsReader : private SectionReader {
   void tangent_of_contact(const Value& table, std::map<std::string, TypedNode>& local);
   void name_motion(std::uint32_t frame, const std::string& ending, Span span, std::map<std::string, TypedNode>& local);
   void read_contact_point(Constraint& constraint, const Value& table, const std::map<std::string, TypedNode>& local);
-  TypedNode contact_arm(const Value& table, std::map<std::string, TypedNode> local);
+  /// Adds the radius of a shape as "R".
+  TypedNode contact_arm(const Value& table, std::map<std::string, TypedNode>& local);
+  void draw_shapes(const BodyContact& contact, const Value& table, const std::map<std::string, TypedNode>& local);
   bool touches_body(const Value& on);
   /// The text of psi; nothing for the general psi of two points and a normal.
   std::optional<std::string> between_bodies(BodyContact& contact, const Value& table,

@@ -51,9 +51,15 @@ bool lie_on_a_line(const std::vector<Point>& points, double size) {
 }  // namespace
 
 void DrawReader::read() {
-  const Value* table = section("draw");
-  if (table == nullptr) return;
-  for (const Entry& entry : table->entries) {
+  if (const Value* table = section("draw")) read_table(*table);
+  for (const ShapeSpec& shape : context_.contact_shapes) {
+    const auto is_of_place = [&](const ShapeSpec& drawn) { return drawn.place == shape.place; };
+    if (std::none_of(model_.drawn.begin(), model_.drawn.end(), is_of_place)) model_.drawn.push_back(shape);
+  }
+}
+
+void DrawReader::read_table(const Value& table) {
+  for (const Entry& entry : table.entries) {
     const auto place = std::find_if(model_.places.begin() + 1, model_.places.end(),
                                     [&](const Place& p) { return p.name == entry.key; });
     const auto index = static_cast<std::uint32_t>(place - model_.places.begin());
@@ -213,7 +219,7 @@ std::vector<NodeId> DrawReader::drawn_lengths(const Value& value, std::size_t co
   const auto length = [&](const Value& item) {
     const TypedNode typed = resolver_.value(item, context);
     if (positive && typed.constant && !cln::plusp(*typed.constant))
-      source_.fail(item.span, fmt::format("a length in {} is not greater than 0", what), "give a length");
+      resolver_.refuse_value(typed, item.span, context.what, "is not greater than 0", "give a length");
     const double number = Samples(model_).value(typed.node);
     if (!std::isfinite(number) && !depends_on_start(typed.node))
       source_.fail(item.span, fmt::format("a length in {} has no value", what),

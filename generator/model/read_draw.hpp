@@ -12,6 +12,7 @@ class DrawReader : private SectionReader {
   void read();
 
  private:
+  void read_table(const Value& table);
   ShapeSpec drawn_shape(std::uint32_t place, const Value& value);
   void read_mesh(ShapeSpec& drawn, const Value& points, const Value* faces, const std::string& what);
   void require_extent(const ShapeSpec& drawn, const Value& points, const Value* faces, const std::string& what);

@@ -60,7 +60,7 @@ std::map<std::string, TypedNode> ContactsReader::plane_of_contact(const Value& o
 }
 
 // The vector from the centre of mass to the point of contact.
-TypedNode ContactsReader::contact_arm(const Value& table, std::map<std::string, TypedNode> local) {
+TypedNode ContactsReader::contact_arm(const Value& table, std::map<std::string, TypedNode>& local) {
   const Value *at = table.find("at"), *shape = table.find("shape");
   if ((at == nullptr) == (shape == nullptr)) {
     source_.fail(table.span,
@@ -80,6 +80,20 @@ TypedNode ContactsReader::contact_arm(const Value& table, std::map<std::string, 
   local["R"] = resolver_.value(entry.value, {"the radius of a contact", 0, Shape::scalar, dimension_of("m"), ""});
   return resolver_.text(entry.key == "sphere" ? "-R*n" : "-R*(n - dot(n, e3)*e3)/sqrt(1 - dot(n, e3)^2)", local,
                         entry.value.span, arm);
+}
+
+// Spheres and disks in contact are drawn as such, unless [draw] says otherwise.
+void ContactsReader::draw_shapes(const BodyContact& contact, const Value& table,
+                                 const std::map<std::string, TypedNode>& local) {
+  const auto add = [&](const char* key, std::uint32_t place, const char* radius) {
+    const Value* shape = table.find(key);
+    if (shape == nullptr || place == 0) return;
+    const Entry& entry = shape->entries[0];
+    if (entry.key != "hollow")
+      context_.contact_shapes.push_back({place, entry.key, {local.at(radius).node}, {}, 2, {}, entry.value.span});
+  };
+  add("shape", contact.place, "R");
+  add("shape_b", contact.other_place, "Rb");
 }
 
 // Names for the motion of a body: its centre of mass x and the velocity v of it, its angular velocity w, its axis e3.
@@ -155,6 +169,7 @@ void ContactsReader::read(Constraint& constraint, const Value& table, bool rolli
     name_motion(frame, "", table.span, local);
     local["p"] = contact_arm(table, local);
   }
+  draw_shapes(*constraint.contact, table, local);
   tangent_of_contact(table, local);
   const Context scalar{what, on_motion | on_velocity, Shape::scalar, std::nullopt, ""};
   const auto equation = [&](const std::string& text) { return resolver_.text(text, local, table.span, scalar); };

@@ -76,6 +76,7 @@ struct ReaderContext {
   std::vector<PlaceDeclaration> place_sources;  // per Model::places
   std::vector<FrameDeclaration> frame_sources;  // per Model::frames
   std::vector<Chain> chains;
+  std::vector<ShapeSpec> contact_shapes;  // spheres and disks in contact
   std::set<std::uint32_t> coordinates_with_range,
       coordinates_with_unit;  // coordinates whose range or unit [coordinates] states
 };

@@ -17,6 +17,10 @@ bool Article::approaches_differ() const {
   return std::any_of(two.constraints.begin(), two.constraints.end(), fixes);
 }
 
+bool Article::omits(std::string_view part) const {
+  return std::find(omitted.begin(), omitted.end(), part) != omitted.end();
+}
+
 std::string Article::coordinate_math(std::uint32_t coordinate, std::uint8_t order) const {
   return out.math(reading::symbol({SymbolKind::coordinate, coordinate, order}));
 }
@@ -45,13 +49,26 @@ bool uses_amssymb(const model::Model& model) {
 
 std::string bold(const std::string& name) { return "\\textbf{" + escape_user_text(name) + "}"; }
 
+void require_document_parts(const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const DocumentPart& part : document_parts) known.emplace_back(part.name);
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw Error("document", {}, "a document has no part " + model::quote(name) + " that can be omitted",
+                model::suggest_choice(name, known));
+  }
+}
+
 std::string latex_document(const Mechanics& m, const reading::DisplayForm& one, const reading::DisplayForm& two,
-                           const std::optional<Findings>& findings) {
+                           const std::optional<Findings>& findings, const std::vector<std::string>& omitted) {
   const Notation notation(m);
   LatexWriter out(notation);
   const model::Model& model = *m.model;
-  Article article{m, model, one, two, findings ? &*findings : nullptr, out};
+  Article article{m, model, one, two, findings ? &*findings : nullptr, out, omitted};
   if (findings) article.left_out = findings->left_out;
+  for (const DocumentPart& part : document_parts) {
+    if (article.omits(part.name)) article.left_out.push_back({std::string(part.what), "omitted on request"});
+  }
   if (uses_amssymb(model)) out.use_package("amssymb");
   out.title(model.title.empty() ? model.id : model.title);
   if (!model.notes.empty()) out.paragraph(escape_user_text(model.notes));
@@ -59,14 +76,12 @@ std::string latex_document(const Mechanics& m, const reading::DisplayForm& one, 
   write_coordinates(article);
   write_energies(article);
   write_equations(article);
-  write_constraint_forces(article);
+  if (!article.omits("constraint_forces")) write_constraint_forces(article);
   write_contacts(article);
-  if (findings) {
-    write_conserved_quantities(article);
-    write_routh(article);
-    write_steady_motions(article);
-  }
-  write_singular_sets(article);
+  if (findings && !article.omits("conserved")) write_conserved_quantities(article);
+  if (findings && !article.omits("routh")) write_routh(article);
+  if (findings && !article.omits("steady")) write_steady_motions(article);
+  if (!article.omits("singular")) write_singular_sets(article);
   write_certificate(article);
   return out.finish();
 }

@@ -3,9 +3,11 @@
 // later stages. Out: a LaTeX document.
 #pragma once
 
+#include <array>
 #include <complex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -55,9 +57,26 @@ struct Findings {
   std::vector<work::LeftOut> left_out;
 };
 
+/// A part that a document can omit.
+struct DocumentPart {
+  std::string_view name, what;
+};
+inline constexpr std::array<DocumentPart, 7> document_parts{{
+    {"constraint_derivatives", "time derivatives of the constraints"},
+    {"energy_derivatives", "partial derivatives of the energies"},
+    {"constraint_forces", "constraint forces"},
+    {"conserved", "conserved quantities"},
+    {"routh", "Routh's reduction"},
+    {"steady", "equilibria and steady motions"},
+    {"singular", "singular sets"},
+}};
+/// Throws Error{stage "document"} if a name is not that of a part.
+void require_document_parts(const std::vector<std::string>& names);
+
 /// Returns the document. Without findings it contains the sections up to the equations, the constraint forces and the
-/// singular sets.
+/// singular sets. `omitted`: names of document_parts, which it lists as left out.
 std::string latex_document(const mechanics::Mechanics& mechanics, const reading::DisplayForm& one,
-                           const reading::DisplayForm& two, const std::optional<Findings>& findings = {});
+                           const reading::DisplayForm& two, const std::optional<Findings>& findings = {},
+                           const std::vector<std::string>& omitted = {});
 
 }  // namespace eomgen::print

@@ -137,6 +137,8 @@ class Coordinates {
     return text;
   }
 
+  static bool is_derivative(const std::string& role) { return role.starts_with("its ") && role != "its integral"; }
+
   void constraint(const reading::DisplayConstraint& c) {
     out_.paragraph("The constraint " + bold(c.label) + " is " + kind(c) + ":");
     std::vector<Statement> group;
@@ -144,6 +146,7 @@ class Coordinates {
     const auto flush = [&] {
       if (group.empty()) return;
       const bool derived = role.starts_with("its ");
+      if (is_derivative(role) && a_.omits("constraint_derivatives")) return group.clear();
       const std::vector<Formula> shown = a_.formulas(group);
       if (derived && !shown.empty()) out_.paragraph("I" + role.substr(1) + ":");
       out_.display(shown);

@@ -43,16 +43,21 @@ class Equations {
   void write() {
     std::vector<reading::PartialDerivatives> first;
     write_lagrange_law(a_);
+    const bool derivatives = !a_.omits("energy_derivatives");
     if (a_.approaches_differ()) {
-      out_.subsection("Approach I: all coordinates, constraints imposed afterwards");
-      write_partial_derivatives(a_, a_.one, first);
-      out_.subsection("Approach II: constraints that fix a coordinate are built in");
-      write_partial_derivatives(a_, a_.two, first);
+      if (derivatives) {
+        out_.subsection("Approach I: all coordinates, constraints imposed afterwards");
+        write_partial_derivatives(a_, a_.one, first);
+        out_.subsection("Approach II: constraints that fix a coordinate are built in");
+        write_partial_derivatives(a_, a_.two, first);
+      }
       out_.subsection("The equations by both approaches");
       imposed();
     } else {
-      out_.subsection("Partial derivatives");
-      write_partial_derivatives(a_, a_.one, first);
+      if (derivatives) {
+        out_.subsection("Partial derivatives");
+        write_partial_derivatives(a_, a_.one, first);
+      }
       out_.subsection("The equations");
       if (!m_.constraints.empty())
         out_.paragraph("No constraint fixes a coordinate, so Approach I and Approach II are one.");

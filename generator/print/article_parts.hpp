@@ -17,10 +17,12 @@ struct Article {
   const reading::DisplayForm &one, &two;
   const Findings* findings;
   LatexWriter& out;
+  const std::vector<std::string>& omitted;  // names of document_parts
   std::vector<work::LeftOut> left_out = {};
 
   /// Whether the equations of approach II differ from those of approach I.
   bool approaches_differ() const;
+  bool omits(std::string_view part) const;
   std::string coordinate_math(std::uint32_t coordinate, std::uint8_t order = 0) const;  // $\theta$
   /// The formulas of statements; omitted ones are listed in `left_out`.
   std::vector<reading::Formula> formulas(const std::vector<Statement>& statements);

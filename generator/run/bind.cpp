@@ -101,6 +101,7 @@ Problem make_problem(const RunRequest& request, const std::string& solver) {
   problem.estimate = request.estimate;
   problem.estimate_cost = request.estimate_cost;
   problem.output_interval = request.every;
+  problem.row_subdivisions = request.row_subdivisions;
   problem.row = request.row;
   problem.progress = request.progress;
   problem.interrupt = request.interrupt;

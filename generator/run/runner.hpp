@@ -105,7 +105,8 @@ struct RunRequest {
   std::vector<WatchedEvent> events = {};   // all events of the model
   bool watch_power = false;                // power is not identically zero: its work is integrated with the motion
   bool estimate = true;
-  double every = 0;  // interval of rows; 0: no rows
+  double every = 0;                    // interval of rows; 0: no rows
+  std::uint32_t row_subdivisions = 1;  // as in eom::hybrid::Problem
   std::function<void(double t, std::span<const double> y)> row;
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* interrupt = nullptr;

@@ -18,6 +18,8 @@ view.append(canvas, bar, tools, message);
 stage.append(view);
 
 const scene = new Scene(canvas, data.parts, data.down), plots = new Plots(document.getElementById("plots"), data.panels, (t) => { player.play(false); player.jump(t); });
+const plotted = data.panels.flatMap((panel) => panel.of).filter((of) => live && of.state && of.at < live.n);
+const phase = plotted.length > 0 ? new Phase(document.getElementById("plots"), plotted, live.layout.rates, plots.element) : null;
 const results = new Results(document.getElementById("results"), data.panels, data.kept);
 let showStart = () => {}, showParameters = () => {};  // put the sliders on the values of the current model
 let notice = "";  // of the address of the page
@@ -35,6 +37,7 @@ function take(next, find, about) {
   scene.take(motion, live ? live.sizes : data.sizes, find, {code: surfaceCode, p: live ? live.p : Float64Array.from(data.p)});
   player.take(motion, data.speed);
   plots.take(motion);
+  if (phase) phase.take(motion);
   results.show(motion === recorded ? null : motion, about);
   player.jump(Math.min(player.at, player.t1));
 }
@@ -194,4 +197,4 @@ function followAddress() {
 window.addEventListener("hashchange", followAddress);
 followAddress();
 // For inspection from the console of the browser.
-window.report = {data, live, scene, player, run, motion: () => motion};
+window.report = {data, live, scene, player, phase, run, motion: () => motion};

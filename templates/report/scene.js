@@ -50,14 +50,15 @@ class Scene {
     this.camera.find([...balls, ...ends.map((r) => [...r, 0])], this.down);
   }
 
-  // Position of a joint or a point on a body, in body axes; else the axis of the body towards the origin, which need not
+  // Position of a joint, a point or a contact on a body, in body axes; else the axis of the body towards the origin, which need not
   // be fixed in the body.
   attached(body, y) {
     const {parts} = this, centre = this.placeAt(y, body.place), axes = this.axesOf(body, y);
     const joint = parts.joints.find((j) => j.of.includes(body.place)), point = parts.places.find((place) => place.from === body.place);
-    const spot = joint ? this.position(y, joint.at) : point ? this.position(y, point.at) : origin;
+    const contact = parts.contacts.find(({of}) => of === body.place), part = joint || point || contact;
+    const spot = part ? this.position(y, part.at) : origin;
     const inBody = axes.map((e) => dot(e, minus(spot, centre)));
-    return joint || point ? inBody : nearestAxis(body.inertia.map((i) => this.sizes[i]), inBody);
+    return part ? inBody : nearestAxis(body.inertia.map((i) => this.sizes[i]), inBody);
   }
   axesOf(body, y) {
     if (body.axes === null) return fixedAxes;

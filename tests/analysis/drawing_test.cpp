@@ -260,4 +260,11 @@ TEST_CASE("solids: a planar body without a joint is a bar along its own axis") {
   CHECK(std::abs(size.y() - L) < 1e-9);
   CHECK(size.x() < 0.1 * L);
   CHECK(analysis::nearest_axis(ladder, sizes, Point(0.3, -0.2, 5)) == Point(1, 0, 0));
+  // Towards a contact, where there is one: here on the other axis.
+  std::vector<double> touching = values;
+  for (std::size_t k = 0; k < 3; ++k) touching.push_back(values[k] - L / 2 * values[3 + k]);
+  parts.contacts.push_back({"floor", 0, 9, std::nullopt, 9});
+  const Point turned = extent(analysis::placed_solids(parts, sizes, touching)[0].solids.at(0));
+  CHECK(std::abs(turned.x() - L) < 1e-9);
+  CHECK(turned.y() < 0.1 * L);
 }

@@ -123,6 +123,36 @@ TEST_CASE("derive --document: writes the derivation as LaTeX, with the same byte
   CHECK(contains(both.err, "Approach I\n"));
 }
 
+TEST_CASE("derive --document --omit: leaves parts out, and lists them") {
+  const Folder folder;
+  expect(0, folder, {"derive", "knife_edge", "--document", "whole.tex"});
+  const std::string whole = folder.read("whole.tex");
+  CHECK(contains(whole, "Its time derivative:"));
+  expect(0, folder,
+         {"derive", "knife_edge", "--document", "short.tex", "--omit", "constraint_derivatives,energy_derivatives"});
+  const std::string brief = folder.read("short.tex");
+  CHECK_FALSE(contains(brief, "Its time derivative:"));
+  CHECK_FALSE(contains(brief, "Of the energies above:"));
+  CHECK(contains(brief, "time derivatives of the constraints: omitted on request."));
+  CHECK(contains(brief, "\\section{Constraint forces}"));
+  expect(0, folder,
+         {"emit", "knife_edge", "--target", "latex", "-o", "out", "--omit",
+          "constraint_forces,conserved,routh,steady,singular"});
+  const std::string other = folder.read("out/knife_edge.tex");
+  CHECK(contains(other, "Its time derivative:"));
+  for (const char* part : {"Constraint forces", "Conserved quantities", "Routh's reduction",
+                           "Equilibria and steady motions", "Where the equations fail"}) {
+    CAPTURE(part);
+    CHECK_FALSE(contains(other, std::string("\\section{") + part));
+  }
+  const std::string wrong =
+      expect(2, folder, {"derive", "knife_edge", "--document", "short.tex", "--omit", "constraint_derivative"}).err;
+  CHECK(contains(wrong, "a document has no part 'constraint_derivative' that can be omitted"));
+  CHECK(contains(wrong, "did you mean 'constraint_derivatives'?"));
+  CHECK(contains(expect(2, folder, {"derive", "knife_edge", "--omit", "routh"}).err, "add --document F.tex"));
+  CHECK(contains(expect(2, folder, {"emit", "knife_edge", "-o", "out", "--omit", "routh"}).err, "--target latex"));
+}
+
 TEST_CASE("derive --document: invalid paths are refused before any work") {
   const Folder folder;
   folder.write("m.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }\n"));

@@ -132,6 +132,18 @@ function tables(page, report) {
   return found;
 }
 
+// The section by the last coordinate of the phase portrait: its points, and how often the rows cross the value.
+function phases(frame, page, report) {
+  const folded = page.getElementById("phase"), section = folded.querySelectorAll("select")[1], change = () => section.dispatchEvent(new frame.contentWindow.Event("change"));
+  const curves = folded.querySelectorAll("path").length, last = report.phase.coordinates.length - 1, {at} = report.phase.coordinates[last], {x} = report.motion();
+  section.value = String(last);
+  change();
+  const points = folded.querySelectorAll("circle").length, note = folded.querySelector(".quiet").textContent;
+  section.value = "-1";
+  change();
+  return {curves, points, note, crossed: x.filter((row, k) => k > 0 && x[k - 1][at] < 0 && row[at] >= 0).length, left: folded.querySelectorAll("circle").length};
+}
+
 // Layout of the page without scrolling: lowest edge of the controls, fields that cut off a number, words that name two controls.
 function controls(page) {
   const fields = [...page.querySelectorAll(".slider input[type=number]")], kept = fields.map((field) => field.value);
@@ -199,6 +211,7 @@ async function look(entry) {
       report.player.play(false);
       at.covered = [...page.querySelectorAll("#plots.drawn text")].map((node) => node.textContent).filter((text) => text.includes("(as "));
       at.curves = page.querySelectorAll("#plots.drawn path").length;
+      if (report.phase) at.phase = phases(frame, page, report);
       if (width === widths[0] && entry.csv) at.furthest = furthest(report, entry.csv);
       if (width === widths[0] && entry.corner) Object.assign(at, {corner: cornerOff(report, entry.csv, entry.corner), faces: report.scene.shapes[0].map((shape) => shape.faces.length)});
       if (width === widths[0] && entry.slider && report.live) {

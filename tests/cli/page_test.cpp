@@ -198,6 +198,14 @@ void check(const Json& found, const PageCase& c, const Json& wanted) {
     CHECK(at["curves"] >= 4);
     if (c.model == "S5_double_pendulum") CHECK(at["covered"] == Json::array({"r2 (as r1)"}));
     CHECK(at["live"] == c.live);
+    CHECK(at.contains("phase") == c.live);
+    if (c.live) {
+      CHECK(at["phase"]["curves"] == 2);  // the axes and the path
+      CHECK(at["phase"]["points"] == at["phase"]["crossed"]);
+      CHECK(at["phase"]["note"] == std::to_string(at["phase"]["crossed"].get<int>()) + " points");
+      CHECK(at["phase"]["left"] == 0);
+    }
+    if (c.model == "S5_double_pendulum") CHECK(at["phase"]["points"] > 1);
     REQUIRE(at["forces"].is_object());
     CHECK(at["forces"]["drawn"] == true);
     CHECK(at["forces"]["taken_back"] == true);

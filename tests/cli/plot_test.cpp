@@ -167,6 +167,37 @@ console.log(JSON.stringify(most));)");
   }
 }
 
+TEST_CASE("plot: the decimal points of a PNG are larger than its lines are wide") {
+  const Folder folder;
+  expect(0, folder, {"run", "S5_double_pendulum", "--t-end", "1", "--plot", "dots.png", "--no-error-estimate"});
+  folder.write(
+      "read.js",
+      R"(const b = require('fs').readFileSync('dots.png'), zlib = require('zlib'); let at = 8, data = [], size = null;
+while (at < b.length) { const n = b.readUInt32BE(at), kind = b.toString('latin1', at + 4, at + 8); if (kind === 'IHDR') size = [b.readUInt32BE(at + 8), b.readUInt32BE(at + 12)]; if (kind === 'IDAT') data.push(b.subarray(at + 8, at + 8 + n)); at += 12 + n; }
+const raw = zlib.inflateSync(Buffer.concat(data)), [w, h] = size, row = 3 * w + 1, p = Buffer.alloc(raw.length), dots = [];
+for (let y = 0; y < h; ++y) for (let i = 1; i < row; ++i) p[y * row + i] = raw[y * row + i] + (y > 0 ? p[(y - 1) * row + i] : 0);
+const dark = (x, y) => Math.max(...p.subarray(y * row + 1 + 3 * x, y * row + 4 + 3 * x)) < 110, seen = new Uint8Array(w * h);
+for (let y = 0; y < h; ++y) for (let x = 0; x < w; ++x) {
+  if (seen[y * w + x] || !dark(x, y)) continue;
+  let area = 0, box = [x, x, y, y]; const open = [[x, y]]; seen[y * w + x] = 1;
+  while (open.length > 0) { const [u, v] = open.pop(); ++area; box = [Math.min(box[0], u), Math.max(box[1], u), Math.min(box[2], v), Math.max(box[3], v)];
+    for (const [a, c] of [[u + 1, v], [u - 1, v], [u, v + 1], [u, v - 1]]) if (a >= 0 && c >= 0 && a < w && c < h && !seen[c * w + a] && dark(a, c)) { seen[c * w + a] = 1; open.push([a, c]); } }
+  if (box[1] - box[0] < 8 && box[3] - box[2] < 8) dots.push(area);
+}
+console.log(JSON.stringify(dots));)");
+  try {
+    const ChildResult result = run_child({{"node", "read.js"}, folder.path()});
+    CAPTURE(result.err);
+    REQUIRE(result.status == 0);
+    const Json dots = Json::parse(result.out);
+    CAPTURE(result.out);
+    CHECK(dots.size() >= 4);
+    for (const Json& area : dots) CHECK(area.get<int>() >= 12);
+  } catch (const std::runtime_error&) {
+    MESSAGE("skipped: there is no node");
+  }
+}
+
 TEST_CASE("plot: characters fit into eighty columns and show each curve with a letter of its own") {
   const Folder folder;
   const std::string text =

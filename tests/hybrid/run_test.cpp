@@ -126,6 +126,34 @@ TEST_CASE("hybrid: a kink is crossed at its surface and counted; recorded events
   CHECK(result.invariants[0].max_relative_drift < 1e-12);
 }
 
+TEST_CASE("hybrid: rows follow steps that are shorter than their interval") {
+  const Code code = corner::code();
+  const auto times_of = [&](double interval, std::uint32_t subdivisions) {
+    Problem problem = corner::problem(code);
+    problem.events.clear();
+    problem.max_step = 0.5;
+    problem.output_interval = interval;
+    problem.row_subdivisions = subdivisions;
+    std::vector<double> times;
+    problem.row = [&](double t, std::span<const double>) { times.push_back(t); };
+    REQUIRE(run(problem).outcome == eom::Outcome::done);
+    return times;
+  };
+  // Nothing changes where steps are longer.
+  CHECK(times_of(0.01, 32) == times_of(0.01, 1));
+  const std::vector<double> few = times_of(8, 1), all = times_of(8, 32);
+  for (const double t : few) CHECK(std::find(all.begin(), all.end(), t) != all.end());
+  std::size_t long_gaps = 0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    CHECK(all[i] > all[i - 1]);
+    CHECK((std::fmod(all[i], 0.25) == 0 || i + 1 == all.size()));
+    if (all[i] - all[i - 1] > 0.5) ++long_gaps;
+  }
+  CHECK(long_gaps <= 1);  // the first steps
+  // As many as the subdivisions allow.
+  CHECK(times_of(8, 4).size() <= 4 * few.size());
+}
+
 TEST_CASE("hybrid: if an event stops the run, the error estimate includes the time") {
   const Code code = corner::code();
   Problem problem = corner::problem(code);

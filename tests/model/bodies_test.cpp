@@ -126,3 +126,23 @@ rotation = { axis = "E3", angle = "q" }
   CHECK(bare.warnings.empty());
   CHECK(bare.energy.kinetic != no_node);
 }
+
+TEST_CASE("bodies: a sphere or disk in contact is drawn as such, unless [draw] gives the body a shape") {
+  const auto drawn = [](const std::string& contact, const std::string& more) {
+    return read(
+               "format = 1\n[parameters]\nm = 2\nR = 0.1\nS = 0.3\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = "
+               "\"m*R^2\"\n"
+               "position = { cartesian = [\"x\", \"0\", \"z\"] }\nrotation = { axis = \"E2\", angle = \"q\" }\n"
+               "[[constraint]]\nname = \"floor\"\nsliding = { body = \"B\", on = \"ground\", " +
+               contact + " }\n" + more)
+        .drawn;
+  };
+  const auto ball = drawn("shape = { sphere = \"R\" }", "");
+  REQUIRE(ball.size() == 1);
+  CHECK(ball[0].kind == "sphere");
+  CHECK(ball[0].lengths.size() == 1);
+  const auto box = drawn("shape = { sphere = \"R\" }", "[draw]\nB = { box = [\"S\", \"S\", \"S\"] }\n");
+  REQUIRE(box.size() == 1);
+  CHECK(box[0].kind == "box");
+  CHECK(drawn("at = \"-R*E3\"", "").empty());
+}

@@ -156,7 +156,7 @@ void Drawing::contacts() {
       foot = symbolic::subtract(dag, at, symbolic::scale(dag, height, normal));
     }
     const std::size_t point = vector(at);
-    parts_.contacts.push_back({constraint.name, point, tangents, tangents ? vector(foot) : point});
+    parts_.contacts.push_back({constraint.name, contact.place - 1, point, tangents, tangents ? vector(foot) : point});
   }
 }
 

@@ -39,6 +39,7 @@ struct DrawnJoint {
 };
 struct DrawnContact {
   std::string name;
+  std::size_t of;  // place of the body
   std::size_t at;
   std::optional<std::array<std::size_t, 2>> tangents;  // of a plane
   std::size_t foot;                                    // a vector: projection of the point onto the contact plane

@@ -46,8 +46,8 @@ class Placing {
     };
   }
 
-  /// Position of a joint or point on a body in body axes. If it has none, the axis of the body towards the origin: the
-  /// origin need not be fixed in the body.
+  /// Position of a joint, a point or a contact on a body in body axes. If it has none, the axis of the body towards the
+  /// origin: the origin need not be fixed in the body.
   Point attached(const DrawnBody& body) const {
     Point spot = Point::Zero();
     const auto joint = std::find_if(parts_.joints.begin(), parts_.joints.end(), [&](const DrawnJoint& j) {
@@ -55,12 +55,16 @@ class Placing {
     });
     const auto place = std::find_if(parts_.places.begin(), parts_.places.end(),
                                     [&](const DrawnPlace& p) { return p.from == static_cast<long>(body.place); });
+    const auto contact = std::find_if(parts_.contacts.begin(), parts_.contacts.end(),
+                                      [&](const DrawnContact& c) { return c.of == body.place; });
     if (joint != parts_.joints.end())
       spot = point(joint->at);
     else if (place != parts_.places.end())
       spot = point(place->at);
+    else if (contact != parts_.contacts.end())
+      spot = point(contact->at);
     const Point in_body = axes_of(body).transpose() * (spot - point(parts_.places[body.place].at));
-    const bool free = joint == parts_.joints.end() && place == parts_.places.end();
+    const bool free = joint == parts_.joints.end() && place == parts_.places.end() && contact == parts_.contacts.end();
     return free ? nearest_axis(body, sizes_, in_body) : in_body;
   }
 

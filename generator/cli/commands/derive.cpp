@@ -11,13 +11,14 @@
 #include "cli/shared_options.hpp"
 #include "cli/stage_monitor.hpp"
 #include "cli/usage.hpp"
+#include "print/article.hpp"
 
 namespace eomgen::cli {
 namespace {
 
 struct Options {
   std::string model, approach = "auto", format = "text", document, about;
-  std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
+  std::vector<std::string> show{"equations", "constraints", "reactions", "friction"}, omit;
 };
 
 void require_format(const std::string& format) {
@@ -138,13 +139,17 @@ int execute(const Options& options, const CommonOptions& common) {
   const analysis::EquationsRequest request{pipeline::parse_approach(options.approach), options.show, options.about};
   if (!options.document.empty())
     require_writable_targets({{"--document", options.document, ".tex"}}, locate_model(options.model), common.json);
+  if (!options.omit.empty() && options.document.empty())
+    throw Error("usage", {}, "--omit is for documents, and none is written",
+                "add --document F.tex, or leave --omit out");
+  print::require_document_parts(options.omit);
   const auto model = load_model(options.model);
   analysis::Equations found = analysis::equations(model, request);
   for (const std::string& note : found.notes) print_message(note + "\n");
   bool written = false;
   try {
     if (!found.interrupted && !options.document.empty()) {
-      const std::string document = analysis::latex_document(model, common.seed);
+      const std::string document = analysis::latex_document(model, common.seed, options.omit);
       const work::DeferInterrupt whole;
       write_text(options.document, document);
       written = true;
@@ -186,6 +191,7 @@ Execute declare_derive(Arguments& app) {
       .show_default()
       .suggest_values({"text", "latex", "mathml"});
   app.add_output_path("--document", options->document, "the whole derivation as a LaTeX document, F.tex");
+  add_omit(app, options->omit);
   return [options](const CommonOptions& common) { return execute(*options, common); };
 }
 

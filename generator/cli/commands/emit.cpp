@@ -14,13 +14,14 @@
 #include "cli/usage.hpp"
 #include "pipeline/archives.hpp"
 #include "pipeline/emission.hpp"
+#include "print/article.hpp"
 
 namespace eomgen::cli {
 namespace {
 
 struct Options {
   std::string model, folder, target = "cpp", approach = "auto", form = "auto", real = "double";
-  std::vector<std::string> with, fix, outputs;
+  std::vector<std::string> with, fix, outputs, omit;
   bool print_name = false;
   int fmi = 0;
 };
@@ -44,7 +45,7 @@ int emit_document(const Options& options, const CommonOptions& common) {
     print_message("warning: a document has no functions: --with, --output, --fix and --real change nothing\n");
   }
   const auto model = load_model(options.model);
-  const std::string text = analysis::latex_document(model, common.seed);
+  const std::string text = analysis::latex_document(model, common.seed, options.omit);
   const work::DeferInterrupt kept;  // writes all files or none
   const std::vector<std::string> files =
       write_results(options.folder, {{emit::mangled_id(model->id) + ".tex", text}}, model->file);
@@ -84,6 +85,10 @@ int execute(const Options& options, const CommonOptions& common) {
     throw Error("usage", {}, "-o is required: the folder for the sources", "eomgen emit --help shows how it is used");
   require_folder(options.folder);
   pipeline::require_target(options.target, {analysis::latex_document_target});
+  if (!options.omit.empty() && options.target != analysis::latex_document_target)
+    throw Error("usage", {}, fmt::format("--omit is for documents, and the target is {}", options.target),
+                fmt::format("take --target {}, or leave --omit out", analysis::latex_document_target));
+  print::require_document_parts(options.omit);
   const pipeline::EmissionRequest request{options.target,
                                           pipeline::parse_approach(options.approach),
                                           pipeline::parse_form(options.form),
@@ -168,6 +173,7 @@ Execute declare_emit(Arguments& app) {
                      fmt::join(abi::optional_functions(), ", ")))
       .suggest_values(pipeline::emitted_functions());
   app.add_list("--output", options->outputs, "names for the function outputs");
+  add_omit(app, options->omit);
   app.add_option("--real", options->real, "double, or float: single precision")
       .show_default()
       .suggest_values({"double", "float"});

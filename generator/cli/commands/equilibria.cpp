@@ -48,9 +48,9 @@ std::string completeness(const linear::SearchResult& search) {
       *probability);
 }
 
-Json to_json(const analysis::SteadyMotions& found, const Options& options) {
+Json points_to_json(const analysis::SteadyMotions& found) {
   const std::vector<std::string>& names = found.problem.flow->names();
-  Json points = Json::array(), held = Json::array();
+  Json points = Json::array();
   for (const analysis::SteadyMotion& point : found.points) {
     Json values = Json::object(), eigenvalues = Json::array();
     for (std::size_t i = 0; i + 1 < point.l.z.size(); ++i) values[names[i]] = display_value(point.l.z[i]);
@@ -64,10 +64,26 @@ Json to_json(const analysis::SteadyMotions& found, const Options& options) {
                       {"family", point.family_dimension},
                       {"off", point.l.parameter_change}});
   }
+  return points;
+}
+
+Json to_json(const analysis::SteadyMotions& found, const Options& options) {
+  Json held = Json::array(), second_charts = Json::array();
   for (const analysis::HeldValue& h : found.held)
     held.push_back({{"name", h.name}, {"value", h.value}, {"why", h.why}});
+  for (const analysis::SecondChartSearch& search : found.second_charts) {
+    second_charts.push_back({{"of", search.chart.of},
+                             {"own", search.chart.own},
+                             {"second", search.chart.second},
+                             {"where", search.where},
+                             {"points", search.found ? points_to_json(*search.found) : Json::array()},
+                             {"skipped", search.found ? Json(nullptr) : Json(search.skip_reason)}});
+  }
   return {{"format", 1},
-          {"points", points},
+          {"points", points_to_json(found)},
+          {"second_charts", second_charts},
+          {"open_contacts", found.problem.open_contacts},
+          {"in_contact", found.in_contact},
           {"held", held},
           {"held_in_vain", found.search.held_in_vain},
           {"starts", options.starts},
@@ -106,6 +122,12 @@ std::string text(const analysis::SteadyMotion& point, const linear::Flow& flow) 
   return out + fmt::format("  and {} zeros, {} of them structural\n", point.l.spectrum.zeros, point.l.structural_zeros);
 }
 
+/// "the angles 313 of 'top' are singular".
+std::string in_words(const model::ChartPair& chart) {
+  const bool rotation = chart.kind == model::ChartPair::Kind::rotation;
+  return fmt::format("{} {} of '{}' are singular", rotation ? "the angles" : "the coordinates", chart.own, chart.of);
+}
+
 std::string text(const analysis::SteadyMotions& found, const Options& options) {
   std::string out =
       fmt::format("{}, scene {}: {} found\n", found.problem.derived->model.id, found.problem.scene.name,
@@ -113,6 +135,18 @@ std::string text(const analysis::SteadyMotions& found, const Options& options) {
                                        : fmt::format("{} equilibria and steady motions", found.points.size()));
   for (const analysis::HeldValue& h : found.held) out += fmt::format("  held: {} = {} ({})\n", h.name, h.value, h.why);
   for (const analysis::SteadyMotion& point : found.points) out += text(point, *found.problem.flow);
+  for (const analysis::SecondChartSearch& search : found.second_charts) {
+    out += fmt::format(
+        "\nleft out          {} where {}: {}\n", in_words(search.chart), search.where,
+        search.found ? fmt::format("{} found there, at rest, in {}", search.found->points.size(), search.chart.second)
+                     : fmt::format("not examined: {}", search.skip_reason));
+    if (!search.found) continue;
+    for (const analysis::SteadyMotion& point : search.found->points) out += text(point, *search.found->problem.flow);
+  }
+  if (!found.problem.open_contacts.empty()) {
+    out += fmt::format("\ncontacts          open: {}; {} of the points found would not leave them open\n",
+                       fmt::join(found.problem.open_contacts, ", "), found.in_contact);
+  }
   if (found.search.further_members > 0) {
     out += fmt::format("\nfurther           {} of the starts led to further members of families, which are not shown\n",
                        found.search.further_members);
@@ -125,11 +159,9 @@ std::string text(const analysis::SteadyMotions& found, const Options& options) {
     out += fmt::format("\nnot examined      {}: motions there need other coordinates; {}\n", found.singular.what,
                        found.singular.remedy);
   }
-  return out +
-         fmt::format(
-             "\nsearch            {} starts, of which {} led to one{}; what a coordinate system does not cover is "
-             "not found\ncertificate       {}\n",
-             options.starts, found.search.converged, completeness(found.search), found.problem.certificate);
+  return out + fmt::format("\nsearch            {} starts, of which {} led to one{}\ncertificate       {}\n",
+                           options.starts, found.search.converged, completeness(found.search),
+                           found.problem.certificate);
 }
 
 Json to_json(const analysis::SteadyProblem& problem, const analysis::Trim& trim) {
@@ -194,6 +226,7 @@ int execute(const Options& options, const CommonOptions& common) {
     request.hold[name] = quantity.value;
   request.starts = options.starts;
   request.seed = common.seed;
+  request.second_charts = true;
   bool shown = false;
   if (isatty(STDERR_FILENO) != 0) {
     request.progress = [&shown](double fraction) {

@@ -289,7 +289,9 @@ class Reader {
           const double along = start + x, up = y - all[k].dy;
           points.push_back(turned ? Point{x0 - up, y0 - along} : Point{x0 + along, y0 - up});
         }
-        painter_.polyline(points, (bold ? 0.13 : 0.085) * all[k].size, {}, colour);
+        // Dots are larger than lines are wide, so that 1.0 does not read 10 in a picture that is scaled down.
+        const bool dot = std::all_of(points.begin(), points.end(), [&](const Point& p) { return p == points[0]; });
+        painter_.polyline(points, (bold ? 0.13 : 0.1) * (dot ? 1.9 : 1) * all[k].size, {}, colour);
       }
       start += parts[k].width + 0.1 * all[k].size;
     }

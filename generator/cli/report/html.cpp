@@ -20,6 +20,7 @@
 #include "cli/report_skeletons/page_css.hpp"
 #include "cli/report_skeletons/page_html.hpp"
 #include "cli/report_skeletons/pencil_js.hpp"
+#include "cli/report_skeletons/phase_js.hpp"
 #include "cli/report_skeletons/plots_js.hpp"
 #include "cli/report_skeletons/resets_js.hpp"
 #include "cli/report_skeletons/results_js.hpp"
@@ -88,10 +89,11 @@ std::string render_page(const PageParts& parts) {
   all.set("model", returned(parts.model, parts.name));
   all.set("surfaces", returned(parts.surfaces, parts.surfaces_name));
   std::string scripts;
-  for (const char* script : {report::linear_js, report::resets_js, report::integrator_js, report::motion_js,
-                             report::address_js, report::shapes_js, report::camera_js, report::pencil_js,
-                             report::links_js, report::surfaces_js, report::scene_js, report::plots_js, report::drag_js,
-                             report::controls_js, report::fit_js, report::results_js, report::main_js}) {
+  for (const char* script :
+       {report::linear_js, report::resets_js, report::integrator_js, report::motion_js, report::address_js,
+        report::shapes_js, report::camera_js, report::pencil_js, report::links_js, report::surfaces_js,
+        report::scene_js, report::plots_js, report::phase_js, report::drag_js, report::controls_js, report::fit_js,
+        report::results_js, report::main_js}) {
     scripts += script;
   }
   all.set("scripts", scripts);

@@ -52,7 +52,7 @@ Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const
     return {{"name", j.name}, {"at", j.at}, {"of", Json::array({or_null(j.of[0]), or_null(j.of[1])})}};
   });
   result["contacts"] = list_of(parts.contacts, [](const analysis::DrawnContact& c) -> Json {
-    return {{"name", c.name}, {"at", c.at}, {"tangents", or_null(c.tangents)}, {"foot", c.foot}};
+    return {{"name", c.name}, {"of", c.of}, {"at", c.at}, {"tangents", or_null(c.tangents)}, {"foot", c.foot}};
   });
   result["couplings"] = list_of(parts.couplings, [](const analysis::DrawnCoupling& c) -> Json {
     return {{"name", c.name}, {"of", c.of}, {"axes", c.axes}, {"ratio", c.ratio}, {"carried", c.carried}};

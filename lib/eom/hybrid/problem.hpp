@@ -169,6 +169,9 @@ struct Problem {
   bool estimate = true;  // estimate the error by repeated runs
   EstimateCost estimate_cost = EstimateCost::bounded;
   double output_interval = 0;  // of rows; 0: no rows
+  /// Where steps are shorter than the interval, rows follow at its halves, quarters, .., down to this part of it: a
+  /// power of 2. 1: no further rows.
+  std::uint32_t row_subdivisions = 1;
   std::function<void(double t, std::span<const double> y)> row = {};
   std::function<void(double fraction)> progress = {};
   const std::atomic<bool>* interrupt = nullptr;

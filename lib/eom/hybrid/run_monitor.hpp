@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +20,8 @@
 
 namespace eom::hybrid {
 
-/// Writes a row at multiples of the interval, at recorded events, and at the end.
+/// Writes a row at multiples of the interval, at parts of it where steps are shorter, at recorded events, and at the
+/// end.
 class RowWriter {
  public:
   RowWriter(const Problem& problem, RunContext& context)
@@ -29,9 +31,14 @@ class RowWriter {
 
   /// Writes the rows of a step. Returns the time of the last row if the run was interrupted meanwhile and ends there.
   std::optional<double> write_until(const StepView& view) {
-    // Multiples of the interval are counted, so that the grid does not drift. A last sliver belongs to the end.
-    while (true) {
-      const double t = problem_.t0 + static_cast<double>(next_) * problem_.output_interval;
+    const std::uint64_t parts = problem_.row_subdivisions, stride = parts_between_rows(view);
+    const double part = problem_.output_interval / static_cast<double>(parts);
+    // Parts of the interval are counted, so that the grid does not drift. A last sliver belongs to the end.
+    const auto time = [&](std::uint64_t n) { return problem_.t0 + static_cast<double>(n) * part; };
+    std::uint64_t next = (written_ / stride + 1) * stride;
+    while (next % parts != 0 && time(next) <= view.t0) next += stride;  // in earlier steps, which have fewer rows
+    for (;; next += stride) {
+      const double t = time(next);
       write_event_rows(std::min(t, view.t1));
       if (t > view.t1 || t > problem_.t1) return std::nullopt;
       if (t == last_) {
@@ -43,7 +50,7 @@ class RowWriter {
         row(t, between_.data());
         if (problem_.interrupt != nullptr && problem_.interrupt->load(std::memory_order_relaxed)) return t;
       }
-      ++next_;
+      written_ = next;
     }
   }
 
@@ -62,6 +69,18 @@ class RowWriter {
   const std::vector<double>& last_state() const { return between_; }  // at an interruption
 
  private:
+  /// Parts of the interval from one row to the next: the spacing is at most the longest of the last steps. One short
+  /// step, as at the start or after an event, changes nothing.
+  std::uint64_t parts_between_rows(const StepView& view) {
+    std::uint64_t stride = problem_.row_subdivisions;
+    lengths_[steps_++ % lengths_.size()] = view.t1 - view.t0;
+    if (steps_ < lengths_.size()) return stride;
+    const double longest = *std::max_element(lengths_.begin(), lengths_.end());
+    const double part = problem_.output_interval / static_cast<double>(problem_.row_subdivisions);
+    while (stride > 1 && longest < static_cast<double>(stride) * part) stride /= 2;
+    return stride;
+  }
+
   void write_event_rows(double until) {
     std::size_t written = 0;
     for (; written < pending_.size() && pending_[written].first <= until; ++written) {
@@ -74,7 +93,9 @@ class RowWriter {
   RunContext& context_;
   std::vector<double> y_, between_;
   std::vector<std::pair<double, std::vector<double>>> pending_;  // of the current step
-  std::uint64_t next_ = 1;
+  std::uint64_t written_ = 0;                                    // the last row, in parts of the interval
+  std::array<double, 4> lengths_ = {};                           // of the last steps
+  std::size_t steps_ = 0;
   double last_ = std::numeric_limits<double>::quiet_NaN();
 };
 
