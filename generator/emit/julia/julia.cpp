@@ -27,15 +27,15 @@ using Json = nlohmann::ordered_json;
 
 // Keywords, functions that the code calls, and names of the module.
 constexpr std::string_view julia_words[] = {
-    "abstract",  "as",        "baremodule", "begin",     "catch",      "do",          "elseif",      "end",
-    "finally",   "function",  "global",     "import",    "in",         "isa",         "let",         "local",
-    "macro",     "missing",   "module",     "mutable",   "nothing",    "outer",       "primitive",   "public",
-    "quote",     "type",      "using",      "where",     "Base",       "Core",        "Main",        "Float32",
-    "Float64",   "Int",       "String",     "Inf",       "NaN",        "abs",         "any",         "atan",
-    "eval",      "u",         "mode",       "dfdt",      "fill",      "ifelse",     "include",   "length",     "mod",         "ones",        "pi",
-    "zeros",     "real_sqrt", "real_log",   "real_pow",  "real_acos",  "real_asin",   "slides",      "normal_sign",
-    "side",      "differs",   "selftest",   "defaults",  "STATES",     "PARAMETERS",  "INPUTS",      "OUTPUTS",
-    "REACTIONS", "START",     "VALUES",     "INFO",      "ABI",        "DEFAULT_U",   "DEFAULT_MODE", "code"};
+    "abstract",  "as",           "baremodule", "begin",   "catch",       "do",      "elseif",  "end",       "finally",
+    "function",  "global",       "import",     "in",      "isa",         "let",     "local",   "macro",     "missing",
+    "module",    "mutable",      "nothing",    "outer",   "primitive",   "public",  "quote",   "type",      "using",
+    "where",     "Base",         "Core",       "Main",    "Float32",     "Float64", "Int",     "String",    "Inf",
+    "NaN",       "abs",          "any",        "atan",    "eval",        "u",       "mode",    "dfdt",      "fill",
+    "ifelse",    "include",      "length",     "mod",     "ones",        "pi",      "zeros",   "real_sqrt", "real_log",
+    "real_pow",  "real_acos",    "real_asin",  "slides",  "normal_sign", "side",    "differs", "selftest",  "defaults",
+    "STATES",    "PARAMETERS",   "INPUTS",     "OUTPUTS", "REACTIONS",   "START",   "VALUES",  "INFO",      "ABI",
+    "DEFAULT_U", "DEFAULT_MODE", "code"};
 
 std::string julia_number(double value) {
   if (std::isnan(value)) return "NaN";
@@ -167,8 +167,8 @@ std::string julia_comparison(const FunctionValues& f, std::size_t state, std::si
       keywords += fmt::format(", {} = y{}", function.results[r].name, r + 1);
     else
       results += fmt::format("{}y{}", results.empty() ? "" : ", ", r + 1);
-    differences += fmt::format(" || differs(y{}, {}, {})", r + 1, julia_vector(f.values[r], false),
-                               julia_number(f.tolerances[r]));
+    differences +=
+        fmt::format(" || differs(y{}, {}, {})", r + 1, julia_vector(f.values[r], false), julia_number(f.tolerances[r]));
   }
   for (const abi::Input input : function.inputs) {
     const std::string name(abi::name(input));

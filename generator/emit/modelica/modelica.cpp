@@ -20,18 +20,25 @@ namespace {
 
 // Keywords of Modelica, its built-in functions and types, and names of the model.
 constexpr std::string_view modelica_words[] = {
-    "algorithm",  "annotation", "block",     "class",         "connect",     "connector", "constant",  "constrainedby",
-    "der",        "discrete",   "each",      "elseif",        "elsewhen",    "encapsulated", "end",    "enumeration",
-    "equation",   "expandable", "extends",   "external",      "final",       "flow",      "function",  "import",
-    "impure",     "in",         "initial",   "inner",         "input",       "loop",      "model",     "outer",
-    "output",     "package",    "parameter", "partial",       "protected",   "pure",      "record",    "redeclare",
-    "replaceable", "stream",    "then",      "type",          "when",        "within",    "time",      "Real",
-    "Integer",    "Boolean",    "String",    "StateSelect",   "Clock",       "abs",       "assert",    "ceil",
-    "cross",      "delay",      "diagonal",  "div",           "edge",        "fill",      "floor",     "homotopy",
-    "identity",   "integer",    "matrix",    "max",           "min",         "mod",       "ndims",     "noEvent",
-    "ones",       "pre",        "product",   "reinit",        "rem",         "sample",    "scalar",    "semiLinear",
-    "sign",       "size",       "skew",      "smooth",        "spatialDistribution", "sum", "symmetric", "terminal",
-    "terminate",  "transpose",  "vector",    "zeros",         "power",       "loaded"};
+    "algorithm",   "annotation",  "block",         "class",        "connect",
+    "connector",   "constant",    "constrainedby", "der",          "discrete",
+    "each",        "elseif",      "elsewhen",      "encapsulated", "end",
+    "enumeration", "equation",    "expandable",    "extends",      "external",
+    "final",       "flow",        "function",      "import",       "impure",
+    "in",          "initial",     "inner",         "input",        "loop",
+    "model",       "outer",       "output",        "package",      "parameter",
+    "partial",     "protected",   "pure",          "record",       "redeclare",
+    "replaceable", "stream",      "then",          "type",         "when",
+    "within",      "time",        "Real",          "Integer",      "Boolean",
+    "String",      "StateSelect", "Clock",         "abs",          "assert",
+    "ceil",        "cross",       "delay",         "diagonal",     "div",
+    "edge",        "fill",        "floor",         "homotopy",     "identity",
+    "integer",     "matrix",      "max",           "min",          "mod",
+    "ndims",       "noEvent",     "ones",          "pre",          "product",
+    "reinit",      "rem",         "sample",        "scalar",       "semiLinear",
+    "sign",        "size",        "skew",          "smooth",       "spatialDistribution",
+    "sum",         "symmetric",   "terminal",      "terminate",    "transpose",
+    "vector",      "zeros",       "power",         "loaded"};
 
 // Lines of print_statements that the equations of a model state in another way.
 constexpr std::string_view let_prefix = "let ", dropped_line = "dropped";
@@ -97,20 +104,21 @@ std::string modelica_rate_unit(const std::string& unit) {
   return unit.empty() || unit.find('/') != std::string::npos ? "" : unit + "/s";
 }
 
-std::string modelica_declarations(const EmissionContext& context, const program::Program& program, const ModelNames& names) {
+std::string modelica_declarations(const EmissionContext& context, const program::Program& program,
+                                  const ModelNames& names) {
   std::string text;
   for (std::size_t i = 0; i < context.parameters.size(); ++i) {
     const Quantity& p = context.parameters[i];
     std::string note = p.note;
-    if (!p.expression.empty())
-      note += fmt::format("{}follows from others: {}", note.empty() ? "" : "; ", p.expression);
+    if (!p.expression.empty()) note += fmt::format("{}follows from others: {}", note.empty() ? "" : "; ", p.expression);
     text += fmt::format("  parameter Real {}{} = {}{};\n", names.parameters[i], modelica_attributes(p.unit, {}),
                         modelica_number(p.value), modelica_description(note));
   }
   for (std::size_t i = 0; i < context.inputs.size(); ++i) {
     const Quantity& u = context.inputs[i];
-    text += fmt::format("  input Real {}{}{};\n", names.inputs[i],
-                        modelica_attributes(u.unit, {"start = " + modelica_number(u.value)}), modelica_description(u.note));
+    text +=
+        fmt::format("  input Real {}{}{};\n", names.inputs[i],
+                    modelica_attributes(u.unit, {"start = " + modelica_number(u.value)}), modelica_description(u.note));
   }
   const std::size_t n = program.free.size();
   for (std::size_t i = 0; i < names.state.size(); ++i) {
@@ -181,14 +189,14 @@ ModelicaEquations modelica_equations(const FunctionText& text, const ModelNames&
 
 void require_smooth(const program::Program& program, const EmissionContext& context) {
   const char* const remedy = "use --target fmu, which has the runtime for them inside";
-  if (!program.contacts.empty()) refuse_statement(fmt::format("the contact '{}'", program.contacts.front().name), remedy);
+  if (!program.contacts.empty())
+    refuse_statement(fmt::format("the contact '{}'", program.contacts.front().name), remedy);
   if (!program.contact_set.empty())
     refuse_statement(fmt::format("the contact '{}'", program.contact_set.contacts.front().name), remedy);
   for (const EventDescription& event : context.events) {
     if (!event.reset.set.empty()) refuse_statement(fmt::format("the reset at the event '{}'", event.name), remedy);
   }
-  if (!context.samples.empty())
-    refuse_statement(fmt::format("the sample '{}'", context.samples.front().name), remedy);
+  if (!context.samples.empty()) refuse_statement(fmt::format("the sample '{}'", context.samples.front().name), remedy);
 }
 
 /// Parts of the model that the file does not have.
@@ -231,7 +239,8 @@ std::vector<EmittedFile> emit_modelica(const program::Program& program, const Em
   names.time = "time";
   const auto rhs = std::find_if(program.functions.begin(), program.functions.end(),
                                 [](const program::Function& function) { return function.name == "rhs"; });
-  const ModelicaEquations stated = modelica_equations(print_statements(*rhs, names, context, modelica_language()), names);
+  const ModelicaEquations stated =
+      modelica_equations(print_statements(*rhs, names, context, modelica_language()), names);
   const std::string power =
       "  function power\n    input Real a;\n    input Real b;\n    output Real y;\n  algorithm\n    y := a^b;\n"
       "  end power;\n";
@@ -241,8 +250,8 @@ std::vector<EmittedFile> emit_modelica(const program::Program& program, const Em
       {"name", name},
       {"title", modelica_description(context.title)},
       {"declarations", modelica_declarations(context, program, names)},
-      {"values", (stated.values.empty() && !stated.has_powers ? "" : "protected\n") +
-                     (stated.has_powers ? power : "") + stated.values},
+      {"values", (stated.values.empty() && !stated.has_powers ? "" : "protected\n") + (stated.has_powers ? power : "") +
+                     stated.values},
       {"equations", stated.equations},
       {"start_time", modelica_number(context.start_time)}};
   return {{name + ".mo", render_template(skeleton::modelica_model_mo, values, {})}};
