@@ -14,6 +14,17 @@ import re
 import sys
 
 
+def quotient(a, b):
+    """a/b as in C, which has quotients of 0."""
+    if b != 0:
+        return a / b
+    return math.nan if a == 0 or a != a else math.copysign(math.inf, a) * math.copysign(1.0, b)
+
+
+class Double(float):
+    """A number of double precision."""
+
+
 class Single(float):
     """A number of single precision. Operations round, also those with a Python float."""
 
@@ -21,19 +32,20 @@ class Single(float):
         return float.__new__(cls, ctypes.c_float(float(value)).value)
 
 
-for name in ("add", "sub", "mul", "truediv"):
-    operation = getattr(operator, name)
-    setattr(Single, f"__{name}__", lambda a, b, f=operation: Single(f(float(a), float(b))))
-    setattr(Single, f"__r{name}__", lambda a, b, f=operation: Single(f(float(b), float(a))))
-Single.__neg__ = lambda a: Single(-float(a))
-Single.__abs__ = lambda a: Single(abs(float(a)))
+for name, operation in (("add", operator.add), ("sub", operator.sub), ("mul", operator.mul), ("truediv", quotient)):
+    for real in (Double, Single):
+        setattr(real, f"__{name}__", lambda a, b, f=operation, r=real: r(f(float(a), float(b))))
+        setattr(real, f"__r{name}__", lambda a, b, f=operation, r=real: r(f(float(b), float(a))))
+for real in (Double, Single):
+    real.__neg__ = lambda a, r=real: r(-float(a))
+    real.__abs__ = lambda a, r=real: r(abs(float(a)))
 
 
 def function(of):
     """A function of the module math with the precision of its first argument; NaN outside of its domain."""
 
     def value(*arguments):
-        real = Single if isinstance(arguments[0], Single) else float
+        real = Single if isinstance(arguments[0], Single) else Double
         try:
             return real(of(*map(float, arguments)))
         except ValueError:
@@ -54,10 +66,11 @@ power = function(math.pow)
 class Array(list):
     """A Julia array: entries from 1 on."""
 
-    real = float
+    real = Double
 
     def __getitem__(self, index):
-        return list.__getitem__(self, self.place(index))
+        value = list.__getitem__(self, self.place(index))
+        return Double(value) if type(value) is float else value
 
     def __setitem__(self, index, value):
         list.__setitem__(self, self.place(index), self.real(value))
@@ -90,7 +103,7 @@ JULIA = {
     **FUNCTIONS, "power": power, "abs": abs, "max": max, "min": min, "round": round, "length": len,
     "NaN": math.nan, "Inf": math.inf, "NaN32": Single(math.nan), "Inf32": Single(math.inf), "nothing": None,
     "true": True, "false": False,
-    "Float64": Constructor(float), "Float32": Constructor(Single), "Int": Constructor(int),
+    "Float64": Constructor(Double), "Float32": Constructor(Single), "Int": Constructor(int),
     "String": Constructor(str), "zeros": lambda n: Array([0.0] * n), "fill_b": fill,
     "ifelse": lambda c, a, b: a if c else b, "oftype": lambda a, value: type(a)(value), "one": lambda a: type(a)(1),
     "mod": lambda a, b: a % b, "eachindex": lambda a: range(1, len(a) + 1),
@@ -245,7 +258,7 @@ class Expression:
         result = self.primary()
         while operation := self.take("*", "/"):
             factor = self.primary()
-            result = result * factor if operation == "*" else result / factor
+            result = result * factor if operation == "*" else quotient(result, factor)
         return result
 
     def primary(self):
