@@ -130,13 +130,14 @@ TEST_CASE("hybrid: rows follow steps that are shorter than their interval") {
   const Code code = corner::code();
   const auto times_of = [&](double interval, std::uint32_t subdivisions) {
     Problem problem = corner::problem(code);
-    problem.events.clear();
     problem.max_step = 0.5;
     problem.output_interval = interval;
     problem.row_subdivisions = subdivisions;
     std::vector<double> times;
     problem.row = [&](double t, std::span<const double>) { times.push_back(t); };
-    REQUIRE(run(problem).outcome == eom::Outcome::done);
+    const RunResult result = run(problem);
+    REQUIRE(result.outcome == eom::Outcome::done);
+    for (const Event& event : result.events) std::erase(times, event.t);  // events have rows of their own
     return times;
   };
   // Nothing changes where steps are longer.

@@ -24,12 +24,13 @@ namespace eom::hybrid {
 
 class EndErrorEstimator {
  public:
-  /// first: the run, in the model's own charts; adequacy: for fixed steps, else null; passes_pole:
-  /// whether it passed through the singularity of a chart; error: the output, which may
-  /// already have a warning.
-  EndErrorEstimator(const Problem& problem, const Result& first, const Options& options, StepAdequacy* adequacy,
-                    bool passes_pole, EndErrorEstimate& error)
+  /// order: of the method that ended the run; first: the run, in the model's own charts; adequacy: for fixed steps,
+  /// else null; passes_pole: whether it passed through the singularity of a chart; error: the output, which may already
+  /// have a warning.
+  EndErrorEstimator(const Problem& problem, int order, const Result& first, const Options& options,
+                    StepAdequacy* adequacy, bool passes_pole, EndErrorEstimate& error)
       : problem_(problem),
+        order_(order),
         first_(first),
         options_(options),
         method_(method_named(problem.solver)),
@@ -106,7 +107,7 @@ class EndErrorEstimator {
         stop_ = std::max(stop_, std::abs(other.t - first_.t));
       return other;
     };
-    return estimate_error(method_.order, problem_.t0, first_, options_, run, problem_.estimate_cost);
+    return estimate_error(order_, problem_.t0, first_, options_, run, problem_.estimate_cost);
   }
 
   /// For fixed steps: the effect of the last digits of the start on the end.
@@ -171,6 +172,7 @@ class EndErrorEstimator {
   }
 
   const Problem& problem_;
+  int order_;
   const Result& first_;
   const Options& options_;
   const MethodInfo& method_;

@@ -110,7 +110,9 @@ inline RunResult run(const Problem& problem) {
     own.x = result.state;
     const bool passes_pole = std::any_of(result.events.begin(), result.events.end(),
                                          [](const Event& event) { return event.kind == "pole"; });
-    EndErrorEstimator(problem, own, options, adequacy ? &*adequacy : nullptr, passes_pole, result.error).run();
+    EndErrorEstimator(problem, method_named(result.solver).order, own, options, adequacy ? &*adequacy : nullptr,
+                      passes_pole, result.error)
+        .run();
   }
   // An estimate that saw a force with tails states its effect.
   const EstimateWarning::Kind found = result.error.warning.kind;
