@@ -222,7 +222,7 @@ TEST_CASE("charts: the multipliers of a joint are the same in both charts, and t
            "rotation = " +
            rotation +
            "\n[[force]]\ngravity = \"-g*E3\"\n[[constraint]]\nname = \"joint\"\nholonomic = \"B - B.e3\"\n"
-           "[scene.default]\nt = [0, 4]\nrtol = 1e-12\natol = 1e-13\ninitial = { " +
+           "[scene.default]\nt = [0, 4]\nevery = 0.008\nrtol = 1e-12\natol = 1e-13\ninitial = { " +
            start + " }\noutputs = [\"reaction.joint\", " + omegas + "]\n";
   };
   const std::string placed = "y = \"-sin(2.2)\", z = \"cos(2.2)\"";  // x3 axis turned about E1
