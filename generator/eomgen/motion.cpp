@@ -110,7 +110,6 @@ Motion Model::run(const RunOptions& options, const CallControl& control) const {
     std::vector<double> values(index.size());
     run::RunRequest& request = run->request();
     request.every = pipeline::row_interval(run->scene());
-    request.row_subdivisions = pipeline::row_subdivisions(run->scene());
     request.row = [&](double t, std::span<const double> y) {
       for (std::size_t i = 0; i < index.size(); ++i) values[i] = y[index[i]];
       if (options.row) return options.row(t, values);

@@ -42,7 +42,6 @@ std::shared_ptr<const emit::RunDescription> run_text(const DerivedModel& derived
   auto described = std::make_shared<Described>(Described{scene, describe_code(program), {}});
   run::RunRequest request = make_run_request(derived, described->scene, described->code, true);
   request.every = row_interval(scene);
-  request.row_subdivisions = row_subdivisions(scene);
   described->problem = run::make_problem(request, run::choose_solver(scene.solver, scene).first);
   described->problem.beyond_range = {};
   described->problem.time = scene.time;  // a run evaluates it with its own numbers

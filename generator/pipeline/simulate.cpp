@@ -110,10 +110,6 @@ double row_interval(const run::Scene& scene) {
   return scene.every > 0 ? scene.every : scene.t1 > scene.t0 ? (scene.t1 - scene.t0) / default_rows : 1;
 }
 
-std::uint32_t row_subdivisions(const run::Scene& scene) {
-  return scene.every > 0 || scene.step > 0 ? 1 : default_row_subdivisions;
-}
-
 std::vector<std::string> state_names(const DerivedModel& derived) {
   std::vector<std::string> names;
   for (const char* suffix : {"", "_dot"}) {
@@ -285,7 +281,6 @@ Simulation simulate(const SimulationRequest& request) {
     run.every = request.rows
                     ? std::max((plan.scene.t1 - plan.scene.t0) / *request.rows, std::numeric_limits<double>::min())
                     : row_interval(plan.scene);
-    run.row_subdivisions = request.rows ? 1 : row_subdivisions(plan.scene);
     request.begin(*derived, plan.scene, bound.code().output_names);
   }
   run.row = request.row;

@@ -89,12 +89,9 @@ RunPlan plan_run(DerivedModel& derived, const SimulationRequest& request, const 
 /// Optimises, verifies and compiles the code of a plan. Throws Error{ErrorKind::check} if the verification fails.
 Compilation compile_run(DerivedModel& derived, const RunPlan& plan, const SimulationRequest& request);
 
-/// Number of rows of a file or plot if no interval is given, and the parts of their interval where steps are shorter.
+/// Number of rows of a file or plot if no interval is given.
 inline constexpr double default_rows = 500;
-inline constexpr std::uint32_t default_row_subdivisions = 32;
 double row_interval(const run::Scene& scene);
-/// 1 if an interval is given, or if steps are fixed and do not depend on the motion.
-std::uint32_t row_subdivisions(const run::Scene& scene);
 
 Simulation simulate(const SimulationRequest& request);
 
