@@ -122,9 +122,7 @@ std::vector<std::string> state_names(const DerivedModel& derived) {
 
 run::RunRequest make_run_request(const DerivedModel& derived, const run::Scene& scene, const run::Code& code,
                                  bool estimate, const eom::hybrid::BoundedFunctions* monitored) {
-  run::RunRequest run{code, scene, state_names(derived), {}, {}};
-  run.watch_power = !energy_is_conserved(derived);
-  run.estimate = estimate;
+  run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, 1, {}, {}};
   const system::EquationSystem& system = derived.candidates.front();
   for (std::size_t i = 0; i < derived.conserved.size(); ++i) {
     const conservation::ConservedQuantity& c = derived.conserved[i];
