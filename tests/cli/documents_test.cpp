@@ -134,7 +134,7 @@ TEST_CASE("derive --document --omit: leaves parts out, and lists them") {
   CHECK_FALSE(contains(brief, "Its time derivative:"));
   CHECK_FALSE(contains(brief, "Of the energies above:"));
   CHECK(contains(brief, "time derivatives of the constraints: omitted on request."));
-  CHECK(contains(brief, "\\section{Constraint forces}"));
+  CHECK(contains(brief, "\\section{Conserved quantities}"));
   expect(0, folder,
          {"emit", "knife_edge", "--target", "latex", "-o", "out", "--omit",
           "constraint_forces,conserved,routh,steady,singular"});
