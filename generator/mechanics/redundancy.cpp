@@ -16,7 +16,6 @@
 #include "mechanics/pfaffian.hpp"
 #include "mechanics/small.hpp"
 #include "mechanics/stages.hpp"
-#include "numeric/dense.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::mechanics {
@@ -215,79 +214,6 @@ bool is_contradiction(const Mechanics& m, OneFormSpace& space, const std::vector
   return has_values;
 }
 
-/// Whether holonomic constraint k, whose coefficients depend on the state, holds nowhere where the others do: Newton's
-/// method leads from the sample points and their mirror images to positions where the others hold. False if there is
-/// none, or if k holds at one of them.
-bool holds_nowhere(const Mechanics& m, OneFormSpace& space, const std::vector<std::uint32_t>& constraints,
-                   const std::vector<std::size_t>& independent, std::size_t k, const Combination& here) {
-  constexpr int most_steps = 60;
-  constexpr unsigned most_mirrored = 4;  // coordinates
-  constexpr double held = 1e-12, off = 1e-6;
-  std::vector<Ref> psi;
-  for (std::size_t a = 0; a < independent.size(); ++a) {
-    if (cln::abs(here.coefficients[a]) < small(25)) continue;
-    psi.push_back(m.constraints[constraints[independent[a]]].psi);
-    if (!m.constraints[constraints[independent[a]]].holonomic() ||
-        m.constraints[constraints[independent[a]]].unilateral)
-      return false;
-  }
-  if (psi.empty() || !m.constraints[constraints[k]].holonomic()) return false;
-  psi.push_back(m.constraints[constraints[k]].psi);
-  for (Ref& r : psi) r = space.impose_and_expand(r);
-  std::vector<std::size_t> variables;
-  for (std::size_t i = 0; i < space.variables().size(); ++i) {
-    if (space.variables()[i].kind == symbolic::SymbolKind::coordinate) variables.push_back(i);
-  }
-  std::vector<Ref> roots = psi;
-  for (const Ref r : psi) {
-    for (const std::size_t i : variables) roots.push_back(space.derivative(r, i));
-  }
-  const auto rows = static_cast<Eigen::Index>(psi.size()), width = static_cast<Eigen::Index>(variables.size());
-  bool found = false;
-  const auto try_from = [&](Eigen::VectorXd x, std::size_t point) -> bool {  // whether k holds there
-    const std::function<double(const symbolic::Symbol&)> value = [&](const symbolic::Symbol& symbol) {
-      if (symbol.kind == symbolic::SymbolKind::parameter)
-        return symbolic::evaluate(*m.dag, {m.parameter_value[symbol.index]}, value)[0];
-      for (Eigen::Index i = 0; i < width; ++i) {
-        if (space.variables()[variables[static_cast<std::size_t>(i)]] == symbol) return x[i];
-      }
-      return cln::double_approx(space.value(symbol, point));
-    };
-    for (int step = 0; step < most_steps; ++step) {
-      const std::vector<double> values = symbolic::evaluate(*m.dag, roots, value);
-      const Eigen::Map<const Eigen::VectorXd> at(values.data(), rows);
-      const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> slopes(
-          values.data() + rows, rows, width);
-      if (!at.allFinite() || !slopes.allFinite()) return false;
-      const Eigen::VectorXd sizes = slopes.cwiseAbs() * x.cwiseAbs().cwiseMax(1);
-      if ((at.head(rows - 1).cwiseAbs().array() <= held * sizes.head(rows - 1).array()).all()) {
-        found = true;
-        return std::abs(at[rows - 1]) <= off * sizes[rows - 1];
-      }
-      x -= numeric::least_squares(slopes.topRows(rows - 1), at.head(rows - 1)).x;
-    }
-    return false;
-  };
-  for (std::size_t point = 0; point < space.points(); ++point) {
-    Eigen::VectorXd start(width);
-    for (Eigen::Index i = 0; i < width; ++i)
-      start[i] = cln::double_approx(space.value(space.variables()[variables[static_cast<std::size_t>(i)]], point));
-    const unsigned mirrored = std::min(most_mirrored, static_cast<unsigned>(width));
-    for (unsigned signs = 0; signs < (1u << mirrored); ++signs) {
-      Eigen::VectorXd x = start;
-      for (unsigned i = 0; i < mirrored; ++i) {
-        if (((signs >> i) & 1u) != 0) x[i] = -x[i];
-      }
-      try {
-        if (try_from(std::move(x), point)) return false;
-      } catch (const std::domain_error&) {
-        continue;
-      }
-    }
-  }
-  return found;
-}
-
 Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints, std::size_t k,
               const std::vector<std::size_t>& independent, const Combination& here, const Combination& there) {
   const Constraint& constraint = m.constraints[constraints[k]];
@@ -296,9 +222,7 @@ Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints,
   const SourceLocation where = m.model->where(m.model->arena[constraint.model_expression].span);
   std::string what = "constraint '" + constraint.label + "' ";
   if (!here.same_value) {
-    what += "contradicts " + others + ": " +
-            (formula.empty() ? "it does not hold where they do"
-                             : constraint.label + " = " + formula + " and a constant that is not 0");
+    what += "contradicts " + others + ": " + constraint.label + " = " + formula + " and a constant that is not 0";
     return Error("mechanics", where, what, "remove one of them: no position satisfies them all");
   }
   if (here.same_rate) {
@@ -359,8 +283,6 @@ Refusals drop_repeated(Mechanics& m) {
       const std::optional<Combination> there = combination(at[1], independent, k);
       if (here && there && !spans_all(at[0], independent, *here, k)) {
         here->same_value = !here->same_rate || !is_contradiction(m, space, constraints, independent, k, *here, *there);
-        if (here->same_rate && here->same_value && named(m, constraints, independent, *here, *there).empty())
-          here->same_value = !holds_nowhere(m, space, constraints, independent, k, *here);
         Constraint& constraint = m.constraints[constraints[k]];
         Error why = refusal(m, constraints, k, independent, *here, *there);
         if (!here->same_rate || !here->same_value || !may_be_redundant(m, constraint)) throw why;

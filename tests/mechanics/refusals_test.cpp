@@ -136,34 +136,6 @@ TEST_CASE("mechanics rejects: a constraint that is an earlier one and a constant
   }
 }
 
-TEST_CASE(
-    "mechanics rejects: a contradiction with coefficients that depend on the state, or with several constraints") {
-  const auto pair = [](const std::string& first, const std::string& second) {
-    return refusal(
-        "format = 1\n[parameters]\nL = 2\n[[particle]]\nname = \"P\"\nmass = 1\n"
-        "position = { cartesian = [\"x\", \"y\", \"z\"] }\n"
-        "[[constraint]]\nname = \"circle\"\nholonomic = \"" +
-        first + "\"\n[[constraint]]\nname = \"other\"\nholonomic = \"" + second + "\"\n");
-  };
-  const Refusal larger = pair("x^2 + y^2 - L^2", "sqrt(x^2 + y^2) - 2*L");
-  CHECK(larger.message == "constraint 'other' contradicts 'circle': it does not hold where they do");
-  CHECK(larger.remedy == "remove one of them: no position satisfies them all");
-  // The same circle, and one of two branches.
-  for (const char* same : {"sqrt(x^2 + y^2) - L", "(x^2 + y^2 - L^2)*(x^2 + y^2 + 1)"}) {
-    CAPTURE(std::string(same));
-    CHECK(pair("x^2 + y^2 - L^2", same).message ==
-          "constraint 'other' follows from 'circle', with coefficients that depend on the state");
-  }
-  CHECK(pair("x*y - L", "x^2*y^2 + 3*x*y - L^2 - 3*L").message ==
-        "constraint 'other' follows from 'circle', with coefficients that depend on the state");
-  const Refusal ring = refusal(
-      "format = 1\n[parameters]\nL = 2\n[[particle]]\nname = \"P\"\nmass = 1\n"
-      "position = { cartesian = [\"x\", \"y\", \"z\"] }\n[[constraint]]\nname = \"a\"\nholonomic = \"x - y\"\n"
-      "[[constraint]]\nname = \"b\"\nholonomic = \"y - z\"\n"
-      "[[constraint]]\nname = \"c\"\nholonomic = \"x - z - L\"\n");
-  CHECK(ring.message == "constraint 'c' contradicts 'a', 'b': c = a + b and a constant that is not 0");
-}
-
 TEST_CASE("mechanics rejects: constants above all doubles, with their place, in every stage that lowers them") {
   const auto of = [](const std::string& energy) {
     return refusal(planar + "[energy]\npotential = \"" + energy + "\"\n");
@@ -235,7 +207,6 @@ TEST_CASE("mechanics rejects: restitution above 1, a width that is not positive"
   CHECK(refusal(wall("1")).message == "accepted");
   CHECK(refusal(wall("1.5")).message == "the coefficient of restitution of 'a' is not between 0 and 1");
   CHECK(refusal(wall("-0.1")).line == 13);
-  CHECK(refusal(wall("\"g\"")).line == 4);  // at the parameter
   const Refusal r = refusal(
       planar +
       "[[constraint]]\nname = \"a\"\nholonomic = \"x\"\nfriction = { dynamic = 0.1, law = \"smooth\", width = 0 }\n");
