@@ -136,6 +136,15 @@ TEST_CASE("mechanics rejects: a constraint that is an earlier one and a constant
   }
 }
 
+TEST_CASE("mechanics rejects: a contradiction with several constraints") {
+  const Refusal ring = refusal(
+      "format = 1\n[parameters]\nL = 2\n[[particle]]\nname = \"P\"\nmass = 1\n"
+      "position = { cartesian = [\"x\", \"y\", \"z\"] }\n[[constraint]]\nname = \"a\"\nholonomic = \"x - y\"\n"
+      "[[constraint]]\nname = \"b\"\nholonomic = \"y - z\"\n"
+      "[[constraint]]\nname = \"c\"\nholonomic = \"x - z - L\"\n");
+  CHECK(ring.message == "constraint 'c' contradicts 'a', 'b': c = a + b and a constant that is not 0");
+}
+
 TEST_CASE("mechanics rejects: constants above all doubles, with their place, in every stage that lowers them") {
   const auto of = [](const std::string& energy) {
     return refusal(planar + "[energy]\npotential = \"" + energy + "\"\n");
@@ -207,6 +216,7 @@ TEST_CASE("mechanics rejects: restitution above 1, a width that is not positive"
   CHECK(refusal(wall("1")).message == "accepted");
   CHECK(refusal(wall("1.5")).message == "the coefficient of restitution of 'a' is not between 0 and 1");
   CHECK(refusal(wall("-0.1")).line == 13);
+  CHECK(refusal(wall("\"g\"")).line == 4);  // at the parameter
   const Refusal r = refusal(
       planar +
       "[[constraint]]\nname = \"a\"\nholonomic = \"x\"\nfriction = { dynamic = 0.1, law = \"smooth\", width = 0 }\n");
