@@ -285,15 +285,15 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
 bool leaves_contacts_open(const SteadyProblem& p, const linear::State<Precise>& z) {
   if (!p.with_contacts) return true;
   const system::EquationSystem& s = p.system();
-  const auto value = [&](const symbolic::Symbol& symbol) {
-    const std::size_t n = s.free.size();
+  const auto value = [&, layout = s.layout()](const symbolic::Symbol& symbol) {
     if (symbol.kind == symbolic::SymbolKind::coordinate) {
       const auto place =
           static_cast<std::size_t>(std::find(s.free.begin(), s.free.end(), symbol.index) - s.free.begin());
-      if (place < n && symbol.order < 2) return linear::to_double(z[place + symbol.order * n]);
+      if (place < layout.coordinates && symbol.order < 2)
+        return linear::to_double(z[place + (symbol.order == 0 ? 0 : layout.rates_begin())]);
     }
-    for (std::size_t k = 0; k < s.layout().first_order; ++k) {
-      if (s.states[k].symbol == symbol) return linear::to_double(z[2 * n + k]);
+    for (std::size_t k = 0; k < layout.first_order; ++k) {
+      if (s.states[k].symbol == symbol) return linear::to_double(z[layout.first_order_begin() + k]);
     }
     return fixed_value(p, symbol);
   };
