@@ -2,6 +2,7 @@
 #include "run/scene_tables.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -26,11 +27,13 @@ SceneTable make_tables(const system::EquationSystem& system, const std::vector<s
   roots.insert(roots.end(), system.A.begin(), system.A.end());
   const std::size_t run = 1 + system.layout().size() + inputs.size();
   const SymbolResolver variables = [of_run = run_variables(system), run](const symbolic::Symbol& symbol) {
-    return symbol.kind == symbolic::SymbolKind::parameter ? SymbolMeaning::of_variable(run + symbol.index)
-                                                          : of_run(symbol);
+    if (symbol.kind == symbolic::SymbolKind::parameter) return SymbolMeaning::of_variable(run + symbol.index);
+    const SymbolMeaning meaning = of_run(symbol);
+    // An entry with a symbol that the start does not have is not a number, and the others are.
+    return meaning.kind == SymbolMeaning::Kind::unknown ? SymbolMeaning::of(std::nan("")) : meaning;
   };
   std::optional<Table> mass_and_rows = make_table(*system.dag, roots, variables);
-  if (!mass_and_rows) throw std::logic_error("the mass matrix depends on symbols that a run does not have");
+  if (!mass_and_rows) throw std::logic_error("the table of the mass matrix has a symbol without a meaning");
   return {time_functions(system, inputs), jump_functions(system),
           eom::expressions::Code(std::move(*mass_and_rows), {})};
 }
