@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 
+import growth
 import growth_models
 
 BEGIN, END = "<!-- automatic: written by bench/automatic.py -->", "<!-- end of automatic -->"
@@ -72,43 +73,33 @@ def worst_ratio(rows, others):
     return worst
 
 
-def table(eomgen, models):
-    lines = ["| model | `auto` / best | at error | best | without `taylor` | at error | best |", "|---|---|---|---|---|---|---|"]
-    for name, path in models:
-        rows = measured_rows(eomgen, path)
-        if not rows or isinstance(rows[0], str):
-            print(f"{name}: {rows[0] if rows else 'nothing measured'}", file=sys.stderr)
-            continue
-        cells = [f"`{name}`"]
-        for others in (SOLVERS[1:], SOLVERS[1:-1]):
-            worst = worst_ratio(rows, others)
-            cells += [f"{worst[0]:.2f}", f"{worst[1]:.0e}", worst[2]] if worst else ["-", "-", "-"]
-        lines.append("| " + " | ".join(cells) + " |")
-        print(lines[-1], file=sys.stderr, flush=True)
-    return "\n".join(lines)
+def models_of(names, folder):
+    """Pairs (name, path): the model files of these names, or those of models/ and grown ones, written to the folder."""
+    if names:
+        return [(pathlib.Path(name).stem, name) for name in names]
+    models = [(path.stem, path) for path in sorted((ROOT / "models").glob("*.toml"))]
+    for kind, n in GROWN:
+        path = pathlib.Path(folder) / f"{kind}_{n}.toml"
+        path.write_text(growth_models.FAMILIES[kind](n))
+        models.append((f"{kind} {n}", path))
+    return models
 
 
-def main():
-    arguments = [a for a in sys.argv[1:] if a != "--write"]
-    if not arguments:
-        sys.exit(__doc__)
-    eomgen = arguments[0]
+def table(eomgen, names):
+    yield "| model | `auto` / best | at error | best | without `taylor` | at error | best |"
+    yield "|---|---|---|---|---|---|---|"
     with tempfile.TemporaryDirectory() as folder:
-        models = [(pathlib.Path(name).stem, name) for name in arguments[1:]]
-        if not models:
-            models = [(path.stem, path) for path in sorted((ROOT / "models").glob("*.toml"))]
-            for kind, n in GROWN:
-                path = pathlib.Path(folder) / f"{kind}_{n}.toml"
-                path.write_text(growth_models.FAMILIES[kind](n))
-                models.append((f"{kind} {n}", path))
-        text = table(eomgen, models)
-    if "--write" in sys.argv:
-        page = ROOT / "docs/benchmarks.md"
-        before, rest = page.read_text().split(BEGIN)
-        page.write_text(before + BEGIN + "\n" + text + "\n" + END + rest.split(END)[1])
-    else:
-        print(text)
+        for name, path in models_of(names, folder):
+            rows = measured_rows(eomgen, path)
+            if not rows or isinstance(rows[0], str):
+                print(f"{name}: {rows[0] if rows else 'nothing measured'}", file=sys.stderr)
+                continue
+            cells = [f"`{name}`"]
+            for others in (SOLVERS[1:], SOLVERS[1:-1]):
+                worst = worst_ratio(rows, others)
+                cells += [f"{worst[0]:.2f}", f"{worst[1]:.0e}", worst[2]] if worst else ["-", "-", "-"]
+            yield "| " + " | ".join(cells) + " |"
 
 
 if __name__ == "__main__":
-    main()
+    growth.main("bench/automatic.py EOMGEN [--write] [MODEL ...]", BEGIN, END, table)
