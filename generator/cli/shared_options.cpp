@@ -91,12 +91,4 @@ void add_estimate(Arguments& app, std::string& estimate, bool& without) {
   app.add_flag("--no-error-estimate", without, "leave error estimates out");
 }
 
-eom::EstimateCost chosen_estimate(const std::string& estimate, bool without) {
-  const eom::EstimateCost cost = pipeline::parse_estimate_cost(estimate);
-  if (without && cost == eom::EstimateCost::full)
-    throw Error("cli", {}, "--estimate full asks for an error estimate, and another option leaves it out",
-                "leave --estimate out, or --no-error-estimate and --ensemble");
-  return cost;
-}
-
 }  // namespace eomgen::cli

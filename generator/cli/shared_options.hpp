@@ -36,7 +36,5 @@ void add_omit(Arguments& app, std::vector<std::string>& parts);  // --omit
 void add_tier(Arguments& app, std::string& tier);
 /// --estimate and --no-error-estimate.
 void add_estimate(Arguments& app, std::string& estimate, bool& without);
-/// The cost that --estimate names. Throws Error if `without` leaves no estimate that could be full.
-eom::EstimateCost chosen_estimate(const std::string& estimate, bool without);
 
 }  // namespace eomgen::cli

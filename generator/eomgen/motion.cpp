@@ -119,7 +119,7 @@ Motion Model::run(const RunOptions& options, const CallControl& control) const {
     request.progress = call.progress();
     request.interrupt = call.stopped();
     request.max_steps = options.max_steps;
-    request.estimate_cost = pipeline::parse_estimate_cost(options.estimate);
+    request.estimate_cost = pipeline::parse_estimate_cost(options.estimate, !options.error_estimate);
     const work::DeferInterrupt kept;  // from here on, an interruption returns the partial motion
     run::RunResult result = run->integrate();
     result.reason.charts_refused = prepared.plan->charts_refused;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "error.hpp"
+#include "pipeline/estimate_cost.hpp"
 #include "pipeline/limits.hpp"
 #include "pipeline/row_count.hpp"
 
@@ -59,6 +60,7 @@ void require_valid(const RunOptions& o) {
   is.positive("max_step", o.max_step);
   is.positive("every", o.every);
   is.optional_count("max_steps", o.max_steps, limits::run_steps);
+  pipeline::parse_estimate_cost(o.estimate, !o.error_estimate);
 }
 
 void require_valid(const InverseOptions& o) {

@@ -8,7 +8,10 @@
 
 namespace eomgen::pipeline {
 
-std::vector<std::string> estimate_cost_names();                  // "bounded", "full"
-eom::EstimateCost parse_estimate_cost(const std::string& text);  // from one of these names; throws Error
+std::vector<std::string> estimate_cost_names();  // "bounded", "full"
+
+/// The cost by its name. without: the caller leaves estimates out. Throws Error if there is no such name, and for
+/// "full" without estimates.
+eom::EstimateCost parse_estimate_cost(const std::string& text, bool without);
 
 }  // namespace eomgen::pipeline

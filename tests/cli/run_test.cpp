@@ -198,7 +198,7 @@ TEST_CASE("--estimate full compares with tighter runs, however many steps they n
                              Words{"sweep", "spring.toml", "--grid", "m=1:2:2", "--ensemble"}}) {
     Words both = words;
     both.insert(both.end(), {"--estimate", "full"});
-    CHECK(contains(expect(2, folder, both).err, "--estimate full asks for an error estimate"));
+    CHECK(contains(expect(2, folder, both).err, "the estimate 'full' asks for an error estimate"));
   }
 }
 

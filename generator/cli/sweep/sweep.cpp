@@ -15,6 +15,7 @@
 #include "cli/sweep/workers.hpp"
 #include "cli/usage.hpp"
 #include "model/names.hpp"
+#include "pipeline/estimate_cost.hpp"
 #include "pipeline/graph_trimmer.hpp"
 #include "pipeline/start_checker.hpp"
 #include "run/eligibility.hpp"
@@ -88,7 +89,7 @@ std::size_t threads_of(const SweepOptions& options) {
 Sweep::Sweep(const SweepOptions& options, const CommonOptions& common, const model::Model& model)
     : options_(options),
       overrides_(overrides_of("sweep", options, model)),
-      estimate_cost_(chosen_estimate(options.estimate, options.no_error_estimate || options.ensemble)),
+      estimate_cost_(pipeline::parse_estimate_cost(options.estimate, options.no_error_estimate || options.ensemble)),
       seed_(common.seed),
       points_(points_of(options, common.seed, points_hash_)),
       shard_(shard_of(options, points_, common.group != nullptr ? common.group->workers() : 1)),
