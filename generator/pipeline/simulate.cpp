@@ -110,6 +110,10 @@ double row_interval(const run::Scene& scene) {
   return scene.every > 0 ? scene.every : scene.t1 > scene.t0 ? (scene.t1 - scene.t0) / default_rows : 1;
 }
 
+std::uint32_t row_subdivisions(const run::Scene& scene) {
+  return scene.every > 0 || scene.step > 0 ? 1 : default_row_subdivisions;
+}
+
 std::vector<std::string> state_names(const DerivedModel& derived) {
   std::vector<std::string> names;
   for (const char* suffix : {"", "_dot"}) {
@@ -280,6 +284,7 @@ Simulation simulate(const SimulationRequest& request) {
     run.every = request.rows
                     ? std::max((plan.scene.t1 - plan.scene.t0) / *request.rows, std::numeric_limits<double>::min())
                     : row_interval(plan.scene);
+    if (!request.rows && request.rows_follow_steps) run.row_subdivisions = row_subdivisions(plan.scene);
     request.begin(*derived, plan.scene, bound.code().output_names);
   }
   run.row = request.row;

@@ -47,6 +47,7 @@ struct SimulationRequest {
   std::function<void(double t, std::span<const double> values)> row;
   std::size_t max_steps = 0;   // as in run::RunRequest
   std::optional<double> rows;  // the number of rows, instead of the interval of the scene
+  bool rows_follow_steps = false;  // further rows where steps are shorter, if no interval is given
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* interrupt = nullptr;
 };
@@ -92,6 +93,10 @@ Compilation compile_run(DerivedModel& derived, const RunPlan& plan, const Simula
 /// Number of rows of a file or plot if no interval is given.
 inline constexpr double default_rows = 500;
 double row_interval(const run::Scene& scene);
+/// Parts of the interval at which rows may follow shorter steps: 1 if an interval is given, or if steps are fixed and
+/// do not depend on the motion.
+inline constexpr std::uint32_t default_row_subdivisions = 32;
+std::uint32_t row_subdivisions(const run::Scene& scene);
 
 Simulation simulate(const SimulationRequest& request);
 

@@ -4,7 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <sstream>
+#include <utility>
 
 #include "program.hpp"
 
@@ -129,6 +133,35 @@ TEST_CASE("a model name of 240 letters works or is reported") {
   const ChildResult longer = expect(2, folder, {"sweep", std::string(250, 'n') + ".toml", "--grid", "k=1,2"});
   CHECK(contains(longer.err, "the name has 260 bytes"));
   CHECK_FALSE(contains(longer.err, "internal"));
+}
+
+TEST_CASE("run: rows follow the steps, so that a table shows a swing of 16 s over an hour") {
+  const Folder folder;
+  folder.write("swing.toml",
+               "format = 1\n[parameters]\ng = \"9.81 m/s^2\"\nL = \"63.6 m\"\n[coordinates]\ntheta = \"rad\"\n"
+               "[[particle]]\nname = \"P\"\nmass = \"1 kg\"\nposition = [\"L*sin(theta)\", \"-L*cos(theta)\", 0]\n"
+               "[[force]]\ngravity = \"-g*E2\"\n[scene.default]\nt = [0, 3600]\ninitial = { theta = 0.5 }\n");
+  const auto table = [&](const Words& more) {
+    Words words{"run", "swing.toml", "--out", "a.csv", "--no-error-estimate"};
+    words.insert(words.end(), more.begin(), more.end());
+    expect(0, folder, words);
+    std::vector<std::pair<double, double>> rows;
+    std::istringstream lines(folder.read("a.csv"));
+    for (std::string line; std::getline(lines, line);) {
+      double t = 0, theta = 0;
+      if (std::sscanf(line.c_str(), "%lf,%lf", &t, &theta) == 2) rows.emplace_back(t, theta);
+    }
+    return rows;
+  };
+  const std::vector<std::pair<double, double>> rows = table({});
+  std::size_t steep = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) steep += std::abs(rows[i].second - rows[i - 1].second) > 0.3 ? 1 : 0;
+  CHECK(rows.size() > 3000);
+  CHECK(rows.size() < 16010);
+  CHECK(steep < 5);  // of an amplitude of 0.5, beyond the first steps
+  CHECK(rows.back().first == 3600);
+  CHECK(table({"--every", "7.2"}).size() == 501);
+  CHECK(table({"--step", "0.5"}).size() == 501);
 }
 
 TEST_CASE("run reports files and sizes; large sizes are announced, or refused unless confirmed") {

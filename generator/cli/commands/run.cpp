@@ -18,6 +18,7 @@
 #include "cli/shared_options.hpp"
 #include "cli/table_size.hpp"
 #include "cli/usage.hpp"
+#include "pipeline/estimate_cost.hpp"
 #include "pipeline/limits.hpp"
 #include "pipeline/row_count.hpp"
 #include "pipeline/simulate.hpp"
@@ -140,7 +141,7 @@ int execute(const Options& options, const CommonOptions& common) {
   request.form = pipeline::parse_form(options.form);
   request.tier = pipeline::parse_tier(options.tier);
   request.estimate = !options.no_error_estimate;
-  request.estimate_cost = chosen_estimate(options.estimate, options.no_error_estimate);
+  request.estimate_cost = pipeline::parse_estimate_cost(options.estimate, options.no_error_estimate);
   request.charts =
       !options.no_charts && options.sensitivity.empty();  // derivatives refer to the model's own coordinates
   if (!options.sensitivity.empty()) request.with = analysis::sensitivity_functions(*request.model);
@@ -151,6 +152,7 @@ int execute(const Options& options, const CommonOptions& common) {
   request.ready = [&interrupt] { interrupt.emplace(); };
   request.interrupt = &InterruptGuard::flag();
   request.max_steps = options.max_steps;
+  request.rows_follow_steps = true;
   std::optional<Rows> rows;
   if (!options.plot_of.empty() && !plot.wanted()) {
     throw Error("run", {}, "--plot-of says what is plotted, and there is no plot",

@@ -248,7 +248,6 @@ std::string problem_text(const RunDescription& run) {
   s.list("state_names", p.state_names);
   s.list("constraint_names", p.constraint_names);
   s.set("output_interval", p.output_interval);
-  if (p.row_subdivisions > 1) s.set("row_subdivisions", p.row_subdivisions);
   return s.done();
 }
 

@@ -170,7 +170,7 @@ struct Problem {
   EstimateCost estimate_cost = EstimateCost::bounded;
   double output_interval = 0;  // of rows; 0: no rows
   /// Where steps are shorter than the interval, rows follow at its halves, quarters, .., down to this part of it: a
-  /// power of 2. 1: no further rows.
+  /// power of 2. At most 1: no further rows.
   std::uint32_t row_subdivisions = 1;
   std::function<void(double t, std::span<const double> y)> row = {};
   std::function<void(double fraction)> progress = {};

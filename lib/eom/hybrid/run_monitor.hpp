@@ -31,7 +31,7 @@ class RowWriter {
 
   /// Writes the rows of a step. Returns the time of the last row if the run was interrupted meanwhile and ends there.
   std::optional<double> write_until(const StepView& view) {
-    const std::uint64_t parts = problem_.row_subdivisions, stride = parts_between_rows(view);
+    const std::uint64_t parts = parts_of_interval(), stride = parts_between_rows(view);
     const double part = problem_.output_interval / static_cast<double>(parts);
     // Parts of the interval are counted, so that the grid does not drift. A last sliver belongs to the end.
     const auto time = [&](std::uint64_t n) { return problem_.t0 + static_cast<double>(n) * part; };
@@ -69,14 +69,16 @@ class RowWriter {
   const std::vector<double>& last_state() const { return between_; }  // at an interruption
 
  private:
+  std::uint64_t parts_of_interval() const { return std::max<std::uint32_t>(1, problem_.row_subdivisions); }
+
   /// Parts of the interval from one row to the next: the spacing is at most the longest of the last steps. One short
   /// step, as at the start or after an event, changes nothing.
   std::uint64_t parts_between_rows(const StepView& view) {
-    std::uint64_t stride = problem_.row_subdivisions;
+    std::uint64_t stride = parts_of_interval();
     lengths_[steps_++ % lengths_.size()] = view.t1 - view.t0;
     if (steps_ < lengths_.size()) return stride;
     const double longest = *std::max_element(lengths_.begin(), lengths_.end());
-    const double part = problem_.output_interval / static_cast<double>(problem_.row_subdivisions);
+    const double part = problem_.output_interval / static_cast<double>(parts_of_interval());
     while (stride > 1 && longest < static_cast<double>(stride) * part) stride /= 2;
     return stride;
   }
