@@ -225,6 +225,13 @@ Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints,
     what += "contradicts " + others + ": " + constraint.label + " = " + formula + " and a constant that is not 0";
     return Error("mechanics", where, what, "remove one of them: no position satisfies them all");
   }
+  if (here.same_rate && formula.empty() && !others.empty() && constraint.holonomic()) {
+    // The gradients alone do not tell whether the constraint holds where the others do.
+    what += "has a gradient that follows from those of " + others +
+            ", with coefficients that depend on the state: it follows from them, or contradicts them";
+    return Error("mechanics", where, what,
+                 "remove it: nothing would determine how the force is shared, or no position satisfies them all");
+  }
   if (here.same_rate) {
     what += others.empty() ? "follows from the constraints that fix its coordinates"
                            : "follows from " + others +

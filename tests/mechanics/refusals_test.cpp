@@ -136,6 +136,23 @@ TEST_CASE("mechanics rejects: a constraint that is an earlier one and a constant
   }
 }
 
+TEST_CASE("mechanics rejects: gradients that depend on others by the state, without a claim about the values") {
+  const auto pair = [](const std::string& first, const std::string& second) {
+    return refusal(
+        "format = 1\n[parameters]\nL = 2\n[[particle]]\nname = \"P\"\nmass = 1\n"
+        "position = { cartesian = [\"x\", \"y\", \"z\"] }\n"
+        "[[constraint]]\nname = \"circle\"\nholonomic = \"" +
+        first + "\"\n[[constraint]]\nname = \"other\"\nholonomic = \"" + second + "\"\n");
+  };
+  // A contradiction, the same circle, one of two branches.
+  for (const char* other : {"sqrt(x^2 + y^2) - 2*L", "sqrt(x^2 + y^2) - L", "(x^2 + y^2 - L^2)*(x^2 + y^2 + 1)"}) {
+    CAPTURE(std::string(other));
+    CHECK(pair("x^2 + y^2 - L^2", other).message ==
+          "constraint 'other' has a gradient that follows from those of 'circle', with coefficients that depend on the "
+          "state: it follows from them, or contradicts them");
+  }
+}
+
 TEST_CASE("mechanics rejects: a contradiction with several constraints") {
   const Refusal ring = refusal(
       "format = 1\n[parameters]\nL = 2\n[[particle]]\nname = \"P\"\nmass = 1\n"
