@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "analysis/sensitivities.hpp"
+#include "cli/animation_file.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
@@ -27,7 +28,7 @@ namespace eomgen::cli {
 namespace {
 
 struct Options : SceneOptions {
-  std::string model, out, plot, approach = "auto", form = "auto", tier = "auto", estimate = "bounded";
+  std::string model, out, plot, animation, approach = "auto", form = "auto", tier = "auto", estimate = "bounded";
   std::vector<std::string> sensitivity, plot_of;
   std::size_t max_steps = 0;
   bool no_error_estimate = false, no_charts = false, yes = false;
@@ -131,6 +132,8 @@ int execute(const Options& options, const CommonOptions& common) {
   if (!options.out.empty()) places.push_back({"--out", options.out, ".csv"});
   const PlotFile plot(options.plot);
   if (plot.wanted()) places.push_back(plot.target());
+  AnimationFile animation(options.animation);
+  if (animation.wanted()) places.push_back(animation.target());
   require_writable_targets(places, locate_model(options.model), common.json);
   pipeline::SimulationRequest request;
   request.model = load_model(options.model);
@@ -158,8 +161,14 @@ int execute(const Options& options, const CommonOptions& common) {
     throw Error("run", {}, "--plot-of says what is plotted, and there is no plot",
                 "add --plot F.svg, or --plot - for characters");
   }
-  request.prepare = [&options](pipeline::DerivedModel& derived) { return plotted_outputs(options, derived); };
-  if (!options.out.empty() || plot.wanted()) {
+  request.prepare = [&](pipeline::DerivedModel& derived) {
+    std::vector<std::string> names = plotted_outputs(options, derived);
+    if (!animation.wanted()) return names;
+    const std::vector<std::string> drawn = animation.prepare(derived);
+    names.insert(names.end(), drawn.begin(), drawn.end());
+    return names;
+  };
+  if (!options.out.empty() || plot.wanted() || animation.wanted()) {
     request.begin = [&](const pipeline::DerivedModel& derived, const run::Scene& scene,
                         const std::vector<std::string>& names) {
       std::vector<Panel> panels;
@@ -167,8 +176,13 @@ int execute(const Options& options, const CommonOptions& common) {
         panels = options.plot_of.empty() ? coordinate_panels(derived.candidates.front().outputs)
                                          : chosen_panels(derived.candidates.front().outputs, options.plot_of);
       rows.emplace(options.out, panels, options.yes, derived, scene, names);
+      if (animation.wanted())
+        animation.begin(names, pipeline::expected_rows(scene.t0, scene.t1, pipeline::row_interval(scene)));
     };
-    request.row = [&rows](double t, std::span<const double> y) { (*rows)(t, y); };
+    request.row = [&](double t, std::span<const double> y) {
+      (*rows)(t, y);
+      if (animation.wanted()) animation.row(t, y);
+    };
   }
   const pipeline::Simulation simulation = simulate_until_interrupted(request);
   progress.wipe();
@@ -176,8 +190,9 @@ int execute(const Options& options, const CommonOptions& common) {
   if (rows) rows->finish(simulation.result.outcome);
   std::vector<WrittenFile> files;
   if (rows && rows->table() != nullptr) files.push_back({options.out, rows->table()->rows(), rows->table()->bytes()});
+  const std::string title = model.title.empty() ? model.id : model.title;
+  if (animation.wanted()) files.push_back({options.animation, std::nullopt, animation.write(simulation, title)});
   if (plot.wanted()) {
-    const std::string title = model.title.empty() ? model.id : model.title;
     const std::uint64_t bytes =
         plot.write([&] { return rows->plot().svg(title, simulation.result); },
                    [&](std::size_t columns) { return rows->plot().text_plot(title, simulation.result, columns); });
@@ -223,6 +238,8 @@ Execute declare_run(Arguments& app) {
   app.add_option("--plot-of", options->plot_of,
                  "what is plotted: a name, or x,x_dot for a phase plane; may be repeated")
       .repeated();
+  app.add_output_path("--animation", options->animation,
+                      "keyframes of the moving system for studios such as Blender: a glTF file, .glb");
   app.add_flag("--yes", options->yes, "writes a table however large it is");
   app.add_list("--sensitivity", options->sensitivity,
                "derivatives of the end by these parameters and values of the start");
