@@ -8,6 +8,7 @@
 
 #include "mechanics/dependent_coordinates.hpp"
 #include "reading/approaches.hpp"
+#include "reading/constrained_roots.hpp"
 #include "reading/forms.hpp"
 #include "reading/lagrangian.hpp"
 #include "reading/no_value.hpp"
@@ -95,6 +96,29 @@ void add_constraints(const Mechanics& m, GinacBridge& bridge, Extent extent, Dis
   }
 }
 
+/// Writes powers of sums whose value a constraint gives. The derivatives have been taken, so that equations, forces and
+/// rates may use it. Left out beyond the budget.
+void write_constrained_roots(const Mechanics& m, GinacBridge& bridge, DisplayForm& form) {
+  std::vector<Sum> psi;
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (!m.constraints[k].holonomic() || !m.is_independent(k) || m.constraints[k].unilateral) continue;
+    within_budget([&] { psi.push_back(bridge.sum(m.constraints[k].psi)); });
+  }
+  const ConstrainedRoots shorter(std::move(psi));
+  const auto shorten = [&](Sum& sum) { within_budget([&] { sum = shorter(sum); }); };
+  for (Equation& equation : form.equations) {
+    for (Sum* part : {&equation.slope, &equation.force, &equation.expanded}) shorten(*part);
+    for (MultiplierTerm& term : equation.multipliers) shorten(term.slope);
+  }
+  for (DisplayReaction& reaction : form.reactions) {
+    if (reaction.value) shorten(*reaction.value);
+  }
+  for (DisplayConstraint& c : form.constraints) {
+    shorten(c.rate);
+    shorten(c.acceleration);
+  }
+}
+
 /// The rotations; in Approach II with the constraints imposed. Throws work::BudgetExceeded.
 std::vector<DisplayRotation> add_rotations(const Mechanics& m, GinacBridge& bridge, DisplayForm& form) {
   std::vector<DisplayRotation> body_rotations;
@@ -155,6 +179,7 @@ DisplayForm derive_display_form(const Mechanics& given, system::Approach approac
     leave_unexpanded(m, form, over.what());
   }
   if (extent == Extent::whole || !form.is_unexpanded) add_constraints(m, bridge, extent, form);
+  write_constrained_roots(m, bridge, form);
   return form;
 } catch (const std::domain_error&) {
   throw no_value_error(given);
