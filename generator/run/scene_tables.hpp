@@ -3,8 +3,7 @@
 // mass matrix. In: equations and a scene of the model. Out: tables, which are kept for further runs of the scene.
 #pragma once
 
-#include <eom/hybrid/jumps.hpp>
-#include <eom/hybrid/time_analysis.hpp>
+#include <eom/hybrid/problem.hpp>
 #include <list>
 #include <optional>
 #include <vector>
