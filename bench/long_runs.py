@@ -106,7 +106,7 @@ def scene_rows(eomgen, folder, limit, solvers, index):
             row.runs[count] = found
             if 10 * found["seconds"]["integrate"] > limit:
                 break
-        print(f"{title}: {name} {setting}: {max(row.runs, default=0)} {row.told}", file=sys.stderr)
+        print(f"{title}: {name} {setting}: {max(row.runs, default=0)} {row.note}", file=sys.stderr)
         yield row
 
 
@@ -116,7 +116,7 @@ def table(rows, index):
              "| solver | steps a period, or tolerance | energy: 1 | 1e2 | 1e4 | 1e6 periods | growth | momentum | growth | constraints | growth | periods | steps | s | ended by |",
              "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|"]
     lines += ["| " + " | ".join(row.cells()) + " |" for row in rows if row.runs]
-    lines += [f"\n`{row.name}` ({row.setting}): {row.told}." for row in rows if not row.runs]
+    lines += [f"\n`{row.name}` ({row.setting}): {row.note}." for row in rows if not row.runs]
     return lines + [""]
 
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cancellation, operation budgets and progress of long calculations. The stop request and the name of the current
 // stage are global to the process, like the signal and the terminal. Budgets belong to the calculating thread. Hot
-// loops call work::spend, which costs one subtraction.
+// loops call work::consume_budget, which costs one subtraction.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,8 @@
 
 namespace eomgen::work {
 
-/// Thrown by work::spend after a request to stop. It is not a std::exception, so that error recovery does not catch it.
+/// Thrown by work::consume_budget after a request to stop. It is not a std::exception, so that error recovery does not
+/// catch it.
 struct Interrupted {};
 
 /// A result that is not computed, and the reason: "acceleration of roll.1", "too many terms to be written out".
@@ -21,7 +22,7 @@ struct LeftOut {
   bool over_budget = true;  // false: it does not apply
 };
 
-/// Thrown by work::spend when a budget is exhausted.
+/// Thrown by work::consume_budget when a budget is exhausted.
 struct BudgetExceeded : std::length_error {
   using std::length_error::length_error;
 };
@@ -29,9 +30,9 @@ struct BudgetExceeded : std::length_error {
 /// Requests the process to stop. Safe in a signal handler.
 void request_stop() noexcept;
 
-/// Defers interruption while it exists: the owner handles a request to stop, work::spend does not throw for it, and no
-/// progress is shown. It concerns the work of the listener of this thread if that listener has a stop flag of its own,
-/// else the process. It ends in the thread that made it.
+/// Defers interruption while it exists: the owner handles a request to stop, work::consume_budget does not throw for
+/// it, and no progress is shown. It concerns the work of the listener of this thread if that listener has a stop flag
+/// of its own, else the process. It ends in the thread that made it.
 class DeferInterrupt {
  public:
   DeferInterrupt() noexcept;

@@ -21,7 +21,7 @@ class ResetsInDigits {
   ResetsInDigits(const program::Program& program, const system::EquationSystem& system, const ImpulseInDigits& impulses,
                  const run::RunRequest& request);
 
-  /// Where functions are evaluated: x is (q, qdot, first-order states, discrete values).
+  /// Arguments of the functions: x is (q, qdot, first-order states, discrete values).
   struct Point {
     cln::cl_F t;
     std::vector<double> u;

@@ -29,7 +29,7 @@ struct SteadyProblem {
   const system::EquationSystem& system() const { return derived->candidates.front(); }
 };
 
-/// What unilateral constraints may be for equations without a mode: absent, or open at the state.
+/// State of unilateral constraints for equations without a mode: absent, or open at the state.
 enum class Contacts { none, open };
 
 /// Throws Error{stage `command`} if contacts make the equations depend on a mode, or if a derivation fails the check

@@ -48,7 +48,7 @@ std::vector<Neighbour> neighbours(const SteadyProblem& p, std::initializer_list<
 }
 
 /// Conserved at these parameters: the rate vanishes in multiple precision at points near the start.
-bool is_kept(const SteadyProblem& p, const std::vector<Neighbour>& neighbours, const Quantity& quantity) {
+bool is_conserved(const SteadyProblem& p, const std::vector<Neighbour>& neighbours, const Quantity& quantity) {
   const linear::Tape tape = p.flow->tape({quantity.expression});
   for (const auto& [z, setting, field] : neighbours) {
     linear::ValueAndJacobian<Precise> s;
@@ -93,15 +93,15 @@ std::vector<Quantity> candidates(const SteadyProblem& p, bool energies) {
   return result;
 }
 
-struct Kept {
+struct ConservedQuantities {
   std::vector<Quantity> energies, momenta;
 };
 
-Kept kept_quantities(const SteadyProblem& p) {
-  Kept kept{candidates(p, true), candidates(p, false)};
+ConservedQuantities conserved_quantities(const SteadyProblem& p) {
+  ConservedQuantities kept{candidates(p, true), candidates(p, false)};
   const std::vector<Neighbour> beside = neighbours(p, {21, 22, 23});
   for (auto* list : {&kept.energies, &kept.momenta})
-    std::erase_if(*list, [&](const Quantity& q) { return !is_kept(p, beside, q); });
+    std::erase_if(*list, [&](const Quantity& q) { return !is_conserved(p, beside, q); });
   return kept;
 }
 
@@ -256,7 +256,7 @@ void require_ends(const SteadyMotions& result, std::size_t most) {
       "put a smooth law in place of the one that has a kink or a root there, or begin the search at another start");
 }
 
-void classify_stability(SteadyMotions& result, const SteadyRequest& request, const Kept& kept) {
+void classify_stability(SteadyMotions& result, const SteadyRequest& request, const ConservedQuantities& kept) {
   SteadyProblem& p = result.problem;
   const linear::StabilityTest test(*p.flow, *p.derived->mechanics.dag, kept.energies, kept.momenta);
   if (result.search.failed_starts > 0) {
@@ -301,7 +301,7 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
                                  request.starts, request.seed, request.progress};
     for (const std::uint32_t i : p.system().free) search.ranges.push_back({p.scene.lower[i], p.scene.upper[i]});
     name_attitudes(p, search);
-    const Kept quantities = kept_quantities(p);
+    const ConservedQuantities quantities = conserved_quantities(p);
     hold(result, request, quantities.momenta, search);
     {
       const work::Stage stage("looking for equilibria and steady motions");

@@ -88,7 +88,7 @@ class Variation {
   const run::Code& code_;
 };
 
-/// What is wrong with `repeated`, a model that states constraint `name` of `given` a second time; empty if nothing is.
+/// Defect of `repeated`, a model that states constraint `name` of `given` a second time; empty if there is none.
 std::string fault_of_repetition(const mechanics::Mechanics& given, const mechanics::Mechanics& repeated,
                                 const std::string& name) {
   const auto independent = [](const mechanics::Mechanics& m) { return m.active.size() + m.fixed.size(); };

@@ -74,7 +74,7 @@ void require_extension(const OutputTarget& place) {
   if (chooses ? extension.size() < 2 || extension == place.alternative_extension : !is_known) return;
   const auto named = [&](const std::string& other) { return fs::path(place.path).replace_extension(other).string(); };
   refuse(place,
-         fmt::format("this option writes {}{}, and the name says {}", place.extension.substr(1),
+         fmt::format("this option writes {}{}, and the name ends with {}", place.extension.substr(1),
                      chooses ? " or " + place.alternative_extension.substr(1) : "", extension.substr(1)),
          "name it " + named(place.extension) + (chooses ? " or " + named(place.alternative_extension) : ""));
 }
@@ -177,7 +177,7 @@ void require_folder(const std::string& folder) {
   if (fs::exists(folder, none) && !fs::is_directory(folder, none))
     refuse(place, "this is a file, and a folder is asked", "name a folder; the files have their own names");
   if (of_a_file && !fs::is_directory(folder, none))
-    refuse(place, fmt::format("a folder is asked, and the name says {}", extension.substr(1)),
+    refuse(place, fmt::format("a folder is required, and the name ends with {}", extension.substr(1)),
            "name a folder; the files have their own names");
 }
 

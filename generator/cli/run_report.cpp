@@ -64,7 +64,7 @@ std::string final_values(const pipeline::Simulation& simulation) {
   return out;
 }
 
-constexpr std::size_t most_changes_told = 6;
+constexpr std::size_t most_changes_shown = 6;
 
 std::string implicit_cost(const eom::Statistics& cost) {
   std::string text = fmt::format("df/dx {} times, {} factorisations", cost.jacobians, cost.factorisations);
@@ -235,7 +235,7 @@ std::string RunReport::text() const {
                                      result.detail.empty() ? "" : ": ", result.detail));
   for (std::size_t k = 0; k < result.reason.changes.size(); ++k) {
     const eom::MethodChange& c = result.reason.changes[k];
-    if (k == most_changes_told) {
+    if (k == most_changes_shown) {
       out += line("solver change", fmt::format("and {} more", result.reason.changes.size() - k));
       break;
     }

@@ -58,7 +58,7 @@ void require_command(std::span<char* const> words, const std::vector<std::string
   std::error_code none;
   if (word.ends_with(".toml") || std::filesystem::is_regular_file(word, none)) {
     throw Error("usage", {}, fmt::format("a command is missing before {}", model::quote(word)),
-                fmt::format("eomgen check {0} says what the model is, eomgen derive {0} shows its equations, eomgen "
+                fmt::format("eomgen check {0} describes the model, eomgen derive {0} shows its equations, eomgen "
                             "run {0} integrates it",
                             word));
   }

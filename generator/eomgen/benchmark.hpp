@@ -11,6 +11,7 @@
 
 namespace eomgen {
 
+/// Options of Model::benchmark().
 struct BenchmarkOptions {
   std::string scene = "default";
   std::map<std::string, double> parameters = {};  // replace the scene's values; SI units
@@ -40,6 +41,7 @@ struct Benchmark {
   bool conclusive = false;   // a solver finished, and the reference solution is accurate enough
 };
 
+/// Options of Model::stress_test().
 struct StressOptions {
   std::string scene = "default";
   std::map<std::string, double> parameters = {};

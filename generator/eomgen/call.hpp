@@ -25,9 +25,12 @@ std::recursive_mutex& library_mutex();
 /// Forwards progress and warnings of one call to its CallControl, and its stop request to the stages.
 class CallListener : public work::Listener {
  public:
+  /// `control` must outlive this object.
   explicit CallListener(const CallControl& control);
 
+  /// True after a stop request; stages poll it.
   const std::atomic<bool>* stopped() const { return &stopped_; }
+  /// The callback for progress in [0, 1]; may be empty.
   std::function<void(double)> progress() const { return control_.on_progress; }
   void on_stage(const char* stage) override {
     if (control_.on_stage) control_.on_stage(stage);
@@ -65,11 +68,14 @@ auto with_lock(const CallControl& control, Work&& work) {
   return with_listener(control, std::forward<Work>(work));
 }
 
+/// The same choice as an argument of the stages.
 pipeline::ApproachChoice approach_choice(Approach approach);
 /// Converts each value to the exact shortest decimal that denotes it, as on the command line. Throws Error for values
 /// that are not finite.
 std::map<std::string, symbolic::Rational> exact_rationals(const std::map<std::string, double>& values);
+/// Copies a printed formula to the public structure.
 Formula formula_of(const print::PrintedFormula& item);
+/// Copies a list of skipped results to the public structure.
 std::vector<LeftOut> omissions_of(const std::vector<work::LeftOut>& list);
 
 }  // namespace eomgen

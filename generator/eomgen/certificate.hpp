@@ -10,6 +10,7 @@
 
 namespace eomgen {
 
+/// Options of Model::verify().
 struct VerifyOptions {
   int digits = 50;          // decimal digits of the arithmetic, 20 to 300
   std::size_t points = 20;  // random states, at least 1

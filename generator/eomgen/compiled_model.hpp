@@ -20,6 +20,7 @@ namespace eomgen {
 
 class Model;
 
+/// Options of Model::compile().
 struct CompileOptions {
   std::string scene = "default";
   std::map<std::string, double> parameters = {};  // replace the scene's values and initial values; SI units
@@ -53,6 +54,7 @@ struct SceneValues {
 /// U inputs; m constraints with multipliers; E events.
 class CompiledModel {
  public:
+  /// Name of the scene that gives the numbers.
   const std::string& scene() const;
   const std::vector<Quantity>& states() const;          // N
   const std::vector<Quantity>& parameters() const;      // P
@@ -74,6 +76,7 @@ class CompiledModel {
   /// The scene's inputs at t; at a jump the values after it.
   std::vector<double> input_values(double t) const;
 
+  /// Arguments of the functions below, in SI units.
   struct Arguments {
     double t = 0;
     const double* x = nullptr;           // N

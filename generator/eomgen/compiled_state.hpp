@@ -10,12 +10,16 @@
 
 namespace eomgen {
 
+/// The shared data of a CompiledModel and its copies.
 struct CompiledModel::State {
   /// To be called under the lock.
   State(PreparedRun from, std::shared_ptr<PreparedRuns> cache);
 
+  /// The functions of the C ABI (docs/abi.md).
   const abi::CompiledFunctions& functions() const { return run.compilation->code.functions(); }
+  /// The scene with its numbers.
   const run::Scene& scene() const { return run.plan->scene; }
+  /// The functions in the form that a run needs.
   const run::Code& code() const { return bound->code(); }
 
   std::shared_ptr<PreparedRuns> runs;

@@ -31,6 +31,7 @@ struct Multiplier {
   std::string name, latex, constraint, meaning;  // "lambda", "\lambda", label of the constraint, a phrase
 };
 
+/// Options of Model::equations().
 struct EquationsOptions {
   Approach approach = Approach::automatic;
   /// Formula keys, as in `eomgen derive --show`. "all": every key except "kinematics", "linear", "routh", "solved",
@@ -38,6 +39,7 @@ struct EquationsOptions {
   std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
 };
 
+/// Result of Model::equations().
 struct Equations {
   std::string approach;  // "I" or "II"
   std::vector<Formula> formulas;
@@ -47,6 +49,7 @@ struct Equations {
 
   /// The formulas of one key, one a line.
   std::string text(const std::string& key = "equations") const { return lines(key, &Formula::text); }
+  /// The same as LaTeX.
   std::string latex(const std::string& key = "equations") const { return lines(key, &Formula::latex); }
 
  private:

@@ -15,6 +15,7 @@
 
 namespace eomgen {
 
+/// Options of Model::run(). An option without a value has that of the scene.
 struct RunOptions {
   std::string scene = "default";
   std::map<std::string, double> parameters = {};  // replace the scene's values; SI units
@@ -82,6 +83,7 @@ struct Motion {
 /// Names of all solvers, for RunOptions::solver.
 std::vector<std::string> solvers();
 
+/// Options of Model::inverse_dynamics(), as those of RunOptions.
 struct InverseOptions {
   std::string scene = "default";
   std::map<std::string, double> parameters = {};

@@ -15,6 +15,7 @@ namespace eomgen {
 
 /// Deletes under the lock: the objects of computer algebra in T share their parts with others.
 struct LockedDelete {
+  /// Takes the lock and deletes the object.
   template <class T>
   void operator()(T* object) const {
     const std::scoped_lock lock(library_mutex());
@@ -35,6 +36,7 @@ struct PreparedRun {
 /// The latest results of the stages before an integration. All functions are called under the lock.
 class PreparedRuns {
  public:
+  /// `model`: the model of all runs.
   explicit PreparedRuns(std::shared_ptr<const model::Model> model) : model_(std::move(model)) {}
   /// with_constraints: the code has the functions about constraints, if the model has any.
   PreparedRun prepare(pipeline::SimulationRequest request, bool with_constraints = false);

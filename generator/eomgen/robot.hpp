@@ -26,6 +26,7 @@ struct RobotOmission {
   std::size_t count = 0, line = 0;
 };
 
+/// Result of import_robot().
 struct RobotModel {
   std::string robot, text;  // the name of the robot; the model file
   std::vector<std::string> coordinates, inputs;

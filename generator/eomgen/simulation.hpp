@@ -18,6 +18,7 @@
 
 namespace eomgen {
 
+/// Options of a Simulation. An option without a value has that of the scene or of the compiled model.
 struct SimulationOptions {
   std::map<std::string, double> parameters = {};   // replace values and initial values of the compiled model; SI units
   std::optional<double> rtol = {}, atol = {};      // the scene's
@@ -66,6 +67,7 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
+  /// The compiled model, which this simulation shares.
   const CompiledModel& model() const;
   double t() const;                               // s
   std::vector<double> state() const;              // N

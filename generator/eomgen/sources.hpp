@@ -10,6 +10,7 @@
 
 namespace eomgen {
 
+/// Options of Model::emit().
 struct EmitOptions {
   std::string target = "cpp";  // one of targets()
   Approach approach = Approach::automatic;
@@ -23,6 +24,7 @@ struct EmitOptions {
   std::string real_type = "double";  // "double" or "float" (docs/abi.md, "Single precision")
 };
 
+/// One generated file.
 struct SourceFile {
   std::string name;  // without folder
   std::string text;

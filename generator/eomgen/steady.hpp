@@ -10,6 +10,7 @@
 
 namespace eomgen {
 
+/// Options of Model::linearise().
 struct LineariseOptions {
   std::string scene = "default";
   std::map<std::string, double> parameters = {};
@@ -32,6 +33,7 @@ struct Linearisation {
   std::string certificate;
 };
 
+/// Options of Model::steady_motions().
 struct SteadyOptions {
   std::string scene = "default";
   std::map<std::string, double> parameters = {};

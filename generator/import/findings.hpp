@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an import leaves out or changes: one entry for each kind, with the number of places and the first of them.
+// Elements that an import leaves out or changes: one entry for each kind, with the number of places and the first of
+// them.
 #pragma once
 
 #include <algorithm>

@@ -107,7 +107,7 @@ Matrix rotation(const Vector& rpy) {
 
 Vector angles_of(const Matrix& R) {
   const long double down = std::clamp(-R[2][0].value, -1.0L, 1.0L);
-  // Where the pitch is a right angle, roll and yaw turn about one axis: the roll is 0.
+  // At a pitch of a right angle, roll and yaw turn about one axis: the roll is set to 0.
   if (std::fabs(down) > 1 - 1e-15L) {
     return {Number(), named_angle(down > 0 ? pi / 2 : -pi / 2), named_angle(std::atan2(-R[0][1].value, R[1][1].value))};
   }

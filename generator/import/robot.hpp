@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A robot as its file describes it: links and joints, not yet a tree. What readers of formats produce.
+// A robot as its file describes it: links and joints, not yet a tree. Readers of formats produce it.
 #pragma once
 
 #include <optional>

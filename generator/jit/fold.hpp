@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What gcc does at -O2 to the emitted C beside translating it, as far as it changes bits: values that depend on
-// constants alone are rounded once, where the C library may be wrong in the last place; sines and cosines of
-// arctangents become algebraic (gcc/match.pd). Functions that are cut into parts (program/parts.hpp) are looked at part
-// by part.
+// Optimisations of gcc -O2 that change bits of results of the emitted C: values that depend on constants alone are
+// rounded once, where the C library may be wrong in the last place; sines and cosines of arctangents become algebraic
+// (gcc/match.pd). Functions that are cut into parts (program/parts.hpp) are optimised part by part.
 #pragma once
 
 #include <optional>

@@ -22,7 +22,7 @@ inline constexpr std::uint32_t contact_state_mask = 7;
 const double* contact_signs(std::size_t order);
 
 using ChartFunction = int (*)(const double* x, double* y);
-/// What the function `chart` is made of (docs/abi.md, "Charts").
+/// Parts of the function `chart` (docs/abi.md, "Charts").
 struct ChartExchange {
   std::size_t states = 0;
   std::size_t first_entry = 0;                   // of `mode`
@@ -31,14 +31,14 @@ struct ChartExchange {
 int exchange_charts(const double* x, const int* mode, const int* to, double* y, const ChartExchange* charts);
 
 using PrepareFunction = int (*)(const double* p, double* w);
-/// What the function `prepare` is made of in code with several charts.
+/// Parts of the function `prepare` in code with several charts.
 struct PrepareInCharts {
   std::vector<PrepareFunction> functions;
   std::vector<std::size_t> offsets;  // in w
 };
 int prepare_in_charts(const double* p, double* w, const PrepareInCharts* charts);
 
-/// What the function `taylor` is made of (program/taylor.hpp).
+/// Parts of the function `taylor` (program/taylor.hpp).
 struct TaylorSeries {
   int (*start)(double, const double*, const double*, const double*, const int*, double*, double*) = nullptr;
   int (*next)(double, const double*, const double*, double*, double*, double*) = nullptr;

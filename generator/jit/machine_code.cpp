@@ -19,7 +19,7 @@ namespace eomgen::jit {
 using program::Function;
 using program::Program;
 
-/// What the code refers to by its address.
+/// Data to which the code refers by address.
 struct MachineCode::Parts {
   Constants constants;
   std::vector<double> default_inputs;

@@ -46,9 +46,9 @@ class Operands {
     written_.steps.push_back({action, target, source, extra});
   }
   Location constant(double value) { return {Place::constant, constants_.index(value)}; }
-  /// Where the unsigned value of an operand is.
+  /// The place of the unsigned value of an operand.
   Location location(const Operand& operand);
-  /// Where the signed value of an operand is; in `copies` if it had to be negated.
+  /// The place of the signed value of an operand; in `copies` if it had to be negated.
   Location signed_location(const Operand& operand, std::vector<std::uint8_t>& copies);
   /// A register with the signed value of an operand, to be overwritten or released.
   std::uint8_t copy(const Operand& operand);

@@ -37,7 +37,7 @@ class Registers {
   void move_to(std::uint32_t position) { position_ = position; }
 
   Location location(std::uint32_t value) const;
-  /// Where a stored value is in the scratch array.
+  /// The place of a stored value in the scratch array.
   Location memory(std::uint32_t value) const { return {Place::scratch, value_[value].scratch}; }
   bool in_register(std::uint32_t value) const { return value_[value].reg != none; }
   /// Whether nothing after the current position needs the value.

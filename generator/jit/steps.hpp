@@ -13,7 +13,7 @@ namespace eomgen::jit {
 
 inline constexpr std::size_t register_count = 16;
 
-/// Where a value is: in a register, in the scratch array, in an argument of the function, among the constants.
+/// The place of a value: in a register, in the scratch array, in an argument of the function, among the constants.
 enum class Place : std::uint8_t { register_, scratch, state, parameter, prepared, input, constant, result };
 struct Location {
   Place place = Place::register_;

@@ -116,17 +116,17 @@ void join(Pattern<T>& pattern, const Matrix<T>& A, const T& small) {
 
 /// Drops positions, pure integrals among the states of first order, and the time if no retained entry depends on them.
 template <class T>
-std::vector<bool> retained_of(const Pattern<T>& feels, std::size_t positions, std::size_t first_order) {
-  const std::size_t size = feels.size();
+std::vector<bool> retained_of(const Pattern<T>& depends, std::size_t positions, std::size_t first_order) {
+  const std::size_t size = depends.size();
   std::vector<bool> retained(size + 1, true);
   for (std::size_t k = 0; k < positions; ++k) retained[k] = false;
-  for (std::size_t k = size - first_order; k < size; ++k) retained[k] = feels[k][k];
+  for (std::size_t k = size - first_order; k < size; ++k) retained[k] = depends[k][k];
   retained[size] = false;
   for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t j = 0; j < size; ++j) {
       for (std::size_t k = 0; retained[j] && k <= size; ++k) {
-        if (!feels[j][k] || retained[k]) continue;
+        if (!depends[j][k] || retained[k]) continue;
         retained[k] = changed = true;
       }
     }
@@ -136,9 +136,9 @@ std::vector<bool> retained_of(const Pattern<T>& feels, std::size_t positions, st
 
 template <class T>
 std::vector<bool> retained_in(const std::vector<Field<T>>& fields, const Chart& chart, const T& small) {
-  Pattern<T> feels;
-  for (const Field<T>& field : fields) join(feels, reduced_jacobian(field, chart, tangent(field, chart)), small);
-  return retained_of<T>(feels, chart.positions, chart.first_order);
+  Pattern<T> depends;
+  for (const Field<T>& field : fields) join(depends, reduced_jacobian(field, chart, tangent(field, chart)), small);
+  return retained_of<T>(depends, chart.positions, chart.first_order);
 }
 
 Field<double> rounded(const Field<Precise>& f) {
@@ -154,12 +154,12 @@ std::uint64_t hash_mix(std::uint64_t x) {  // splitmix64
 
 /// Entries of z that depend on the retained ones alone.
 Places constants(const std::vector<Field<Precise>>& fields, const Chart& chart, const std::vector<bool>& retained) {
-  Pattern<Precise> feels;
-  for (const Field<Precise>& field : fields) join(feels, tangent(field, chart), tiny<Precise>(50));
+  Pattern<Precise> depends;
+  for (const Field<Precise>& field : fields) join(depends, tangent(field, chart), tiny<Precise>(50));
   Places result;
-  for (std::size_t i = 0; i + 1 < feels.size(); ++i) {
+  for (std::size_t i = 0; i + 1 < depends.size(); ++i) {
     bool kept = true;
-    for (std::size_t k = 0; k < retained.size(); ++k) kept = kept && (!feels[i][k] || retained[k]);
+    for (std::size_t k = 0; k < retained.size(); ++k) kept = kept && (!depends[i][k] || retained[k]);
     if (kept) result.push_back(i);
   }
   return result;

@@ -26,7 +26,7 @@ Matrix<T> tangent(const Field<T>& field, const Chart& chart);
 template <class T>
 Matrix<T> reduced_jacobian(const Field<T>& field, const Chart& chart, const Matrix<T>& tangent);
 
-/// Symmetries near a point, judged from several nearby points.
+/// Symmetries near a point, determined from several nearby points.
 struct Symmetry {
   Chart chart;
   std::vector<bool> retained;  // per entry of y: the accelerations depend on it, directly or through other entries

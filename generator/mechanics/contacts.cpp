@@ -138,7 +138,7 @@ class ContactReader {
       }
     }
     if (choose_place(named_places(), needed) || choose_place(particle_places(), needed)) return;
-    fail("'" + contact_.name + "' touches no particle: none has all coordinates of the constraint",
+    fail("'" + contact_.name + "' is in contact with no particle: none has all coordinates of the constraint",
          "friction acts where a particle or a point is held on a surface or a curve: write the constraint with it, as "
          "dot(P, E1); for a coordinate alone write a force dry = { .. }");
   }

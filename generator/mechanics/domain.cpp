@@ -71,14 +71,14 @@ std::string why_no_number(const Dag& dag, Ref expression, const ParameterValue& 
 
 void require_nonzero_divisor(const Mechanics& m, Ref divisor, const model::Span& place) {
   if (!is_zero_everywhere(*m.dag, divisor)) return;
-  throw Error("mechanics", m.model->where(place), "this divides by 0, whatever the state and the time",
+  throw Error("mechanics", m.model->where(place), "this divides by 0, at every state and time",
               "check the denominator; of a force between two points that these are not one and the same");
 }
 
 void require_nonzero_length(const Mechanics& m, Ref length, const model::Span& place) {
   if (!is_zero_everywhere(*m.dag, length)) return;
   throw Error("mechanics", m.model->where(place),
-              "this is the direction of a vector that is 0, whatever the state and the time",
+              "this is the direction of a vector that is 0, at every state and time",
               "give a vector that is not 0, or two points that are not one and the same");
 }
 
@@ -87,7 +87,7 @@ void require_value(const Mechanics& m, Ref expression, const model::Span& place,
   const symbolic::Node& node = dag[expression];
   const auto is_zero = [&](std::size_t i) { return is_zero_everywhere(dag, node.args[i]); };
   const auto refuse = [&](const std::string& what, const char* remedy) {
-    throw Error("mechanics", m.model->where(place), what + ", whatever the state and the time", remedy);
+    throw Error("mechanics", m.model->where(place), what + ", at every state and time", remedy);
   };
   switch (node.op) {
     case Op::sqrt:

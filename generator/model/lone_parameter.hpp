@@ -11,7 +11,7 @@ namespace eomgen::model {
 /// The parameter that an expression consists of, also through definitions and other parameters; none for all others.
 std::optional<std::uint32_t> lone_parameter(const Model& model, NodeId expression);
 
-/// Where the value of an expression stands: at that parameter, at `span` of all other expressions.
+/// The place of the value of an expression: at that parameter; for all other expressions, at `span`.
 Span origin_of(const Model& model, NodeId expression, const Span& span);
 
 }  // namespace eomgen::model

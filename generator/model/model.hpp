@@ -59,7 +59,7 @@ struct State {
   bool discrete = false;
 };
 struct Input {
-  /// What gives the value: a scene, or the contacts of a run (mechanics/contact_forces.hpp).
+  /// Source of the value: a scene, or the contacts of a run (mechanics/contact_forces.hpp).
   enum class Source { scene, contacts };
   std::string name;
   NodeId default_value = no_node;  // the value if a scene gives none

@@ -53,7 +53,7 @@ const Entry& BodiesReader::rotation_entry(const Value& rotation) const {
                    "keep one of them");
     found = &entry;
   }
-  if (found == nullptr) source_.fail(rotation.span, "the rotation says no kind", rotation_form);
+  if (found == nullptr) source_.fail(rotation.span, "the rotation states no kind", rotation_form);
   for (const Entry& entry : rotation.entries) {
     const bool fits = &entry == found || (entry.key == "angles" && found->key == "euler") ||
                       (entry.key == "angle" && found->key == "axis");

@@ -102,8 +102,7 @@ void ConstraintsReader::read_unilateral(Constraint& constraint, const Value& tab
   if (constraint.unilateral && constraint.rolling) {
     source_.fail(
         holds->span,
-        fmt::format("{} can be left and has no friction, so that nothing says what a tangential impulse would be",
-                    what),
+        fmt::format("{} can be left and has no friction, so that the tangential impulse is not defined", what),
         "give it friction = { static = \"..\", dynamic = \"..\" }: where it lands the body slides, and rolls when slip "
         "has ended; or write sliding for a smooth one");
   }

@@ -109,7 +109,7 @@ const Entry& ForcesReader::kind_of(const Value& table) const {
     if (table.find(other) == nullptr || (kind.form == forces::InputFormat::value && has_key(kind, other))) continue;
     source_.fail(key_span(table, other), fmt::format("'{}' does not belong to '{}'", other, kind.name),
                  has_key(kind, other) ? fmt::format("write it within {} = {{ .. }}", kind.name)
-                                      : "'on' says where a force vector acts: force = \"<vector>\", on = P");
+                                      : "'on' names the point where a force vector acts: force = \"<vector>\", on = P");
   }
   return *found;
 }

@@ -104,7 +104,7 @@ DryFriction FrictionReader::read_dry_friction(const Value& table, const std::str
         other->law.width != no_node)
       continue;
     source_.fail(name.span,
-                 fmt::format("{} sticks with '{}' already: how the two share what holds it nothing says",
+                 fmt::format("{} sticks with '{}' already: how the two share the static friction is not defined",
                              quote(name.text), before.name),
                  "write one force whose normal force is that of both");
   }

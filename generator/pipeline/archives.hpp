@@ -28,7 +28,7 @@ struct Archive {
   std::vector<emit::EmittedFile> (*make)(const ArchiveContents& contents);
 };
 
-/// Whoever runs an archive sets all inputs, so those of the scene do not belong to it.
+/// The importer of an archive sets all inputs, so those of the scene do not belong to it.
 std::span<const Archive> archives();
 /// Null if the target is none.
 const Archive* find_archive(const std::string& name);

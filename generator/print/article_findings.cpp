@@ -183,7 +183,7 @@ void write_steady_motions(Article& a) {
                   (found.steady.empty()
                        ? "a search has found no equilibrium and no steady motion."
                        : "a search has found these, in SI units; it does not prove that there are no others.") +
-                  (found.steady.empty() ? "" : " In a steady motion only coordinates that nothing feels advance."));
+                  (found.steady.empty() ? "" : " In a steady motion only ignorable coordinates change."));
   for (const SteadyFinding& s : found.steady) write_steady_motion(a, s);
 }
 

@@ -11,7 +11,7 @@
 namespace eomgen::reading {
 namespace {
 
-constexpr std::size_t factors_a_unit = 8;  // of `work::spend`
+constexpr std::size_t factors_a_unit = 8;  // of `work::consume_budget`
 
 double evaluated_power(double base, int exponent) {
   double result = 1;

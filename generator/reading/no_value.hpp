@@ -9,11 +9,10 @@
 namespace eomgen::reading {
 
 inline Error no_value_error(const mechanics::Mechanics& mechanics) {
-  return Error(
-      "reading", SourceLocation{mechanics.model->file, 0, 0, 1, ""},
-      "an expression of this model has no value, whatever the state and the time: a division by 0, a logarithm "
-      "of 0, a tangent at its pole, the root of a negative number",
-      "check the denominators and the arguments of functions");
+  return Error("reading", SourceLocation{mechanics.model->file, 0, 0, 1, ""},
+               "an expression of this model has no value, at every state and time: a division by 0, a logarithm "
+               "of 0, a tangent at its pole, the root of a negative number",
+               "check the denominators and the arguments of functions");
 }
 
 }  // namespace eomgen::reading

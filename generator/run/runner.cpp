@@ -67,8 +67,8 @@ void report_error(const RunRequest& request, const eom::hybrid::RunResult& run, 
   result.estimate_note = error.note;
   if (error.warning.kind == eom::hybrid::EstimateWarning::Kind::missed_narrow_force) {
     result.estimate_note = fmt::format(
-        "a step after t = {:.6g} goes over a force that is narrow in the state, and sees nothing of it: the estimate "
-        "says nothing; give a shorter --step, or leave it out",
+        "a step after t = {:.6g} goes over a force that is narrow in the state, and does not detect it: the estimate "
+        "is not reliable; give a shorter --step, or leave it out",
         error.warning.t);
   }
   result.estimate_rhs_evaluations = error.rhs_evaluations;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What resolving a scene takes from the equations without its numbers: functions of time, functions that jump, the
-// mass matrix. In: equations and a scene of the model. Out: tables, which are kept for further runs of the scene.
+// Tables that resolving a scene takes from the equations without its numbers: functions of time, functions that jump,
+// the mass matrix. In: equations and a scene of the model. Out: tables, which are kept for further runs of the scene.
 #pragma once
 
 #include <eom/hybrid/problem.hpp>

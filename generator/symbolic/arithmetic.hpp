@@ -15,9 +15,9 @@
 
 namespace eomgen::symbolic {
 
-/// What the std::domain_error of a division by zero says.
+/// Message of the std::domain_error of a division by zero.
 inline constexpr const char* division_by_zero = "division by zero";
-/// What the std::domain_error of an exponential above the exponent range of CLN's floats says.
+/// Message of the std::domain_error of an exponential above the exponent range of CLN's floats.
 inline constexpr const char* exponent_too_large = "the exponential of a number above 1e18";
 
 /// Arithmetic with CLN floats of one format. Exact rationals are rounded once. Throws std::domain_error outside the

@@ -10,7 +10,7 @@
 namespace eomgen::symbolic {
 
 /// True: zero wherever it is defined. False: not zero, or not proven. Roots, logarithms and inverse functions count as
-/// independent of one another. The proof is abandoned beyond the budget of terms or of `effort`.
+/// independent of one another. The proof stops beyond the budget of terms or of `effort`.
 bool is_proven_zero(Dag& dag, Ref expression, ProductBudget* effort = nullptr);
 
 }  // namespace eomgen::symbolic

@@ -30,6 +30,7 @@
 
 namespace eom {
 
+/// The method `auto`: dopri5 or dop853, and radau5 as long as the motion is stiff.
 class Automatic {
   enum class Active { dopri5, dop853, radau5 };
   using Dopri5 = explicit_rk::Method<explicit_rk::Dopri5, System>;

@@ -28,6 +28,7 @@
 
 namespace eom {
 
+/// One run of a method: start, steps, end.
 template <class Method, class Observer, class AfterStep>
 class Run {
  public:

@@ -31,6 +31,7 @@
 
 namespace eom {
 
+/// Estimated error of the end of a run, from repeated runs.
 struct ErrorEstimate {
   std::vector<double> x;            // per component of the end state, absolute; infinite if a repeated run failed
   double max = 0;                   // the largest of them

@@ -8,6 +8,7 @@
 
 namespace eom {
 
+/// A property of a system that decides which methods can integrate it.
 enum class Feature : unsigned {
   jacobian,              // df/dx as a function
   series,                // the Taylor series of its solution
@@ -58,7 +59,9 @@ class Features {
   constexpr Features(std::initializer_list<Feature> features) {
     for (const Feature feature : features) bits_ |= bit(feature);
   }
+  /// Whether the feature is in the set.
   constexpr bool has(Feature feature) const { return (bits_ & bit(feature)) != 0; }
+  /// Whether the set is empty.
   constexpr bool none() const { return bits_ == 0; }
   constexpr Features operator|(Features other) const {
     other.bits_ |= bits_;
@@ -91,6 +94,7 @@ struct Needs {
   const char* alternative = "";           // a method to take if this one is not eligible, and why; empty: explicit
   bool keeps_constraints = false;         // the method satisfies the constraints itself; no projection is needed
 
+  /// The reason to refuse a feature; null if it is not refused.
   constexpr const Refusal* refusal(Feature feature) const {
     for (const Refusal& refused : refuses)
       if (refused.feature == feature) return &refused;

@@ -7,6 +7,7 @@
 
 namespace eom {
 
+/// Lengths of the parts of a state.
 struct StateLayout {
   std::size_t coordinates = 0;  // n: length of q and of v
   std::size_t first_order = 0;  // k: length of z
@@ -19,6 +20,7 @@ struct StateLayout {
   constexpr bool is_rate(std::size_t component) const {
     return component >= rates_begin() && component < first_order_begin();
   }
+  /// Length of x.
   constexpr std::size_t size() const { return discrete_begin() + discrete; }
   /// Components that are neither coordinates nor rates.
   constexpr std::size_t others() const { return first_order + discrete; }

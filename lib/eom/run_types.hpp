@@ -96,6 +96,7 @@ struct StepView {
   void interpolate(double t, std::span<double> x) const { evaluate(interpolant, t, x.data()); }
 };
 
+/// Options of integrate(). Times have the unit of t.
 struct Options {
   double rtol = 1e-9;  // error allowed per step and component: atol + rtol |x|
   double atol = 1e-12;
@@ -117,6 +118,7 @@ struct Options {
   MethodChoice* choice = nullptr;                // of `auto`: output, and the initial value for the next run
 };
 
+/// Counts of the work of a run.
 struct Statistics {
   std::size_t steps = 0;  // accepted
   std::size_t rejected = 0;
@@ -127,7 +129,7 @@ struct Statistics {
   std::size_t difference_evaluations = 0;  // part of rhs_evaluations used for differences; 0 if the function was given
   std::size_t factorisations = 0;          // of the matrices of the implicit step
   std::size_t newton_iterations = 0;
-  std::size_t newton_failures = 0;  // abandoned iterations; the step is retried with a new df/dx or a shorter length
+  std::size_t newton_failures = 0;  // failed iterations; the step is retried with a new df/dx or a shorter length
 
   Statistics& operator+=(const Statistics& other) {
     steps += other.steps;
@@ -143,6 +145,7 @@ struct Statistics {
   }
 };
 
+/// Result of integrate().
 struct Result {
   Outcome outcome = Outcome::done;
   double t = 0;           // the time reached; exactly t1 if the outcome is done

@@ -29,6 +29,7 @@
 
 namespace eom {
 
+/// The functions of a right-hand side as pointers; null or 0 if it has no such member.
 struct System {
   void* self = nullptr;  // the callable
   int (*f)(void* self, double t, const double* x, double* dx) = nullptr;
@@ -41,6 +42,7 @@ struct System {
   std::size_t taylor_states = 0, coordinates = 0, constraints = 0, position_constraints = 0;
   Features extra_features = {};  // those declared by the callable itself
 
+  /// dx = f(t, x). Returns its code.
   int operator()(double t, const double* x, double* dx) const { return f(self, t, x, dx); }
 
   /// Features of a state with `states` components that are not quadratures.

@@ -11,6 +11,7 @@ inline constexpr int no_jacobian_here = -2;
 /// The same for df/dt only: dfdx was written.
 inline constexpr int no_time_derivative_here = -3;
 
+/// rhs(t, x, dx) and jacobian(t, x, dfdx, dfdt) as one callable.
 template <class F, class J>
 struct WithJacobian {
   F rhs;

@@ -210,7 +210,7 @@ void set_mode(At& at, const std::vector<int>& mode) {
     at.mode = mode.front();
 }
 
-/// What a call asks for: one state, or `count` states.
+/// Request of a call: one state, or `count` states.
 struct Call {
   const CompiledModel& model;
   const Function& function;

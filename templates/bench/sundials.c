@@ -43,7 +43,7 @@ static int residual_jacobian(realtype t, realtype c, N_Vector x, N_Vector xdot, 
   return 0;
 }
 
-static void silent(int code, const char* module, const char* function, char* message, void* data) {
+static void discard_message(int code, const char* module, const char* function, char* message, void* data) {
   (void)code, (void)module, (void)function, (void)message, (void)data;
 }
 
@@ -83,7 +83,7 @@ static int cvode(const struct eomgen_task* task, int method, double* x, long* st
   realtype t = task->t0;
   void* memory = CVodeCreate(method, w.context);
   int status = CVodeInit(memory, rhs, task->t0, w.x);
-  CVodeSetErrHandlerFn(memory, silent, NULL);
+  CVodeSetErrHandlerFn(memory, discard_message, NULL);
   CVodeSStolerances(memory, task->rtol, task->atol);
   CVodeSetUserData(memory, &copy);
   CVodeSetMaxNumSteps(memory, most_steps);
@@ -108,7 +108,7 @@ int eomgen_arkode_erk8(const struct eomgen_task* task, double* x, long* steps) {
   struct eomgen_task copy = *task;
   realtype t = task->t0;
   void* memory = ERKStepCreate(rhs, task->t0, w.x, w.context);
-  ERKStepSetErrHandlerFn(memory, silent, NULL);
+  ERKStepSetErrHandlerFn(memory, discard_message, NULL);
   ERKStepSStolerances(memory, task->rtol, task->atol);
   ERKStepSetUserData(memory, &copy);
   ERKStepSetOrder(memory, 8);
@@ -128,7 +128,7 @@ int eomgen_arkode_dirk5(const struct eomgen_task* task, double* x, long* steps) 
   struct eomgen_task copy = *task;
   realtype t = task->t0;
   void* memory = ARKStepCreate(NULL, rhs, task->t0, w.x, w.context);
-  ARKStepSetErrHandlerFn(memory, silent, NULL);
+  ARKStepSetErrHandlerFn(memory, discard_message, NULL);
   ARKStepSStolerances(memory, task->rtol, task->atol);
   ARKStepSetUserData(memory, &copy);
   ARKStepSetOrder(memory, 5);
@@ -152,7 +152,7 @@ int eomgen_ida(const struct eomgen_task* task, double* x, long* steps) {
   void* memory = IDACreate(w.context);
   int status = rhs(task->t0, w.x, w.xdot, &copy);
   if (status == 0) status = IDAInit(memory, residual, task->t0, w.x, w.xdot);
-  IDASetErrHandlerFn(memory, silent, NULL);
+  IDASetErrHandlerFn(memory, discard_message, NULL);
   IDASStolerances(memory, task->rtol, task->atol);
   IDASetUserData(memory, &copy);
   IDASetMaxNumSteps(memory, most_steps);

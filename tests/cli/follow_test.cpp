@@ -78,7 +78,7 @@ position = { cartesian = ["x", 0, 0] }
 generalized = { x = "-(4 + n/10)*1[N/m]*x + F" }
 [discrete]
 n = 0
-kicks = 0
+blows = 0
 w = 0
 F = "0 N"
 [[sample]]
@@ -91,10 +91,10 @@ every = "0.2 s"
 offset = "0.05 s"
 noise = { w = { uniform = 3 } }
 [[event]]
-name = "kick"
+name = "blow"
 when = "n - 4.5"
 direction = "up"
-set = { x_dot = "x_dot + 0.5[m/s]", kicks = "kicks + 1" }
+set = { x_dot = "x_dot + 0.5[m/s]", blows = "blows + 1" }
 [[event]]
 name = "passing"
 when = "x"

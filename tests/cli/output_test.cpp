@@ -45,7 +45,7 @@ TEST_CASE("no option overwrites the model file, under any of its names") {
         Words{"bench", "p.toml", "--svg", "hard.svg"}}) {
     const ChildResult result = expect(2, folder, words);
     CAPTURE(result.err);
-    CHECK((contains(result.err, "this is the model's own file") || contains(result.err, "the name says toml")));
+    CHECK((contains(result.err, "this is the model's own file") || contains(result.err, "the name ends with toml")));
     CHECK(folder.read("p.toml") == oscillator);
   }
   folder.write("model.c", oscillator);
@@ -105,15 +105,15 @@ TEST_CASE("invalid paths, and two results for one path, are refused before any w
   refused({"run", "p.toml", "--out", "-", "--json"}, "standard output has the JSON document");
   refused({"run", "p.toml", "--out", ""}, "names no file");
   refused({"report", "p.toml", "--out", ""}, "names no file");
-  refused({"run", "p.toml", "--out", "x.png"}, "this option writes csv, and the name says png");
-  refused({"run", "p.toml", "--plot", "x.PDF"}, "this option writes svg or png, and the name says pdf");
-  refused({"run", "p.toml", "--plot", "x.data"}, "this option writes svg or png, and the name says data");
-  refused({"bench", "p.toml", "--plot", "x.eps"}, "this option writes svg or png, and the name says eps");
-  refused({"stress", "p.toml", "--plot", "x.csv"}, "this option writes svg or png, and the name says csv");
-  refused({"report", "p.toml", "-o", "x.pdf"}, "this option writes html, and the name says pdf");
+  refused({"run", "p.toml", "--out", "x.png"}, "this option writes csv, and the name ends with png");
+  refused({"run", "p.toml", "--plot", "x.PDF"}, "this option writes svg or png, and the name ends with pdf");
+  refused({"run", "p.toml", "--plot", "x.data"}, "this option writes svg or png, and the name ends with data");
+  refused({"bench", "p.toml", "--plot", "x.eps"}, "this option writes svg or png, and the name ends with eps");
+  refused({"stress", "p.toml", "--plot", "x.csv"}, "this option writes svg or png, and the name ends with csv");
+  refused({"report", "p.toml", "-o", "x.pdf"}, "this option writes html, and the name ends with pdf");
   refused({"sweep", "p.toml", "--grid", "k=1,2", "-o", "x.json"}, "this option writes csv");
-  refused({"bench", "p.toml", "--csv", "x.svg"}, "this option writes csv, and the name says svg");
-  refused({"emit", "p.toml", "-o", "x.c"}, "a folder is asked, and the name says c");
+  refused({"bench", "p.toml", "--csv", "x.svg"}, "this option writes csv, and the name ends with svg");
+  refused({"emit", "p.toml", "-o", "x.c"}, "a folder is required, and the name ends with c");
   refused({"emit", "p.toml", "--out", "p.toml"}, "this is a file, and a folder is asked");
   refused({"run", "p.toml", "--out", std::string(300, 'x')}, "at most 255");
   CHECK(folder.names() == Words{"b.csv", "p.toml"});

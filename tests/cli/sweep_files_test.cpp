@@ -98,7 +98,7 @@ TEST_CASE("sweep: rows that were edited are computed again, with a warning") {
     CHECK(contains(result.err, "1 lines of 'all.csv' are no rows of this sweep"));
     CHECK(folder.read("all.csv") == whole);
   }
-  // What follows the rows is removed.
+  // Text behind the rows is removed.
   for (const std::string& tail :
        {std::string("=cmd|calc\n"), std::string(3 << 20, 'x'), std::string(8 << 20, 'x'), "9" + row.substr(1)}) {
     folder.write("all.csv", whole + tail);

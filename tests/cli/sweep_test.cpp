@@ -443,8 +443,8 @@ TEST_CASE("merge: shards give the bytes of the sweep in one call, interrupted or
   CHECK_FALSE(folder.has("no.csv"));
   refused({"sweep", "oscillator.toml", "--grid", "m=1,2", "--shard", "0/2"}, "is no shard");
   refused({"sweep", "oscillator.toml", "--grid", "m=1,2", "--shard", "3/3"}, "has no runs");
-  refused({"sweep", "oscillator.toml", "--samples", "3"}, "no --sample says of what");
-  refused({"sweep", "oscillator.toml", "--sample", "k=1:2"}, "does not say how many");
+  refused({"sweep", "oscillator.toml", "--samples", "3"}, "no --sample names a parameter");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:2"}, "--samples gives no number");
   refused({"sweep", "oscillator.toml", "--sample", "k=1", "--samples", "3"}, "is no range of samples");
   refused({"sweep", "oscillator.toml", "--sample", "k=1:0:normal", "--samples", "3"}, "is not above 0");
   refused({"sweep", "oscillator.toml", "--sample", "k=-1:1:log", "--samples", "3"}, "goes through 0");

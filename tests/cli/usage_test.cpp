@@ -48,7 +48,7 @@ TEST_CASE("unknown commands and options: the nearest one is suggested") {
       {{"init", "p"}, "there is no command 'init'", "did you mean 'new'?"},
       {{"pendulum.toml"},
        "a command is missing before 'pendulum.toml'",
-       "eomgen check pendulum.toml says what the model is"},
+       "eomgen check pendulum.toml describes the model"},
       {{"run", P2, "-v"}, "there is no option '-v'", "did you mean 'eomgen --version'?"},
       {{"run", P2, "--version"}, "there is no option '--version'", "did you mean 'eomgen --version'?"},
       {{"run", P2, "-s", "x"}, "there is no option '-s'", "did you mean '--s"},

@@ -154,7 +154,7 @@ TEST_CASE("every system: the metric is singular exactly at the documented places
     for (const reading::Factor& factor : parts.content.monomial) factors.emplace_back(factor.atom);
     for (const auto& [factor, exponent] : parts.factors) factors.push_back(factor);
     for (const Sum& factor : factors) {
-      bool positive = false, negative = false, is_told = false;
+      bool positive = false, negative = false, is_reported = false;
       for (int sample = 0; sample < 200; ++sample) {
         Values at = chart.point();
         for (auto& [symbol, value] : at) value = std::uniform_real_distribution<double>(-4, 4)(chart.generator);
@@ -163,9 +163,9 @@ TEST_CASE("every system: the metric is singular exactly at the documented places
       for (const auto& [name, value] : sets) {
         Values at = chart.point();
         at[chart.symbol(name)] = value;
-        is_told = is_told || std::abs(value_of(factor, at)) < exact;
+        is_reported = is_reported || std::abs(value_of(factor, at)) < exact;
       }
-      CHECK((is_told || !(positive && negative)));
+      CHECK((is_reported || !(positive && negative)));
     }
   }
 }

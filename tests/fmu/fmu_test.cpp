@@ -169,7 +169,7 @@ TEST_CASE("fmu: a serialised state continues the motion with the same bits, in t
     const Folder folder;
     const std::unique_ptr<Importer> fmu = fmu_of(folder, "bouncing_ball", version);
     for (const bool co_simulation : {false, true}) {
-      const auto go_on = [&](double from, double to) {
+      const auto advance = [&](double from, double to) {
         if (co_simulation)
           fmu->do_step(from, to - from);
         else
@@ -178,12 +178,12 @@ TEST_CASE("fmu: a serialised state continues the motion with the same bits, in t
       fmu->instantiate(co_simulation);
       fmu->enter_initialization(0);
       fmu->exit_initialization();
-      go_on(0, 0.75);
+      advance(0, 0.75);
       const std::vector<std::uint8_t> bytes = fmu->serialised_state();
       std::vector<double> ends[2];
       for (std::vector<double>& end : ends) {
         fmu->restore(bytes);
-        go_on(0.75, 1.5);
+        advance(0.75, 1.5);
         for (const auto& [name, variable] : fmu->variables())
           if (variable.causality == "output") end.push_back(fmu->get(name));
       }

@@ -51,13 +51,13 @@ TEST_CASE("mechanics rejects: division by 0 in every state, with its place") {
         "1/(y*(sin(x)^2 + cos(x)^2 - 1))", "x/abs(2*(x + y)^2 - 2*x^2 - 2*y^2 - 4*x*y)"}) {
     CAPTURE(std::string(energy));
     const Refusal r = refusal(planar + "[energy]\npotential = \"" + energy + "\"\n");
-    CHECK(r.message == "this divides by 0, whatever the state and the time");
+    CHECK(r.message == "this divides by 0, at every state and time");
     CHECK(r.line == 10);
   }
   const Refusal r = refusal(
       planar +
       "[[particle]]\nname = \"C\"\nmass = \"m\"\nposition = [0, 0, 0]\n[[force]]\ncentral_gravity = { GM = \"1\" }\n");
-  CHECK(r.message == "this divides by 0, whatever the state and the time");
+  CHECK(r.message == "this divides by 0, at every state and time");
   CHECK(r.line == 13);
 }
 
@@ -66,7 +66,7 @@ TEST_CASE("mechanics rejects: the direction of a vector that is 0 in every state
        {"force = \"unit(P - P)\"\non = \"P\"", "linear_actuator = { between = [\"P\", \"x*E1 + y*E2\"], force = 1 }"}) {
     CAPTURE(std::string(force));
     const Refusal r = refusal(planar + "[[force]]\n" + force + "\n");
-    CHECK(r.message == "this is the direction of a vector that is 0, whatever the state and the time");
+    CHECK(r.message == "this is the direction of a vector that is 0, at every state and time");
     CHECK(r.line >= 9);
   }
 }
@@ -90,7 +90,7 @@ TEST_CASE("mechanics rejects: a function or a power that has no value in any sta
                         {"x*tan(3*pi/2)", "this has no value: a tangent at its pole"}}) {
     CAPTURE(std::string(c.energy));
     const Refusal r = of(c.energy);
-    CHECK(r.message == std::string(c.what) + ", whatever the state and the time");
+    CHECK(r.message == std::string(c.what) + ", at every state and time");
     CHECK(r.line == 10);
   }
   for (const char* energy : {"x*sqrt(x - x) + x^2", "x*asin(1) + y*tan(pi/4)", "log(1)*x + x^0.5", "atan2(0*x, y)"}) {
@@ -171,7 +171,7 @@ TEST_CASE("mechanics rejects: constants above all doubles, with their place, in 
     CAPTURE(std::string(energy));
     const Refusal r = of(energy);
     CHECK(r.message.starts_with("this has no value: "));
-    CHECK(r.message.ends_with(", whatever the state and the time"));
+    CHECK(r.message.ends_with(", at every state and time"));
     CHECK(r.line == 10);
   }
   const Refusal r = of("x*exp(1e9*m)");

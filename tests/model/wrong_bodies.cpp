@@ -101,7 +101,7 @@ std::vector<WrongModel> wrong_bodies() {
       {"an unknown set of angles", top({{"313", "311"}}), "10:22", "there are no Euler angles '311'",
        "the twelve sets are 121, 131, 212, 232, 313, 323, 123, 132, 213, 231, 312, 321"},
       {"two angles", top({{", \"psi\"]", "]"}}), "10:38", "'angles' has 2 entries", "give 3 of them"},
-      {"angles of no set", top({{"euler = \"313\", ", ""}}), "10:12", "the rotation says no kind", rotations_are},
+      {"angles of no set", top({{"euler = \"313\", ", ""}}), "10:12", "the rotation states no kind", rotations_are},
       {"two kinds of rotation", top({{"euler = \"313\"", "euler = \"313\", fixed = true"}}), "10:29",
        "a rotation is both 'euler' and 'fixed'", "keep one of them"},
       {"an axis with angles", top({{"euler = \"313\"", "axis = \"E3\""}}), "10:27",
@@ -225,8 +225,7 @@ std::vector<WrongModel> wrong_bodies() {
        top({},
            "[[constraint]]\nname = \"c\"\nrolling = { body = \"B\", at = 0, on = \"ground\" }\nholds = "
            "\"unilateral\"\n"),
-       "17:9",
-       "the constraint 'c' can be left and has no friction, so that nothing says what a tangential impulse would be",
+       "17:9", "the constraint 'c' can be left and has no friction, so that the tangential impulse is not defined",
        "give it friction = { static = \"..\", dynamic = \"..\" }: where it lands the body slides, and rolls when slip "
        "has ended; or write sliding for a smooth one"},
       {"rolling and sliding",

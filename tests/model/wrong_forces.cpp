@@ -43,7 +43,7 @@ std::vector<WrongModel> wrong_forces() {
       {"a force beside a linear_actuator",
        bodies("linear_actuator = { between = [\"A\", \"B\"], force = 1 }\non = \"B\""), "15:1",
        "'on' does not belong to 'linear_actuator'",
-       "'on' says where a force vector acts: force = \"<vector>\", on = P"},
+       "'on' names the point where a force vector acts: force = \"<vector>\", on = P"},
       {"a linear_actuator of a vector", bodies("linear_actuator = { between = [\"A\", \"B\"], force = \"2[N]*E1\" }"),
        "14:52", "the force of this linear_actuator is a scalar, and this is a vector",
        "take dot(a, b), norm(a), or a component dot(a, E1)"},

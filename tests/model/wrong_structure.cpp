@@ -135,7 +135,7 @@ std::vector<WrongModel> wrong_structure() {
        pendulum({},
                 "[[force]]\ndry = { coordinate = \"phi\", normal = 1, static = 0.3, dynamic = 0.2 }\n[[force]]\ndry = "
                 "{ coordinate = \"phi\", normal = 1, static = 0.3, dynamic = 0.2 }\n"),
-       "15:22", "'phi' sticks with 'force 2' already: how the two share what holds it nothing says",
+       "15:22", "'phi' sticks with 'force 2' already: how the two share the static friction is not defined",
        "write one force whose normal force is that of both"},
       {"dry friction of no coordinate",
        pendulum({}, "[[force]]\ndry = { coordinate = \"phy\", normal = 1, static = 0.3, dynamic = 0.2 }\n"), "13:22",

@@ -59,11 +59,11 @@ test::FinishedRun thousand_turns(const rotations::Rotation& r, const std::string
 }
 
 /// Energy and |H| of the rows, relative to the start; the largest difference of w from Jacobi's.
-struct Kept {
+struct Drifts {
   double energy = 0, momentum = 0, omega = 0, turns = 0;
 };
-Kept kept(const test::Rows& rows) {
-  Kept worst;
+Drifts drifts_of(const test::Rows& rows) {
+  Drifts worst;
   double energy0 = 0, momentum0 = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     double momentum = 0, square = 0;
@@ -100,7 +100,7 @@ TEST_CASE(
     const test::FinishedRun run = thousand_turns(r, "dop853");
     REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
     CHECK(exchanges(run) > 100);  // it came near where the set fails again and again
-    const Kept found = kept(run.rows);
+    const Drifts found = drifts_of(run.rows);
     CHECK(found.turns > 1000);
     CHECK(found.energy < 1e-9);
     CHECK(found.momentum < 1e-9);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a student of the source asks beyond the equations of motion: odometers, integrals of the motion, dual Euler
+// Questions of a student of the source beyond the equations of motion: odometers, integrals of the motion, dual Euler
 // bases, balance laws in omega, contravariant equations, forces and moments of potentials.
 #include <doctest/doctest.h>
 

@@ -176,17 +176,17 @@ TEST_CASE("events at the same time occur in declared order, and those that a res
 }
 
 TEST_CASE("velocities that a constraint forbids are made consistent by the impulse that M determines") {
-  // A pendulum of length 1 in Cartesian coordinates: only the part of the kick along the circle is left.
+  // A pendulum of length 1 in Cartesian coordinates: only the part of the blow along the circle is left.
   const test::FinishedRun run = run_text(
-      "[[constraint]]\nname = \"rod\"\nholonomic = \"x^2 + y^2 - 1\"\n[discrete]\nkicks = 0\n"
-      "[[event]]\nname = \"kick\"\nwhen = \"t - 1\"\nset = { x_dot = \"x_dot + 3\", y_dot = \"y_dot + 4\", kicks = "
-      "\"kicks + 1\" }\n[scene.default]\nt = [0, 2]\ninitial = { x = 0.6, y = 0.8, x_dot = 0, y_dot = 0 }\n");
+      "[[constraint]]\nname = \"rod\"\nholonomic = \"x^2 + y^2 - 1\"\n[discrete]\nblows = 0\n"
+      "[[event]]\nname = \"blow\"\nwhen = \"t - 1\"\nset = { x_dot = \"x_dot + 3\", y_dot = \"y_dot + 4\", blows = "
+      "\"blows + 1\" }\n[scene.default]\nt = [0, 2]\ninitial = { x = 0.6, y = 0.8, x_dot = 0, y_dot = 0 }\n");
   check_sound(run);
   // (3, 4) along the tangent (0.8, -0.6): 0; along (x, y) all of it is taken by the rod.
-  CHECK(run.final("kicks") == 1);
+  CHECK(run.final("blows") == 1);
   CHECK(std::hypot(run.final("x_dot"), run.final("y_dot")) < followed);
   const test::FinishedRun across = run_text(
-      "[[constraint]]\nname = \"rod\"\nholonomic = \"x^2 + y^2 - 1\"\n[[event]]\nname = \"kick\"\nwhen = \"t - "
+      "[[constraint]]\nname = \"rod\"\nholonomic = \"x^2 + y^2 - 1\"\n[[event]]\nname = \"blow\"\nwhen = \"t - "
       "1\"\nset "
       "= { x_dot = \"x_dot + 3\" }\n[scene.default]\nt = [0, 1.5]\ninitial = { x = 0.6, y = 0.8, x_dot = 0, y_dot = 0 "
       "}\n");

@@ -104,7 +104,7 @@ std::string heading_of(const print::PrintedFormula& item) {
   return item.key + ": " + item.role;
 }
 
-/// `asked`: items that were named one by one; of those that the model has none of, the text says so.
+/// `asked`: items that were named one by one; the text lists those that the model lacks.
 std::string readable(const std::vector<print::PrintedFormula>& items, const std::string& approach,
                      const std::string& format, const std::vector<work::LeftOut>& left_out,
                      const std::vector<analysis::Multiplier>& multipliers, const std::vector<std::string>& asked) {

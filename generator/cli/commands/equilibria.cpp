@@ -117,7 +117,7 @@ std::string text(const analysis::SteadyMotion& point, const linear::Flow& flow) 
     const linear::Eigenvalue& e = point.l.spectrum.values[i];
     if (e.im < 0 || (e.re == 0 && e.im == 0)) continue;  // one of each conjugate pair
     out += e.im == 0 ? fmt::format("  {:.8g}", e.re) : fmt::format("  {:.8g} +- {:.8g}i", e.re, e.im);
-    if (!e.is_reliable()) out += " (in doubt)";
+    if (!e.is_reliable()) out += " (uncertain)";
   }
   return out + fmt::format("  and {} zeros, {} of them structural\n", point.l.spectrum.zeros, point.l.structural_zeros);
 }

@@ -172,7 +172,7 @@ std::string text(const Answer& a) {
   if (!a.problem.open_contacts.empty())
     out += fmt::format("open contacts     {}: the equations hold while they are open\n",
                        fmt::join(a.problem.open_contacts, ", "));
-  if (!a.ignorable().empty()) out += fmt::format("nothing feels     {}\n", fmt::join(a.ignorable(), ", "));
+  if (!a.ignorable().empty()) out += fmt::format("ignorable         {}\n", fmt::join(a.ignorable(), ", "));
   return out + fmt::format("certificate       {}\n", a.problem.certificate);
 }
 

@@ -105,7 +105,8 @@ std::string page_of_all(const Declaration& declared, const std::string& document
 
 int execute(const Options& options, const CommonOptions& common) {
   const Declaration declared("eomgen", commands());
-  const std::string where = "commands.md and model-format.md among the installed documents; eomgen --help tells where";
+  const std::string where =
+      "commands.md and model-format.md among the installed documents; eomgen --help prints their location";
   std::vector<emit::EmittedFile> pages;
   if (options.command.empty()) pages.push_back({"eomgen.1", page_of_all(declared, where)});
   bool found = options.command.empty();

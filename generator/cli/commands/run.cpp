@@ -158,7 +158,7 @@ int execute(const Options& options, const CommonOptions& common) {
   request.rows_follow_steps = true;
   std::optional<Rows> rows;
   if (!options.plot_of.empty() && !plot.wanted()) {
-    throw Error("run", {}, "--plot-of says what is plotted, and there is no plot",
+    throw Error("run", {}, "--plot-of selects what is plotted, and there is no plot",
                 "add --plot F.svg, or --plot - for characters");
   }
   request.prepare = [&](pipeline::DerivedModel& derived) {

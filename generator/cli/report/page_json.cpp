@@ -19,7 +19,7 @@ Json list_of(const std::vector<T>& list, Write&& write) {
   return result;
 }
 
-/// What an event or a sample sets: entries [place in the state, place in the values of `resets`].
+/// Values that an event or a sample sets: entries [place in the state, place in the values of `resets`].
 void add_reset(Json& of, const eom::hybrid::Reset& reset) {
   of["set"] = list_of(reset.set, [](const eom::hybrid::Reset::Entry& entry) {
     return Json::array({entry.component, entry.value});

@@ -120,8 +120,8 @@ analysis::Grid parse_grid(const std::vector<std::string>& texts) {
 
 analysis::Sampling parse_sampling(const std::vector<std::string>& texts, std::size_t count, const std::string& design,
                                   std::uint64_t seed) {
-  if (texts.empty()) wrong_sample("--samples says how many, and no --sample says of what");
-  if (count == 0) wrong_sample("--sample says of what, and --samples does not say how many");
+  if (texts.empty()) wrong_sample("--samples gives a number, and no --sample names a parameter");
+  if (count == 0) wrong_sample("--sample names a parameter, and --samples gives no number");
   constexpr Design designs[] = {Design::random, Design::latin, Design::sobol};
   const auto* const found =
       std::find_if(std::begin(designs), std::end(designs), [&](Design d) { return design == analysis::name(d); });

@@ -122,7 +122,7 @@ void CheckpointFile::warn_of_damage() {
   work::warn(format_warning({{},
                              fmt::format("{} lines of {} are no rows of this sweep: a checksum or a point differs",
                                          damaged_, model::quote(place_)),
-                             "these runs are computed again; see to the disk if nobody edited the table"}));
+                             "these runs are computed again; check the disk if the table was not edited"}));
 }
 
 std::string CheckpointFile::file_header() const { return mark + key_ + "\n" + header_ + "\n"; }

@@ -27,7 +27,7 @@ struct Flow {
   Vec3 moment(Dag& dag, const Vec3& omega) const;
 };
 
-/// What a coordinate of a link changes, at a parent that moves as before.
+/// Changes that a coordinate of a link causes, at a parent that moves as before.
 struct FreedomChange {
   Disturbance by_q, by_qdot;
   std::vector<Freedom> directions;  // d/dq of every freedom of the link

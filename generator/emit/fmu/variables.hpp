@@ -20,7 +20,7 @@ struct UnitDescription {
   std::string rate;
 };
 
-/// What an FMU contains of the model beside the context of an emission.
+/// Content of an FMU in addition to the context of an emission.
 struct FmuDescription {
   int version = 3;                                    // of FMI: 2 or 3
   std::vector<std::string> output_units = {};         // per output of the program; empty where unknown

@@ -41,6 +41,7 @@ inline constexpr Refusal refusals[] = {
 /// The quartic with value 0 at 0 and at the three stages, and slope 1 at 0.
 inline constexpr double bump_across(double s) { return s * (1 - s) * (1 + s * (-8 + 10 * s)); }
 
+/// The method `ggl`: Radau IIA of order 5 for the stabilised index-2 form.
 class Ggl : public implicit::Collocation<Ggl, 3> {
   using Core = implicit::Collocation<Ggl, 3>;
 

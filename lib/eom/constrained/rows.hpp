@@ -12,8 +12,10 @@
 
 namespace eom::constrained {
 
+/// The constraints of a system at one state: values, their derivatives, and a selection of independent rows.
 class ConstraintEquations {
  public:
+  /// The system must outlive this object.
   explicit ConstraintEquations(const System& system)
       : of_(system),
         c_(system.coordinates),
@@ -28,9 +30,11 @@ class ConstraintEquations {
 
   /// Number of equations.
   std::size_t size() const { return positions_ + k_; }
+  /// Number of leading equations that constrain positions.
   std::size_t position_row_count() const { return positions_; }
   /// The row of A that belongs to g_a.
   std::size_t row(std::size_t a) const { return a < positions_ ? a : a - positions_; }
+  /// Whether the row of equation a is one of the independent ones.
   bool is_selected(std::size_t a) const { return selected_[row(a)]; }
   /// Entries of that row, scaled.
   double slope(std::size_t a, std::size_t i) const { return A_[row(a) + k_ * i] / length_[row(a)]; }

@@ -18,6 +18,7 @@
 
 namespace eom {
 
+/// Tolerances of a projection.
 struct ProjectionOptions {
   double tolerance = 1e-14;       // of the correction relative to the largest coordinate, of psi to its terms |A||q|
   double rank_tolerance = 1e-11;  // of a pivot relative to the largest, rows of A scaled to length 1
@@ -25,6 +26,7 @@ struct ProjectionOptions {
   double rounding = 1e-11;  // a correction that stagnates below this times max(1, |q|) counts as converged
 };
 
+/// Outcome of a projection.
 struct ProjectionResult {
   static constexpr int not_converged = -1;
 
@@ -58,6 +60,7 @@ class Projection {
         correction_(n_),
         before_(2 * n_) {}
 
+  /// All m rows have a psi.
   Projection(std::size_t n, std::size_t m) : Projection(n, m, m) {}
 
   /// Projects x (2n components; further ones do not change). constraints(t, x, psi, A, b) -> int, with A m x n

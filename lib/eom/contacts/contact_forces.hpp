@@ -37,18 +37,22 @@ struct ContactState {
 /// The compiled code as these classes need it: a right-hand side and the rows of contacts, with all inputs given.
 struct System {
   virtual ~System() = default;
+  /// n, the number of free coordinates.
   virtual std::size_t coordinates() const = 0;
   /// qddot of the free coordinates. Returns a code of the ABI.
   virtual int accelerations(double t, const double* x, const double* u, double* qddot) = 0;
+  /// Writes the array c (description.hpp) at a state. Returns a code of the C ABI.
   virtual int rows(double t, const double* x, const double* u, double* c) = 0;
 };
 
+/// The forces of all contacts at one state, in given modes.
 class ContactForces {
  public:
   using Index = Eigen::Index;
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
 
+  /// Both must outlive this object.
   ContactForces(const Set& set, System& system)
       : set_(set),
         system_(system),
@@ -61,21 +65,30 @@ class ContactForces {
         free_(n_),
         work_(n_) {}
 
+  /// The contacts.
   const Set& set() const { return set_; }
+  /// The mode of each contact.
   std::vector<ContactState>& states() { return states_; }
   const std::vector<ContactState>& states() const { return states_; }
+  /// The description of contact j.
   const Description& contact(std::size_t j) const { return set_.contacts[j]; }
+  /// Whether contact j is not open.
   bool is_closed(std::size_t j) const { return states_[j].mode != Mode::open; }
+  /// Whether contact j is closed and has static friction.
   bool is_sticking(std::size_t j) const { return contact(j).sticks && states_[j].mode == Mode::closed; }
 
   /// The least slip in two directions that has a direction of its own.
   void set_least_slip(double speed) { least_slip_ = speed; }
+  /// The speed set by set_least_slip().
   double least_slip() const { return least_slip_; }
 
   /// Evaluates the rows at (t, x); u has no contact forces.
   int evaluate_rows(double t, const double* x, const double* u) { return system_.rows(t, x, u, c_.data()); }
+  /// An entry of the array c at the last state.
   double value(std::size_t place) const { return c_[place]; }
+  /// The velocity of the row at the last state.
   double rate(const Row& row) const { return c_[row.rate()]; }
+  /// The magnitude of the slip of contact j.
   double slip_speed(std::size_t j) const {
     double square = 0;
     for (const Row& row : contact(j).slip) square += rate(row) * rate(row);
@@ -83,6 +96,7 @@ class ContactForces {
   }
   /// The acceleration of a row's velocity.
   double acceleration(const Row& row, const Vector& qddot) const { return c_[row.bias()] + change(row, qddot); }
+  /// The acceleration of the row that qddot causes.
   double change(const Row& row, const Vector& qddot) const {
     double sum = 0;
     for (std::size_t k = 0; k < row.columns.size(); ++k)
@@ -122,6 +136,7 @@ class ContactForces {
     int component = -1;  // -1: the normal, with the friction that follows from it; 0, 1: a tangent
     std::vector<std::pair<std::size_t, double>> inputs = {};
   };
+  /// The unit force of lambda of contact j; with_friction: and of the friction that follows from it.
   Pattern normal_pattern(std::size_t j, bool with_friction) const {
     const Description& at = contact(j);
     Pattern pattern{j, -1, {{at.force_input, 1.0}}};
@@ -132,6 +147,7 @@ class ContactForces {
       pattern.inputs.emplace_back(at.friction_input + a, -strength * along[a]);
     return pattern;
   }
+  /// The unit friction of contact j along tangent a.
   Pattern tangent_pattern(std::size_t j, std::size_t a) const {
     return {j, static_cast<int>(a), {{contact(j).friction_input + a, 1.0}}};
   }
@@ -148,6 +164,7 @@ class ContactForces {
     const int code = system_.accelerations(t, x, u, free_.data());
     return code != 0 || free_.allFinite() ? code : code_not_finite;
   }
+  /// The result of evaluate_free(): n.
   const Vector& free_accelerations() const { return free_; }
   /// The accelerations with the forces of the current states. u has no contact forces. Rows are evaluated.
   int evaluate_accelerations(double t, const double* x, double* u, Vector& qddot) {
@@ -237,6 +254,7 @@ class ContactForces {
     return 0;
   }
 
+  /// Writes the modes of all contacts into the inputs u.
   void write_modes(double* u) const {
     for (std::size_t j = 0; j < set_.contacts.size(); ++j)
       u[contact(j).mode_input] = static_cast<double>(states_[j].mode);
@@ -244,7 +262,9 @@ class ContactForces {
 
   /// Of the last solve(): lambda, the friction, the normal force (positive in compression).
   double lambda(std::size_t j) const { return lambda_[j]; }
+  /// The friction along the tangents.
   const std::array<double, 2>& friction(std::size_t j) const { return phi_[j]; }
+  /// The normal force.
   double normal_force(std::size_t j) const {
     const Description& at = contact(j);
     return at.has_constraint() ? c_[at.normal_scale] * lambda_[j] : std::abs(c_[at.given_normal]);
@@ -260,6 +280,7 @@ class ContactForces {
   bool has_several(std::size_t j) const { return several_.size() > j && several_[j]; }
   /// Whether the forces of some state were not unique.
   bool undetermined() const { return undetermined_; }
+  /// Begins anew with undetermined() and largest_acceleration().
   void forget() { undetermined_ = false, largest_acceleration_ = 0; }
 
   static constexpr int code_not_finite = 5;  // as in the C ABI

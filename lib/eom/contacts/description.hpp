@@ -16,9 +16,13 @@ struct Row {
   std::size_t first = 0;
   std::vector<std::size_t> columns = {};
 
+  /// Index of the velocity.
   std::size_t rate() const { return first; }
+  /// Index of the acceleration at qddot = 0.
   std::size_t bias() const { return first + 1; }
+  /// Index of the derivative with respect to the rate of columns[k].
   std::size_t slope(std::size_t k) const { return first + 2 + k; }
+  /// Index behind the row.
   std::size_t end() const { return first + 2 + columns.size(); }
 };
 
@@ -42,6 +46,7 @@ struct Description {
   std::size_t force_input = none;                                     // of lambda
   std::size_t mode_input = none;                                      // of the mode as a number
 
+  /// Whether the normal force is the multiplier of a constraint.
   bool has_constraint() const { return gap != none; }
 };
 
@@ -57,6 +62,7 @@ struct Set {
   ImpactLaw law = ImpactLaw::newton;
   ImpactOrder order = ImpactOrder::simultaneous;
 
+  /// Whether there are no contacts.
   bool empty() const { return contacts.empty(); }
   /// Whether a contact can open, so that there are impacts.
   bool can_open() const {

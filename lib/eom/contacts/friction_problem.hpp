@@ -32,6 +32,7 @@ struct FrictionLaw {
   double coefficient = 0;
 };
 
+/// A linear complementarity problem with friction: velocities = G force + q, one kind per row, and the laws.
 struct FrictionProblem {
   enum class Kind { holds, closes, rubs };  // the velocity is 0; it is >= 0 and so is the force; a tangent of a law
   Eigen::MatrixXd G;
@@ -40,6 +41,7 @@ struct FrictionProblem {
   std::vector<FrictionLaw> laws;
 };
 
+/// A solution of a FrictionProblem.
 struct FrictionForces {
   bool found = false;
   Eigen::VectorXd force, velocity;  // per row

@@ -15,6 +15,7 @@
 
 namespace eom::contacts {
 
+/// A solution z of w = M z + q, w >= 0, z >= 0, w z = 0.
 struct ComplementaritySolution {
   bool found = false;  // false: the method ended on a ray, or after too many pivots
   Eigen::VectorXd z;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What counts as zero at contacts: rounding errors, and errors of the run, are no events. In: the states of a run. Out:
-// the errors of gaps, speeds and forces, from the largest terms that were seen.
+// Values that count as zero at contacts: rounding errors, and errors of the run, are no events. In: the states of a
+// run. Out: the errors of gaps, speeds and forces, from the largest terms that were seen.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,14 @@
 
 namespace eom::contacts {
 
-/// What may count as zero in one decision.
+/// Bounds below which values count as zero in one decision.
 struct Tolerances {
   double speed = 1e-12;  // of gaps and slip
   double slip = 1e-12;   // in two directions
   double acceleration = 0;
 };
 
+/// Bounds below which a gap, a speed or an acceleration counts as zero, from the sizes met during the run.
 class Thresholds {
  public:
   /// Sizes since the start of a run. Terms: the sums of the absolute values of the terms of a gap.
@@ -28,17 +29,22 @@ class Thresholds {
     std::vector<double> gap = {}, terms = {}, force = {};  // per contact; gaps of open ones
   };
 
+  /// `forces` must outlive this object.
   Thresholds(const ContactForces& forces, std::size_t coordinates, double rtol, double atol)
       : forces_(forces), n_(coordinates), rtol_(rtol), atol_(atol) {
     start();
   }
 
+  /// Forgets all sizes.
   void start() {
     const std::vector<double> zeros(forces_.set().contacts.size(), 0.0);
     sizes_ = {0, zeros, zeros, zeros};
   }
+  /// rtol and atol of the run.
   void set_tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
+  /// The sizes so far.
   const Sizes& sizes() const { return sizes_; }
+  /// Restores the sizes.
   void restore(const Sizes& from) { sizes_ = from; }
 
   /// The rows of the forces are evaluated at the state x.

@@ -27,6 +27,7 @@ namespace eom::device {
 /// Codes of a member; 1 to 5 are those of the C ABI.
 inline constexpr int done = 0, not_finite = 5, too_many_steps = 6, step_too_small = 7, diverged = 8;
 
+/// Tolerances and limits of the steps of each member.
 struct Settings {
   double rtol = 1e-9, atol = 1e-12;  // in single precision: not below 1e-6
   double max_step = std::numeric_limits<double>::infinity();
@@ -34,6 +35,7 @@ struct Settings {
   unsigned long long max_steps = 50'000'000;  // accepted and rejected together
 };
 
+/// Counts of the work of one member.
 struct Counts {
   unsigned long long steps = 0, rejected = 0, evaluations = 0;
 };
@@ -87,6 +89,7 @@ EOM_DEVICE inline Real weighted(const Real* k, std::size_t n, std::index_sequenc
 template <class T, class Model, class Real>
 class Member {
  public:
+  /// p: the parameters of this member. Both must outlive it.
   EOM_DEVICE Member(const Real* p, const Settings& settings)
       : p_(p), settings_(settings), rtol_(static_cast<Real>(settings.rtol)), atol_(static_cast<Real>(settings.atol)) {}
 
@@ -99,6 +102,7 @@ class Member {
     for (std::size_t i = 0; i < n; ++i) x[i] = x0_[i];
     return code;
   }
+  /// The time reached.
   EOM_DEVICE Real time() const { return t_; }
 
  private:

@@ -34,6 +34,7 @@ struct EnsembleEnd {
 using EnsembleRhs = std::function<int(std::size_t count, std::size_t stride, const double* t, const double* x,
                                       const double* p, double* dx, int* codes)>;
 
+/// Options of integrate_ensemble().
 struct EnsembleOptions {
   double rtol = 1e-9, atol = 1e-12;
   double initial_step = 0;  // 0: chosen

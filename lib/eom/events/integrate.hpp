@@ -28,6 +28,7 @@
 
 namespace eom {
 
+/// Decision of a handler.
 enum class EventAction {
   resume,   // the state is unchanged: functions keep their sides, the step size is kept
   restart,  // the state, the right-hand side or the monitored functions changed: new sides and step size

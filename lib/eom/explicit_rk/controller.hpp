@@ -11,6 +11,7 @@
 
 namespace eom::explicit_rk {
 
+/// Chooses the next step from the errors of the last ones.
 class Controller {
  public:
   Controller(const StepControl& control, int order) : control_(control), exponent_(1.0 / order - 0.75 * control.beta) {}

@@ -8,6 +8,7 @@
 
 namespace eom::explicit_rk {
 
+/// The tableau of `dop853`.
 struct Dop853 {
   static constexpr const char* name = "dop853";
   static constexpr int order = 8;

@@ -8,6 +8,7 @@
 
 namespace eom::explicit_rk {
 
+/// The tableau of `dopri5`.
 struct Dopri5 {
   static constexpr const char* name = "dopri5";
   static constexpr int order = 5;

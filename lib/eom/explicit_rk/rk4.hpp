@@ -7,6 +7,7 @@
 
 namespace eom::explicit_rk {
 
+/// The tableau of `rk4`.
 struct Rk4 {
   static constexpr const char* name = "rk4";
   static constexpr int order = 4;

@@ -9,6 +9,7 @@
 
 namespace eom::explicit_rk {
 
+/// The tableau of `tsit5`.
 struct Tsit5 {
   static constexpr const char* name = "tsit5";
   static constexpr int order = 5;

@@ -24,11 +24,13 @@ struct Step {
   std::array<std::int32_t, 4> a = {};
 };
 
+/// Expressions as a list of operations, operands before users.
 struct Table {
   std::vector<Step> steps = {};
   std::vector<double> numbers = {};
   std::vector<std::int32_t> roots = {};  // indices of operations
 
+  /// Whether there is no expression.
   bool empty() const { return roots.empty(); }
   /// Whether no root depends on a variable.
   bool constant() const {
@@ -36,6 +38,7 @@ struct Table {
   }
 };
 
+/// Evaluates a table at given parameters, by values and by bounds.
 class Code {
  public:
   Code() = default;
@@ -57,6 +60,7 @@ class Code {
     work_.resize(steps_.size());
   }
 
+  /// Number of expressions.
   std::size_t roots() const { return roots_.size(); }
   /// Kinks in order of evaluation. The surface of a kink is one operand, or two that are compared.
   std::size_t kinks() const { return kinks_.size(); }
@@ -78,6 +82,7 @@ class Code {
     for (std::size_t i = 0; i < steps_.size(); ++i) work_[i] = value_of(i, variables);
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = work_[place(roots_[i])];
   }
+  /// The value of one root.
   double value(std::span<const double> variables, std::size_t root = 0) const {
     values(variables, {});
     return work_[place(roots_[root])];
@@ -93,6 +98,7 @@ class Code {
     values(variables, {});
     for (std::size_t k = 0; k < kinks_.size(); ++k) frozen_[k] = sign(surface(k));
   }
+  /// Releases all branches.
   void release() { frozen_.assign(frozen_.size(), 0); }
   /// Freezes one kink above (1) or below (-1) its surface.
   void freeze(std::size_t kink, int side) { frozen_[kink] = side; }

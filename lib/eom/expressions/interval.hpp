@@ -13,14 +13,19 @@
 
 namespace eom::expressions {
 
+/// The values from low to high, both included.
 struct Interval {
   double low = 0, high = 0;
 
+  /// All numbers.
   static constexpr Interval all() {
     return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   }
+  /// Whether the value is in the interval.
   bool has(double value) const { return low <= value && value <= high; }
+  /// Whether the interval is this value only.
   bool is(double value) const { return low == value && high == value; }
+  /// high - low.
   double width() const { return high - low; }
 };
 

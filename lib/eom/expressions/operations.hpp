@@ -88,6 +88,7 @@ enum class Slope : std::uint8_t {
   over_one_plus_x2  // 1/(1 + x^2)
 };
 
+/// The derivative of an operation with one argument.
 struct Derivative {
   Slope form = Slope::none;
   bool falls = false;  // the derivative is minus `form`

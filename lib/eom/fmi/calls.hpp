@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the functions of both versions of FMI share: an instance with its logger, and the translation of exceptions to
-// a status. In: a call. Out: its status; the reason of a failure goes to the importer's logger.
+// Parts that the functions of both versions of FMI share: an instance with its logger, and the translation of
+// exceptions to a status. In: a call. Out: its status; the reason of a failure goes to the importer's logger.
 #pragma once
 
 #include <exception>

@@ -18,12 +18,16 @@
 
 namespace eom::hybrid {
 
+/// The charts of one run: which are in use, and their exchange.
 class ChartSwitch {
  public:
+  /// The problem must outlive this object.
   explicit ChartSwitch(const Problem& problem);
 
+  /// Whether the run may exchange coordinates.
   bool has_charts() const { return !problem_.charts.empty(); }
   unsigned second_charts() const { return in_; }  // one bit per chart, set for a second chart
+  /// Code that has the charts in use.
   const Code& code() const { return *code_; }
 
   /// Sets the start state, in the own charts. Returns whether it has to be exchanged at once.
@@ -41,6 +45,7 @@ class ChartSwitch {
     double t;
     std::string of;
   };
+  /// Those of the last step.
   const std::vector<Pole>& poles() const { return poles_; }
 
   /// Converts a state of the last step to the own charts. Components without a value at the singularity are NaN.
@@ -51,6 +56,7 @@ class ChartSwitch {
     std::vector<double> sides = {}, own = {};  // own: the state in the own charts
     double t = 0;
   };
+  /// The present charts.
   State save() const { return {in_, side_, samples_.empty() ? std::vector<double>{} : samples_.back().x, last_time()}; }
   /// x: in the charts of `from`.
   void restore(const State& from, const double* x);

@@ -61,6 +61,7 @@ struct Code {
   int (*jac_p)(double, const double*, const double*, const double*, const int*, double*) = nullptr;
   int (*jac_u)(double, const double*, const double*, const double*, const int*, double*) = nullptr;
 
+  /// The layout of x.
   StateLayout layout() const { return {free.size(), first_order, discrete}; }
 };
 

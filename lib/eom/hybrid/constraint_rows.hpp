@@ -16,11 +16,15 @@
 
 namespace eom::hybrid {
 
+/// The rows of all constraints that a state has to satisfy: those of the model, of integrals, and of contacts.
 class ConstraintRows {
  public:
+  /// The problem must outlive this object.
   explicit ConstraintRows(const Problem& problem);
 
+  /// Number of rows.
   std::size_t size() const { return own_size() + gap_rows() + (contacts_ != nullptr ? contacts_->slip_rows() : 0); }
+  /// Number of leading rows that constrain positions.
   std::size_t position_row_count() const { return holonomic_ + gap_rows() + integrals_.size(); }
   /// Contacts whose forces are inputs add rows: their gaps before the integrals, their slip last.
   void set_contacts(SolvedContacts* contacts) { contacts_ = contacts; }
@@ -34,22 +38,27 @@ class ConstraintRows {
 
   /// Takes the constants of the integrals from this state; u: the inputs there.
   void start(double t, const double* x, const double* u);
+  /// The value that each integral has to keep.
   std::vector<double> integral_constants() const {
     std::vector<double> constants;
     for (const Integral& integral : integrals_) constants.push_back(integral.constant);
     return constants;
   }
+  /// Restores the values of the integrals.
   void set_integral_constants(const std::vector<double>& constants) {
     for (std::size_t k = 0; k < integrals_.size(); ++k) integrals_[k].constant = constants[k];
   }
+  /// psi: rows; A: rows x n by columns; b: rows, with A qdot + b = 0. Returns a code of the C ABI.
   int operator()(double t, const double* x, const double* u, double* psi, double* A, double* b);
   /// Sets the mode of the contacts. set_all_sliding() treats all other closed contacts as sliding.
   void set_mode(int contacts) { mode_ = contacts, all_slide_ = false; }
   /// Sets the charts of all following states.
   void set_charts(const Code& code, const ModeArray& mode) { code_ = &code, charts_ = mode; }
+  /// Sets the mode of the contacts, and treats all other closed contacts as sliding.
   void set_all_sliding(int contacts) { mode_ = contacts, all_slide_ = true; }
   /// Sets the value that a row has to reach instead of 0.
   void set_target(std::size_t row, double value) { targets_.at(row) = value; }
+  /// Every row has to reach 0.
   void clear_targets() { targets_.assign(size(), 0.0); }
   /// The row of a unilateral contact; the first row of a contact's slip.
   std::size_t row_of(std::size_t contact) const;

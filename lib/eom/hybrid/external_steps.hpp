@@ -26,6 +26,7 @@
 
 namespace eom::hybrid {
 
+/// A run whose steps the caller makes. The caller calls complete_step() after each step, and update() at events.
 class ExternalSteps {
  public:
   /// problem.solver, its steps and its estimate are ignored. t1 - t0: the span in which functions of time are analysed
@@ -34,6 +35,7 @@ class ExternalSteps {
   ExternalSteps(const ExternalSteps&) = delete;
   ExternalSteps& operator=(const ExternalSteps&) = delete;
 
+  /// Result of start() and update().
   struct Update {
     bool changed = false;  // the state jumped
     bool ended = false;    // by an event that stops the run, or because the motion is not determined
@@ -50,10 +52,13 @@ class ExternalSteps {
   double next_event_time() const { return next_event_; }
 
   // Each returns a code of the ABI.
+  /// dx = f(t, x) in the current modes.
   int rhs(double t, const double* x, double* dx) { return context().rhs(at_least(t), x, dx); }
+  /// The outputs of the model: as many as Code::output_names.
   int outputs(double t, const double* x, std::span<double> y) { return context().outputs(at_least(t), x, y); }
   /// Functions that do not bound the current mode are 1.
   int event_functions(double t, const double* x, double* g);
+  /// Length of g in event_functions().
   std::size_t event_function_count() { return context().events.size(); }
   /// df/dx by columns at fixed inputs; no_jacobian_here if it is not available.
   int jacobian(double t, const double* x, double* dfdx, double* dfdt);
@@ -62,7 +67,9 @@ class ExternalSteps {
 
   /// Continues with other parameters.
   void set_parameters(std::span<const double> values, double t, const std::vector<double>& x);
+  /// The problem, with its present parameters.
   const Problem& problem() const { return problem_; }
+  /// The current modes of contacts, kinks and charts.
   const ModeArray& mode() { return context().model.mode(); }
 
   /// All that the future of the run depends on, besides t and x.
@@ -73,7 +80,9 @@ class ExternalSteps {
     std::vector<double> residuals, sizes;
     double last = 0, floor = 0;
   };
+  /// A copy of all that the future of the run depends on, besides t and x.
   State save() const;
+  /// Continues from (t, x). `from`: of a run of the same problem.
   void restore(double t, const std::vector<double>& x, const State& from);
 
  private:

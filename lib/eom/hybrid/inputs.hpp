@@ -10,14 +10,17 @@
 
 namespace eom::hybrid {
 
+/// The inputs of a run as functions of time.
 class Inputs {
  public:
+  /// Copies the signals of the problem.
   explicit Inputs(const Problem& problem) : signals_(problem.inputs) {
     for (const Signal& signal : signals_)
       codes_.push_back(signal.expression.empty() ? expressions::Code()
                                                  : expressions::Code(signal.expression, problem.parameters));
   }
 
+  /// Number of inputs.
   std::size_t size() const { return signals_.size(); }
 
   /// Input i at t. For a table: the value of the segment that contains `side`, a time inside the current segment.

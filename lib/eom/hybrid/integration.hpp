@@ -32,6 +32,7 @@ namespace eom::hybrid {
 
 class ExternalSteps;
 
+/// Integrates a problem once, through all its modes, segments and charts.
 class Integration {
  public:
   /// The problem must outlive this object. Its code must have the functions that its solver needs.
@@ -55,21 +56,24 @@ class Integration {
     std::vector<std::int64_t> samples_taken = {};
     std::vector<std::size_t> sliding = {};  // kinks along whose surfaces the state slides
   };
+  /// The present modes.
   State save() const;
   /// x: the state at t in the charts of `from`.
   void restore(double t, const std::vector<double>& x, const State& from);
 
+  /// The equations in the present modes.
   RunContext& context() { return context_; }
   const MethodChoice& choice() const { return choice_; }  // of the solver auto, with its changes in the run
   /// The reason for the end, if the outcome alone does not give it.
   const Reason& reason() const { return reason_; }
   /// The time at which functions of time belong to the state of the end: that of the end, or beside a kink there.
   double end_time() const { return end_time_; }
-  /// Where fixed steps first skipped a force that is narrow in the state.
+  /// The first time at which fixed steps skipped a force that is narrow in the state.
   struct MissedForce {
     double t;
     bool has_tails;
   };
+  /// The first force that was skipped, if any.
   const std::optional<MissedForce>& missed_narrow_force() const { return missed_narrow_force_; }
   /// The first time at which a narrow force in a step could not be excluded.
   std::optional<double> narrow_forces_unresolved_from() const { return narrow_.unresolved_from(); }

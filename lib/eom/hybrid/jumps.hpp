@@ -19,6 +19,7 @@
 
 namespace eom::hybrid {
 
+/// Jumps of potentials, momenta, constraints and velocities at kinks of the equations.
 class Jumps {
  public:
   /// layout: of the state. inputs: their number. breakpoints: whether there are kinks in time in the span.
@@ -39,12 +40,14 @@ class Jumps {
     }
     if (has_time_kinks_) mass_ = expressions::Code(of.mass, parameters);
   }
+  /// Those of a problem.
   explicit Jumps(const Problem& problem)
       : Jumps(problem.jumps, problem.code->layout(), problem.inputs.size(), problem.parameters,
               !problem.breakpoints.empty()) {}
 
   /// No function jumps, whatever the motion.
   bool none() const { return !has_time_kinks_ && surfaces_.empty(); }
+  /// Whether a function may jump at a kink in time.
   bool has_time_kinks() const { return has_time_kinks_; }
 
   /// Crosses a kink in time: changes the velocities in `x` to those after it without impulses of constraints.
@@ -93,6 +96,7 @@ class Jumps {
 
   /// Number of surfaces in the state at which a function may jump. Their values are positive on one side.
   std::size_t surfaces() const { return surfaces_.size(); }
+  /// The values of the surfaces: as many as surfaces().
   void values(const MotionPoint& at, double* g) const {
     code_.values(variables(at), {});
     for (std::size_t i = 0; i < surfaces_.size(); ++i) g[i] = code_.surface(surfaces_[i]);

@@ -21,8 +21,11 @@
 
 namespace eom::hybrid {
 
+/// The compiled functions of a problem with parameters, inputs, contact forces and the current mode. Functions that
+/// return int return a code of the C ABI.
 class Model {
  public:
+  /// The problem must outlive this object.
   explicit Model(const Problem& problem)
       : problem_(problem),
         code_(problem.code),
@@ -48,19 +51,26 @@ class Model {
   Model& operator=(const Model&) = delete;
 
   const Code& code() const { return *code_; }  // includes all charts of the run so far
+  /// Continues with code that has more charts.
   void set_code(const Code& code) {
     if (code_ == &code) return;
     code_ = &code;
     prepare();
   }
 
+  /// The argument `mode` of the compiled functions.
   const ModeArray& mode() const { return mode_; }
+  /// Replaces all entries.
   void set_mode(const ModeArray& mode) { mode_ = mode; }
+  /// Sets all entries to 0.
   void reset_mode() { mode_ = ModeArray(mode_.layout()); }
   /// The number of the mode of the contacts.
   int contact_mode() const { return mode_.contacts(); }
+  /// Sets the number of the mode of the contacts.
   void set_contact_mode(int contacts) { mode_.set_contacts(contacts); }
+  /// Bit j of the set: chart j is the second one.
   void set_charts(unsigned set) { mode_.set_charts(set); }
+  /// Freezes a branch of kink k (1 or -1), or releases it (0).
   void set_kink(std::size_t k, int side) { mode_.set_kink(k, side); }
   /// The state stays on surfaces along which it slides.
   void release_branches() {
@@ -70,8 +80,11 @@ class Model {
 
   /// The kinks along whose surfaces the state slides.
   const std::vector<std::size_t>& sliding_kinks() const { return sliding_.kinks(); }
+  /// Whether the state slides along the surface of this kink.
   bool is_sliding(std::size_t kink) const { return sliding_.contains(kink); }
+  /// The state slides along no surface any more.
   void clear_sliding() { sliding_.clear(); }
+  /// The state slides along the surfaces of these kinks.
   void set_sliding(const std::vector<std::size_t>& kinks) {
     sliding_.clear();
     for (const std::size_t k : kinks) sliding_.add(k), mode_.set_kink(k, 1);
@@ -126,6 +139,7 @@ class Model {
 
   /// A time inside the current segment of the inputs.
   double segment_time() const { return segment_time_; }
+  /// Replaces segment_time(). Returns the one before.
   double set_segment_time(double t) {
     forget_contact_forces();
     return std::exchange(segment_time_, t);
@@ -157,9 +171,12 @@ class Model {
     solved_x_.assign(x, x + code_->layout().size());
     return 0;
   }
+  /// The forces of contacts are solved for again at the next evaluation.
   void forget_contact_forces() const { solved_t_ = std::numeric_limits<double>::quiet_NaN(); }
+  /// The parameters of the problem.
   const double* parameters() const { return problem_.parameters.data(); }
 
+  /// dx = f(t, x) in the current mode.
   int rhs(double t, const double* x, double* dx) {
     if (sliding_.any()) return sliding_.evaluate(mode_, t, x, dx);
     if (const int code = solve_contacts(t, x); code != 0) return code;
@@ -199,10 +216,12 @@ class Model {
                : code;
   }
 
+  /// p = dT/dqdot and its rate without constraint forces: n each.
   int momenta(double t, const double* x, double* p, double* rate) {
     return code_->momenta(t, x, parameters(), inputs(t), mode_.data(), p, rate);
   }
 
+  /// M: n x n by columns.
   int mass(double t, const double* x, double* M) {
     return mode_.charts() != 0 ? code_->mass_in(t, x, parameters(), mode_.data(), M, h_.data())
                                : code_->mass(t, x, parameters(), M, h_.data());
@@ -245,6 +264,7 @@ class Model {
   int resets(double t, const double* x, double* r) {
     return code_->resets(t, x, parameters(), inputs(t), mode_.data(), r);
   }
+  /// The event functions in a given mode of the contacts.
   int events_of(int contacts, double t, const double* x, double* g) {
     return code_->events(t, x, parameters(), inputs(t), mode_with_contacts(contacts), g);
   }

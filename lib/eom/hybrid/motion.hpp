@@ -12,6 +12,7 @@
 
 namespace eom::hybrid {
 
+/// The right-hand side of a run with its optional members (system.hpp).
 struct Motion {
   RunContext& of;
   bool keeps_constraints = false;  // the method satisfies the constraints itself
@@ -35,6 +36,7 @@ struct Motion {
   std::size_t position_constraints() const { return of.rows.position_row_count(); }
 };
 
+/// The event functions of a run, with the crossings that bounds reveal between samples (events/locator.hpp).
 struct BoundedEvents {
   RunContext& of;
   const Sampling& sampling;

@@ -14,8 +14,10 @@
 
 namespace eom::hybrid {
 
+/// The outputs of the model in its own charts.
 class Outputs {
  public:
+  /// All arguments must outlive this object.
   Outputs(const Problem& problem, const Model& model, const ChartSwitch& charts)
       : problem_(problem), model_(model), charts_(charts), y_(problem.code->output_names.size()) {}
 
@@ -26,6 +28,7 @@ class Outputs {
     return result;
   }
 
+  /// The energy in J.
   double energy(double t, const double* x) {
     (*this)(t, x, y_);
     return y_[problem_.energy];

@@ -92,7 +92,9 @@ struct Impulse {
 /// Functions that may jump at kinks of the equations; compiled code does not provide them. Empty: nothing jumps.
 /// Variables of the expressions: t, free coordinates, their rates, states of first order, inputs.
 struct JumpFunctions {
+  /// Kind of a function that may jump.
   enum class Quantity : std::uint8_t { potential, momentum, psi, row, rate, place, velocity };
+  /// One function.
   struct Function {
     Quantity what = Quantity::potential;
     std::string name = {};  // of a position or a velocity
@@ -116,6 +118,7 @@ struct TimeFunctions {
   std::vector<expressions::Table> surfaces = {};  // of kinks: one root, or two that are compared
   std::vector<expressions::Table> terms = {};     // smooth between the kinks
 
+  /// Whether there are no functions of time.
   bool empty() const { return surfaces.empty() && terms.empty(); }
 };
 
@@ -130,6 +133,7 @@ struct Range {
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
 };
 
+/// A run: equations, numbers, solver, outputs. Values in SI units.
 struct Problem {
   const Code* code = nullptr;
   std::vector<double> parameters;
@@ -169,7 +173,7 @@ struct Problem {
   bool estimate = true;  // estimate the error by repeated runs
   EstimateCost estimate_cost = EstimateCost::bounded;
   double output_interval = 0;  // of rows; 0: no rows
-  /// Where steps are shorter than the interval, rows follow at its halves, quarters, .., down to this part of it: a
+  /// If steps are shorter than the interval, rows follow at its halves, quarters, .., down to this part of it: a
   /// power of 2. At most 1: no further rows.
   std::uint32_t row_subdivisions = 1;
   std::function<void(double t, std::span<const double> y)> row = {};
@@ -184,7 +188,9 @@ struct Problem {
     return t0;
   }
 
+  /// Number of free coordinates.
   std::size_t n() const { return code->free.size(); }
+  /// Numbers of the entries of the argument `mode`.
   ModeLayout mode_layout() const {
     return {code->contacts.size() + code->contact_set.contacts.size(), code->kinks.size(), charts.size()};
   }

@@ -9,7 +9,9 @@
 
 namespace eom::hybrid {
 
+/// Why a run ended, if its outcome alone does not give it.
 struct Reason {
+  /// The kind of the reason.
   enum class Kind {
     none,
     method,                   // `what`: message of the method

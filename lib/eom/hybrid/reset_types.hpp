@@ -13,6 +13,7 @@ namespace eom::hybrid {
 
 /// Simultaneous changes of the state, by values of Code::resets.
 struct Reset {
+  /// One component that is set.
   struct Entry {
     std::size_t component = 0, value = 0;  // indices in x and in the array r
   };

@@ -23,8 +23,10 @@
 
 namespace eom::hybrid {
 
+/// Changes of the state at events and samples of the model.
 class Resets {
  public:
+  /// The context must outlive this object.
   explicit Resets(RunContext& context) : context_(context), problem_(context.problem), r_(problem_.code->reset_values) {
     const auto changes = [](const WatchedEvent& event) { return !event.reset.set.empty(); };
     has_events_ = std::any_of(problem_.events.begin(), problem_.events.end(), changes);
@@ -33,10 +35,12 @@ class Resets {
 
   /// Whether an event or a sample changes the state.
   bool any() const { return has_events_ || !problem_.samples.empty(); }
+  /// Begins a run: no sample has been taken.
   void start() { taken_.assign(problem_.samples.size(), std::numeric_limits<std::int64_t>::min()); }
 
   /// The last sample of each kind that was taken.
   const std::vector<std::int64_t>& taken() const { return taken_; }
+  /// Restores the last samples.
   void set_taken(const std::vector<std::int64_t>& taken) { taken_ = taken; }
 
   /// Whether event i occurs at (t, x): it has no condition, or its condition holds.
@@ -74,6 +78,7 @@ class Resets {
     return {};
   }
 
+  /// Result of occur().
   struct Changes {
     bool changed = false, stopped = false;
     Reason failed;

@@ -24,9 +24,11 @@ namespace eom::hybrid {
 /// end.
 class RowWriter {
  public:
+  /// Both must outlive this object.
   RowWriter(const Problem& problem, RunContext& context)
       : problem_(problem), context_(context), y_(problem.code->output_names.size()), between_(problem.states()) {}
 
+  /// Whether the problem asks for rows.
   bool any() const { return problem_.output_interval > 0; }
 
   /// Writes the rows of a step. Returns the time of the last row if the run was interrupted meanwhile and ends there.
@@ -57,6 +59,7 @@ class RowWriter {
   /// Queues the row of an event until the remaining rows of its step are written.
   void event(double t, std::span<const double> x) { pending_.emplace_back(t, std::vector<double>(x.begin(), x.end())); }
 
+  /// Writes one row.
   void row(double t, const double* x) { row(t, x, t); }
   /// at: the time at which functions of time are evaluated, which differs from t beside a kink in time.
   void row(double t, const double* x, double at) {
@@ -65,6 +68,7 @@ class RowWriter {
     problem_.row(t, y_);
     last_ = t;
   }
+  /// Time of the last row; NaN before the first one.
   double last() const { return last_; }
   const std::vector<double>& last_state() const { return between_; }  // at an interruption
 
@@ -101,8 +105,10 @@ class RowWriter {
   double last_ = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Observes the accepted steps of a run: drift of invariants, power balance, ranges of coordinates, rows.
 class RunMonitor {
  public:
+  /// Observes the start and writes its row. Both must outlive this object.
   RunMonitor(const Problem& problem, RunContext& context)
       : problem_(problem),
         context_(context),
@@ -116,6 +122,7 @@ class RunMonitor {
     rows_.row(problem.t0, x.data(), problem.begin());
   }
 
+  /// Observes an accepted step. False: the run ends here.
   bool step(const StepView& view) {
     observe(view.t1, view.x1.data());
     if (has_left_range(view)) {

@@ -31,6 +31,7 @@ struct EndErrorEstimate {
   std::string note;  // the warning as a sentence, or ""
 };
 
+/// Result of run(). Values in SI units.
 struct RunResult {
   std::string solver;   // the method that ended the run
   MethodChoice choice;  // of auto: its changes
@@ -59,6 +60,7 @@ struct RunResult {
   std::optional<double> time_unresolved_from =
       {};  // TimeAnalysis::unresolved_from, if the run analysed functions of time
 
+  /// Whether the run reached its end time or a terminal event.
   bool ended() const { return outcome == Outcome::done || outcome == Outcome::stopped_by_event; }
 };
 

@@ -11,6 +11,7 @@
 
 namespace eom::hybrid {
 
+/// An input over time: a function, a table of steps, or an expression.
 struct Signal {
   std::function<double(double t)> function = {};  // if there is neither a table nor an expression; none: 0
   std::vector<double> times = {}, values = {};    // values[k] from times[k] until times[k+1]; values[0] before times[0]

@@ -52,7 +52,7 @@ class SolvedContacts {
   };
   const std::vector<Change>& changes() const { return changes_; }
   std::optional<Outcome> end_outcome() const { return end_; }
-  /// The contact without a unique force, where end_outcome() says so.
+  /// The contact without a unique force, if end_outcome() reports one.
   std::size_t end_contact() const { return end_contact_; }
 
   void set_tolerances(double rtol, double atol) { thresholds_.set_tolerances(rtol, atol); }

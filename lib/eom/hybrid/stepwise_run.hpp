@@ -22,6 +22,7 @@
 
 namespace eom::hybrid {
 
+/// A run in pieces. Inputs, parameters and the state may be replaced between them.
 class StepwiseRun {
  public:
   /// Begins at t0 of the problem. t1 - t0: the span in which functions of time are analysed at once; the run may go on
@@ -30,6 +31,7 @@ class StepwiseRun {
   StepwiseRun(const StepwiseRun&) = delete;
   StepwiseRun& operator=(const StepwiseRun&) = delete;
 
+  /// Options of advance().
   struct Piece {
     bool one_step = false;  // end after one step of the method
     const std::atomic<bool>* interrupt = nullptr;
@@ -41,16 +43,20 @@ class StepwiseRun {
   /// The reason for the end of the last piece, if its outcome alone does not give it.
   const Reason& reason() const { return reason_; }
 
+  /// The time reached.
   double t() const { return t_; }
   /// Free coordinates, rates, integrals; in the model's own charts.
   std::vector<double> state() const { return integration_->context().own_state(t_, x_); }
   /// In the current modes. Returns a code of the ABI.
   int outputs(std::span<double> y);
+  /// The inputs at t().
   std::vector<double> inputs();
+  /// All parameters.
   std::span<const double> parameters() const { return problem_.parameters; }
 
   /// Replaces an input from here on.
   void set_input(std::size_t input, Signal signal);
+  /// Replaces all parameters; `values` has as many as before.
   void set_parameters(std::span<const double> values);
   /// Begins anew from this state, with the modes that follow from it. x: as state(); open: per contact.
   void restart(double t, std::span<const double> x, std::vector<bool> open);
@@ -69,6 +75,7 @@ class StepwiseRun {
     std::vector<double> parameters;
     Integration::State modes;
   };
+  /// A copy of all that the future of the run depends on.
   State save() const;
   /// `from`: of a run of the same problem.
   void restore(const State& from);

@@ -17,6 +17,7 @@
 
 namespace eom::implicit {
 
+/// The method `midpoint`.
 class Midpoint : public Base {
  public:
   static constexpr const char* name = "midpoint";

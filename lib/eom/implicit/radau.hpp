@@ -15,6 +15,7 @@
 
 namespace eom::implicit {
 
+/// The method `radau`, of order 5, 9 and 13.
 class Radau : public Collocation<Radau, RadauTableau::most> {
  public:
   static constexpr const char* name = "radau";

@@ -14,6 +14,7 @@ namespace eom::implicit {
 /// The quartic with value 0 at 0 and 1, slope 1 at 0 and slope 0 at the three stages.
 inline constexpr double bump(double s) { return s * (1 + s * (-4.5 + s * (6 - 2.5 * s))); }
 
+/// The method `radau5`.
 class Radau5 : public Collocation<Radau5, 3> {
  public:
   static constexpr const char* name = "radau5";

@@ -19,6 +19,7 @@
 
 namespace eom::implicit {
 
+/// The method `rodas`.
 class Rodas : public Base {
   using T = Rodas5p;
 

@@ -29,6 +29,7 @@ struct Complex {
   }
 };
 
+/// LU factors of a square matrix, with partial pivoting.
 template <class Scalar>
 class Lu {
  public:

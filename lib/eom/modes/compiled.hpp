@@ -33,10 +33,13 @@ class ModeEntries {
   bool empty_;
 };
 
+/// The functions of one emitted model with its parameters and inputs.
 struct CompiledModel {
+  /// The type of NAME_rhs and NAME_events.
   using Function = int (*)(double t, const double* x, const double* p, const double* u, const int* mode,
                            double* result);
 
+  /// The type of NAME_jac.
   using Derivatives = int (*)(double t, const double* x, const double* p, const double* u, const int* mode,
                               double* dfdx, double* dfdt);
 
@@ -53,6 +56,7 @@ struct CompiledModel {
       return rhs_function(t, x, p, u, ModeEntries(mode, mode_size).data(), dx);
     };
   }
+  /// The event functions, with the number of a mode as an argument.
   auto events() const {
     return [*this](double t, const double* x, int mode, double* g) {
       return events_function(t, x, p, u, ModeEntries(mode, mode_size).data(), g);
@@ -72,6 +76,7 @@ struct CompiledModel {
       return rhs_function(t, x, p, u, ModeEntries(mode, mode_size).data(), dx);
     };
   }
+  /// The event functions in a fixed mode.
   auto events(int mode) const {
     return [*this, mode](double t, const double* x, double* g) {
       return events_function(t, x, p, u, ModeEntries(mode, mode_size).data(), g);

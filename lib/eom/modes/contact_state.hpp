@@ -45,6 +45,7 @@ struct ContactShape {
   bool rolls = false;          // sticking is rolling
 };
 
+/// One contact of a model.
 struct Contact : ContactShape {
   std::string name;
   double restitution = 0;  // of impacts of a unilateral contact: speed after / speed before

@@ -55,9 +55,12 @@ inline constexpr std::size_t contact_values = 5;
 /// Returned by ContactMotion::stop in place of a code.
 inline constexpr int keeps_sliding = -1;
 
+/// The rule of transitions of contacts, for integrate_modes().
 template <class Rhs, class Functions, class Motion = ContactMotion>
 class Contacts {
  public:
+  /// states: length of x. rhs(t, x, mode, dx) and functions(t, x, mode, g) return codes. Throws std::invalid_argument
+  /// for too many contacts, or if contacts change velocities and no `motion` is given.
   Contacts(std::vector<Contact> contacts, std::size_t states, Rhs rhs, Functions functions, Motion motion = {})
       : contacts_(std::move(contacts)),
         dx_(states),
@@ -74,8 +77,11 @@ class Contacts {
     make_table();
   }
 
+  /// Number of event functions: contact_values of each contact.
   std::size_t functions() const { return g_.size(); }
+  /// The monitored surfaces of each mode.
   std::span<const Mode> table() const { return table_; }
+  /// e: speed after an impact / speed before it, in [0, 1].
   void set_restitution(std::size_t contact, double e) { contacts_[contact].restitution = e; }
   /// The next impact closes all of these contacts, whose bounces have ended. Closing one after the other would open the
   /// earlier ones.
@@ -87,10 +93,14 @@ class Contacts {
     std::array<std::size_t, 8> contacts{none, none, none, none, none, none, none, none};
     std::size_t count = 0;
 
+    /// Records an impact of this contact.
     void add(std::size_t contact) { contacts[count++ % contacts.size()] = contact; }
+    /// Number of recorded impacts of this contact.
     std::ptrdiff_t of(std::size_t contact) const { return std::count(contacts.begin(), contacts.end(), contact); }
   };
+  /// The most recent impacts.
   const Hits& hits() const { return hits_; }
+  /// Restores the recorded impacts.
   void set_hits(const Hits& hits) { hits_ = hits; }
 
   /// Transforms the functions into the monitored ones: the slip speed in two directions, minus the least one.
@@ -119,6 +129,7 @@ class Contacts {
     return consistent_mode(t, x, mode);
   }
 
+  /// The next mode after a crossing. Changes the velocities in `point.x` at an impact.
   Transition operator()(const ModePoint& point) {
     const std::size_t j = point.crossing.function / contact_values;
     switch (point.crossing.function % contact_values) {

@@ -28,11 +28,13 @@
 
 namespace eom {
 
+/// A surface that is monitored in a mode.
 struct WatchedSurface {
   std::size_t function;  // index in the array that events() fills
   Direction direction;   // any: not a bound of the mode, the rule is called at each crossing
 };
 
+/// A mode of the equations with the surfaces that bound it.
 struct Mode {
   std::string name;
   std::vector<WatchedSurface> watched;
@@ -55,12 +57,14 @@ struct Transition {
   std::vector<std::string> further_names = {};  // further names recorded with the same kind
 };
 
+/// A recorded transition between two modes at t.
 struct ModeEvent {
   double t;
   std::string kind, name;
   int from, to;
 };
 
+/// Result of integrate_modes().
 struct ModeResult : Result {
   int mode = 0;
   std::vector<ModeEvent> events;
@@ -92,6 +96,7 @@ class ChatterDetector {
     return t + direction * sum * ratio / (1 - ratio);
   }
 
+  /// Forgets all transitions.
   void reset() { *this = ChatterDetector{}; }
 
  private:
@@ -109,14 +114,17 @@ class ChatterDetector {
 template <class Rule>
 class ModeSwitch {
  public:
+  /// Begins in mode `start`.
   ModeSwitch(std::span<const Mode> table, Rule& rule, int start) : mode(start), table_(table), rule_(rule) {}
 
+  /// Monitors the surfaces of the current mode and no others.
   void watch(std::span<EventFunction> functions) const {
     for (EventFunction& f : functions) f.watch = Watch::off;
     for (const WatchedSurface& s : table_[static_cast<std::size_t>(mode)].watched)
       functions[s.function] = {s.direction, Watch::breaking, s.direction != Direction::any};
   }
 
+  /// Applies the rule at a crossing and changes the mode. May change t and x.
   EventAction handle_event(double& t, std::span<double> x, const Crossing& crossing,
                            std::span<EventFunction> functions) {
     const ModePoint here{t, x, mode, crossing};
@@ -141,7 +149,9 @@ class ModeSwitch {
     return EventAction::stop;
   }
 
+  /// The detector with the recent transitions.
   const ChatterDetector& chatter() const { return chatter_; }
+  /// Restores the recent transitions.
   void set_chatter(const ChatterDetector& chatter) { chatter_ = chatter; }
 
   int mode;
@@ -167,9 +177,11 @@ class ModeSwitch {
   ChatterDetector chatter_;
 };
 
+/// One run through several modes.
 template <class F, class G, class Rule, class Observer, class AfterStep>
 class Machine {
  public:
+  /// Begins in `mode`. All arguments must outlive this object.
   Machine(F& rhs, G& events, std::span<const Mode> table, std::size_t functions, Rule& rule, int mode,
           Observer& observer, AfterStep& after_step)
       : rhs_(rhs),
@@ -181,6 +193,7 @@ class Machine {
     switch_.watch(functions_);
   }
 
+  /// Integrates from (t0, x0) to t1, or to an event that ends the run.
   ModeResult run(std::string_view method, double t0, std::span<const double> x0, double t1, const Options& options) {
     Result end = run_smooth(method, ModeRhs{rhs_, switch_.mode}, t0, x0, t1, options);
     ModeResult result;
@@ -235,9 +248,11 @@ class Machine {
   AfterStep& after_step_;
 };
 
+/// An observer that does nothing.
 struct NoObserver {
   bool operator()(const StepView&, int) const { return true; }
 };
+/// An after_step that does not change the state.
 struct NoProjection {
   int operator()(double, double*, int) const { return 0; }
 };

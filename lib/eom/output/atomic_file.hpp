@@ -24,6 +24,7 @@
 
 namespace eom {
 
+/// A file that is complete or absent: bytes are written to a partial file, which finish() renames.
 class AtomicFile {
  public:
   /// Throws std::system_error with the path and the system's reason, like every other function here.
@@ -49,6 +50,7 @@ class AtomicFile {
     return file;
   }
 
+  /// The moved-from object has no file.
   AtomicFile(AtomicFile&& other) noexcept
       : path_(std::move(other.path_)),
         target_(std::move(other.target_)),
@@ -60,6 +62,7 @@ class AtomicFile {
     if (file_ >= 0) ::close(file_);
   }
 
+  /// Appends the text. Throws std::logic_error after finish().
   void write(std::string_view text) {
     if (file_ < 0) throw std::logic_error(path_.string() + ": written to after finish");
     while (!text.empty()) {
@@ -85,10 +88,13 @@ class AtomicFile {
     if (!partial_.empty()) ::unlink(std::exchange(partial_, {}).c_str());
   }
 
+  /// The path as it was given.
   const std::filesystem::path& path() const { return path_; }
   /// Path of the bytes until finish; empty if they are written directly.
   const std::string& partial() const { return partial_; }
+  /// Number of bytes written.
   std::uint64_t bytes() const { return bytes_; }
+  /// The descriptor of the open file; -1 after finish().
   int descriptor() const { return file_; }
 
   /// The target of `path` with all links followed, even if it does not exist yet.

@@ -25,6 +25,7 @@ inline bool is_showable(double value, bool logarithmic) {
   return std::abs(value) <= 1e300 && (!logarithmic || value > 0);
 }
 
+/// The range of an axis and its ticks.
 struct Axis {
   double low = 0, high = 1;
   bool logarithmic = false;
@@ -38,6 +39,7 @@ struct Axis {
     if (logarithmic) return std::log(value / low) / std::log(high / low);
     return (value - low) / (high - low);
   }
+  /// Whether a value can be drawn on this axis.
   bool shows(double value) const { return is_showable(value, logarithmic); }
 };
 

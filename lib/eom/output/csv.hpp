@@ -22,11 +22,13 @@
 
 namespace eom {
 
+/// Writes rows of numbers with 17 digits, and the outcome of the run as the last line.
 class CsvWriter {
  public:
   /// Opens the file and writes the header line: t, then columns. Throws std::system_error with the path.
   CsvWriter(const std::filesystem::path& path, std::span<const std::string> columns)
       : CsvWriter(AtomicFile(path), columns) {}
+  /// The same for an open file.
   CsvWriter(AtomicFile file, std::span<const std::string> columns)
       : path_(file.path()), partial_(file.partial()), columns_(columns.size()), file_(std::move(file)) {
     lines_.reserve(2 * flush_size);
@@ -83,7 +85,9 @@ class CsvWriter {
 
   /// Path of the rows until finish; empty if they are written directly.
   const std::string& partial() const { return partial_; }
+  /// Number of rows written.
   std::uint64_t rows() const { return rows_; }
+  /// Number of bytes that have been passed to the file.
   std::uint64_t bytes() const { return file_.bytes(); }
 
  private:

@@ -20,6 +20,7 @@
 
 namespace eom {
 
+/// One curve of a plot.
 struct PlotSeries {
   std::string name;          // empty: not in the legend
   std::vector<double> x, y;  // of equal length
@@ -34,6 +35,7 @@ struct PlotMark {
   std::string name;
 };
 
+/// Contents and size (px) of a plot.
 struct Plot {
   std::string title, x_label, y_label;
   std::vector<PlotSeries> series;
@@ -50,6 +52,7 @@ inline constexpr std::array<const char*, 8> colours{"#0b6ab0", "#d1495b", "#1f8a
                                                     "#7a4fb5", "#12889a", "#a0527a", "#5b6770"};
 inline constexpr std::array<const char*, 3> dashes{"", "7 4", "2 3"};  // for the second and third eight
 
+/// The text with the special characters of XML escaped.
 inline std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -78,6 +81,7 @@ inline std::string number(double value) {
 /// Builds the document from axes to legend.
 class Drawing {
  public:
+  /// Throws std::invalid_argument if the legend leaves no space for the axes.
   explicit Drawing(const Plot& given) : plot_(given) {
     find_ranges();
     find_coinciding();
@@ -96,6 +100,7 @@ class Drawing {
     if (!note(y_).empty()) top_ += 16;
   }
 
+  /// The SVG document.
   std::string document() {
     open();
     draw_grid();

@@ -29,6 +29,7 @@ inline constexpr Refusal refusals[] = {
     {Feature::charts, "its series is that of the model's own coordinates"},
     {Feature::contact_forces, ", and its series knows inputs that stand still or jump"}};
 
+/// The method `taylor`.
 class Series : public StepEnds {
   struct At : SeriesMeasure {
     double* c = nullptr;

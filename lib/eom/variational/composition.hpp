@@ -9,12 +9,14 @@
 
 namespace eom::variational {
 
+/// One step.
 struct Order2 {
   static constexpr const char* name = "variational2";
   static constexpr int order = 2;
   static constexpr std::array<double, 1> substeps{1};
 };
 
+/// Three steps of order 2.
 struct Order4 {
   static constexpr const char* name = "variational4";
   static constexpr int order = 4;
@@ -22,6 +24,7 @@ struct Order4 {
   static constexpr std::array<double, 5> substeps{outer, outer, 1 - 4 * outer, outer, outer};
 };
 
+/// Steps of order 2 in a symmetric composition of order 6.
 struct Order6 {
   static constexpr const char* name = "variational6";
   static constexpr int order = 6;

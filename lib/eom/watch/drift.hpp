@@ -41,6 +41,7 @@ inline double relative_to(double value, double scale) {
 /// One quantity that should stay constant.
 class Drift {
  public:
+  /// `name`: of the quantity, for reports.
   explicit Drift(std::string name) : name_(std::move(name)) {}
 
   /// Adds a value, in order of time; the first one is the initial value. magnitude: size of the terms whose sum it is.
@@ -51,9 +52,13 @@ class Drift {
     max_abs_drift_ = std::max(max_abs_drift_, detail::distance(value, initial_));
   }
 
+  /// The name of the quantity.
   const std::string& name() const { return name_; }
+  /// v0, the first value.
   double initial() const { return initial_; }
+  /// max_t |v(t) - v0|, in the units of v.
   double max_abs_drift() const { return max_abs_drift_; }
+  /// The same divided by the scale of v.
   double max_relative_drift() const { return detail::relative_to(max_abs_drift_, scale_); }
 
  private:
@@ -75,7 +80,9 @@ class PowerBalance {
     max_abs_defect_ = std::max(max_abs_defect_, detail::distance(energy - work, offset_));
   }
 
+  /// max_t |E(t) - E(0) - W(t)|, in the units of the energy.
   double max_abs_defect() const { return max_abs_defect_; }
+  /// The same divided by the scale of the energies.
   double max_relative_defect() const { return detail::relative_to(max_abs_defect_, scale_); }
 
  private:
