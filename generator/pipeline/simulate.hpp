@@ -45,8 +45,8 @@ struct SimulationRequest {
   /// kinetic, potential, reactions and the outputs of the scene). Empty: no rows.
   std::function<void(const DerivedModel&, const run::Scene&, const std::vector<std::string>& names)> begin;
   std::function<void(double t, std::span<const double> values)> row;
-  std::size_t max_steps = 0;   // as in run::RunRequest
-  std::optional<double> rows;  // the number of rows, instead of the interval of the scene
+  std::size_t max_steps = 0;       // as in run::RunRequest
+  std::optional<double> rows;      // the number of rows, instead of the interval of the scene
   bool rows_follow_steps = false;  // further rows where steps are shorter, if no interval is given
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* interrupt = nullptr;
