@@ -30,6 +30,9 @@ ReferenceTrial require_reference(const Simulation& simulation, const run::RunReq
   if (!simulation.program.contacts.empty() || !simulation.program.contact_set.empty())
     refuse_reference("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
   for (const run::Signal& signal : simulation.scene.inputs) {
+    if (signal.is_linear_table() && signal.is_varying())
+      refuse_reference("an input is a table with linear interpolation",
+                       "take interpolation = \"hold\" in another scene, or read the error_estimate of eomgen run");
     if (signal.is_varying())
       refuse_reference("an input is an expression of t", "write it into the force, or give it as a table");
   }

@@ -70,7 +70,7 @@ CompiledModel::State::State(PreparedRun from, std::shared_ptr<PreparedRuns> cach
   values = values_of(*bound, run.plan->solver, states.size());
   certificate = run.compilation->certificate.summary();
   tier = pipeline::name(run.compilation->tier.tier);
-  const auto varies = [](const run::Signal& input) { return input.is_varying() || !input.jumps().empty(); };
+  const auto varies = [](const run::Signal& input) { return input.is_varying() || !input.knots().empty(); };
   if (std::none_of(scene().inputs.begin(), scene().inputs.end(), varies)) {
     for (const run::Signal& input : scene().inputs) constant_inputs.push_back(input(scene().t0, scene().t0));
   }

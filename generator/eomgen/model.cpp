@@ -66,9 +66,9 @@ Model Model::from_file(const std::string& path) {
   return Model(model::read_model(path));
 }
 
-Model Model::from_text(const std::string& text, const std::string& name) {
+Model Model::from_text(const std::string& text, const std::string& name, const std::string& folder) {
   const std::scoped_lock lock(library_mutex());
-  return Model(model::read_model_text(text, name + ".toml"));
+  return Model(model::read_model_text(text, name + ".toml", folder));
 }
 
 Model Model::from(const Definition& definition, const std::string& name) { return from_text(definition.text(), name); }
@@ -89,5 +89,7 @@ std::vector<std::string> Model::warnings() const {
 std::vector<Warning> Model::reader_warnings() const { return read_->warnings; }
 
 std::string Model::text() const { return fmt::format("{}", fmt::join(read_->lines, "\n")); }
+
+std::string Model::folder() const { return read_->folder; }
 
 }  // namespace eomgen

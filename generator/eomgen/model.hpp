@@ -41,7 +41,8 @@ class Model {
   /// Reads a model file (docs/model-format.md). Throws Error{stage "model"} if it is not a valid model.
   static Model from_file(const std::string& path);
   /// Reads a model from text in the format of model files. `name`: name of the model, and of the file in errors.
-  static Model from_text(const std::string& text, const std::string& name = "model");
+  /// `folder`: of CSV files that the text names; empty: it may name none.
+  static Model from_text(const std::string& text, const std::string& name = "model", const std::string& folder = "");
   /// Builds a model from a Definition. Throws as from_text() does.
   static Model from(const Definition& definition, const std::string& name = "model");
 
@@ -55,7 +56,8 @@ class Model {
   std::vector<std::string> warnings() const;
   /// The same as values.
   std::vector<Warning> reader_warnings() const;
-  std::string text() const;  // of the model file
+  std::string text() const;    // of the model file
+  std::string folder() const;  // of files that the model names; empty: from_text() without one
 
   /// Classifies the model: degrees of freedom, constraints, forces, conserved quantities, singular sets.
   Examination examine(const CallControl& control = {}) const;

@@ -320,8 +320,12 @@ struct InitialAngularVelocity {  // "B.omega" = [..]: components along the axes 
   std::array<NodeId, 3> value;
   Span span;
 };
-struct InputTable {  // piecewise constant: value[k] from t[k] until t[k+1]
-  std::vector<NodeId> t, value;
+/// Between its times a table holds the last value or runs along a straight line. Before and after them it is constant.
+enum class Interpolation : std::uint8_t { hold, linear };
+struct InputTable {
+  Interpolation interpolation = Interpolation::hold;
+  std::vector<NodeId> t, value;               // as written in the model
+  std::vector<double> csv_times, csv_values;  // in SI, from a CSV file in place of these
 };
 struct SceneInput {
   std::uint32_t input;
@@ -369,7 +373,8 @@ struct Model {
   std::string id;    // file name without .toml
   std::string title, notes;
   std::vector<std::string> lines;  // the source, for carets
-  std::string content_hash;        // hash of the file's bytes, hexadecimal
+  std::string content_hash;        // hash of the file's bytes, and those of its CSV files, hexadecimal
+  std::string folder;              // of files that the model names; empty: it was read as text and names none
   Arena arena;
   std::vector<Parameter> parameters;
   std::vector<Function> functions;
@@ -400,7 +405,8 @@ struct Model {
 
 /// Reads and checks a model file. Throws Error{stage "model"}.
 Model read_model(const std::string& path);
-/// The same for a text in memory (tests, fuzzing); errors show `file` as the file name.
-Model read_model_text(const std::string& text, const std::string& file);
+/// The same for a text in memory (tests, fuzzing); errors show `file` as the file name. The text may name files in
+/// `folder`; if that is empty, it may name none.
+Model read_model_text(const std::string& text, const std::string& file, const std::string& folder = "");
 
 }  // namespace eomgen::model

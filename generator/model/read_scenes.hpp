@@ -22,6 +22,8 @@ class ScenesReader : private SectionReader {
   void read_scene_parameters(Scene& scene, const std::vector<const Entry*>& entries);
   void read_scene_inputs(Scene& scene, const std::vector<const Entry*>& entries);
   InputTable read_input_table(const Value& table, const Symbol& input);
+  InputTable read_written_table(const Value& table, const Symbol& input, const std::string& what);
+  InputTable read_csv_table(const Value& table, const Symbol& input, const std::string& what);
   void read_solver(Scene& scene, const Value& value);
   void read_outputs(Scene& scene, const Value& value);
   void check_output(const Value& value);

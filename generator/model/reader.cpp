@@ -50,7 +50,8 @@ bool states_units(const Value& value, std::string_view section, bool is_unit) {
   return std::any_of(value.items.begin(), value.items.end(),
                      [&](const Value& item) { return states_units(item, section, false); }) ||
          std::any_of(value.entries.begin(), value.entries.end(), [&](const Entry& entry) {
-           const bool unit = entry.key == "unit" || section == "coordinates";  // x = "m"
+           if (value.find("csv") != nullptr && entry.key != "unit") return false;  // names of files and columns
+           const bool unit = entry.key == "unit" || section == "coordinates";      // x = "m"
            return !words(entry.key) && states_units(entry.value, section.empty() ? entry.key : "inside", unit);
          });
 }
@@ -140,11 +141,12 @@ void Reader::read_head() {
 
 }  // namespace
 
-Model read_model_text(const std::string& text, const std::string& file) {
+Model read_model_text(const std::string& text, const std::string& file, const std::string& folder) {
   const Source source(file, text);
   Value root = read_document(source);
   expand_contacts(source, root);
   ReaderContext context(source, root);
+  context.folder = folder;
   Reader(context).read();
   Model& model = context.model;
   restore_declared_order(model);
@@ -155,6 +157,8 @@ Model read_model_text(const std::string& text, const std::string& file) {
   model.id = std::filesystem::path(file).stem().string();
   model.lines = source.lines();
   model.content_hash = content_hash(text);
+  model.folder = folder;
+  for (const std::string& hash : context.data_hashes) model.content_hash = content_hash(model.content_hash + hash);
   return std::move(model);
 }
 
@@ -175,7 +179,8 @@ Model read_model(const std::string& path) {
   text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.size() > max_file_bytes)
     fail(fmt::format("the file has more than {} bytes", max_file_bytes), "check that this is a model file");
-  return read_model_text(text, path);
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return read_model_text(text, path, folder.empty() ? "." : folder);
 }
 
 const Argument* Force::argument(std::string_view key) const {

@@ -79,32 +79,6 @@ void ScenesReader::read_scene_inputs(Scene& scene, const std::vector<const Entry
   }
 }
 
-InputTable ScenesReader::read_input_table(const Value& table, const Symbol& input) {
-  const std::string what = fmt::format("the table of the input '{}'", input.name);
-  const std::string remedy = "write { t = [0, 1, 2], value = [0, 5, 0] }: value[k] holds from t[k] on";
-  check_keys(table, {what, {"t", "value"}});
-  const Value& times = require_kind(Value::Kind::array, require_value(table, "t", what, remedy), "'t'", remedy);
-  const Value& values =
-      require_kind(Value::Kind::array, require_value(table, "value", what, remedy), "'value'", remedy);
-  if (times.items.empty() || times.items.size() != values.items.size()) {
-    source_.fail(values.span,
-                 fmt::format("{} has {} times and {} values", what, times.items.size(), values.items.size()), remedy);
-  }
-  InputTable result;
-  std::optional<Rational> last;
-  const Context at{"a time of " + what, 0, Shape::scalar, dimension_of("s"), ""};
-  const Context value{"a value of " + what, 0, Shape::scalar, input.typed.dimension, ""};
-  for (std::size_t k = 0; k < times.items.size(); ++k) {
-    const TypedNode t = resolver_.value(times.items[k], at);
-    if (last && t.constant && *t.constant <= *last)
-      source_.fail(times.items[k].span, fmt::format("the times of {} do not grow", what), remedy);
-    last = t.constant;
-    result.t.push_back(t.node);
-    result.value.push_back(resolver_.value(values.items[k], value).node);
-  }
-  return result;
-}
-
 void ScenesReader::read_solver(Scene& scene, const Value& value) {
   require_kind(Value::Kind::text, value, "'solver'", "write solver = \"dop853\"");
   if (eom::find_method(value.text) == nullptr) {

@@ -78,7 +78,9 @@ struct ReaderContext {
   std::vector<Chain> chains;
   std::vector<ShapeSpec> contact_shapes;  // spheres and disks in contact
   std::set<std::uint32_t> coordinates_with_range,
-      coordinates_with_unit;  // coordinates whose range or unit [coordinates] states
+      coordinates_with_unit;             // coordinates whose range or unit [coordinates] states
+  std::string folder;                    // of files that the model names; empty: it may name none
+  std::vector<std::string> data_hashes;  // of the contents of these files
 };
 
 class SectionReader {

@@ -39,7 +39,7 @@ emit::LoadedBatch compile_batch(const Simulation& first) {
 }
 
 bool stands_still(const run::Scene& scene) {
-  const auto still = [](const run::Signal& signal) { return !signal.is_varying() && signal.jumps().empty(); };
+  const auto still = [](const run::Signal& signal) { return !signal.is_varying() && signal.knots().empty(); };
   return std::all_of(scene.inputs.begin(), scene.inputs.end(), still) && scene.jumps.functions.empty() &&
          scene.clock.bounds.empty() && scene.clock.breakpoints.empty();
 }

@@ -185,7 +185,7 @@ class DirectionFinder {
         entry += own.values.size();
         std::vector<double> values(begin, begin + static_cast<std::ptrdiff_t>(own.values.size()));
         any = any || std::any_of(values.begin(), values.end(), [](double v) { return v != 0; });
-        direction_.du.emplace_back(own.times, std::move(values));
+        direction_.du.emplace_back(own.times, std::move(values), own.linear);
         continue;
       }
       const Ref derivative = input_derivative(written(mechanics::lower_scalar(m, signal_of(i))));

@@ -33,7 +33,7 @@ const char* with(Feature feature) {
     case Feature::kinks: return "the equations have kinks (abs, sign, min, max, if, atan2)";
     case Feature::other_states:
       return "the model has states of first order, discrete values, or an integral of a function of time";
-    case Feature::moving_inputs: return "an input is an expression of t";
+    case Feature::moving_inputs: return "an input varies continuously with t";
     case Feature::contact_forces: return "the forces of its contacts are solved for at every evaluation";
     default: return "the solver does not support a feature of the model";
   }

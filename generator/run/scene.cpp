@@ -105,11 +105,13 @@ std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene&
       std::vector<double> t, v;
       for (const model::NodeId id : table->t) t.push_back(value.number(id, "a time of an input table"));
       for (const model::NodeId id : table->value) v.push_back(value.number(id, "a value of an input table"));
+      t.insert(t.end(), table->csv_times.begin(), table->csv_times.end());
+      v.insert(v.end(), table->csv_values.begin(), table->csv_values.end());
       if (!std::is_sorted(t.begin(), t.end(), std::less_equal<>())) {
         throw Error("scene", m.model->where(given->span), "the times of an input table must increase",
                     "sort the table by time");
       }
-      result.inputs.emplace_back(std::move(t), std::move(v));
+      result.inputs.emplace_back(std::move(t), std::move(v), table->interpolation == model::Interpolation::linear);
       expressions.emplace_back();
       continue;
     }

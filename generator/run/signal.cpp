@@ -15,15 +15,15 @@ Signal::Signal(const symbolic::Dag& dag, symbolic::Ref expression, const std::ve
   set_parameters(values);
 }
 
-Signal::Signal(std::vector<double> time, std::vector<double> value)
-    : signal_{{}, std::move(time), std::move(value), {}} {}
+Signal::Signal(std::vector<double> time, std::vector<double> value, bool linear)
+    : signal_{{}, std::move(time), std::move(value), {}, linear} {}
 
 void Signal::set_parameters(const std::vector<double>& values) {
   if (!signal_.expression.empty()) code_ = eom::expressions::Code(signal_.expression, values);
 }
 
 double Signal::operator()(double t, double side_of) const {
-  return signal_.expression.empty() ? eom::hybrid::segment_value(signal_, side_of) : code_.value({&t, 1});
+  return signal_.expression.empty() ? eom::hybrid::table_value(signal_, t, side_of).value : code_.value({&t, 1});
 }
 
 bool Signal::is_varying() const { return eom::hybrid::is_time_dependent(signal_); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An input u(t) during a run: an expression of t and parameters, or piecewise constant with jumps.
+// An input u(t) during a run: an expression of t and parameters, or a table that is piecewise constant or linear.
 #pragma once
 
 #include <eom/expressions/code.hpp>
@@ -15,17 +15,19 @@ class Signal {
   Signal() = default;
   /// An expression in t and parameters; it is copied, so the Dag need not live on.
   Signal(const symbolic::Dag& dag, symbolic::Ref expression, const std::vector<double>& parameters);
-  /// value[k] from time[k] until time[k+1]; value[0] before time[0].
-  Signal(std::vector<double> time, std::vector<double> value);
+  /// value[k] from time[k] until time[k+1], or linear in between; value[0] before time[0].
+  Signal(std::vector<double> time, std::vector<double> value, bool linear);
 
   /// Sets new values of the parameters in its expression.
   void set_parameters(const std::vector<double>& values);
 
-  /// The value at t. At a jump: the value of the segment that `side_of` (a time inside the current segment) lies in.
+  /// The value at t. At a time of a table: on the segment that `side_of` (a time inside the current segment) lies in.
   double operator()(double t, double side_of) const;
-  /// Whether the signal varies between its jumps.
+  /// Whether the signal varies between the times of its table, or has none and varies.
   bool is_varying() const;
-  const std::vector<double>& jumps() const { return signal_.times; }
+  bool is_linear_table() const { return signal_.linear; }
+  /// Times of a table, at which it has jumps or kinks.
+  const std::vector<double>& knots() const { return signal_.times; }
   const eom::hybrid::Signal& runtime_signal() const { return signal_; }
 
  private:

@@ -73,9 +73,12 @@ class Model:
 
     __slots__ = ("_core",)
 
-    def __init__(self, text: str, name: str = "model") -> None:
-        """Reads a model from text in the format of model files. ``name``: of the model, and of the file in errors."""
-        self._core = _core.Model.from_text(str(text), name)
+    def __init__(self, text: str, name: str = "model", folder: "str | os.PathLike[str]" = "") -> None:
+        """Reads a model from text in the format of model files. ``name``: of the model, and of the file in errors.
+
+        ``folder``: of CSV files that the text names; without it the text may name none.
+        """
+        self._core = _core.Model.from_text(str(text), name, os.fspath(folder))
 
     @classmethod
     def from_file(cls, path: "str | os.PathLike[str]") -> "Model":
@@ -116,12 +119,13 @@ class Model:
         return cls(found["text"], name or base)
 
     @classmethod
-    def from_text(cls, text: str, name: str = "model") -> "Model":
-        """Reads a model from text in the format of model files."""
-        return cls(text, name)
+    def from_text(cls, text: str, name: str = "model", folder: "str | os.PathLike[str]" = "") -> "Model":
+        """Reads a model from text in the format of model files. ``folder``: of CSV files that the text names."""
+        return cls(text, name, folder)
 
     def __reduce__(self) -> Any:
-        return (type(self), (self.text, self.name))
+        folder = self._core.folder()
+        return (type(self), (self.text, self.name, os.path.abspath(folder) if folder else ""))
 
     def __repr__(self) -> str:
         title = f": {self.title}" if self.title else ""

@@ -334,6 +334,7 @@ void add_model(py::module_& module) {
       .def("id", &Model::id)
       .def("title", &Model::title)
       .def("text", &Model::text)
+      .def("folder", &Model::folder)
       .def("coordinates", &Model::coordinates)
       .def("parameters", &Model::parameters)
       .def("inputs", &Model::inputs)

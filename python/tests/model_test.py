@@ -198,6 +198,35 @@ class ModelTest(unittest.TestCase):
         again = pickle.loads(pickle.dumps(self.model))
         self.assertEqual((again.name, again.text), (self.model.name, self.model.text))
 
+    def test_a_csv_file_beside_the_model_is_an_input(self):
+        text = """
+format = 1
+[inputs]
+F = {}
+[[particle]]
+name = "P"
+mass = 1
+position = ["x", 0, 0]
+[[force]]
+on = "P"
+force = "F*E1"
+[scene.default]
+t = [0, 2]
+initial = { x = 0 }
+inputs = { F = { csv = "force.csv", interpolation = "linear" } }
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            for name, content in (("push.toml", text), ("force.csv", "t,F\n0,0\n1,3\n")):
+                with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                    file.write(content)
+            read = eomgen.Model.from_file(os.path.join(folder, "push.toml"))
+            for model in (read, eomgen.Model.from_text(text, folder=folder), pickle.loads(pickle.dumps(read))):
+                # x'' = 3 t until 1 s, then 3: x(1) = 1/2, x'(1) = 3/2.
+                self.assertAlmostEqual(model.run(rtol=0.1, atol=0.1).final["x"], 0.5 + 1.5 + 1.5, 13)
+            self.assertEqual(read.compile().rhs(0.5, [0, 0]).tolist(), [0, 1.5])
+        with self.assertRaisesRegex(eomgen.Error, "a model that is given as text names no files"):
+            eomgen.Model.from_text(text)
+
     def test_progress_may_end_a_run(self):
         fractions = []
 

@@ -53,7 +53,7 @@ TEST_CASE("emit --with run: a solver of the default scene that is ineligible for
        {"solver 'variational4' cannot integrate this model", "the equations have kinks"}},
       {"moving inputs",
        particle("solver = \"taylor\"\ninputs = { F = \"3*sin(2*t)\" }\n"),
-       {"solver 'taylor' cannot integrate this scene", "an input is an expression of t"}}};
+       {"solver 'taylor' cannot integrate this scene", "an input varies continuously with t"}}};
   for (const EmittedCase& c : cases) check_refusal(c);
 }
 

@@ -45,7 +45,9 @@ std::string text(const eom::expressions::Table& table) {
   return fmt::format("{{{}, {}, {}}}", text(table.steps), text(table.numbers), text(table.roots));
 }
 std::string text(const eom::hybrid::Signal& signal) {
-  if (!signal.times.empty()) return fmt::format("{{{{}}, {}, {}, {{}}}}", text(signal.times), text(signal.values));
+  if (!signal.times.empty())
+    return fmt::format("{{{{}}, {}, {}, {{}}{}}}", text(signal.times), text(signal.values),
+                       signal.linear ? ", true" : "");
   if (signal.expression.empty()) return "{}";
   return fmt::format("{{{{}}, {{}}, {{}}, {}}}", text(signal.expression));
 }

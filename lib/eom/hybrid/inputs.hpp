@@ -23,12 +23,12 @@ class Inputs {
   /// Number of inputs.
   std::size_t size() const { return signals_.size(); }
 
-  /// Input i at t. For a table: the value of the segment that contains `side`, a time inside the current segment.
+  /// Input i at t. Of a table: on the segment that contains `side`, a time inside the current segment.
   double operator()(std::size_t i, double t, double side) const {
     const Signal& signal = signals_[i];
     if (codes_[i].roots() > 0) return codes_[i].value({&t, 1});
     if (signal.times.empty()) return signal.function ? signal.function(t) : 0.0;
-    return segment_value(signal, side);
+    return table_value(signal, t, side).value;
   }
 
  private:

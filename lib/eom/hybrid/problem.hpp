@@ -158,7 +158,7 @@ struct Problem {
   std::vector<WatchedEvent> events = {};  // all events of the model
   std::vector<Sample> samples = {};
   TimeFunctions time = {};  // from these a run computes kink times and step bounds; empty: both are given
-  std::vector<Breakpoint> breakpoints = {};  // in the span, ascending; without the jumps of tables
+  std::vector<Breakpoint> breakpoints = {};  // in the span, ascending; without the times of tables
   std::vector<StepBound> bounds = {};        // on steps, to resolve functions of time
   JumpFunctions jumps = {};
   BoundedFunctions bounded = {};

@@ -266,7 +266,8 @@ inline std::vector<double> StepwiseRun::inputs() {
 
 inline void StepwiseRun::set_input(std::size_t input, Signal signal) {
   Signal& now = problem_.inputs.at(input);
-  const bool both_tables = !now.times.empty() && !signal.times.empty();
+  const bool both_tables =
+      !now.times.empty() && !signal.times.empty() && is_time_dependent(now) == is_time_dependent(signal);
   now = std::move(signal);
   if (functions_use_inputs_) analysed_until_ = t_;
   if (!both_tables) rebuild();  // what the model keeps depends on the kind of its inputs, not on the values of tables

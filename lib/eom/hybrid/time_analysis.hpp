@@ -111,13 +111,17 @@ class TimeAnalyser {
 
   const std::vector<double>& at(double t, double within) {
     at_[0] = t;
-    for (std::size_t i = 0; i < inputs_.size(); ++i) at_[1 + i] = segment_value(inputs_[i], within);
+    for (std::size_t i = 0; i < inputs_.size(); ++i) at_[1 + i] = table_value(inputs_[i], t, within).value;
     return at_;
   }
   const std::vector<SlopedInterval>& box(double a, double b) {
-    at(a, (a + b) / 2);
+    const double middle = (a + b) / 2;
     box_[0] = {{a, b}, {1, 1}};
-    for (std::size_t i = 1; i < at_.size(); ++i) box_[i] = {{at_[i], at_[i]}, {0, 0}};
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      const auto [left, slope] = table_value(inputs_[i], a, middle);
+      const double right = table_value(inputs_[i], b, middle).value;
+      box_[1 + i] = {{std::min(left, right), std::max(left, right)}, {slope, slope}};
+    }
     return box_;
   }
 
