@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "print/formulas.hpp"
+#include "reading/constrained_roots.hpp"
 #include "reading/solved_form.hpp"
 #include "reading/trig.hpp"
 
@@ -43,6 +44,10 @@ class Multipliers {
     if (solved_ != nullptr) return *solved_->multipliers[k];
     return reading::display_sum(m_, m_.dag->symbol({SymbolKind::multiplier, k, 0}));
   }
+  /// dpsi_k/dq_i, with the roots whose value a constraint gives.
+  Sum slope(std::uint32_t k, std::uint32_t i) const {
+    return shorter_(reading::display_sum(m_, m_.constraints[k].gradient[i]));
+  }
   /// The friction force along tangent `a` of a contact, where all contacts hold; 0 otherwise.
   Sum friction(const mechanics::Contact& contact, std::uint32_t a) const {
     if (solved_ == nullptr || contact.first + a >= solved_->friction.size()) return {};
@@ -52,6 +57,7 @@ class Multipliers {
 
  private:
   const Mechanics& m_;
+  const reading::ConstrainedRoots shorter_ = reading::constrained_roots(m_);
   std::vector<bool> built_in_;
   const reading::SolvedForm* solved_ = nullptr;
 };
@@ -141,7 +147,7 @@ class BodyForces {
       Sum component;
       for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
         if (!multipliers_.holds(k)) continue;
-        const Sum slope = reading::display_sum(m_, m_.constraints[k].gradient[along[i]]);
+        const Sum slope = multipliers_.slope(k, along[i]);
         if (slope.is_zero()) continue;
         if (multipliers_.built_in(k)) return;
         component = reading::simplify(component + slope * multipliers_.value(k));
@@ -171,7 +177,7 @@ class BodyForces {
       std::vector<Formula> parts;
       bool sums = false;  // lines break between terms, not within nested brackets
       for (std::size_t i = 0; i < along.size(); ++i) {
-        const Sum slope = reading::display_sum(m_, m_.constraints[k].gradient[along[i]]);
+        const Sum slope = multipliers_.slope(k, along[i]);
         if (slope.is_zero()) continue;
         const bool minus = reading::has_negative_leading_term(slope);
         Formula part = reading::product({reading::arrange(minus ? -slope : slope), vector(i)});
@@ -308,7 +314,7 @@ class ParticleForces {
     for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
       if (!multipliers_.holds(k)) continue;
       for (std::size_t i = 0; i < g.coordinates.size(); ++i) {
-        const Sum slope = reading::display_sum(m_, m_.constraints[k].gradient[g.coordinates[i]]);
+        const Sum slope = multipliers_.slope(k, g.coordinates[i]);
         if (slope.is_zero()) continue;
         if (multipliers_.built_in(k)) return std::nullopt;
         add_along(g, i, multipliers_.value(k) * slope, force);

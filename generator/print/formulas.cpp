@@ -52,6 +52,8 @@ Formula times_multiplier(std::uint32_t k, const Sum& slope) {
     result = reading::product(std::move(factors));
   } else if (f.kind == FormulaKind::number) {
     result = reading::product({f, multiplier(k)});
+  } else if (f.kind == FormulaKind::fraction && f.args[0].kind == FormulaKind::symbol) {
+    result = reading::fraction(reading::product({multiplier(k), f.args[0]}), f.args[1]);
   } else {
     result = reading::product({multiplier(k), f});
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "reading/reading.hpp"
 #include "reading/trig.hpp"
 
 namespace eomgen::reading {
@@ -60,14 +61,18 @@ std::optional<Sum> given_power(const Factor& factor, const std::vector<Sum>& psi
 }  // namespace
 
 Sum ConstrainedRoots::operator()(const Sum& sum) const {
-  if (psi_.empty()) return sum;
+  const bool has_powers = std::any_of(sum.terms().begin(), sum.terms().end(), [](const auto& term) {
+    return std::any_of(term.first.begin(), term.first.end(), is_power_of_sum);
+  });
+  if (!has_powers) return sum;
+  if (!psi_) psi_ = find_();
   Sum result;
   bool changed = false;
   for (const auto& [monomial, coefficient] : sum.terms()) {
     Monomial kept;
     Sum given = 1;
     for (const Factor& factor : monomial) {
-      const std::optional<Sum> value = is_power_of_sum(factor) ? given_power(factor, psi_) : std::nullopt;
+      const std::optional<Sum> value = is_power_of_sum(factor) ? given_power(factor, *psi_) : std::nullopt;
       if (value) {
         given = given * *value;
         changed = true;
@@ -78,6 +83,20 @@ Sum ConstrainedRoots::operator()(const Sum& sum) const {
     result += given * Sum(std::move(kept), coefficient);
   }
   return changed ? simplify(result) : sum;
+}
+
+ConstrainedRoots constrained_roots(const mechanics::Mechanics& m) {
+  return ConstrainedRoots([&m] {
+    std::vector<Sum> psi;
+    for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+      if (!m.constraints[k].holonomic() || !m.is_independent(k) || m.constraints[k].unilateral) continue;
+      try {
+        psi.push_back(display_sum(m, m.constraints[k].psi));
+      } catch (const work::BudgetExceeded&) {  // other constraints still give their roots
+      }
+    }
+    return psi;
+  });
 }
 
 }  // namespace eomgen::reading

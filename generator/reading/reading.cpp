@@ -98,13 +98,8 @@ void add_constraints(const Mechanics& m, GinacBridge& bridge, Extent extent, Dis
 
 /// Writes powers of sums whose value a constraint gives. The derivatives have been taken, so that equations, forces and
 /// rates may use it. Left out beyond the budget.
-void write_constrained_roots(const Mechanics& m, GinacBridge& bridge, DisplayForm& form) {
-  std::vector<Sum> psi;
-  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (!m.constraints[k].holonomic() || !m.is_independent(k) || m.constraints[k].unilateral) continue;
-    within_budget([&] { psi.push_back(bridge.sum(m.constraints[k].psi)); });
-  }
-  const ConstrainedRoots shorter(std::move(psi));
+void write_constrained_roots(const Mechanics& m, DisplayForm& form) {
+  const ConstrainedRoots shorter = constrained_roots(m);
   const auto shorten = [&](Sum& sum) { within_budget([&] { sum = shorter(sum); }); };
   for (Equation& equation : form.equations) {
     for (Sum* part : {&equation.slope, &equation.force, &equation.expanded}) shorten(*part);
@@ -179,7 +174,7 @@ DisplayForm derive_display_form(const Mechanics& given, system::Approach approac
     leave_unexpanded(m, form, over.what());
   }
   if (extent == Extent::whole || !form.is_unexpanded) add_constraints(m, bridge, extent, form);
-  write_constrained_roots(m, bridge, form);
+  write_constrained_roots(m, form);
   return form;
 } catch (const std::domain_error&) {
   throw no_value_error(given);
